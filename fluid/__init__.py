@@ -1,0 +1,1 @@
+"""What the liquid does: equations and closed forms as pure array functions."""

@@ -1,0 +1,1 @@
+"""Where the liquid is: chambers, sections, meshes. No liquid, no time."""

@@ -1,0 +1,1 @@
+"""The front room: one scene in, results out."""

@@ -1,0 +1,1 @@
+"""Is it true: published cases, errata of the sources, measured rigs."""
