@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from meshes.border import InputFault, require_not_negative, require_positive
+from meshes.border import InputError, require_not_negative, require_positive
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Liquid:
 
     Raises
     ------
-    InputFault : a density that is not positive, a negative viscosity
+    InputError : a density that is not positive, a negative viscosity
     """
 
     name: str
@@ -53,8 +53,8 @@ def known_liquid(name: str) -> Liquid:
 
     Raises
     ------
-    InputFault : the name is not in `KNOWN_LIQUIDS`
+    InputError : the name is not in `KNOWN_LIQUIDS`
     """
     if name not in KNOWN_LIQUIDS:
-        raise InputFault("liquid", name, "one of " + ", ".join(sorted(KNOWN_LIQUIDS)))
+        raise InputError("liquid", name, "one of " + ", ".join(sorted(KNOWN_LIQUIDS)))
     return KNOWN_LIQUIDS[name]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 
-class InputFault(ValueError):
+class InputError(ValueError):
     """A value that a model cannot take.
 
     Parameters
@@ -23,12 +23,12 @@ class InputFault(ValueError):
 
 
 def require_positive(field: str, value: float) -> None:
-    """Raise `InputFault` unless `value` is finite and above zero."""
+    """Raise `InputError` unless `value` is finite and above zero."""
     if not (math.isfinite(value) and value > 0.0):
-        raise InputFault(field, value, "a finite number above 0")
+        raise InputError(field, value, "a finite number above 0")
 
 
 def require_not_negative(field: str, value: float) -> None:
-    """Raise `InputFault` unless `value` is finite and zero or above."""
+    """Raise `InputError` unless `value` is finite and zero or above."""
     if not (math.isfinite(value) and value >= 0.0):
-        raise InputFault(field, value, "a finite number, 0 or above")
+        raise InputError(field, value, "a finite number, 0 or above")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from meshes.border import InputFault, require_not_negative, require_positive
+from meshes.border import InputError, require_not_negative, require_positive
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Chamber:
 
     Raises
     ------
-    InputFault : a length that is not finite and positive, or an inner wall outside the outer one
+    InputError : a length that is not finite and positive, or an inner wall outside the outer one
 
     Examples
     --------
@@ -39,9 +39,9 @@ class Chamber:
         require_positive("height", self.height)
         require_not_negative("inner_radius", self.inner_radius)
         if self.inner_radius >= self.radius:
-            raise InputFault("inner_radius", self.inner_radius, f"below radius ({self.radius:g} m)")
+            raise InputError("inner_radius", self.inner_radius, f"below radius ({self.radius:g} m)")
         if not math.isfinite(self.plane):
-            raise InputFault("plane", self.plane, "a finite number")
+            raise InputError("plane", self.plane, "a finite number")
 
     @property
     def section_area(self) -> float:
