@@ -1,0 +1,56 @@
+"""The Jeffcott rotor: a rigid disc on an isotropic elastic support with external damping."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshes.border import require_not_negative, require_positive
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Jeffcott:
+    """Planar rotor [theory: rotor, eq. 1].
+
+    Parameters
+    ----------
+    mass : M, kg, without the liquid
+    stiffness : K, N/m
+    damping : C of the support, N s/m
+    unbalance : U0 = m e, kg m; its direction is the origin of all angles
+
+    Raises
+    ------
+    InputError : mass or stiffness not positive, damping or unbalance negative
+    """
+
+    mass: float
+    stiffness: float
+    damping: float
+    unbalance: float
+
+    def __post_init__(self) -> None:
+        require_positive("mass", self.mass)
+        require_positive("stiffness", self.stiffness)
+        require_not_negative("damping", self.damping)
+        require_not_negative("unbalance", self.unbalance)
+
+    @property
+    def natural_frequency(self) -> float:
+        """sqrt(K/M), rad/s."""
+        return float(np.sqrt(self.stiffness / self.mass))
+
+    @property
+    def damping_ratio(self) -> float:
+        """zeta = C/(2 sqrt(K M))."""
+        return float(self.damping / (2.0 * np.sqrt(self.stiffness * self.mass)))
+
+    def dynamic_stiffness(self, speed: Array) -> NDArray[np.complex128]:
+        """K - M Omega^2 + i C Omega of the dry rotor in the drum frame, N/m, shape of `speed`."""
+        return np.asarray(
+            self.stiffness - self.mass * np.square(speed) + 1j * self.damping * speed, dtype=complex
+        )
