@@ -51,6 +51,7 @@ def find_branches(
     at_low, at_high = pull(low, which) / force[which], pull(high, which) / force[which]
     found: list[Array] = []
     owner: list[Index] = []
+    crossed: list[NDArray[np.bool_]] = []
 
     def balance(e: Array, y: Array, k: Index) -> Array:
         return np.asarray(np.hypot(a[k] * e - y, c[k] * e) - 1.0)
@@ -74,11 +75,13 @@ def find_branches(
                 root, sure = bracketed_root(partial(balance_at, k), low[single], high[single])
                 found.append(root)
                 owner.append(k)
+                crossed.append(np.ones(k.size, dtype=bool))
                 converged[k[~sure]] = False
             elif level == _FINE:
                 # Neither excluded nor crossed at the finest width: the curve touches, a double solution.
                 found.append(0.5 * (low + high))
                 owner.append(which)
+                crossed.append(np.zeros(which.size, dtype=bool))
             low, high, at_low, at_high = (x[~single] for x in (low, high, at_low, at_high))
             which = which[~single]
             if which.size == 0:
@@ -90,16 +93,27 @@ def find_branches(
         which = np.concatenate((which, which))
     if not found:
         return np.zeros(0), np.zeros(0, dtype=np.intp), converged
-    return *_distinct(np.concatenate(found), np.concatenate(owner), stop - start), converged
+    solution, k = _distinct(
+        np.concatenate(found), np.concatenate(owner), np.concatenate(crossed), stop - start
+    )
+    return solution, k, converged
 
 
-def _distinct(solution: Array, which: Index, span: Array) -> tuple[Array, Index]:
-    """Solutions without their echoes in neighbouring intervals of the finest width."""
+def _distinct(solution: Array, which: Index, crossed: NDArray[np.bool_], span: Array) -> tuple[Array, Index]:
+    """One solution for each cluster: the ones crossed, or the middle of where the curve touches."""
     order = np.lexsort((solution, which))
-    solution, which = solution[order], which[order]
-    same = (np.diff(which) == 0) & (np.diff(solution) <= 4.0 * 2.0**-_FINE * span[which[1:]])
-    first = np.concatenate(([True], ~same))
-    return solution[first], which[first]
+    solution, which, crossed = solution[order], which[order], crossed[order]
+    apart = (np.diff(which) != 0) | (np.diff(solution) > 4.0 * 2.0**-_FINE * span[which[1:]])
+    first = np.flatnonzero(np.concatenate(([True], apart)))
+    last = np.concatenate((first[1:], [which.size])) - 1
+    cluster = np.cumsum(np.concatenate(([0], apart.astype(int))))
+    has_crossing = np.bincount(cluster, weights=crossed) > 0.0
+    touching = first[~has_crossing]
+    middle = 0.5 * (solution[touching] + solution[last[~has_crossing]])
+    return (
+        np.concatenate((solution[crossed], middle)),
+        np.concatenate((which[crossed], which[touching])),
+    )
 
 
 def _may_hold(

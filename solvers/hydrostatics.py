@@ -252,7 +252,8 @@ def _solve(chamber: Chamber, volume: Array, e: Array, steep: Array) -> tuple[Arr
     converged = (fill <= 0.0) | (fill >= 1.0)
     # The depth nowhere exceeds the wetted height, so the fill is a lower bound of it.
     low, high = np.minimum(fill, full), full.copy()
-    guess = np.sqrt(low * high)
+    # A nearly flat surface stands at that bound.
+    guess = np.where(full < 2.0, low, np.sqrt(low * high))
     for _ in range(_ITERATIONS):
         todo = np.flatnonzero(~converged)
         if todo.size == 0:
@@ -269,7 +270,7 @@ def _solve(chamber: Chamber, volume: Array, e: Array, steep: Array) -> tuple[Arr
             top - bottom <= _ROUNDING * top
         )
         step = _logit_step(z, full[todo], wet, v, capacity, plan)
-        converged[todo] |= np.abs(step - z) <= _ROUNDING * z
+        converged[todo] |= (np.abs(step - z) <= _ROUNDING * z) & (np.abs(off) <= 1e-12 * v)
         middle = np.where(top > 4.0 * bottom, np.sqrt(bottom * top), 0.5 * (bottom + top))
         guess[todo] = np.where((step > bottom) & (step < top), step, middle)
     return zeta.reshape(shape), reached.reshape(shape), converged.reshape(shape)

@@ -103,10 +103,12 @@ def synchronous_response(
     stiffness = rotor.dynamic_stiffness(spin)
     force = rotor.unbalance * np.square(spin)
     dry = _divide(force, stiffness)
-    deflection, which, converged = _all_deflections(rotor, fills, spin, gravity, liquid)
+    modulus, which, converged = _all_deflections(rotor, fills, spin, gravity, liquid)
+    bounded = np.isfinite(modulus)
+    deflection = np.where(bounded, modulus, 0.0)
     state = _evaluate(fills, spin[which], deflection, gravity, liquid)
-    stable = _is_stable(rotor, spin[which], deflection, state)
-    phased = _with_phase(rotor, spin[which], deflection, state)
+    stable = bounded & _is_stable(rotor, spin[which], deflection, state)
+    phased = np.where(bounded, _with_phase(rotor, spin[which], deflection, state), complex(np.inf, 0.0))
     table = _Table.arrange(spin.size, which, deflection, stable)
     chosen = table.reported
     offset = _offset(fills, deflection[chosen], state.unbalance[chosen])
@@ -117,12 +119,12 @@ def synchronous_response(
         deflection=answer,
         deflection_dry=dry,
         liquid_offset=offset,
-        liquid_angle=np.where(np.abs(answer) > 0.0, np.angle(answer), 0.0),
+        liquid_angle=np.angle(answer),
         dry_patch=state.dry_patch[chosen],
         stable=stable[chosen],
         model=np.full(spin.shape, liquid.name),
         in_range=state.in_range[chosen],
-        converged=converged & np.isfinite(dry),
+        converged=converged,
         branch_deflection=table.spread(phased, complex(np.nan, np.nan)),
         branch_stable=table.spread(stable, False),
     )

@@ -35,7 +35,7 @@ _NARROWEST = 3e-6
 
 @dataclass(frozen=True)
 class _Panel:
-    """Nodes of a panel, last axis; `rise` is the change of depth over it, 0 outside the ramp."""
+    """Nodes of a panel, last axis; `rise` is the change of depth over it, None outside the ramp."""
 
     half: Array  # half the panel's length in its own variable, shape (..., 1)
     density: Array  # ds over that half, with the quadrature's weights
@@ -44,7 +44,7 @@ class _Panel:
     chord: Array  # r sin(phi)
     abscissa: Array  # r cos(phi)
     depth: Array  # eta, 0 to 1
-    rise: Array  # shape (...,)
+    rise: Array | None  # shape (...,)
 
     @property
     def weight(self) -> Array:
@@ -64,7 +64,7 @@ def _half_angle_squared_sine(depth_drop: Array, span: Array) -> Array:
     return out
 
 
-def _far_panel(eps: Array, span: Array, zeta: Array, start: Array, stop: Array, rise: Array) -> _Panel:
+def _far_panel(eps: Array, span: Array, zeta: Array, start: Array, stop: Array, rise: Array | None) -> _Panel:
     """Wall from psi = start to stop, both in the far part."""
     half = 0.5 * (stop - start)[..., None]
     psi = 0.5 * (stop + start)[..., None] + half * _FAR[0]
@@ -83,7 +83,9 @@ def _far_panel(eps: Array, span: Array, zeta: Array, start: Array, stop: Array, 
     )
 
 
-def _near_panel(eps: Array, span: Array, nearest: Array, start: Array, stop: Array, rise: Array) -> _Panel:
+def _near_panel(
+    eps: Array, span: Array, nearest: Array, start: Array, stop: Array, rise: Array | None
+) -> _Panel:
     """Wall from sin(v/2) = start to stop, v = pi - psi; `nearest` is the depth at v = 0."""
     safe = np.maximum(eps, np.finfo(float).tiny)
     width = np.maximum(np.abs(1.0 - eps) / (2.0 * np.sqrt(safe)), _NARROWEST)
@@ -107,7 +109,9 @@ def _near_panel(eps: Array, span: Array, nearest: Array, start: Array, stop: Arr
     )
 
 
-def _disc_panel(steep: Array, nearest: Array, inner: Array, start: Array, stop: Array, rise: Array) -> _Panel:
+def _disc_panel(
+    steep: Array, nearest: Array, inner: Array, start: Array, stop: Array, rise: Array | None
+) -> _Panel:
     """Full circles from s = inner - start down to inner - stop; `nearest` is the depth at s = inner."""
     half = 0.5 * (stop - start)[..., None]
     fall = 0.5 * (stop + start)[..., None] + half * _DISC[0]
@@ -145,11 +149,11 @@ def _panels(eps: Array, steep: Array, zeta: Array) -> list[_Panel]:
     floor_fall = _fall(deepest, steep, inner)
     bottom = deepest - steep * inner
     return [
-        _far_panel(eps, span, zeta, none, lid_far, none),
+        _far_panel(eps, span, zeta, none, lid_far, None),
         _far_panel(eps, span, zeta, lid_far, floor_far, _clip(zeta) - _clip(middle)),
-        _near_panel(eps, span, nearest, lid_near, near_end, none),
+        _near_panel(eps, span, nearest, lid_near, near_end, None),
         _near_panel(eps, span, nearest, floor_near, lid_near, _clip(middle) - _clip(nearest)),
-        _disc_panel(steep, deepest, inner, none, lid_fall, none),
+        _disc_panel(steep, deepest, inner, none, lid_fall, None),
         _disc_panel(steep, deepest, inner, lid_fall, floor_fall, _clip(deepest) - _clip(bottom)),
     ]
 
@@ -189,8 +193,9 @@ def volume_and_plan(eps: Array, steep: Array, zeta: Array) -> tuple[Array, ...]:
     for panel in _panels(eps, steep, zeta):
         weighted = panel.weight * panel.phi
         volume += (weighted * panel.depth).sum(-1)
-        plan += panel.rise * _mean(panel, panel.phi)
-        area += np.where(panel.rise > 0.0, weighted.sum(-1), 0.0)
+        if panel.rise is not None:
+            plan += panel.rise * _mean(panel, panel.phi)
+            area += weighted.sum(-1)
     # The plan shrinks as 1/B: its area then comes from the rise, which keeps its digits.
     return volume, np.where(steep > 1.0, plan / np.maximum(steep, 1.0), area)
 
@@ -211,9 +216,10 @@ def unbalance(eps: Array, steep: Array, zeta: Array) -> tuple[Array, ...]:
     x, plan, plan_x, plan_xx = np.zeros((4, *eps.shape))
     for panel in _panels(eps, steep, zeta):
         x += (panel.weight * panel.depth * panel.chord).sum(-1)
-        plan += panel.rise * _mean(panel, panel.phi)
-        plan_x += panel.rise * _mean(panel, panel.chord)
-        plan_xx += panel.rise * _mean(panel, _second_moment(panel))
+        if panel.rise is not None:
+            plan += panel.rise * _mean(panel, panel.phi)
+            plan_x += panel.rise * _mean(panel, panel.chord)
+            plan_xx += panel.rise * _mean(panel, _second_moment(panel))
     return x, plan, plan_x, plan_xx
 
 

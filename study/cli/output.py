@@ -1,0 +1,115 @@
+"""What commands print and write: JSON on stdout, words on stderr, files that are whole or not there."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from typing import Any
+
+_LONGEST_NAME = 200  # bytes; file systems allow 255
+_RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)  # on Windows
+
+
+def say(text: str) -> None:
+    """Print a line of progress or a fault on stderr."""
+    print(text, file=sys.stderr, flush=True)
+
+
+def print_json(value: object) -> None:
+    """Print one JSON object on stdout.
+
+    Parameters
+    ----------
+    value : dataclasses, mappings, sequences, arrays and numbers; a complex number becomes [re, im], and what
+        is not finite becomes null
+    """
+    sys.stdout.write(json.dumps(_plain(value), allow_nan=False) + "\n")
+    sys.stdout.flush()
+
+
+def _plain(value: Any) -> Any:
+    """The same in what JSON knows."""
+    if value is None or isinstance(value, str | bool | int):
+        return value
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, complex):
+        return [_plain(value.real), _plain(value.imag)]
+    if isinstance(value, Mapping):
+        return {str(key): _plain(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(entry) for entry in value]
+    if isinstance(value, Path):
+        return str(value)
+    if is_dataclass(value) and not isinstance(value, type):
+        return {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
+    if hasattr(value, "tolist"):  # arrays and their scalars, without importing numpy for it
+        return _plain(value.tolist())
+    raise TypeError(f"{type(value).__name__} has no form in JSON")
+
+
+def out_dir(scene_name: str, out: Path | None) -> Path:
+    """Folder for the files of a command, made if need be and tried for writing.
+
+    Parameters
+    ----------
+    scene_name : names the folder out/<scene name> where the user chose none
+    out : the user's choice
+
+    Raises
+    ------
+    OSError : it cannot be made or written; carries the path
+    """
+    folder = Path("out") / safe_name(scene_name) if out is None else out
+    folder.mkdir(parents=True, exist_ok=True)
+    with _naming(folder), tempfile.TemporaryFile(dir=folder):
+        pass  # better now than after the work
+    return folder
+
+
+def safe_name(name: str) -> str:
+    """The name with what file systems refuse replaced by underscores."""
+    kept = "".join("_" if letter in '/\\:*?"<>|' or not letter.isprintable() else letter for letter in name)
+    short = kept.encode()[:_LONGEST_NAME].decode(errors="ignore").strip(". ")
+    return f"_{short}" if not short or _RESERVED.fullmatch(short) else short
+
+
+@contextmanager
+def writing(path: Path) -> Iterator[Path]:
+    """Path to write to; what was written takes its place at `path` when the block ends well.
+
+    Until then, and if the block fails, whatever stood at `path` stands there untouched.
+
+    Parameters
+    ----------
+    path : of the file; its folder must exist
+
+    Raises
+    ------
+    OSError : it cannot be written; carries the path
+    """
+    part = path.with_name(f".{path.stem[:100]}.{os.getpid()}.part{path.suffix}")
+    try:
+        with _naming(path):
+            yield part
+            part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+@contextmanager
+def _naming(path: Path) -> Iterator[None]:
+    """Give an error of the file system the path that the user knows."""
+    try:
+        yield
+    except OSError as error:
+        error.filename, error.filename2 = str(path), None
+        raise

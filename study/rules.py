@@ -1,0 +1,146 @@
+"""Rules for single values of a scene: each takes what the file says and returns it checked, in SI units."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from study.units import Dimension, parse
+
+
+class Refused(ValueError):  # noqa: N818 - it says what became of the value
+    """A value that breaks a rule.
+
+    Parameters
+    ----------
+    allowed : what the value must be, in words that follow "must be"
+    """
+
+    def __init__(self, allowed: str) -> None:
+        super().__init__(allowed)
+        self.allowed = allowed
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number with a unit, within bounds.
+
+    The bounds are far outside anything that is built; they keep squares and products finite.
+
+    Parameters
+    ----------
+    dimension : what it measures
+    low, high : bounds in SI units, both allowed
+    or_zero : zero is allowed as well
+    """
+
+    dimension: Dimension
+    low: float
+    high: float
+    or_zero: bool = False
+
+    @property
+    def allowed(self) -> str:
+        """The rule in words."""
+        zero = "0, or " if self.or_zero and self.low > 0.0 else ""
+        unit = f" {self.dimension.unit}" if self.dimension.unit else ""
+        return f"{self.dimension.allowed}, {zero}from {self.low:g} to {self.high:g}{unit}"
+
+    def __call__(self, value: object) -> float:
+        """Value in SI units."""
+        number = parse(value, self.dimension) + 0.0  # a negative zero becomes zero
+        if self.low <= number <= self.high or (self.or_zero and number == 0.0):
+            return number
+        raise Refused(self.allowed)
+
+
+@dataclass(frozen=True)
+class Whole:
+    """A whole number within bounds."""
+
+    low: int
+    high: int
+
+    @property
+    def allowed(self) -> str:
+        """The rule in words."""
+        return f"a whole number from {self.low} to {self.high}"
+
+    def __call__(self, value: object) -> int:
+        """The number."""
+        if isinstance(value, int) and not isinstance(value, bool) and self.low <= value <= self.high:
+            return value
+        raise Refused(self.allowed)
+
+
+@dataclass(frozen=True)
+class OneOf:
+    """One of a few words."""
+
+    words: tuple[str, ...]
+
+    @property
+    def allowed(self) -> str:
+        """The rule in words."""
+        return "one of: " + ", ".join(self.words)
+
+    def __call__(self, value: object) -> str:
+        """The word."""
+        if isinstance(value, str) and value in self.words:
+            return value
+        raise Refused(self.allowed)
+
+
+@dataclass(frozen=True)
+class Text:
+    """A text of bounded length without control characters; blanks and line breaks in a row count as one."""
+
+    longest: int
+    may_be_empty: bool = False
+
+    @property
+    def allowed(self) -> str:
+        """The rule in words."""
+        empty = "" if self.may_be_empty else ", not empty"
+        return f"a text in quotes of at most {self.longest} printable characters{empty}"
+
+    def __call__(self, value: object) -> str:
+        """The text on one line."""
+        if not isinstance(value, str):
+            raise Refused(self.allowed)
+        text = " ".join(value.split())
+        if not text.isprintable() or len(text) > self.longest or not (text or self.may_be_empty):
+            raise Refused(self.allowed)
+        return text
+
+
+@dataclass(frozen=True)
+class Flag:
+    """True or false."""
+
+    allowed: str = "true or false"
+
+    def __call__(self, value: object) -> bool:
+        """The flag."""
+        if isinstance(value, bool):
+            return value
+        raise Refused(self.allowed)
+
+
+@dataclass(frozen=True)
+class Entries:
+    """A list of bounded length."""
+
+    low: int
+    high: int
+    what: str
+
+    @property
+    def allowed(self) -> str:
+        """The rule in words."""
+        return f"a list of {self.low} to {self.high} {self.what}"
+
+    def __call__(self, value: object) -> list[object]:
+        """The list."""
+        if isinstance(value, list) and self.low <= len(value) <= self.high:
+            return value
+        raise Refused(self.allowed)

@@ -1,0 +1,150 @@
+"""Reads a scene file and names everything that is wrong with it."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator, Mapping
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from meshes.border import InputError
+from study.faults import SceneFault, SceneFaults, field_path, shown
+from study.rules import Refused
+from study.scene_table import ALTERNATIVES, TABLES, SceneTable
+
+MAX_BYTES = 10_000_000
+
+
+def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
+    """Content of a TOML file.
+
+    Parameters
+    ----------
+    path : the file; at most `MAX_BYTES` long
+
+    Returns
+    -------
+    its tables
+
+    Raises
+    ------
+    SceneFaults : no such file, not readable, not UTF-8, not TOML
+    """
+
+    def fault(allowed: str) -> SceneFaults:
+        return SceneFaults([SceneFault(str(path), "", None, allowed)])
+
+    try:
+        with Path(path).open("rb") as stream:
+            content = stream.read(MAX_BYTES + 1)
+    except OSError as error:
+        raise fault(f"a file that can be read: {error.strerror or error}") from error
+    except ValueError as error:  # a null character in the path
+        raise fault(f"the path of a file: {error}") from error
+    if len(content) > MAX_BYTES:
+        raise fault(f"at most {MAX_BYTES // 1_000_000} MB long")
+    try:
+        text = content.decode("utf-8-sig")
+        return tomllib.loads(text)
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise fault(f"UTF-8 text: byte {error.start + 1}, at line {line}, is not") from error
+    except RecursionError as error:
+        raise fault("TOML with less deeply nested lists and tables") from error
+    except tomllib.TOMLDecodeError as error:
+        end = f"at line {text.count(chr(10)) + 1}, the end of the file"
+        raise fault(f"valid TOML: {str(error).replace('at end of document', end)}") from error
+    except ValueError as error:
+        raise fault("valid TOML without numbers of thousands of digits") from error
+
+
+def check_table(table: Mapping[str, Any], file: str) -> SceneTable:
+    """Every value of a scene checked and in SI units.
+
+    Parameters
+    ----------
+    table : content of a scene file
+    file : its name, for the messages
+
+    Raises
+    ------
+    SceneFaults : with all that is wrong
+    """
+    faults: list[SceneFault] = []
+    checked = None
+    try:
+        checked = SceneTable.model_validate(table)
+    except ValidationError as error:
+        faults.extend(_broken_rules(error, file, ()))
+    faults.extend(_alternatives(table.get("rotor"), file))
+    faults.extend(_assumed(table, file))
+    if checked is None or faults:
+        raise SceneFaults(faults)
+    return checked
+
+
+def _broken_rules(error: ValidationError, file: str, place: tuple[str | int, ...]) -> Iterator[SceneFault]:
+    """One fault for each broken rule."""
+    for item in error.errors(include_url=False):
+        keys = (*place, *item["loc"])
+        cause = item.get("ctx", {}).get("error")
+        if isinstance(cause, ValidationError):  # of a table within a value
+            yield from _broken_rules(cause, file, keys)
+            continue
+        value = None if item["type"] == "missing" else shown(item["input"])
+        yield SceneFault(file, field_path(keys), value, _allowed(item, keys, cause))
+
+
+def _allowed(item: ErrorDetails, keys: tuple[str | int, ...], cause: object) -> str:
+    """What the value must be, in words."""
+    if isinstance(cause, InputError | Refused):
+        return cause.allowed
+    pattern = tuple("*" if isinstance(key, int) else key for key in keys)
+    if item["type"] == "missing":
+        return f"given: {_rule(pattern)}"
+    if item["type"] == "extra_forbidden":
+        return "left out or spelled as one of: " + ", ".join(TABLES[pattern[:-1]].model_fields)
+    return _rule(pattern)
+
+
+def _rule(pattern: tuple[str, ...]) -> str:
+    """The rule of a field in words."""
+    for rule in TABLES[pattern[:-1]].model_fields[pattern[-1]].metadata if pattern[-1] != "*" else ():
+        if hasattr(rule, "func"):
+            return str(rule.func.allowed)
+    return "a table of " + ", ".join(TABLES[pattern].model_fields)
+
+
+def _alternatives(rotor: Any, file: str) -> Iterator[SceneFault]:
+    """Pairs of keys of which one must be given, and one only."""
+    for pair in ALTERNATIVES if isinstance(rotor, Mapping) else ():
+        text = f"exactly one of {pair[0]} and {pair[1]}"
+        if not any(key in rotor for key in pair):
+            yield SceneFault(file, f"rotor.{pair[0]}", None, f"given: {text}")
+        elif all(key in rotor for key in pair):
+            yield SceneFault(file, f"rotor.{pair[1]}", shown(rotor[pair[1]]), f"given alone: {text}")
+
+
+def _assumed(table: Mapping[str, Any], file: str) -> Iterator[SceneFault]:
+    """Assumed values that the scene does not hold."""
+    paths = table.get("assumed")
+    for number, path in enumerate(paths if isinstance(paths, list) else ()):
+        if isinstance(path, str) and path and not _holds(table, path):
+            text = 'the path of a value that stands in this file, such as "rotor.mass" or "chambers.0.height"'
+            yield SceneFault(file, f"assumed.{number}", shown(path), text)
+
+
+def _holds(table: object, path: str) -> bool:
+    """Whether there is a value at that path."""
+    for key in path.split("."):
+        if isinstance(table, Mapping) and key in table:
+            table = table[key]
+        elif isinstance(table, list) and key.isdecimal() and len(key) < 7 and int(key) < len(table):
+            table = table[int(key)]
+        else:
+            return False
+    return True
