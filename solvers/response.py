@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fluid.fill import Fill
 from meshes.border import InputError
+from solvers.bracket import bracketed_root
 from solvers.branches import find_branches
 from solvers.liquid_models import LiquidModel, synchronous_model
 from solvers.rotor.jeffcott import Jeffcott
@@ -128,6 +129,33 @@ def synchronous_response(
         branch_deflection=table.spread(phased, complex(np.nan, np.nan)),
         branch_stable=table.spread(stable, False),
     )
+
+
+def critical_speed(
+    rotor: Jeffcott, fills: Sequence[Fill], gravity: float = 9.81, model: str = "auto"
+) -> float:
+    """Speed at which a small deflection meets no stiffness: (M + dU/de) Omega^2 = K [theory: rotor, eq. 3].
+
+    Parameters
+    ----------
+    rotor, fills, gravity, model : see `synchronous_response`
+
+    Returns
+    -------
+    Omega, rad/s, between sqrt(K/(M + m_f)) and sqrt(K/M)
+    """
+    liquid = synchronous_model(model)
+    wet = [fill for fill in fills if fill.volume > 0.0]
+
+    def stiffness(speed: Array, _: Index) -> Array:
+        slope = _evaluate(wet, speed, np.zeros_like(speed), gravity, liquid).slope
+        return np.asarray(rotor.stiffness - (rotor.mass + slope) * np.square(speed))
+
+    # The slope of the unbalance never exceeds a full chamber's mass; a hair's breadth holds the rounding.
+    heaviest = rotor.mass + sum(fill.full_mass for fill in wet)
+    ends = np.sqrt(rotor.stiffness / np.array([heaviest, rotor.mass])) * np.array([1.0 - 1e-9, 1.0 + 1e-9])
+    root, _ = bracketed_root(stiffness, ends[:1], ends[1:])
+    return float(root[0])
 
 
 def _divide(force: Array, stiffness: NDArray[np.complex128]) -> NDArray[np.complex128]:

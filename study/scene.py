@@ -10,8 +10,9 @@ from dataclasses import asdict, dataclass
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal
 
-from fluid.liquid import Liquid
+from fluid.fill import Fill
 from meshes.chamber import Chamber
+from study.friction import Friction
 from study.scene_file import check_table, read_toml
 from study.scene_table import RotorTable, SceneTable
 
@@ -45,22 +46,6 @@ class Rotor:
 
 
 @dataclass(frozen=True)
-class Filling:
-    """A chamber and the liquid in it.
-
-    Parameters
-    ----------
-    chamber : where the liquid is
-    liquid : what it is
-    volume : how much of it, m^3, at most what the chamber holds
-    """
-
-    chamber: Chamber
-    liquid: Liquid
-    volume: float
-
-
-@dataclass(frozen=True)
 class Speeds:
     """Evenly spaced spin speeds.
 
@@ -73,20 +58,6 @@ class Speeds:
     start: float
     stop: float
     count: int
-
-
-@dataclass(frozen=True)
-class Friction:
-    """Friction of the liquid on its chamber.
-
-    Parameters
-    ----------
-    law : "none", "stokes", "linear" or "quadratic"
-    coefficient : 1/s for linear, a pure number for quadratic, 0 for the others
-    """
-
-    law: Literal["none", "stokes", "linear", "quadratic"]
-    coefficient: float
 
 
 @dataclass(frozen=True)
@@ -145,7 +116,7 @@ class Scene:
     assumed: tuple[str, ...]
     gravity: float
     rotor: Rotor
-    chambers: tuple[Filling, ...]
+    chambers: tuple[Fill, ...]
     speeds: Speeds
     model: Model
     runup: Runup | None
@@ -202,7 +173,7 @@ def _scene(table: SceneTable) -> Scene:
         gravity=table.gravity,
         rotor=_rotor(table.rotor),
         chambers=tuple(
-            Filling(Chamber(one.radius, one.height, one.inner_radius, one.plane), one.liquid, one.volume)
+            Fill(Chamber(one.radius, one.height, one.inner_radius, one.plane), one.liquid, one.volume)
             for one in table.chambers
         ),
         speeds=Speeds(**table.speeds.model_dump()),

@@ -12,7 +12,7 @@ from study.faults import SceneFaults
 from study.scene import load_scene
 
 # A command that reads a scene; without one, the shell around what all such commands do first.
-COMMAND: str | None = None
+COMMAND: str | None = "run"
 
 GOOD = """
 name = "Rig"

@@ -1,0 +1,224 @@
+"""Triangles cut by waterlines: circles about the rotation axis where the surface meets floor and lid.
+
+Over a triangle that a waterline crosses, the depth of the liquid has a kink, and a quadrature rule made for
+smooth functions loses its order. Such a triangle is integrated along rays from the axis instead. For any
+function q and any part of the plane with boundary r(theta), taken around it,
+
+    integral of q over the part = oint dtheta int_{r_0}^{r(theta)} q rho drho,
+
+if q vanishes inside r_0, or if the axis is outside the part. Only the edges count, and along an edge the
+kinks are single points.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshes.quality import edge_polynomials
+from meshes.section import Section
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+# Points along an edge and along a ray. Rays meet polynomials of degree 7 at most, which 4 points integrate
+# exactly; along an edge the integrand has its nearest pole at the axis, see `beyond`.
+_EDGE = np.polynomial.legendre.leggauss(8)
+_RAY = np.polynomial.legendre.leggauss(4)
+
+
+@dataclass(frozen=True, eq=False)
+class Arcs:
+    """Pieces of the triangles' edges along which the distance from the axis grows from one end to the other.
+
+    Parameters
+    ----------
+    triangle : number of the triangle that each arc bounds, shape (A,)
+    curve : coefficients of x(t) = c0 + c1 t + c2 t^2 from the axis, shape (3, 2, A), m; t grows
+        counter-clockwise around the triangle
+    near, far : t at the two ends, shape (A,)
+    near_square, far_square : squared distance of the ends from the axis, shape (A,), m^2
+    """
+
+    triangle: Indices
+    curve: Array
+    near: Array
+    far: Array
+    near_square: Array
+    far_square: Array
+
+    def take(self, which: NDArray[np.bool_] | Indices) -> Arcs:
+        """Some of the arcs."""
+        return Arcs(
+            self.triangle[which],
+            self.curve[:, :, which],
+            self.near[which],
+            self.far[which],
+            self.near_square[which],
+            self.far_square[which],
+        )
+
+
+def monotone_arcs(section: Section, axis: tuple[float, float]) -> Arcs:
+    """Cut the edges of a section's triangles where their distance from the axis is least or largest.
+
+    Parameters
+    ----------
+    section : the section
+    axis : where the rotation axis crosses it, m
+
+    Returns
+    -------
+    The arcs, at most twelve to a triangle.
+    """
+    coefficients = edge_polynomials(section.points[section.triangles] - np.array(axis))
+    curve = np.array([c.reshape(-1, 2).T for c in coefficients])
+    triangle = np.repeat(np.arange(len(section.triangles)), 3)
+    stops = np.zeros((5, curve.shape[2]))
+    stops[-1] = 1.0
+    c0, c1, c2 = curve
+    bent = np.any(c2 != 0.0, axis=0)
+    foot = -np.sum(c0 * c1, axis=0) / np.sum(c1 * c1, axis=0)
+    stops[1:4] = np.clip(foot, 0.0, 1.0)
+    stops[1:4, bent] = _extremes(curve[:, :, bent])
+    start, end = stops[:-1].ravel(), stops[1:].ravel()
+    arcs, triangle = np.tile(curve, 4), np.tile(triangle, 4)
+    keep = np.flatnonzero(end > start)
+    start, end, arcs = start[keep], end[keep], arcs[:, :, keep]
+    first, last = _square(arcs, start), _square(arcs, end)
+    outwards = last >= first
+    return Arcs(
+        triangle[keep],
+        arcs,
+        np.where(outwards, start, end),
+        np.where(outwards, end, start),
+        np.minimum(first, last),
+        np.maximum(first, last),
+    )
+
+
+def distance_range(arcs: Arcs, triangles: int) -> tuple[Array, Array]:
+    """Least and largest squared distance from the axis over each triangle.
+
+    Parameters
+    ----------
+    arcs : the arcs of all triangles
+    triangles : how many there are, M
+
+    Returns
+    -------
+    Least, largest, shape (M,), m^2; the least is zero in the triangle that holds the axis.
+    """
+    least, largest = np.full(triangles, np.inf), np.zeros(triangles)
+    np.minimum.at(least, arcs.triangle, arcs.near_square)
+    np.maximum.at(largest, arcs.triangle, arcs.far_square)
+    xa, ya = _position(arcs.curve, np.minimum(arcs.near, arcs.far))
+    xb, yb = _position(arcs.curve, np.maximum(arcs.near, arcs.far))
+    turn = np.bincount(arcs.triangle, np.arctan2(xa * yb - ya * xb, xa * xb + ya * yb), triangles)
+    least[np.abs(turn) > np.pi] = 0.0  # 2 pi around the axis, 0 elsewhere
+    return least, largest
+
+
+def beyond(arcs: Arcs, least: Array, largest: Array, floor: float, lid: float) -> tuple[Array, Array, Array]:
+    """Quadrature rule for the parts of triangles that lie outside the floor's waterline.
+
+    Exact to rounding for what is polynomial up to the lid's waterline and another polynomial beyond it, as
+    long as the triangles are small against their distance from the axis, and to about 1e-8 of itself next to
+    the axis: there each edge is cut where the distance doubles, so that no piece is longer than about twice
+    its distance from the pole at the axis.
+
+    Parameters
+    ----------
+    arcs : arcs of the triangles to integrate over
+    least, largest : range of the squared distance over the triangle of each arc, shape (A,), m^2
+    floor : squared radius of the inner waterline, m^2; below zero if the liquid covers the axis
+    lid : squared radius of the outer waterline, m^2, above `floor`
+
+    Returns
+    -------
+    x, y from the axis, m, and weights, m^2, each of shape (Q,); weights have either sign.
+    """
+    pole = floor if floor > 0.0 else lid
+    distant = least > 0.25 * largest
+    close = np.max(largest, where=~distant, initial=0.0)
+    doublings = [pole * 4.0**j for j in range(1, 13) if pole * 4.0**j < close]
+    marks = [_crossing(arcs, level) for level in sorted([floor, lid, *doublings])] + [arcs.far]
+    starts, stops = np.array(marks[:-1]), np.array(marks[1:])
+    _, which = pieces = np.nonzero(starts != stops)
+    start, stop = starts[pieces][:, None], stops[pieces][:, None]
+    half = 0.5 * (stop - start)
+    curve = arcs.curve[:, :, which, None]
+    t = start + half * (1.0 + _EDGE[0])
+    x, y = _position(curve, t)
+    dx, dy = curve[1] + 2.0 * t * curve[2]
+    turn = np.abs(half) * _EDGE[1] * (x * dy - y * dx)
+    square = np.maximum(x * x + y * y, 1e-300)
+    # The rays start at the floor's waterline, or at the near side of a triangle all outside of it.
+    origin = np.maximum(floor, np.where(distant, least, 0.0))[which, None]
+    inner = np.sqrt(np.minimum(origin, square) / square)
+    kink = np.maximum(inner, np.sqrt(np.minimum(lid, square) / square))
+    rules = [_along_rays(x, y, turn, inner, kink), _along_rays(x, y, turn, kink, np.ones_like(kink))]
+    px, py, weight = np.concatenate(rules, axis=1)
+    return px, py, weight
+
+
+def _along_rays(x: Array, y: Array, turn: Array, start: Array, stop: Array) -> Array:
+    """Points and weights on the rays to (x, y), between two fractions of their length."""
+    used = stop > start
+    x, y, turn, start, half = x[used], y[used], turn[used], start[used], 0.5 * (stop - start)[used]
+    fraction = start[:, None] + half[:, None] * (1.0 + _RAY[0])
+    weight = (turn * half)[:, None] * _RAY[1] * fraction
+    return np.stack([(fraction * x[:, None]).ravel(), (fraction * y[:, None]).ravel(), weight.ravel()])
+
+
+def _position(curve: Array, t: Array) -> tuple[Array, Array]:
+    """Point of each curve at its t."""
+    x, y = curve[0] + t * (curve[1] + t * curve[2])
+    return x, y
+
+
+def _square(curve: Array, t: Array) -> Array:
+    """Squared distance from the axis at t."""
+    x, y = _position(curve, t)
+    return np.asarray(x * x + y * y)
+
+
+def _crossing(arcs: Arcs, level: float) -> Array:
+    """Where each arc crosses the circle of squared radius `level`, else its end on that side, shape (A,)."""
+    t = np.where(level >= arcs.far_square, arcs.far, arcs.near)
+    crossed = np.flatnonzero((arcs.near_square < level) & (level < arcs.far_square))
+    curve = arcs.curve[:, :, crossed]
+    low, high = arcs.near[crossed], arcs.far[crossed]
+    for _ in range(54):  # one bit of t at a time
+        middle = 0.5 * (low + high)
+        inside = _square(curve, middle) < level
+        low, high = np.where(inside, middle, low), np.where(inside, high, middle)
+    t[crossed] = 0.5 * (low + high)
+    return t
+
+
+def _extremes(curve: Array) -> Array:
+    """Stationary points of the distance along quadratic curves, in order, shape (3, A).
+
+    The slope of half the squared distance is a cubic; between its own stationary points it is monotone and
+    has one zero at most. Where it has none, some point of that interval is returned, which does no harm.
+    """
+    c0, c1, c2 = curve
+    d3, d2 = 2.0 * np.sum(c2 * c2, axis=0), 3.0 * np.sum(c1 * c2, axis=0)
+    d1, d0 = np.sum(c1 * c1 + 2.0 * c0 * c2, axis=0), np.sum(c0 * c1, axis=0)
+    root = np.sqrt(np.maximum(d2 * d2 - 3.0 * d3 * d1, 0.0))
+    turns = np.clip([(-d2 - root) / (3.0 * d3), (-d2 + root) / (3.0 * d3)], 0.0, 1.0)
+    low = np.concatenate([np.zeros((1, len(d0))), turns])
+    high = np.concatenate([turns, np.ones((1, len(d0)))])
+
+    def slope(t: Array) -> Array:
+        return np.asarray(d0 + t * (d1 + t * (d2 + t * d3)))
+
+    rising = slope(high) > slope(low)
+    for _ in range(54):
+        middle = 0.5 * (low + high)
+        before = (slope(middle) < 0.0) == rising
+        low, high = np.where(before, middle, low), np.where(before, high, middle)
+    return np.asarray(0.5 * (low + high))

@@ -1,0 +1,134 @@
+"""The vector model of the liquid balancer: the balance of unbalances in angles.
+
+The liquid lies along the deflection and the deflection lags the total unbalance by delta. In units of the
+liquid's unbalance, seen from the deflection, the rotor's unbalance is k e^{i alpha} and the total is
+1 + k e^{i alpha}, whose argument is delta [theory: rotor, eq. 10]. Angles in rad, alpha from the liquid to
+the rotor's unbalance, positive with the spin.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from meshes.border import InputError
+
+Array = NDArray[np.float64]
+
+
+def deflection_lag(speed: ArrayLike, mass: ArrayLike, damping: ArrayLike, stiffness: ArrayLike) -> Array:
+    """Angle by which the deflection lags the total unbalance.
+
+    tan(delta) = C Omega/(K - M Omega^2) [DR18, section 6; theory: rotor, eq. 9].
+
+    Parameters
+    ----------
+    speed : spin speed Omega, rad/s, shape (...,), 0 or above
+    mass : of the rotor without the liquid M, kg, shape (...,)
+    damping : of the support C, N s/m, shape (...,)
+    stiffness : of the support K, N/m, shape (...,)
+
+    Returns
+    -------
+    delta, rad, 0 to pi, shape (...,)
+    """
+    omega, m, c, k = (np.asarray(x, dtype=float) for x in (speed, mass, damping, stiffness))
+    return np.asarray(np.arctan2(c * omega, k - m * np.square(omega)))
+
+
+def balance_residual(angle: ArrayLike, lag: ArrayLike, ratio: ArrayLike) -> Array:
+    """What is left of the balance of the tangential forces, over the liquid's unbalance.
+
+    k sin(alpha - delta) - sin(delta), the imaginary part of (1 + k e^{i alpha}) e^{-i delta}: smooth in every
+    argument and without the square root of the source [DR18, eq. 23b and 24; theory: rotor, eq. 11].
+
+    Parameters
+    ----------
+    angle : alpha, rad, shape (...,)
+    lag : delta, rad, shape (...,)
+    ratio : k = rotor's unbalance over the liquid's, shape (...,)
+
+    Returns
+    -------
+    Residual, 1, shape (...,); 0 in balance
+    """
+    alpha, delta, k = (np.asarray(x, dtype=float) for x in (angle, lag, ratio))
+    return np.asarray(k * np.sin(alpha - delta) - np.sin(delta))
+
+
+def total_over_liquid(angle: ArrayLike, lag: ArrayLike, ratio: ArrayLike) -> Array:
+    """Total unbalance over the liquid's, along the direction that the deflection lags by delta.
+
+    cos(delta) + k cos(alpha - delta), the real part of (1 + k e^{i alpha}) e^{-i delta}. A root of
+    `balance_residual` is an equilibrium where this is 0 or above; below, the deflection points away from the
+    side that the support allows [theory: rotor, eq. 12].
+
+    Parameters
+    ----------
+    angle, lag, ratio : as in `balance_residual`
+
+    Returns
+    -------
+    |U_0 + U_liq|/U_liq with its sign, shape (...,)
+    """
+    alpha, delta, k = (np.asarray(x, dtype=float) for x in (angle, lag, ratio))
+    return np.asarray(np.cos(delta) + k * np.cos(alpha - delta))
+
+
+def balance_angles(lag: ArrayLike, ratio: ArrayLike) -> tuple[Array, Array]:
+    """Both angles at which the tangential forces balance.
+
+    alpha_0 = delta + phi_C with sin(phi_C) = sin(delta)/k; their cosines are those of the source's solution
+    with its lost factor 1/k put back [DR18, eq. 25; theory: rotor, eq. 13]. For k >= 1 only the first is
+    an equilibrium; for k < 1 both are while delta < pi/2 and none beyond: see `total_over_liquid`.
+
+    Parameters
+    ----------
+    lag : delta, rad, 0 to pi, shape (...,)
+    ratio : k, shape (...,), sin(delta) or above, not 0
+
+    Returns
+    -------
+    First and second angle, rad, shape (...,)
+
+    Raises
+    ------
+    InputError : a lag outside 0 to pi; a ratio below sin(delta), for which no angle balances
+
+    Examples
+    --------
+    >>> first, second = balance_angles(0.5, 1.0)
+    >>> print(f"{first:.6f} {second:.6f}")
+    1.000000 3.141593
+    """
+    delta, k = (np.asarray(x, dtype=float) for x in (lag, ratio))
+    if not np.all((delta >= 0.0) & (delta <= np.pi)):
+        raise InputError("lag", lag, "0 to pi")
+    if not np.all((k > 0.0) & (k >= np.sin(delta))):
+        raise InputError("ratio", ratio, "above 0 and not below sin(lag)")
+    inner = np.arcsin(np.sin(delta) / k)
+    return np.asarray(delta + inner), np.asarray(delta + np.pi - inner)
+
+
+def unbalance_left(angle: ArrayLike, ratio: ArrayLike) -> Array:
+    """Total unbalance over the rotor's own.
+
+    lambda_0 = |1 + k e^{i alpha_0}|/k [DR18, eq. 26; theory: rotor, eq. 14].
+
+    Parameters
+    ----------
+    angle : alpha_0, rad, shape (...,)
+    ratio : k, shape (...,), above 0
+
+    Returns
+    -------
+    lambda_0, shape (...,); 0 where the liquid balances the rotor
+
+    Raises
+    ------
+    InputError : a ratio that is not positive
+    """
+    alpha, k = (np.asarray(x, dtype=float) for x in (angle, ratio))
+    if not np.all(k > 0.0):
+        raise InputError("ratio", ratio, "above 0")
+    return np.asarray(np.hypot(1.0 + k * np.cos(alpha), k * np.sin(alpha)) / k)

@@ -1,0 +1,90 @@
+"""`leblanc explain`: a scene's dimensionless numbers and the liquid model at each speed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from study.cli.output import print_json
+
+if TYPE_CHECKING:
+    from fluid.numbers import Array
+    from study.explain import Explanation, LayerExplanation
+
+
+def explain(
+    scene: Annotated[Path, typer.Argument(help="Scene file (TOML).")],
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
+) -> None:
+    """Numbers that decide how the machine behaves, and which liquid model answers, and why."""
+    from study.explain import explain_scene
+    from study.scene import load_scene
+
+    answer = explain_scene(load_scene(scene))
+    if json:
+        print_json(answer)
+    else:
+        print("\n".join(_lines(answer)))
+
+
+def _lines(answer: Explanation) -> list[str]:
+    """The explanation in words."""
+    from study.record import RPM
+
+    dry, wet = answer.critical_speed_dry * RPM, answer.critical_speed_wet * RPM
+    first, last = answer.speed_ratio
+    rows = [
+        ("critical speed", f"{dry:.5g} rpm without liquid, {wet:.5g} rpm with it at small deflections"),
+        ("damping ratio", f"{answer.damping_ratio:.4g}"),
+        ("speeds", f"{first:.3g} to {last:.3g} times the dry critical speed"),
+    ]
+    if answer.captured_from is not None:
+        rows.append(
+            ("captured", f"above {answer.captured_from * RPM:.4g} rpm the liquid rides with the drum")
+        )
+    lines = [answer.name, *_table(rows)]
+    for k, layer in enumerate(answer.layers):
+        lines += [f"chamber {k + 1}", *_table([("fill", "empty")] if layer is None else _layer_rows(layer))]
+    lines.append("liquid model")
+    for span in answer.models:
+        holds = "" if span.in_range else " (out of range)"
+        lines.append(
+            f"  {span.first * RPM:.5g} to {span.last * RPM:.5g} rpm: {span.model}{holds}: {span.reason}"
+        )
+    return lines
+
+
+def _layer_rows(layer: LayerExplanation) -> list[tuple[str, str]]:
+    """One chamber: label and words."""
+    from study.record import MM
+
+    n = layer.numbers
+    cylinder = n.steepness[0] > 1e20
+    return [
+        ("fill", f"{n.fill:.4g} of the capacity"),
+        ("layer at fast spin", f"{layer.depth * MM:.4g} mm deep, h0/R = {n.relative_depth:.4g}"),
+        ("curvature", f"kappa = {n.curvature:.5g}"),
+        ("added mass", f"{layer.added_mass_ratio:.4g} of the rotor's mass while the wall is wet"),
+        ("mass of the liquid", f"{layer.liquid_mass_ratio:.4g} of the rotor's mass"),
+        ("centrifuge number", f"{_span(n.centrifuge)}: acceleration at the surface over gravity"),
+        (
+            "steepness",
+            "a cylinder: no gravity along the axis"
+            if cylinder
+            else f"{_span(n.steepness)}: rise of the surface over the radius in chamber heights",
+        ),
+        ("Reynolds number", _span(n.reynolds)),
+        ("wall layer", f"{_span(n.skin)} of the depth"),
+        ("covers the wall", f"from {layer.optimal_volume * 1e6:.4g} ml at the dry rotor's last deflection"),
+    ]
+
+
+def _span(values: Array) -> str:
+    """From the first speed to the last."""
+    return f"{values[0]:.3g} to {values[1]:.3g}"
+
+
+def _table(rows: list[tuple[str, str]]) -> list[str]:
+    return [f"  {label:20}{text}" for label, text in rows]

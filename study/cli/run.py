@@ -1,0 +1,57 @@
+"""`leblanc run`: response and liquid centre of mass at each speed of a scene."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from study.cli.output import out_dir, print_json, say
+
+
+def run(
+    scene: Annotated[Path, typer.Argument(help="Scene file (TOML).")],
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the files [default: out/<scene name>].")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
+) -> None:
+    """Answer of the machine at each speed: figures, data file, one-page summary."""
+    from study.scene import load_scene
+
+    machine = load_scene(scene)
+    folder = out_dir(machine.name, out)
+
+    from study.run import run_scene
+
+    record = run_scene(machine)
+
+    from study.figures import write_figures
+    from study.report import comparisons, write_summary
+    from study.results import run_json, to_dataset, write_dataset
+
+    write_dataset(to_dataset(record), folder / "response.nc")
+    figures = write_figures(record, folder)
+    write_summary(record, {figure.name: figure.svg for figure in figures}, folder / "summary.html")
+    if json:
+        print_json(run_json(record))
+    else:
+        print(f"{'':34}{'with liquid':>14}{'without':>14}{'ratio':>10}")
+        for row in comparisons(record):
+            print(f"{row.label:34}{row.wet:>14}{row.dry:>14}{row.ratio:>10}")
+        print(f"Read {folder / 'summary.html'}; the data are in {folder / 'response.nc'}")
+
+    answer = record.response
+    if not answer.converged.all():
+        from study.faults import NotConverged
+
+        lost = answer.speed[~answer.converged]
+        raise NotConverged(
+            [
+                f"{scene}: no bounded deflection found at {lost.size} of {answer.speed.size} speeds: "
+                + ", ".join(f"{one:.6g} rad/s" for one in lost[:10])
+                + (", ..." if lost.size > 10 else "")
+            ]
+        )
+    say(f"{record.name}: {answer.speed.size} speeds done")

@@ -1,0 +1,109 @@
+"""Quality of triangulations against triangles whose angles and areas are known."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from meshes.quality import assess, edge_polynomials, jacobians, triangle_areas
+
+ONE = np.array([[0, 1, 2]])
+EQUILATERAL = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, math.sqrt(0.75)]])
+# The right triangle of a half square, its long edge bent onto the circle about the right angle: the nodes lie
+# at 0, 45 and 90 degrees on the unit circle.
+BENT = np.array([[0, 0], [1, 0], [0, 1], [0.5, 0], [math.sqrt(0.5), math.sqrt(0.5)], [0, 0.5]], dtype=float)
+SIX = np.array([[0, 1, 2, 3, 4, 5]])
+
+
+def check_equilateral() -> None:
+    quality = assess(EQUILATERAL, ONE)
+    assert quality.worst_angle == pytest.approx(math.pi / 3, rel=1e-14)
+    assert quality.aspect_ratio == pytest.approx(1.0, rel=1e-14)
+    assert quality.total_area == pytest.approx(math.sqrt(3) / 4, rel=1e-14)
+    assert quality.inverted == 0
+
+
+def check_parabola_area() -> None:
+    """A parabolic bulge holds 2/3 of sagitta times chord; its middle tangent is parallel to the chord."""
+    sagitta = 1.0 - math.sqrt(0.5)
+    area = triangle_areas(BENT, SIX)
+    assert area[0] == pytest.approx(0.5 + 2 / 3 * sagitta * math.sqrt(2), rel=1e-14)
+
+
+def check_parabola_angle() -> None:
+    """The end tangent of a parabolic arc rises above the chord by 4 sagitta over chord."""
+    rise = math.atan(4 * (1 - math.sqrt(0.5)) / math.sqrt(2))
+    # 90 degrees at the corner is worst by 30 degrees; the bent corners have 45 degrees and the rise.
+    assert 45 + math.degrees(rise) < 90
+    assert assess(BENT, SIX).worst_angle == pytest.approx(math.pi / 2, rel=1e-14)
+    # Bent inwards and to one side: the tangents at the ends, 4 (middle - end) + (end - other end), are
+    # (-1.6, 0.8) and (0.4, -1.2), and the straight edges are the axes.
+    hollow = BENT.copy()
+    for middle, angle in (([0.35, 0.45], math.atan(0.4 / 1.2)), ([0.45, 0.35], math.atan(0.4 / 1.2))):
+        hollow[4] = middle
+        assert assess(hollow, SIX).worst_angle == pytest.approx(angle, rel=1e-13)
+
+
+def check_jacobian_at_the_nodes() -> None:
+    """det of the map by central differences of the map itself, which is quadratic: exact but for rounding."""
+    points = BENT + 0.03 * np.sin(np.arange(12.0)).reshape(6, 2)
+
+    def position(p: float, q: float) -> np.ndarray:
+        r = 1 - p - q
+        shape = [r * (2 * r - 1), p * (2 * p - 1), q * (2 * q - 1), 4 * r * p, 4 * p * q, 4 * q * r]
+        return np.asarray(shape) @ points
+
+    expected = []
+    for p, q in [(i / 8, j / 8) for i in range(9) for j in range(9 - i)]:
+        dp = position(p + 0.5, q) - position(p - 0.5, q)
+        dq = position(p, q + 0.5) - position(p, q - 0.5)
+        expected.append(dp[0] * dq[1] - dp[1] * dq[0])
+    assert np.allclose(jacobians(points, SIX)[0], expected, rtol=0, atol=1e-13)
+
+
+def test_equilateral() -> None:
+    check_equilateral()
+
+
+def test_parabola() -> None:
+    check_parabola_area()
+    check_parabola_angle()
+
+
+def test_jacobian() -> None:
+    check_jacobian_at_the_nodes()
+
+
+def test_needle() -> None:
+    points = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, 1e-3]])
+    quality = assess(points, ONE)
+    # altitude 1e-3 under an edge of 1; the obtuse angle is all but 2 atan(2e-3)
+    assert quality.aspect_ratio == pytest.approx(math.sqrt(0.75) * 1e3, rel=1e-12)
+    assert quality.worst_angle == pytest.approx(math.pi - 2 * math.atan(2e-3), rel=1e-12)
+
+
+def test_flat_and_inverted_triangles_are_counted() -> None:
+    points = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [2.0, 0.0]])
+    quality = assess(points, np.array([[0, 1, 2], [0, 2, 1], [0, 1, 3]]))
+    assert quality.triangles == 3
+    assert quality.inverted == 2
+    assert quality.aspect_ratio == math.inf
+    assert quality.smallest_area == -0.5
+    assert quality.largest_area == 0.5
+
+
+def test_a_corner_folded_by_its_midside_node_is_inverted() -> None:
+    folded = BENT.copy()
+    folded[4] = [0.2, 0.2]
+    assert assess(folded, SIX).inverted == 1
+    assert triangle_areas(folded, SIX)[0] > 0.0
+
+
+def test_midside_nodes_on_the_chords_leave_edges_straight() -> None:
+    offset = np.array([1e3, -7e2])  # far from the origin, where a middle is rounded
+    straight = np.concatenate([EQUILATERAL, (EQUILATERAL + np.roll(EQUILATERAL, -1, axis=0)) / 2]) + offset
+    assert np.all(edge_polynomials(straight[None])[2] == 0.0)
+    # the coordinates carry 1e-13 of rounding
+    assert triangle_areas(straight, SIX)[0] == pytest.approx(math.sqrt(3) / 4, abs=1e-12)

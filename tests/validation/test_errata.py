@@ -1,0 +1,143 @@
+import json
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+
+from meshes.border import InputError
+from validation import errata
+from validation.case import Case, compare
+from validation.errata_tub import tub_matrices
+
+
+@cache
+def by_name() -> dict[str, Case]:
+    cases = errata.cases()
+    assert len({case.name for case in cases}) == len(cases)
+    return {case.name: case for case in cases}
+
+
+def test_each_erratum_is_wrong_by_computation() -> None:
+    for case in by_name().values():
+        assert case.verdict == "erratum"
+        assert case.group == "errata"
+        assert case.printed != case.computed
+
+
+def test_records_are_json() -> None:
+    records = json.loads(json.dumps([case.record() for case in by_name().values()], allow_nan=False))
+    assert {"name", "source", "quantity", "printed", "computed", "difference", "verdict"} <= set(records[0])
+
+
+@pytest.mark.parametrize(
+    ("name", "printed", "computed"),
+    [
+        # The polar moment of a disc: s^4/32 + s^2/4 d^2, with d = s/2 at the rim and d -> 0 at the axis.
+        ("errata/dr-eq-18-moment", 3 / 32, 1 / 32),
+        ("errata/dr-gyroscopic-alpha", -2.0, -1.0),
+        ("errata/dr-gyroscopic-gamma", 2.0, 1.0),
+        ("errata/dr-y-equation-first-derivative", 1.0, 0.0),
+        ("errata/dr-y-equation-second-derivative", 0.0, 1.0),
+        # m e/(m_1 + m_2)
+        ("errata/dg-section-4-far", 3.7e-3, 1800e-6 / 60.7),
+        ("errata/dr-oblate", None, math.sqrt(3.0)),
+        ("errata/ff-eq-10", 4.0, 2.0),
+    ],
+)
+def test_values(name: str, printed: float | None, computed: float) -> None:
+    case = by_name()[name]
+    if printed is not None:
+        assert case.printed == printed
+    # The two limits (a thin shift, a high speed) are reached within 1e-5.
+    assert case.computed == pytest.approx(computed, rel=1e-5, abs=1e-12)
+
+
+def test_eq_18_is_litres_off() -> None:
+    case = by_name()["errata/dr-eq-18"]
+    assert case.printed == pytest.approx(2.040, rel=1e-3)
+    assert case.computed == pytest.approx(54.43957239e-6, rel=1e-8)
+    assert "56.7 ml" in case.note
+
+
+def test_eq_20_prints_a_negative_volume() -> None:
+    case = by_name()["errata/dr-eq-20"]
+    assert isinstance(case.printed, float)
+    assert isinstance(case.computed, float)
+    assert case.printed < 0.0 < case.computed
+
+
+def test_eq_25_loses_the_ratio() -> None:
+    case = by_name()["errata/dr-eq-25"]
+    assert isinstance(case.printed, float)
+    assert isinstance(case.computed, float)
+    # cos(alpha) as printed is k times what it should be.
+    assert math.cos(case.printed) == pytest.approx(0.8 * math.cos(case.computed), rel=1e-12)
+
+
+def test_stiffness_entries_are_exchanged() -> None:
+    a24, a25 = by_name()["errata/dr-a24"], by_name()["errata/dr-a25"]
+    assert (a24.printed, a24.computed) == ("0", "-c_y*z")
+    assert (a25.printed, a25.computed) == ("-c_y*z", "0")
+    assert "19 of 21" in a24.note
+
+
+def test_tub_matrices_against_rigid_body_kinematics() -> None:
+    """Mass and stiffness are J^T J with J of a rigid body's small displacement; the spin does no work."""
+    matrices = tub_matrices()
+    x, y, z = 0.3, -0.2, 0.5
+    jacobian = np.array([[1, 0, 0, 0, z, -y], [0, 1, 0, -z, 0, x], [0, 0, 1, y, -x, 0]])
+    numbers = {"x": x, "y": y, "z": z, "c_x": 2.0, "c_y": 3.0, "c_z": 5.0}
+    stiffness = np.array(matrices.stiffness.subs(numbers), dtype=float)
+    np.testing.assert_allclose(stiffness, jacobian.T @ np.diag([2.0, 3.0, 5.0]) @ jacobian, atol=1e-15)
+    numbers = {"x_D": x, "y_D": y, "z_D": z, "m_2": 7.0, "J_a": 0.4, "J_b": 0.9}
+    mass = np.array(matrices.mass.subs(numbers), dtype=float)
+    inertia = np.diag([0, 0, 0, 0.4, 0.9, 0.4])
+    np.testing.assert_allclose(mass, 7.0 * jacobian.T @ jacobian + inertia, atol=1e-14)
+    gyroscopic = np.array(matrices.gyroscopic.subs({"J_b": 0.9, "omega": 10.0}), dtype=float)
+    np.testing.assert_array_equal(gyroscopic, -gyroscopic.T)
+
+
+def test_gyroscopic_coupling_is_the_torque_that_turns_the_spin() -> None:
+    """d/dt of J_b omega n, n the spin axis tilted by alpha about x and gamma about z."""
+    matrices = tub_matrices()
+    spin, step = 9.0, 1e-6
+    gyroscopic = np.array(matrices.gyroscopic.subs({"J_b": 0.9, "omega": 10.0}), dtype=float)
+
+    def momentum(alpha: float, gamma: float) -> np.ndarray:
+        return spin * np.array([-np.sin(gamma) * np.cos(alpha), np.cos(gamma) * np.cos(alpha), np.sin(alpha)])
+
+    rates = np.array([0.7, -0.4])
+    torque = (momentum(*(step * rates)) - momentum(*(-step * rates))) / (2 * step)
+    # Central difference: step^2; rounding eps/step.
+    got = gyroscopic @ np.array([0, 0, 0, rates[0], 0, rates[1]])
+    np.testing.assert_allclose(got[[3, 5]], torque[[0, 2]], rtol=0, atol=1e-8)
+
+
+def assert_polar_moment() -> None:
+    """Steiner: pi r^4/2 + pi r^2 d^2."""
+    assert errata._polar_moment_about_axis(0.3, 0.2) == pytest.approx(
+        np.pi * (0.3**4 / 2 + 0.3**2 * 0.2**2), rel=1e-14
+    )
+
+
+def test_polar_moment() -> None:
+    assert_polar_moment()
+
+
+def test_compare_decides_the_verdict() -> None:
+    assert compare("g/a", "s", "q", 1.01, 1.0, tolerance=0.02).verdict == "agrees"
+    case = compare("g/a", "s", "q", 1.05, 1.0, tolerance=0.02, otherwise="trend")
+    assert case.verdict == "trend"
+    assert case.difference == pytest.approx(0.05)
+    assert compare("g/a", "s", "q", 0.0, 0.0, tolerance=0.0).verdict == "agrees"
+    assert compare("g/a", "s", "q", -2.0, -1.0, tolerance=0.0).difference == -1.0
+
+
+def test_case_rejects_what_a_report_cannot_show() -> None:
+    with pytest.raises(InputError) as caught:
+        Case("g/a", "s", "q", 1.0, math.nan, 0.0, "agrees")
+    assert caught.value.field == "computed"
+    with pytest.raises(InputError) as caught:
+        Case("g/a", "s", "q", 1.0, 1.0, 0.0, "wrong")  # type: ignore[arg-type]
+    assert caught.value.field == "verdict"

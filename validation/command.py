@@ -1,0 +1,73 @@
+"""`leblanc validate`: published cases, printed, computed, difference."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from validation.case import Case
+
+GROUPS = ("errata", "optimal_volume", "vector_model", "horizontal_rig", "vertical_rig")
+
+
+def validate(
+    case: Annotated[
+        str | None, typer.Argument(help="One group: " + ", ".join(GROUPS) + " [default: all].")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of a table.")] = False,
+) -> None:
+    """Published cases beside what the package computes."""
+    from study.cli.output import print_json
+
+    found = all_cases(case)
+    if json:
+        print_json({"cases": [one.record() for one in found]})
+        return
+    for one in found:
+        print(f"{one.name}  [{one.source}]  {one.verdict.upper()}")
+        print(f"    {one.quantity}")
+        print(f"    printed {_shown(one.printed)} | computed {_shown(one.computed)}")
+        print(f"    difference {_shown(one.difference)}" + (f"; {one.note}" if one.note else ""))
+    counts = {verdict: sum(one.verdict == verdict for one in found) for verdict in _VERDICTS}
+    print(", ".join(f"{count} {verdict}" for verdict, count in counts.items() if count))
+
+
+_VERDICTS = ("agrees", "erratum", "trend", "differs")
+
+
+def all_cases(group: str | None = None) -> list[Case]:
+    """Cases of one group, or of all.
+
+    Raises
+    ------
+    InputError : no such group
+    """
+    from meshes.border import InputError
+
+    if group is not None and group not in GROUPS:
+        raise InputError("case", group, "one of " + ", ".join(GROUPS))
+    chosen = GROUPS if group is None else (group,)
+    return [one for name in chosen for one in _group(name)()]
+
+
+def _group(name: str) -> Callable[[], list[Case]]:
+    """The function that computes a group."""
+    from validation import errata, horizontal_rig, optimal_volume, vector_model, vertical_rig
+
+    return {
+        "errata": errata.cases,
+        "optimal_volume": optimal_volume.cases,
+        "vector_model": vector_model.cases,
+        "horizontal_rig": horizontal_rig.cases,
+        "vertical_rig": vertical_rig.cases,
+    }[name]
+
+
+def _shown(value: float | str | None) -> str:
+    if value is None:
+        return "nothing"
+    return value if isinstance(value, str) else f"{value:.6g}"

@@ -1,0 +1,44 @@
+"""Whether the liquid compensates on the vertical rig, below, at and above resonance [DR18, section 7.1]."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from solvers.response import critical_speed, synchronous_response
+from solvers.rotor.jeffcott import Jeffcott
+from validation.case import Case
+from validation.scenes import data, vertical_rig
+
+# Assumed: 30 g on a radius of 195 mm, 30 kg, critical speed of the dry rotor at the middle of 12-16 rad/s.
+_ROTOR = Jeffcott(
+    mass=30.0, stiffness=30.0 * 14.0**2, damping=2.0 * 0.05 * 30.0 * 14.0, unbalance=0.03 * 0.195
+)
+
+
+def cases() -> list[Case]:
+    """Angle and gain at the three speeds of the photographs."""
+    measured = data("dr18_vertical_rig.json")
+    speed = np.array(measured["speed_rad_s"])
+    answer = synchronous_response(_ROTOR, vertical_rig(), speed)
+    wet = critical_speed(_ROTOR, vertical_rig())
+    gain = np.abs(answer.deflection) / np.abs(answer.deflection_dry)
+    found = []
+    for k, one in enumerate(speed):
+        lag = -math.degrees(answer.liquid_angle[k])
+        helps = lag > 90.0 and gain[k] < 1.0
+        found.append(
+            Case(
+                name=f"vertical_rig/{one:g}-rad-s",
+                source="DR18, section 7.1",
+                quantity=f"liquid opposite the unbalance at {one:g} rad/s",
+                printed="it compensates",
+                computed=f"{lag:.0f} deg behind the unbalance, amplitude times {gain[k]:.2f}",
+                difference="the same" if helps else "the liquid adds to the vibration here",
+                verdict="trend" if helps else "differs",
+                note=f"mass, heights, damping and radius of the 30 g are assumed; critical speed with liquid "
+                f"{wet:.1f} rad/s; equilibrium compensates above it only",
+            )
+        )
+    return found
