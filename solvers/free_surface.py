@@ -200,8 +200,13 @@ def optimal_volume_fem(
     require_positive("radius", radius)
     require_not_negative("eccentricity", eccentricity)
     section = default_disc(radius, 2.0 * min(eccentricity, radius), inner_radius=inner_radius)
-    touch = abs(radius - eccentricity)
-    moments = integrate_surface(section, height, beta, dry_radius=touch, axis=(-eccentricity, 0.0))
+    axis = (-eccentricity, 0.0)
+    if math.isinf(beta):
+        moments = integrate_surface(section, height, beta, dry_radius=abs(radius - eccentricity), axis=axis)
+    else:
+        # At slow spin the radii of the farthest and the nearest wall point would lose the thin film's digits.
+        rise = 4.0 * beta * radius * eccentricity
+        moments = integrate_surface(section, height, beta, rise, axis=axis)
     return float(moments.volume)
 
 

@@ -8,7 +8,6 @@ from typing import Literal
 from meshes.border import InputError, require_not_negative
 from study.units import NUMBER, RATE, parse_option
 
-
 Law = Literal["none", "stokes", "linear", "quadratic"]
 _WITHOUT: dict[str, Law] = {"none": "none", "stokes": "stokes"}
 _WITH: dict[str, Law] = {"linear": "linear", "quadratic": "quadratic"}

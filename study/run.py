@@ -111,7 +111,7 @@ def _inputs(scene: Scene) -> tuple[tuple[str, str, str], ...]:
 
 def _notes(scene: Scene, choice: Choice, answer: Response) -> tuple[str, ...]:
     """Limits of validity and findings, in words."""
-    notes = [f"Liquid model {choice.model}: {choice.reason}."]
+    notes: list[str] = []
     if choice.captured_from is not None:
         notes.append(
             f"Below {choice.captured_from * RPM:.3g} rpm gravity across the axis is stronger than the "

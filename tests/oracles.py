@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 from mpmath import mp, mpf
 
@@ -25,8 +26,8 @@ def liquid_reference(
 ) -> LiquidReference:
     """Integrate the liquid under z = beta r^2 + C in polar coordinates about the rotation axis.
 
-    The chamber's centre lies at (e, 0). The circle of radius r is inside the chamber for |angle| < phi(r), with
-    cos(phi) = (r^2 + e^2 - R^2)/(2 e r). `beta` and `constant` are mpmath numbers, so that C loses nothing.
+    The chamber's centre lies at (e, 0). The circle of radius r is inside the chamber for |angle| < phi(r),
+    with cos(phi) = (r^2 + e^2 - R^2)/(2 e r). `beta` and `constant` are mpmath numbers: C loses nothing.
     """
     R, h, e = mpf(radius), mpf(height), mpf(eccentricity)
 
@@ -42,7 +43,7 @@ def liquid_reference(
     if beta > 0:
         marks |= {mp.sqrt(s) for s in (-constant / beta, (h - constant) / beta) if s > 0}
     near, far = max(mpf(0), e - R), R + e
-    # Close to a chamber that touches the rotation axis phi turns over on the scale |R - e|: one mark a decade.
+    # Where the wall nearly touches the rotation axis phi turns over on the scale |R - e|: one mark a decade.
     decade = abs(R - e)
     while 0 < decade < R:
         decade *= 10
@@ -53,7 +54,7 @@ def liquid_reference(
 
     def integral(f) -> mpf:  # type: ignore[no-untyped-def]
         total = mpf(0)
-        for start, stop in zip(points[:-1], points[1:], strict=True):
+        for start, stop in pairwise(points):
             if depth((start + stop) / 2) > 0:
                 total += mp.quad(f, [start, stop])
         return total

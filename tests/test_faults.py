@@ -26,6 +26,8 @@ def test_fault_is_caught(fault: Fault) -> None:
         fault.oracle()
 
 
-@pytest.mark.parametrize("oracle", {f.oracle for f in FAULTS}, ids=lambda o: f"{o.__module__}.{o.__name__}")
+@pytest.mark.parametrize(
+    "oracle", dict.fromkeys(f.oracle for f in FAULTS), ids=lambda o: f"{o.__module__}.{o.__name__}"
+)
 def test_oracle_passes_without_fault(oracle) -> None:  # type: ignore[no-untyped-def]
     oracle()

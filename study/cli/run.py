@@ -33,7 +33,7 @@ def run(
 
     write_dataset(to_dataset(record), folder / "response.nc")
     figures = write_figures(record, folder)
-    write_summary(record, {figure.name: figure.svg for figure in figures}, folder / "summary.html")
+    write_summary(record, {figure.title: figure.svg for figure in figures}, folder / "summary.html")
     if json:
         print_json(run_json(record))
     else:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.solvers.test_free_surface import check_optimal_volumes, check_state
+from tests.solvers.test_free_surface import check_crescent, check_optimal_volumes, check_state
 from tests.solvers.test_free_surface_limits import check_clear_surface, check_flat_surface
 from tests.solvers.test_free_surface_sections import check_turned
 
@@ -26,10 +26,8 @@ FAULTS: tuple[Fault, ...] = (
     Fault(MODULE, "x * x * depth, y * y * depth", "y * y * depth, x * x * depth", check_state),
     Fault(MODULE, "third, x * y * depth", "third, x * x * depth", check_turned),
     Fault(MODULE, "math.sqrt(max(floor, 0.0))", "math.sqrt(max(below, 0.0))", check_clear_surface),
-    Fault(MODULE, "plan.farthest - dry_radius**2", "plan.farthest - dry_radius", check_optimal_volumes),
-    Fault(
-        MODULE, "touch = radius - eccentricity", "touch = radius - 2.0 * eccentricity", check_optimal_volumes
-    ),
+    Fault(MODULE, "plan.farthest - dry_radius**2", "plan.farthest - dry_radius", check_crescent),
+    Fault(MODULE, "rise = 4.0 * beta * radius", "rise = 2.0 * beta * radius", check_optimal_volumes),
     Fault(
         MODULE,
         "(20.0 * 1e-7 * layer / radius) ** 0.25",

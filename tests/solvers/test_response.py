@@ -45,6 +45,8 @@ def check_added_mass() -> None:
         answer = synchronous_response(rotor, fills(1e-4, 8e-5), speed, gravity)
         wet = ~answer.dry_patch
         assert answer.converged.all() and answer.stable.all()
+        dry = 6e-4 * speed**2 / (4e4 - 4.0 * speed**2 + 1j * rotor.damping * speed)
+        np.testing.assert_allclose(answer.deflection_dry, dry, rtol=1e-14)
         if gravity == 0.0:
             assert wet.all()
             np.testing.assert_allclose(answer.deflection, closed, rtol=1e-11)
@@ -136,12 +138,12 @@ def _settle(rotor: Jeffcott, fill: Fill, spin: float, start: complex) -> complex
         a = (force - (2j * spin * mass + rotor.damping) * v) / mass
         return np.array([v.real, v.imag, a.real, a.imag])
 
-    end = solve_ivp(rate, (0.0, 15.0), [start.real, start.imag, 0.0, 0.0], rtol=1e-6, atol=1e-9).y[:, -1]
+    end = solve_ivp(rate, (0.0, 40.0), [start.real, start.imag, 0.0, 0.0], rtol=1e-6, atol=1e-9).y[:, -1]
     return complex(end[0], end[1])
 
 
 def test_time_integration_leaves_the_middle_branch() -> None:
-    # Damping 100 rad/s * 0.003: what starts near a stable branch has settled to 2 % of the nudge after 15 s.
+    # Damping 100 rad/s * 0.003: what has found a stable branch has settled to exp(-12) of it after 40 s.
     rotor, wet = rig(0.003, 3e-4), fills(1.2e-5)
     speed = np.linspace(96.0, 99.0, 61)
     answer = synchronous_response(rotor, wet, speed, 0.0)
@@ -150,10 +152,10 @@ def test_time_integration_leaves_the_middle_branch() -> None:
     low, middle, high = answer.branch_deflection[row]
     for nudge in (0.99, 1.01):
         end = _settle(rotor, wet[0], float(speed[row]), middle * nudge)
-        assert min(abs(end - low), abs(end - high)) < abs(end - middle)
+        assert min(abs(end - low), abs(end - high)) < 1e-3 * abs(end - middle)
     for outer in (low, high):
         end = _settle(rotor, wet[0], float(speed[row]), outer * 1.01)
-        assert abs(end - outer) < 2e-3 * abs(outer)
+        assert abs(end - outer) < 1e-3 * abs(outer)
 
 
 def test_far_above_resonance() -> None:

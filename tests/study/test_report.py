@@ -195,7 +195,7 @@ def test_more_text_makes_smaller_figures(tmp_path: Path):
     def height(record: StudyRecord) -> float:
         page_of(record, tmp_path)
         text = (tmp_path / "summary.html").read_text(encoding="utf-8")
-        return float(text.split("max-height: ")[1].split("mm")[0])
+        return float(text.split("width: 100%; height: ")[1].split("mm")[0])
 
     long = replace(rig(), notes=tuple(f"Note {i} on the limits of the model." for i in range(12)))
     assert report.FIGURE_HEIGHTS[0] <= height(long) < height(rig()) <= report.FIGURE_HEIGHTS[1]
@@ -244,6 +244,7 @@ def test_same_record_same_page(tmp_path: Path, picture: Path):
         (1.5e-7, "1.500e\N{MINUS SIGN}07"),
         (2.5e9, "2.500e+09"),
         (math.nan, "not found"),
+        (math.inf, "infinite"),
     ],
 )
 def test_numbers_for_print(value: float, text: str):

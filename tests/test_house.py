@@ -1,0 +1,61 @@
+"""Imports run one way, and the front door opens fast."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+HEAVY = (
+    "numpy", "scipy", "pydantic", "pint", "matplotlib", "xarray", "skfem", "meshio", "pde", "pyvista",
+    "numba", "rich", "jinja2", "sympy",
+)  # fmt: skip
+
+
+def test_import_contracts() -> None:
+    cli = pytest.importorskip("importlinter.cli")
+    assert cli.lint_imports(config_filename=str(ROOT / "pyproject.toml"), is_debug_mode=False) == 0
+
+
+def _loaded(code: str) -> set[str]:
+    script = f"import sys\n{code}\nprint(' '.join(sorted(sys.modules)), file=sys.stderr)"
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, cwd=ROOT, check=True
+    )
+    return {name.partition(".")[0] for name in done.stderr.split()}
+
+
+def test_help_loads_nothing_heavy() -> None:
+    loaded = _loaded("from study.cli import main\nassert main(['--help']) == 0")
+    assert not loaded & set(HEAVY)
+
+
+def test_the_main_job_compiles_nothing_and_loads_no_mesh() -> None:
+    loaded = _loaded(
+        "from study.scene import load_scene\nfrom study.run import run_scene\n"
+        "run_scene(load_scene('examples/horizontal_rig.toml'))"
+    )
+    assert not loaded & {"numba", "pde", "skfem", "meshio", "pyvista", "matplotlib", "sympy"}
+
+
+def _public(body: list[ast.stmt]) -> list[ast.FunctionDef | ast.ClassDef]:
+    """Public functions and classes of a module and their public methods, not what is nested in functions."""
+    found: list[ast.FunctionDef | ast.ClassDef] = []
+    for node in body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_"):
+            found.append(node)
+            found += _public(node.body) if isinstance(node, ast.ClassDef) else []
+    return found
+
+
+def test_every_public_function_is_documented() -> None:
+    bare = []
+    for package in ("meshes", "fluid", "solvers", "study", "validation"):
+        for path in (ROOT / package).rglob("*.py"):
+            tree = ast.parse(path.read_text(encoding="utf-8"))
+            bare += [f"{path.name}:{n.name}" for n in _public(tree.body) if not ast.get_docstring(n)]
+    assert not bare
