@@ -2,7 +2,7 @@ VENV ?= .venv
 PYTHON ?= python3
 BIN := $(VENV)/bin
 
-.PHONY: study test test-slow lint clean
+.PHONY: study test test-slow lint clean pictures
 
 study: $(BIN)/.installed
 	$(BIN)/leblanc run examples/horizontal_rig.toml
@@ -35,3 +35,10 @@ $(BIN)/.installed-lint: pyproject.toml | $(BIN)/python
 
 clean:
 	rm -rf $(VENV) out .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
+
+# The pictures of the README and the docs, drawn by the examples.
+pictures: $(BIN)/.installed
+	mkdir -p docs/images
+	$(BIN)/leblanc run examples/horizontal_rig.toml --out out/pictures
+	cp out/pictures/amplitude.png docs/images/horizontal_rig_amplitude.png
+	cp out/pictures/chamber.png docs/images/horizontal_rig_chamber.png

@@ -38,7 +38,7 @@ class LayerNumbers:
 
 
 def layer_numbers(fill: Fill, speed: ArrayLike, gravity: float, axial_gravity: float) -> LayerNumbers:
-    """Numbers of one chamber's layer [theory: statics, eq. 2; theory: waves, eq. 1].
+    """Numbers of one chamber's layer [theory: statics, eq. 2].
 
     Parameters
     ----------

@@ -2,8 +2,7 @@
 
 The one unknown is the wetted height Z, the height of the unclamped surface above the floor at the wall's
 farthest point from the rotation axis. Unlike the surface constant C it keeps its digits when the spin is fast
-(C loses them as beta R^2/h) and when the fill is small [theory: statics, section "Integration along the wall
-arc"].
+(C loses them as beta R^2/h) and when the fill is small [theory: statics, eq. 12].
 """
 
 from __future__ import annotations
@@ -74,7 +73,7 @@ class Equilibrium:
         -------
         first_moment : int x dV, m^4, shape (...,)
         slope : its derivative with respect to the eccentricity, m^3, shape (...,); V + 2 beta times the
-            spread of the free surface's plan [theory: statics, "Integration along the wall arc"]
+            spread of the free surface's plan [theory: statics, eq. 17]
         """
         x, plan, plan_x, plan_xx = _over_walls(
             wall_arc.unbalance,

@@ -134,7 +134,7 @@ def synchronous_response(
 def critical_speed(
     rotor: Jeffcott, fills: Sequence[Fill], gravity: float = 9.81, model: str = "auto"
 ) -> float:
-    """Speed at which a small deflection meets no stiffness: (M + dU/de) Omega^2 = K [theory: rotor, eq. 3].
+    """Speed at which a small deflection meets no stiffness: (M + dU/de) Omega^2 = K [theory: rotor, eq. 4].
 
     Parameters
     ----------

@@ -3,8 +3,7 @@
 Lengths in units of the chamber's radius across the axis and of its height along it. A wall point at the angle
 psi from the deflection, seen from the chamber's centre, lies at s = r^2 = 1 + eps^2 + 2 eps cos(psi) from the
 rotation axis; the circle through it is inside the chamber for |angle| < phi. All integrands are positive, so
-that nothing cancels at any speed, eccentricity or fill [theory: statics, section "Integration along the wall
-arc"].
+that nothing cancels at any speed, eccentricity or fill [theory: statics, eq. 11-15].
 """
 
 from __future__ import annotations
@@ -239,8 +238,7 @@ def integrate(eps: Array, steep: Array, zeta: Array) -> Moments:
 
     Returns
     -------
-    Moments, lengths across the axis over R and along it over h [theory: statics, section "Integration along
-    the wall arc"]
+    Moments, lengths across the axis over R and along it over h [theory: statics, eq. 14-15]
     """
     v, x, z, xx, yy, zz, xz = np.zeros((7, *eps.shape))
     for panel in _panels(eps, steep, zeta):

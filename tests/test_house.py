@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -10,6 +11,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parent.parent
+PACKAGES = ("meshes", "fluid", "solvers", "study", "validation")
 HEAVY = (
     "numpy", "scipy", "pydantic", "pint", "matplotlib", "xarray", "skfem", "meshio", "pde", "pyvista",
     "numba", "rich", "jinja2", "sympy",
@@ -54,8 +56,28 @@ def _public(body: list[ast.stmt]) -> list[ast.FunctionDef | ast.ClassDef]:
 
 def test_every_public_function_is_documented() -> None:
     bare = []
-    for package in ("meshes", "fluid", "solvers", "study", "validation"):
-        for path in (ROOT / package).rglob("*.py"):
-            tree = ast.parse(path.read_text(encoding="utf-8"))
-            bare += [f"{path.name}:{n.name}" for n in _public(tree.body) if not ast.get_docstring(n)]
+    for path in _sources():
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        bare += [f"{path.name}:{n.name}" for n in _public(tree.body) if not ast.get_docstring(n)]
     assert not bare
+
+
+def _sources() -> list[Path]:
+    return [p for name in PACKAGES for p in (ROOT / name).rglob("*.py")]
+
+
+def test_citations_lead_somewhere() -> None:
+    pages = {p.stem: p.read_text(encoding="utf-8") for p in (ROOT / "docs" / "theory").glob("*.md")}
+    keys = set(re.findall(r"@\w+\{(\w+),", (ROOT / "references.bib").read_text(encoding="utf-8")))
+    lost = []
+    for path in _sources():
+        text = " ".join(path.read_text(encoding="utf-8").split())
+        for page, rest in re.findall(r"\[theory: (\w+)([^\]]*)\]", text):
+            numbers = [int(n) for n in re.findall(r"\d+", rest)]
+            known = pages.get(page)
+            if known is None or any(f"tag{{{n}}}" not in known for n in numbers):
+                lost.append(f"{path.name}: theory: {page}{rest}")
+        lost += [
+            f"{path.name}: {key}" for key in re.findall(r"\[([A-Z]{2,}\d{2})[,\]]", text) if key not in keys
+        ]
+    assert not lost

@@ -18,6 +18,7 @@ from meshes.chamber import Chamber
 from solvers.hydrostatics import equilibrium
 from solvers.response import Response, synchronous_response
 from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.vector_model import balance_residual, deflection_lag
 
 WATER = Liquid("water", 1000.0, 1e-6)
 
@@ -89,6 +90,29 @@ def check_balance() -> None:
 
 def test_balance() -> None:
     check_balance()
+
+
+def check_vector_model() -> None:
+    """Angles of the solved response balance at every speed, wet wall or dry patch [DR18, eq. 24]."""
+    dry = np.zeros(0, dtype=bool)
+    for rotor, wet in ((rig(0.1), fills(1e-5, 1e-5)), (rig(0.03, 3e-3), fills(1e-5, 8e-6))):
+        speed = np.linspace(20.0, 250.0, 201)
+        answer = synchronous_response(rotor, wet, speed, 0.0)
+        size = np.abs(answer.deflection)
+        liquid = sum(
+            WATER.density * equilibrium(f.chamber, f.volume, size, speed, 0.0).unbalance()[0] for f in wet
+        )
+        k = rotor.unbalance / liquid
+        lag = deflection_lag(speed, rotor.mass, rotor.damping, rotor.stiffness)
+        # In units of the larger unbalance; the angle itself is known to rounding.
+        residual = balance_residual(-answer.liquid_angle, lag, k) / np.maximum(k, 1.0)
+        np.testing.assert_allclose(residual, 0.0, atol=1e-12)
+        dry = np.concatenate((dry, answer.dry_patch))
+    assert dry.any() and not dry.all()
+
+
+def test_vector_model() -> None:
+    check_vector_model()
 
 
 def test_all_branches_against_a_fine_scan() -> None:

@@ -19,7 +19,7 @@ CHAMBER = ChamberRecord(
 
 
 def lag_of_a_damped_rotor() -> None:
-    """tan(lag) = C Omega/(K - M Omega^2), between 0 and half a turn [theory: reduced rotor]."""
+    """tan(lag) = C Omega/(K - M Omega^2), between 0 and half a turn [theory: rotor]."""
     speed = np.linspace(100.0, 2000.0, 96) * RPM
     lag = np.arctan2(DAMPING * speed, STIFFNESS - MASS * speed**2)
     # Rounding of two arctangents and of the division before them.

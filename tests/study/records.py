@@ -25,7 +25,7 @@ def dry_deflection(speed: Array, mass: float, damping: float = DAMPING) -> NDArr
 
 
 def response_of(speed: Array, added: float = ADDED, depth: float = 1.24e-3) -> Response:
-    """A layer whose wall is wet acts as an added mass, whatever its depth [theory: reduced rotor]."""
+    """A layer whose wall is wet acts as an added mass, whatever its depth [theory: rotor]."""
     w = dry_deflection(speed, MASS + added)
     return Response(
         speed=speed,
