@@ -12,7 +12,7 @@ from study import units
 from study.rules import Entries, Flag, OneOf, Quantity, Refused, Text, Whole
 
 MAX_CHAMBERS = 1000
-MAX_SPEEDS = 1_000_000
+MAX_SPEEDS = 100_000
 MAX_ASSUMED = 10_000
 
 _LIQUID_MODELS = ("auto", "statics", "linear", "long_wave", "kdv", "fem")
