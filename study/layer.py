@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +14,16 @@ from fluid import waves
 from fluid.fill import Fill
 from meshes.border import InputError, require_not_negative, require_positive
 from solvers.hydrostatics import equilibrium
+from solvers.layer import film, friction_law, settle, simulate
+from solvers.prescribed import LayerHistory, Numerics, Whirl
 from study.friction import Friction
+
+if TYPE_CHECKING:
+    from study.figures.wave import WaveHistory, WaveRecord
 
 Array = NDArray[np.float64]
 
-MODELS = ("statics", "linear")
+MODELS = ("statics", "linear", "long_wave")
 NO_FRICTION = Friction("none", 0.0)
 _POINTS = 360
 
@@ -63,6 +69,7 @@ def answer_layer(
     model: str,
     friction: Friction = NO_FRICTION,
     gravity: float = 0.0,
+    numerics: Numerics | None = None,
 ) -> LayerAnswer:
     """Answer of the liquid in one chamber to a circular whirl of its axis.
 
@@ -72,9 +79,11 @@ def answer_layer(
     speed : spin speed Omega, rad/s
     whirl_speed : omega_w in space, rad/s, not 0; negative against the spin
     whirl_amplitude : A, m
-    model : `statics` (synchronous whirl only) or `linear` [theory: waves, eq. 8]
+    model : `statics` (synchronous whirl only), `linear` [theory: waves, eq. 5] or `long_wave`, stepped in
+        time until it settles [theory: long_wave, eq. 4]
     friction : law of the wall friction; the linear theory knows none
-    gravity : across the axis, m/s^2; linear theory only
+    gravity : across the axis, m/s^2; not for the static model
+    numerics : resolution of the long-wave model
 
     Raises
     ------
@@ -88,10 +97,104 @@ def answer_layer(
         raise InputError("--whirl-speed", whirl_speed, "a finite number other than 0")
     if model not in MODELS:
         raise InputError("--model", model, "one of " + ", ".join(MODELS))
-    solve = _statics if model == "statics" else _linear
     begin = time.perf_counter()
-    answer = solve(fill, speed, whirl_speed, whirl_amplitude, friction, gravity)
+    if model == "long_wave":
+        whirl = Whirl(speed, whirl_speed, whirl_amplitude, gravity=gravity)
+        answer = _long_wave(fill, whirl, friction, numerics or Numerics())
+    else:
+        solve = _statics if model == "statics" else _linear
+        answer = solve(fill, speed, whirl_speed, whirl_amplitude, friction, gravity)
     return replace(answer, wall_time=time.perf_counter() - begin)
+
+
+def layer_history(
+    fill: Fill,
+    speed: float,
+    whirl_speed: float,
+    whirl_amplitude: float,
+    model: str,
+    duration: float,
+    ramp: float = 0.0,
+    friction: Friction = NO_FRICTION,
+    gravity: float = 0.0,
+    numerics: Numerics | None = None,
+) -> LayerHistory:
+    """Layer from rest in the drum, whirl period by whirl period; the parameters are `answer_layer`'s.
+
+    Parameters
+    ----------
+    duration : time answered, s
+    ramp : time over which the whirl amplitude grows, s
+
+    Raises
+    ------
+    InputError : a value out of its range, a model other than `long_wave`
+    """
+    if model != "long_wave":
+        raise InputError("--model", model, "long_wave where a --duration is given")
+    whirl = Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity)
+    return simulate(
+        fill, whirl, duration, friction_law(friction.law, friction.coefficient, fill, whirl), numerics
+    )
+
+
+def wave_record(
+    fill: Fill,
+    speed: float,
+    whirl_speed: float,
+    whirl_amplitude: float,
+    model: str,
+    answer: LayerAnswer,
+    **_: object,
+) -> WaveRecord:
+    """What the figure of a layer's wave shows; the parameters are `answer_layer`'s and its answer."""
+    from study.figures.wave import WaveRecord
+
+    return WaveRecord(
+        title="Layer under a whirl",
+        model=model,
+        radius=fill.chamber.radius,
+        inner_radius=fill.chamber.inner_radius,
+        mean_depth=fill.depth,
+        whirl_amplitude=whirl_amplitude,
+        spin=speed,
+        whirl_speed=whirl_speed,
+        theta=answer.theta,
+        depth=answer.depth,
+        force_ratio=answer.force_ratio,
+        offset=answer.offset,
+        notes=answer.notes,
+    )
+
+
+def wave_film(
+    fill: Fill,
+    speed: float,
+    whirl_speed: float,
+    whirl_amplitude: float,
+    model: str,
+    friction: Friction,
+    gravity: float,
+    numerics: Numerics,
+    duration: float,
+    ramp: float,
+) -> WaveHistory:
+    """Pictures of the wave in the drum frame over a duration; the parameters are `layer_history`'s.
+
+    Raises
+    ------
+    InputError : a value out of its range, a model other than `long_wave`
+    """
+    from study.figures.wave import WaveHistory
+
+    if model != "long_wave":
+        raise InputError("--model", model, "long_wave for an animation")
+    whirl = Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity)
+    law = friction_law(friction.law, friction.coefficient, fill, whirl)
+    # Eight pictures at least while the deflection turns once, and enough for a smooth film.
+    frames = int(np.clip(8.0 * duration / whirl.period, 120, 2000))
+    shots = film(fill, whirl, frames, duration / whirl.period, law, numerics)
+    return WaveHistory(time=shots.time, theta=shots.theta, depth=shots.depth, deflection=shots.deflection)
 
 
 def _statics(
@@ -167,6 +270,47 @@ def _linear(
         gravity_offset=float(waves.gravity_offset(kappa, speed, gravity)) if gravity > 0.0 else 0.0,
         captured=speed > capture,
     )
+
+
+def _long_wave(fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics) -> LayerAnswer:
+    """Nonlinear long waves, settled."""
+    chamber, surface = fill.chamber, fill.surface_radius
+    history = settle(fill, whirl, friction_law(friction.law, friction.coefficient, fill, whirl), numerics)
+    answered = history.force_ratio.size > 0
+    notes = _long_wave_notes(fill, whirl, history)
+    capture = float(waves.capture_speed(surface, whirl.gravity)) if whirl.gravity > 0.0 else 0.0
+    kappa = (chamber.radius / surface) ** 2
+    return LayerAnswer(
+        force_ratio=complex(history.force_ratio[-1]) if answered else complex(math.nan, math.nan),
+        offset=complex(history.offset[-1]) if answered else complex(math.nan, math.nan),
+        mass_error=history.mass_error,
+        converged=history.converged,
+        in_range=not notes,
+        mean_rotation=float(history.mean_rotation[-1]) if answered else math.nan,
+        wall_time=0.0,
+        theta=history.theta,
+        depth=history.depth,
+        notes=notes,
+        gravity_offset=float(waves.gravity_offset(kappa, whirl.spin, whirl.gravity))
+        if whirl.gravity
+        else 0.0,
+        captured=whirl.spin > capture,
+    )
+
+
+def _long_wave_notes(fill: Fill, whirl: Whirl, history: LayerHistory) -> tuple[str, ...]:
+    """Where the long-wave assumption is strained."""
+    notes = []
+    if fill.depth > 0.3 * fill.chamber.radius:
+        notes.append(f"the layer is deep: h0/R = {fill.depth / fill.chamber.radius:.2g}, long waves need 0.3")
+    gap = np.abs(history.force_ratio - history.pressure_ratio)
+    if gap.size and gap[-1] > 0.1 * max(1.0, float(np.abs(history.force_ratio[-1]))):
+        notes.append("force by pressure and by momentum differ by more than a tenth: not a long wave")
+    if history.depth.size and history.depth.max() > fill.chamber.radius - fill.chamber.inner_radius:
+        notes.append("the surface reaches the inner wall")
+    if whirl.gravity > 0.0 and whirl.spin**2 * fill.surface_radius <= whirl.gravity:
+        notes.append("gravity is stronger than the centrifugal acceleration at the surface")
+    return tuple(notes)
 
 
 def _angles() -> Array:

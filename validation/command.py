@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from validation.case import Case
 
-GROUPS = ("errata", "optimal_volume", "vector_model", "horizontal_rig", "vertical_rig")
+GROUPS = ("errata", "optimal_volume", "vector_model", "horizontal_rig", "vertical_rig", "layer")
 
 
 def validate(
@@ -56,7 +56,7 @@ def all_cases(group: str | None = None) -> list[Case]:
 
 def _group(name: str) -> Callable[[], list[Case]]:
     """The function that computes a group."""
-    from validation import errata, horizontal_rig, optimal_volume, vector_model, vertical_rig
+    from validation import errata, horizontal_rig, layer, optimal_volume, vector_model, vertical_rig
 
     return {
         "errata": errata.cases,
@@ -64,6 +64,7 @@ def _group(name: str) -> Callable[[], list[Case]]:
         "vector_model": vector_model.cases,
         "horizontal_rig": horizontal_rig.cases,
         "vertical_rig": vertical_rig.cases,
+        "layer": layer.cases,
     }[name]
 
 

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from study.cli.output import print_json
+from study.cli.output import out_dir, print_json, say
+
+if TYPE_CHECKING:
+    from solvers.prescribed import LayerHistory
+    from study.layer import LayerAnswer
 
 
 def layer(
@@ -16,11 +22,23 @@ def layer(
     speed: Annotated[str, typer.Option(help="Spin speed, rad/s or with a unit.")],
     whirl_speed: Annotated[str, typer.Option(help="Whirl speed in space.")],
     whirl_amplitude: Annotated[str, typer.Option(help="Radius of the whirl.")],
-    model: Annotated[str, typer.Option(help="statics or linear.")] = "linear",
+    model: Annotated[str, typer.Option(help="statics, linear or long_wave.")] = "linear",
+    cells: Annotated[int, typer.Option(help="Cells round the wall (long_wave).")] = 256,
+    dispersion: Annotated[
+        bool, typer.Option("--dispersion", help="Add the finite depth's dispersion (long_wave).")
+    ] = False,
     friction: Annotated[str, typer.Option(help="none, stokes, linear:RATE or quadratic:NUMBER.")] = "none",
     gravity: Annotated[str, typer.Option(help="Gravity across the axis.")] = "0",
     liquid: Annotated[str, typer.Option(help="Name of the liquid.")] = "water",
+    duration: Annotated[
+        str | None, typer.Option(help="Start from rest and answer period by period (long_wave).")
+    ] = None,
+    ramp: Annotated[str, typer.Option(help="Time over which the whirl grows, with --duration.")] = "0",
     profile: Annotated[bool, typer.Option("--profile", help="Add the depth around the wall.")] = False,
+    out: Annotated[Path | None, typer.Option(help="Folder for the figure of the wave.")] = None,
+    animate: Annotated[
+        Path | None, typer.Option(help="GIF or MP4 of the wave in the drum frame (long_wave).")
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Force and centre of mass of a liquid layer under a circular whirl, in the plane."""
@@ -29,28 +47,87 @@ def layer(
     from fluid.fill import Fill
     from fluid.liquid import known_liquid
     from meshes.chamber import Chamber
+    from solvers.prescribed import Numerics
     from study.faults import NotConverged
     from study.friction import parse_friction
-    from study.layer import answer_layer
-    from study.units import ACCELERATION, ANGULAR_SPEED, LENGTH, VOLUME, parse_option
+    from study.layer import answer_layer, layer_history
+    from study.units import ACCELERATION, ANGULAR_SPEED, LENGTH, TIME, VOLUME, parse_option
 
     chamber = Chamber(parse_option(radius, LENGTH, "--radius"), parse_option(height, LENGTH, "--height"))
-    answer = answer_layer(
-        Fill(chamber, known_liquid(liquid), parse_option(volume, VOLUME, "--volume")),
-        speed=parse_option(speed, ANGULAR_SPEED, "--speed"),
-        whirl_speed=parse_option(whirl_speed, ANGULAR_SPEED, "--whirl-speed"),
-        whirl_amplitude=parse_option(whirl_amplitude, LENGTH, "--whirl-amplitude"),
-        model=model,
-        friction=parse_friction(friction, "--friction"),
-        gravity=parse_option(gravity, ACCELERATION, "--gravity"),
-    )
-    shown = asdict(answer)
-    if not profile:
-        del shown["theta"], shown["depth"]
+    asked: dict[str, Any] = {
+        "fill": Fill(chamber, known_liquid(liquid), parse_option(volume, VOLUME, "--volume")),
+        "speed": parse_option(speed, ANGULAR_SPEED, "--speed"),
+        "whirl_speed": parse_option(whirl_speed, ANGULAR_SPEED, "--whirl-speed"),
+        "whirl_amplitude": parse_option(whirl_amplitude, LENGTH, "--whirl-amplitude"),
+        "model": model,
+        "friction": parse_friction(friction, "--friction"),
+        "gravity": parse_option(gravity, ACCELERATION, "--gravity"),
+        "numerics": Numerics(cells, dispersion),
+    }
+    grown = parse_option(ramp, TIME, "--ramp")
+    if duration is not None:
+        history = layer_history(**asked, duration=parse_option(duration, TIME, "--duration"), ramp=grown)
+        shown, converged = _history(history, profile), history.converged
+    else:
+        answer = answer_layer(**asked)
+        shown, converged = asdict(answer), answer.converged
+        if not profile:
+            del shown["theta"], shown["depth"]
+        if out is not None:
+            _draw(asked, answer, out_dir("layer", out))
+    if animate is not None:
+        length = None if duration is None else parse_option(duration, TIME, "--duration")
+        _film(asked, length, grown, animate)
     if json:
         print_json(shown)
     else:
         for name, value in shown.items():
             print(f"{name.replace('_', ' '):18}{value}")
-    if not answer.converged:
-        raise NotConverged(["leblanc layer: the whirl meets a free wave, the linear force is unbounded"])
+    if not converged:
+        raise NotConverged([_WHY.get(model, "leblanc layer: no answer")])
+
+
+_WHY = {
+    "linear": "leblanc layer: the whirl meets a free wave, the linear force is unbounded",
+    "long_wave": "leblanc layer: the wave does not settle, or the surface came to the axis; friction or "
+    "--duration may help",
+}
+
+
+def _history(history: LayerHistory, profile: bool) -> dict[str, Any]:
+    """What the whirl periods give, as scripts expect it."""
+    names = ["time", "force_ratio", "mean_rotation", "depth_max", "depth_min", "offset", "pressure_ratio"]
+    names += ["mass_error", "converged"] + (["theta", "depth"] if profile else [])
+    return {name: getattr(history, name) for name in names}
+
+
+def _draw(asked: dict[str, Any], answer: LayerAnswer, folder: Path) -> None:
+    """The wave as it stands in the frame of the deflection."""
+    from study.figures import save, wave_figure
+    from study.layer import wave_record
+
+    files = save(wave_figure(wave_record(answer=answer, **asked)), folder, "wave", "Wave on the annulus")
+    say(f"wrote {files.png}")
+
+
+def _film(asked: dict[str, Any], duration: float | None, ramp: float, path: Path) -> None:
+    """The wave from rest, in the drum frame; six whirl periods unless the user says how long."""
+    from dataclasses import replace
+
+    from rich.progress import Progress
+
+    from solvers.prescribed import Whirl
+    from study.figures import animate
+    from study.layer import NO_FRICTION, answer_layer, wave_film, wave_record
+
+    whirl = Whirl(asked["speed"], asked["whirl_speed"], asked["whirl_amplitude"])
+    length = 6.0 * whirl.period if duration is None else duration
+    history = wave_film(**asked, duration=length, ramp=ramp)
+    still = answer_layer(**(asked | {"model": "linear", "friction": NO_FRICTION}))
+    last = wave_record(answer=replace(still, theta=history.theta, depth=history.depth[-1]), **asked)
+    with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
+        task = bar.add_task("drawing", total=None)
+        frames = animate(
+            last, history, path, lambda done, total: bar.update(task, completed=done, total=total)
+        )
+    say(f"wrote {path}, {frames} frames")

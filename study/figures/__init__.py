@@ -1,81 +1,49 @@
-"""The figures of a study as PNG and SVG: the only door to matplotlib.
+"""The figures of a study and of a wave, as PNG and SVG, and the film of a wave.
 
-Figures are drawn on the object interface: to import pyplot costs more than to draw them all.
+Figures are drawn on the object interface: to import pyplot costs more than to draw them all. This package is
+the only door to matplotlib.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, replace
-from functools import cache
-from importlib import resources
+import math
+import shutil
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from tempfile import TemporaryDirectory
 
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.font_manager import findfont, get_font
 from matplotlib.ticker import FuncFormatter, MultipleLocator, NullFormatter
 from numpy.typing import ArrayLike
 
-from study.figures import chamber, over_speed
+from meshes.border import InputError
+from study.figures import chamber, over_speed, wave, wave_axes, wave_time
 from study.figures.curves import Curves, prepare
+from study.figures.page import RIGHT, WIDTH, Frame, lay_out, number
+from study.figures.page import FigureFiles as FigureFiles  # what a caller of this package needs
+from study.figures.page import save as save
+from study.figures.page import style as style
+from study.figures.wave import WaveHistory, WaveRecord
 from study.record import RPM, StudyRecord, models_used, one_line
 from study.results import replacing
 
 Draw = Callable[[Axes, Curves, StudyRecord], None]
-
-# Lengths in inches.
-WIDTH, RIGHT = 6.3, 0.25
-LEGEND_ROW, CAPTION_ROW, MARGIN = 0.145, 0.125, 0.06
-CAPTION_SIZE, MOST_LINES = 7.0, 4  # points; lines of the caption
-LEGEND_CHARACTERS = 100  # in one row
-
-
-@dataclass(frozen=True)
-class Frame:
-    """Room around and between the rows of axes, inches."""
-
-    left: float
-    top: float
-    between: float
-    below: float
-
+DrawTime = Callable[[Axes, WaveRecord, WaveHistory], None]
 
 SPEED_FRAME = Frame(left=0.72, top=0.46, between=0.12, below=0.42)
 CHAMBER_FRAME = Frame(left=0.15, top=0.26, between=0.6, below=0.36)
+WAVE_FRAME = Frame(left=0.1, top=0.1, between=0.0, below=0.44)
+FILM_FRAME = Frame(left=0.1, top=0.28, between=0.0, below=0.26)
+TIME_FRAME = Frame(left=0.72, top=0.12, between=0.12, below=0.4)
 HEADING_ROW = 0.14
-
-
-@dataclass(frozen=True)
-class FigureFiles:
-    """One figure on disk.
-
-    Parameters
-    ----------
-    name : stem of its files
-    title : what it shows
-    png, svg : its files
-    """
-
-    name: str
-    title: str
-    png: Path
-    svg: Path
-
-
-@contextmanager
-def style() -> Iterator[None]:
-    """The house style on top of matplotlib's own defaults, whatever the user's settings are."""
-    sheet = resources.files("study") / "leblanc.mplstyle"
-    with resources.as_file(sheet) as path, matplotlib.rc_context():
-        matplotlib.rcdefaults()
-        matplotlib.rcParams.update(matplotlib.rc_params_from_file(path, use_default_template=False))
-        yield
+WAVE_HEIGHT, PROFILE_LEFT, PROFILE_BELOW, ASIDE = 2.75, 3.55, 0.15, 0.15  # inches
+NOTED_LINES = 10  # of a caption with notes
+RPM_ROOM = 0.42  # for a second axis on the right, inches
+FILM_DPI = 100
 
 
 def amplitude_figure(record: StudyRecord) -> Figure:
@@ -105,7 +73,7 @@ def chamber_figure(record: StudyRecord) -> Figure:
         if not cells:
             axes = figure.add_axes((0, 0, 1, 1), frame_on=False, xticks=[], yticks=[])
             axes.text(0.5, 0.5, "no chamber, or no deflection found", ha="center")
-            _lay_out(figure, [[axes]], [1.0], CHAMBER_FRAME, _caption(record, "Chamber seen along the axis."))
+            lay_out(figure, [[axes]], [1.0], CHAMBER_FRAME, _caption(record, "Chamber seen along the axis."))
             return figure
         drawn = []
         for i, (chambers, index) in enumerate(cells):
@@ -121,8 +89,131 @@ def chamber_figure(record: StudyRecord) -> Figure:
         caption = _caption(record, f"Chamber seen along the axis. {chamber.describe_scale(views)}")
         more = HEADING_ROW * chamber.more_heading_rows(record, views)
         frame = replace(CHAMBER_FRAME, top=CHAMBER_FRAME.top + more, between=CHAMBER_FRAME.between + more)
-        _lay_out(figure, rows, sides, frame, caption)
+        lay_out(figure, rows, sides, frame, caption)
     return figure
+
+
+def wave_figure(record: WaveRecord) -> Figure:
+    """The layer seen along the axis and its depth around the wall, in the frame of the deflection."""
+    deepest = float(np.max(record.depth))
+    factor = wave.depth_factor(record, max(deepest, record.mean_depth))
+    with style():
+        figure = Figure()
+        left, right = (figure.add_axes((0, 0, 1, 1), label=name) for name in ("annulus", "profile"))
+        wave_axes.draw_annulus(left, record, factor)
+        wave_axes.draw_profile(right, record)
+        right.yaxis.set_major_formatter(FuncFormatter(number))
+        text = (
+            f"{wave_axes.describe_depths(factor)}; arrows show directions, the place of the centre of mass "
+            "is not exaggerated. Force ratio: force over that of a full drum; angles from the deflection, "
+            "positive with the spin. "
+            f"{wave_axes.describe_case(record)}{wave_axes.describe_notes(record)}"
+        )
+        _beside(figure, left, right, WAVE_FRAME, text)
+    return figure
+
+
+def history_figure(record: WaveRecord, history: WaveHistory) -> Figure:
+    """Force, mean rotation and depths over time; the first two only if the history has periods."""
+    wave.require_room(record, history)
+    panels: list[tuple[float, DrawTime]] = [(1.2, wave_time.draw_depths)]
+    text = "Largest and smallest depth around the wall."
+    if history.period_time is not None:
+        panels = [(1.5, wave_time.draw_force), (1.0, wave_time.draw_rotation), *panels]
+        text = (
+            "Force on the drum over that of a full drum and the liquid's mean rotation in the drum, each the "
+            f"mean over a period of the whirl seen from the drum. {text}"
+        )
+    with style():
+        figure = Figure()
+        rows = [[figure.add_axes((0, 0, 1, 1), label=str(i))] for i in range(len(panels))]
+        first, last = float(history.time[0]), float(history.time[-1])
+        margin = 0.02 * (last - first) if last > first else 0.5
+        for (axes,), (_, draw) in zip(rows, panels, strict=True):
+            draw(axes, record, history)
+            axes.set_xlim(first - margin, last + margin)
+            for scale in (axes, *axes.child_axes):
+                scale.yaxis.set_major_formatter(FuncFormatter(number))
+            axes.tick_params(labelbottom=axes is rows[-1][0])
+        rows[-1][0].set_xlabel("Time (s)")
+        caption = f"{text} {wave_axes.describe_case(record)}{wave_axes.describe_notes(record)}"
+        lay_out(figure, rows, [height for height, _ in panels], TIME_FRAME, caption, NOTED_LINES)
+        for (axes,) in rows:
+            box = axes.get_position()
+            axes.set_position((box.x0, box.y0, box.width - RPM_ROOM / WIDTH, box.height))
+    return figure
+
+
+def animate(
+    record: WaveRecord, history: WaveHistory, path: Path, drawn: Callable[[int, int], None] | None = None
+) -> int:
+    """Write the film of a wave, in the frame of the drum.
+
+    One history gives the same GIF byte for byte, as long as the versions of matplotlib and Pillow stay the
+    same.
+
+    Parameters
+    ----------
+    record, history : what to show; of a long history its end, as much of it as 120 frames can follow
+    path : a .gif, or an .mp4 if there is an ffmpeg
+    drawn : called after each frame with the number of frames drawn and of all
+
+    Returns
+    -------
+    Number of frames.
+
+    Raises
+    ------
+    InputError : another kind of file, an .mp4 without an ffmpeg, a layer deeper than the wall's radius
+    """
+    from matplotlib.animation import FFMpegWriter, PillowWriter
+
+    kind = path.suffix.lower()
+    if kind not in (".gif", ".mp4"):
+        raise InputError("--animate", str(path), "a file that ends in .gif or .mp4")
+    if kind == ".mp4" and not FFMpegWriter.isAvailable():
+        raise InputError("--animate", str(path), "a .gif, since no ffmpeg was found to write an .mp4")
+    wave.require_room(record, history)
+    indices = wave.frames(record, history)
+    player = matplotlib.rcParams["animation.ffmpeg_path"]
+    with style(), replacing(path) as part, TemporaryDirectory() as folder:
+        matplotlib.rcParams["animation.ffmpeg_path"] = player
+        writer = (PillowWriter if kind == ".gif" else FFMpegWriter)(fps=wave.FRAME_RATE)
+        figure, show = _film(record, history)
+        # The writers tell the format by the ending.
+        whole = Path(folder) / f"film{kind}"
+        with writer.saving(figure, str(whole), FILM_DPI):
+            for count, index in enumerate(indices.tolist(), start=1):
+                show(index)
+                writer.grab_frame()
+                if drawn is not None:
+                    drawn(count, indices.size)
+        shutil.copyfile(whole, part)
+    return int(indices.size)
+
+
+def _film(record: WaveRecord, history: WaveHistory) -> tuple[Figure, Callable[[int], None]]:
+    """Figure of a film and what sets it to the time of an index."""
+    with style():
+        figure = Figure()
+        left, right = (figure.add_axes((0, 0, 1, 1), label=name) for name in ("annulus", "profile"))
+        show = wave_time.film(left, right, record, history)
+        right.yaxis.set_major_formatter(FuncFormatter(number))
+        text = f"{wave_time.describe_film(record, history)} {wave_axes.describe_case(record)}"
+        _beside(figure, left, right, FILM_FRAME, text)
+        # Video codecs halve both sides of a picture for its colours.
+        figure.set_size_inches(WIDTH, 2.0 * math.ceil(0.5 * FILM_DPI * figure.get_figheight()) / FILM_DPI)
+    return figure, show
+
+
+def _beside(figure: Figure, left: Axes, right: Axes, frame: Frame, caption: str) -> None:
+    """A drawing and a plot side by side, the plot with room for its labels."""
+    lay_out(figure, [[left, right]], [WAVE_HEIGHT], frame, caption, NOTED_LINES)
+    total, box = figure.get_figheight(), right.get_position()
+    x, y = PROFILE_LEFT / WIDTH, box.y0 + PROFILE_BELOW / total
+    right.set_position((x, y, 1.0 - RIGHT / WIDTH - x, box.y1 - y))
+    place = left.get_position()
+    left.set_position((place.x0 - ASIDE / WIDTH, place.y0, place.width, place.height))
 
 
 def write_figures(record: StudyRecord, directory: Path) -> tuple[FigureFiles, ...]:
@@ -146,27 +237,6 @@ def write_figures(record: StudyRecord, directory: Path) -> tuple[FigureFiles, ..
     )
 
 
-def save(figure: Figure, directory: Path, name: str, title: str) -> FigureFiles:
-    """Write one figure as PNG and SVG, without the time of writing.
-
-    Parameters
-    ----------
-    figure : to write
-    directory : where its files go; made if it is missing
-    name, title : stem of the files, what the figure shows
-    """
-    files = FigureFiles(name, title, directory / f"{name}.png", directory / f"{name}.svg")
-    FigureCanvasAgg(figure)
-    with style():
-        with replacing(files.png) as path:
-            metadata = {"Software": None, "Title": title}
-            # The usual level 6 takes a tenth of all drawing for a few per cent of the size.
-            figure.savefig(path, format="png", metadata=metadata, pil_kwargs={"compress_level": 3})
-        with replacing(files.svg) as path:
-            figure.savefig(path, format="svg", metadata={"Date": None, "Creator": "leblanc", "Title": title})
-    return files
-
-
 def _over_speed(record: StudyRecord, panels: Sequence[tuple[float, Draw]], text: str) -> Figure:
     """Panels above one another that share the speed, in rpm below and in rad/s above."""
     curves = prepare(record)
@@ -176,9 +246,9 @@ def _over_speed(record: StudyRecord, panels: Sequence[tuple[float, Draw]], text:
         for i, (_, draw) in enumerate(panels):
             axes = figure.add_axes((0, 0, 1, 1), label=str(i))
             draw(axes, curves, record)
-            axes.xaxis.set_major_formatter(FuncFormatter(_number))
+            axes.xaxis.set_major_formatter(FuncFormatter(number))
             if not axes.yaxis.get_label_text().endswith("(deg)"):
-                axes.yaxis.set_major_formatter(FuncFormatter(_number))
+                axes.yaxis.set_major_formatter(FuncFormatter(number))
                 axes.yaxis.set_minor_formatter(NullFormatter())
             else:
                 axes.yaxis.set_major_locator(MultipleLocator(45.0))
@@ -189,8 +259,8 @@ def _over_speed(record: StudyRecord, panels: Sequence[tuple[float, Draw]], text:
         axes.set_xlabel("Speed (rpm)")
         above = rows[0][0].secondary_xaxis("top", functions=(_to_rate, _to_rpm))
         above.set_xlabel("Speed (rad/s)")
-        above.xaxis.set_major_formatter(FuncFormatter(_number))
-        _lay_out(figure, rows, [height for height, _ in panels], SPEED_FRAME, _caption(record, text))
+        above.xaxis.set_major_formatter(FuncFormatter(number))
+        lay_out(figure, rows, [height for height, _ in panels], SPEED_FRAME, _caption(record, text))
     return figure
 
 
@@ -202,71 +272,8 @@ def _to_rpm(rate: ArrayLike) -> ArrayLike:
     return np.asarray(rate) * RPM
 
 
-def _number(value: float, _position: int | None = None) -> str:
-    """Tick label without an offset or a common factor elsewhere on the axis."""
-    return f"{value:.10g}".replace("-", "\N{MINUS SIGN}")
-
-
-def _lay_out(
-    figure: Figure, rows: list[list[Axes]], heights: list[float], frame: Frame, caption: str
-) -> None:
-    """Size of the figure, places of its axes, and below them the legend and the caption."""
-    entries: dict[str, Any] = {}
-    for axes in [axes for row in rows for axes in row]:
-        handles, labels = axes.get_legend_handles_labels()
-        entries = dict(zip(labels, handles, strict=True)) | entries
-    lines = _wrapped(caption, WIDTH - 2.0 * RIGHT)
-    text = CAPTION_ROW * len(lines) + 2.0 * MARGIN
-    columns = max(1, min(4, LEGEND_CHARACTERS // (max(map(len, entries), default=0) + 8)))
-    legend = LEGEND_ROW * -(-len(entries) // columns) + MARGIN
-    total = frame.top + sum(heights) + frame.between * (len(rows) - 1) + frame.below + legend + text
-    figure.set_size_inches(WIDTH, total)
-    above = frame.top
-    for row, height in zip(rows, heights, strict=True):
-        width = (WIDTH - frame.left - RIGHT) / len(row)
-        for i, axes in enumerate(row):
-            left, bottom = frame.left + i * width, total - above - height
-            axes.set_position((left / WIDTH, bottom / total, width / WIDTH, height / total))
-        above += height + frame.between
-    place = {"loc": "lower center", "bbox_to_anchor": (0.5, text / total), "borderaxespad": 0.0}
-    figure.legend(entries.values(), entries.keys(), ncols=columns, borderpad=0.0, **place)
-    for i, line in enumerate(reversed(lines)):
-        height = MARGIN + CAPTION_ROW * (i + 0.25)
-        figure.text(RIGHT / WIDTH, height / total, line, fontsize=CAPTION_SIZE, color="0.25")
-
-
 def _caption(record: StudyRecord, text: str) -> str:
     """What the figure shows, the scene, the model and the values it assumes."""
     assumed = ", ".join(map(one_line, record.assumed)) or "nothing"
     model = ", ".join(models_used(record.response))
     return f"{text} Scene: {one_line(record.name)}. Liquid model: {model}. Assumed: {assumed}."
-
-
-@cache
-def _advance(character: str) -> float:
-    """Width of a character of the caption, inches; 0 if the font does not have it."""
-    font = get_font(findfont("DejaVu Sans"))
-    font.set_size(CAPTION_SIZE, 72)
-    known = font.get_char_index(ord(character)) > 0
-    return float(font.load_char(ord(character)).linearHoriAdvance) / 65536.0 / 72.0 if known else 0.0
-
-
-def _wrapped(text: str, width: float) -> list[str]:
-    """Lines that fit the figure; characters that the font lacks become boxes, what is too long is cut."""
-    text = "".join(c if _advance(c) > 0.0 else "\N{WHITE SQUARE}" for c in text)
-    lines, used = [""], 0.0
-    for word in text.split(" "):
-        length = sum(map(_advance, word))
-        if used > 0.0 and used + length > width:
-            lines.append("")
-            used = 0.0
-        for character in word + " ":
-            if used + _advance(character) > width and character != " ":
-                lines.append("")
-                used = 0.0
-            lines[-1] += character
-            used += _advance(character)
-    lines = [line.rstrip() for line in lines]
-    return (
-        lines if len(lines) <= MOST_LINES else [*lines[: MOST_LINES - 1], lines[MOST_LINES - 1][:-3] + "..."]
-    )

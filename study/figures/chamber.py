@@ -12,7 +12,7 @@ import numpy as np
 from study.figures.section import Exaggeration, exaggeration, liquid_outline, side_by_side
 from study.record import MM, RPM, Array, ChamberRecord, StudyRecord, peak, phase
 
-Axes = Any  # matplotlib's: only the front of this package imports matplotlib
+Axes = Any  # matplotlib's, which no module that only draws imports
 
 WALL, LIQUID, CENTRE, UNBALANCE = "0.15", "#56B4E9", "#D55E00", "0.15"
 MOST_DRAWINGS = 3  # side by side

@@ -9,7 +9,7 @@ import numpy as np
 from study.figures.curves import Curves, Flags, gapped, joined, lonely, other_branches, widened
 from study.record import RPM, Array, StudyRecord
 
-Axes = Any  # matplotlib's: only the front of this package imports matplotlib
+Axes = Any  # matplotlib's, which no module that only draws imports
 
 WET, DRY, SHADE = "#0072B2", "#D55E00", "0.90"  # after Okabe and Ito: safe for the colour blind
 UNSTABLE = (0, (3.5, 1.5))

@@ -73,8 +73,13 @@ def liquid_outline(chamber: ChamberRecord, centre: complex, depth: float) -> tup
     return angle, np.clip(0.5 * (low + high), floor, outer), outer
 
 
-def _rounded_down(factor: float) -> float:
-    """The factor with two digits, for printing."""
+def rounded_down(factor: float) -> float:
+    """The factor with two digits, for printing.
+
+    Parameters
+    ----------
+    factor : above 0
+    """
     step = 10.0 ** (math.floor(math.log10(factor)) - 1)
     # A factor that is a round number already must not lose a digit to rounding.
     return math.floor(factor / step * (1.0 + 1e-9)) * step
@@ -94,14 +99,14 @@ def exaggeration(chambers: tuple[ChamberRecord, ...], deflections: tuple[float, 
     if layers:
         fits = min(0.5 * (c.radius - c.inner_radius) / depth for depth, c in layers)
         shows = max(0.15 * c.radius / depth for depth, c in layers)
-        depth_factor = _rounded_down(max(1.0, min(fits, shows)))
+        depth_factor = rounded_down(max(1.0, min(fits, shows)))
     sizes = [w for w in deflections if w > 0.0]
     if not sizes:
         return Exaggeration(1.0, depth_factor)
     inner = [0.9 * c.inner_radius for c in chambers if c.inner_radius > 0.0]
     widest = min([0.35 * c.radius for c in chambers] + inner) / max(sizes)
     wet = [0.9 * depth_factor * depth / w for depth, _ in layers for w in sizes if w < depth]
-    factor = _rounded_down(min([widest, *wet]))
+    factor = rounded_down(min([widest, *wet]))
     dry = [factor * w / depth for depth, _ in layers for w in sizes if w >= depth]
     # Equal factors keep what is dry dry; with unequal ones a thick layer would cover it.
     return Exaggeration(factor, factor if dry and min(dry) < depth_factor else depth_factor)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -140,3 +141,81 @@ def test_gravity_lifts_the_liquid() -> None:
     assert answer.captured and answer.gravity_offset == pytest.approx(-9.81 / (2 * (R / A) ** 2 * SPIN**2))
     slow = answer_layer(FILL, 8.0, 8.0, 1e-4, "linear", gravity=9.81)
     assert not slow.captured and not slow.in_range
+
+
+LONG_WAVE = [
+    "layer", "--radius", "0.15", "--volume", repr(VOLUME), "--height", "0.01", "--speed", "40",
+    "--whirl-amplitude", "0.75 mm", "--model", "long_wave", "--json",
+]  # fmt: skip
+
+
+def test_long_wave_synchronous(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([*LONG_WAVE, "--whirl-speed", "40", "--cells", "128", "--profile"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["force_ratio"] == pytest.approx([1.0, 0.0], abs=1e-12)
+    assert answer["mass_error"] < 1e-12 and answer["converged"] and answer["in_range"]
+    assert len(answer["theta"]) == len(answer["depth"]) == 128
+    exact = answer_layer(FILL, SPIN, SPIN, 7.5e-4, "statics")
+    assert answer["offset"][0] == pytest.approx(exact.offset.real, rel=1e-9)
+
+
+def test_long_wave_history(capsys: pytest.CaptureFixture[str]) -> None:
+    options = [
+        "--whirl-speed",
+        "30.575880656422154",
+        "--duration",
+        "2.1 s",
+        "--ramp",
+        "0.6",
+        "--cells",
+        "128",
+    ]
+    assert main([*LONG_WAVE, *options]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    period = 2.0 * math.pi / (40.0 - 30.575880656422154)
+    assert answer["time"] == pytest.approx([0.5 * period, 1.5 * period, 2.5 * period], rel=1e-12)
+    for key in ("force_ratio", "mean_rotation", "depth_max", "depth_min"):
+        assert len(answer[key]) == 3
+    # Computed two-phase flow in the same first three periods, within a tenth of its modulus.
+    for ours, theirs in zip(
+        answer["force_ratio"], (0.265 + 0.295j, 0.443 + 1.946j, 0.394 + 3.116j), strict=True
+    ):
+        assert abs(complex(*ours) - theirs) < 0.1 * abs(theirs)
+
+
+def test_long_wave_that_leaves_its_range_is_exit_code_3(capsys: pytest.CaptureFixture[str]) -> None:
+    options = ["--whirl-speed", "30.4", "--duration", "4", "--ramp", "0.5", "--cells", "64"]
+    violent = [*LONG_WAVE[:9], "--speed", "40", "--whirl-amplitude", "0.15", "--model", "long_wave", "--json"]
+    assert main([*violent, *options]) == 3
+    out, err = capsys.readouterr()
+    answer = json.loads(out)
+    assert answer["converged"] is False and answer["mass_error"] < 1e-12
+    assert "axis" in err and "Traceback" not in err
+
+
+def test_wave_figure_and_film(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    film = tmp_path / "wave.gif"
+    options = ["--whirl-speed", "34", "--friction", "linear:1", "--cells", "64", "--out", str(tmp_path)]
+    assert main([*LONG_WAVE, *options, "--animate", str(film)]) == 0
+    assert film.read_bytes()[:6] == b"GIF89a"
+    assert (tmp_path / "wave.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ["--cells", "2"],
+        ["--duration", "0"],
+        ["--duration", "1", "--ramp", "-1"],
+        ["--model", "linear", "--duration", "1"],
+        ["--model", "linear", "--animate", "wave.gif"],
+        ["--animate", "wave.txt"],
+    ],
+)
+def test_bad_long_wave_input(
+    capsys: pytest.CaptureFixture[str], options: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main([*LONG_WAVE, "--whirl-speed", "40", *options]) == 2
+    assert len(capsys.readouterr().err.strip().splitlines()) == 1
+    assert not list(tmp_path.iterdir())
