@@ -1,0 +1,229 @@
+"""Exact waves of the KdV-Burgers equation: solitary and cnoidal waves, and the shocks of its Burgers limit.
+
+All for eta_t + lambda0 eta_theta + alpha eta eta_theta + delta eta_theta_theta_theta = nu_b eta_theta_theta
+[theory: kdv, eq. 1] with coefficients of either sign. The waves are humps (height above 0) where alpha and
+delta have one sign, as in both families of waves in the layer, and troughs where they have two.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fluid.kdv import KdvCoefficients
+from meshes.border import InputError, require_positive
+
+Array = NDArray[np.float64]
+
+# Up to this K the complement 1 - m is a number.
+_LARGEST_K = 340.0
+# Below this 1 - m a cnoidal wave is summed from sech^2 humps, above it taken from scipy's elliptic functions.
+_NARROW = 1e-3
+
+
+@dataclass(frozen=True)
+class TravellingWave:
+    """A wave of permanent form on the drum.
+
+    Parameters
+    ----------
+    height : H, crest minus trough (level at infinity, for a solitary wave), m^2; negative for a trough
+    sharpness : kappa of sech(kappa x) or cn(kappa x), 1/rad
+    speed : V seen from the drum, rad/s
+    level : eta at the foot of the humps, m^2
+    crests : how many there are round the drum
+    complement : 1 - m of the elliptic functions; 0 for a solitary wave
+    """
+
+    height: float
+    sharpness: float
+    speed: float
+    level: float
+    crests: int
+    complement: float
+
+    def profile(self, theta: ArrayLike, time: ArrayLike = 0.0) -> Array:
+        """Field at given angles and times; a crest (or trough) passes theta = 0 at time 0.
+
+        [theory: steppers, eq. 12-13]; narrow crests as a sum over neighbours [theory: steppers, eq. 15].
+
+        Parameters
+        ----------
+        theta : rad, shape (...,); a solitary wave is cut half way round the drum from its crest
+        time : s, shape (...,)
+
+        Returns
+        -------
+        eta, m^2, of the common shape
+        """
+        from scipy.special import ellipj, ellipkm1
+
+        x = np.asarray(theta, dtype=float) - self.speed * np.asarray(time, dtype=float)
+        span = 2.0 * math.pi / self.crests
+        x = x - span * np.round(x / span)
+        m1 = self.complement
+        if m1 == 0.0:
+            return np.asarray(self.level + self.height * _sech_squared(self.sharpness * x))
+        if m1 > _NARROW:
+            return np.asarray(self.level + self.height * np.square(ellipj(self.sharpness * x, 1.0 - m1)[1]))
+        k, other = float(ellipkm1(m1)), float(ellipkm1(1.0 - m1))
+        scale = math.pi / (2.0 * other)
+        humps = sum(_sech_squared(scale * self.sharpness * (x + i * span)) for i in range(-3, 4))
+        flat = (1.0 - m1) * _mean_square_cn(m1, 1.0 - m1) - scale / k
+        return np.asarray(self.level + self.height * (scale**2 * humps + flat) / (1.0 - m1))
+
+
+def solitary_wave(c: KdvCoefficients, height: float, mean_zero: bool = False) -> TravellingWave:
+    """Solitary wave of the KdV equation on the drum [theory: steppers, eq. 12].
+
+    A solution up to its tails, 4 H e^{-2 pi kappa} at the far side; the cnoidal wave has no such restriction.
+
+    Parameters
+    ----------
+    c : linear speed, steepening, dispersion
+    height : H, m^2, of the sign of steepening times dispersion
+    mean_zero : whether the level is lowered so that the wave holds no liquid beyond the mean; 0 otherwise
+
+    Returns
+    -------
+    TravellingWave
+
+    Raises
+    ------
+    InputError : a height of the wrong sign
+    """
+    sharpness = math.sqrt(_sharpness_squared(c, height))
+    level = -height * math.tanh(math.pi * sharpness) / (math.pi * sharpness) if mean_zero else 0.0
+    speed = c.linear_speed + c.steepening * (level + height / 3.0)
+    return TravellingWave(height, sharpness, speed, level, 1, 0.0)
+
+
+def cnoidal_wave(c: KdvCoefficients, height: float, crests: int = 1, mean: float = 0.0) -> TravellingWave:
+    """Periodic wave of the KdV equation of a given height [theory: steppers, eq. 13-14].
+
+    Parameters
+    ----------
+    c : linear speed, steepening, dispersion
+    height : H from trough to crest, m^2, of the sign of steepening times dispersion
+    crests : number round the drum, 1 or more
+    mean : of eta, m^2
+
+    Returns
+    -------
+    TravellingWave
+
+    Raises
+    ------
+    InputError : a height of the wrong sign or so large that the crests are shocks, no crests
+    """
+    from scipy.optimize import brentq
+    from scipy.special import ellipkm1
+
+    if crests < 1:
+        raise InputError("crests", crests, "1 or more")
+    target = _sharpness_squared(c, height) * (math.pi / crests) ** 2
+    if target > _LARGEST_K**2:
+        raise InputError("height", height, f"at most {height * _LARGEST_K**2 / target:g} m^2 in magnitude")
+
+    def excess(y: float) -> float:
+        return math.log(_logistic(y) * float(ellipkm1(_logistic(-y))) ** 2 / target)
+
+    # m K^2 lies between m (pi/2)^2 and (K (m = 1/2) + |y|)^2.
+    y = brentq(excess, min(0.0, math.log(target)) - 3.0, 2.0 * math.sqrt(target) + 3.0, xtol=1e-14)
+    m, m1 = _logistic(y), _logistic(-y)
+    sharpness = crests * float(ellipkm1(m1)) / math.pi
+    level = mean - height * _mean_square_cn(m1, m)
+    speed = c.linear_speed + c.steepening * level + 4.0 * c.dispersion * sharpness**2 * (m - m1)
+    return TravellingWave(height, sharpness, speed, level, crests, m1)
+
+
+def burgers_shock(
+    c: KdvCoefficients, viscosity: float, drop: float, theta: ArrayLike, time: ArrayLike
+) -> Array:
+    """Travelling shock between two levels, without dispersion [theory: steppers, eq. 16].
+
+    Parameters
+    ----------
+    c : linear speed and steepening; the dispersion does not enter
+    viscosity : nu_b, rad^2/s, above 0
+    drop : level behind minus level ahead, as seen along increasing theta, m^2, of the sign of the steepening
+    theta : rad, shape (...,), on an unbounded line
+    time : s, shape (...,)
+
+    Returns
+    -------
+    eta, m^2, about a mean of zero, of the common shape
+
+    Raises
+    ------
+    InputError : a viscosity that is not positive, a drop of the wrong sign
+    """
+    require_positive("viscosity", viscosity)
+    if not c.steepening * drop > 0.0:
+        raise InputError("drop", drop, "of the sign of the steepening")
+    x = np.asarray(theta, dtype=float) - c.linear_speed * np.asarray(time, dtype=float)
+    return np.asarray(-0.5 * drop * np.tanh(c.steepening * drop * x / (4.0 * viscosity)))
+
+
+def burgers_sawtooth(c: KdvCoefficients, viscosity: float, age: ArrayLike, theta: ArrayLike) -> Array:
+    """Decaying shock that runs round the drum, without dispersion [theory: steppers, eq. 17].
+
+    Parameters
+    ----------
+    c : linear speed and steepening; the dispersion does not enter
+    viscosity : nu_b, rad^2/s, above 0
+    age : time since the shock was infinitely high, s, shape (...,), above 0
+    theta : rad, shape (...,); the shock is at theta = pi + lambda0 times the age
+
+    Returns
+    -------
+    eta, m^2, of mean zero, of the common shape
+
+    Raises
+    ------
+    InputError : a viscosity or an age that is not positive
+    """
+    require_positive("viscosity", viscosity)
+    old = np.asarray(age, dtype=float)
+    if not bool(np.all(np.isfinite(old) & (old > 0.0))):
+        raise InputError("age", age, "finite numbers above 0")
+    x = np.asarray(theta, dtype=float) - c.linear_speed * old
+    x = x - 2.0 * math.pi * np.round(x / (2.0 * math.pi))
+    # Heat from a source in every turn: those within nine standard deviations count.
+    turns = 2 + math.ceil(9.0 * math.sqrt(2.0 * viscosity * float(np.max(old))) / (2.0 * math.pi))
+    away = x[..., None] - 2.0 * math.pi * np.arange(-turns, turns + 1)
+    exponent = -np.square(away) / (4.0 * viscosity * old[..., None])
+    weight = np.exp(exponent - np.max(exponent, axis=-1, keepdims=True))
+    mean_distance = np.sum(away * weight, axis=-1) / np.sum(weight, axis=-1)
+    return np.asarray(mean_distance / (c.steepening * old))
+
+
+def _sharpness_squared(c: KdvCoefficients, height: float) -> float:
+    """alpha H/(12 delta)."""
+    if not (math.isfinite(height) and c.steepening * height * c.dispersion > 0.0):
+        raise InputError("height", height, "a finite number of the sign of steepening times dispersion")
+    return c.steepening * height / (12.0 * c.dispersion)
+
+
+def _logistic(y: float) -> float:
+    """1/(1 + e^{-y}), to rounding on both sides."""
+    return 1.0 / (1.0 + math.exp(-y)) if y > 0.0 else math.exp(y) / (1.0 + math.exp(y))
+
+
+def _sech_squared(x: Array) -> Array:
+    decayed = np.exp(-2.0 * np.abs(x))
+    return np.asarray(4.0 * decayed / np.square(1.0 + decayed))
+
+
+def _mean_square_cn(m1: float, m: float) -> float:
+    """Mean of cn^2 over a period, (E/K - m1)/m, by the arithmetic-geometric mean, where nothing cancels."""
+    a, b, weight, mean = 1.0, math.sqrt(m1), 1.0, 0.5
+    half_gap = m / (2.0 * (1.0 + b))
+    while half_gap > 1e-17 * a:
+        a, b = 0.5 * (a + b), math.sqrt(a * b)
+        mean -= weight * half_gap**2 / m
+        half_gap, weight = half_gap**2 / (2.0 * (a + b)), 2.0 * weight
+    return mean

@@ -1,0 +1,291 @@
+"""One family of long waves in the layer: coefficients of the KdV-Burgers and Whitham equations.
+
+    eta_t + lambda0 eta_theta + alpha eta eta_theta + delta eta_theta_theta_theta
+        = nu_b eta_theta_theta - gamma eta - q sin(theta - s t)          [theory: kdv, eq. 1]
+
+eta = A - A0 is the liquid area per radian above its mean, m^2 (positive: a thicker layer). theta and the
+whirl speed s are seen from the drum, positive with the spin; the deflection lies at theta = s t. These signs
+live here alone: a free wave is eta ~ exp(i n theta - i omega t), and `rescaling` leads to other conventions.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fluid.waves import free_wave_frequencies
+from meshes.border import InputError, require_positive
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class KdvCoefficients:
+    """One family of waves on a layer at one spin speed.
+
+    Parameters
+    ----------
+    family : +1 prograde, -1 retrograde
+    linear_speed : lambda0, angular speed of long waves of vanishing height, rad/s
+    steepening : alpha, how much faster a thicker layer carries them, rad/(s m^2)
+    dispersion : delta, by how much a wave with n crests lags, times n^2, rad/s
+    coupling : q over the acceleration of the axis, m
+    radius, surface_radius : wall and mean free surface, m
+    spin : Omega, rad/s
+    """
+
+    family: int
+    linear_speed: float
+    steepening: float
+    dispersion: float
+    coupling: float
+    radius: float
+    surface_radius: float
+    spin: float
+
+    @property
+    def layer_log(self) -> float:
+        """L = ln(R/a)."""
+        return math.log(self.radius / self.surface_radius)
+
+    @property
+    def mean_area(self) -> float:
+        """Liquid area per radian of the layer at rest, A0 = (R^2 - a^2)/2, m^2."""
+        return 0.5 * (self.radius - self.surface_radius) * (self.radius + self.surface_radius)
+
+    @property
+    def other_speed(self) -> float:
+        """Speed of long waves of the family that is left out, rad/s."""
+        return 2.0 * self.spin * self.layer_log - self.linear_speed
+
+
+def coefficients(radius: float, surface_radius: float, spin: float, family: int) -> KdvCoefficients:
+    """Coefficients of one family of waves.
+
+    [theory: kdv, eq. 5, 8, 9, 11], from the annular long-wave equations and the exact dispersion.
+
+    Parameters
+    ----------
+    radius : wall radius R, m
+    surface_radius : mean free-surface radius a, m, below `radius`
+    spin : spin speed Omega, rad/s, above 0
+    family : +1 prograde, -1 retrograde
+
+    Returns
+    -------
+    KdvCoefficients
+
+    Raises
+    ------
+    InputError : a value that is not finite and positive, no layer, another family
+
+    Examples
+    --------
+    >>> c = coefficients(0.15, 0.135, 40.0, -1)
+    >>> print(f"{c.linear_speed:.8f} {c.steepening:.4f} {c.dispersion:.8f}")
+    -9.43615322 -5095.4776 -0.01206823
+    """
+    require_positive("radius", radius)
+    require_positive("surface_radius", surface_radius)
+    require_positive("spin", spin)
+    if surface_radius >= radius:
+        raise InputError("surface_radius", surface_radius, f"below radius ({radius:g} m)")
+    if family not in (1, -1):
+        raise InputError("family", family, "+1 (prograde) or -1 (retrograde)")
+    log = math.log(radius / surface_radius)
+    root = math.sqrt(log * (log + 1.0))
+    swing = (2.0 * log + 1.0) / (2.0 * root)
+    # 1 - swing and L - root without their cancellation in thick layers; swing^2 - 1 = 1/(2 root)^2.
+    share = 1.0 + swing if family == 1 else -1.0 / (4.0 * root**2 * (1.0 + swing))
+    speed = log + root if family == 1 else -log / (log + root)
+    return KdvCoefficients(
+        family=family,
+        linear_speed=spin * speed,
+        steepening=3.0 * spin / surface_radius**2 * share,
+        dispersion=spin * log**3 / 3.0 * share,
+        coupling=family * log * surface_radius / (2.0 * spin * root),
+        radius=radius,
+        surface_radius=surface_radius,
+        spin=spin,
+    )
+
+
+def forcing(c: KdvCoefficients, acceleration: ArrayLike) -> Array:
+    """Strength q with which the whirling axis forces the waves of the family.
+
+    q = +-L a F/(2 S) [theory: kdv, eq. 11].
+
+    Parameters
+    ----------
+    c : the family
+    acceleration : F = omega_w^2 w0 of the axis, m/s^2, shape (...,)
+
+    Returns
+    -------
+    q, m^2/s, shape (...,); positive for the prograde family
+    """
+    return np.asarray(c.coupling * np.asarray(acceleration, dtype=float))
+
+
+def decay(c: KdvCoefficients, friction_rate: ArrayLike) -> Array:
+    """Rate gamma at which a linear wall friction damps the waves of the family.
+
+    gamma = k |lambda0|/(2 S), about k/2 [theory: kdv, eq. 12].
+
+    Parameters
+    ----------
+    c : the family
+    friction_rate : k of the friction force -k u per mass, 1/s, shape (...,), 0 or above
+
+    Returns
+    -------
+    gamma, 1/s, shape (...,)
+
+    Raises
+    ------
+    InputError : a negative or not finite friction rate
+    """
+    k = np.asarray(friction_rate, dtype=float)
+    if not bool(np.all(np.isfinite(k) & (k >= 0.0))):
+        raise InputError("friction_rate", friction_rate, "a finite number, 0 or above")
+    return np.asarray(k * abs(c.linear_speed) / abs(c.linear_speed - c.other_speed))
+
+
+def wave_frequency(mode: ArrayLike, c: KdvCoefficients, whitham: bool) -> Array:
+    """Frequency omega(n) of a free wave eta ~ exp(i n theta - i omega t) of vanishing height.
+
+    KdV: n lambda0 - delta n^3 [theory: kdv, eq. 10]; Whitham: the exact sigma(n) of the family
+    [theory: waves, eq. 7]. Both are odd in n.
+
+    Parameters
+    ----------
+    mode : whole number n of crests, shape (...,), of either sign
+    c : the family
+    whitham : exact dispersion instead of its first two terms
+
+    Returns
+    -------
+    omega, rad/s, shape (...,)
+    """
+    n = np.asarray(mode, dtype=float)
+    if not whitham:
+        return np.asarray(n * (c.linear_speed - c.dispersion * np.square(n)))
+    crests = np.where(n == 0.0, 1.0, np.abs(n))
+    prograde, retrograde = free_wave_frequencies(crests, c.layer_log, c.spin)
+    return np.asarray(np.sign(n) * (prograde if c.family == 1 else retrograde))
+
+
+def rescaling(c: KdvCoefficients, steepening: float, dispersion: float) -> tuple[float, float]:
+    """Scales of field and angle that lead to u_t + p u u_x + d u_xxx = 0 in the frame of linear long waves.
+
+    u = field_scale * eta, x = angle_scale * (theta - lambda0 t), the time kept; a negative angle scale
+    mirrors the drum [theory: kdv, eq. 14].
+
+    Parameters
+    ----------
+    c : the family
+    steepening : p of the other convention, not 0
+    dispersion : d of the other convention, not 0
+
+    Returns
+    -------
+    field_scale, 1/m^2, and angle_scale
+
+    Raises
+    ------
+    InputError : a coefficient that is 0 or not finite
+    """
+    for name, value in (("steepening", steepening), ("dispersion", dispersion)):
+        if not math.isfinite(value) or value == 0.0:
+            raise InputError(name, value, "a finite number other than 0")
+    angle = float(np.cbrt(dispersion / c.dispersion))
+    return c.steepening * angle / steepening, angle
+
+
+def offset(c: KdvCoefficients, profile: ArrayLike) -> Complex:
+    """Offset of the liquid's centre of mass from the drum's axis for a given wave.
+
+    a/(2 pi A0) times the integral of eta e^{i xi} [theory: kdv, eq. 15]. What it leaves out is smaller than
+    the terms kept by eta/a^2, while eta itself is known to a part eta/A0.
+
+    Parameters
+    ----------
+    c : the family
+    profile : eta, m^2, at equal steps of xi = theta - s t all round, from the deflection, shape (..., points)
+
+    Returns
+    -------
+    Offset, m, real part along the deflection, imaginary part 90 deg ahead of it, shape (...,)
+    """
+    eta = np.asarray(profile, dtype=float)
+    angle = 2.0 * np.pi * np.arange(eta.shape[-1]) / eta.shape[-1]
+    first = np.mean(eta * np.exp(1j * angle), axis=-1)
+    return np.asarray(c.surface_radius / c.mean_area * first)
+
+
+def force_ratio(c: KdvCoefficients, liquid_offset: ArrayLike, whirl_amplitude: ArrayLike) -> Complex:
+    """Force of a steady wave on the drum, over that of a full drum m_f omega_w^2 w0.
+
+    G = (1 - 1/kappa)(1 + d/w0): the liquid's momentum [theory: kdv, eq. 16], exact for the offset given.
+
+    Parameters
+    ----------
+    c : the family
+    liquid_offset : d from `offset`, m, shape (...,)
+    whirl_amplitude : w0, m, shape (...,), above 0
+
+    Returns
+    -------
+    G, real part along the deflection, shape (...,)
+
+    Raises
+    ------
+    InputError : a whirl amplitude that is not positive
+    """
+    w = np.asarray(whirl_amplitude, dtype=float)
+    if not bool(np.all(np.isfinite(w) & (w > 0.0))):
+        raise InputError("whirl_amplitude", whirl_amplitude, "a finite number above 0")
+    liquid_share = 2.0 * c.mean_area / c.radius**2
+    return np.asarray(liquid_share * (1.0 + np.asarray(liquid_offset, dtype=complex) / w))
+
+
+@dataclass(frozen=True)
+class Validity:
+    """What decides whether one family of weakly nonlinear waves is enough; shapes (...,).
+
+    Parameters
+    ----------
+    amplitude : largest |eta|/A0; the coefficients are right to that order
+    thinnest : smallest depth of the layer, as area over A0; 0 or below is a dry patch that the model ignores
+    detuning : |s - lambda0| over the distance of the two families
+    neglected : linear response of the other family over that of this one, |s - lambda0|/|s - lambda_other|
+    """
+
+    amplitude: Array
+    thinnest: Array
+    detuning: Array
+    neglected: Array
+
+
+def validity(c: KdvCoefficients, profile: ArrayLike, whirl_speed: ArrayLike) -> Validity:
+    """Size of what the one-family wave leaves out [theory: kdv, eq. 17].
+
+    Parameters
+    ----------
+    c : the family
+    profile : eta, m^2, shape (..., points)
+    whirl_speed : s seen from the drum, rad/s, shape (...,)
+    """
+    eta, s = np.asarray(profile, dtype=float), np.asarray(whirl_speed, dtype=float)
+    gap = np.abs(s - c.linear_speed)
+    other = np.abs(s - c.other_speed)
+    return Validity(
+        amplitude=np.max(np.abs(eta), axis=-1) / c.mean_area,
+        thinnest=1.0 + np.min(eta, axis=-1) / c.mean_area,
+        detuning=np.asarray(gap / abs(c.linear_speed - c.other_speed)),
+        neglected=np.divide(gap, other, out=np.full(s.shape, np.inf), where=other != 0.0),
+    )
