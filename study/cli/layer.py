@@ -12,7 +12,7 @@ from study.cli.output import out_dir, print_json, say
 
 if TYPE_CHECKING:
     from solvers.prescribed import LayerHistory
-    from study.layer import LayerAnswer
+    from study.layer_answer import LayerAnswer
 
 
 def layer(
@@ -22,10 +22,10 @@ def layer(
     speed: Annotated[str, typer.Option(help="Spin speed, rad/s or with a unit.")],
     whirl_speed: Annotated[str, typer.Option(help="Whirl speed in space.")],
     whirl_amplitude: Annotated[str, typer.Option(help="Radius of the whirl.")],
-    model: Annotated[str, typer.Option(help="statics, linear or long_wave.")] = "linear",
+    model: Annotated[str, typer.Option(help="statics, linear, long_wave or kdv.")] = "linear",
     cells: Annotated[int, typer.Option(help="Cells round the wall (long_wave).")] = 256,
     dispersion: Annotated[
-        bool, typer.Option("--dispersion", help="Add the finite depth's dispersion (long_wave).")
+        bool, typer.Option("--dispersion", help="Exact linear dispersion (long_wave, kdv).")
     ] = False,
     friction: Annotated[str, typer.Option(help="none, stokes, linear:RATE or quadratic:NUMBER.")] = "none",
     gravity: Annotated[str, typer.Option(help="Gravity across the axis.")] = "0",
@@ -50,7 +50,8 @@ def layer(
     from solvers.prescribed import Numerics
     from study.faults import NotConverged
     from study.friction import parse_friction
-    from study.layer import answer_layer, layer_history
+    from study.layer import answer_layer
+    from study.layer_waves import layer_history
     from study.units import ACCELERATION, ANGULAR_SPEED, LENGTH, TIME, VOLUME, parse_option
 
     chamber = Chamber(parse_option(radius, LENGTH, "--radius"), parse_option(height, LENGTH, "--height"))
@@ -89,6 +90,7 @@ def layer(
 
 _WHY = {
     "linear": "leblanc layer: the whirl meets a free wave, the linear force is unbounded",
+    "kdv": "leblanc layer: no steady wave found; friction may help, or --model long_wave",
     "long_wave": "leblanc layer: the wave does not settle, or the surface came to the axis; friction or "
     "--duration may help",
 }
@@ -118,7 +120,9 @@ def _film(asked: dict[str, Any], duration: float | None, ramp: float, path: Path
 
     from solvers.prescribed import Whirl
     from study.figures import animate
-    from study.layer import NO_FRICTION, answer_layer, wave_film, wave_record
+    from study.layer import answer_layer, wave_record
+    from study.layer_answer import NO_FRICTION
+    from study.layer_waves import wave_film
 
     whirl = Whirl(asked["speed"], asked["whirl_speed"], asked["whirl_amplitude"])
     length = 6.0 * whirl.period if duration is None else duration

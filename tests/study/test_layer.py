@@ -13,7 +13,8 @@ from fluid.fill import Fill
 from fluid.liquid import known_liquid
 from meshes.chamber import Chamber
 from study.cli import main
-from study.layer import LayerAnswer, answer_layer
+from study.layer import answer_layer
+from study.layer_answer import LayerAnswer
 
 R, A, H, SPIN = 0.15, 0.135, 0.01, 40.0
 VOLUME = math.pi * (R**2 - A**2) * H
@@ -219,3 +220,36 @@ def test_bad_long_wave_input(
     assert main([*LONG_WAVE, "--whirl-speed", "40", *options]) == 2
     assert len(capsys.readouterr().err.strip().splitlines()) == 1
     assert not list(tmp_path.iterdir())
+
+
+def test_one_family_meets_the_long_waves_at_resonance(capsys: pytest.CaptureFixture[str]) -> None:
+    # Next to the retrograde resonance at 30.56 rad/s, where the linear force turns through 90 degrees.
+    for whirl in ("29", "30.6", "31.5"):
+        options = ["--height", "0.01", "--speed", "40", "--friction", "linear:1", "--whirl-speed", whirl]
+        options += ["--whirl-amplitude", "0.05 mm", "--json"]
+        found = {}
+        for model in ("kdv", "long_wave"):
+            assert (
+                main(["layer", "--radius", "0.15", "--volume", repr(VOLUME), *options, "--model", model]) == 0
+            )
+            answer = json.loads(capsys.readouterr().out)
+            assert answer["converged"] and answer["in_range"] and answer["mass_error"] < 1e-12
+            found[model] = complex(*answer["force_ratio"])
+        # One family leaves out the other's share, of the order of 1 in units of the full drum.
+        assert abs(found["kdv"] - found["long_wave"]) < 0.35
+        assert abs(found["kdv"]) > 1.0
+
+
+@pytest.mark.parametrize(
+    ("change", "named"),
+    [
+        (["--gravity", "9.81"], "--gravity"),
+        (["--friction", "quadratic:0.1"], "--friction"),
+        (["--whirl-speed", "0"], "--whirl-speed"),
+    ],
+)
+def test_bad_kdv_input(capsys: pytest.CaptureFixture[str], change: list[str], named: str) -> None:
+    options = ["--height", "0.01", "--speed", "40", "--whirl-speed", "30.6", "--whirl-amplitude", "0.05 mm"]
+    code = main(["layer", "--radius", "0.15", "--volume", repr(VOLUME), *options, "--model", "kdv", *change])
+    assert code == 2
+    assert named in capsys.readouterr().err
