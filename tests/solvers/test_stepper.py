@@ -308,7 +308,3 @@ def assert_phases() -> None:
         errors = [manufactured_error(method, steps) for steps in (20, 40)]
         assert math.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.2), method
         assert errors[1] < 1e-6, method
-
-
-def assert_time_alone() -> None:
-    test_a_rest_that_depends_on_time_alone_is_followed()
