@@ -38,7 +38,6 @@ THIN = 1e-8
 # Beyond this area the surface has come to the axis (r_s < 0.03): no layer is left to speak of.
 FULL = 0.4995
 NEAREST = 0.03
-COURANT = 0.45
 WORK = 9
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from importlib import resources
 from typing import Any
 
@@ -40,7 +41,16 @@ def horizontal_rotor(damping_ratio: float, wet_critical_speed: float) -> Jeffcot
 
 
 def vertical_rig() -> tuple[Fill, ...]:
-    """The three chambers of DR18, section 7.1; their height of 50 mm and the aperture are assumed."""
+    """The three chambers of DR18, section 7.1; their height of 40 mm and the aperture are assumed."""
     water = known_liquid("water")
     walls = ((0.2, 0.15, 0.45e-3), (0.15, 0.1, 0.30e-3), (0.1, 0.05, 0.25e-3))
-    return tuple(Fill(Chamber(outer, 0.05, inner), water, volume) for outer, inner, volume in walls)
+    return tuple(Fill(Chamber(outer, 0.04, inner), water, volume) for outer, inner, volume in walls)
+
+
+def vertical_rotor() -> Jeffcott:
+    """Rotor of DR18, section 7.1, on its suspension of 2 to 2.5 Hz.
+
+    Assumed are 30 kg, 200 mm for the place of the 30 g, and the damping ratio.
+    """
+    mass, frequency = 30.0, 2.0 * math.pi * 2.25
+    return Jeffcott(mass, mass * frequency**2, 2.0 * 0.01 * mass * frequency, unbalance=30e-3 * 0.2)

@@ -7,22 +7,16 @@ import math
 import numpy as np
 
 from solvers.response import critical_speed, synchronous_response
-from solvers.rotor.jeffcott import Jeffcott
 from validation.case import Case
-from validation.scenes import data, vertical_rig
-
-# Assumed: 30 g on a radius of 195 mm, 30 kg, critical speed of the dry rotor at the middle of 12-16 rad/s.
-_ROTOR = Jeffcott(
-    mass=30.0, stiffness=30.0 * 14.0**2, damping=2.0 * 0.05 * 30.0 * 14.0, unbalance=0.03 * 0.195
-)
+from validation.scenes import data, vertical_rig, vertical_rotor
 
 
 def cases() -> list[Case]:
     """Angle and gain at the three speeds of the photographs."""
     measured = data("dr18_vertical_rig.json")
     speed = np.array(measured["speed_rad_s"])
-    answer = synchronous_response(_ROTOR, vertical_rig(), speed)
-    wet = critical_speed(_ROTOR, vertical_rig())
+    answer = synchronous_response(vertical_rotor(), vertical_rig(), speed)
+    wet = critical_speed(vertical_rotor(), vertical_rig())
     gain = np.abs(answer.deflection) / np.abs(answer.deflection_dry)
     found = []
     for k, one in enumerate(speed):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fluid import friction
 from fluid import long_wave as lw
 from fluid.waves import free_wave_frequencies
 
@@ -101,3 +102,22 @@ def check_linear_waves() -> None:
 
 def test_linear_waves() -> None:
     check_linear_waves()
+
+
+def check_friction_rates() -> None:
+    """tau R/(rho u A) of each law, and the Stokes layer's k with floor and lid."""
+    depth, area, velocity = 0.2, 0.18, -0.3
+    assert friction.damping_rate(friction.NONE, 9.0, 9.0, depth, area, velocity) == 0.0
+    assert friction.damping_rate(friction.LINEAR, 0.5, 9.0, depth, area, velocity) == 0.5 * 0.2 / 0.18
+    # k h = sqrt(nu |s|/2) (1 + 2 h/h_c), lid = 2 R/h_c.
+    np.testing.assert_allclose(
+        friction.damping_rate(friction.STOKES, 0.01, 3.0, depth, area, velocity), 0.01 * 1.6 / 0.18
+    )
+    np.testing.assert_allclose(
+        friction.damping_rate(friction.QUADRATIC, 0.1, 0.0, depth, area, velocity), 0.1 * 0.3 / 0.18
+    )
+    np.testing.assert_allclose(friction.stokes_coefficient(2e-6, [-9.0, 9.0]), 3e-3)
+
+
+def test_friction_rates() -> None:
+    check_friction_rates()

@@ -27,4 +27,12 @@ FAULTS: tuple[Fault, ...] = (
     Fault(
         MODULE, "2.0 * spin * log * velocity - surface", "spin * log * velocity - surface", oracle.check_forms
     ),
+    Fault("fluid.friction", "(1.0 + lid * depth)", "(1.0 + lid)", oracle.check_friction_rates),
+    Fault("fluid.friction", "np.abs(velocity) / area", "velocity / area", oracle.check_friction_rates),
+    Fault(
+        "fluid.friction",
+        "0.5 * np.asarray(viscosity",
+        "2.0 * np.asarray(viscosity",
+        oracle.check_friction_rates,
+    ),
 )

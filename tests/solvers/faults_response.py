@@ -60,4 +60,10 @@ FAULTS: tuple[Fault, ...] = (
         "1.0 + 2.0 * steep[which] * deflection",
         oracle.check_balance,
     ),
+    Fault(
+        "solvers.response",
+        "rotor.stiffness - (rotor.mass + slope) * np.square(speed)",
+        "rotor.stiffness - (rotor.mass - slope) * np.square(speed)",
+        oracle.check_critical_speed,
+    ),
 )

@@ -16,7 +16,7 @@ from fluid.liquid import Liquid
 from meshes.border import InputError
 from meshes.chamber import Chamber
 from solvers.hydrostatics import equilibrium
-from solvers.response import Response, synchronous_response
+from solvers.response import Response, critical_speed, synchronous_response
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vector_model import balance_residual, deflection_lag
 
@@ -194,6 +194,23 @@ def test_far_above_resonance() -> None:
 
 def same(a: Response, b: Response) -> None:
     np.testing.assert_array_equal(a.deflection, b.deflection)
+
+
+def check_critical_speed() -> None:
+    """Added mass of full chambers where the wall is wet, of a bowl where floor and lid decide otherwise."""
+    added = sum(WATER.density * math.pi * r**2 * 0.02 for r in (0.065, 0.05))
+    wet = critical_speed(rig(), fills(1e-4, 8e-5), gravity=0.0)
+    assert wet == pytest.approx(math.sqrt(4e4 / (4.0 + added)), rel=1e-9)
+    assert critical_speed(rig(), []) == pytest.approx(100.0, rel=1e-9)
+    # A tall, slow chamber: U = (V + beta pi R^4/2) e, so Omega solves K = (M + rho (V + ...)) Omega^2.
+    rotor, tall = Jeffcott(30.0, 30.0 * 8.0**2, 1.0, 0.0), Fill(Chamber(0.2, 0.5), WATER, 0.02)
+    speed = critical_speed(rotor, [tall])
+    bowl = WATER.density * (0.02 + speed**2 / (2 * 9.81) * math.pi * 0.2**4 / 2)
+    assert (rotor.mass + bowl) * speed**2 == pytest.approx(rotor.stiffness, rel=1e-9)
+
+
+def test_critical_speed() -> None:
+    check_critical_speed()
 
 
 def test_no_liquid_is_the_dry_rotor() -> None:

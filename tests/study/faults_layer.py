@@ -60,4 +60,5 @@ FAULTS: tuple[Fault, ...] = (
         "self.chamber.radius**2 - self.volume / (2.0 * math.pi",
         test_explain.check_numbers,
     ),
+    Fault("study.fidelity", "speed > captured_from", "speed < captured_from", test_explain.check_capture),
 )

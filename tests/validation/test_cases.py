@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import json
+import math
 
 import pytest
 
 from meshes.border import InputError
 from study.cli import main
+from study.run import jeffcott
+from study.scene import load_scene
 from validation.command import GROUPS, all_cases
+from validation.scenes import horizontal_rig, horizontal_rotor, vertical_rig, vertical_rotor
 
 
 def test_every_group_has_cases() -> None:
@@ -70,3 +74,18 @@ def test_unknown_group(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(InputError):
         all_cases("magic")
     assert main(["validate", "magic"]) == 2
+
+
+def test_the_rigs_are_those_of_the_examples() -> None:
+    """One rig, one set of assumptions: the cases and the scenes that users run describe the same machine."""
+    upright = load_scene("examples/vertical_rig.toml")
+    assert upright.chambers == vertical_rig()
+    for name in ("mass", "stiffness", "damping", "unbalance"):
+        assert getattr(jeffcott(upright), name) == pytest.approx(getattr(vertical_rotor(), name), rel=1e-9)
+    lying = load_scene("examples/horizontal_rig.toml")
+    assert lying.chambers == horizontal_rig()
+    ours = horizontal_rotor(0.1, 1000.0 * 2.0 * math.pi / 60.0)
+    assert lying.rotor.mass == ours.mass
+    assert lying.rotor.unbalance == pytest.approx(ours.unbalance)
+    # The scene gives the dry critical speed with four digits.
+    assert lying.rotor.stiffness == pytest.approx(ours.stiffness, rel=2e-3)
