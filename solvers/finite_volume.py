@@ -6,7 +6,8 @@ head, so that equilibria stay as they are, and the velocity, both limited; the f
 Heun's (SSP), with friction in two exact half steps around them [theory: long_wave, eq. 11]. Lengths over R,
 times in the unit of the spin given.
 
-Compiled by numba with its cache on disk; the equations are those of `fluid.long_wave` and `fluid.friction`.
+Compiled by numba with its cache on disk; the equations are those of `fluid.long_wave`, the passes over the
+faces `solvers.face_flux`'s.
 """
 
 from __future__ import annotations
@@ -17,52 +18,52 @@ import numpy as np
 from numba import njit
 
 from fluid import long_wave
+from solvers.face_flux import (
+    FAST,
+    NEAREST,
+    beds,
+    half_slopes,
+    hll,
+    largest,
+    log_of_surface,
+    primitives,
+    side,
+    signals,
+)
 
-FAST = {"contract", "arcp", "nsz"}
-_jit: Any = njit(cache=True, fastmath=FAST, error_model="numpy")
+_jit: Any = njit(cache=True, fastmath=FAST, error_model="numpy", _nrt=False)
+
+_inlined: Any = njit(inline="always")
 
 _surface = _jit(long_wave.free_surface_radius)
-_log = _jit(long_wave.layer_log)
-_head = _jit(long_wave.static_head)
-_at_head = _jit(long_wave.surface_at_head)
-_mass = _jit(long_wave.mass_flux)
-_momentum = _jit(long_wave.momentum_flux)
-_pressure = _jit(long_wave.pressure_force)
-_celerity = _jit(long_wave.wave_celerity)
 _bernoulli = _jit(long_wave.bernoulli)
 _CONSTANT, _CURVED, _LESS = long_wave.PADE
 
-# Below this area (of R^2) a cell is dry: its velocity is not known to any digit.
-DRY = 1e-13
-THIN = 1e-8
 # Beyond this area the surface has come to the axis (r_s < 0.03): no layer is left to speak of.
 FULL = 0.4995
-NEAREST = 0.03
-WORK = 9
+# Cells by which the ring is continued beyond both its ends.
+GHOSTS = 2
+# Rows of scratch: of cells with ghosts, of faces, and of either side of the faces (area, q, flux of mass and
+# of q, pressure, speeds). Only whole rows are contiguous to the compiler: they are taken one by one.
+WORK = 25
+_AREA, _PULL, _VELOCITY, _HEAD, _HALF_HEAD, _HALF_VELOCITY = range(6)
+_BED, _SLOW, _FAST, _MASS, _FLOW = range(6, 11)
+_AFTER, _BEFORE, _ROWS = 11, 18, 7
 
 
-@_jit
-def _limited(a: float, b: float) -> float:
-    """Monotonised central slope."""
-    if a * b <= 0.0:
-        return 0.0
-    middle = 0.5 * (a + b)
-    least = 2.0 * min(abs(a), abs(b))
-    slope: float = np.sign(middle) * min(abs(middle), least)
-    return slope
-
-
-@_jit
-def primitives(area, q, spin, pull, surface, velocity, head):
-    """Fill free-surface radius, velocity and static head of each cell."""
+@_inlined
+def ring_rates(area, q, spin, euler, pull_cell, pull_face, step, dt, spread, work, d_area, d_q):
+    """`rates`, for callers that are compiled themselves: it becomes part of them."""
+    _cells(area, q, spin, pull_cell, work)
+    fastest = _faces(pull_face, spin, work)
+    _gather(area, euler, step, work, d_q)
+    if spread > 0.0:
+        _disperse(area, spin, pull_cell, step, spread, work, d_q)
+    mass = work[_MASS]
+    _drain(area, step, dt, mass, work[_BED])
     for i in range(area.size):
-        a = area[i]
-        r = _surface(a)
-        surface[i] = r
-        moved = q[i] + spin * a * a
-        # In films thinner than THIN the velocity is faded out: its digits are gone.
-        velocity[i] = 2.0 * moved * a / (a * a + max(a * a, THIN * THIN)) if a > DRY else 0.0
-        head[i] = _head(a, r, spin, pull[i])
+        d_area[i] = (mass[i] - mass[i + 1]) / step
+    return fastest
 
 
 @_jit
@@ -77,85 +78,93 @@ def rates(area, q, spin, euler, pull_cell, pull_face, step, dt, spread, work, d_
     step : cell width, rad
     dt : time step in which no cell may lose more than it has
     spread : L^2 of the undisturbed layer for the dispersive term, 0 without it
-    work : scratch, shape (WORK, n)
+    work : scratch, shape (WORK, n + 2 GHOSTS)
     d_area, d_q : results, shape (n,)
     """
+    return ring_rates(area, q, spin, euler, pull_cell, pull_face, step, dt, spread, work, d_area, d_q)
+
+
+@_inlined
+def _cells(area, q, spin, pull, work):
+    """Primitive variables of the cells and their half slopes, all round and a little further."""
     n = area.size
-    surface, velocity, head = work[0], work[1], work[2]
-    primitives(area, q, spin, pull_cell, surface, velocity, head)
-    fastest = 0.0
+    end = n + GHOSTS
     for i in range(n):
-        d_area[i] = 0.0
-        d_q[i] = -euler * area[i]
-    for face in range(n):
-        right = face
-        left = face - 1 if face > 0 else n - 1
-        before = left - 1 if left > 0 else n - 1
-        after = right + 1 if right < n - 1 else 0
-        dry = area[left] <= DRY or area[right] <= DRY
-        pull = pull_face[face]
-        head_l, head_r = head[left], head[right]
-        u_l, u_r = velocity[left], velocity[right]
-        if dry:
-            # The bed is the higher of the two cells': liquid below it does not climb.
-            pull = min(pull_cell[left], pull_cell[right])
-        else:
-            between = head_r - head_l
-            if area[before] > DRY:
-                head_l += 0.5 * _limited(head_l - head[before], between)
-                u_l += 0.5 * _limited(u_l - velocity[before], u_r - velocity[left])
-            if area[after] > DRY:
-                head_r -= 0.5 * _limited(between, head[after] - head_r)
-                u_r -= 0.5 * _limited(velocity[right] - velocity[left], velocity[after] - velocity[right])
-        # Where the push exceeds the centrifugal force no surface has this head: the least radius stands in.
-        r_l = max(_at_head(head_l, spin, pull), NEAREST)
-        r_r = max(_at_head(head_r, spin, pull), NEAREST)
-        a_l, a_r = 0.5 * (1.0 - r_l) * (1.0 + r_l), 0.5 * (1.0 - r_r) * (1.0 + r_r)
-        if area[left] <= DRY:
-            a_l, r_l, u_l = 0.0, 1.0, 0.0
-        if area[right] <= DRY:
-            a_r, r_r, u_r = 0.0, 1.0, 0.0
-        p_l, p_r = _pressure(a_l, r_l, spin, pull), _pressure(a_r, r_r, spin, pull)
-        log_l, log_r = _log(a_l), _log(a_r)
-        mean_l, half_l = _celerity(u_l, log_l, r_l, spin)
-        mean_r, half_r = _celerity(u_r, log_r, r_r, spin)
-        slow = min(mean_l - half_l, mean_r - half_r)
-        fast = max(mean_l + half_l, mean_r + half_r)
-        if a_l == 0.0:
-            slow, fast = mean_r - 2.0 * half_r, mean_r + half_r
-        elif a_r == 0.0:
-            slow, fast = mean_l - half_l, mean_l + 2.0 * half_l
-        mass_l, mass_r = _mass(u_l, log_l), _mass(u_r, log_r)
-        flow_l = _momentum(u_l, log_l, a_l, r_l) + p_l
-        flow_r = _momentum(u_r, log_r, a_r, r_r) + p_r
-        if slow >= 0.0:
-            mass, flow = mass_l, flow_l
-        elif fast <= 0.0:
-            mass, flow = mass_r, flow_r
-        else:
-            q_l, q_r = u_l * a_l - spin * a_l * a_l, u_r * a_r - spin * a_r * a_r
-            width = 1.0 / (fast - slow)
-            mass = (fast * mass_l - slow * mass_r + fast * slow * (a_r - a_l)) * width
-            flow = (fast * flow_l - slow * flow_r + fast * slow * (q_r - q_l)) * width
-        fastest = max(fastest, abs(slow), abs(fast))
-        work[7, face] = mass
-        # Inside a cell the force is A dB/dtheta, by the trapezium of its two ends: half here, half at the
-        # cell's other face.
-        d_q[left] -= (flow - p_l) / step
-        d_q[right] += (flow - p_r) / step
-        work[3, left], work[4, left] = a_l, head_l
-        work[5, right], work[6, right] = a_r, head_r
+        work[_AREA, i + GHOSTS] = area[i]
+        work[_PULL, i + GHOSTS] = pull[i]
+    primitives(area, q, spin, pull, work[_VELOCITY, GHOSTS:end], work[_HEAD, GHOSTS:end])
+    for row in range(_HEAD + 1):
+        for i in range(GHOSTS):
+            work[row, i] = work[row, n + i]
+            work[row, end + i] = work[row, GHOSTS + i]
+    inner = slice(1, n + 3)
+    half_head, half_velocity = work[_HALF_HEAD, inner], work[_HALF_VELOCITY, inner]
+    half_slopes(work[_AREA], work[_HEAD], work[_VELOCITY], half_head, half_velocity)
+
+
+@_inlined
+def _faces(pull_face, spin, work):
+    """Fluxes through each cell's left face, and once more through the first; returns the largest speed."""
+    n = pull_face.size
+    m = n + 1
+    bed = work[_BED, :m]
     for i in range(n):
-        d_q[i] -= 0.5 * (work[3, i] + work[5, i]) * (work[4, i] - work[6, i]) / step
-    if spread > 0.0:
-        _disperse(area, spin, pull_cell, step, spread, work, d_q)
-    _drain(area, step, dt, work[7], work[3])
-    for face in range(n):
-        left = face - 1 if face > 0 else n - 1
-        mass = work[7, face] / step
-        d_area[left] -= mass
-        d_area[face] += mass
-    return fastest
+        bed[i] = pull_face[i]
+    bed[n] = pull_face[0]
+    wide, pull = work[_AREA], work[_PULL]
+    beds(wide[1:], wide[2:], pull[1:], pull[2:], bed)
+    for k in range(2):
+        # First the cell after each face, then the one before it.
+        cells, row, way = slice(2 - k, m + 2 - k), _AFTER + k * _ROWS, 2.0 * k - 1.0
+        side(
+            wide[cells],
+            work[_HEAD, cells],
+            work[_HALF_HEAD, cells],
+            work[_VELOCITY, cells],
+            work[_HALF_VELOCITY, cells],
+            bed,
+            way,
+            spin,
+            work[row],
+            work[row + 1],
+            work[row + 2],
+            work[row + 3],
+            work[row + 4],
+            work[row + 5],
+            work[row + 6],
+        )
+    after, before = _AFTER, _BEFORE
+    slow, fast = work[_SLOW, :m], work[_FAST, :m]
+    signals(
+        work[before],
+        work[after],
+        work[before + 5],
+        work[after + 5],
+        work[before + 6],
+        work[after + 6],
+        slow,
+        fast,
+    )
+    for k in range(2):
+        flux = work[_MASS + k, :m]
+        hll(slow, fast, work[before + 2 + k], work[after + 2 + k], work[before + k], work[after + k], flux)
+    return largest(slow, fast)
+
+
+@_inlined
+def _gather(area, euler, step, work, d_q):
+    """Rate of change of q from the fluxes, the force within each cell and the Euler force.
+
+    Inside a cell the force is A dB/dtheta, by the trapezium of its two ends.
+    """
+    n = area.size
+    flow, bend = work[_FLOW], work[_HALF_HEAD, GHOSTS : n + GHOSTS]
+    area_l, push_l = work[_BEFORE], work[_BEFORE + 4]
+    area_r, push_r = work[_AFTER], work[_AFTER + 4]
+    for i in range(n):
+        through = (flow[i + 1] - push_l[i + 1]) - (flow[i] - push_r[i])
+        within = (area_l[i + 1] + area_r[i]) * bend[i]
+        d_q[i] = -euler * area[i] - (through + within) / step
 
 
 @_jit
@@ -166,57 +175,60 @@ def _disperse(area, spin, pull, step, spread, work, d_q):
     (15 - 6 L^2 d^2) y = -5 L^2 d^2 g. Weighted with the mean area it exerts no net torque.
     """
     n = area.size
-    surface, velocity = work[0], work[1]
-    head, slope, right = work[3], work[4], work[5]
-    mean = 0.0
+    velocity, head, slope = work[_VELOCITY, GHOSTS:], work[_AFTER], work[_AFTER + 1]
+    right = work[_AFTER + 2, :n]
     for i in range(n):
-        head[i] = _bernoulli(velocity[i], _log(area[i]), area[i], surface[i], spin, pull[i])
-        mean += area[i] / n
+        surface = np.maximum(_surface(area[i]), NEAREST)
+        log = log_of_surface(area[i], surface)
+        head[i] = _bernoulli(velocity[i], log, area[i], surface, spin, pull[i])
+    head[n], head[n + 1] = head[0], head[1]
+    for i in range(n + 1):
+        slope[i] = (head[i + 1] - head[i - 1 if i > 0 else n - 1]) / (2.0 * step)
+    slope[n + 1] = slope[1]
+    reach, mean = spread / (step * step), 0.0
     for i in range(n):
-        slope[i] = (head[i + 1 if i < n - 1 else 0] - head[i - 1 if i > 0 else n - 1]) / (2.0 * step)
-    reach = spread / (step * step)
-    for i in range(n):
-        bend = slope[i + 1 if i < n - 1 else 0] - 2.0 * slope[i] + slope[i - 1 if i > 0 else n - 1]
+        bend = slope[i + 1] - 2.0 * slope[i] + slope[i - 1 if i > 0 else n - 1]
         right[i] = -_LESS * reach * bend
-    _cyclic(_CONSTANT + 2.0 * _CURVED * reach, -_CURVED * reach, right, work[6], work[8])
+        mean += area[i] / n
+    solve_ring(_CONSTANT + 2.0 * _CURVED * reach, _CURVED * reach, right)
     for i in range(n):
         d_q[i] += mean * right[i]
 
 
 @_jit
-def _cyclic(diagonal, side, value, factor, corner):
-    """Solve a cyclic tridiagonal system of constant coefficients in place."""
+def solve_ring(diagonal, side, value):
+    """Solve diagonal y_i - side (y_{i-1} + y_{i+1}) = value_i round a ring, in place.
+
+    With diagonal > 2 side >= 0 the matrix is c (1 - p S)(1 - p S^T), S being the shift by one cell: a sweep
+    each way, each started with the value that it will end with.
+    """
     n = value.size
-    lead = (
-        diagonal - side
-    )  # the band, to which side (1, 0, ..., 0, 1)^T (1, 0, ..., 0, 1) adds the ring's corners
+    root = 0.5 * (diagonal + np.sqrt((diagonal - 2.0 * side) * (diagonal + 2.0 * side)))
+    ratio = side / root
+    whole = 1.0 - ratio**n
+    carried = 0.0
     for i in range(n):
-        corner[i] = 0.0
-    corner[0] = corner[n - 1] = 1.0
-    factor[0] = side / lead
-    value[0] /= lead
-    corner[0] /= lead
-    for i in range(1, n):
-        below = (lead if i == n - 1 else diagonal) - side * factor[i - 1]
-        factor[i] = side / below
-        value[i] = (value[i] - side * value[i - 1]) / below
-        corner[i] = (corner[i] - side * corner[i - 1]) / below
-    for i in range(n - 2, -1, -1):
-        value[i] -= factor[i] * value[i + 1]
-        corner[i] -= factor[i] * corner[i + 1]
-    share = side * (value[0] + value[n - 1]) / (1.0 + side * (corner[0] + corner[n - 1]))
+        carried = value[i] + ratio * carried
+    carried /= whole
     for i in range(n):
-        value[i] -= share * corner[i]
+        carried = value[i] + ratio * carried
+        value[i] = carried / root
+    carried = 0.0
+    for i in range(n):
+        carried = value[n - 1 - i] + ratio * carried
+    carried /= whole
+    for i in range(n):
+        carried = value[n - 1 - i] + ratio * carried
+        value[n - 1 - i] = carried
 
 
-@_jit
+@_inlined
 def _drain(area, step, dt, mass, share):
     """Cut the mass fluxes so that no cell loses more than it has; nothing is lost on the way."""
     n = area.size
     for i in range(n):
-        after = i + 1 if i < n - 1 else 0
-        lost = dt / step * (max(mass[after], 0.0) - min(mass[i], 0.0))
-        share[i] = area[i] / lost if lost > area[i] else 1.0
-    for face in range(n):
-        left = face - 1 if face > 0 else n - 1
-        mass[face] *= share[left] if mass[face] > 0.0 else share[face]
+        lost = dt / step * (np.maximum(mass[i + 1], 0.0) - np.minimum(mass[i], 0.0))
+        share[i + 1] = area[i] / lost if lost > area[i] else 1.0
+    share[0], share[n + 1] = share[n], share[1]
+    for face in range(n + 1):
+        mass[face] *= share[face] if mass[face] > 0.0 else share[face + 1]

@@ -10,16 +10,22 @@ from typing import Any
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from fluid import friction, long_wave
-from solvers.finite_volume import DRY, FAST, FULL, WORK, primitives, rates
+from solvers.face_flux import DRY, FAST, NEAREST, faded_velocity, log_of_surface
+from solvers.finite_volume import FULL, GHOSTS, WORK, ring_rates
 
-_jit: Any = njit(cache=True, fastmath=FAST, error_model="numpy")
+_jit: Any = njit(cache=True, fastmath=FAST, error_model="numpy", _nrt=False)
 
 _surface = _jit(long_wave.free_surface_radius)
-_log = _jit(long_wave.layer_log)
 _wall = _jit(long_wave.wall_pressure)
 _damping = _jit(friction.damping_rate)
+
+
+def scratch(cells: int) -> NDArray[np.float64]:
+    """Scratch that `advance` wants for a ring of so many cells."""
+    return np.zeros((WORK + 6, cells + 2 * GHOSTS))
 
 
 @_jit
@@ -61,29 +67,83 @@ def _spread(force, cosine, sine, pull):
 
 
 @_jit
-def loads(area, q, spin, pull, cosine, sine, step, work):
-    """Pressure force on the drum; offset, turning, least and largest depth and area of the liquid.
-
-    The force is over rho h_c R^3 times the square of the unit of spin.
-    """
-    surface, velocity, head = work[0], work[1], work[2]
-    primitives(area, q, spin, pull, surface, velocity, head)
-    force, moment = 0.0 + 0.0j, 0.0 + 0.0j
-    total, turning, least, largest = 0.0, 0.0, 1.0, 0.0
+def _cell_loads(area, q, spin, pull, pressure, lever, turning):
+    """Pressure on the wall, first moment and mass flux of each cell."""
     for i in range(area.size):
-        r, u = surface[i], velocity[i]
-        log = _log(area[i])
-        ray = complex(cosine[i], sine[i]) * step
-        force += _wall(u, log, area[i], r, spin, pull[i]) * ray
-        moment += (1.0 - r * r * r) / 3.0 * ray
-        total += area[i] * step
-        turning += u * log * step
-        least, largest = min(least, 1.0 - r), max(largest, 1.0 - r)
-    return force, moment / total, turning / total, least, largest, total
+        r = np.maximum(_surface(area[i]), NEAREST)
+        u, log = faded_velocity(area[i], q[i], spin), log_of_surface(area[i], r)
+        pressure[i] = _wall(u, log, area[i], r, spin, pull[i])
+        lever[i] = _lever(r)
+        turning[i] = u * log
 
 
 @_jit
-def advance(area, q, start, stop, drive, rub, angles, courant, most):
+def _lever(surface):
+    """First moment of the liquid per radian, (1 - r^3)/3."""
+    return (1.0 - surface) * (1.0 + surface + surface * surface) / 3.0
+
+
+@_jit
+def _tally(area, q, spin, pull, angles, work, back, sums, share):
+    """Add a time's share of the loads to the sums of `advance`, turned into the frame of the deflection.
+
+    The force is over rho h_c R^3 times the square of the unit of spin.
+    """
+    n = area.size
+    cosine, sine = angles[0], angles[1]
+    pressure, lever, turning = work[0, :n], work[1, :n], work[2, :n]
+    _cell_loads(area, q, spin, pull, pressure, lever, turning)
+    force_x, force_y, moment_x, moment_y = 0.0, 0.0, 0.0, 0.0
+    total, turned, least, largest = 0.0, 0.0, area[0], area[0]
+    for i in range(n):
+        force_x += pressure[i] * cosine[i]
+        force_y += pressure[i] * sine[i]
+        moment_x += lever[i] * cosine[i]
+        moment_y += lever[i] * sine[i]
+        total += area[i]
+        turned += turning[i]
+        least, largest = min(least, area[i]), max(largest, area[i])
+    sums[1] += complex(moment_x, moment_y) / total * back * share
+    sums[2] += turned / total * share
+    sums[3] += (1.0 - _surface(least)) * share
+    sums[4] += (1.0 - _surface(largest)) * share
+    sums[5] += complex(force_x, force_y) * (2.0 * np.pi / n) * back * share
+
+
+@_jit
+def _offset(area, angles):
+    """Offset of the liquid's centre of mass."""
+    x, y, total = 0.0, 0.0, 0.0
+    for i in range(area.size):
+        lever = _lever(_surface(area[i]))
+        x += lever * angles[0, i]
+        y += lever * angles[1, i]
+        total += area[i]
+    return complex(x, y) / total
+
+
+@_jit
+def _predict(area, q, rate_a, rate_q, dt, next_a, next_q):
+    """Euler step; tells whether the surface stays off the axis and every number is one."""
+    sound = True
+    for i in range(area.size):
+        next_a[i] = max(area[i] + dt * rate_a[i], 0.0)
+        next_q[i] = q[i] + dt * rate_q[i]
+        # Written so that nan is not sound either.
+        sound = sound and area[i] < FULL and next_a[i] < FULL and abs(next_q[i]) < np.inf
+    return sound
+
+
+@_jit
+def _correct(area, q, rate_a, rate_q, dt, next_a, next_q):
+    """Second stage of Heun's method."""
+    for i in range(area.size):
+        area[i] = 0.5 * (area[i] + max(next_a[i] + dt * rate_a[i], 0.0))
+        q[i] = 0.5 * (q[i] + next_q[i] + dt * rate_q[i])
+
+
+@_jit
+def advance(area, q, start, stop, drive, rub, angles, courant, most, spare, sums):
     """Advance a layer under a prescribed whirl and integrate its loads over time.
 
     Parameters
@@ -95,85 +155,72 @@ def advance(area, q, start, stop, drive, rub, angles, courant, most):
     angles : cosine and sine at the cells' middles and at their left faces, shape (4, n)
     courant : Courant number
     most : most steps
+    spare : as from `scratch`, whose rows are reused
+    sums : results, complex, shape (6,), in the frame of the deflection, as means over the time: force by the
+        liquid's momentum, offset, turning, least depth, largest depth, force by the pressure on the wall
+        [theory: long_wave, eq. 7]
 
     Returns
     -------
-    steps taken, or -1 where they ran out or the surface came to the axis; then, as means over the time: force
-    by the liquid's momentum and offset, both in the frame of the deflection (complex), turning, least depth,
-    largest depth, and force by the pressure on the wall [theory: long_wave, eq. 7]
+    steps taken, or -1 where they ran out or the surface came to the axis
     """
     n = area.size
     step = 2.0 * np.pi / n
     amplitude, slip, ramp, whirl, weight, spin = drive
     law, coefficient, lid, spread = int(rub[0]), rub[1], rub[2], rub[3]
-    work = np.zeros((WORK, n))
-    pull_cell, pull_face = np.zeros(n), np.zeros(n)
-    rate_a, rate_q, next_a, next_q = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
-    mean_force, mean_offset, mean_push = 0.0 + 0.0j, 0.0 + 0.0j, 0.0 + 0.0j
-    first = 0.0 + 0.0j
-    mean_turning, mean_least, mean_largest = 0.0, 0.0, 0.0
-    time, steps = start, 0
-    fastest = 0.0
+    pull_cell, pull_face = spare[WORK, :n], spare[WORK + 1, :n]
+    rate_a, rate_q = spare[WORK + 2, :n], spare[WORK + 3, :n]
+    next_a, next_q = spare[WORK + 4, :n], spare[WORK + 5, :n]
+    for k in range(6):
+        sums[k] = 0.0
+    first = _offset(area, angles) * complex(np.cos(slip * start), -np.sin(slip * start))
+    time, steps, dt, fastest, push = start, 0, 0.0, 0.0, 0.0 + 0.0j
+    # 0: only the largest speed is asked for; 1 and 2: the two stages of Heun's method.
+    stage = 0
     while time < stop:
-        force = _whirl(time, amplitude, slip, ramp, whirl, weight, spin)
+        force = _whirl(time + dt if stage == 2 else time, amplitude, slip, ramp, whirl, weight, spin)
         _spread(force, angles[0], angles[1], pull_cell)
         _spread(force, angles[2], angles[3], pull_face)
-        if fastest == 0.0:
-            fastest = rates(area, q, spin, 0.0, pull_cell, pull_face, step, 0.0, spread, work, rate_a, rate_q)
-        # The speed may have grown since it was taken: a tenth is kept in hand, and what comes out is checked.
-        dt = min(courant * step / (1.1 * fastest), stop - time)
-        load, moment, turning, least, largest, _ = loads(
-            area, q, spin, pull_cell, angles[0], angles[1], step, work
+        if stage == 1:
+            # The speed may have grown since it was taken: a tenth is kept in hand, what comes out is checked.
+            dt = min(courant * step / (1.1 * fastest), stop - time)
+            back = complex(np.cos(slip * time), -np.sin(slip * time))
+            _tally(area, q, spin, pull_cell, angles, spare, back, sums, dt)
+            push += force * back * dt
+            _rub(area, q, spin, law, coefficient, lid, 0.5 * dt)
+        if stage < 2:
+            for i in range(n):
+                next_a[i], next_q[i] = area[i], q[i]
+        fastest = ring_rates(
+            next_a,
+            next_q,
+            spin,
+            0.0,
+            pull_cell,
+            pull_face,
+            step,
+            dt if stage > 0 else 0.0,
+            spread,
+            spare,
+            rate_a,
+            rate_q,
         )
-        back = complex(np.cos(slip * time), -np.sin(slip * time)) * dt
-        if steps == 0:
-            first = moment * complex(np.cos(slip * time), -np.sin(slip * time))
-        mean_force += load * back
-        mean_offset += moment * back
-        mean_push += force * back
-        mean_turning += turning * dt
-        mean_least += least * dt
-        mean_largest += largest * dt
-        _rub(area, q, spin, law, coefficient, lid, 0.5 * dt)
-        rates(area, q, spin, 0.0, pull_cell, pull_face, step, dt, spread, work, rate_a, rate_q)
-        sound = fastest < np.inf
-        for i in range(n):
-            next_a[i] = max(area[i] + dt * rate_a[i], 0.0)
-            next_q[i] = q[i] + dt * rate_q[i]
-            # Written so that nan is not sound either.
-            sound = sound and area[i] < FULL and next_a[i] < FULL and abs(next_q[i]) < np.inf
-        if not sound:
-            return -1, mean_force, mean_offset, mean_turning, mean_least, mean_largest, mean_push
-        force = _whirl(time + dt, amplitude, slip, ramp, whirl, weight, spin)
-        _spread(force, angles[0], angles[1], pull_cell)
-        _spread(force, angles[2], angles[3], pull_face)
-        fastest = rates(
-            next_a, next_q, spin, 0.0, pull_cell, pull_face, step, dt, spread, work, rate_a, rate_q
-        )
-        for i in range(n):
-            area[i] = 0.5 * (area[i] + max(next_a[i] + dt * rate_a[i], 0.0))
-            q[i] = 0.5 * (q[i] + next_q[i] + dt * rate_q[i])
-        _rub(area, q, spin, law, coefficient, lid, 0.5 * dt)
-        time += dt
-        steps += 1
-        if steps >= most:
-            return -1, mean_force, mean_offset, mean_turning, mean_least, mean_largest, mean_push
-    _spread(force, angles[0], angles[1], pull_cell)
-    last = loads(area, q, spin, pull_cell, angles[0], angles[1], step, work)[1]
-    last *= complex(np.cos(slip * time), -np.sin(slip * time))
-    length = stop - start
+        if stage == 1:
+            sound = _predict(area, q, rate_a, rate_q, dt, next_a, next_q)
+            if steps >= most or not (sound and fastest < np.inf):
+                return -1
+        elif stage == 2:
+            _correct(area, q, rate_a, rate_q, dt, next_a, next_q)
+            _rub(area, q, spin, law, coefficient, lid, 0.5 * dt)
+            time += dt
+            steps += 1
+        stage = 2 if stage == 1 else 1
+    last = _offset(area, angles) * complex(np.cos(slip * time), -np.sin(slip * time))
+    # Momentum of the liquid as a whole: its mass times the push, the centripetal and the Coriolis part.
     total = 0.0
     for i in range(n):
         total += area[i] * step
-    # Momentum of the liquid as a whole: its mass times the push, the centripetal and the Coriolis part.
-    drift = (last - first) / length
-    inertia = mean_push + whirl * whirl * mean_offset - complex(0.0, 2.0 * whirl) * drift * length
-    return (
-        steps,
-        total * inertia / length,
-        mean_offset / length,
-        mean_turning / length,
-        mean_least / length,
-        mean_largest / length,
-        mean_force / length,
-    )
+    sums[0] = total * (push + whirl * whirl * sums[1] - complex(0.0, 2.0 * whirl) * (last - first))
+    for k in range(6):
+        sums[k] /= stop - start
+    return steps

@@ -17,6 +17,7 @@ from meshes.border import InputError, require_positive
 from solvers.prescribed import LayerFilm, LayerHistory, Numerics, Whirl
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 _COURANT = 0.45
 _STEPS = 20_000_000  # in one whirl period
@@ -36,14 +37,16 @@ class _Layer:
     drive: tuple[float, float, float, float, float, float]
     rub: tuple[float, float, float, float]
     angles: Array
+    scratch: Array
     time: float = 0.0
 
-    def periods(self, count: float) -> tuple[complex, ...] | None:
+    def periods(self, count: float) -> Complex | None:
         """Advance by whirl periods; means over them, or None where the surface came to the axis."""
         from solvers.forced_layer import advance
 
         length = self.whirl.period * self.whirl.spin * count
-        steps, *means = advance(
+        means = np.empty(6, dtype=np.complex128)
+        steps = advance(
             self.area,
             self.momentum,
             self.time,
@@ -53,9 +56,11 @@ class _Layer:
             self.angles,
             _COURANT,
             _STEPS,
+            self.scratch,
+            means,
         )
         self.time += length
-        return tuple(means) if steps >= 0 else None
+        return means if steps >= 0 else None
 
 
 def simulate(
@@ -130,7 +135,7 @@ def settle(
             return _history(layer, [], converged=False)
     # Without friction free waves never die: the means carry what little the ramp has stirred.
     settled = _SETTLED if friction[0] != NONE else 10.0 * _SETTLED
-    rows: list[tuple[complex, ...]] = []
+    rows: list[Complex] = []
     total = 0
     while total < _PERIODS and layer.time < _TURNS:
         row = layer.periods(count)
@@ -204,6 +209,8 @@ def friction_law(law: str, coefficient: float, fill: Fill, whirl: Whirl) -> tupl
 
 def _start(fill: Fill, whirl: Whirl, friction: tuple[int, float], numerics: Numerics) -> _Layer:
     """Uniform layer at rest in the drum."""
+    from solvers.forced_layer import scratch
+
     chamber = fill.chamber
     if not 0.0 < fill.volume < chamber.capacity * (1.0 - 1e-9):
         raise InputError("volume", fill.volume, f"above 0 and below the capacity ({chamber.capacity:g} m^3)")
@@ -231,6 +238,7 @@ def _start(fill: Fill, whirl: Whirl, friction: tuple[int, float], numerics: Nume
         ),
         rub=(float(law), scaled, 2.0 * radius / chamber.height, log**2 if numerics.dispersion else 0.0),
         angles=np.stack([np.cos(middle), np.sin(middle), np.cos(edge), np.sin(edge)]),
+        scratch=scratch(n),
     )
 
 
@@ -253,7 +261,7 @@ def _rest(layer: _Layer) -> None:
     layer.momentum[:] = -np.square(layer.area)
 
 
-def _history(layer: _Layer, rows: list[tuple[complex, ...]], converged: bool) -> LayerHistory:
+def _history(layer: _Layer, rows: list[Complex], converged: bool) -> LayerHistory:
     """Means in SI units, and the layer as it stands in the frame of the deflection."""
     whirl, radius = layer.whirl, layer.fill.chamber.radius
     table = np.array(rows, dtype=np.complex128).reshape(len(rows), 6)
