@@ -1,7 +1,7 @@
 """Seeded faults of the long-wave equations and their finite volumes.
 
-The compiled solver keeps its code while a fault is seeded, so its own lines are checked by the tests of
-`test_finite_volume.py` and `test_layer.py`; here are the equations, which it compiles as they stand.
+The compiled solver keeps its code while a fault is seeded: its own lines are the business of
+`uncompiled_faults.py`. Here are the equations, which it compiles as they stand.
 """
 
 from __future__ import annotations
