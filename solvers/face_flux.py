@@ -14,10 +14,15 @@ from numba import njit
 
 from fluid import long_wave
 
-FAST = {"contract", "arcp", "nsz"}
-_jit: Any = njit(
-    cache=True, fastmath=FAST, error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True
-)
+# Products and sums may be contracted, zeros lose their signs; the order of sums stays. Views of arrays need
+# no reference counts here, and what only compiled code calls no wrappers: less to compile.
+COMPILED: dict[str, Any] = {
+    "cache": True,
+    "fastmath": {"contract", "arcp", "nsz"},
+    "error_model": "numpy",
+    "_nrt": False,
+}
+_jit: Any = njit(**(COMPILED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
 
 _surface = _jit(long_wave.free_surface_radius)
 _head = _jit(long_wave.static_head)

@@ -19,7 +19,7 @@ from numba import njit
 
 from fluid import long_wave
 from solvers.face_flux import (
-    FAST,
+    COMPILED,
     NEAREST,
     beds,
     half_slopes,
@@ -31,7 +31,7 @@ from solvers.face_flux import (
     signals,
 )
 
-_jit: Any = njit(cache=True, fastmath=FAST, error_model="numpy", _nrt=False)
+_jit: Any = njit(**COMPILED)
 
 _inlined: Any = njit(inline="always")
 

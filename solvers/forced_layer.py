@@ -13,10 +13,10 @@ from numba import njit
 from numpy.typing import NDArray
 
 from fluid import friction, long_wave
-from solvers.face_flux import DRY, FAST, NEAREST, faded_velocity, log_of_surface
+from solvers.face_flux import COMPILED, DRY, NEAREST, faded_velocity, log_of_surface
 from solvers.finite_volume import FULL, GHOSTS, WORK, ring_rates
 
-_jit: Any = njit(cache=True, fastmath=FAST, error_model="numpy", _nrt=False)
+_jit: Any = njit(**COMPILED)
 
 _surface = _jit(long_wave.free_surface_radius)
 _wall = _jit(long_wave.wall_pressure)

@@ -15,8 +15,9 @@ from meshes.border import InputError, require_not_negative, require_positive
 from solvers.hydrostatics import equilibrium
 from solvers.prescribed import Numerics, Whirl
 from study.friction import Friction
-from study.layer_answer import NO_FRICTION, LayerAnswer, angles
+from study.layer_answer import NO_FRICTION, LayerAnswer, angles, wave_amplitude
 from study.layer_waves import kdv_answer, long_wave_answer
+from study.validity import judge, strained
 
 if TYPE_CHECKING:
     from study.figures.wave import WaveRecord
@@ -62,13 +63,13 @@ def answer_layer(
     if model not in MODELS:
         raise InputError("--model", model, "one of " + ", ".join(MODELS))
     begin = time.perf_counter()
+    whirl = Whirl(speed, whirl_speed, whirl_amplitude, gravity=gravity)
     if model in ("long_wave", "kdv"):
-        whirl = Whirl(speed, whirl_speed, whirl_amplitude, gravity=gravity)
         wave = long_wave_answer if model == "long_wave" else kdv_answer
         answer = wave(fill, whirl, friction, numerics or Numerics())
     else:
         solve = _statics if model == "statics" else _linear
-        answer = solve(fill, speed, whirl_speed, whirl_amplitude, friction, gravity)
+        answer = solve(fill, whirl, friction)
     return replace(answer, wall_time=time.perf_counter() - begin)
 
 
@@ -101,14 +102,17 @@ def wave_record(
     )
 
 
-def _statics(
-    fill: Fill, speed: float, whirl: float, amplitude: float, friction: Friction, gravity: float
-) -> LayerAnswer:
+def _statics(fill: Fill, whirl: Whirl, friction: Friction) -> LayerAnswer:
     """Exact equilibrium: the liquid is at rest in the drum, so no friction acts on it."""
-    if whirl != speed:
-        raise InputError("--whirl-speed", whirl, f"the spin speed ({speed:g} rad/s) for the static model")
-    if gravity != 0.0:
-        raise InputError("--gravity", gravity, "0 for the static model: across the axis it turns in the drum")
+    speed, amplitude = whirl.spin, whirl.amplitude
+    if whirl.speed != speed:
+        raise InputError(
+            "--whirl-speed", whirl.speed, f"the spin speed ({speed:g} rad/s) for the static model"
+        )
+    if whirl.gravity != 0.0:
+        raise InputError(
+            "--gravity", whirl.gravity, "0 for the static model: across the axis it turns in the drum"
+        )
     chamber = fill.chamber
     state = equilibrium(chamber, fill.volume, amplitude, speed, gravity=0.0)
     moment = float(state.unbalance()[0])
@@ -119,6 +123,7 @@ def _statics(
     squared = chamber.radius**2 * ((1.0 + amplitude / chamber.radius) ** 2 - floor)
     across = np.maximum(squared - np.square(amplitude * np.sin(theta)), 0.0)
     surface = np.maximum(np.sqrt(across) - amplitude * np.cos(theta), chamber.inner_radius)
+    depth = np.clip(chamber.radius - surface, 0.0, chamber.radius)
     return LayerAnswer(
         force_ratio=complex(moment / (full * amplitude)),
         offset=complex(moment / fill.volume - amplitude),
@@ -128,34 +133,33 @@ def _statics(
         mean_rotation=0.0,
         wall_time=0.0,
         theta=theta,
-        depth=np.clip(chamber.radius - surface, 0.0, chamber.radius),
+        depth=depth,
         notes=("the wall is dry in part",) if bool(state.dry_patch) else (),
         gravity_offset=0.0,
         captured=True,
+        validity=judge("statics", fill, whirl, {"wave_amplitude": wave_amplitude(depth, fill.depth)}),
     )
 
 
-def _linear(
-    fill: Fill, speed: float, whirl: float, amplitude: float, friction: Friction, gravity: float
-) -> LayerAnswer:
+def _linear(fill: Fill, whirl: Whirl, friction: Friction) -> LayerAnswer:
     """Exact linear theory without friction."""
+    speed, amplitude, gravity = whirl.spin, whirl.amplitude, whirl.gravity
     if friction.law != "none":
         raise InputError("--friction", friction.law, "none for the linear theory, which is inviscid")
     chamber, surface = fill.chamber, fill.surface_radius
     if fill.depth >= chamber.radius * (1.0 - 1e-9) or surface <= chamber.inner_radius:
         raise InputError("--volume", fill.volume, "less than what fills the chamber, for a free surface")
-    kappa, ratio = (chamber.radius / surface) ** 2, whirl / speed
+    kappa, ratio = (chamber.radius / surface) ** 2, whirl.speed / speed
     force = float(waves.force_ratio(kappa, ratio))
     offset = float(waves.offset_ratio(kappa, ratio)) * amplitude
     displacement = float(waves.displacement_ratio(kappa, ratio)) * amplitude
     capture = float(waves.capture_speed(surface, gravity)) if gravity > 0.0 else 0.0
-    notes = []
-    if not abs(displacement) < fill.depth:
-        notes.append("the surface reaches the wall in linear theory: the amplitude is too large for it")
+    found = {"wave_amplitude": abs(displacement) / fill.depth}
+    # A synchronous whirl's linear surface is the exact circle, to the square of its own offset, while wet.
+    validity = judge("linear", fill, whirl, found, {} if whirl.slip else {"wave_amplitude": (0.0, 1.0)})
+    notes = list(strained(validity))
     if surface - abs(displacement) < chamber.inner_radius:
         notes.append("the surface reaches the inner wall")
-    if speed <= capture:
-        notes.append("gravity is stronger than the centrifugal acceleration at the surface")
     theta = angles()
     converged = math.isfinite(force) and math.isfinite(displacement)
     drawn = surface + displacement * np.cos(theta) if converged else np.full(theta.shape, surface)
@@ -173,4 +177,5 @@ def _linear(
         notes=tuple(notes),
         gravity_offset=float(waves.gravity_offset(kappa, speed, gravity)) if gravity > 0.0 else 0.0,
         captured=speed > capture,
+        validity=validity,
     )

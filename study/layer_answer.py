@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from study.friction import Friction
+from study.validity import Number
 
 Array = NDArray[np.float64]
 
@@ -26,13 +27,14 @@ class LayerAnswer:
     offset : liquid's centre of mass from the drum's axis, m
     mass_error : of the surface that the model draws, relative
     converged : the force is finite
-    in_range : the model holds; `notes` says why not
+    in_range : the model holds; `validity` and `notes` say why not
     mean_rotation : of the liquid relative to the drum, rad/s
     wall_time : s
     theta, depth : angle from the deflection, rad, and depth of the layer there, m, shape (k,)
     notes : what the model leaves out here, in words
     gravity_offset : steady part of the offset under gravity across the axis, in space, m: up is negative
     captured : centrifugal acceleration at the surface exceeds gravity
+    validity : dimensionless numbers the model rests on, each with its range
     """
 
     force_ratio: complex
@@ -47,8 +49,14 @@ class LayerAnswer:
     notes: tuple[str, ...]
     gravity_offset: float
     captured: bool
+    validity: tuple[Number, ...]
 
 
 def angles() -> Array:
     """Angles from the deflection all round, rad."""
     return np.linspace(-math.pi, math.pi, _POINTS, endpoint=False)
+
+
+def wave_amplitude(depth: Array, mean: float) -> float:
+    """Largest change of depth over the mean depth; nan without a profile."""
+    return float(np.max(np.abs(depth - mean))) / mean if depth.size else math.nan

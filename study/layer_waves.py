@@ -14,13 +14,11 @@ from meshes.border import InputError
 from solvers.layer import film, friction_law, settle, simulate
 from solvers.prescribed import LayerHistory, Numerics, Whirl
 from study.friction import Friction
-from study.layer_answer import NO_FRICTION, LayerAnswer
+from study.layer_answer import NO_FRICTION, LayerAnswer, wave_amplitude
+from study.validity import Number, judge, strained
 
 if TYPE_CHECKING:
     from study.figures.wave import WaveHistory
-
-# Beyond these the one-family wave is a sketch: height over the mean area, response left out.
-_HIGH, _NEGLECTED = 0.3, 0.2
 
 
 def layer_history(
@@ -89,7 +87,8 @@ def long_wave_answer(fill: Fill, whirl: Whirl, friction: Friction, numerics: Num
     chamber, surface = fill.chamber, fill.surface_radius
     history = settle(fill, whirl, friction_law(friction.law, friction.coefficient, fill, whirl), numerics)
     answered = history.force_ratio.size > 0
-    notes = _long_wave_notes(fill, whirl, history)
+    validity = long_wave_validity(fill, whirl, history)
+    notes = long_wave_notes(fill, history, validity)
     capture = float(waves.capture_speed(surface, whirl.gravity)) if whirl.gravity > 0.0 else 0.0
     kappa = (chamber.radius / surface) ** 2
     return LayerAnswer(
@@ -107,22 +106,27 @@ def long_wave_answer(fill: Fill, whirl: Whirl, friction: Friction, numerics: Num
         if whirl.gravity
         else 0.0,
         captured=whirl.spin > capture,
+        validity=validity,
     )
 
 
-def _long_wave_notes(fill: Fill, whirl: Whirl, history: LayerHistory) -> tuple[str, ...]:
-    """Where the long-wave assumption is strained."""
-    notes = []
-    if fill.depth > 0.3 * fill.chamber.radius:
-        notes.append(f"the layer is deep: h0/R = {fill.depth / fill.chamber.radius:.2g}, long waves need 0.3")
-    gap = np.abs(history.force_ratio - history.pressure_ratio)
-    if gap.size and gap[-1] > 0.1 * max(1.0, float(np.abs(history.force_ratio[-1]))):
-        notes.append("force by pressure and by momentum differ by more than a tenth: not a long wave")
-    if history.depth.size and history.depth.max() > fill.chamber.radius - fill.chamber.inner_radius:
-        notes.append("the surface reaches the inner wall")
-    if whirl.gravity > 0.0 and whirl.spin**2 * fill.surface_radius <= whirl.gravity:
-        notes.append("gravity is stronger than the centrifugal acceleration at the surface")
-    return tuple(notes)
+def long_wave_validity(fill: Fill, whirl: Whirl, history: LayerHistory) -> tuple[Number, ...]:
+    """What the long-wave assumption rests on, of an answer of `simulate` or `settle`."""
+    gap, height = math.nan, math.nan
+    if history.force_ratio.size:
+        force = history.force_ratio
+        gap = float(abs(force[-1] - history.pressure_ratio[-1])) / max(1.0, float(abs(force[-1])))
+        extremes = np.concatenate([history.depth_max, history.depth_min])
+        height = wave_amplitude(extremes, fill.depth)
+    return judge("long_wave", fill, whirl, {"wave_amplitude": height, "force_gap": gap})
+
+
+def long_wave_notes(fill: Fill, history: LayerHistory, validity: tuple[Number, ...]) -> tuple[str, ...]:
+    """Where the long waves are out of their range, in words."""
+    notes, chamber = strained(validity), fill.chamber
+    if history.depth.size and history.depth.max() > chamber.radius - chamber.inner_radius:
+        notes = (*notes, "the surface reaches the inner wall")
+    return notes
 
 
 def kdv_answer(fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics) -> LayerAnswer:
@@ -151,12 +155,18 @@ def kdv_answer(fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics)
     around = np.mod(theta + math.pi, 2.0 * math.pi) - math.pi
     order = np.argsort(around)
     area = np.clip(family.mean_area + eta, 0.0, 0.5 * chamber.radius**2)
+    size = kdv.validity(family, eta, whirl.slip)
+    sizes = {"wave_amplitude": float(size.amplitude), "other_family": float(size.neglected)}
+    validity = judge("kdv", fill, whirl, sizes)
+    notes = (*([wave.reason] if wave.reason else []), *strained(validity))
+    if float(size.thinnest) <= 0.0:
+        notes = (*notes, "the wave would run the wall dry, which it does not know")
     return LayerAnswer(
         force_ratio=complex(kdv.force_ratio(family, offset, whirl.amplitude)),
         offset=offset,
         mass_error=abs(float(area.mean()) / family.mean_area - 1.0),
         converged=wave.converged,
-        in_range=not (notes := _kdv_notes(family, eta, whirl, wave.reason)),
+        in_range=not notes,
         mean_rotation=math.nan,
         wall_time=0.0,
         theta=around[order],
@@ -164,6 +174,7 @@ def kdv_answer(fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics)
         notes=notes,
         gravity_offset=0.0,
         captured=True,
+        validity=validity,
     )
 
 
@@ -176,17 +187,3 @@ def _friction_rate(fill: Fill, whirl: Whirl, friction: Friction) -> float:
     area = fill.volume / (2.0 * math.pi * fill.chamber.height * radius**2)
     lid = 2.0 * radius / fill.chamber.height
     return float(damping_rate(law, coefficient, lid, fill.depth / radius, area, 0.0))
-
-
-def _kdv_notes(c: kdv.KdvCoefficients, eta: kdv.Array, whirl: Whirl, reason: str) -> tuple[str, ...]:
-    """What one weakly nonlinear family leaves out here."""
-    found = kdv.validity(c, eta, whirl.slip)
-    high, left_out = float(found.amplitude), float(found.neglected)
-    notes = [reason] if reason else []
-    if high > _HIGH:
-        notes.append(f"the wave is high: {high:.2g} of the mean area, where weakly nonlinear ends at 0.3")
-    if left_out > _NEGLECTED:
-        notes.append(f"far from resonance: the other family would answer {left_out:.2g} times as much")
-    if float(found.thinnest) <= 0.0:
-        notes.append("the wave would run the wall dry, which it does not know")
-    return tuple(notes)

@@ -68,7 +68,7 @@ def layer(
     grown = parse_option(ramp, TIME, "--ramp")
     if duration is not None:
         history = layer_history(**asked, duration=parse_option(duration, TIME, "--duration"), ramp=grown)
-        shown, converged = _history(history, profile), history.converged
+        shown, converged = _history(asked, history, profile), history.converged
     else:
         answer = answer_layer(**asked)
         shown, converged = asdict(answer), answer.converged
@@ -82,8 +82,7 @@ def layer(
     if json:
         print_json(shown)
     else:
-        for name, value in shown.items():
-            print(f"{name.replace('_', ' '):18}{value}")
+        _tell(shown)
     if not converged:
         raise NotConverged([_WHY.get(model, "leblanc layer: no answer")])
 
@@ -96,11 +95,36 @@ _WHY = {
 }
 
 
-def _history(history: LayerHistory, profile: bool) -> dict[str, Any]:
-    """What the whirl periods give, as scripts expect it."""
+def _tell(shown: dict[str, Any]) -> None:
+    """The answer in words, the numbers it rests on one to a line."""
+    for name, value in shown.items():
+        if name not in ("validity", "notes"):
+            print(f"{name.replace('_', ' '):18}{value}")
+    print()
+    for number in shown["validity"]:
+        print(f"{number['name'].replace('_', ' '):18}{number['value']:<10.4g}{number['meaning']}")
+    for note in shown["notes"]:
+        print(f"note: {note}")
+
+
+def _history(asked: dict[str, Any], history: LayerHistory, profile: bool) -> dict[str, Any]:
+    """What the whirl periods give, as scripts expect it, and whether the model holds."""
+    from dataclasses import asdict
+
+    from solvers.prescribed import Whirl
+    from study.layer_waves import long_wave_notes, long_wave_validity
+
+    whirl = Whirl(asked["speed"], asked["whirl_speed"], asked["whirl_amplitude"], 0.0, asked["gravity"])
+    validity = long_wave_validity(asked["fill"], whirl, history)
+    notes = long_wave_notes(asked["fill"], history, validity)
     names = ["time", "force_ratio", "mean_rotation", "depth_max", "depth_min", "offset", "pressure_ratio"]
     names += ["mass_error", "converged"] + (["theta", "depth"] if profile else [])
-    return {name: getattr(history, name) for name in names}
+    rows = {name: getattr(history, name) for name in names}
+    return rows | {
+        "in_range": not notes,
+        "validity": tuple(map(asdict, validity)),
+        "notes": notes,
+    }
 
 
 def _draw(asked: dict[str, Any], answer: LayerAnswer, folder: Path) -> None:

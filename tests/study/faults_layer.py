@@ -26,8 +26,8 @@ FAULTS: tuple[Fault, ...] = (
     ),
     Fault(
         "study.layer",
-        "ratio = (chamber.radius / surface) ** 2, whirl / speed",
-        "ratio = (chamber.radius / surface) ** 2, speed / whirl",
+        "ratio = (chamber.radius / surface) ** 2, whirl.speed / speed",
+        "ratio = (chamber.radius / surface) ** 2, speed / whirl.speed",
         test_layer.check_linear,
     ),
     Fault(
