@@ -22,6 +22,8 @@ _surface = _jit(long_wave.free_surface_radius)
 _wall = _jit(long_wave.wall_pressure)
 _damping = _jit(friction.damping_rate)
 
+RAN_OUT, AT_AXIS = -1, -2
+
 
 def scratch(cells: int) -> NDArray[np.float64]:
     """Scratch that `advance` wants for a ring of so many cells."""
@@ -162,7 +164,7 @@ def advance(area, q, start, stop, drive, rub, angles, courant, most, spare, sums
 
     Returns
     -------
-    steps taken, or -1 where they ran out or the surface came to the axis
+    steps taken, or RAN_OUT where they did, or AT_AXIS where the surface came to the axis
     """
     n = area.size
     step = 2.0 * np.pi / n
@@ -207,8 +209,10 @@ def advance(area, q, start, stop, drive, rub, angles, courant, most, spare, sums
         )
         if stage == 1:
             sound = _predict(area, q, rate_a, rate_q, dt, next_a, next_q)
-            if steps >= most or not (sound and fastest < np.inf):
-                return -1
+            if not (sound and fastest < np.inf):
+                return AT_AXIS
+            if steps >= most:
+                return RAN_OUT
         elif stage == 2:
             _correct(area, q, rate_a, rate_q, dt, next_a, next_q)
             _rub(area, q, spin, law, coefficient, lid, 0.5 * dt)

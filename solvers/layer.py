@@ -39,10 +39,11 @@ class _Layer:
     angles: Array
     scratch: Array
     time: float = 0.0
+    reason: str = ""
 
     def periods(self, count: float) -> Complex | None:
         """Advance by whirl periods; means over them, or None where the surface came to the axis."""
-        from solvers.forced_layer import advance
+        from solvers.forced_layer import AT_AXIS, advance
 
         length = self.whirl.period * self.whirl.spin * count
         means = np.empty(6, dtype=np.complex128)
@@ -59,8 +60,11 @@ class _Layer:
             self.scratch,
             means,
         )
+        if steps < 0:
+            self.reason = "the surface came to the axis" if steps == AT_AXIS else "the time steps ran out"
+            return None
         self.time += length
-        return means if steps >= 0 else None
+        return means
 
 
 def simulate(
@@ -97,7 +101,7 @@ def simulate(
         if row is None:
             break
         rows.append(row)
-    return _history(layer, rows, converged=len(rows) == count)
+    return _history(layer, rows)
 
 
 def settle(
@@ -132,7 +136,7 @@ def settle(
     else:
         count = max(1, round(100.0 / (whirl.period * whirl.spin)))
         if layer.periods(math.ceil(whirl.ramp / whirl.period)) is None:
-            return _history(layer, [], converged=False)
+            return _history(layer, [])
     # Without friction free waves never die: the means carry what little the ramp has stirred.
     settled = _SETTLED if friction[0] != NONE else 10.0 * _SETTLED
     rows: list[Complex] = []
@@ -140,14 +144,15 @@ def settle(
     while total < _PERIODS and layer.time < _TURNS:
         row = layer.periods(count)
         if row is None:
-            return _history(layer, rows, converged=False)
+            return _history(layer, rows)
         rows.append(row)
         total += count
         if len(rows) > 1 and abs(rows[-1][0] - rows[-2][0]) <= settled * abs(rows[-1][0]):
-            return _history(layer, rows, converged=True)
+            return _history(layer, rows)
         if len(rows) % 3 == 0:
             count = min(2 * count, 64)
-    return _history(layer, rows, converged=False)
+    layer.reason = "the force still changes from one stretch of whirl periods to the next"
+    return _history(layer, rows)
 
 
 def film(
@@ -261,7 +266,7 @@ def _rest(layer: _Layer) -> None:
     layer.momentum[:] = -np.square(layer.area)
 
 
-def _history(layer: _Layer, rows: list[Complex], converged: bool) -> LayerHistory:
+def _history(layer: _Layer, rows: list[Complex]) -> LayerHistory:
     """Means in SI units, and the layer as it stands in the frame of the deflection."""
     whirl, radius = layer.whirl, layer.fill.chamber.radius
     table = np.array(rows, dtype=np.complex128).reshape(len(rows), 6)
@@ -284,7 +289,8 @@ def _history(layer: _Layer, rows: list[Complex], converged: bool) -> LayerHistor
         theta=theta[order],
         depth=_depth(layer)[order],
         mass_error=abs(float(layer.area.sum()) * 2.0 * math.pi / n / wanted - 1.0),
-        converged=converged and bool(np.isfinite(table).all()),
+        converged=not layer.reason and bool(np.isfinite(table).all()),
+        reason=layer.reason,
     )
 
 

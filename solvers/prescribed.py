@@ -86,6 +86,7 @@ class LayerHistory:
     depth : depth of the layer there, m, shape (n,)
     mass_error : relative change of the liquid's volume
     converged : every period was finished; for `settle`, and the last two agree
+    reason : why it is not, or empty
     """
 
     time: Array
@@ -99,6 +100,7 @@ class LayerHistory:
     depth: Array
     mass_error: float
     converged: bool
+    reason: str
 
 
 @dataclass(frozen=True)

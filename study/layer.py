@@ -42,7 +42,8 @@ def answer_layer(
     fill : chamber and liquid, with some liquid in it
     speed : spin speed Omega, rad/s
     whirl_speed : omega_w in space, rad/s, not 0; negative against the spin
-    whirl_amplitude : A, m
+    whirl_amplitude : A, m; without any, statics and linear theory give the limit of the force ratio, the
+        others no force
     model : `statics` (synchronous whirl only), `linear` [theory: waves, eq. 5] `long_wave`, stepped in
         time until it settles [theory: long_wave, eq. 4], or `kdv`, one family of steady waves next to its
         resonance [theory: kdv, eq. 18]
@@ -55,7 +56,7 @@ def answer_layer(
     InputError : a value out of its range, or one that the model does not serve
     """
     require_positive("--speed", speed)
-    require_positive("--whirl-amplitude", whirl_amplitude)
+    require_not_negative("--whirl-amplitude", whirl_amplitude)
     require_positive("--volume", fill.volume)
     require_not_negative("--gravity", gravity)
     if not math.isfinite(whirl_speed) or whirl_speed == 0.0:
@@ -117,6 +118,8 @@ def _statics(fill: Fill, whirl: Whirl, friction: Friction) -> LayerAnswer:
     state = equilibrium(chamber, fill.volume, amplitude, speed, gravity=0.0)
     moment = float(state.unbalance()[0])
     full = math.pi * chamber.radius**2 * chamber.height
+    # Without a whirl the ratio is that of a vanishing one, which no depth of liquid runs dry.
+    ratio = moment / (full * amplitude) if amplitude else 1.0
     theta = angles()
     # The surface is a circle about the rotation axis, at -A from the drum's axis.
     floor = float(state.wetted_height / state.steepness)
@@ -125,7 +128,7 @@ def _statics(fill: Fill, whirl: Whirl, friction: Friction) -> LayerAnswer:
     surface = np.maximum(np.sqrt(across) - amplitude * np.cos(theta), chamber.inner_radius)
     depth = np.clip(chamber.radius - surface, 0.0, chamber.radius)
     return LayerAnswer(
-        force_ratio=complex(moment / (full * amplitude)),
+        force_ratio=complex(ratio),
         offset=complex(moment / fill.volume - amplitude),
         mass_error=abs(float(state.volume) / fill.volume - 1.0),
         converged=bool(state.converged),
@@ -154,14 +157,15 @@ def _linear(fill: Fill, whirl: Whirl, friction: Friction) -> LayerAnswer:
     offset = float(waves.offset_ratio(kappa, ratio)) * amplitude
     displacement = float(waves.displacement_ratio(kappa, ratio)) * amplitude
     capture = float(waves.capture_speed(surface, gravity)) if gravity > 0.0 else 0.0
+    converged = math.isfinite(force) and math.isfinite(displacement)
     found = {"wave_amplitude": abs(displacement) / fill.depth}
     # A synchronous whirl's linear surface is the exact circle, to the square of its own offset, while wet.
     validity = judge("linear", fill, whirl, found, {} if whirl.slip else {"wave_amplitude": (0.0, 1.0)})
-    notes = list(strained(validity))
+    notes = [] if converged else ["the whirl meets a free wave, the linear force is unbounded"]
+    notes += strained(validity)
     if surface - abs(displacement) < chamber.inner_radius:
         notes.append("the surface reaches the inner wall")
     theta = angles()
-    converged = math.isfinite(force) and math.isfinite(displacement)
     drawn = surface + displacement * np.cos(theta) if converged else np.full(theta.shape, surface)
     lost = 0.5 * displacement**2 / (chamber.radius**2 - surface**2) if converged else math.nan
     return LayerAnswer(

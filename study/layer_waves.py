@@ -112,18 +112,21 @@ def long_wave_answer(fill: Fill, whirl: Whirl, friction: Friction, numerics: Num
 
 def long_wave_validity(fill: Fill, whirl: Whirl, history: LayerHistory) -> tuple[Number, ...]:
     """What the long-wave assumption rests on, of an answer of `simulate` or `settle`."""
-    gap, height = math.nan, math.nan
+    found = {}
     if history.force_ratio.size:
         force = history.force_ratio
-        gap = float(abs(force[-1] - history.pressure_ratio[-1])) / max(1.0, float(abs(force[-1])))
+        found["force_gap"] = float(abs(force[-1] - history.pressure_ratio[-1])) / max(
+            1.0, float(abs(force[-1]))
+        )
         extremes = np.concatenate([history.depth_max, history.depth_min])
-        height = wave_amplitude(extremes, fill.depth)
-    return judge("long_wave", fill, whirl, {"wave_amplitude": height, "force_gap": gap})
+        found["wave_amplitude"] = wave_amplitude(extremes, fill.depth)
+    return judge("long_wave", fill, whirl, found)
 
 
 def long_wave_notes(fill: Fill, history: LayerHistory, validity: tuple[Number, ...]) -> tuple[str, ...]:
-    """Where the long waves are out of their range, in words."""
-    notes, chamber = strained(validity), fill.chamber
+    """Why there is no answer, and where the long waves are out of their range, in words."""
+    chamber = fill.chamber
+    notes = (*([history.reason] if history.reason else []), *strained(validity))
     if history.depth.size and history.depth.max() > chamber.radius - chamber.inner_radius:
         notes = (*notes, "the surface reaches the inner wall")
     return notes
@@ -162,7 +165,7 @@ def kdv_answer(fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics)
     if float(size.thinnest) <= 0.0:
         notes = (*notes, "the wave would run the wall dry, which it does not know")
     return LayerAnswer(
-        force_ratio=complex(kdv.force_ratio(family, offset, whirl.amplitude)),
+        force_ratio=complex(kdv.force_ratio(family, offset, whirl.amplitude)) if whirl.amplitude else 0j,
         offset=offset,
         mass_error=abs(float(area.mean()) / family.mean_area - 1.0),
         converged=wave.converged,

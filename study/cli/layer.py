@@ -84,14 +84,15 @@ def layer(
     else:
         _tell(shown)
     if not converged:
-        raise NotConverged([_WHY.get(model, "leblanc layer: no answer")])
+        reason = "; ".join(shown["notes"][:1])
+        raise NotConverged([f"leblanc layer: {reason or 'no answer'}; {_HELP[model]}"])
 
 
-_WHY = {
-    "linear": "leblanc layer: the whirl meets a free wave, the linear force is unbounded",
-    "kdv": "leblanc layer: no steady wave found; friction may help, or --model long_wave",
-    "long_wave": "leblanc layer: the wave does not settle, or the surface came to the axis; friction or "
-    "--duration may help",
+_HELP = {
+    "statics": "less liquid or a smaller whirl may help",
+    "linear": "friction takes the bound off: --model kdv or long_wave",
+    "kdv": "friction may help, or --model long_wave",
+    "long_wave": "friction or --duration may help",
 }
 
 

@@ -1,0 +1,31 @@
+"""At the ends of what may be asked the wave models answer or say no: no nan, no lost mass."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from validation.extremes import Extreme, extremes, outcome
+
+CASES = list(extremes("long_wave"))
+
+
+def check(case: Extreme) -> bool:
+    found = outcome(case)
+    assert found.finite
+    # Rounding of a sum over the cells and of as many steps' fluxes, which cancel in pairs.
+    assert found.mass_error < 1e-12
+    assert found.least_depth >= 0.0
+    if not found.converged:
+        assert found.says
+    else:
+        assert math.isfinite(found.force)
+    return found.converged
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_long_wave(case: Extreme) -> None:
+    converged = check(case)
+    # Moderate whirls of layers up to two thirds of the radius have an answer.
+    assert converged or case.depth > 0.8 or case.amplitude >= 1.0
