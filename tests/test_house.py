@@ -44,6 +44,16 @@ def test_the_main_job_compiles_nothing_and_loads_no_mesh() -> None:
     assert not loaded & {"numba", "pde", "skfem", "meshio", "pyvista", "matplotlib", "sympy"}
 
 
+def test_one_family_of_waves_compiles_nothing() -> None:
+    loaded = _loaded(
+        "from study.cli import main\n"
+        "whirl = '--whirl-speed 30.6 --whirl-amplitude 0.05mm --friction linear:1'.split()\n"
+        "layer = '--radius 0.15 --volume 1.3e-4 --height 0.01 --speed 40'.split()\n"
+        "assert main(['layer', *layer, *whirl, '--model', 'kdv', '--json']) == 0"
+    )
+    assert not loaded & {"numba", "llvmlite", "pde"}
+
+
 def _public(body: list[ast.stmt]) -> list[ast.FunctionDef | ast.ClassDef]:
     """Public functions and classes of a module and their public methods, not what is nested in functions."""
     found: list[ast.FunctionDef | ast.ClassDef] = []
