@@ -56,11 +56,11 @@ def ring_rates(area, q, spin, euler, pull_cell, pull_face, step, dt, spread, wor
     """`rates`, for callers that are compiled themselves: it becomes part of them."""
     _cells(area, q, spin, pull_cell, work)
     fastest = _faces(pull_face, spin, work)
+    mass = work[_MASS]
+    _drain(area, step, dt, mass, work[_FLOW], work[_BEFORE + 4], work[_AFTER + 4], work[_BED])
     _gather(area, euler, step, work, d_q)
     if spread > 0.0:
         _disperse(area, spin, pull_cell, step, spread, work, d_q)
-    mass = work[_MASS]
-    _drain(area, step, dt, mass, work[_BED])
     for i in range(area.size):
         d_area[i] = (mass[i] - mass[i + 1]) / step
     return fastest
@@ -223,12 +223,18 @@ def solve_ring(diagonal, side, value):
 
 
 @_inlined
-def _drain(area, step, dt, mass, share):
-    """Cut the mass fluxes so that no cell loses more than it has; nothing is lost on the way."""
+def _drain(area, step, dt, mass, flow, push_l, push_r, share):
+    """Cut the mass fluxes so that no cell loses more than it has; nothing is lost on the way.
+
+    The flow beyond the pressure is cut alike: a film that kept its mass and lost the momentum of more, or the
+    other way round, would run away.
+    """
     n = area.size
     for i in range(n):
         lost = dt / step * (np.maximum(mass[i + 1], 0.0) - np.minimum(mass[i], 0.0))
         share[i + 1] = area[i] / lost if lost > area[i] else 1.0
     share[0], share[n + 1] = share[n], share[1]
     for face in range(n + 1):
-        mass[face] *= share[face] if mass[face] > 0.0 else share[face + 1]
+        kept = share[face] if mass[face] > 0.0 else share[face + 1]
+        mass[face] *= kept
+        flow[face] -= (1.0 - kept) * (flow[face] - 0.5 * (push_l[face] + push_r[face]))

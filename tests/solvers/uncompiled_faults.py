@@ -155,6 +155,9 @@ def check_drain() -> None:
         assert (area + dt * held).min() > -1e-15 and abs(held.sum()) < 1e-14
         assert dt > 1e-3 or np.array_equal(held, free)
     assert (area + 3.0 * free).min() < -0.01
+    # The film that empties leaves none of its momentum behind, nor takes more along than it had.
+    d_area, d_q, _ = rates(area, q, dt=3.0, pull=0.0)
+    assert area[3] + 3.0 * d_area[3] < 1e-15 and abs(q[3] + 3.0 * d_q[3]) < 1e-3 * q[3]
 
 
 def check_signals() -> None:
@@ -279,6 +282,7 @@ FAULTS = (
     Fault(VOLUMES, "side / root", "0.99 * side / root", check_ring),
     Fault(VOLUMES, "if lost > area[i] else 1.0", "if lost > 2.0 * area[i] else 1.0", check_drain),
     Fault(VOLUMES, "if mass[face] > 0.0", "if mass[face] < 0.0", check_drain),
+    Fault(VOLUMES, "(1.0 - kept) * (flow[face]", "0.0 * (flow[face]", check_drain),
     Fault(STEPS, "np.exp(-rate * dt)", "np.exp(-2.0 * rate * dt)", check_friction),
     Fault(STEPS, "1.0 / (1.0 + rate * dt)", "1.0 - 2.0 * rate * dt", check_friction),
     Fault(STEPS, "whirl * whirl * grown", "whirl * grown", check_drive),
