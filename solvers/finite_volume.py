@@ -172,7 +172,8 @@ def _disperse(area, spin, pull, step, spread, work, d_q):
     """Add what the finite depth takes from the pressure gradient [theory: long_wave, eq. 12].
 
     The gradient g of Bernoulli's function counts as tanh(nL)/(nL) of itself: what is missing, y, solves
-    (15 - 6 L^2 d^2) y = -5 L^2 d^2 g. Weighted with the mean area it exerts no net torque.
+    (15 - 6 L^2 d^2) y = -5 L^2 d^2 g. Weighted with the mean area it exerts no net torque; cells with less
+    than half of that feel less.
     """
     n = area.size
     velocity, head, slope = work[_VELOCITY, GHOSTS:], work[_AFTER], work[_AFTER + 1]
@@ -192,7 +193,8 @@ def _disperse(area, spin, pull, step, spread, work, d_q):
         mean += area[i] / n
     solve_ring(_CONSTANT + 2.0 * _CURVED * reach, _CURVED * reach, right)
     for i in range(n):
-        d_q[i] += mean * right[i]
+        # A film shorter of liquid than half the mean would be torn by the mean layer's share.
+        d_q[i] += min(mean, 2.0 * area[i]) * right[i]
 
 
 @_jit

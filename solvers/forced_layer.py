@@ -23,11 +23,13 @@ _wall = _jit(long_wave.wall_pressure)
 _damping = _jit(friction.damping_rate)
 
 RAN_OUT, AT_AXIS = -1, -2
+# Courant number beyond which a step is taken again.
+_LARGEST = 0.5
 
 
 def scratch(cells: int) -> NDArray[np.float64]:
     """Scratch that `advance` wants for a ring of so many cells."""
-    return np.zeros((WORK + 6, cells + 2 * GHOSTS))
+    return np.zeros((WORK + 7, cells + 2 * GHOSTS))
 
 
 @_jit
@@ -164,7 +166,7 @@ def advance(area, q, start, stop, drive, rub, angles, courant, most, spare, sums
 
     Returns
     -------
-    steps taken, or RAN_OUT where they did, or AT_AXIS where the surface came to the axis
+    steps tried, or RAN_OUT where they did, or AT_AXIS where the surface came to the axis
     """
     n = area.size
     step = 2.0 * np.pi / n
@@ -172,7 +174,7 @@ def advance(area, q, start, stop, drive, rub, angles, courant, most, spare, sums
     law, coefficient, lid, spread = int(rub[0]), rub[1], rub[2], rub[3]
     pull_cell, pull_face = spare[WORK, :n], spare[WORK + 1, :n]
     rate_a, rate_q = spare[WORK + 2, :n], spare[WORK + 3, :n]
-    next_a, next_q = spare[WORK + 4, :n], spare[WORK + 5, :n]
+    next_a, next_q, begin_q = spare[WORK + 4, :n], spare[WORK + 5, :n], spare[WORK + 6, :n]
     for k in range(6):
         sums[k] = 0.0
     first = _offset(area, angles) * complex(np.cos(slip * start), -np.sin(slip * start))
@@ -184,11 +186,10 @@ def advance(area, q, start, stop, drive, rub, angles, courant, most, spare, sums
         _spread(force, angles[0], angles[1], pull_cell)
         _spread(force, angles[2], angles[3], pull_face)
         if stage == 1:
-            # The speed may have grown since it was taken: a tenth is kept in hand, what comes out is checked.
+            # The speed may have grown since it was taken: a tenth is kept in hand.
             dt = min(courant * step / (1.1 * fastest), stop - time)
-            back = complex(np.cos(slip * time), -np.sin(slip * time))
-            _tally(area, q, spin, pull_cell, angles, spare, back, sums, dt)
-            push += force * back * dt
+            for i in range(n):
+                begin_q[i] = q[i]
             _rub(area, q, spin, law, coefficient, lid, 0.5 * dt)
         if stage < 2:
             for i in range(n):
@@ -207,13 +208,26 @@ def advance(area, q, start, stop, drive, rub, angles, courant, most, spare, sums
             rate_a,
             rate_q,
         )
+        if steps >= most:
+            return RAN_OUT
+        if not fastest < np.inf:
+            return AT_AXIS
+        if stage > 0 and dt * fastest > _LARGEST * step:
+            # A film has run faster than the step allows: once more, shorter.
+            for i in range(n):
+                q[i] = begin_q[i]
+            stage = 1
+            steps += 1
+            continue
         if stage == 1:
-            sound = _predict(area, q, rate_a, rate_q, dt, next_a, next_q)
-            if not (sound and fastest < np.inf):
+            if not _predict(area, q, rate_a, rate_q, dt, next_a, next_q):
                 return AT_AXIS
-            if steps >= most:
-                return RAN_OUT
         elif stage == 2:
+            force = _whirl(time, amplitude, slip, ramp, whirl, weight, spin)
+            back = complex(np.cos(slip * time), -np.sin(slip * time))
+            _spread(force, angles[0], angles[1], pull_cell)
+            _tally(area, begin_q, spin, pull_cell, angles, spare, back, sums, dt)
+            push += force * back * dt
             _correct(area, q, rate_a, rate_q, dt, next_a, next_q)
             _rub(area, q, spin, law, coefficient, lid, 0.5 * dt)
             time += dt

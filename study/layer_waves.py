@@ -64,7 +64,7 @@ def wave_film(
     duration: float,
     ramp: float,
 ) -> WaveHistory:
-    """Pictures of the wave in the drum frame over a duration; the parameters are `layer_history`'s.
+    """Pictures of the wave from rest, in the drum frame; the parameters are `layer_history`'s.
 
     Raises
     ------
@@ -73,13 +73,32 @@ def wave_film(
     from study.figures.wave import WaveHistory
 
     if model != "long_wave":
-        raise InputError("--model", model, "long_wave for an animation")
+        raise InputError("--model", model, "long_wave for a layer set in motion")
     whirl = Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity)
     law = friction_law(friction.law, friction.coefficient, fill, whirl)
     # Eight pictures at least while the deflection turns once, and enough for a smooth film.
     frames = int(np.clip(8.0 * duration / whirl.period, 120, 2000))
     shots = film(fill, whirl, frames, duration / whirl.period, law, numerics)
     return WaveHistory(time=shots.time, theta=shots.theta, depth=shots.depth, deflection=shots.deflection)
+
+
+def steady_film(answer: LayerAnswer, whirl: Whirl, duration: float) -> WaveHistory:
+    """Pictures of a wave that stands still in the frame of the deflection, as it runs round the drum.
+
+    Parameters
+    ----------
+    answer : with its profile
+    whirl : that it answers
+    duration : s
+    """
+    from study.figures.wave import WaveHistory
+
+    frames = int(np.clip(60.0 * duration / whirl.period, 60, 2000))
+    time = duration * np.arange(frames) / frames
+    turned = answer.theta - whirl.slip * time[:, None]
+    depth = np.interp(turned, answer.theta, answer.depth, period=2.0 * math.pi)
+    deflection = whirl.amplitude * np.exp(1j * whirl.slip * time)
+    return WaveHistory(time=time, theta=answer.theta, depth=depth, deflection=deflection)
 
 
 def long_wave_answer(fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics) -> LayerAnswer:

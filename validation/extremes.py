@@ -83,6 +83,7 @@ def extremes(model: str) -> Iterator[Extreme]:
     yield base
     for depth in (1e-4, 1e-2, 0.3, 0.6, 0.9):
         yield replace(base, name=f"h0/R = {depth:g}", depth=depth)
+    yield replace(base, name="h0/R = 0.9, w0/h0 = 0.005", depth=0.9, amplitude=0.005)
     for spin in (0.1, 1e3, 1e5):
         yield replace(base, name=f"Omega = {spin:g} rad/s", spin=spin)
     for viscosity in (0.0, 1e-4, 1e-1):

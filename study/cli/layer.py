@@ -37,7 +37,8 @@ def layer(
     profile: Annotated[bool, typer.Option("--profile", help="Add the depth around the wall.")] = False,
     out: Annotated[Path | None, typer.Option(help="Folder for the figure of the wave.")] = None,
     animate: Annotated[
-        Path | None, typer.Option(help="GIF or MP4 of the wave in the drum frame (long_wave).")
+        Path | None,
+        typer.Option(help="GIF or MP4 of the wave in the drum frame: long_wave from rest, others steady."),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
@@ -138,7 +139,7 @@ def _draw(asked: dict[str, Any], answer: LayerAnswer, folder: Path) -> None:
 
 
 def _film(asked: dict[str, Any], duration: float | None, ramp: float, path: Path) -> None:
-    """The wave from rest, in the drum frame; six whirl periods unless the user says how long."""
+    """The wave in the drum frame: long_wave from rest, six whirl periods unless told; others two, steady."""
     from dataclasses import replace
 
     from rich.progress import Progress
@@ -147,13 +148,17 @@ def _film(asked: dict[str, Any], duration: float | None, ramp: float, path: Path
     from study.figures import animate
     from study.layer import answer_layer, wave_record
     from study.layer_answer import NO_FRICTION
-    from study.layer_waves import wave_film
+    from study.layer_waves import steady_film, wave_film
 
     whirl = Whirl(asked["speed"], asked["whirl_speed"], asked["whirl_amplitude"])
-    length = 6.0 * whirl.period if duration is None else duration
-    history = wave_film(**asked, duration=length, ramp=ramp)
-    still = answer_layer(**(asked | {"model": "linear", "friction": NO_FRICTION}))
-    last = wave_record(answer=replace(still, theta=history.theta, depth=history.depth[-1]), **asked)
+    if asked["model"] == "long_wave":
+        history = wave_film(**asked, duration=duration or 6.0 * whirl.period, ramp=ramp)
+        answer = answer_layer(**(asked | {"model": "linear", "friction": NO_FRICTION}))
+        answer = replace(answer, theta=history.theta, depth=history.depth[-1], notes=())
+    else:
+        answer = answer_layer(**asked)
+        history = steady_film(answer, whirl, 2.0 * whirl.period)
+    last = wave_record(answer=answer, **asked)
     with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
         task = bar.add_task("drawing", total=None)
         frames = animate(

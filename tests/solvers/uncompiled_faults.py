@@ -277,7 +277,7 @@ FAULTS = (
     Fault(VOLUMES, "(mass[i] - mass[i + 1])", "(mass[i + 1] - mass[i])", check_rates),
     Fault(VOLUMES, "-_LESS * reach", "_LESS * reach", check_dispersion),
     Fault(VOLUMES, "(2.0 * step)\n    slope[n", "step\n    slope[n", check_dispersion),
-    Fault(VOLUMES, "d_q[i] += mean * right[i]", "d_q[i] += area[i] * right[i]", check_dispersion),
+    Fault(VOLUMES, "min(mean, 2.0 * area[i]) * right[i]", "area[i] * right[i]", check_dispersion),
     Fault(VOLUMES, "1.0 - ratio**n", "1.0 + ratio**n", check_ring),
     Fault(VOLUMES, "side / root", "0.99 * side / root", check_ring),
     Fault(VOLUMES, "if lost > area[i] else 1.0", "if lost > 2.0 * area[i] else 1.0", check_drain),
