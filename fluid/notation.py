@@ -77,8 +77,8 @@ def page() -> str:
     lines = [
         "# Symbols",
         "",
-        "SI units, angles in radians, complex numbers for vectors in the plane. The frame turns with the drum and",
-        "its origin is the geometric axis, unless a page says otherwise.",
+        "SI units, angles in radians, complex numbers for vectors in the plane. The frame turns with the",
+        "drum and its origin is the geometric axis, unless a page says otherwise.",
     ]
     for title, symbols in GROUPS.items():
         lines += ["", f"## {title}", "", "| in the code | symbol | unit | meaning |", "|---|---|---|---|"]
