@@ -207,7 +207,7 @@ def solve_ring(diagonal, side, value):
     n = value.size
     root = 0.5 * (diagonal + np.sqrt((diagonal - 2.0 * side) * (diagonal + 2.0 * side)))
     ratio = side / root
-    whole = 1.0 - ratio**n
+    whole = 1.0 - np.exp(n * np.log(ratio)) if ratio > 0.0 else 1.0
     carried = 0.0
     for i in range(n):
         carried = value[i] + ratio * carried

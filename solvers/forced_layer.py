@@ -24,7 +24,7 @@ _damping = _jit(friction.damping_rate)
 
 RAN_OUT, AT_AXIS = -1, -2
 # Courant number beyond which a step is taken again.
-_LARGEST = 0.5
+_LARGEST = 1.0
 
 
 def scratch(cells: int) -> NDArray[np.float64]:
@@ -51,23 +51,23 @@ def _rub(area, q, spin, law, coefficient, lid, dt):
 
 
 @_jit
-def _whirl(time, amplitude, slip, ramp, whirl, weight, spin):
+def _whirl(time, drive, angles, pull_cell, pull_face):
     """Body force in the drum frame: minus the axis' acceleration, and gravity across the axis.
 
     The amplitude grows as tau - sin(2 pi tau)/(2 pi), tau = time/ramp; its rate of change is left out of the
-    acceleration [theory: long_wave, eq. 8].
+    acceleration [theory: long_wave, eq. 8]. Fills its radial part at cells and faces; returns its parts.
     """
+    amplitude, slip, ramp, whirl, weight, spin = drive
     grown = 1.0
     if time < ramp:
         grown = time / ramp - np.sin(2.0 * np.pi * time / ramp) / (2.0 * np.pi)
-    force = amplitude * whirl * whirl * grown * complex(np.cos(slip * time), np.sin(slip * time))
-    return force + weight * complex(-np.sin(spin * time), -np.cos(spin * time))
-
-
-@_jit
-def _spread(force, cosine, sine, pull):
-    for i in range(pull.size):
-        pull[i] = force.real * cosine[i] + force.imag * sine[i]
+    push = amplitude * whirl * whirl * grown
+    x = push * np.cos(slip * time) - weight * np.sin(spin * time)
+    y = push * np.sin(slip * time) - weight * np.cos(spin * time)
+    for i in range(pull_cell.size):
+        pull_cell[i] = x * angles[0, i] + y * angles[1, i]
+        pull_face[i] = x * angles[2, i] + y * angles[3, i]
+    return x, y
 
 
 @_jit
@@ -77,53 +77,37 @@ def _cell_loads(area, q, spin, pull, pressure, lever, turning):
         r = np.maximum(_surface(area[i]), NEAREST)
         u, log = faded_velocity(area[i], q[i], spin), log_of_surface(area[i], r)
         pressure[i] = _wall(u, log, area[i], r, spin, pull[i])
-        lever[i] = _lever(r)
+        lever[i] = (1.0 - r) * (1.0 + r + r * r) / 3.0
         turning[i] = u * log
 
 
 @_jit
-def _lever(surface):
-    """First moment of the liquid per radian, (1 - r^3)/3."""
-    return (1.0 - surface) * (1.0 + surface + surface * surface) / 3.0
+def _tally(area, q, spin, pull, angles, work, cosine, sine, share, sums):
+    """Add a time's share of the loads to the sums of `advance`.
 
-
-@_jit
-def _tally(area, q, spin, pull, angles, work, back, sums, share):
-    """Add a time's share of the loads to the sums of `advance`, turned into the frame of the deflection.
-
-    The force is over rho h_c R^3 times the square of the unit of spin.
+    Forces and offsets are turned into the frame of the deflection, at an angle of this cosine and sine.
     """
     n = area.size
-    cosine, sine = angles[0], angles[1]
     pressure, lever, turning = work[0, :n], work[1, :n], work[2, :n]
     _cell_loads(area, q, spin, pull, pressure, lever, turning)
     force_x, force_y, moment_x, moment_y = 0.0, 0.0, 0.0, 0.0
     total, turned, least, largest = 0.0, 0.0, area[0], area[0]
     for i in range(n):
-        force_x += pressure[i] * cosine[i]
-        force_y += pressure[i] * sine[i]
-        moment_x += lever[i] * cosine[i]
-        moment_y += lever[i] * sine[i]
+        force_x += pressure[i] * angles[0, i]
+        force_y += pressure[i] * angles[1, i]
+        moment_x += lever[i] * angles[0, i]
+        moment_y += lever[i] * angles[1, i]
         total += area[i]
         turned += turning[i]
         least, largest = min(least, area[i]), max(largest, area[i])
-    sums[1] += complex(moment_x, moment_y) / total * back * share
-    sums[2] += turned / total * share
-    sums[3] += (1.0 - _surface(least)) * share
-    sums[4] += (1.0 - _surface(largest)) * share
-    sums[5] += complex(force_x, force_y) * (2.0 * np.pi / n) * back * share
-
-
-@_jit
-def _offset(area, angles):
-    """Offset of the liquid's centre of mass."""
-    x, y, total = 0.0, 0.0, 0.0
-    for i in range(area.size):
-        lever = _lever(_surface(area[i]))
-        x += lever * angles[0, i]
-        y += lever * angles[1, i]
-        total += area[i]
-    return complex(x, y) / total
+    part, step = share / total, share * 2.0 * np.pi / n
+    sums[0] += (force_x * cosine + force_y * sine) * step
+    sums[1] += (force_y * cosine - force_x * sine) * step
+    sums[2] += (moment_x * cosine + moment_y * sine) * part
+    sums[3] += (moment_y * cosine - moment_x * sine) * part
+    sums[4] += turned * part
+    sums[5] += (1.0 - _surface(least)) * share
+    sums[6] += (1.0 - _surface(largest)) * share
 
 
 @_jit
@@ -160,9 +144,9 @@ def advance(area, q, start, stop, drive, rub, angles, courant, most, spare, sums
     courant : Courant number
     most : most steps
     spare : as from `scratch`, whose rows are reused
-    sums : results, complex, shape (6,), in the frame of the deflection, as means over the time: force by the
-        liquid's momentum, offset, turning, least depth, largest depth, force by the pressure on the wall
-        [theory: long_wave, eq. 7]
+    sums : results, shape (9,), integrals over the time: force by the pressure on the wall over rho h_c R^3
+        (two parts), offset (two), turning, least and largest depth, body force (two); two parts are along the
+        deflection and 90 deg ahead of it [theory: long_wave, eq. 7]
 
     Returns
     -------
@@ -170,21 +154,18 @@ def advance(area, q, start, stop, drive, rub, angles, courant, most, spare, sums
     """
     n = area.size
     step = 2.0 * np.pi / n
-    amplitude, slip, ramp, whirl, weight, spin = drive
+    slip, spin = drive[1], drive[5]
     law, coefficient, lid, spread = int(rub[0]), rub[1], rub[2], rub[3]
     pull_cell, pull_face = spare[WORK, :n], spare[WORK + 1, :n]
     rate_a, rate_q = spare[WORK + 2, :n], spare[WORK + 3, :n]
     next_a, next_q, begin_q = spare[WORK + 4, :n], spare[WORK + 5, :n], spare[WORK + 6, :n]
-    for k in range(6):
+    for k in range(sums.size):
         sums[k] = 0.0
-    first = _offset(area, angles) * complex(np.cos(slip * start), -np.sin(slip * start))
-    time, steps, dt, fastest, push = start, 0, 0.0, 0.0, 0.0 + 0.0j
+    time, steps, dt, fastest = start, 0, 0.0, 0.0
     # 0: only the largest speed is asked for; 1 and 2: the two stages of Heun's method.
     stage = 0
     while time < stop:
-        force = _whirl(time + dt if stage == 2 else time, amplitude, slip, ramp, whirl, weight, spin)
-        _spread(force, angles[0], angles[1], pull_cell)
-        _spread(force, angles[2], angles[3], pull_face)
+        _whirl(time + dt if stage == 2 else time, drive, angles, pull_cell, pull_face)
         if stage == 1:
             # The speed may have grown since it was taken: a tenth is kept in hand.
             dt = min(courant * step / (1.1 * fastest), stop - time)
@@ -194,19 +175,9 @@ def advance(area, q, start, stop, drive, rub, angles, courant, most, spare, sums
         if stage < 2:
             for i in range(n):
                 next_a[i], next_q[i] = area[i], q[i]
+        limit = dt if stage > 0 else 0.0
         fastest = ring_rates(
-            next_a,
-            next_q,
-            spin,
-            0.0,
-            pull_cell,
-            pull_face,
-            step,
-            dt if stage > 0 else 0.0,
-            spread,
-            spare,
-            rate_a,
-            rate_q,
+            next_a, next_q, spin, 0.0, pull_cell, pull_face, step, limit, spread, spare, rate_a, rate_q
         )
         if steps >= most:
             return RAN_OUT
@@ -223,22 +194,14 @@ def advance(area, q, start, stop, drive, rub, angles, courant, most, spare, sums
             if not _predict(area, q, rate_a, rate_q, dt, next_a, next_q):
                 return AT_AXIS
         elif stage == 2:
-            force = _whirl(time, amplitude, slip, ramp, whirl, weight, spin)
-            back = complex(np.cos(slip * time), -np.sin(slip * time))
-            _spread(force, angles[0], angles[1], pull_cell)
-            _tally(area, begin_q, spin, pull_cell, angles, spare, back, sums, dt)
-            push += force * back * dt
+            x, y = _whirl(time, drive, angles, pull_cell, pull_face)
+            cosine, sine = np.cos(slip * time), np.sin(slip * time)
+            _tally(area, begin_q, spin, pull_cell, angles, spare, cosine, sine, dt, sums)
+            sums[7] += (x * cosine + y * sine) * dt
+            sums[8] += (y * cosine - x * sine) * dt
             _correct(area, q, rate_a, rate_q, dt, next_a, next_q)
             _rub(area, q, spin, law, coefficient, lid, 0.5 * dt)
             time += dt
             steps += 1
         stage = 2 if stage == 1 else 1
-    last = _offset(area, angles) * complex(np.cos(slip * time), -np.sin(slip * time))
-    # Momentum of the liquid as a whole: its mass times the push, the centripetal and the Coriolis part.
-    total = 0.0
-    for i in range(n):
-        total += area[i] * step
-    sums[0] = total * (push + whirl * whirl * sums[1] - complex(0.0, 2.0 * whirl) * (last - first))
-    for k in range(6):
-        sums[k] /= stop - start
     return steps

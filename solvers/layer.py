@@ -6,7 +6,7 @@ The state is `solvers.finite_volume`'s; here are units, starting states, whirl p
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,57 +14,14 @@ from numpy.typing import NDArray
 from fluid.fill import Fill
 from fluid.friction import LINEAR, NONE, QUADRATIC, STOKES, stokes_coefficient
 from meshes.border import InputError, require_positive
+from solvers.layer_state import Complex, MovingLayer, depth, settle_statics, start
 from solvers.prescribed import LayerFilm, LayerHistory, Numerics, Whirl
 
 Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
-_COURANT = 0.45
-_STEPS = 20_000_000  # in one whirl period
 _PERIODS = 400
 _TURNS = 20_000.0  # rad of spin
 _SETTLED = 1e-4
-
-
-@dataclass
-class _Layer:
-    """State of the layer and what drives it, lengths over R, times over 1/Omega."""
-
-    fill: Fill
-    whirl: Whirl
-    area: Array
-    momentum: Array
-    drive: tuple[float, float, float, float, float, float]
-    rub: tuple[float, float, float, float]
-    angles: Array
-    scratch: Array
-    time: float = 0.0
-    reason: str = ""
-
-    def periods(self, count: float) -> Complex | None:
-        """Advance by whirl periods; means over them, or None where the surface came to the axis."""
-        from solvers.forced_layer import AT_AXIS, advance
-
-        length = self.whirl.period * self.whirl.spin * count
-        means = np.empty(6, dtype=np.complex128)
-        steps = advance(
-            self.area,
-            self.momentum,
-            self.time,
-            self.time + length,
-            self.drive,
-            self.rub,
-            self.angles,
-            _COURANT,
-            _STEPS,
-            self.scratch,
-            means,
-        )
-        if steps < 0:
-            self.reason = "the surface came to the axis" if steps == AT_AXIS else "the time steps ran out"
-            return None
-        self.time += length
-        return means
 
 
 def simulate(
@@ -93,7 +50,7 @@ def simulate(
     InputError : no liquid, no free surface, a value out of its range
     """
     require_positive("duration", duration)
-    layer = _start(fill, whirl, friction, numerics or Numerics())
+    layer = start(fill, whirl, friction, numerics or Numerics())
     count = max(1, round(duration / whirl.period - 0.5 + 1e-9))
     rows = []
     for _ in range(count):
@@ -129,9 +86,9 @@ def settle(
     if not synchronous and whirl.ramp == 0.0:
         # The slowest free wave turns in some 30/Omega: a ramp of ten of them hardly stirs it.
         whirl = replace(whirl, ramp=max(6.0 * whirl.period, 300.0 / whirl.spin))
-    layer = _start(fill, whirl, friction, numerics or Numerics())
+    layer = start(fill, whirl, friction, numerics or Numerics())
     if synchronous:
-        _rest(layer)
+        settle_statics(layer)
         count = 2
     else:
         count = max(1, round(100.0 / (whirl.period * whirl.spin)))
@@ -175,12 +132,12 @@ def film(
     -------
     LayerFilm; it ends early where the surface came to the axis
     """
-    layer = _start(fill, whirl, friction, numerics or Numerics())
+    layer = start(fill, whirl, friction, numerics or Numerics())
     n = layer.area.size
-    time, depth = [], []
+    time, layers = [], []
     for _ in range(frames):
         time.append(layer.time / whirl.spin)
-        depth.append(_depth(layer))
+        layers.append(depth(layer))
         if layer.periods(periods / frames) is None:
             break
     moments = np.array(time)
@@ -191,7 +148,7 @@ def film(
     return LayerFilm(
         time=moments,
         theta=2.0 * math.pi * (np.arange(n) + 0.5) / n,
-        depth=np.array(depth),
+        depth=np.array(layers),
         deflection=np.asarray(whirl.amplitude * grown * np.exp(1j * whirl.slip * moments), dtype=complex),
     )
 
@@ -212,61 +169,7 @@ def friction_law(law: str, coefficient: float, fill: Fill, whirl: Whirl) -> tupl
     return laws[law], coefficient
 
 
-def _start(fill: Fill, whirl: Whirl, friction: tuple[int, float], numerics: Numerics) -> _Layer:
-    """Uniform layer at rest in the drum."""
-    from solvers.forced_layer import scratch
-
-    chamber = fill.chamber
-    if not 0.0 < fill.volume < chamber.capacity * (1.0 - 1e-9):
-        raise InputError("volume", fill.volume, f"above 0 and below the capacity ({chamber.capacity:g} m^3)")
-    radius, spin = chamber.radius, whirl.spin
-    n = numerics.cells
-    edge = 2.0 * math.pi * np.arange(n) / n
-    middle = edge + math.pi / n
-    area = np.full(n, fill.volume / (2.0 * math.pi * chamber.height * radius**2))
-    log = -0.5 * math.log1p(-2.0 * area[0])
-    law, coefficient = friction
-    # The quadratic coefficient is a pure number, the others are rates.
-    scaled = coefficient if law == QUADRATIC else coefficient / spin
-    return _Layer(
-        fill=fill,
-        whirl=whirl,
-        area=area,
-        momentum=-np.square(area),
-        drive=(
-            whirl.amplitude / radius,
-            whirl.slip / spin,
-            whirl.ramp * spin,
-            whirl.speed / spin,
-            whirl.gravity / (radius * spin**2),
-            1.0,
-        ),
-        rub=(float(law), scaled, 2.0 * radius / chamber.height, log**2 if numerics.dispersion else 0.0),
-        angles=np.stack([np.cos(middle), np.sin(middle), np.cos(edge), np.sin(edge)]),
-        scratch=scratch(n),
-    )
-
-
-def _rest(layer: _Layer) -> None:
-    """Equilibrium of the liquid under a synchronous whirl: a circle about the rotation axis, cell by cell."""
-    amplitude, whole = layer.drive[0], float(layer.area.sum())
-    cosine, sine = layer.angles[0], layer.angles[1]
-
-    def cells(squared: float) -> Array:
-        # Distance from the drum's axis to the circle of that squared radius about the rotation axis.
-        across = squared - np.square(amplitude * sine)
-        surface = np.sqrt(np.maximum(across, 0.0)) - amplitude * cosine
-        return np.asarray(0.5 * np.maximum(1.0 - np.square(np.clip(surface, 0.0, 1.0)), 0.0))
-
-    low, high = 0.0, (1.0 + amplitude) ** 2
-    for _ in range(200):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if cells(middle).sum() > whole else (low, middle)
-    layer.area[:] = cells(0.5 * (low + high))
-    layer.momentum[:] = -np.square(layer.area)
-
-
-def _history(layer: _Layer, rows: list[Complex]) -> LayerHistory:
+def _history(layer: MovingLayer, rows: list[Complex]) -> LayerHistory:
     """Means in SI units, and the layer as it stands in the frame of the deflection."""
     whirl, radius = layer.whirl, layer.fill.chamber.radius
     table = np.array(rows, dtype=np.complex128).reshape(len(rows), 6)
@@ -277,24 +180,18 @@ def _history(layer: _Layer, rows: list[Complex]) -> LayerHistory:
     theta = np.mod(middle - slip * layer.time + math.pi, 2.0 * math.pi) - math.pi
     order = np.argsort(theta)
     wanted = layer.fill.volume / (layer.fill.chamber.height * radius**2)
-    force, offset, turning, least, largest, pressure = table.T
+    force, moved, turning, least, largest, pressure = table.T
     return LayerHistory(
         time=np.asarray((np.arange(len(rows)) + 0.5) * whirl.period, dtype=np.float64),
         force_ratio=force / scale,
         pressure_ratio=pressure / scale,
-        offset=offset * radius,
+        offset=moved * radius,
         mean_rotation=turning.real * whirl.spin,
         depth_min=least.real * radius,
         depth_max=largest.real * radius,
         theta=theta[order],
-        depth=_depth(layer)[order],
+        depth=depth(layer)[order],
         mass_error=abs(float(layer.area.sum()) * 2.0 * math.pi / n / wanted - 1.0),
         converged=not layer.reason and bool(np.isfinite(table).all()),
         reason=layer.reason,
     )
-
-
-def _depth(layer: _Layer) -> Array:
-    """Depth of each cell, m."""
-    surface = np.sqrt(np.maximum(1.0 - 2.0 * layer.area, 0.0))
-    return np.asarray(layer.fill.chamber.radius * (1.0 - surface))

@@ -208,7 +208,7 @@ class FiniteVolumeSolver(SolverBase):  # type: ignore[no-untyped-call]
     ----------
     pde : the equation
     backend : numpy, whatever is asked
-    courant : Courant number, above 0, at most 0.5
+    courant : Courant number, above 0, at most 0.9
 
     Raises
     ------
@@ -223,13 +223,13 @@ class FiniteVolumeSolver(SolverBase):  # type: ignore[no-untyped-call]
         pde: AnnularLongWavePDE,
         *,
         backend: str | BackendBase[Any] = "auto",
-        courant: float = 0.45,
+        courant: float = 0.8,
     ) -> None:
         super().__init__(pde, backend="numpy" if backend == "auto" else backend)
         if getattr(type(pde), "evolution_rate", None) is not AnnularLongWavePDE.evolution_rate:
             raise InputError("pde", type(pde).__name__, "an AnnularLongWavePDE, its right-hand side as it is")
-        if not 0.0 < courant <= 0.5:
-            raise InputError("courant", courant, "above 0, at most 0.5")
+        if not 0.0 < courant <= 0.9:
+            raise InputError("courant", courant, "above 0, at most 0.9")
         layer.require_constant_spin(pde.terms)
         self.terms, self.courant = pde.terms, courant
 

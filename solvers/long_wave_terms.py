@@ -160,8 +160,7 @@ def march(
         whirl.spin,
     )
     rub = (float(law), coefficient, _lid(terms), _spread(terms, a))
-    sums = np.empty(6, dtype=np.complex128)
-    steps = advance(a, q, start, stop, drive, rub, ring(n), courant, _STEPS, scratch(n), sums)
+    steps = advance(a, q, start, stop, drive, rub, ring(n), courant, _STEPS, scratch(n), np.empty(9))
     return a * radius**2, q * radius**4, int(steps)
 
 

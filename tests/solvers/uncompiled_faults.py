@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fluid import long_wave as lw
-from solvers import face_flux, finite_volume, forced_layer
+from solvers import face_flux, finite_volume, forced_layer, layer_loads
 from tests.faults import Fault, seeded
 
 SPIN, PULL, TURNED = 1.0, 0.1, 0.4
@@ -180,13 +180,13 @@ def run(
     rub: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0),
     courant: float = 0.45,
 ) -> np.ndarray:
-    n, sums = area.size, np.zeros(6, dtype=complex)
-    spare = forced_layer.scratch(n)
-    steps = forced_layer.advance(
-        area, q, 0.0, length, (*drive, SPIN), rub, angles(n), courant, 10**6, spare, sums
-    )
+    n, sums = area.size, np.empty(9)
+    spare, whole = forced_layer.scratch(n), (*drive, SPIN)
+    first = layer_loads.offset(area, whole, angles(n), 0.0)
+    steps = forced_layer.advance(area, q, 0.0, length, whole, rub, angles(n), courant, 10**6, spare, sums)
     assert steps > 0
-    return sums
+    last = layer_loads.offset(area, whole, angles(n), length)
+    return layer_loads.means(sums, length, 2 * np.pi * area.mean(), drive[3], (first, last))
 
 
 def check_steps() -> None:
@@ -236,6 +236,17 @@ def check_synchronous() -> None:
     assert abs(sums[0] - np.pi * amplitude) < 1e-12 and abs(sums[5] - np.pi * amplitude) < 1e-12
 
 
+def check_offset() -> None:
+    """A wet circle about a point is a full disc less one about that point, seen from the deflection."""
+    n, amplitude, radius, time = 32, 0.1, 0.8, 0.7
+    theta = middles(n) - 0.9
+    surface = np.sqrt(radius**2 - (amplitude * np.sin(theta)) ** 2) - amplitude * np.cos(theta)
+    found = layer_loads.offset(0.5 * (1 - surface**2), (0.0, 0.3, 0.0, 1.0, 0.0, SPIN), angles(n), time)
+    # The missing disc lies at -amplitude along 0.9.
+    exact = amplitude * radius**2 / (1 - radius**2) * np.exp(1j * (0.9 - 0.3 * time))
+    assert abs(found - exact) < 1e-12
+
+
 def check_drive() -> None:
     """The ramp's growth, the push against the axis' acceleration, gravity downwards as the drum sees it."""
     slip, ramp, whirl, weight = -0.5, 3.0, 0.6, 0.2
@@ -243,14 +254,15 @@ def check_drive() -> None:
         part = min(time / ramp, 1.0)
         grown = part - np.sin(2 * np.pi * part) / (2 * np.pi)
         force = 0.01 * whirl**2 * grown * np.exp(1j * slip * time) - 1j * weight * np.exp(-1j * SPIN * time)
-        found = forced_layer._whirl(time, 0.01, slip, ramp, whirl, weight, SPIN)
-        assert abs(found - force) < 1e-15
-        pull, ring = np.empty(5), angles(5)
-        forced_layer._spread(found, ring[0], ring[1], pull)
-        np.testing.assert_allclose(pull, (force * np.exp(-1j * middles(5))).real, atol=1e-15)
+        cell, face, ring = np.empty(5), np.empty(5), angles(5)
+        x, y = forced_layer._whirl(time, (0.01, slip, ramp, whirl, weight, SPIN), ring, cell, face)
+        assert abs(complex(x, y) - force) < 1e-15
+        np.testing.assert_allclose(cell, (force * np.exp(-1j * middles(5))).real, atol=1e-15)
+        np.testing.assert_allclose(face, (force * np.exp(-1j * (middles(5) - np.pi / 5))).real, atol=1e-15)
 
 
-FACES, VOLUMES, STEPS = "solvers.face_flux", "solvers.finite_volume", "solvers.forced_layer"
+FACES, VOLUMES = "solvers.face_flux", "solvers.finite_volume"
+STEPS, LOADS = "solvers.forced_layer", "solvers.layer_loads"
 FAULTS = (
     Fault(FACES, "16.0 * z * total", "8.0 * z * total", check_logarithm),
     Fault(FACES, "+ 1.0 / 13.0", "+ 1.0 / 12.0", check_logarithm),
@@ -278,24 +290,35 @@ FAULTS = (
     Fault(VOLUMES, "-_LESS * reach", "_LESS * reach", check_dispersion),
     Fault(VOLUMES, "(2.0 * step)\n    slope[n", "step\n    slope[n", check_dispersion),
     Fault(VOLUMES, "min(mean, 2.0 * area[i]) * right[i]", "area[i] * right[i]", check_dispersion),
-    Fault(VOLUMES, "1.0 - ratio**n", "1.0 + ratio**n", check_ring),
+    Fault(VOLUMES, "1.0 - np.exp(n", "1.0 + np.exp(n", check_ring),
     Fault(VOLUMES, "side / root", "0.99 * side / root", check_ring),
     Fault(VOLUMES, "if lost > area[i] else 1.0", "if lost > 2.0 * area[i] else 1.0", check_drain),
     Fault(VOLUMES, "if mass[face] > 0.0", "if mass[face] < 0.0", check_drain),
     Fault(VOLUMES, "(1.0 - kept) * (flow[face]", "0.0 * (flow[face]", check_drain),
     Fault(STEPS, "np.exp(-rate * dt)", "np.exp(-2.0 * rate * dt)", check_friction),
     Fault(STEPS, "1.0 / (1.0 + rate * dt)", "1.0 - 2.0 * rate * dt", check_friction),
-    Fault(STEPS, "whirl * whirl * grown", "whirl * grown", check_drive),
+    Fault(STEPS, "amplitude * whirl * whirl * grown", "amplitude * whirl * grown", check_drive),
     Fault(STEPS, "time / ramp - np.sin", "time / ramp + np.sin", check_drive),
-    Fault(STEPS, "-np.cos(spin * time))", "np.cos(spin * time))", check_drive),
-    Fault(STEPS, "force.imag * sine[i]", "force.real * sine[i]", check_drive),
+    Fault(STEPS, "- weight * np.cos(spin * time)", "+ weight * np.cos(spin * time)", check_drive),
+    Fault(STEPS, "y * angles[1, i]", "x * angles[1, i]", check_drive),
+    Fault(STEPS, "y * angles[3, i]", "y * angles[1, i]", check_drive),
     Fault(STEPS, "0.5 * (q[i] + next_q[i] + dt * rate_q[i])", "next_q[i]", check_steps),
     Fault(STEPS, "time + dt if stage == 2 else time", "time", check_steps),
-    Fault(STEPS, "complex(0.0, 2.0 * whirl)", "complex(0.0, whirl)", check_force),
-    Fault(STEPS, "+ whirl * whirl * sums[1]", "- whirl * whirl * sums[1]", check_force),
-    Fault(STEPS, "moment_y += lever[i] * sine[i]", "moment_y += lever[i] * cosine[i]", check_force),
-    Fault(STEPS, "force_y += pressure[i] * sine[i]", "force_y -= pressure[i] * sine[i]", check_force),
-    Fault(STEPS, "(1.0 + surface + surface * surface) / 3.0", "(1.0 + surface) / 2.0", check_synchronous),
+    Fault(LOADS, "- 2j * whirl_speed * drift", "- 1j * whirl_speed * drift", check_force),
+    Fault(LOADS, "+ whirl_speed**2 * moved", "- whirl_speed**2 * moved", check_force),
+    Fault(LOADS, "(1.0 + surface + surface * surface) / 3.0", "(1.0 + surface) / 2.0", check_offset),
+    Fault(LOADS, "lever @ angles[1])", "lever @ angles[0])", check_offset),
+    Fault(LOADS, "-1j * drive[1] * time", "1j * drive[1] * time", check_offset),
+    Fault(STEPS, "moment_y += lever[i] * angles[1, i]", "moment_y += lever[i] * angles[0, i]", check_force),
+    Fault(
+        STEPS, "force_y += pressure[i] * angles[1, i]", "force_y -= pressure[i] * angles[1, i]", check_force
+    ),
+    Fault(
+        STEPS, "(moment_y * cosine - moment_x * sine)", "(moment_y * cosine + moment_x * sine)", check_force
+    ),
+    Fault(STEPS, "(force_y * cosine - force_x * sine)", "(force_y * cosine + force_x * sine)", check_force),
+    Fault(STEPS, "(y * cosine - x * sine) * dt", "(y * cosine + x * sine) * dt", check_force),
+    Fault(STEPS, "(1.0 + r + r * r) / 3.0", "(1.0 + r) / 2.0", check_synchronous),
     Fault(STEPS, "turning[i] = u * log", "turning[i] = log", check_force),
     Fault(STEPS, "(1.0 - _surface(least))", "(1.0 - _surface(largest))", check_force),
 )
