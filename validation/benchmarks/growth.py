@@ -1,0 +1,187 @@
+"""How the cost of this package grows: with points and cells, with the length of a sweep; the first call."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.layer import simulate
+from solvers.periodic import solve
+from solvers.prescribed import Numerics, Whirl
+from solvers.wave_response import respond
+from study.layer import answer_layer
+from validation.benchmarks.layers import AMPLITUDE, SPEED
+from validation.benchmarks.problems import SPIN, fill, response_speeds, steady_problem
+
+# Cells of the waves in a sweep over speeds, and the whirl periods that each speed is given.
+_SWEEP_CELLS, _SWEEP_PERIODS = 64, 3
+
+
+@dataclass(frozen=True)
+class Growth:
+    """Cost over a number.
+
+    Parameters
+    ----------
+    name : of the model
+    over : what the number counts
+    counts : shape (k,)
+    seconds : best of some repeats, s, shape (k,)
+    """
+
+    name: str
+    over: str
+    counts: list[int]
+    seconds: list[float]
+
+
+def best(run: Callable[[], object], repeats: int = 3, enough: float = 2.0) -> float:
+    """Shortest time of some runs after one to warm up, s.
+
+    Parameters
+    ----------
+    run : what is timed
+    repeats : how often at most
+    enough : no more runs after so many seconds
+    """
+    run()
+    times: list[float] = []
+    while len(times) < repeats and sum(times) < enough:
+        begin = time.perf_counter()
+        run()
+        times.append(time.perf_counter() - begin)
+    return min(times)
+
+
+def over_cells(quick: bool = False) -> list[Growth]:
+    """One steady wave over its points; a whirl period and a right-hand side of the long waves over cells.
+
+    Parameters
+    ----------
+    quick : only small numbers
+    """
+    counts = [2**k for k in range(4, 8 if quick else 14)]
+    problem = steady_problem()
+    waves = [best(partial(solve, problem.waves, problem.speed, points=n, most_points=n)) for n in counts]
+    few = [n for n in counts if n <= 1024]
+    whirl = Whirl(SPIN, SPEED, AMPLITUDE)
+    period = [best(partial(simulate, fill(), whirl, whirl.period, numerics=Numerics(n))) for n in few]
+    return [
+        Growth("kdv, one steady wave", "points", counts, waves),
+        Growth("long_wave, one whirl period", "cells", few, period),
+        Growth("long_wave, one right-hand side", "cells", counts, [right_hand_side(n) for n in counts]),
+    ]
+
+
+def over_speeds(quick: bool = False) -> list[Growth]:
+    """A sweep over the number of its whirl speeds.
+
+    Parameters
+    ----------
+    quick : only short ones
+    """
+    counts = [1, 10, 30] if quick else [1, 3, 10, 30, 100, 300, 1000]
+    layer, low, high = fill(), response_speeds()[0], response_speeds()[-1]
+
+    def each(one: Callable[[float], object]) -> list[float]:
+        rows = [np.linspace(low, high, n) if n > 1 else np.array([low]) for n in counts]
+        return [best(partial(_all, one, row)) for row in rows]
+
+    def periods(slip: float) -> object:
+        whirl = Whirl(SPIN, SPIN + slip, AMPLITUDE)
+        return simulate(layer, whirl, _SWEEP_PERIODS * whirl.period, numerics=Numerics(_SWEEP_CELLS))
+
+    problem = steady_problem().waves
+    curves = [best(partial(respond, problem, np.linspace(low, high, n))) for n in counts[1:]]
+    return [
+        Growth(
+            "statics", "speeds", counts, each(lambda _: answer_layer(layer, SPIN, SPIN, AMPLITUDE, "statics"))
+        ),
+        Growth(
+            "linear",
+            "speeds",
+            counts,
+            each(lambda s: answer_layer(layer, SPIN, SPIN + s, AMPLITUDE, "linear")),
+        ),
+        Growth("kdv, whole curve", "speeds", counts[1:], curves),
+        Growth(
+            f"long_wave, {_SWEEP_PERIODS} periods on {_SWEEP_CELLS} cells", "speeds", counts, each(periods)
+        ),
+    ]
+
+
+def _all(one: Callable[[float], object], row: NDArray[np.float64]) -> None:
+    for speed in row:
+        one(float(speed))
+
+
+def right_hand_side(cells: int) -> float:
+    """Time of one right-hand side of the long waves, s.
+
+    Parameters
+    ----------
+    cells : of the layer, not uniform and moving
+    """
+    from solvers.finite_volume import GHOSTS, WORK, rates
+
+    step = 2.0 * np.pi / cells
+    middle = step * (np.arange(cells) + 0.5)
+    area = 0.095 * (1.0 + 0.1 * np.cos(middle))
+    q = 0.01 * np.sin(2.0 * middle) * area - area**2
+    pull = 0.003 * np.cos(middle)
+    work, d_area, d_q = np.zeros((WORK, cells + 2 * GHOSTS)), np.zeros(cells), np.zeros(cells)
+    times = max(1, 200_000 // cells)
+
+    def run() -> None:
+        for _ in range(times):
+            rates(area, q, 1.0, 0.0, pull, pull, step, 1e-4 * step, 0.0, work, d_area, d_q)
+
+    return best(run, 5) / times
+
+
+def curve_time() -> tuple[float, bool]:
+    """Time of the response at 201 speeds, s, and whether the curve is complete."""
+    problem = steady_problem().waves
+    answer = respond(problem, response_speeds())
+    return best(lambda: respond(problem, response_speeds()), 5), answer.complete
+
+
+_FIRST = """
+import time
+begin = time.perf_counter()
+import numba
+from validation.benchmarks.growth import simulate, fill, Whirl, Numerics, SPIN, SPEED, AMPLITUDE
+whirl = Whirl(SPIN, SPEED, AMPLITUDE)
+loaded = time.perf_counter()
+simulate(fill(), whirl, whirl.period, numerics=Numerics(16))
+called = time.perf_counter()
+simulate(fill(), whirl, whirl.period, numerics=Numerics(16))
+print(loaded - begin, called - loaded, time.perf_counter() - called)
+"""
+
+
+def first_calls() -> dict[str, float]:
+    """Times of the first long-wave run of a process, s: nothing compiled yet, from the cache, and again."""
+    with tempfile.TemporaryDirectory() as folder:
+        environment = os.environ | {"NUMBA_CACHE_DIR": folder}
+        rows = []
+        for _ in range(2):
+            command = [sys.executable, "-c", _FIRST]
+            done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+            rows.append([float(one) for one in done.stdout.split()])
+    cold, warm = rows
+    return {
+        "imports": warm[0],
+        "nothing compiled": cold[1],
+        "from the cache": warm[1],
+        "second call": warm[2],
+    }
