@@ -6,27 +6,23 @@ A point is the scaled wave and the scaled speed together, [Re v, Im v, p]; dense
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dgetrf, dgetrs
 
 from meshes.border import InputError
-from solvers.periodic import TAIL, TOLERANCE, SteadyWave, as_wave, newton, scaled_unknowns, solve, tail_of
-from solvers.wave_modes import DENSE_MODES, System, WaveProblem, one_thread, resized
+from solvers.periodic import solve
+from solvers.wave_modes import DENSE_MODES, System, WaveProblem, one_thread
+from solvers.wave_newton import TAIL, TOLERANCE, SteadyWave, as_wave, newton, scaled_unknowns
+from solvers.wave_path import Pace, Path, march
 
 Array = NDArray[np.float64]
 
 MOST_CURVE_POINTS = 2 * (DENSE_MODES + 1)
-_CORRECTIONS = 12
-_SLOW, _NEAR = 0.2, 2
-_AMPLE = 1e-2
 _LONGEST, _SHORTEST = 0.5, 1e-7
-# Cosine of the turn between neighbouring points and size of the correction over the step: beyond, the point
-# may lie on another curve.
-_TURN, _STRAY = 0.8, 0.2
 
 
 @dataclass(frozen=True)
@@ -92,139 +88,27 @@ def follow(
     """
     if not (math.isfinite(start) and math.isfinite(stop)) or start == stop:
         raise InputError("stop", stop, f"a finite speed other than start ({start!r})")
+    if problem.forcing == 0.0:
+        raise InputError("forcing", problem.forcing, "other than 0")
     first = solve(problem, start, points=points, most_points=MOST_CURVE_POINTS)
     if not first.converged:
         return Branch((first,), (np.zeros(0),), False, f"no answer at the start: {first.reason}")
+    pace = Pace(longest, _SHORTEST, TOLERANCE, TAIL, DENSE_MODES, most_steps)
     with one_thread():
-        return _march(first, stop, most_steps, longest)
+        here = np.append(scaled_unknowns(first), start / problem.speed_scale)
+        path = march(functools.partial(System, problem), here, stop / problem.speed_scale, pace)
+        if not path.points:
+            return Branch((first,), (np.zeros(0),), False, path.reason)
+        return _branch(problem, path, first, stop)
 
 
-def _march(first: SteadyWave, stop: float, most_steps: int, longest: float) -> Branch:
-    system = System(first.problem, first.modes.size)
-    begin, target = first.speed / system.scale, stop / system.scale
-    sense = math.copysign(1.0, target - begin)
-    here = np.append(scaled_unknowns(first), begin)
-    ahead = _tangent(system, here, sense)
-    bend = np.zeros(here.size)
-    waves, tangents, step = [first], [ahead], 0.1 * longest
-
-    def ended(reason: str) -> Branch:
-        return Branch(tuple(waves), tuple(tangents), not reason, reason)
-
-    for _ in range(most_steps):
-        guess = here + step * (ahead + 0.5 * step * bend)
-        found = _correct(system, guess, ahead)
-        if found is None or not _follows(found, guess, ahead, step):
-            step *= 0.5
-            if step < _SHORTEST:
-                return ended("the steps became too short")
-            continue
-        wave = as_wave(system, found.here[:-1], float(found.here[-1]), found.error, found.corrections)
-        modes = _modes_for(wave, first.modes.size)
-        if modes > DENSE_MODES:
-            return ended(wave.reason)
-        if modes > system.modes:
-            # The same step once more with more modes; what the coarse ones found is not kept.
-            system = System(first.problem, modes)
-            here, ahead, bend = (widened(x, modes) for x in (here, ahead, bend))
-            continue
-        tangents.append(found.ahead)
-        if (found.here[-1] - target) * sense >= 0.0:
-            waves.append(newton(system, found.here[:-1], target))
-            return ended(waves[-1].reason)
-        waves.append(wave)
-        bend, here, ahead = (found.ahead - ahead) / step, found.here, found.ahead
-        if (here[-1] - begin) * sense < 0.0:
-            return ended("the curve came back to where it began")
-        if modes < system.modes:
-            system = System(first.problem, modes)
-            here, ahead, bend = (widened(x, modes) for x in (here, ahead, bend))
-        step = min(
-            longest, step * (1.5 if found.corrections <= 4 else 1.0 if found.corrections <= 6 else 0.7)
-        )
-    return ended(f"not at the end after {most_steps} steps")
-
-
-def _follows(found: _Corrected, guess: Array, ahead: Array, step: float) -> bool:
-    """The point continues the curve: a far correction or a sharp turn may lead to another one."""
-    gap = found.here - guess
-    return dot(found.ahead, ahead) >= _TURN and dot(gap, gap) <= (_STRAY * step) ** 2
-
-
-def _modes_for(wave: SteadyWave, fewest: int) -> int:
-    """Modes for the next point: twice as many if the tail is too high, half of them if that is ample."""
-    modes = wave.modes.size
-    if wave.tail > TAIL:
-        return 2 * modes + 1
-    if modes > 2 * fewest and tail_of(wave.modes[: modes // 2]) < _AMPLE * TAIL:
-        return modes // 2
-    return modes
-
-
-@dataclass(frozen=True)
-class _Corrected:
-    """Point on the curve (scaled wave and speed), unit tangent there, corrections it took, residual."""
-
-    here: Array
-    ahead: Array
-    corrections: int
-    error: float
-
-
-def dot(one: Array, other: Array) -> float:
-    """Inner product of (wave, speed): the mean square of the wave plus that of the speed."""
-    return float(2.0 * (one[:-1] @ other[:-1]) + one[-1] * other[-1])
-
-
-def widened(point: Array, modes: int) -> Array:
-    """Point or direction with modes cut off or set to 0."""
-    return np.append(resized(point[:-1], modes), point[-1])
-
-
-def _correct(system: System, guess: Array, direction: Array) -> _Corrected | None:
-    """Back to the curve on the plane across the direction; one factorisation, more where that is slow."""
-    factors, here, before = _bordered(system, guess, direction), guess, math.inf
-    for count in range(_CORRECTIONS):
-        r = system.residual(here[:-1], here[-1])
-        error = system.error(r, here[:-1])
-        if factors is None or error > before:
-            return None
-        if error <= TOLERANCE:
-            if count > _NEAR:
-                # The factors belong to a point too far off for the tangent.
-                factors = _bordered(system, here, direction)
-            return factors and _Corrected(here, _along(factors, direction), count, error)
-        if error > _SLOW * before:
-            factors = _bordered(system, here, direction)
-            if factors is None:
-                return None
-        off = dot(direction, here - guess)
-        here, before = here + dgetrs(*factors, np.append(-r, -off))[0], error
-    return None
-
-
-def _bordered(system: System, point: Array, direction: Array) -> tuple[Array, NDArray[np.intc]] | None:
-    """LU factors of the equations' derivative and the plane across the direction; None if singular."""
-    size = point.size - 1
-    matrix = np.empty((size + 1, size + 1), order="F")
-    matrix[:size, :size] = system.jacobian(point[:-1], point[-1], system.modes)
-    matrix[:size, size] = -point[:-1]
-    matrix[size, :size] = 2.0 * direction[:-1]
-    matrix[size, size] = direction[-1]
-    factors, pivots, fault = dgetrf(matrix, overwrite_a=1)
-    return None if fault else (factors, pivots)
-
-
-def _tangent(system: System, point: Array, sense: float) -> Array:
-    """Unit tangent at a point of the curve, towards rising (sense 1) or falling speed."""
-    across = np.append(np.zeros(point.size - 1), sense)
-    factors = _bordered(system, point, across)
-    if factors is None:
-        raise np.linalg.LinAlgError("the curve begins at a fold")
-    return _along(factors, across)
-
-
-def _along(factors: tuple[Array, NDArray[np.intc]], direction: Array) -> Array:
-    """Unit tangent of the curve, onward."""
-    ahead = dgetrs(*factors, np.append(np.zeros(direction.size - 1), 1.0))[0]
-    return np.asarray(ahead / math.sqrt(dot(ahead, ahead)))
+def _branch(problem: WaveProblem, path: Path, begin: SteadyWave, stop: float) -> Branch:
+    """Waves of the points; the last one is solved at the end of the range itself."""
+    waves = [begin]
+    for system, point in zip(path.systems[1:], path.points[1:], strict=True):
+        waves.append(as_wave(system, point.here[:-1], float(point.here[-1]), point.error, point.corrections))
+    reason = path.reason
+    if not reason:
+        waves[-1] = newton(path.systems[-1], path.points[-1].here[:-1], stop / path.systems[-1].scale)
+        reason = waves[-1].reason
+    return Branch(tuple(waves), tuple(point.ahead for point in path.points), not reason, reason)

@@ -7,64 +7,48 @@ from __future__ import annotations
 
 import functools
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fluid.kdv import KdvCoefficients, forcing, wave_frequency
 from meshes.border import InputError
-from solvers.wave_modes import System, WaveProblem, joined, one_thread, resized, split, values
+from solvers.wave_modes import (
+    DENSE_MODES,
+    DampingSystem,
+    System,
+    WaveProblem,
+    one_thread,
+    resized,
+    split,
+    values,
+)
+from solvers.wave_newton import TOLERANCE, SteadyWave, as_wave, newton, refined, scaled_unknowns
+from solvers.wave_path import Pace, landing, march
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 MOST_POINTS = 8192
-# Relative size of the last eighth of the spectrum that leaves the wave itself right to 1e-8 and better.
-TAIL = 1e-10
-TOLERANCE = 1e-11
-_NEWTON_STEPS = 20
-_HALVINGS = 8
-_HOMOTOPY = 12
-# On the way to an answer a coarse wave is enough.
-_COARSE, _COARSE_TAIL = 1e-3, 1e-4
-
-
-@dataclass(frozen=True)
-class SteadyWave:
-    """A steady wave, or how far the search for it came.
-
-    Parameters
-    ----------
-    problem : what it answers
-    speed : s, rad/s
-    modes : coefficients of e^{i n xi}, n = 1..M, of eta, m^2, shape (M,)
-    converged : the equations are met and the spectrum is resolved
-    reason : why not, in words; empty if converged
-    iterations : Newton steps in all
-    residual : of the equations, each mode over its coefficient, relative to the wave
-    tail : largest of the last eighth of the modes over the largest mode
-    """
-
-    problem: WaveProblem = field(repr=False)
-    speed: float
-    modes: Complex = field(repr=False)
-    converged: bool
-    reason: str
-    iterations: int
-    residual: float
-    tail: float
-
-    def profile(self, points: int) -> Array:
-        """Heights eta, m^2, at `points` equal steps of xi from 0, shape (points,); points above 2 M."""
-        if points <= 2 * self.modes.size:
-            raise InputError("points", points, f"above {2 * self.modes.size}")
-        return values(self.modes, points)
-
-    @property
-    def rms(self) -> float:
-        """Root mean square of eta, m^2."""
-        return float(np.sqrt(2.0) * np.linalg.norm(self.modes))
+# Damping and dispersion over steepening below which a wave at resonance is a bore; modes of its front.
+_WEAK, _ROUND = 1.0, 8.0
+# The way from a damped wave: its diffusion in the problem's scale, modes, accuracy and limits.
+_EXTRA, _FEWEST = 1.5, 15
+_COARSE, _COARSE_TAIL = 1e-5, 1e-4
+_WAY = Pace(
+    longest=1.0,
+    shortest=1e-4,
+    tolerance=_COARSE,
+    tail=_COARSE_TAIL,
+    most_modes=1023,
+    most_steps=400,
+    most_work=50.0 * DENSE_MODES**3,
+)
+# Points up to which a first try is refined before that way is taken.
+_MOST_AT_ONCE = 1024
+# The crest of the last wave that was found is short of the one that is looked for by some such factor.
+_SHORT = 1.4
 
 
 def family_problem(
@@ -92,13 +76,14 @@ def solve(
 ) -> SteadyWave:
     """One steady wave at a whirl speed, with as many points as it needs.
 
-    Where several answers exist this is one of them: the one next to the guess; else the one next to the
-    linear wave or, if Newton's method does not arrive from there, the one that grows out of a strongly damped
-    wave as the extra damping is taken away. `solvers.wave_response` finds the others.
+    Where several answers exist this is one of them: the one next to the guess; else the one next to the bore
+    of vanishing dispersion [theory: kdv, eq. 27] or to the linear wave or, if Newton's method does not arrive
+    from there, the one that grows out of a strongly damped wave as the extra damping is taken away, through
+    folds if there are any. `solvers.wave_response` finds the others.
 
     Parameters
     ----------
-    problem : equations
+    problem : equations; without forcing the answer is rest
     speed : whirl speed s seen from the drum, rad/s
     guess : modes of a wave near by, m^2, shape (m,)
     points : to begin with, 12 or more; doubled until the spectrum's tail falls below `TAIL`
@@ -110,105 +95,92 @@ def solve(
 
     Raises
     ------
-    InputError : a speed that is not finite, too few points, a free wave (forcing 0, defined up to a shift)
+    InputError : a speed that is not finite, too few points, a guess without forcing (a free wave is defined
+        up to a shift)
     """
     if not math.isfinite(speed):
         raise InputError("speed", speed, "a finite number")
     if points < 12:
         raise InputError("points", points, "12 or more")
+    system = System(problem, points // 2 - 1)
+    p = speed / system.scale
     if problem.forcing == 0.0:
-        raise InputError("forcing", problem.forcing, "other than 0")
+        if guess is not None:
+            raise InputError("forcing", problem.forcing, "other than 0 where a wave is guessed")
+        return as_wave(system, np.zeros(2 * system.modes), p, 0.0, 0)
     with one_thread():
-        system = System(problem, points // 2 - 1)
-        p = speed / system.scale
-        if guess is None:
-            wave = newton(system, system.linear(p), p)
-            wave = wave if wave.residual <= TOLERANCE else _from_damped(system, p, most_points)
-        else:
+        if guess is not None:
             scaled = np.asarray(guess, dtype=np.complex128) * complex(problem.steepening / system.scale)
-            wave = newton(system, resized(split(scaled), system.modes), p)
-        return refined(wave, most_points)
+            return refined(newton(system, resized(split(scaled), system.modes), p), most_points)
+        return _found(system, p, most_points)
 
 
-def refined(
-    wave: SteadyWave, most_points: int, tolerance: float = TOLERANCE, tail: float = TAIL
-) -> SteadyWave:
-    """The same wave on as many points as its spectrum needs."""
-    while wave.residual <= tolerance and wave.tail > tail and 4 * (wave.modes.size + 1) <= most_points:
-        system = System(wave.problem, 2 * wave.modes.size + 1)
-        y = resized(scaled_unknowns(wave), system.modes)
-        finer = newton(system, y, wave.speed / system.scale, tolerance)
-        wave = replace(finer, iterations=finer.iterations + wave.iterations)
-    return wave
-
-
-def scaled_unknowns(wave: SteadyWave) -> Array:
-    """Real unknowns of a wave in the scales of its problem."""
-    return split(wave.modes * (wave.problem.steepening / wave.problem.speed_scale))
-
-
-def newton(system: System, y: Array, p: float, tolerance: float = TOLERANCE) -> SteadyWave:
-    """Damped Newton iteration at a fixed scaled speed."""
-    r = system.residual(y, p)
-    error, reason, count = system.error(r, y), "", 0
-    while error > tolerance and count < _NEWTON_STEPS:
-        try:
-            dy = system.step(y, p, r)
-        except np.linalg.LinAlgError as fault:
-            reason = f"singular: {fault}"
+def _found(system: System, p: float, most_points: int) -> SteadyWave:
+    """An answer from nothing, or the last wave on the way to it and why that ended."""
+    count = 0
+    for start in _starts(system, p):
+        wave = refined(newton(system, start, p), min(most_points, _MOST_AT_ONCE))
+        count += wave.iterations
+        at_limit = 4 * (wave.modes.size + 1) > most_points
+        if wave.residual <= TOLERANCE and (wave.tail <= _COARSE_TAIL or at_limit):
             break
-        share, size = 1.0, system.size(r)
-        for _ in range(_HALVINGS):
-            trial = y + share * dy
-            r_trial = system.residual(trial, p)
-            if system.size(r_trial) < size:
-                break
-            share *= 0.5
-        else:
-            # At the rounding floor no step gains: the judgement is the residual's.
-            break
-        y, r, count = trial, r_trial, count + 1
-        error = system.error(r, y)
-    return as_wave(system, y, p, error, count, reason)
-
-
-def as_wave(system: System, y: Array, p: float, error: float, count: int, reason: str = "") -> SteadyWave:
-    """Unscaled wave with its verdict."""
-    v = joined(y)
-    tail = tail_of(v)
-    if error > TOLERANCE:
-        reason = reason or f"residual {error:.1e} after {count} Newton steps"
-    elif tail > TAIL:
-        reason = f"spectrum not resolved: tail {tail:.1e} on {2 * (v.size + 1)} points"
-    return SteadyWave(
-        problem=system.problem,
-        speed=float(p * system.scale),
-        modes=v * (system.scale / system.problem.steepening),
-        converged=not reason,
-        reason=reason,
-        iterations=count,
-        residual=error,
-        tail=tail,
+    else:
+        wave = _from_damped(system, p, most_points)
+        count += wave.iterations
+    wave = refined(replace(wave, iterations=count), most_points)
+    return (
+        wave
+        if wave.converged
+        else replace(wave, reason=_cause(wave, max(most_points // 2, wave.modes.size + 1)) + wave.reason)
     )
 
 
-def tail_of(v: Complex) -> float:
-    """Largest of the last eighth of the modes over the largest of all."""
-    size = np.abs(v)
-    return float(np.max(size[-max(1, size.size // 8) :]) / (np.max(size) or 1.0))
+def _starts(system: System, p: float) -> list[Array]:
+    """Waves to begin with, the likeliest first: a bore where steepening rules, the linear wave."""
+    strength = math.sqrt(2.0 * abs(system.half_forcing))
+    first, second = system.coefficient(p)[:2]
+    detuning = -first.real / strength
+    other = abs(second - first.real) - first.imag
+    if other > _WEAK * strength or abs(detuning) >= 4.0 / math.pi:
+        return [system.linear(p)]
+    front, n = -2.0 * math.asin(0.25 * math.pi * detuning), system.n
+    turn = np.exp(0.5j * front)
+    bore = 1j / math.pi * np.exp(-1j * front * n) * (turn / (n - 0.5) + np.conj(turn) / (n + 0.5))
+    return [split(strength * np.exp(-np.square(n / _ROUND)) * bore), system.linear(p)]
 
 
 def _from_damped(system: System, p: float, most_points: int) -> SteadyWave:
-    """Follow the answer while an extra diffusion, at first as strong as the forcing, is taken away."""
-    problem, scale, count = system.problem, system.scale, 0
-    modes, y = system.modes, system.linear(p)
-    for extra in (*(2.0 * 0.5**k for k in range(_HOMOTOPY)), 0.0):
-        damped = replace(problem, diffusion=problem.diffusion + extra * scale)
-        tolerance = _COARSE if extra else TOLERANCE
-        wave = newton(System(damped, modes), y, p, tolerance)
-        if not wave.residual <= tolerance:
-            wave = replace(wave, reason=f"{wave.reason}, with a diffusion of {damped.diffusion:.3g} rad^2/s")
-            break
-        wave = refined(wave, most_points, tolerance, _COARSE_TAIL)
-        modes, y, count = wave.modes.size, scaled_unknowns(wave), count + wave.iterations
-    return replace(wave, problem=problem, iterations=count)
+    """Follow the answer while an extra diffusion, at first stronger than the forcing, is taken away."""
+    problem, most = system.problem, most_points // 2 - 1
+    make = functools.partial(DampingSystem, problem, speed=p * system.scale)
+    damped = make(_FEWEST)
+    begun = newton(damped, damped.linear(_EXTRA), _EXTRA, _COARSE)
+    first = np.append(scaled_unknowns(begun), _EXTRA)
+    path = march(make, first, 0.0, replace(_WAY, most_modes=min(most, _WAY.most_modes)))
+    count = begun.iterations + sum(point.corrections for point in path.points)
+    if path.reason:
+        last = path.points[-1].here if path.points else first
+        wave = as_wave(System(problem, last.size // 2), last[:-1], p, math.inf, count)
+        extra = last[-1] * system.scale
+        return replace(wave, reason=f"followed down to {extra:.3g} rad^2/s more diffusion: {path.reason}")
+    y = landing(path, 0.0)
+    modes = max(system.modes, y.size // 2)
+    while True:
+        wave = newton(System(problem, modes), resized(y, modes), p)
+        count += wave.iterations
+        # The coarse wave may need more modes before it leads to the answer.
+        if wave.residual <= TOLERANCE or 2 * modes + 1 > most:
+            return replace(wave, iterations=count)
+        modes = 2 * modes + 1
+
+
+def _cause(wave: SteadyWave, most: int) -> str:
+    """What keeps the wave from being found, if it shows: short waves standing on it [theory: kdv, eq. 28]."""
+    n = np.arange(1.0, most + 1.0)
+    crest = _SHORT * np.max(np.abs(values(wave.modes, 4 * (wave.modes.size + 1))))
+    ahead = np.abs(wave.problem.frequency(n) / n - wave.speed)
+    standing = np.flatnonzero(ahead <= abs(wave.problem.steepening) * crest)
+    crests = int(standing[-1]) + 1 if standing.size else 0
+    if crests == most:
+        return f"the wave breaks, even waves of {most} crests round the drum do not outrun it; "
+    return f"a bore with waves of up to {crests} crests round the drum; " if crests > 50 else ""

@@ -1,9 +1,9 @@
-"""The equations of a steady periodic wave for its Fourier modes, their derivative and Newton's step.
+"""The equations of a steady periodic wave for its Fourier modes, and their derivative.
 
 Galerkin modes 1..M of a wave with mean 0, as many as 2 M + 2 points carry; the square is taken on more than
-3 M points, so nothing aliases. Up to `DENSE_MODES` modes the exact Jacobian is dense; above, it acts by FFT
-within GMRES, preconditioned by its dense low block and its diagonal. `one_thread` holds the BLAS to one
-thread (threadpoolctl): more of them slow matrices of this size down.
+3 M points, so nothing aliases. The exact derivative is there as a matrix, of the first modes or of all, and
+as what it does to a change, by FFT. `one_thread` holds the BLAS to one thread (threadpoolctl): more of them
+slow matrices of this size down.
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
-from scipy.sparse.linalg import LinearOperator, gmres
 from threadpoolctl import ThreadpoolController
 
 from meshes.border import InputError, require_not_negative
@@ -27,7 +26,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 DENSE_MODES = 511
-_LOW_MODES = 255
+_NO_MEAN = np.zeros(1, dtype=complex)
 
 
 @dataclass(frozen=True)
@@ -81,12 +80,21 @@ class System:
         self.diagonal = problem.frequency(n) / n / self.scale - 1j * damping
         self.half_forcing = 0.5 * problem.forcing * problem.steepening / self.scale**2
         self.points = int(fft.next_fast_len(3 * modes + 1, real=True))
-        self.weight = 1.0 / (1.0 + np.abs(self.diagonal - self.diagonal[0].real))
+        weight = 1.0 / (1.0 + np.abs(self.diagonal - self.diagonal[0].real))
+        self.weight = np.concatenate((weight, weight))
+
+    def coefficient(self, p: float) -> Complex:
+        """Coefficient of each mode in its own equation, shape (M,)."""
+        return np.asarray(self.diagonal - p)
+
+    def by_parameter(self, y: Array, p: float) -> Array:
+        """Derivative of the equations with respect to p, shape (2 M,)."""
+        return -y
 
     def linear(self, p: float) -> Array:
         """Wave of the linear equation; near resonance no higher than what nonlinearity lets stand."""
         v = np.zeros(self.modes, dtype=complex)
-        gap = self.diagonal[0] - p
+        gap = self.coefficient(p)[0]
         v[0] = self.half_forcing / gap if gap != 0.0 else 1.0
         v[0] /= max(1.0, abs(v[0]))
         return split(v)
@@ -95,69 +103,66 @@ class System:
         """What is left of the equations, shape (2 M,)."""
         v = joined(y)
         square = fft.rfft(np.square(values(v, self.points)), norm="forward")
-        r = (self.diagonal - p) * v + 0.5 * square[1 : self.modes + 1]
+        r = self.coefficient(p) * v + 0.5 * square[1 : self.modes + 1]
         r[0] -= self.half_forcing
         return split(r)
 
     def error(self, r: Array, y: Array) -> float:
         """Residual of each mode over its coefficient, relative to the wave."""
-        return self.size(r) / (float(np.linalg.norm(y)) or 1.0)
+        return self.size(r) / (length(y) or 1.0)
 
     def size(self, r: Array) -> float:
         """Residual with each mode over its coefficient."""
-        return float(np.linalg.norm(r * np.concatenate((self.weight, self.weight))))
+        return length(r * self.weight)
 
-    def jacobian(self, y: Array, p: float, modes: int) -> Array:
-        """Exact derivative with respect to the first modes, shape (2 modes, 2 modes)."""
+    def act(self, heights: Array, p: float, x: Array) -> Array:
+        """The derivative at the wave of these heights times a change x, shape (2 M,)."""
+        dv = joined(x)
+        product = fft.rfft(heights * values(dv, self.points), norm="forward")
+        return split(self.coefficient(p) * dv + product[1 : self.modes + 1])
+
+    def jacobian(self, y: Array, p: float, modes: int, border: int = 0) -> Array:
+        """Exact derivative with respect to the first modes, in columns; with room for a border.
+
+        Shape (2 modes + border, 2 modes + border); the border is not set.
+        """
         v = joined(y)
         wave = np.zeros(3 * modes, dtype=complex)  # wave numbers -(modes - 1) ... 2 modes
         kept = min(2 * modes, self.modes)
         wave[modes : modes + kept] = v[:kept]
         wave[: modes - 1] = np.conj(v[: modes - 1][::-1])
         (tr, hr), (ti, hi) = _difference_and_sum(wave.real), _difference_and_sum(wave.imag)
-        matrix = np.empty((2 * modes, 2 * modes))
-        np.add(tr, hr, out=matrix[:modes, :modes])
-        np.subtract(hi, ti, out=matrix[:modes, modes:])
-        np.add(hi, ti, out=matrix[modes:, :modes])
-        np.subtract(tr, hr, out=matrix[modes:, modes:])
-        d, k = self.diagonal[:modes] - p, np.arange(modes)
+        # Rows of the transpose: Toeplitz and Hankel parts are symmetric, but for the sign of the diagonal's.
+        m, full = modes, 2 * modes
+        matrix = np.empty((full + border, full + border))
+        np.add(tr, hr, out=matrix[:m, :m])
+        np.subtract(hi, ti, out=matrix[:m, m:full])
+        np.add(hi, ti, out=matrix[m:full, :m])
+        np.subtract(tr, hr, out=matrix[m:full, m:full])
+        d, k = self.coefficient(p)[:m], np.arange(m)
         matrix[k, k] += d.real
-        matrix[modes + k, modes + k] += d.real
-        matrix[k, modes + k] -= d.imag
-        matrix[modes + k, k] += d.imag
-        return matrix
+        matrix[m + k, m + k] += d.real
+        matrix[k, m + k] += d.imag
+        matrix[m + k, k] -= d.imag
+        return matrix.T
 
-    def step(self, y: Array, p: float, r: Array) -> Array:
-        """Newton's step; raises LinAlgError if it cannot be had."""
-        if self.modes <= DENSE_MODES:
-            return np.asarray(np.linalg.solve(self.jacobian(y, p, self.modes), -r))
-        return self._krylov_step(y, p, r)
 
-    def _krylov_step(self, y: Array, p: float, r: Array) -> Array:
-        m, low = self.modes, _LOW_MODES
-        heights = values(joined(y), self.points)
-        diagonal = self.diagonal - p
-        inverse = np.linalg.inv(self.jacobian(y, p, low))
+class DampingSystem(System):
+    """The same at a fixed speed: an extra diffusion, in the problem's scale, takes the place of p."""
 
-        def act(x: Array) -> Array:
-            dv = joined(np.ravel(x))
-            product = fft.rfft(heights * values(dv, self.points), norm="forward")
-            return split(diagonal * dv + product[1 : m + 1])
+    def __init__(self, problem: WaveProblem, modes: int, speed: float) -> None:
+        super().__init__(problem, modes)
+        self.speed = speed
+        self._still = self.diagonal - speed / self.scale
 
-        def approximate(x: Array) -> Array:
-            z = joined(np.ravel(x))
-            z[low:] /= diagonal[low:]
-            z[:low] = joined(inverse @ split(z[:low]))
-            return split(z)
+    def coefficient(self, p: float) -> Complex:
+        """Coefficient of each mode in its own equation, shape (M,)."""
+        return np.asarray(self._still - (1j * p) * self.n)
 
-        shape = (2 * m, 2 * m)
-        dy, fault = gmres(
-            LinearOperator(shape, act, dtype=float), -r, M=LinearOperator(shape, approximate, dtype=float),
-            rtol=1e-4, atol=0.0, restart=80, maxiter=5,
-        )  # fmt: skip
-        if fault:
-            raise np.linalg.LinAlgError("GMRES did not converge")
-        return np.asarray(dy)
+    def by_parameter(self, y: Array, p: float) -> Array:
+        """Derivative of the equations with respect to p, shape (2 M,)."""
+        m = self.modes
+        return np.concatenate((self.n * y[m:], -self.n * y[:m]))
 
 
 def one_thread() -> AbstractContextManager[object]:
@@ -168,6 +173,11 @@ def one_thread() -> AbstractContextManager[object]:
 @functools.cache
 def _controller() -> ThreadpoolController:
     return ThreadpoolController()
+
+
+def length(x: Array) -> float:
+    """Root of the sum of squares."""
+    return math.sqrt(float(x @ x))
 
 
 def split(v: Complex) -> Array:
@@ -191,9 +201,7 @@ def resized(y: Array, modes: int) -> Array:
 
 def values(v: Complex, points: int) -> Array:
     """Values at equal steps of a real field without mean."""
-    spectrum = np.zeros(points // 2 + 1, dtype=complex)
-    spectrum[1 : v.size + 1] = v
-    return np.asarray(fft.irfft(spectrum, points, norm="forward"))
+    return np.asarray(np.fft.irfft(np.concatenate((_NO_MEAN, v)), points, norm="forward"))
 
 
 def _difference_and_sum(wave: Array) -> tuple[Array, Array]:

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshes.border import InputError
-from solvers.continuation import MOST_CURVE_POINTS, Branch, dot, follow, widened
-from solvers.periodic import SteadyWave, newton, refined, scaled_unknowns
+from solvers.continuation import MOST_CURVE_POINTS, Branch, follow
 from solvers.wave_modes import System, WaveProblem, one_thread
+from solvers.wave_newton import SteadyWave, newton, refined, scaled_unknowns
+from solvers.wave_path import segment
 from solvers.wave_stability import growth
 
 Array = NDArray[np.float64]
@@ -96,7 +97,7 @@ def _passages(branches: list[Branch], row: Array) -> tuple[tuple[tuple[SteadyWav
         for k, left in enumerate(branch.waves[:-1]):
             modes = max(left.modes.size, branch.waves[k + 1].modes.size)
             system = System(left.problem, modes)
-            curve = _segment(branch, k, modes)
+            curve = _segment(branch, k)
             for at, guess in _crossings(curve, row / system.scale):
                 wave = refined(newton(system, guess, row[at] / system.scale), MOST_CURVE_POINTS)
                 missed += not wave.converged
@@ -105,15 +106,11 @@ def _passages(branches: list[Branch], row: Array) -> tuple[tuple[tuple[SteadyWav
     return tuple(tuple(sorted(waves, key=lambda w: w.rms)) for waves in found), missed
 
 
-def _segment(branch: Branch, k: int, modes: int) -> Array:
-    """Cubic between points k and k + 1 with their tangents: coefficients of u^0 ... u^3, 0 < u < 1."""
+def _segment(branch: Branch, k: int) -> Array:
+    """Cubic between points k and k + 1."""
     scale = branch.waves[k].problem.speed_scale
     ends = [np.append(scaled_unknowns(w), w.speed / scale) for w in branch.waves[k : k + 2]]
-    a, b = (widened(x, modes) for x in ends)
-    chord = b - a
-    length = math.sqrt(dot(chord, chord))
-    start, stop = (length * widened(x, modes) for x in branch.tangents[k : k + 2])
-    return np.array([a, start, 3.0 * chord - 2.0 * start - stop, start + stop - 2.0 * chord])
+    return segment(*ends, *branch.tangents[k : k + 2])[0]
 
 
 def _crossings(curve: Array, row: Array) -> list[tuple[int, Array]]:

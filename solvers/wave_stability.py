@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 from scipy.linalg import eigvals
 
 from meshes.border import InputError
-from solvers.periodic import SteadyWave, scaled_unknowns
 from solvers.wave_modes import DENSE_MODES, System, one_thread, split
+from solvers.wave_newton import SteadyWave, scaled_unknowns
 
 Complex = NDArray[np.complex128]
 
@@ -43,7 +43,7 @@ def growth_rates(wave: SteadyWave) -> Complex:
         n = system.n[:, None]
         # d v_n/dt = -i n times the derivative of the equation of mode n.
         operator = np.vstack((n * jacobian[m:], -n * jacobian[:m]))
-        if problem.forcing == 0.0:
+        if problem.forcing == 0.0 and wave.rms > 0.0:
             shift = split(1j * system.n * wave.modes)
             basis = np.linalg.qr(shift[:, None], mode="complete")[0][:, 1:]
             operator = basis.T @ operator @ basis

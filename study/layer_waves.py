@@ -180,14 +180,15 @@ def kdv_answer(fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics)
     size = kdv.validity(family, eta, whirl.slip)
     sizes = {"wave_amplitude": float(size.amplitude), "other_family": float(size.neglected)}
     validity = judge("kdv", fill, whirl, sizes)
-    notes = (*([wave.reason] if wave.reason else []), *strained(validity))
-    if float(size.thinnest) <= 0.0:
-        notes = (*notes, "the wave would run the wall dry, which it does not know")
+    # Below nothing and above all that the drum holds there is no layer, whatever the equation says.
+    possible = float(size.thinnest) > 0.0 and float(eta.max()) < 0.5 * surface**2
+    reason = wave.reason if possible else "the wave would run the wall dry or fill the drum"
+    notes = (*([reason] if reason else []), *strained(validity))
     return LayerAnswer(
         force_ratio=complex(kdv.force_ratio(family, offset, whirl.amplitude)) if whirl.amplitude else 0j,
         offset=offset,
         mass_error=abs(float(area.mean()) / family.mean_area - 1.0),
-        converged=wave.converged,
+        converged=wave.converged and possible,
         in_range=not notes,
         mean_rotation=math.nan,
         wall_time=0.0,

@@ -53,6 +53,16 @@ FAULTS: tuple[Fault, ...] = (
     _wave_terms("- terms.damping,", "+ terms.damping,", test_wave_terms.assert_decay),
     _wave_terms("- terms.viscosity *", "+ terms.viscosity *", test_wave_terms.assert_decay),
     _wave_terms("terms.viscosity * np.square(n)", "terms.viscosity * n", test_wave_terms.assert_decay),
+    _wave_terms("terms.viscosity * np.square(n)", "terms.viscosity * n", test_wave_terms.assert_manufactured),
+    _wave_terms(
+        "-0.5j * terms.c.steepening", "-0.4j * terms.c.steepening", test_wave_terms.assert_manufactured
+    ),
+    _wave_terms("0.5j * terms.forcing", "-0.5j * terms.forcing", test_wave_terms.assert_manufactured),
+    _wave_terms(
+        "-0.5j * terms.c.steepening * n",
+        "-0.5j * terms.c.steepening * np.maximum(n, 1)",
+        test_wave_terms.assert_invariants,
+    ),
     # weights
     _weights("one - 3.0 * two + 4.0 * three", "one - 3.0 * two + 2.0 * three"),
     _weights("4.0 * three - two", "4.0 * three + two"),

@@ -8,8 +8,9 @@ import pytest
 from fluid.kdv import coefficients
 from meshes.border import InputError
 from solvers.continuation import Branch, follow
-from solvers.periodic import SteadyWave, family_problem, newton, solve
+from solvers.periodic import family_problem, solve
 from solvers.wave_modes import System, WaveProblem, split
+from solvers.wave_newton import SteadyWave, newton
 from solvers.wave_response import Response, _segment, respond
 from solvers.wave_stability import growth, growth_rates
 from tests.solvers.test_periodic import FAMILIES, PROGRADE, RETROGRADE, cnoidal, free_problem
@@ -59,7 +60,7 @@ def segments_follow_the_curve() -> None:
     scale = GENTLE.speed_scale
     for k in range(5, len(branch.waves) - 2, 8):
         modes = branch.waves[k].modes.size
-        middle = 0.5 ** np.arange(4) @ _segment(branch, k, modes)
+        middle = 0.5 ** np.arange(4) @ _segment(branch, k)
         system = System(GENTLE, modes)
         wave = newton(system, middle[:-1], middle[-1])
         assert wave.converged
@@ -176,13 +177,28 @@ def test_respond_returns_answers_that_solve_alone() -> None:
     assert not respond(GENTLE, GENTLE_SPEEDS[:3]).growth
 
 
-def test_curve_arrives_where_newton_alone_does_not() -> None:
+def test_one_answer_is_among_those_of_the_curve() -> None:
+    """Where Newton's method does not arrive by itself, at a resonance with many folds."""
     c = PROGRADE
     problem = family_problem(c, 1.0, decay=0.125, diffusion=0.025)
+    system, p = System(problem, 63), c.linear_speed / problem.speed_scale
+    assert not newton(system, system.linear(p), p).converged
     alone = solve(problem, c.linear_speed)
-    branch = follow(problem, c.linear_speed - 6.0, c.linear_speed)
-    assert not alone.converged
-    assert alone.reason
+    assert alone.converged
+    curve = respond(problem, c.linear_speed + np.array([-6.0, 0.0, 6.0]))
+    assert curve.complete, curve.reason
+    assert len(curve.waves[1]) > 1
+    gaps = [
+        np.linalg.norm(alone.modes[:100] - wave.modes[:100]) / np.linalg.norm(wave.modes)
+        for wave in curve.waves[1]
+    ]
+    # Both stop at residuals of 1e-11.
+    assert min(gaps) < 1e-8
+
+
+def test_curve_ends_where_it_is_asked_to() -> None:
+    c = PROGRADE
+    branch = follow(family_problem(c, 0.3, decay=0.2, diffusion=0.05), c.linear_speed - 6.0, c.linear_speed)
     assert branch.complete, branch.reason
     assert branch.waves[-1].speed == pytest.approx(c.linear_speed, rel=1e-14)
     assert branch.waves[-1].converged
@@ -213,6 +229,7 @@ def test_bad_input_is_named() -> None:
     for field, call in (
         ("stop", lambda: follow(GENTLE, 17.0, 17.0)),
         ("stop", lambda: follow(GENTLE, 17.0, math.nan)),
+        ("forcing", lambda: follow(free_problem(PROGRADE), 17.0, 18.0)),
         ("speeds", lambda: respond(GENTLE, [18.0, 17.0])),
         ("margin", lambda: respond(GENTLE, [17.0, 18.0], margin=-1.0)),
         ("wave", lambda: growth(solve(lost, PROGRADE.linear_speed, most_points=0))),
