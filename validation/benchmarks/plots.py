@@ -49,9 +49,12 @@ def accuracy_figure(section: Section, directory: Path) -> Path:
 
 
 def _logarithmic(axes: Any) -> None:
-    """Both axes, with powers of ten as the house style writes them: without mathtext."""
+    """Both axes, with powers of ten as the house style writes them, without mathtext; two at least upwards."""
     axes.set_xscale("log")
     axes.set_yscale("log")
+    low, high = (math.log10(value) for value in axes.get_ylim())
+    if math.floor(high) - math.ceil(low) < 1:
+        axes.set_ylim(10.0 ** math.floor(low), 10.0 ** math.ceil(high))
     axes.minorticks_off()
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(_power)
