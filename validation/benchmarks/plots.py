@@ -49,7 +49,7 @@ def accuracy_figure(section: Section, directory: Path) -> Path:
 
 
 def _logarithmic(axes: Any) -> None:
-    """Both axes, with powers of ten as the house style writes them, without mathtext; two at least upwards."""
+    """Both axes, with powers of ten as the house style writes them: without mathtext, upwards at least two."""
     axes.set_xscale("log")
     axes.set_yscale("log")
     low, high = (math.log10(value) for value in axes.get_ylim())
