@@ -49,7 +49,7 @@ def accuracy_figure(section: Section, directory: Path) -> Path:
 
 
 def _logarithmic(axes: Any) -> None:
-    """Both axes, with powers of ten as the house style writes them: without mathtext, upwards at least two."""
+    """Both axes, labelled at powers of ten as the house style writes them, upwards at two at least."""
     axes.set_xscale("log")
     axes.set_yscale("log")
     low, high = (math.log10(value) for value in axes.get_ylim())
