@@ -1,4 +1,4 @@
-"""Loads of a layer on its drum as means over a time, from what the time steps have summed up.
+"""The ring of cells, and a layer's loads on its drum as means over a time from what the steps have summed up.
 
 Lengths over R, times in the unit of the spin; complex numbers: along the deflection, 90 deg ahead of it.
 """
@@ -6,6 +6,8 @@ Lengths over R, times in the unit of the spin; complex numbers: along the deflec
 from __future__ import annotations
 
 import cmath
+import math
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +16,14 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 Drive = tuple[float, float, float, float, float, float]
+
+
+@lru_cache(maxsize=16)
+def ring(cells: int) -> Array:
+    """Cosine and sine at the cells' middles and at their left faces, shape (4, n); the first cell from 0."""
+    edge = 2.0 * math.pi * np.arange(cells) / cells
+    middle = edge + math.pi / cells
+    return np.stack([np.cos(middle), np.sin(middle), np.cos(edge), np.sin(edge)])
 
 
 def offset(area: Array, drive: Drive, angles: Array, time: float) -> complex:

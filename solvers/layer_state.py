@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from fluid.fill import Fill
 from fluid.friction import QUADRATIC
 from meshes.border import InputError
-from solvers.layer_loads import Drive, means, offset
+from solvers.layer_loads import Drive, means, offset, ring
 from solvers.prescribed import Numerics, Whirl
 
 Array = NDArray[np.float64]
@@ -94,8 +94,6 @@ def start(fill: Fill, whirl: Whirl, friction: tuple[int, float], numerics: Numer
         raise InputError("volume", fill.volume, f"above 0 and below the capacity ({chamber.capacity:g} m^3)")
     radius, spin = chamber.radius, whirl.spin
     n = numerics.cells
-    edge = 2.0 * math.pi * np.arange(n) / n
-    middle = edge + math.pi / n
     area = np.full(n, fill.volume / (2.0 * math.pi * chamber.height * radius**2))
     log = -0.5 * math.log1p(-2.0 * area[0])
     law, coefficient = friction
@@ -115,7 +113,7 @@ def start(fill: Fill, whirl: Whirl, friction: tuple[int, float], numerics: Numer
             1.0,
         ),
         rub=(float(law), scaled, 2.0 * radius / chamber.height, log**2 if numerics.dispersion else 0.0),
-        angles=np.stack([np.cos(middle), np.sin(middle), np.cos(edge), np.sin(edge)]),
+        angles=ring(n),
         scratch=scratch(n),
     )
 

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from fluid import long_wave
 from meshes.border import InputError
+from solvers.layer_loads import ring
 from solvers.long_wave_terms import (
     LongWaveTerms,
     faded_velocity,
     radial_force,
     require_layer,
-    ring,
     scaled,
 )
 

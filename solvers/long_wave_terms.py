@@ -10,7 +10,6 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +20,7 @@ from meshes.border import InputError, require_not_negative
 from solvers.face_flux import DRY, THIN
 from solvers.finite_volume import FULL, GHOSTS, WORK, rates
 from solvers.forced_layer import advance, scratch
+from solvers.layer_loads import ring
 from solvers.prescribed import Whirl
 
 Array = NDArray[np.float64]
@@ -203,14 +203,6 @@ def faded_velocity(a: Array, q: Array, spin: float) -> Array:
     square = np.square(a)
     found = 2.0 * (q + spin * square) * a / (square + np.maximum(square, THIN**2))
     return np.where(a > DRY, found, 0.0)
-
-
-@lru_cache(maxsize=16)
-def ring(cells: int) -> Array:
-    """Cosine and sine at the cells' middles and at their left faces, shape (4, n)."""
-    edge = 2.0 * math.pi * np.arange(cells) / cells
-    middle = edge + math.pi / cells
-    return np.stack([np.cos(middle), np.sin(middle), np.cos(edge), np.sin(edge)])
 
 
 def _spread(terms: LongWaveTerms, a: Array) -> float:
