@@ -97,10 +97,11 @@ def _half_slope(back: float, ahead: float) -> float:
 
 
 @_jit
-def half_slopes(area, head, velocity, half_head, half_velocity):
-    """Half of the monotonised central slopes of a ring's cells but the first and the last.
+def half_slopes(area, head, velocity, spin, half_head, half_velocity):
+    """Half of the slopes of a ring's cells but the first and the last, limited wave by wave.
 
-    Next to a dry cell there is no slope.
+    Differences of head and velocity are split into those that the two waves of the cell carry, of which
+    du/dA = (lambda - u/r^2)/L [theory: long_wave, eq. 3]. Next to a dry cell there is no slope.
     """
     n = half_head.size
     area_b, area_m, area_a = area[:n], area[1 : n + 1], area[2 : n + 2]
@@ -108,10 +109,21 @@ def half_slopes(area, head, velocity, half_head, half_velocity):
     velocity_b, velocity_m, velocity_a = velocity[:n], velocity[1 : n + 1], velocity[2 : n + 2]
     for i in range(n):
         wet = min(area_b[i], area_m[i], area_a[i]) > DRY
-        bend = _half_slope(head_m[i] - head_b[i], head_a[i] - head_m[i])
-        half_head[i] = bend if wet else 0.0
-        bend = _half_slope(velocity_m[i] - velocity_b[i], velocity_a[i] - velocity_m[i])
-        half_velocity[i] = bend if wet else 0.0
+        surface = np.maximum(_surface(area_m[i]), NEAREST)
+        # In a film the split has no digits, and it is not used.
+        log = log_of_surface(area_m[i], surface) if wet else 1.0
+        mean, half = _celerity(velocity_m[i], log, surface, spin)
+        carried = mean - velocity_m[i] / (surface * surface)
+        # Velocity over head of the wave that runs ahead and of the other one.
+        scale = 1.0 / (log * spin * spin)
+        ahead, behind = (carried + half) * scale, (carried - half) * scale
+        share = 1.0 / (ahead - behind)
+        head_1, head_2 = head_m[i] - head_b[i], head_a[i] - head_m[i]
+        velocity_1, velocity_2 = velocity_m[i] - velocity_b[i], velocity_a[i] - velocity_m[i]
+        first = _half_slope((velocity_1 - behind * head_1) * share, (velocity_2 - behind * head_2) * share)
+        second = _half_slope((ahead * head_1 - velocity_1) * share, (ahead * head_2 - velocity_2) * share)
+        half_head[i] = first + second if wet else 0.0
+        half_velocity[i] = ahead * first + behind * second if wet else 0.0
 
 
 @_jit

@@ -99,7 +99,7 @@ def _cells(area, q, spin, pull, work):
             work[row, end + i] = work[row, GHOSTS + i]
     inner = slice(1, n + 3)
     half_head, half_velocity = work[_HALF_HEAD, inner], work[_HALF_VELOCITY, inner]
-    half_slopes(work[_AREA], work[_HEAD], work[_VELOCITY], half_head, half_velocity)
+    half_slopes(work[_AREA], work[_HEAD], work[_VELOCITY], spin, half_head, half_velocity)
 
 
 @_inlined

@@ -67,9 +67,9 @@ def check_rates() -> None:
         errors.append((np.abs(d_area + slope(u * log)).mean(), np.abs(d_q - exact_q).mean()))
         mean, half = lw.wave_celerity(u, log, r, SPIN)
         assert abs(fastest / np.max(np.abs(mean) + half) - 1) < 0.02
-    # Second order quarters the error; at extrema the limiter leaves a little more.
-    assert np.all(np.array(errors[1]) < 0.3 * np.array(errors[0])), errors
-    assert errors[1][0] < 2e-4 and errors[1][1] < 1e-4, errors
+    # Second order quarters the error; at the few extrema of either wave the limiter leaves more.
+    assert np.all(np.array(errors[1]) < np.array(errors[0]) / 3.0), errors
+    assert errors[1][0] < 2e-5 and errors[1][1] < 1e-5, errors
 
 
 def check_dispersion() -> None:
@@ -116,7 +116,7 @@ def check_logarithm() -> None:
 
 
 def check_bore() -> None:
-    """A bore overshoots nowhere, and nothing is made or lost."""
+    """A bore overshoots nowhere to speak of, and nothing is made or lost."""
     n = 32
     area = np.where(middles(n) < np.pi, 0.14, 0.06)
     q, start = -SPIN * area**2, area
@@ -126,21 +126,50 @@ def check_bore() -> None:
         assert 0.0 < fastest < 2.0
         dt = 0.4 * 2 * np.pi / n / fastest
         area, q = area + dt * d_area, q + dt * d_q
-    assert area.max() <= 0.14 * (1 + 1e-9) and area.min() >= 0.06 * (1 - 1e-9)
+    # The slopes of two waves, each within its bounds, may add up: 1e-6 above and 1e-5 below.
+    assert area.max() <= 0.14 * (1 + 5e-6) and area.min() >= 0.06 * (1 - 5e-5)
     assert np.abs(area - start).max() > 0.03
     assert abs(area.sum() / before - 1) < 1e-14 and abs((q + SPIN * area).sum() / turning - 1) < 1e-13
 
 
 def check_slopes() -> None:
     """Face values lie between the cells' on both sides; an extremum has none of its own."""
-    value = np.array([0.0, 1.0, 3.0, 2.0, 2.1, 4.0, 4.0])
-    half, other = np.empty(5), np.empty(5)
-    face_flux.half_slopes(np.ones(7), value, value, half, other)
-    # At the third of them half of the central slope, 0.5, is cut back to the lesser difference, 0.1.
-    np.testing.assert_allclose(half, [0.75, 0.0, 0.0, 0.1, 0.0], atol=1e-15)
-    np.testing.assert_array_equal(half, other)
-    face_flux.half_slopes(np.array([1.0, 1.0, 1.0, 1.0, 1.0, 0.0, 1.0]), value, value, half, other)
-    np.testing.assert_allclose(half, [0.75, 0.0, 0.0, 0.0, 0.0], atol=1e-15)
+    value, still = np.array([0.0, 1.0, 3.0, 2.0, 2.1, 4.0, 4.0]), np.zeros(7)
+    deep = np.full(7, 0.1)
+    head, velocity = np.empty(5), np.empty(5)
+    # At the fourth of them half of the central slope, 0.5, is cut back to the lesser difference, 0.1.
+    limited = [0.75, 0.0, 0.0, 0.1, 0.0]
+    face_flux.half_slopes(deep, value, still, SPIN, head, velocity)
+    np.testing.assert_allclose([head, velocity], [limited, np.zeros(5)], atol=1e-14)
+    face_flux.half_slopes(deep, still, value, SPIN, head, velocity)
+    np.testing.assert_allclose([head, velocity], [np.zeros(5), limited], atol=1e-14)
+    deep[5] = 0.0
+    face_flux.half_slopes(deep, value, still, SPIN, head, velocity)
+    np.testing.assert_allclose(head, [0.75, 0.0, 0.0, 0.0, 0.0], atol=1e-14)
+
+
+def check_waves() -> None:
+    """Where one wave ends and the other begins neither has a slope: the waves are those of the equations."""
+    area, u, h = 0.1, 0.05, 1e-6
+
+    def fluxes(a: float, v: float) -> np.ndarray:
+        log, r = lw.layer_log(a), lw.free_surface_radius(a)
+        return np.array([lw.mass_flux(v, log), lw.bernoulli(v, log, a, r, SPIN, 0.0)])
+
+    by_area = (fluxes(area + h, u) - fluxes(area - h, u)) / (2 * h)
+    by_velocity = (fluxes(area, u + h) - fluxes(area, u - h)) / (2 * h)
+    _, waves = np.linalg.eig(np.stack([by_area, by_velocity], axis=1))
+    one, other = waves[1] / waves[0]
+    head, velocity = np.empty(1), np.empty(1)
+    # Static head is Omega^2 A here.
+    for first, second in ((one, other), (other, one)):
+        heads, speeds = np.array([-1.0, 0.0, 1.0]), u + np.array([-first, 0.0, second])
+        face_flux.half_slopes(np.full(3, area), heads, speeds, SPIN, head, velocity)
+        np.testing.assert_allclose([head[0], velocity[0]], 0.0, atol=1e-8)
+        # One wave on both sides, three times as steep on one of them, where the other wave comes in.
+        heads, speeds = np.array([-1.0, 0.0, 4.0]), u + np.array([-first, 0.0, 3.0 * first + second])
+        face_flux.half_slopes(np.full(3, area), heads, speeds, SPIN, head, velocity)
+        np.testing.assert_allclose([head[0], velocity[0]], [1.0, first], atol=1e-8)
 
 
 def check_drain() -> None:
@@ -270,6 +299,9 @@ FAULTS = (
     Fault(FACES, "0.25 * (back + ahead)", "0.5 * (back + ahead)", check_rates),
     Fault(FACES, "min(abs(central), abs(back), abs(ahead))", "abs(central)", check_bore),
     Fault(FACES, "slope if back * ahead > 0.0 else 0.0", "slope", check_slopes),
+    Fault(FACES, "(ahead * head_1 - velocity_1)", "(ahead * head_1 + velocity_1)", check_slopes),
+    Fault(FACES, "mean - velocity_m[i] / (surface * surface)", "mean", check_waves),
+    Fault(FACES, "scale = 1.0 / (log * spin * spin)", "scale = 0.5 / (log * spin * spin)", check_waves),
     Fault(FACES, "np.minimum(pull_l[i], pull_r[i])", "np.maximum(pull_l[i], pull_r[i])", check_circle),
     Fault(FACES, "head[i] + way * half_head[i]", "head[i]", check_rates),
     Fault(FACES, "u * a - spin * a * a", "u * a + spin * a * a", check_bore),
