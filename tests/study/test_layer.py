@@ -101,6 +101,18 @@ def test_json(capsys: pytest.CaptureFixture[str]) -> None:
     assert len(answer["theta"]) == len(answer["depth"])
 
 
+@pytest.mark.parametrize(
+    ("model", "whirl", "force"),
+    [("statics", SPIN, 1.0), ("linear", SPIN, 1.0), ("long_wave", 30.6, 0.0), ("kdv", 30.6, 0.0)],
+)
+def test_without_a_whirl_nothing_moves(model: str, whirl: float, force: float) -> None:
+    """The limit of the force ratio where theory has one, no force elsewhere; the layer stays as it is."""
+    answer = answer_layer(FILL, SPIN, whirl, 0.0, model)
+    assert answer.converged and answer.force_ratio == pytest.approx(force, abs=1e-12)
+    # Rounding, of which a layer in time keeps some.
+    assert abs(answer.offset) < 1e-14 and np.ptp(answer.depth) < 1e-12 * (R - A)
+
+
 def test_resonance_is_said(capsys: pytest.CaptureFixture[str]) -> None:
     kappa = 2.0
     # The pole of G: (1 - kappa) q^2 + 2 kappa (q - 1)^2 = 0, kappa = 2: 3 q^2 - 8 q + 4 = 0, q = 2/3 or 2.
