@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshes.border import require_not_negative, require_positive
+from solvers.rotor.system import RotorSystem
 
 Array = NDArray[np.float64]
 
@@ -53,4 +54,19 @@ class Jeffcott:
         """K - M Omega^2 + i C Omega of the dry rotor in the drum frame, N/m, shape of `speed`."""
         return np.asarray(
             self.stiffness - self.mass * np.square(speed) + 1j * self.damping * speed, dtype=complex
+        )
+
+    def system(self) -> RotorSystem:
+        """Equations of motion in the two directions across the axis; chambers in any plane move alike."""
+        one = np.eye(2)
+        return RotorSystem(
+            coordinates=("x", "y"),
+            mass=self.mass * one,
+            damping=self.damping * one,
+            gyroscopic=0.0 * one,
+            stiffness=self.stiffness * one,
+            # Its force turns with the spin, from the first direction to the second.
+            unbalance=self.unbalance * np.array([1.0, -1.0j]),
+            centre=one,
+            lean=0.0 * one,
         )
