@@ -66,7 +66,7 @@ class Jeffcott:
             gyroscopic=0.0 * one,
             stiffness=self.stiffness * one,
             # Its force turns with the spin, from the first direction to the second.
-            unbalance=self.unbalance * np.array([1.0, -1.0j]),
+            unbalance=np.array([self.unbalance, -1j * self.unbalance], dtype=complex),
             centre=one,
             lean=0.0 * one,
         )

@@ -46,8 +46,8 @@ class RotorSystem:
 
     def __post_init__(self) -> None:
         n = len(self.coordinates)
-        shapes = dict.fromkeys(("mass", "damping", "gyroscopic", "stiffness"), (n, n))
-        shapes |= {"unbalance": (n,), "centre": (2, n), "lean": (2, n)}
+        shapes: dict[str, tuple[int, ...]] = {"unbalance": (n,), "centre": (2, n), "lean": (2, n)}
+        shapes |= dict.fromkeys(("mass", "damping", "gyroscopic", "stiffness"), (n, n))
         for name, shape in shapes.items():
             found = getattr(self, name)
             if found.shape != shape or not np.isfinite(found).all():
