@@ -1,7 +1,7 @@
 """A finite-volume layer driven by a prescribed whirl: time steps, friction, and the loads on the drum.
 
-Heun's method with friction in two exact half steps around each step [theory: long_wave, eq. 8-11]. Lengths
-over R, times in the unit of the spin given. Compiled by numba with its cache on disk.
+Steps are those of `solvers.layer_step`. Lengths over R, times in the unit of the spin given. Compiled by
+numba with its cache on disk.
 """
 
 from __future__ import annotations
@@ -12,15 +12,14 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from fluid import friction, long_wave
-from solvers.face_flux import COMPILED, DRY, NEAREST, faded_velocity, log_of_surface
-from solvers.finite_volume import FULL, GHOSTS, WORK, ring_rates
+from fluid import long_wave
+from solvers.face_flux import COMPILED, NEAREST, faded_velocity, log_of_surface
+from solvers.finite_volume import GHOSTS, WORK, ring_rates
+from solvers.layer_step import correct, predict, surface_radius, wall_friction
 
 _jit: Any = njit(**COMPILED)
 
-_surface = _jit(long_wave.free_surface_radius)
 _wall = _jit(long_wave.wall_pressure)
-_damping = _jit(friction.damping_rate)
 
 RAN_OUT, AT_AXIS = -1, -2
 # Courant number beyond which a step is taken again.
@@ -30,24 +29,6 @@ _LARGEST = 1.0
 def scratch(cells: int) -> NDArray[np.float64]:
     """Scratch that `advance` wants for a ring of so many cells."""
     return np.zeros((WORK + 7, cells + 2 * GHOSTS))
-
-
-@_jit
-def _rub(area, q, spin, law, coefficient, lid, dt):
-    """Friction alone over a time dt: an exact decay of the velocity, cell by cell."""
-    if law == 0:
-        return
-    for i in range(area.size):
-        a = area[i]
-        if a <= DRY:
-            q[i] = -spin * a * a
-            continue
-        moved = q[i] + spin * a * a
-        depth = 1.0 - _surface(a)
-        rate = _damping(law, coefficient, lid, depth, a, moved / a)
-        # Quadratic friction: du/dt = -c |u| u has the hyperbola as its solution, the others the exponential.
-        kept = 1.0 / (1.0 + rate * dt) if law == 3 else np.exp(-rate * dt)
-        q[i] = moved * kept - spin * a * a
 
 
 @_jit
@@ -74,7 +55,7 @@ def _whirl(time, drive, angles, pull_cell, pull_face):
 def _cell_loads(area, q, spin, pull, pressure, lever, turning):
     """Pressure on the wall, first moment and mass flux of each cell."""
     for i in range(area.size):
-        r = np.maximum(_surface(area[i]), NEAREST)
+        r = np.maximum(surface_radius(area[i]), NEAREST)
         u, log = faded_velocity(area[i], q[i], spin), log_of_surface(area[i], r)
         pressure[i] = _wall(u, log, area[i], r, spin, pull[i])
         lever[i] = (1.0 - r) * (1.0 + r + r * r) / 3.0
@@ -106,28 +87,8 @@ def _tally(area, q, spin, pull, angles, work, cosine, sine, share, sums):
     sums[2] += (moment_x * cosine + moment_y * sine) * part
     sums[3] += (moment_y * cosine - moment_x * sine) * part
     sums[4] += turned * part
-    sums[5] += (1.0 - _surface(least)) * share
-    sums[6] += (1.0 - _surface(largest)) * share
-
-
-@_jit
-def _predict(area, q, rate_a, rate_q, dt, next_a, next_q):
-    """Euler step; tells whether the surface stays off the axis and every number is one."""
-    sound = True
-    for i in range(area.size):
-        next_a[i] = max(area[i] + dt * rate_a[i], 0.0)
-        next_q[i] = q[i] + dt * rate_q[i]
-        # Written so that nan is not sound either.
-        sound = sound and area[i] < FULL and next_a[i] < FULL and abs(next_q[i]) < np.inf
-    return sound
-
-
-@_jit
-def _correct(area, q, rate_a, rate_q, dt, next_a, next_q):
-    """Second stage of Heun's method."""
-    for i in range(area.size):
-        area[i] = 0.5 * (area[i] + max(next_a[i] + dt * rate_a[i], 0.0))
-        q[i] = 0.5 * (q[i] + next_q[i] + dt * rate_q[i])
+    sums[5] += (1.0 - surface_radius(least)) * share
+    sums[6] += (1.0 - surface_radius(largest)) * share
 
 
 @_jit
@@ -171,7 +132,7 @@ def advance(area, q, start, stop, drive, rub, angles, courant, most, spare, sums
             dt = min(courant * step / (1.1 * fastest), stop - time)
             for i in range(n):
                 begin_q[i] = q[i]
-            _rub(area, q, spin, law, coefficient, lid, 0.5 * dt)
+            wall_friction(area, q, spin, law, coefficient, lid, 0.5 * dt)
         if stage < 2:
             for i in range(n):
                 next_a[i], next_q[i] = area[i], q[i]
@@ -191,7 +152,7 @@ def advance(area, q, start, stop, drive, rub, angles, courant, most, spare, sums
             steps += 1
             continue
         if stage == 1:
-            if not _predict(area, q, rate_a, rate_q, dt, next_a, next_q):
+            if not predict(area, q, rate_a, rate_q, dt, next_a, next_q):
                 return AT_AXIS
         elif stage == 2:
             x, y = _whirl(time, drive, angles, pull_cell, pull_face)
@@ -199,8 +160,8 @@ def advance(area, q, start, stop, drive, rub, angles, courant, most, spare, sums
             _tally(area, begin_q, spin, pull_cell, angles, spare, cosine, sine, dt, sums)
             sums[7] += (x * cosine + y * sine) * dt
             sums[8] += (y * cosine - x * sine) * dt
-            _correct(area, q, rate_a, rate_q, dt, next_a, next_q)
-            _rub(area, q, spin, law, coefficient, lid, 0.5 * dt)
+            correct(area, q, rate_a, rate_q, dt, next_a, next_q)
+            wall_friction(area, q, spin, law, coefficient, lid, 0.5 * dt)
             time += dt
             steps += 1
         stage = 2 if stage == 1 else 1

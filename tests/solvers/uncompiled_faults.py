@@ -291,7 +291,7 @@ def check_drive() -> None:
 
 
 FACES, VOLUMES = "solvers.face_flux", "solvers.finite_volume"
-STEPS, LOADS = "solvers.forced_layer", "solvers.layer_loads"
+STEPS, LOADS, STAGES = "solvers.forced_layer", "solvers.layer_loads", "solvers.layer_step"
 FAULTS = (
     Fault(FACES, "16.0 * z * total", "8.0 * z * total", check_logarithm),
     Fault(FACES, "+ 1.0 / 13.0", "+ 1.0 / 12.0", check_logarithm),
@@ -327,14 +327,14 @@ FAULTS = (
     Fault(VOLUMES, "if lost > area[i] else 1.0", "if lost > 2.0 * area[i] else 1.0", check_drain),
     Fault(VOLUMES, "if mass[face] > 0.0", "if mass[face] < 0.0", check_drain),
     Fault(VOLUMES, "(1.0 - kept) * (flow[face]", "0.0 * (flow[face]", check_drain),
-    Fault(STEPS, "np.exp(-rate * dt)", "np.exp(-2.0 * rate * dt)", check_friction),
-    Fault(STEPS, "1.0 / (1.0 + rate * dt)", "1.0 - 2.0 * rate * dt", check_friction),
+    Fault(STAGES, "np.exp(-rate * dt)", "np.exp(-2.0 * rate * dt)", check_friction),
+    Fault(STAGES, "1.0 / (1.0 + rate * dt)", "1.0 - 2.0 * rate * dt", check_friction),
     Fault(STEPS, "amplitude * whirl * whirl * grown", "amplitude * whirl * grown", check_drive),
     Fault(STEPS, "time / ramp - np.sin", "time / ramp + np.sin", check_drive),
     Fault(STEPS, "- weight * np.cos(spin * time)", "+ weight * np.cos(spin * time)", check_drive),
     Fault(STEPS, "y * angles[1, i]", "x * angles[1, i]", check_drive),
     Fault(STEPS, "y * angles[3, i]", "y * angles[1, i]", check_drive),
-    Fault(STEPS, "0.5 * (q[i] + next_q[i] + dt * rate_q[i])", "next_q[i]", check_steps),
+    Fault(STAGES, "0.5 * (q[i] + next_q[i] + dt * rate_q[i])", "next_q[i]", check_steps),
     Fault(STEPS, "time + dt if stage == 2 else time", "time", check_steps),
     Fault(LOADS, "- 2j * whirl_speed * drift", "- 1j * whirl_speed * drift", check_force),
     Fault(LOADS, "+ whirl_speed**2 * moved", "- whirl_speed**2 * moved", check_force),
@@ -352,7 +352,7 @@ FAULTS = (
     Fault(STEPS, "(y * cosine - x * sine) * dt", "(y * cosine + x * sine) * dt", check_force),
     Fault(STEPS, "(1.0 + r + r * r) / 3.0", "(1.0 + r) / 2.0", check_synchronous),
     Fault(STEPS, "turning[i] = u * log", "turning[i] = log", check_force),
-    Fault(STEPS, "(1.0 - _surface(least))", "(1.0 - _surface(largest))", check_force),
+    Fault(STEPS, "(1.0 - surface_radius(least))", "(1.0 - surface_radius(largest))", check_force),
 )
 
 
