@@ -22,6 +22,14 @@ _damping = _jit(friction.damping_rate)
 
 
 @_jit
+def copy(source, target):
+    """Copy an array element by element: compiled code here may not ask for memory, as slices would."""
+    to, of = target.reshape(-1), source.reshape(-1)
+    for i in range(of.size):
+        to[i] = of[i]
+
+
+@_jit
 def wall_friction(area, q, spin, law, coefficient, lid, dt):
     """Friction alone over a time dt: an exact decay of the velocity, cell by cell."""
     if law == 0:

@@ -1,0 +1,291 @@
+"""Rotor and liquid layers through time together [theory: coupling].
+
+Each step looks for the mean acceleration of every chamber's axis that makes the layers' change of momentum
+and the rotor's trapezium agree: momentum is handed over to rounding, and the rotor's part is stable for any
+stiffness. SI units; layers over their wall radius. Compiled by numba with its cache on disk.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from solvers.coupled_layer import DONE, TOO_LONG, layer_step, measure
+from solvers.coupled_parts import flow_inertia, motor_torque, relative_momentum, solve
+from solvers.face_flux import COMPILED
+from solvers.layer_step import copy
+from solvers.machine import (
+    BORES,
+    DISAGREED,
+    DRIVE,
+    FRICTION,
+    GRAVITY,
+    HEAT,
+    LAW,
+    LAYER_STEPS,
+    LOSS,
+    MASS,
+    MISSED,
+    MOTOR,
+    PROFILE,
+    RADIUS,
+    STEPS,
+    SUPPORT,
+    TORQUE,
+    UNBALANCE,
+    WEIGHT,
+)
+
+_jit: Any = njit(**COMPILED)
+
+RAN_OUT, NOT_COUPLED, STOPPED = 3, 4, 5
+# A step is done once two estimates of the mean accelerations differ by this, relative to the largest; it may
+# pass with this much more after the most rounds, otherwise it is shortened.
+_AGREED, _PASSABLE, _ROUNDS, _SHORTEST = 1e-6, 1e2, 16, 1e-3
+
+
+@_jit
+def _move_layers(machine, state, room, dt):
+    """All layers through one step under the guessed accelerations; what went wrong, and the fastest wave."""
+    fastest, spins, turn, push, rub = 0.0, room.spins, room.turn, room.push, room.rub
+    copy(room.area, state.area)
+    copy(room.momentum, state.momentum)
+    for j in range(machine.layers.shape[0]):
+        layer = machine.layers[j]
+        x = (machine.gravity[0] - room.guess[j, 0]) / layer[RADIUS]
+        y = (machine.gravity[1] - room.guess[j, 1]) / layer[RADIUS]
+        for end in range(2):
+            cosine, sine = turn[2 * end], turn[2 * end + 1]
+            push[2 * end], push[2 * end + 1] = x * cosine + y * sine, y * cosine - x * sine
+        copy(layer[LAW:], rub)
+        if layer[LAW] == 2.0:
+            # Stokes' friction at the frequency of a free wave goes with the root of the spin.
+            rub[1] *= np.sqrt(0.5 * (spins[0] + spins[1]))
+        status, speed = layer_step(
+            *(state.area[j], state.momentum[j], spins, push, rub, dt, machine.angles, room.spare[j]),
+            room.gains[j],
+        )
+        fastest = max(fastest, speed)
+        if status != DONE:
+            return status, fastest
+    return DONE, fastest
+
+
+@_jit
+def _measure_layers(machine, state, room):
+    """The layers' momenta at both ends of the step, and the inertia of their flows."""
+    turn, spins = room.turn, room.spins
+    cosine, sine = 0.5 * (turn[0] + turn[2]), 0.5 * (turn[1] + turn[3])
+    size = np.hypot(cosine, sine)
+    for j in range(machine.layers.shape[0]):
+        layer = machine.layers[j]
+        measure(state.area[j], state.momentum[j], spins[1], machine.angles, room.spare[j], room.end[j])
+        relative_momentum(room.begin[j], layer, spins[0], turn[0], turn[1], room.before[j])
+        relative_momentum(room.end[j], layer, spins[1], turn[2], turn[3], room.after[j])
+        flow_inertia(room.begin[j], layer, cosine / size, sine / size, room.inertia[j])
+
+
+@_jit
+def _move_rotor(machine, state, room, dt):
+    """Change of the rotor's velocities over the step, given the layers' momenta [theory: coupling, eq. 5]."""
+    change, swing, left, turn = room.change, room.swing, room.left, room.turn
+    n, spin = change.size, 0.5 * (room.spins[0] + room.spins[1])
+    for i in range(n):
+        first = machine.unbalance[i] * complex(turn[0], turn[1])
+        last = machine.unbalance[i] * complex(turn[2], turn[3])
+        swing[i] = room.spins[0] * first.imag - room.spins[1] * last.imag
+        change[i] = -swing[i]
+        for k in range(n):
+            damping = machine.matrices[1, i, k] + spin * machine.matrices[2, i, k]
+            stiffness = machine.matrices[3, i, k]
+            left[i, k] = machine.matrices[0, i, k] + 0.5 * dt * damping + 0.25 * dt * dt * stiffness
+            x, v = state.rotor[k], state.rotor[n + k]
+            change[i] -= dt * (damping * v + stiffness * (x + 0.5 * dt * v))
+    for j in range(machine.layers.shape[0]):
+        mass, b, guess = machine.layers[j, MASS], machine.planes[j], room.guess[j]
+        xx, xy, yy = room.inertia[j, 0], room.inertia[j, 1], room.inertia[j, 2]
+        given_x = room.after[j, 0] - room.before[j, 0] + dt * (xx * guess[0] + xy * guess[1])
+        given_y = room.after[j, 1] - room.before[j, 1] + dt * (xy * guess[0] + yy * guess[1])
+        for i in range(n):
+            change[i] -= b[0, i] * given_x + b[1, i] * given_y
+            for k in range(n):
+                left[i, k] += (mass - xx) * b[0, i] * b[0, k] + (mass - yy) * b[1, i] * b[1, k]
+                left[i, k] -= xy * (b[0, i] * b[1, k] + b[1, i] * b[0, k])
+    solve(left, change)
+
+
+@_jit
+def _disagreement(machine, room, dt):
+    """Mean accelerations that the rotor's change means; their distance from the guess, and their size."""
+    gap, size, spin = 0.0, 0.0, room.spins[0]
+    for j in range(machine.layers.shape[0]):
+        for i in range(2):
+            total = 0.0
+            for k in range(room.change.size):
+                total += machine.planes[j, i, k] * room.change[k]
+            room.found[j, i] = total / dt
+            gap = max(gap, abs(room.found[j, i] - room.guess[j, i]))
+            size = max(size, abs(room.found[j, i]), 1e-6 * spin * spin * machine.layers[j, RADIUS])
+    return gap, size
+
+
+@_jit
+def _spin_after(machine, state, room, dt):
+    """Spin at the end of the step: on its ramp, or by the motor [theory: coupling, eq. 6]."""
+    n = room.change.size
+    spin = state.rotor[2 * n]
+    if machine.curve.shape[1] == 0:
+        return spin + machine.drive[0] * dt
+    load = 0.0
+    for i in range(n):
+        middle = (
+            0.5 * machine.unbalance[i] * complex(room.turn[0] + room.turn[2], room.turn[1] + room.turn[3])
+        )
+        load -= room.change[i] * middle.imag
+    for j in range(machine.layers.shape[0]):
+        load += machine.layers[j, WEIGHT] * machine.layers[j, RADIUS] ** 4 * room.gains[j, TORQUE]
+    after = spin
+    for _ in range(4):
+        after = spin + (dt * motor_torque(machine.curve, 0.5 * (spin + after)) - load) / machine.drive[1]
+    return after
+
+
+@_jit
+def _tally(machine, state, room, dt):
+    """Add one step's work and losses [theory: coupling, eq. 9-10]."""
+    sums, n = state.sums, room.change.size
+    spin = 0.5 * (room.spins[0] + room.spins[1])
+    for i in range(n):
+        mean = state.rotor[n + i] + 0.5 * room.change[i]
+        sums[UNBALANCE] -= room.swing[i] * mean
+        for k in range(n):
+            sums[SUPPORT] += (
+                dt * mean * machine.matrices[1, i, k] * (state.rotor[n + k] + 0.5 * room.change[k])
+            )
+    for j in range(machine.layers.shape[0]):
+        scale = machine.layers[j, WEIGHT] * machine.layers[j, RADIUS] ** 4
+        sums[DRIVE] += spin * scale * room.gains[j, TORQUE]
+        for i in range(2):
+            sums[GRAVITY] += 0.5 * dt * machine.gravity[i] * (room.before[j, i] + room.after[j, i])
+        sums[FRICTION] += scale * room.gains[j, HEAT]
+        sums[BORES] += scale * room.gains[j, LOSS]
+        sums[PROFILE] += scale * room.gains[j, MISSED]
+    if machine.curve.shape[1] > 0:
+        sums[MOTOR] += dt * spin * motor_torque(machine.curve, spin)
+
+
+@_jit
+def _couple(machine, state, room, dt):
+    """One step tried until rotor and layers agree; what went wrong, the fastest wave, what is left."""
+    n = room.change.size
+    spin, angle, fastest = state.rotor[2 * n], state.rotor[2 * n + 1], 0.0
+    room.spins[0], room.spins[1] = spin, spin
+    if machine.curve.shape[1] == 0:
+        room.spins[1] = spin + machine.drive[0] * dt
+    left = 0.0
+    for _ in range(_ROUNDS):
+        turned = angle + 0.5 * (spin + room.spins[1]) * dt
+        room.turn[0], room.turn[1] = np.cos(angle), np.sin(angle)
+        room.turn[2], room.turn[3] = np.cos(turned), np.sin(turned)
+        status, fastest = _move_layers(machine, state, room, dt)
+        if status != DONE:
+            return status, fastest, 0.0
+        _measure_layers(machine, state, room)
+        _move_rotor(machine, state, room, dt)
+        state.sums[LAYER_STEPS] += machine.layers.shape[0]
+        gap, size = _disagreement(machine, room, dt)
+        left = gap / max(size, 1e-300)
+        after = _spin_after(machine, state, room, dt)
+        left = max(left, abs(after - room.spins[1]) / spin)
+        if left <= _AGREED:
+            return DONE, fastest, left
+        copy(room.found, room.guess)
+        room.spins[1] = after
+    return DONE if left <= _PASSABLE * _AGREED else NOT_COUPLED, fastest, left
+
+
+@_jit
+def _guess(state, room, dt):
+    """Mean accelerations of the step to come, on a line through the last two steps'."""
+    count = room.guess.shape[0]
+    last, first = state.memory[count, 0], state.memory[count, 1]
+    ahead = min((dt + last) / max(last + first, 1e-300), 2.0)
+    for j in range(count):
+        for i in range(2):
+            here = state.memory[j, i]
+            room.guess[j, i] = here + ahead * (here - state.memory[j, 2 + i])
+
+
+@_jit
+def _accept(state, room, dt, fastest):
+    """Make the step's end the state."""
+    n, count = room.change.size, room.guess.shape[0]
+    for i in range(n):
+        state.rotor[i] += dt * (state.rotor[n + i] + 0.5 * room.change[i])
+        state.rotor[n + i] += room.change[i]
+    state.rotor[2 * n + 1] += 0.5 * (room.spins[0] + room.spins[1]) * dt
+    state.rotor[2 * n] = room.spins[1]
+    for j in range(count):
+        for i in range(2):
+            state.memory[j, 2 + i] = state.memory[j, i]
+            state.memory[j, i] = room.found[j, i]
+    copy(room.end, room.begin)
+    last = state.memory[count]
+    last[1], last[0], last[2], last[3] = last[0], dt, fastest, min(1.0, 1.5 * last[3])
+
+
+@_jit
+def advance(machine, state, room, stop, courant, most):
+    """Advance rotor and layers to a time.
+
+    Parameters
+    ----------
+    machine, state, room : `solvers.machine`'s; the state is changed in place
+    stop : s
+    courant : Courant number; the rotor turns in a step by at most this share of a cell
+    most : most steps
+
+    Returns
+    -------
+    DONE, AT_AXIS of `solvers.coupled_layer`, RAN_OUT, NOT_COUPLED (the accelerations did not agree in steps
+    of a thousandth) or STOPPED (the motor stands)
+    """
+    n, count = room.change.size, room.guess.shape[0]
+    cell, last, taken = 2.0 * np.pi / machine.angles.shape[1], state.memory[count], 0
+    for j in range(count):
+        measure(
+            *(state.area[j], state.momentum[j], state.rotor[2 * n], machine.angles, room.spare[j]),
+            room.begin[j],
+        )
+    while state.rotor[2 * n + 2] < stop:
+        if state.rotor[2 * n] <= 0.0:
+            return STOPPED
+        if taken >= most:
+            return RAN_OUT
+        taken += 1
+        left = stop - state.rotor[2 * n + 2]
+        dt = last[3] * courant * cell / max(1.1 * last[2], state.rotor[2 * n])
+        # The last two steps share what is left, so that none is a sliver.
+        if dt >= left:
+            dt = left
+        elif dt > 0.5 * left:
+            dt = 0.5 * left
+        copy(state.area, room.area)
+        copy(state.momentum, room.momentum)
+        _guess(state, room, dt)
+        status, fastest, gap = _couple(machine, state, room, dt)
+        if status == TOO_LONG or (status == NOT_COUPLED and last[3] > _SHORTEST):
+            copy(room.area, state.area)
+            copy(room.momentum, state.momentum)
+            last[2], last[3] = max(last[2], fastest), 0.5 * last[3]
+            continue
+        if status != DONE:
+            return status
+        _tally(machine, state, room, dt)
+        _accept(state, room, dt, fastest)
+        state.rotor[2 * n + 2] = stop if dt == left else state.rotor[2 * n + 2] + dt
+        state.sums[STEPS] += 1.0
+        state.sums[DISAGREED] = max(state.sums[DISAGREED], gap)
+    return DONE
