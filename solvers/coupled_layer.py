@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from solvers.face_flux import COMPILED, DRY, NEAREST, faded_velocity, log_of_surface
 from solvers.finite_volume import GHOSTS, WORK, rates
-from solvers.layer_step import copy, correct, predict, surface_radius, wall_friction
+from solvers.layer_step import calm, copy, correct, predict, surface_radius, wall_friction
 from solvers.machine import ENERGY, FLOW, HEAT, INERTIA, LOSS, MISSED, MOMENT, SPINNING, TORQUE
 
 _jit: Any = njit(**COMPILED)
@@ -70,25 +70,37 @@ def _pull(x, y, angles, pull_cell, pull_face):
 
 
 @_jit
-def _losses(area, q, spin, euler, x, y, angles, rate_a, rate_q, dt, gains):
-    """Add what bores and the scheme, and the flow's profile, take from the layer [theory: coupling, eq. 8].
+def _energy(area, q, spin):
+    """Energy of the flow in the frame that does not turn, over rho h_c R^4 [theory: coupling, eq. 7]."""
+    total = 0.0
+    for i in range(area.size):
+        r = np.maximum(surface_radius(area[i]), NEAREST)
+        u = faded_velocity(area[i], q[i], spin)
+        turning = spin * area[i] * (0.5 * spin * (1.0 - area[i]) + u)
+        total += turning + 0.5 * u * u * log_of_surface(area[i], r)
+    return total * 2.0 * np.pi / area.size
 
-    The energy in the drum frame changes by the power of the body force; what is missing is lost. The Euler
-    force acts on the angular momentum, which the profile does not turn into energy to the last digit.
+
+@_jit
+def _power(area, q, spin, euler, x, y, angles, rate_a, gains, dt):
+    """Power of the body force in the frame that does not turn [theory: coupling, eq. 8].
+
+    Adds what the flow's profile makes of the changing spin: the Euler force acts on the angular momentum, which
+    the profile does not turn into energy to the last digit.
     """
     n = area.size
     step = 2.0 * np.pi / n
+    moment_x, moment_y, rate_x, rate_y = 0.0, 0.0, 0.0, 0.0
     for i in range(n):
-        a = area[i]
-        if a <= DRY:
-            continue
-        r = np.maximum(surface_radius(a), NEAREST)
-        u, log = faded_velocity(a, q[i], spin), log_of_surface(a, r)
-        by_area = u * log * (2.0 * spin - u / a) + 0.5 * u * u / (r * r) - 0.5 * spin * spin * r * r
-        change = by_area * rate_a[i] + u * log / a * (rate_q[i] + euler * a)
-        power = r * (x * angles[0, i] + y * angles[1, i]) * rate_a[i]
-        gains[LOSS] += dt * step * (power - change)
-        gains[MISSED] -= dt * step * euler * u * (a - log * (1.0 - a))
+        r = np.maximum(surface_radius(area[i]), NEAREST)
+        lever = (1.0 - r) * (1.0 + r + r * r) / 3.0
+        moment_x += lever * angles[0, i] * step
+        moment_y += lever * angles[1, i] * step
+        rate_x += r * angles[0, i] * rate_a[i] * step
+        rate_y += r * angles[1, i] * rate_a[i] * step
+        u, log = faded_velocity(area[i], q[i], spin), log_of_surface(area[i], r)
+        gains[MISSED] -= dt * step * euler * u * (area[i] - log * (1.0 - area[i]))
+    return x * (rate_x - spin * moment_y) + y * (rate_y + spin * moment_x)
 
 
 @_jit
@@ -136,6 +148,7 @@ def layer_step(area, q, spins, push, rub, dt, angles, spare, gains):
     _work(area, q, before, spins[0], step, gains)
     copy(area, next_a)
     copy(q, next_q)
+    gains[LOSS] = _energy(area, q, spins[0])
     fastest = 0.0
     for stage in range(2):
         spin, x, y = spins[stage], push[2 * stage], push[2 * stage + 1]
@@ -148,12 +161,15 @@ def layer_step(area, q, spins, push, rub, dt, angles, spare, gains):
         fastest = max(fastest, speed)
         if dt * fastest > LARGEST * step:
             return TOO_LONG, fastest
-        _losses(next_a, next_q, spin, euler, x, y, angles, rate_a, rate_q, 0.5 * dt, gains)
+        done = _power(next_a, next_q, spin, euler, x, y, angles, rate_a, gains, 0.5 * dt)
+        gains[LOSS] += 0.5 * dt * done
         if stage == 0:
             if not predict(area, q, rate_a, rate_q, dt, next_a, next_q):
                 return AT_AXIS, fastest
         else:
             correct(area, q, rate_a, rate_q, dt, next_a, next_q)
+            calm(area, q, spin)
+    gains[LOSS] -= _energy(area, q, spins[1]) + gains[MISSED]
     copy(q, before)
     wall_friction(area, q, spins[1], law, coefficient, lid, 0.5 * dt)
     _work(area, q, before, spins[1], step, gains)

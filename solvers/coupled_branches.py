@@ -1,0 +1,194 @@
+"""Solutions of the harmonic balance of rotor and liquid: all of them with one plane, by Newton with more."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.branches import find_branches
+from solvers.coupled_terms import Array, Balance, Complex, Index
+from solvers.rotor.vibration import solve_each
+
+# Shares of the full added mass from which Newton starts: 1 is the wall wet all over, 0 a liquid that the
+# deflection has left behind.
+_STARTS = (1.0, 0.75, 0.5, 0.25, 0.0)
+_STEPS = 40
+_ROUNDING = 1e-11  # of the largest term of the balance
+_SAME = 1e-6  # relative distance of two solutions that count as one
+
+
+def one_plane(balance: Balance) -> tuple[Complex, Index, NDArray[np.bool_]]:
+    """Every solution where all chambers sit in one plane [theory: rotor, eq. 30].
+
+    Parameters
+    ----------
+    balance : all its planes alike
+
+    Returns
+    -------
+    answer : coordinates, shape (k, n)
+    which : the speed each belongs to, shape (k,)
+    converged : all solutions of a speed were found, shape (s,)
+    """
+    p, squared = balance.plane[0], np.square(balance.speed)
+    everyone = np.arange(balance.speed.size)
+    free = solve_each(balance.stiffness, balance.force)
+    unit = solve_each(balance.stiffness, np.broadcast_to(p, balance.force.shape))
+    sound = np.asarray(np.isfinite(free).all(axis=1) & np.isfinite(unit).all(axis=1))
+    free, unit = np.where(sound[:, None], free, 0.0), np.where(sound[:, None], unit, 0.0)
+    compliance, alone = 0.5 * unit @ np.conj(p), 0.5 * free @ np.conj(p)
+    moved = sound & (compliance != 0.0) & (alone != 0.0)
+    support = np.ones_like(compliance)
+    np.divide(1.0, compliance, out=support, where=moved)
+    force = np.where(moved, np.abs(support * alone), 1.0)
+    mass = sum(fill.mass for fill in balance.fills)
+    full = sum(fill.full_mass for fill in balance.fills)
+    limit = np.where(moved, balance.limit.min(axis=1), np.inf)
+    resistance = np.abs(support - squared * full)
+    straight = np.full(force.shape, np.inf)
+    np.divide(force, resistance, out=straight, where=resistance > 0.0)
+
+    def pull(deflection: Array, k: Index) -> Array:
+        """Liquid's pull beyond its mass at the chamber's centre; never decreases with the deflection."""
+        moment = balance.liquid(k, np.repeat(deflection[:, None], len(balance.fills), 1)).unbalance.sum(
+            axis=1
+        )
+        return np.asarray(squared[k] * np.maximum(moment - mass * deflection, 0.0))
+
+    elastic = support.real - squared * mass
+    most = force + squared * sum(fill.mass * fill.chamber.radius for fill in balance.fills)
+    # No solution is farther out than the damping or the stiffness allows.
+    reach = np.minimum(_over(force, np.abs(support.imag)), _over(most, np.abs(elastic))) * (1.0 + 1e-9)
+    bounded = np.isfinite(reach) | np.isinf(limit)
+    stop = np.where(moved & bounded & np.isfinite(limit), np.maximum(reach, limit), limit)
+    bent, owner, found = find_branches(pull, elastic, np.abs(support.imag), force, limit, stop)
+    linear = np.flatnonzero(moved & (straight <= limit))
+    still = np.flatnonzero(sound & ~moved)
+    size = np.concatenate((straight[linear], bent, np.abs(alone[still])))
+    which = np.concatenate((linear, owner, still)).astype(np.intp)
+    pulled = np.concatenate(
+        (squared[linear] * full * straight[linear], pull(bent, owner) + squared[owner] * mass * bent)
+    )
+    turn = _phase(support[which[: pulled.size]], alone[which[: pulled.size]], size[: pulled.size], pulled)
+    answer = free[which]
+    answer[: pulled.size] += unit[which[: pulled.size]] * (pulled * turn)[:, None]
+    lost = np.isin(everyone, which, invert=True)
+    return answer, which, found & bounded & sound & ~lost
+
+
+def _over(above: Array, below: Array) -> Array:
+    """Quotient, infinite where there is nothing to divide by."""
+    return np.asarray(np.divide(above, below, out=np.full(above.shape, np.inf), where=below > 0.0))
+
+
+def _phase(support: Complex, alone: Complex, size: Array, pulled: Array) -> Complex:
+    """Direction of the forward deflection of that size."""
+    return np.asarray(np.exp(1j * (np.angle(support * alone) - np.angle(support * size - pulled))))
+
+
+def several_planes(balance: Balance) -> tuple[Complex, Index, NDArray[np.bool_]]:
+    """Solutions where chambers sit in several planes: Newton from many starts, then from speed to speed.
+
+    Parameters and returns as in `one_plane`; solutions far from every start may be missed.
+    """
+    everyone = np.arange(balance.speed.size)
+    straight = balance.linear(everyone)
+    wet = np.asarray(np.isfinite(straight).all(axis=1))
+    wet &= np.all(np.abs(balance.forward(np.where(wet[:, None], straight, 0.0))) <= balance.limit, axis=1)
+    answer, which = straight[wet], everyone[wet]
+    starts = [(balance.linear(everyone, share), everyone) for share in _STARTS]
+    begin, owner = (np.concatenate(parts) for parts in zip(*starts, strict=True))
+    sound = np.asarray(np.isfinite(begin).all(axis=1))
+    answer, which = _added(balance, answer, which, begin[sound], owner[sound])[:2]
+    fresh = np.arange(which.size)
+    # A fold is followed one speed at a time, in both directions.
+    for _ in range(balance.speed.size):
+        if fresh.size == 0:
+            break
+        begin = np.concatenate((answer[fresh], answer[fresh]))
+        owner = np.concatenate((which[fresh] - 1, which[fresh] + 1))
+        inside = (owner >= 0) & (owner < balance.speed.size)
+        before = which.size
+        answer, which = _added(balance, answer, which, begin[inside], owner[inside])
+        fresh = np.arange(before, which.size)
+    return answer, which, np.isin(everyone, which)
+
+
+def _added(
+    balance: Balance, answer: Complex, which: Index, begin: Complex, owner: Index
+) -> tuple[Complex, Index]:
+    """The solutions with those that Newton finds from other starts and that are not among them yet."""
+    found, converged = newton(balance, begin, owner)
+    found, owner = found[converged], owner[converged]
+    weight = np.sqrt(np.maximum(np.abs(np.diagonal(balance.stiffness, axis1=1, axis2=2)), 1e-300))
+    for k in range(owner.size):
+        rivals = answer[which == owner[k]] - found[k]
+        size = np.linalg.norm(weight[owner[k]] * found[k])
+        if not np.any(np.linalg.norm(weight[owner[k]] * rivals, axis=1) <= _SAME * size):
+            answer, which = np.vstack((answer, found[k])), np.append(which, owner[k])
+    return answer, which
+
+
+def newton(balance: Balance, begin: Complex, which: Index) -> tuple[Complex, NDArray[np.bool_]]:
+    """Solutions next to starts.
+
+    Parameters
+    ----------
+    begin : coordinates, shape (k, n)
+    which : the speed of each, shape (k,)
+
+    Returns
+    -------
+    answer : shape (k, n)
+    converged : shape (k,)
+    """
+    x = begin.copy()
+    converged = np.zeros(which.size, dtype=bool)
+    active = np.arange(which.size)
+    left, matrix, scale = _linearised(balance, x, which)
+    for _ in range(_STEPS):
+        done = np.linalg.norm(left, axis=1) <= _ROUNDING * scale
+        converged[active[done]] = True
+        active, left, matrix = active[~done], left[~done], matrix[~done]
+        if active.size == 0:
+            break
+        n = x.shape[1]
+        step = solve_each(matrix, -np.hstack((left.real, left.imag)))
+        sound = np.asarray(np.isfinite(step).all(axis=1))
+        step = np.where(sound[:, None], step, 0.0)
+        step = step[:, :n] + 1j * step[:, n:]
+        length = np.ones(active.size)
+        before = np.linalg.norm(left, axis=1)
+        trial = x[active] + step
+        left, matrix, scale = _linearised(balance, trial, which[active])
+        for _ in range(6):
+            worse = np.flatnonzero(np.linalg.norm(left, axis=1) > before * (1.0 - 1e-4 * length))
+            if worse.size == 0:
+                break
+            length[worse] *= 0.4
+            trial[worse] = x[active[worse]] + length[worse, None] * step[worse]
+            left[worse], matrix[worse], scale[worse] = _linearised(
+                balance, trial[worse], which[active[worse]]
+            )
+        x[active] = trial
+    return x, converged
+
+
+def _linearised(balance: Balance, x: Complex, which: Index) -> tuple[Complex, Array, Array]:
+    """What is left of the balance, its derivative in real form, and the size of its largest term."""
+    squared, p = np.square(balance.speed[which]), balance.plane
+    w = balance.forward(x)
+    size = np.abs(w)
+    law = balance.liquid(which, size)
+    secant = np.divide(law.unbalance, size, out=law.slope.copy(), where=size > 0.0)
+    unit = np.divide(w, size, out=np.ones_like(w), where=size > 0.0)
+    held = np.einsum("kij,kj->ki", balance.stiffness[which], x)
+    left = held - balance.force[which] - squared[:, None] * ((secant * w) @ p)
+    same = 0.25 * squared[:, None] * (law.slope + secant)
+    other = 0.25 * squared[:, None] * (law.slope - secant) * np.square(unit)
+    direct = balance.stiffness[which] - np.einsum("kc,ci,cj->kij", same, p, np.conj(p))
+    crossed = -np.einsum("kc,ci,cj->kij", other, p, p)
+    plus, minus = direct + crossed, direct - crossed
+    matrix = np.block([[plus.real, -minus.imag], [plus.imag, minus.real]])
+    scale = np.linalg.norm(held, axis=1) + np.linalg.norm(balance.force[which], axis=1)
+    return left, matrix, scale

@@ -1,0 +1,162 @@
+"""A rotor of any kind with liquid in its chambers at constant speed: the terms of the harmonic balance.
+
+The axis goes round as f e^{i Omega t} + b e^{-i Omega t}. The forward part f meets the nonlinear law of the
+liquid at rest in the drum, the backward part b the linear theory at the whirl ratio -1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fluid.fill import Fill
+from fluid.waves import force_ratio
+from solvers.liquid_models import LiquidModel
+from solvers.rotor.system import RotorSystem
+from solvers.rotor.vibration import dynamic_stiffness, solve_each
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Index = NDArray[np.intp]
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Liquid:
+    """The liquid of c chambers at k states.
+
+    Parameters
+    ----------
+    unbalance : first moments about the rotation axis U_liq, kg m, shape (k, c)
+    slope : their derivatives with respect to the deflection, kg, shape (k, c)
+    dry_patch, in_range, converged : shape (k, c)
+    """
+
+    unbalance: Array
+    slope: Array
+    dry_patch: Flags
+    in_range: Flags
+    converged: Flags
+
+
+@dataclass(frozen=True)
+class Balance:
+    """Equations [theory: rotor, eq. 29] of n coordinates and c chambers with liquid at s speeds.
+
+    Parameters
+    ----------
+    speed : Omega, rad/s, shape (s,)
+    stiffness : dynamic stiffness with the liquid's answer to the backward part, shape (s, n, n)
+    force : Omega^2 U, shape (s, n)
+    plane : p = B^T (1, -i) of each chamber, shape (c, n)
+    fills : the chambers with liquid
+    limit : forward deflection up to which a chamber adds exactly its full mass, m, shape (s, c)
+    model : of the liquid
+    gravity : along the axis, m/s^2
+    """
+
+    speed: Array
+    stiffness: Complex
+    force: Complex
+    plane: Complex
+    fills: tuple[Fill, ...]
+    limit: Array
+    model: LiquidModel
+    gravity: float
+
+    def forward(self, answer: Complex) -> Complex:
+        """Forward deflection at each chamber, m, shape (k, c), for coordinates of shape (k, n)."""
+        return np.asarray(0.5 * answer @ np.conj(self.plane).T)
+
+    def linear(self, which: Index, share: Array | float = 1.0) -> Complex:
+        """Coordinates if each chamber adds a share of its full mass, shape (k, n).
+
+        Parameters
+        ----------
+        which : of the speeds, shape (k,)
+        share : shape (k,) or a number
+        """
+        full = np.array([fill.full_mass for fill in self.fills])
+        added = 0.5 * np.einsum("c,ci,cj->ij", full, self.plane, np.conj(self.plane))
+        size = (share * np.square(self.speed[which]))[:, None, None]
+        return solve_each(self.stiffness[which] - size * added, self.force[which])
+
+    def liquid(self, which: Index, deflection: Array) -> Liquid:
+        """Law of each chamber at forward deflections.
+
+        Parameters
+        ----------
+        which : of the speeds, shape (k,)
+        deflection : m, shape (k, c)
+        """
+        shape = deflection.shape
+        full = np.array([fill.full_mass for fill in self.fills])
+        unbalance, slope = full * deflection, np.broadcast_to(full, shape).copy()
+        flags = np.zeros(shape, dtype=bool), np.ones(shape, dtype=bool), np.ones(shape, dtype=bool)
+        bent = ~(deflection <= self.limit[which])
+        for j, fill in enumerate(self.fills):
+            # The law costs most of the time, and up to the limit it is known.
+            rows = np.flatnonzero(bent[:, j])
+            if rows.size:
+                one = self.model.synchronous(fill, self.speed[which[rows]], deflection[rows, j], self.gravity)
+                unbalance[rows, j], slope[rows, j] = one.unbalance, one.slope
+                for flag, found in zip(flags, (one.dry_patch, one.in_range, one.converged), strict=True):
+                    flag[rows, j] = found
+        return Liquid(unbalance, slope, *flags)
+
+
+def balance(
+    system: RotorSystem, fills: Sequence[Fill], speed: Array, gravity: float, model: LiquidModel
+) -> Balance:
+    """Terms of the harmonic balance [theory: rotor, eq. 28 and 29].
+
+    Parameters
+    ----------
+    system : the dry rotor
+    fills : its chambers; those without liquid are left out
+    speed : Omega, rad/s, shape (s,), above 0
+    gravity : along the axis, m/s^2
+    model : of the liquid
+    """
+    wet = tuple(fill for fill in fills if fill.volume > 0.0)
+    squared = np.square(speed)
+    plane = directions(system, wet)
+    stiffness = dynamic_stiffness(system, speed)
+    for fill, p in zip(wet, plane, strict=True):
+        back = 0.5 * backward_mass(fill) * np.outer(np.conj(p), p)
+        stiffness = stiffness - squared[:, None, None] * back
+    limits = [model.linear_limit(fill, speed, gravity) for fill in wet]
+    return Balance(
+        speed=speed,
+        stiffness=stiffness,
+        force=squared[:, None] * system.unbalance,
+        plane=plane,
+        fills=wet,
+        limit=np.stack(limits, axis=1) if wet else np.zeros((speed.size, 0)),
+        model=model,
+        gravity=gravity,
+    )
+
+
+def directions(system: RotorSystem, fills: Sequence[Fill]) -> Complex:
+    """p = B^T (1, -i) of each chamber: a forward force F on it acts on the coordinates with p F, (c, n)."""
+    found = np.zeros((len(fills), len(system.coordinates)), dtype=complex)
+    for j, fill in enumerate(fills):
+        found[j] = system.at(fill.chamber.plane).T @ np.array([1.0, -1j])
+    return found
+
+
+def backward_mass(fill: Fill) -> float:
+    """Mass with which a layer resists a backward whirl at the speed of its spin, kg.
+
+    m_f G(kappa, -1), G = 1 - 8/(1 + 7 kappa) [theory: rotor, eq. 28]; that of the liquid where it fills its
+    chamber.
+    """
+    full = fill.volume >= fill.chamber.capacity * (1.0 - 1e-9)
+    if full or fill.surface_radius == 0.0:
+        return fill.mass
+    curvature = (fill.chamber.radius / fill.surface_radius) ** 2
+    return fill.full_mass * float(force_ratio(curvature, -1.0)) if curvature > 1.0 else 0.0
