@@ -12,7 +12,7 @@ from solvers.rotor.vibration import solve_each
 # Shares of the full added mass from which Newton starts: 1 is the wall wet all over, 0 a liquid that the
 # deflection has left behind.
 _STARTS = (1.0, 0.75, 0.5, 0.25, 0.0)
-_STEPS = 40
+_STEPS, _HALVINGS = 25, 5
 _ROUNDING = 1e-11  # of the largest term of the balance
 _SAME = 1e-6  # relative distance of two solutions that count as one
 
@@ -147,22 +147,19 @@ def newton(balance: Balance, begin: Complex, which: Index) -> tuple[Complex, NDA
     active = np.arange(which.size)
     left, matrix, scale = _linearised(balance, x, which)
     for _ in range(_STEPS):
-        done = np.linalg.norm(left, axis=1) <= _ROUNDING * scale
+        size = np.linalg.norm(left, axis=1)
+        done = size <= _ROUNDING * scale
         converged[active[done]] = True
-        active, left, matrix = active[~done], left[~done], matrix[~done]
+        active, left, matrix, size = active[~done], left[~done], matrix[~done], size[~done]
         if active.size == 0:
             break
-        n = x.shape[1]
         step = solve_each(matrix, -np.hstack((left.real, left.imag)))
         sound = np.asarray(np.isfinite(step).all(axis=1))
-        step = np.where(sound[:, None], step, 0.0)
-        step = step[:, :n] + 1j * step[:, n:]
-        length = np.ones(active.size)
-        before = np.linalg.norm(left, axis=1)
-        trial = x[active] + step
+        step = np.where(sound[:, None], step[:, : x.shape[1]] + 1j * step[:, x.shape[1] :], 0.0)
+        trial, length = x[active] + step, np.ones(active.size)
         left, matrix, scale = _linearised(balance, trial, which[active])
-        for _ in range(6):
-            worse = np.flatnonzero(np.linalg.norm(left, axis=1) > before * (1.0 - 1e-4 * length))
+        for _ in range(_HALVINGS):
+            worse = np.flatnonzero(np.linalg.norm(left, axis=1) > size * (1.0 - 1e-4 * length))
             if worse.size == 0:
                 break
             length[worse] *= 0.4
@@ -171,6 +168,9 @@ def newton(balance: Balance, begin: Complex, which: Index) -> tuple[Complex, NDA
                 balance, trial[worse], which[active[worse]]
             )
         x[active] = trial
+        # Where no step helps there is a least distance from balance, or rounding is reached.
+        going = (np.linalg.norm(left, axis=1) < size) | (size <= 1e3 * _ROUNDING * scale)
+        active, left, matrix, scale = active[going], left[going], matrix[going], scale[going]
     return x, converged
 
 

@@ -85,8 +85,8 @@ def _energy(area, q, spin):
 def _power(area, q, spin, euler, x, y, angles, rate_a, gains, dt):
     """Power of the body force in the frame that does not turn [theory: coupling, eq. 8].
 
-    Adds what the flow's profile makes of the changing spin: the Euler force acts on the angular momentum, which
-    the profile does not turn into energy to the last digit.
+    Adds what the flow's profile makes of the changing spin: the Euler force acts on the angular momentum,
+    which the profile does not turn into energy to the last digit.
     """
     n = area.size
     step = 2.0 * np.pi / n

@@ -40,7 +40,7 @@ def run(volume: float, rate: float, cells: int = 128) -> RunupHistory:
     return run_up(ROTOR.system(), fills, RAMP, ("linear", rate), 0.0, replace(ALONE, cells=cells))
 
 
-# --- the rotor alone -------------------------------------------------------------------------------------
+# --- the rotor alone ---
 
 
 def dry_reference(ramp: Ramp, rotor: Jeffcott, time: np.ndarray) -> np.ndarray:
@@ -83,7 +83,7 @@ def test_dry_energy_closes_to_rounding() -> None:
     assert history.audit.change == pytest.approx(history.audit.unbalance - history.audit.support, rel=1e-10)
 
 
-# --- balances --------------------------------------------------------------------------------------------
+# --- balances ---
 
 
 def check_momentum() -> None:
@@ -144,7 +144,7 @@ def test_energy_of_a_free_machine_only_falls() -> None:
     assert 0.98 * before < after <= before * (1.0 + 1e-4)
 
 
-# --- run-ups against figures of another code ---------------------------------------------------------------
+# --- run-ups against figures of another code --------------------------------------------------------------- ---
 
 
 @pytest.mark.parametrize(
@@ -174,7 +174,7 @@ def test_frictionless_layer_does_nothing() -> None:
     assert wet.amplitude[-1] == pytest.approx(dry.amplitude[-1], rel=0.5 * 0.5 / MASS * 1.2)
 
 
-# --- the steady state, and growth ----------------------------------------------------------------------------
+# --- the steady state, and growth ---
 
 
 def check_steady() -> None:
@@ -243,7 +243,7 @@ def test_whirl_dies_outside_the_band_with_liquid_friction(spin: float) -> None:
     assert found.growth == pytest.approx(wanted.real, rel=0.03)
 
 
-# --- motors, gravity ------------------------------------------------------------------------------------------
+# --- motors, gravity ---
 
 
 def check_motor() -> None:
@@ -295,7 +295,7 @@ def test_liquid_is_captured_and_let_go() -> None:
     assert np.all(np.isnan(history.depth_max[~caught, 0]))
 
 
-# --- extremes ---------------------------------------------------------------------------------------------------
+# --- extremes ---
 
 
 def test_stiff_supports_hold_the_rotor() -> None:

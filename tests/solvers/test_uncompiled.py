@@ -7,11 +7,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[2]
 
 
-def test_compiled_lines_are_held_by_oracles() -> None:
-    chosen = ["tests/solvers/uncompiled_faults.py", "-q", "-n", "0", "-p", "no:cacheprovider"]
+@pytest.mark.parametrize("name", ["uncompiled_faults", "uncompiled_coupled"])
+def test_compiled_lines_are_held_by_oracles(name: str) -> None:
+    chosen = [f"tests/solvers/{name}.py", "-q", "-n", "0", "-p", "no:cacheprovider"]
     done = subprocess.run(
         [sys.executable, "-m", "pytest", *chosen],
         cwd=ROOT,
