@@ -52,7 +52,7 @@ class RunupNumerics:
     samples : how many times are recorded, at least 2
     dispersion : add the finite depth's dispersion to the layers [theory: long_wave, eq. 12]
     courant : Courant number of the layers; the rotor turns by at most this share of a cell in a step
-    companion : run once more with half the cells, hence twice the steps, to estimate the error
+    companion : run once more with half the cells, hence twice the steps, to estimate the error; from 16 cells
     """
 
     cells: int = 128
@@ -206,13 +206,11 @@ def run_up(
     )
     share = 0.8 if numerics.companion else 1.0
     history = _march(machine, drive, numerics, lambda part: progress and progress(share * part))
-    if not numerics.companion or not history.converged:
+    if not numerics.companion or not history.converged or numerics.cells < 16:
         return history
-    cells = max(8, numerics.cells // 2)
+    cells = numerics.cells // 2
     coarse = couple(system, fills, drive.corners()[1, 0], friction, gravity, cells, numerics.dispersion)
-    # Half of 8 cells cannot be had: there, twice the steps alone.
-    courant = numerics.courant if cells < numerics.cells else 0.9
-    other = _march(coarse, drive, replace(numerics, cells=cells, courant=courant), lambda _: None)
+    other = _march(coarse, drive, replace(numerics, cells=cells), lambda _: None)
     if progress:
         progress(1.0)
     if not other.converged:
