@@ -2,7 +2,7 @@ VENV ?= .venv
 PYTHON ?= python3
 BIN := $(VENV)/bin
 
-.PHONY: study test test-slow lint clean pictures
+.PHONY: study test test-slow test-ross lint clean pictures
 
 study: $(BIN)/.installed
 	$(BIN)/leblanc run examples/horizontal_rig.toml
@@ -12,6 +12,12 @@ test: $(BIN)/.installed-test
 
 test-slow: $(BIN)/.installed-test
 	$(BIN)/python -m pytest -m slow
+
+# ROSS brings some sixty packages of its own: an environment apart.
+test-ross:
+	$(PYTHON) -m venv .venv-ross
+	.venv-ross/bin/python -m pip install --quiet --editable ".[test,ross]"
+	.venv-ross/bin/python -m pytest tests/solvers/test_ross_element.py
 
 lint: $(BIN)/.installed-lint
 	$(BIN)/ruff check .
@@ -34,7 +40,7 @@ $(BIN)/.installed-lint: pyproject.toml | $(BIN)/python
 	touch $@
 
 clean:
-	rm -rf $(VENV) out .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
+	rm -rf $(VENV) .venv-ross out .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
 
 # The pictures of the README and the docs, drawn by the examples.
 pictures: $(BIN)/.installed

@@ -14,11 +14,12 @@ from numba import njit
 from numpy.typing import NDArray
 
 from solvers.face_flux import COMPILED, DRY, NEAREST, faded_velocity, log_of_surface
-from solvers.finite_volume import GHOSTS, WORK, rates
+from solvers.finite_volume import GHOSTS, WORK, ring_rates
 from solvers.layer_step import calm, copy, correct, predict, surface_radius, wall_friction
 from solvers.machine import ENERGY, FLOW, HEAT, INERTIA, LOSS, MISSED, MOMENT, SPINNING, TORQUE
 
 _jit: Any = njit(**COMPILED)
+_inner: Any = njit(**(COMPILED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
 
 # Courant number beyond which a step is taken again.
 LARGEST = 1.0
@@ -61,7 +62,7 @@ def measure(area, q, spin, angles, spare, out):
         out[INERTIA + 2] += log[i] * y * y / step
 
 
-@_jit
+@_inner
 def _pull(x, y, angles, pull_cell, pull_face):
     """Radial part of a uniform body force at cells and faces."""
     for i in range(pull_cell.size):
@@ -69,7 +70,7 @@ def _pull(x, y, angles, pull_cell, pull_face):
         pull_face[i] = x * angles[2, i] + y * angles[3, i]
 
 
-@_jit
+@_inner
 def _energy(area, q, spin):
     """Energy of the flow in the frame that does not turn, over rho h_c R^4 [theory: coupling, eq. 7]."""
     total = 0.0
@@ -81,7 +82,7 @@ def _energy(area, q, spin):
     return total * 2.0 * np.pi / area.size
 
 
-@_jit
+@_inner
 def _power(area, q, spin, euler, x, y, angles, rate_a, gains, dt):
     """Power of the body force in the frame that does not turn [theory: coupling, eq. 8].
 
@@ -103,7 +104,7 @@ def _power(area, q, spin, euler, x, y, angles, rate_a, gains, dt):
     return x * (rate_x - spin * moment_y) + y * (rate_y + spin * moment_x)
 
 
-@_jit
+@_inner
 def _work(area, q, before, spin, step, gains):
     """Add what friction has done to the velocities: impulse of the wall's torque, and heat."""
     for i in range(area.size):
@@ -116,7 +117,7 @@ def _work(area, q, before, spin, step, gains):
         gains[HEAT] += 0.5 * log_of_surface(a, r) * (u * u - v * v) * step
 
 
-@_jit
+@_inner
 def layer_step(area, q, spins, push, rub, dt, angles, spare, gains):
     """Advance a layer by one time step, in place; a step that fails leaves nothing to go on with.
 
@@ -153,7 +154,7 @@ def layer_step(area, q, spins, push, rub, dt, angles, spare, gains):
     for stage in range(2):
         spin, x, y = spins[stage], push[2 * stage], push[2 * stage + 1]
         _pull(x, y, angles, pull_cell, pull_face)
-        speed = rates(
+        speed = ring_rates(
             next_a, next_q, spin, euler, pull_cell, pull_face, step, dt, spread, spare, rate_a, rate_q
         )
         if not speed < np.inf:

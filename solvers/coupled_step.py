@@ -39,6 +39,8 @@ from solvers.machine import (
 )
 
 _jit: Any = njit(**COMPILED)
+# Parts of one function: compiled one by one and linked they would cost twice the time to compile.
+_inner: Any = njit(inline="always")
 
 RAN_OUT, NOT_COUPLED, STOPPED = 3, 4, 5
 # A step is done once two estimates of the mean accelerations differ by this, relative to the largest. Where
@@ -47,9 +49,9 @@ RAN_OUT, NOT_COUPLED, STOPPED = 3, 4, 5
 _AGREED, _PASSABLE, _STRAIGHT, _ROUNDS, _SHORTEST = 1e-6, 1e-2, 5, 12, 1.0 / 32.0
 
 
-@_jit
+@_inner
 def _move_layers(machine, state, room, dt):
-    """All layers through one step under the guessed accelerations; what went wrong, and the fastest wave."""
+    """All layers through one step under the guessed accelerations; what went wrong, the fastest wave."""
     fastest, spins, turn, push, rub = 0.0, room.spins, room.turn, room.push, room.rub
     copy(room.area, state.area)
     copy(room.momentum, state.momentum)
@@ -74,7 +76,7 @@ def _move_layers(machine, state, room, dt):
     return DONE, fastest
 
 
-@_jit
+@_inner
 def _measure_layers(machine, state, room):
     """The layers' momenta at both ends of the step, and the inertia of their flows."""
     turn, spins = room.turn, room.spins
@@ -88,7 +90,7 @@ def _measure_layers(machine, state, room):
         flow_inertia(room.begin[j], layer, cosine / size, sine / size, room.inertia[j])
 
 
-@_jit
+@_inner
 def _move_rotor(machine, state, room, dt):
     """Change of the rotor's velocities over the step, given the layers' momenta [theory: coupling, eq. 5]."""
     change, swing, left, turn = room.change, room.swing, room.left, room.turn
@@ -117,7 +119,7 @@ def _move_rotor(machine, state, room, dt):
     solve(left, change)
 
 
-@_jit
+@_inner
 def _disagreement(machine, room, dt):
     """Mean accelerations that the rotor's change means; their distance from the guess, and their size."""
     gap, size, spin = 0.0, 0.0, room.spins[0]
@@ -132,7 +134,7 @@ def _disagreement(machine, room, dt):
     return gap, size
 
 
-@_jit
+@_inner
 def _spin_after(machine, state, room, dt):
     """Spin at the end of the step: on its ramp, or by the motor [theory: coupling, eq. 6]."""
     n = room.change.size
@@ -153,7 +155,7 @@ def _spin_after(machine, state, room, dt):
     return after
 
 
-@_jit
+@_inner
 def _tally(machine, state, room, dt):
     """Add one step's work and losses [theory: coupling, eq. 9-10]."""
     sums, n = state.sums, room.change.size
@@ -177,7 +179,7 @@ def _tally(machine, state, room, dt):
         sums[MOTOR] += dt * spin * motor_torque(machine.curve, spin)
 
 
-@_jit
+@_inner
 def _couple(machine, state, room, dt):
     """One step tried until rotor and layers agree; what went wrong, the fastest wave, what is left."""
     n = room.change.size
@@ -212,7 +214,7 @@ def _couple(machine, state, room, dt):
     return NOT_COUPLED, fastest, left
 
 
-@_jit
+@_inner
 def _guess(state, room, dt):
     """Mean accelerations of the step to come, on a line through the last two steps'."""
     count = room.guess.shape[0]
@@ -224,7 +226,7 @@ def _guess(state, room, dt):
             room.guess[j, i] = here + ahead * (here - state.memory[j, 2 + i])
 
 
-@_jit
+@_inner
 def _accept(state, room, dt, fastest):
     """Make the step's end the state."""
     n, count = room.change.size, room.guess.shape[0]

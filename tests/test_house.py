@@ -14,7 +14,7 @@ ROOT = Path(__file__).parent.parent
 PACKAGES = ("meshes", "fluid", "solvers", "study", "validation")
 HEAVY = (
     "numpy", "scipy", "pydantic", "pint", "matplotlib", "xarray", "skfem", "meshio", "pde", "pyvista",
-    "numba", "rich", "jinja2", "sympy",
+    "numba", "rich", "jinja2", "sympy", "ross",
 )  # fmt: skip
 
 

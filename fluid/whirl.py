@@ -1,0 +1,192 @@
+"""Linear layer with friction on a whirling drum: offset, force, free waves, neutral whirl.
+
+Plane flow with a drag against the velocity relative to the drum. Everything is a function of
+T = tanh(L) = (R^2 - a^2)/(R^2 + a^2), which runs from 0 (no liquid) to 1 (full) and of which no formula here
+loses digits. Frequencies may be complex: whirls as e^{i omega t} grow where the imaginary part is negative.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fluid.fill import Fill
+from fluid.friction import LINEAR, STOKES, damping_rate
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+FULL = 1.0 - 1e-9  # of the capacity; beyond it there is no free surface
+
+
+@dataclass(frozen=True)
+class Layer:
+    """What the whirl of a drum knows of the liquid in a chamber.
+
+    Parameters
+    ----------
+    mass : of the liquid m_l, kg
+    layer_tanh : T = tanh(L), from 0 to 1
+    rate : k of the linear friction, 1/s
+    stokes : chi sqrt(nu) of the laminar friction, k(s) = stokes sqrt(i s), s^(-1/2) [theory: whirl, eq. 12]
+    """
+
+    mass: float
+    layer_tanh: float
+    rate: float
+    stokes: float
+
+
+def plane_layer(fill: Fill, friction: tuple[int, float]) -> Layer | None:
+    """Layer of a fill under a law of friction; None without liquid or without a free surface.
+
+    Quadratic friction damps in proportion to the motion, so it is no friction to an infinitesimal whirl.
+
+    Parameters
+    ----------
+    fill : chamber and liquid
+    friction : law of `fluid.friction` and its coefficient; the laminar law takes the liquid's viscosity
+    """
+    radius = fill.chamber.radius
+    if fill.volume == 0.0 or is_full(fill):
+        return None
+    # R^2 - a^2 and, twice the area per radian, over R^2.
+    film = fill.volume / (math.pi * fill.chamber.height) / radius**2
+    rate, stokes = 0.0, 0.0
+    depth, area, lid = fill.depth / radius, 0.5 * film, 2.0 * radius / fill.chamber.height
+    if friction[0] == LINEAR:
+        rate = float(damping_rate(LINEAR, friction[1], 0.0, depth, area, 0.0))
+    elif friction[0] == STOKES:
+        shear = math.sqrt(fill.liquid.viscosity) / radius
+        stokes = float(damping_rate(STOKES, shear, lid, depth, area, 0.0))
+    return Layer(fill.mass, film / (2.0 - film), rate, stokes)
+
+
+def is_full(fill: Fill) -> bool:
+    """No free surface: the liquid turns with the drum like a solid."""
+    return fill.volume >= fill.chamber.capacity * FULL
+
+
+def stokes_rate(stokes: ArrayLike, slip: ArrayLike) -> Complex:
+    """Drag of a laminar oscillating layer, stokes sqrt(i s), 1/s [theory: whirl, eq. 12].
+
+    Of both roots the one with a positive real part: the layer dies out away from the wall. For a real s its
+    real part is the rate of decay [theory: long_wave, eq. 10] and its imaginary part, as large, the inertia.
+
+    Parameters
+    ----------
+    stokes : of `Layer`, s^(-1/2), shape (...,)
+    slip : s = omega - Omega, rad/s, complex, shape (...,)
+    """
+    return np.asarray(np.asarray(stokes) * np.sqrt(1j * np.asarray(slip, dtype=complex)))
+
+
+def wave_function(layer_tanh: ArrayLike, spin: ArrayLike, slip: ArrayLike, rate: ArrayLike) -> Complex:
+    """E = s^2 - 2 T Omega s - T Omega^2 - i k s, zero at the free waves [theory: whirl, eq. 3].
+
+    Parameters
+    ----------
+    layer_tanh : T, shape (...,)
+    spin : Omega, rad/s, shape (...,)
+    slip : s = omega - Omega, rad/s, complex, shape (...,)
+    rate : k of the friction, 1/s, complex with the inertia of a wall layer, shape (...,)
+    """
+    s, t, omega = np.asarray(slip, dtype=complex), np.asarray(layer_tanh), np.asarray(spin)
+    return np.asarray(s * (s - 2.0 * t * omega - 1j * np.asarray(rate)) - t * np.square(omega))
+
+
+def offset_with_friction(
+    layer_tanh: ArrayLike, spin: ArrayLike, whirl_speed: ArrayLike, rate: ArrayLike
+) -> Complex:
+    """Offset of the liquid's centre of mass from the drum's axis over the deflection of the axis.
+
+    d/w = -(1 - T)/2 omega^2/E [theory: whirl, eq. 4].
+
+    Parameters
+    ----------
+    layer_tanh, spin, rate : as in `wave_function`
+    whirl_speed : omega in the standing frame, rad/s, complex, shape (...,), not at a free wave
+    """
+    omega = np.asarray(whirl_speed, dtype=complex)
+    share = 0.5 * (1.0 - np.asarray(layer_tanh))
+    resonance = wave_function(layer_tanh, spin, omega - np.asarray(spin), rate)
+    return np.asarray(-share * np.square(omega) / resonance)
+
+
+def force_with_friction(
+    layer_tanh: ArrayLike, spin: ArrayLike, whirl_speed: ArrayLike, rate: ArrayLike
+) -> Complex:
+    """Force of the layer on its drum over that of a full drum, m_f omega^2 w.
+
+    G = 2 T/(1 + T) (1 + d/w): Newton's law for the liquid [theory: whirl, eq. 5].
+
+    Parameters
+    ----------
+    layer_tanh, spin, whirl_speed, rate : as in `offset_with_friction`
+    """
+    t = np.asarray(layer_tanh)
+    filled = 2.0 * t / (1.0 + t)
+    return np.asarray(filled * (1.0 + offset_with_friction(t, spin, whirl_speed, rate)))
+
+
+def damped_waves(layer_tanh: ArrayLike, spin: ArrayLike, rate: ArrayLike) -> tuple[Complex, Complex]:
+    """Free waves with one crest under linear friction: slips, complex; they decay with the imaginary part.
+
+    s = b +- sqrt(b^2 + T Omega^2), b = T Omega + i k/2 [theory: whirl, eq. 9].
+
+    Parameters
+    ----------
+    layer_tanh, spin : as in `wave_function`
+    rate : k, 1/s, real, shape (...,)
+
+    Returns
+    -------
+    Of the prograde wave and of the retrograde wave, rad/s, shape (...,)
+    """
+    t, omega = np.asarray(layer_tanh), np.asarray(spin)
+    centre = t * omega + 0.5j * np.asarray(rate)
+    root = np.sqrt(np.square(centre) + t * np.square(omega))
+    return np.asarray(centre + root), np.asarray(centre - root)
+
+
+def neutral_stiffness(whirl_ratio: ArrayLike, mass: float, liquid: ArrayLike, layer_tanh: ArrayLike) -> Array:
+    """Support stiffness over Omega^2 for which an undamped rotor whirls neutrally at a given whirl ratio, kg.
+
+    Y(r) = r^2 [M + sum m_l (1 + d/w)], the layers without friction [theory: whirl, eq. 16].
+
+    Parameters
+    ----------
+    whirl_ratio : r = omega/Omega, shape (...,), not at a free wave
+    mass : M, kg, with all liquid that has no free surface
+    liquid, layer_tanh : masses m_l, kg, and T of the layers, shape (n,)
+    """
+    r = np.asarray(whirl_ratio, dtype=float)
+    total = np.full(r.shape, mass)
+    for own, t in zip(np.atleast_1d(liquid), np.atleast_1d(layer_tanh), strict=True):
+        total = total + own * (1.0 + offset_with_friction(t, 1.0, r, 0.0).real)
+    return np.asarray(np.square(r) * total)
+
+
+def covering_speed(fill: Fill, gravity: float) -> float:
+    """Spin speed above which the layer in an upright chamber covers the wall and clears the inner one.
+
+    Omega^2 min(R^2 - a^2, a^2 - R_i^2) = g h_c [theory: whirl, eq. 18].
+
+    Parameters
+    ----------
+    fill : chamber and liquid
+    gravity : along the axis, m/s^2, 0 or above
+
+    Returns
+    -------
+    Omega, rad/s; 0 without gravity, without liquid or without a free surface
+    """
+    if gravity == 0.0 or fill.volume == 0.0 or is_full(fill):
+        return 0.0
+    chamber = fill.chamber
+    outer = fill.volume / (math.pi * chamber.height)
+    inner = (chamber.capacity - fill.volume) / (math.pi * chamber.height)
+    return math.sqrt(gravity * chamber.height / min(outer, inner))
