@@ -1,0 +1,277 @@
+"""Whirl modes of a rotor that moves in one plane with its layers: all roots of a characteristic polynomial.
+
+Many points at once, by Aberth's simultaneous iteration. Without friction or with a linear one the polynomial
+is in the slip s; with laminar friction, whose drag goes with sqrt(i s), in that square root, and those of its
+zeros count whose real part is positive [theory: whirl, eq. 13].
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fluid.whirl import damped_waves, stokes_rate
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Flags = NDArray[np.bool_]
+
+_CHUNK = 4096  # points whose arrays fit the processor's cache
+_SWEEPS = 90
+_CHECK = 2  # sweeps between looks at who is done
+_STEP, _NEAR = 1e-7, 1e-5  # of the root, of the distance to the next: a step after which a root is exact
+_EPS = float(np.finfo(float).eps)
+_TINY = 1e-290
+
+
+@dataclass(frozen=True)
+class PlanarProblem:
+    """A rotor with layers at p points, each with its own spin and fills; g layers.
+
+    Parameters
+    ----------
+    mass : M with all liquid that has no free surface, kg, shape (p,)
+    stiffness, damping : K, N/m, and C, N s/m
+    spin : Omega, rad/s, shape (p,), above 0
+    liquid, layer_tanh, rate, stokes : of each layer as in `fluid.whirl.Layer`, shape (g, p)
+    """
+
+    mass: Array
+    stiffness: float
+    damping: float
+    spin: Array
+    liquid: Array
+    layer_tanh: Array
+    rate: Array
+    stokes: Array
+
+    def part(self, which: slice | Flags | NDArray[np.intp]) -> PlanarProblem:
+        """The same at some of the points."""
+        return PlanarProblem(
+            self.mass[which],
+            self.stiffness,
+            self.damping,
+            self.spin[which],
+            *(x[:, which] for x in (self.liquid, self.layer_tanh, self.rate, self.stokes)),
+        )
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Whirl modes, m of them at p points.
+
+    Parameters
+    ----------
+    slip : s = omega - Omega, rad/s, e^{i s t} in the drum; nan where a point has fewer modes, shape (m, p)
+    rounding : bound of what rounding has done to each, rad/s, shape (m, p)
+    converged : shape (p,)
+    """
+
+    slip: Complex
+    rounding: Array
+    converged: Flags
+
+
+@dataclass(frozen=True)
+class _Scaled:
+    """The problem over Omega and M: polynomial coefficients, shape (p,) and (g, p)."""
+
+    stiffness: Array
+    damping: Array
+    mass: Array
+    tanh: Array
+    linear: Complex
+    stokes: Array
+    coupling: Array
+    laminar: bool
+
+
+def planar_modes(problem: PlanarProblem) -> Modes:
+    """All modes of the rotor and its layers [theory: whirl, eq. 8].
+
+    Parameters
+    ----------
+    problem : rotor, layers and points
+
+    Returns
+    -------
+    Modes, 2 + 2 g of them; with laminar friction up to twice as many
+    """
+    points = problem.spin.size
+    parts = [_chunk(problem.part(slice(i, i + _CHUNK))) for i in range(0, points, _CHUNK)]
+    if len(parts) == 1:
+        return parts[0]
+    return Modes(
+        np.concatenate([one.slip for one in parts], axis=1),
+        np.concatenate([one.rounding for one in parts], axis=1),
+        np.concatenate([one.converged for one in parts]),
+    )
+
+
+def _chunk(problem: PlanarProblem) -> Modes:
+    scaled = _scaled(problem)
+    x, converged = _aberth(scaled, _starts(scaled))
+    noise = _rounding(scaled, x)
+    if scaled.laminar:
+        # s = -i x^2; a root within rounding of the cut decays in any case.
+        noise = 2.0 * np.abs(x) * noise
+        admitted = x.real > 0.0
+        x = np.where(admitted, -1j * np.square(x), complex(np.nan, np.nan))
+    return Modes(x * problem.spin, noise * problem.spin, converged)
+
+
+def _scaled(problem: PlanarProblem) -> _Scaled:
+    spin, mass = problem.spin, problem.mass
+    share = problem.liquid / mass
+    return _Scaled(
+        stiffness=problem.stiffness / mass / np.square(spin),
+        damping=problem.damping / mass / spin,
+        mass=1.0 + share.sum(axis=0),
+        tanh=problem.layer_tanh,
+        linear=2.0 * problem.layer_tanh + 1j * problem.rate / spin,
+        stokes=problem.stokes / np.sqrt(spin),
+        coupling=share * 0.5 * (1.0 - problem.layer_tanh),
+        laminar=bool(np.any(problem.stokes > 0.0)),
+    )
+
+
+def _starts(scaled: _Scaled) -> Complex:
+    """The modes as if rotor and layers did not feel one another, off the real axis to break its symmetry."""
+    slow, fast = damped_waves(scaled.tanh, 1.0, scaled.linear.imag)
+    if scaled.laminar:
+        # The laminar drag of a frictionless wave, its part that damps.
+        drag = stokes_rate(scaled.stokes, np.abs(np.stack([slow, fast]))).real
+        slow = damped_waves(scaled.tanh, 1.0, scaled.linear.imag + drag[0])[0]
+        fast = damped_waves(scaled.tanh, 1.0, scaled.linear.imag + drag[1])[1]
+    decay = 0.5j * scaled.damping / scaled.mass
+    swing = np.sqrt(scaled.stiffness / scaled.mass + np.square(decay))
+    rotor = np.stack([decay + swing - 1.0, decay - swing - 1.0])
+    s = np.concatenate([rotor, slow, fast])
+    push = 0.01 + 0.007 * np.arange(s.shape[0])
+    s = s + (1j * push)[:, None] * (1.0 + 0.3j) * np.maximum(np.abs(s), 1e-9)
+    if not scaled.laminar:
+        return np.asarray(s)
+    x = np.sqrt(1j * s)
+    return np.concatenate([x, -x])
+
+
+def _polynomial(scaled: _Scaled, x: Complex) -> tuple[Complex, Complex]:
+    """P and dP/dx, both over a positive number that keeps high powers in range [theory: whirl, eq. 8]."""
+    s, ds = (-1j * x * x, -2j * x) if scaled.laminar else (x, np.ones_like(x))
+    omega = 1.0 + s
+    value = scaled.stiffness + omega * (1j * scaled.damping - scaled.mass * omega)
+    slope = (1j * scaled.damping - 2.0 * scaled.mass * omega) * ds
+    quartic = np.square(np.square(omega))
+    steep = 4.0 * omega * omega * omega * ds
+    free, free_slope = np.ones_like(x), np.zeros_like(x)
+    for t, b, drag, pull in zip(scaled.tanh, scaled.linear, scaled.stokes, scaled.coupling, strict=True):
+        wave, bend = s * (s - b) - t, (2.0 * s - b) * ds
+        if scaled.laminar:
+            wave, bend = wave - drag * x * x * x, bend - 3.0 * drag * x * x
+        slope = slope * wave + value * bend + pull * (steep * free + quartic * free_slope)
+        value = value * wave + pull * quartic * free
+        free_slope, free = free_slope * wave + free * bend, free * wave
+        if len(scaled.tanh) > 1:
+            unit = 1.0 / (1.0 + np.square(s.real) + np.square(s.imag))
+            value, slope, free, free_slope = value * unit, slope * unit, free * unit, free_slope * unit
+    return value, slope
+
+
+def _noise(scaled: _Scaled, x: Complex) -> Array:
+    """Error of the value of `_polynomial` by rounding, to first order [theory: whirl, eq. 15].
+
+    Each factor is wrong by the rounding of the terms it is the sum of; in a product the others scale that.
+    """
+    s = -1j * x * x if scaled.laminar else x
+    size = np.abs(s)
+    omega, largest = 1.0 + s, 1.0 + size
+    value = scaled.stiffness + omega * (1j * scaled.damping - scaled.mass * omega)
+    error = scaled.stiffness + largest * (scaled.damping + scaled.mass * largest)
+    quartic, steep = np.square(np.square(omega)), np.square(np.square(largest))
+    free, free_error = np.ones_like(x), np.zeros(x.shape)
+    for t, b, drag, pull in zip(scaled.tanh, scaled.linear, scaled.stokes, scaled.coupling, strict=True):
+        wave, terms = s * (s - b) - t, size * (size + np.abs(b)) + t
+        if scaled.laminar:
+            wave, terms = wave - drag * x * x * x, terms + drag * size * np.sqrt(size)
+        error = error * np.abs(wave) + np.abs(value) * terms + pull * steep * (np.abs(free) + free_error)
+        value = value * wave + pull * quartic * free
+        free_error, free = free_error * np.abs(wave) + np.abs(free) * terms, free * wave
+        if len(scaled.tanh) > 1:
+            unit = 1.0 / (1.0 + np.square(size))
+            value, error, free, free_error = value * unit, error * unit, free * unit, free_error * unit
+    return np.asarray(10.0 * _EPS * error)
+
+
+def _pairs(x: Complex) -> tuple[Complex, Array]:
+    """Sum of 1/(x_i - x_j) over the other roots, and the distance of the nearest, shape (m, p)."""
+    total, nearest = np.zeros_like(x), np.full(x.shape, np.inf)
+    for i in range(1, x.shape[0]):
+        gap = x[i] - x[:i]
+        # Two iterates that met are moved apart by less than their rounding.
+        gap = np.where(gap == 0.0, _EPS * np.abs(x[i]) + 1e-150, gap)
+        inverse, size = 1.0 / gap, np.abs(gap)
+        total[i] += inverse.sum(axis=0)
+        total[:i] -= inverse
+        nearest[i] = np.minimum(nearest[i], size.min(axis=0))
+        nearest[:i] = np.minimum(nearest[:i], size)
+    return total, nearest
+
+
+def _aberth(scaled: _Scaled, x: Complex) -> tuple[Complex, Flags]:
+    """All roots at all points; points whose roots stand still are left out of further sweeps.
+
+    The iteration is of third order: a step well below the distance of the next root leaves its cube over the
+    square of that.
+    """
+    found, converged = x.copy(), np.zeros(x.shape[1], dtype=bool)
+    active = np.arange(x.shape[1])
+    for sweep in range(1, _SWEEPS + 1):
+        value, slope = _polynomial(scaled, x)
+        repulsion, nearest = _pairs(x)
+        bottom = slope - value * repulsion
+        step = np.zeros_like(x)
+        np.divide(value, bottom, out=step, where=np.abs(bottom) > _TINY)
+        x = x - step
+        if sweep % _CHECK:
+            continue
+        moved = np.abs(step)
+        done = np.asarray(((moved <= _NEAR * nearest) & (moved <= _STEP * np.abs(x))).all(axis=0))
+        if sweep > 4 * _CHECK and not done.all():
+            late = np.flatnonzero(~done)
+            noise = _rounding(_part(scaled, ~done), x[:, late])
+            done[late] = (moved[:, late] <= 4.0 * noise).all(axis=0)
+        found[:, active] = x
+        converged[active[done]] = True
+        active, x, scaled = active[~done], x[:, ~done], _part(scaled, ~done)
+        if active.size == 0:
+            break
+    return found, converged
+
+
+def _part(scaled: _Scaled, keep: Flags) -> _Scaled:
+    return _Scaled(
+        stiffness=scaled.stiffness[keep],
+        damping=scaled.damping[keep],
+        mass=scaled.mass[keep],
+        tanh=scaled.tanh[:, keep],
+        linear=scaled.linear[:, keep],
+        stokes=scaled.stokes[:, keep],
+        coupling=scaled.coupling[:, keep],
+        laminar=scaled.laminar,
+    )
+
+
+def _rounding(scaled: _Scaled, x: Complex) -> Array:
+    """How far the rounding of the polynomial may have moved each root [theory: whirl, eq. 15].
+
+    |P(x + e)| is about |P'| e (1 + e/g) with g the distance of the nearest other root.
+    """
+    noise = _noise(scaled, x)
+    slope = np.abs(_polynomial(scaled, x)[1])
+    gap = np.maximum(_pairs(x)[1], _EPS * np.abs(x) + _TINY)
+    simple = np.full(noise.shape, np.inf)
+    np.divide(noise, slope, out=simple, where=slope > 1e-300 * np.maximum(noise, 1.0))
+    double = np.sqrt(np.minimum(simple, 1e150)) * np.sqrt(np.minimum(gap, 1e150))
+    return np.asarray(np.minimum(simple, double) + _EPS * np.abs(x))

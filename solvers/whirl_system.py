@@ -1,0 +1,140 @@
+"""Whirl modes of any rotor with liquid layers in any planes.
+
+Friction is linear here. Coordinates are the rotor's and two for each layer, the offset of its liquid from the
+axis, all real and in the standing frame; modes go as e^{lambda t}.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fluid.whirl import Layer
+from solvers.rotor.system import RotorSystem
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Flags = NDArray[np.bool_]
+
+_EPS = float(np.finfo(float).eps)
+
+
+@dataclass(frozen=True)
+class CoupledMatrices:
+    """M z'' + C z' + K z = 0 at n spin speeds, z the rotor's coordinates and (dx, dy) of each layer.
+
+    Parameters
+    ----------
+    mass : symmetric, positive definite, shape (N, N)
+    damping, stiffness : with gyroscopic and circulatory parts, shape (n, N, N)
+    """
+
+    mass: Array
+    damping: Array
+    stiffness: Array
+
+
+def coupled_matrices(
+    system: RotorSystem, layers: Sequence[tuple[float, Layer]], speed: Array
+) -> CoupledMatrices:
+    """Rotor and layers with linear friction as one linear system [theory: whirl, eq. 7].
+
+    Parameters
+    ----------
+    system : the dry rotor, with the mass of all liquid that has no free surface
+    layers : plane, m, and layer, any number
+    speed : Omega, rad/s, shape (n,)
+    """
+    count, spin = len(system.coordinates), speed[:, None, None]
+    size = count + 2 * len(layers)
+    mass = np.zeros((size, size))
+    damping, stiffness = np.zeros((2, speed.size, size, size))
+    mass[:count, :count] = system.mass
+    damping[:, :count, :count] = system.damping + spin * system.gyroscopic
+    stiffness[:, :count, :count] = system.stiffness
+    turn, one = np.array([[0.0, 1.0], [-1.0, 0.0]]), np.eye(2)
+    for j, (plane, layer) in enumerate(layers):
+        own, at = slice(count + 2 * j, count + 2 * j + 2), system.at(plane)
+        t, rate, inertia = layer.layer_tanh, layer.rate, layer.mass / (0.5 * (1.0 - layer.layer_tanh))
+        mass[:count, :count] += layer.mass * at.T @ at
+        mass[own, :count], mass[:count, own] = layer.mass * at, layer.mass * at.T
+        mass[own, own] = inertia * one
+        damping[:, own, own] = inertia * (rate * one + 2.0 * (1.0 + t) * spin * turn)
+        stiffness[:, own, own] = inertia * (rate * spin * turn - (1.0 + t) * np.square(spin) * one)
+    return CoupledMatrices(mass, damping, stiffness)
+
+
+@dataclass(frozen=True)
+class SystemModes:
+    """Modes of a rotor with layers at n spin speeds.
+
+    Parameters
+    ----------
+    root : lambda, 1/s, m of them and with each its conjugate, shape (n, m)
+    sense : 1 where the larger of the two circles that make up the whirl goes round as e^{i Im(lambda) t}, -1
+        where it goes the other way, shape (n, m)
+    rounding : how far rounding may have moved each, 1/s, shape (n, m)
+    found : False where the iteration did not settle, shape (n, m)
+    """
+
+    root: Complex
+    sense: Array
+    rounding: Array
+    found: Flags
+
+
+def linear_modes(matrices: CoupledMatrices, circles: Array) -> SystemModes:
+    """All modes with linear friction.
+
+    In coordinates of unit mass and velocities over a common frequency the matrix is as even as it can be; an
+    eigenvalue moves by the rounding of its entries times its condition number [theory: whirl, eq. 15].
+
+    Parameters
+    ----------
+    matrices : of the system
+    circles : displacements that tell the sense of a whirl, in pairs across the axis, shape (2 c, N)
+    """
+    root = np.linalg.cholesky(matrices.mass)
+    inverse = np.linalg.inv(root)
+    stiffness, damping = (inverse @ one @ inverse.T for one in (matrices.stiffness, matrices.damping))
+    size = root.shape[0]
+    unit = np.sqrt(np.abs(stiffness).max(axis=(1, 2)))
+    unit = np.maximum(unit, np.abs(damping).max(axis=(1, 2)) * 1e-3)[:, None, None]
+    state = np.zeros((len(stiffness), 2 * size, 2 * size))
+    state[:, :size, size:] = np.eye(size) * unit
+    state[:, size:, :size] = -stiffness / unit
+    state[:, size:, size:] = -damping
+    values, right = np.linalg.eig(state)
+    left = np.linalg.pinv(right)
+    condition = np.linalg.norm(left, axis=2) * np.linalg.norm(right, axis=1)
+    scale = np.linalg.norm(state, axis=(1, 2))
+    rounding = 2.0 * _EPS * np.sqrt(2.0 * size) * scale[:, None] * np.minimum(condition, 1.0 / _EPS)
+    moved = (circles @ inverse.T) @ right[:, :size]
+    along, against = (
+        np.square(np.abs(moved[:, ::2] + turn * moved[:, 1::2])).sum(axis=1) for turn in (1j, -1j)
+    )
+    return SystemModes(values, sense_of(along, against), rounding, np.ones(values.shape, dtype=bool))
+
+
+def sense_of(along: Array, against: Array) -> Array:
+    """1 where a mode goes round as e^{i Im(lambda) t}, -1 where it goes the other way, shape (n, m).
+
+    Parameters
+    ----------
+    along, against : squared sizes of its circles, shape (n, m); modes that move no axis, whose circles are
+        rounding, count as the first
+    """
+    least = 1e-18 * (along + against).max(axis=1, keepdims=True, initial=0.0)
+    return np.where(along + least >= against, 1.0, -1.0)
+
+
+def circles_of(system: RotorSystem, layers: Sequence[tuple[float, Layer]]) -> Array:
+    """Displacements of the axis at each layer, or at the rotor's origin without any, and the offsets."""
+    count, size = len(system.coordinates), len(system.coordinates) + 2 * len(layers)
+    axes = [system.at(plane) for plane, _ in layers] or [system.centre]
+    shown = np.zeros((2 * len(axes), size))
+    shown[:, :count] = np.concatenate(axes)
+    return np.concatenate([shown, np.eye(size)[count:]])

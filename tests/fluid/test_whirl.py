@@ -1,0 +1,209 @@
+"""The layer with friction: collocated equations of motion, Newton's law, the wall layer, limits."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy import linalg
+
+from fluid.fill import Fill
+from fluid.friction import LINEAR, NONE, QUADRATIC, STOKES, stokes_coefficient
+from fluid.liquid import Liquid
+from fluid.waves import force_ratio, free_wave_frequencies, offset_ratio
+from fluid.whirl import (
+    covering_speed,
+    damped_waves,
+    force_with_friction,
+    is_full,
+    neutral_stiffness,
+    offset_with_friction,
+    plane_layer,
+    stokes_rate,
+    wave_function,
+)
+from meshes.chamber import Chamber
+from tests.fluid.test_waves import POINTS, layer_system
+
+RADIUS, SPIN = 0.15, 40.0
+WATER = Liquid("water", 1000.0, 1e-6)
+
+
+def tanh_of(a: float) -> float:
+    return (RADIUS**2 - a**2) / (RADIUS**2 + a**2)
+
+
+def dragged(a: float, rate: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Collocated momentum, continuity and surface, with the drag -k u in both momentum equations."""
+    static, inertia, forcing = layer_system(a, RADIUS, 1, SPIN)
+    drag = rate * inertia
+    drag[2 * POINTS :] = 0.0
+    return static + drag, inertia, forcing
+
+
+def check_offset() -> None:
+    """Against the equations of motion on Chebyshev points, nothing assumed irrotational."""
+    for a in (0.135, 0.1, 0.03):
+        for rate in (0.0, 3.0, 60.0):
+            for whirl in (30.0, -25.0, 52.0 - 4.0j):
+                slip = whirl - SPIN
+                static, inertia, forcing = dragged(a, rate)
+                answer = np.linalg.solve(static + 1j * slip * inertia, whirl**2 * forcing)
+                # d = -xi/(kappa - 1); the collocation has some ten digits.
+                wanted = -answer[-1] / ((RADIUS / a) ** 2 - 1.0)
+                found = offset_with_friction(tanh_of(a), SPIN, whirl, rate)
+                np.testing.assert_allclose(found, wanted, rtol=1e-7)
+
+
+def test_offset() -> None:
+    check_offset()
+
+
+def check_free_waves() -> None:
+    """Eigenvalues of the collocated equations; their decay k/2 in a thin layer."""
+    for a, rate in ((0.135, 3.0), (0.1, 8.0), (0.05, 60.0)):
+        static, inertia, _ = dragged(a, rate)
+        sigma = linalg.eigvals(static, -1j * inertia)
+        sigma = sigma[np.isfinite(sigma)]
+        for wave in damped_waves(tanh_of(a), SPIN, rate):
+            assert np.min(np.abs(sigma - wave)) < 1e-6 * SPIN
+            assert abs(wave_function(tanh_of(a), SPIN, wave, rate)) < 1e-12 * SPIN**2
+    for t in (1e-4, 1e-6):
+        # The two differ from k/2 by T/sqrt(T^2 + T), about sqrt(T), of it and by the square of k.
+        for wave in damped_waves(t, SPIN, 1e-3):
+            assert wave.imag == pytest.approx(0.5e-3, rel=2.0 * math.sqrt(t) + 1e-3)
+    forward, backward = damped_waves(0.2, SPIN, 0.0)
+    expected = free_wave_frequencies(1, math.atanh(0.2), SPIN)
+    np.testing.assert_allclose([forward, backward], expected, rtol=1e-14)
+
+
+def test_free_waves() -> None:
+    check_free_waves()
+
+
+def check_frictionless() -> None:
+    """The formulas of the inviscid theory."""
+    ratio = np.array([-0.5, 0.3, 0.9, 1.0, 1.7])
+    for kappa in (1.01, 1.3, 9.0):
+        t = (kappa - 1.0) / (kappa + 1.0)
+        force = force_with_friction(t, SPIN, ratio * SPIN, 0.0)
+        np.testing.assert_allclose(force, force_ratio(kappa, ratio), rtol=1e-12, atol=1e-13)
+        offset = offset_with_friction(t, SPIN, ratio * SPIN, 0.0)
+        np.testing.assert_allclose(offset, offset_ratio(kappa, ratio), rtol=1e-12)
+
+
+def test_frictionless() -> None:
+    check_frictionless()
+
+
+@given(
+    kappa=st.floats(1.0 + 1e-9, 1e6),
+    ratio=st.floats(-3.0, 3.0),
+    growth=st.floats(0.01, 2.0),
+    rate=st.floats(0.0, 10.0),
+)
+def test_force_is_newtons_law(kappa: float, ratio: float, growth: float, rate: float) -> None:
+    """G by the pressure of the wave and the drag on the drum, in kappa, against the offset's acceleration."""
+    t = (kappa - 1.0) / (kappa + 1.0)
+    omega = ratio - 1j * growth
+    s = omega - 1.0
+    d = (1.0 - kappa) * omega**2 + 2.0 * kappa * s**2 - 1j * rate * (1.0 + kappa) * s
+    numerator = (kappa - 1.0) * (2.0 * s**2 - omega**2 - 1j * rate * (1.0 + kappa) / kappa * s)
+    # 1 - omega^2/D cancels where nearly all of the liquid stays behind.
+    slack = 1e-12 * (1.0 + abs(omega**2 / (d / kappa)) * t)
+    assert abs(force_with_friction(t, 1.0, omega, rate) - numerator / d) <= slack + 1e-9 * abs(numerator / d)
+
+
+def check_laws() -> None:
+    """Torque of the shear over the angular momentum of the liquid, law by law [theory: long_wave]."""
+    chamber = Chamber(RADIUS, 0.02)
+    for share in (1e-9, 0.1, 0.6):
+        fill = Fill(chamber, WATER, share * chamber.capacity)
+        a, depth = fill.surface_radius, fill.depth
+        area = 0.5 * share * RADIUS**2
+        layer = plane_layer(fill, (LINEAR, 0.7))
+        assert layer is not None
+        assert layer.rate == pytest.approx(0.7 * depth * RADIUS / area, rel=1e-12)
+        assert layer.layer_tanh == pytest.approx(share / (2.0 - share), rel=1e-12)
+        assert layer.mass == pytest.approx(1000.0 * fill.volume)
+        layer = plane_layer(fill, (STOKES, 0.0))
+        assert layer is not None and layer.rate == 0.0
+        for slip in (7.0, -7.0):
+            k = float(stokes_coefficient(1e-6, slip)) * (1.0 / depth + 2.0 / chamber.height)
+            drag = complex(stokes_rate(layer.stokes, slip))
+            assert drag.real == pytest.approx(2.0 * RADIUS / (RADIUS + a) * k, rel=1e-9)
+            # Inertia: -i k s has the real part k_i s, of the sign of s^2.
+            assert drag.imag == pytest.approx(math.copysign(drag.real, slip), rel=1e-12)
+    for law in ((NONE, 0.0), (QUADRATIC, 0.3)):
+        layer = plane_layer(fill, law)
+        assert layer is not None and layer.rate == layer.stokes == 0.0
+
+
+def test_laws() -> None:
+    check_laws()
+
+
+def check_wall_layer() -> None:
+    """Shear of a growing oscillation on a wall: u_t = nu u_yy + U_t on a fine grid."""
+    nu, points = 1e-3, 6000
+    for slip in (3.0 - 0.4j, -2.0 - 0.1j, 1.0 + 0.3j):
+        thick = math.sqrt(nu / abs(slip))
+        y = np.linspace(0.0, 40.0 * thick, points)
+        step = y[1]
+        # Velocity relative to the outer flow, -U on the wall.
+        band = np.zeros((3, points), dtype=complex)
+        band[0, 2:] = band[2, :-2] = nu / step**2
+        band[1, 1:-1] = -2.0 * nu / step**2 - 1j * slip
+        band[1, [0, -1]] = 1.0
+        right = np.zeros(points, dtype=complex)
+        right[0] = -1.0
+        u = linalg.solve_banded((1, 1), band, right)
+        shear = nu * (-1.5 * u[0] + 2.0 * u[1] - 0.5 * u[2]) / step
+        # Second order: (step/thickness)^2 of some 4e-5.
+        assert complex(stokes_rate(math.sqrt(nu), slip)) == pytest.approx(shear, rel=1e-4)
+
+
+def test_wall_layer() -> None:
+    check_wall_layer()
+
+
+def check_neutral_stiffness() -> None:
+    """K - (M + m_f G) omega^2 = 0 for the rotor without damping."""
+    r = np.array([-1.5, -0.3, 0.4, 0.8, 1.0, 2.5])
+    kappa, full = np.array([1.2, 4.0]), np.array([0.3, 0.8])
+    wanted = r**2 * (2.0 + sum(m * force_ratio(k, r) for k, m in zip(kappa, full, strict=True)))
+    liquid, t = full * (1.0 - 1.0 / kappa), (kappa - 1.0) / (kappa + 1.0)
+    np.testing.assert_allclose(neutral_stiffness(r, 2.0, liquid, t), wanted, rtol=1e-12)
+
+
+def test_neutral_stiffness() -> None:
+    check_neutral_stiffness()
+
+
+def check_covering_speed() -> None:
+    """There the paraboloid of the liquid's volume runs through the lid's rim or the inner wall's foot."""
+    chamber = Chamber(0.2, 0.05, 0.1)
+    for share in (0.02, 0.3, 0.7, 0.95):
+        fill = Fill(chamber, WATER, share * chamber.capacity)
+        spin = covering_speed(fill, 9.81)
+        z = np.linspace(-0.025, 0.025, 2001)
+        for gain, fits in ((1.0 + 1e-9, True), (1.0 - 1e-9, False)):
+            squared = fill.surface_radius**2 + 2.0 * 9.81 * z / (spin * gain) ** 2
+            assert np.trapezoid(math.pi * (0.2**2 - squared), z) == pytest.approx(fill.volume, rel=1e-9)
+            assert bool(squared[-1] <= 0.2**2 and squared[0] >= 0.1**2) == fits
+    assert covering_speed(fill, 0.0) == covering_speed(Fill(chamber, WATER, 0.0), 9.81) == 0.0
+
+
+def test_covering_speed() -> None:
+    check_covering_speed()
+
+
+def test_no_layer_without_liquid_or_surface() -> None:
+    for chamber in (Chamber(0.1, 0.02), Chamber(0.1, 0.02, 0.04)):
+        assert plane_layer(Fill(chamber, WATER, 0.0), (NONE, 0.0)) is None
+        full = Fill(chamber, WATER, chamber.capacity)
+        assert is_full(full) and plane_layer(full, (NONE, 0.0)) is None
+        assert not is_full(Fill(chamber, WATER, 0.999 * chamber.capacity))
