@@ -44,7 +44,7 @@ _inner: Any = njit(inline="always")
 
 RAN_OUT, NOT_COUPLED, STOPPED = 3, 4, 5
 # A step is done once two estimates of the mean accelerations differ by this, relative to the largest. Where
-# the drying edge of a layer makes them jump, the guess follows by halves after a few rounds; after all of them
+# the drying edge of a layer makes them jump, the guess follows by halves after a few rounds; after the last
 # the step is shortened, and the shortest may pass with what is left. Momentum is handed over all the same.
 _AGREED, _PASSABLE, _STRAIGHT, _ROUNDS, _SHORTEST = 1e-6, 1e-2, 5, 12, 1.0 / 32.0
 

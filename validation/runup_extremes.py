@@ -19,6 +19,7 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup import RunupHistory, RunupNumerics, run_up
 
 _MASS, _NATURAL, _CHAMBER = 30.0, 25.0, Chamber(0.25, 0.04)
+_RAMP = Ramp(15.0, 60.0, 15.0, 4.0)
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ class RunupExtreme:
     chambers: int = 1
     friction: tuple[str, float] = ("linear", 3.0)
     gravity: float = 0.0
-    ramp: Ramp = Ramp(15.0, 60.0, 15.0, 4.0)
+    ramp: Ramp = _RAMP
     cells: int = 64
 
 

@@ -144,7 +144,7 @@ def test_energy_of_a_free_machine_only_falls() -> None:
     assert 0.98 * before < after <= before * (1.0 + 1e-4)
 
 
-# --- run-ups against figures of another code --------------------------------------------------------------- ---
+# --- run-ups against figures of another code ---
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,152 @@
+"""A rigid tub on springs and dampers with a drum that spins in it: six degrees of freedom."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshes.border import InputError, require_not_negative, require_positive
+from solvers.rotor.system import RotorSystem
+
+Array = NDArray[np.float64]
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Mount:
+    """A spring or a damper between the tub and the ground.
+
+    It resists the velocity or displacement u of its point with -c d (d . u) along a direction d, and with
+    -c_i u_i along the axes: the sum of both [theory: rotor, eq. 21].
+
+    Parameters
+    ----------
+    position : where it holds the tub, from the tub's centre of mass, m
+    coefficient : c, N/m or N s/m, along `direction`
+    direction : d, of any length but 0
+    along_axes : (c_x, c_y, c_z), N/m or N s/m
+
+    Raises
+    ------
+    InputError : a value that is not finite, a negative coefficient, a direction of no length
+    """
+
+    position: Vector
+    coefficient: float = 0.0
+    direction: Vector = (0.0, 0.0, 1.0)
+    along_axes: Vector = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        for field in ("position", "direction"):
+            if not all(map(math.isfinite, getattr(self, field))):
+                raise InputError(field, getattr(self, field), "three finite numbers")
+        if not math.hypot(*self.direction) > 0.0:
+            raise InputError("direction", self.direction, "not all three 0")
+        require_not_negative("coefficient", self.coefficient)
+        for one in self.along_axes:
+            require_not_negative("along_axes", one)
+
+    def matrix(self) -> Array:
+        """J^T c J, its share in the stiffness or damping matrix, shape (6, 6)."""
+        unit = np.array(self.direction) / math.hypot(*self.direction)
+        tensor = self.coefficient * np.outer(unit, unit) + np.diag(self.along_axes)
+        moving = displacement(self.position)
+        return np.asarray(moving.T @ tensor @ moving)
+
+
+@dataclass(frozen=True)
+class Tub:
+    """Suspended tub with a spinning drum [theory: rotor, eq. 20-23; DR18, eq. 1-8].
+
+    The origin is the tub's centre of mass, the axes are its principal ones, and the drum spins about +y,
+    which turns z into x.
+
+    Parameters
+    ----------
+    tub_mass, drum_mass : m_1 and m_2, kg
+    tub_inertia : (J_x, J_y, J_z) of the tub about its centre of mass, kg m^2
+    drum_polar_inertia : J_b of the drum about its axis, kg m^2
+    drum_transverse_inertia : J_a of the drum across its axis, about its own centre, kg m^2
+    springs, dampers : any number
+    unbalance : of the laundry, mass times its distance from the drum's axis, kg m
+    drum_position : centre of the drum (x_D, y_D, z_D), m; its axis runs through it along y
+    unbalance_position : y of the unbalance, m; that of the drum's centre if None
+
+    Raises
+    ------
+    InputError : a mass or inertia of the tub that is not positive, a negative one of the drum, a place that
+        is not finite
+    """
+
+    tub_mass: float
+    drum_mass: float
+    tub_inertia: Vector
+    drum_polar_inertia: float
+    drum_transverse_inertia: float
+    springs: tuple[Mount, ...]
+    dampers: tuple[Mount, ...]
+    unbalance: float
+    drum_position: Vector = (0.0, 0.0, 0.0)
+    unbalance_position: float | None = None
+
+    def __post_init__(self) -> None:
+        require_positive("tub_mass", self.tub_mass)
+        for one in self.tub_inertia:
+            require_positive("tub_inertia", one)
+        for field in ("drum_mass", "drum_polar_inertia", "drum_transverse_inertia", "unbalance"):
+            require_not_negative(field, getattr(self, field))
+        if not all(map(math.isfinite, (*self.drum_position, self.unbalance_position or 0.0))):
+            raise InputError("drum_position", self.drum_position, "finite numbers")
+
+    @property
+    def mass(self) -> float:
+        """All that moves without the liquid, kg."""
+        return self.tub_mass + self.drum_mass
+
+    def system(self) -> RotorSystem:
+        """Equations of motion for the displacement x, y, z of the tub and its turns alpha, beta, gamma."""
+        across, along = self.drum_transverse_inertia, self.drum_polar_inertia
+        drum = displacement(self.drum_position)
+        inertia = np.diag([self.tub_mass] * 3 + list(self.tub_inertia))
+        inertia += self.drum_mass * drum.T @ drum + np.diag([0.0, 0.0, 0.0, across, along, across])
+        gyroscopic = np.zeros((6, 6))
+        gyroscopic[3, 5], gyroscopic[5, 3] = -along, along
+        x, y, z = self.drum_position
+        centre, unit = (displacement((x, position, z))[[2, 0]] for position in (0.0, 1.0))
+        lean = unit - centre
+        heavy = y if self.unbalance_position is None else self.unbalance_position
+        none = np.zeros((6, 6))
+        return RotorSystem(
+            coordinates=("x", "y", "z", "alpha", "beta", "gamma"),
+            mass=inertia,
+            damping=sum((one.matrix() for one in self.dampers), none),
+            gyroscopic=gyroscopic,
+            stiffness=sum((one.matrix() for one in self.springs), none),
+            unbalance=self.unbalance * (centre + heavy * lean).T @ np.array([1.0, -1j]),
+            centre=centre,
+            lean=lean,
+        )
+
+
+def displacement(position: Vector) -> Array:
+    """Displacement of a point of the tub for unit coordinates [theory: rotor, eq. 20].
+
+    Parameters
+    ----------
+    position : (x, y, z) of the point, m
+
+    Returns
+    -------
+    J, shape (3, 6): rows along x, y, z; columns x, y, z, alpha, beta, gamma
+    """
+    x, y, z = position
+    return np.array(
+        [
+            [1.0, 0.0, 0.0, 0.0, z, -y],
+            [0.0, 1.0, 0.0, -z, 0.0, x],
+            [0.0, 0.0, 1.0, y, -x, 0.0],
+        ]
+    )

@@ -1,0 +1,136 @@
+"""A rigid rotor in isotropic supports along its axis, with the gyroscopic terms of its spin."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshes.border import InputError, require_not_negative, require_positive
+from solvers.rotor.system import RotorSystem
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Support:
+    """An isotropic support of the rotor's axis.
+
+    Parameters
+    ----------
+    position : along the axis from the rotor's centre of mass, m
+    stiffness : k, N/m, the same in all directions across the axis
+    damping : c, N s/m, likewise
+
+    Raises
+    ------
+    InputError : a position that is not finite, a negative stiffness or damping
+    """
+
+    position: float
+    stiffness: float
+    damping: float
+
+    def __post_init__(self) -> None:
+        _require_finite("position", self.position)
+        require_not_negative("stiffness", self.stiffness)
+        require_not_negative("damping", self.damping)
+
+
+@dataclass(frozen=True)
+class PlaneUnbalance:
+    """An unbalance in one plane across the axis.
+
+    Parameters
+    ----------
+    position : of the plane, along the axis from the rotor's centre of mass, m
+    size : mass times its distance from the axis, kg m
+    angle : fixed in the rotor, positive with the spin, rad
+
+    Raises
+    ------
+    InputError : a position or angle that is not finite, a negative size
+    """
+
+    position: float
+    size: float
+    angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        _require_finite("position", self.position)
+        _require_finite("angle", self.angle)
+        require_not_negative("size", self.size)
+
+
+@dataclass(frozen=True)
+class TwoPlane:
+    """Rigid rotor with four degrees of freedom [theory: rotor, eq. 16-19].
+
+    The centre of mass sits at position 0; the spin about z turns x into y.
+
+    Parameters
+    ----------
+    mass : M, kg, without the liquid
+    transverse_inertia : A, about an axis through the centre of mass across the rotor's, kg m^2
+    polar_inertia : C, about the rotor's axis, kg m^2; at most 2 A, as for every body
+    supports : any number
+    unbalances : any number
+
+    Raises
+    ------
+    InputError : a mass or transverse inertia that is not positive, a polar inertia out of its range
+    """
+
+    mass: float
+    transverse_inertia: float
+    polar_inertia: float
+    supports: tuple[Support, ...]
+    unbalances: tuple[PlaneUnbalance, ...] = ()
+
+    def __post_init__(self) -> None:
+        require_positive("mass", self.mass)
+        require_positive("transverse_inertia", self.transverse_inertia)
+        require_not_negative("polar_inertia", self.polar_inertia)
+        # A disc without thickness has C = 2 A; values given with nine digits may exceed it by rounding.
+        most = 2.0 * self.transverse_inertia * (1.0 + 1e-9)
+        if self.polar_inertia > most:
+            raise InputError(
+                "polar_inertia", self.polar_inertia, f"at most twice the transverse one, {most:g}"
+            )
+
+    def system(self) -> RotorSystem:
+        """Equations of motion for x, y of the centre of mass and the turns alpha, beta about x and y."""
+        stiffness, damping, gyroscopic = np.zeros((3, 4, 4))
+        for support in self.supports:
+            axis = _axis(support.position)
+            stiffness += support.stiffness * axis.T @ axis
+            damping += support.damping * axis.T @ axis
+        gyroscopic[2, 3], gyroscopic[3, 2] = self.polar_inertia, -self.polar_inertia
+        unbalance = np.zeros(4, dtype=complex)
+        for one in self.unbalances:
+            turning = one.size * cmath.exp(1j * one.angle) * np.array([1.0, -1j])
+            unbalance += _axis(one.position).T @ turning
+        inertia = self.transverse_inertia
+        return RotorSystem(
+            coordinates=("x", "y", "alpha", "beta"),
+            mass=np.diag([self.mass, self.mass, inertia, inertia]),
+            damping=damping,
+            gyroscopic=gyroscopic,
+            stiffness=stiffness,
+            unbalance=unbalance,
+            centre=_axis(0.0),
+            lean=_axis(1.0) - _axis(0.0),
+        )
+
+
+def _axis(position: float) -> Array:
+    """Displacement of the axis at a position for unit coordinates: x + z beta, y - z alpha, shape (2, 4)."""
+    return np.array([[1.0, 0.0, 0.0, position], [0.0, 1.0, -position, 0.0]])
+
+
+def _require_finite(field: str, value: float) -> None:
+    if not math.isfinite(value):
+        raise InputError(field, value, "a finite number")

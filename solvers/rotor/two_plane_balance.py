@@ -1,0 +1,238 @@
+"""Whether passive balancers in two planes or more can balance a rigid rotor, and from which speed on."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from meshes.border import InputError, require_not_negative, require_positive
+from solvers.rotor.two_plane import TwoPlane
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class RigidRotor:
+    """A rigid rotor on two isotropic supports, as its balancing sees it [theory: balls, section 3].
+
+    Parameters
+    ----------
+    mass : of the whole system with its balancers, kg
+    inertia : A, B, C: about two axes fixed in the rotor and across its own, and about its own, through the
+        centre of mass, kg m^2
+    stiffness : of the supports, two or more, N/m
+    position : of each along the axis from the centre of mass, m; l1 and -l2 of the source
+
+    Raises
+    ------
+    InputError : mass or transverse inertia not positive, polar inertia or a stiffness negative, an inertia
+        larger than the other two together, supports that leave a motion free
+    """
+
+    mass: float
+    inertia: tuple[float, float, float]
+    stiffness: tuple[float, ...]
+    position: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        require_positive("mass", self.mass)
+        for value in self.inertia[:2]:
+            require_positive("inertia", value)
+        require_not_negative("inertia", self.inertia[2])
+        largest = max(self.inertia)
+        if largest > (sum(self.inertia) - largest) * (1.0 + 1e-9):
+            raise InputError("inertia", self.inertia, "moments of a body: none above the sum of the others")
+        for value in self.stiffness:
+            require_not_negative("stiffness", value)
+        if len(self.position) != len(self.stiffness) or not all(map(math.isfinite, self.position)):
+            raise InputError("position", self.position, "a finite number for each support")
+        k11, k14, k33 = self.support
+        if not k11 * k33 > k14 * k14 * (1.0 + 1e-12):
+            raise InputError("stiffness", self.stiffness, "such that no motion of the rotor is free")
+
+    @property
+    def support(self) -> tuple[float, float, float]:
+        """k11, k14, k33: resistance to shift, of shift to tilt, and to tilt [theory: balls, eq. 23]."""
+        pairs = list(zip(self.stiffness, self.position, strict=True))
+        return sum(k for k, _ in pairs), sum(k * z for k, z in pairs), sum(k * z * z for k, z in pairs)
+
+
+@dataclass(frozen=True)
+class Condition:
+    """One of the conditions, over speed.
+
+    Parameters
+    ----------
+    name : the condition, as written
+    value : what must be above 0, shape (n,)
+    satisfied : whether it is, shape (n,)
+    above : speed above which it holds, rad/s; infinite if at none
+    """
+
+    name: str
+    value: Array
+    satisfied: Flags
+    above: float
+
+
+@dataclass(frozen=True)
+class Balancing:
+    """Answer of `dynamic_balancing`.
+
+    Parameters
+    ----------
+    speed : rad/s, shape (n,)
+    possible : whether balancing occurs, shape (n,)
+    conditions : each of them, in the order of the source
+    above : speed above which all hold, rad/s; infinite if at none
+    resonances : resonance speeds of the rotor without damping, ascending, rad/s
+    long : both transverse inertias exceed the polar one
+    """
+
+    speed: Array
+    possible: Flags
+    conditions: tuple[Condition, ...]
+    above: float
+    resonances: tuple[float, ...]
+    long: bool
+
+    def why(self, index: int = 0) -> str:
+        """The answer at one speed in words.
+
+        Parameters
+        ----------
+        index : of the speed
+        """
+        if self.possible[index]:
+            return f"yes: the rotor is long and {self.speed[index]:.6g} rad/s is above {self.above:.6g} rad/s"
+        failed = [one for one in self.conditions if not one.satisfied[index]]
+        reasons = [
+            f"{one.name} fails at every speed"
+            if math.isinf(one.above)
+            else f"{one.name} only above {one.above:.6g} rad/s"
+            for one in failed
+        ]
+        return "no: " + "; ".join(reasons)
+
+
+def dynamic_balancing(rotor: RigidRotor, speed: ArrayLike) -> Balancing:
+    """Whether two or more passive balancers of any type balance the rotor [theory: balls, eq. 26-27].
+
+    Balancers in at least two planes, light beside the rotor, able to produce the unbalance it has. Damping of
+    the supports has no part in it [FF20, eq. 32-35].
+
+    Parameters
+    ----------
+    rotor : with its supports
+    speed : spin speeds, rad/s, shape (n,) or one, 0 or above
+
+    Raises
+    ------
+    InputError : a speed that is negative or not finite
+    """
+    spin = np.atleast_1d(np.asarray(speed, dtype=float))
+    if spin.ndim != 1 or not np.all(np.isfinite(spin) & (spin >= 0.0)):
+        raise InputError("speed", spin.tolist(), "finite numbers, 0 or above")
+    a, b, c = rotor.inertia
+    k11, k14, k33 = rotor.support
+    square = np.square(spin)
+    v11, v22, v33 = (b - c) * square - k33, (a - c) * square - k33, rotor.mass * square - k11
+    tilts = (_tilt_limits(rotor, b - c), _tilt_limits(rotor, a - c))
+    conditions = (
+        _condition("A > C", np.full(spin.shape, a - c), 0.0 if a > c else math.inf),
+        _condition("B > C", np.full(spin.shape, b - c), 0.0 if b > c else math.inf),
+        _condition("v11 = (B - C) w^2 - k33 > 0", v11, _root(k33, b - c)),
+        _condition("v22 = (A - C) w^2 - k33 > 0", v22, _root(k33, a - c)),
+        _condition("v33 = M w^2 - k11 > 0", v33, _root(k11, rotor.mass)),
+        # Together with v > 0; alone it holds at rest as well.
+        _condition("v11 v33 > k14^2", v11 * v33 - k14 * k14, tilts[0][-1] if b > c else math.inf),
+        _condition("v22 v33 > k14^2", v22 * v33 - k14 * k14, tilts[1][-1] if a > c else math.inf),
+    )
+    return Balancing(
+        speed=spin,
+        possible=np.logical_and.reduce([one.satisfied for one in conditions]),
+        conditions=conditions,
+        above=max(one.above for one in conditions),
+        resonances=_distinct((*tilts[0], *tilts[1])),
+        long=a > c and b > c,
+    )
+
+
+def of_two_planes(rotor: TwoPlane, added_mass: float = 0.0) -> RigidRotor:
+    """The rotor of `solvers.rotor.two_plane` as its balancing sees it.
+
+    Parameters
+    ----------
+    rotor : with its supports
+    added_mass : of the balancers, kg
+    """
+    across, along = rotor.transverse_inertia, rotor.polar_inertia
+    return RigidRotor(
+        mass=rotor.mass + added_mass,
+        inertia=(across, across, along),
+        stiffness=tuple(one.stiffness for one in rotor.supports),
+        position=tuple(one.position for one in rotor.supports),
+    )
+
+
+def potential_hessian(rotor: RigidRotor, speed: float) -> Array:
+    """Second derivatives of the generalized potential as the balancers see it [theory: balls, eq. 25].
+
+    Parameters
+    ----------
+    rotor, speed : see `dynamic_balancing`
+
+    Returns
+    -------
+    Matrix for (alpha, beta, x, y), in the rotating frame, shape (4, 4); positive definite where balancing
+    occurs
+    """
+    a, b, c = rotor.inertia
+    k11, k14, k33 = rotor.support
+    tilt_x, tilt_y = (b - c) * speed**2 - k33, (a - c) * speed**2 - k33
+    shift = rotor.mass * speed**2 - k11
+    return np.array(
+        [
+            [tilt_x, 0.0, 0.0, k14],
+            [0.0, tilt_y, -k14, 0.0],
+            [0.0, -k14, shift, 0.0],
+            [k14, 0.0, 0.0, shift],
+        ]
+    )
+
+
+def _condition(name: str, value: Array, above: float) -> Condition:
+    return Condition(name, value, np.asarray(value > 0.0), above)
+
+
+def _root(stiffness: float, inertia: float) -> float:
+    """Speed above which inertia w^2 exceeds the stiffness."""
+    return math.sqrt(stiffness / inertia) if inertia > 0.0 else math.inf
+
+
+def _distinct(speeds: tuple[float, ...]) -> tuple[float, ...]:
+    """Ascending, those that differ by rounding alone once."""
+    kept: list[float] = []
+    for speed in sorted(speeds):
+        if not (kept and math.isclose(speed, kept[-1], rel_tol=1e-12)):
+            kept.append(speed)
+    return tuple(kept)
+
+
+def _tilt_limits(rotor: RigidRotor, excess: float) -> tuple[float, ...]:
+    """Speeds where (excess w^2 - k33)(M w^2 - k11) = k14^2, ascending: one for a short rotor, else two."""
+    k11, k14, k33 = rotor.support
+    # excess M s^2 - (excess k11 + M k33) s + (k11 k33 - k14^2) = 0 for s = w^2
+    lead, middle, last = excess * rotor.mass, excess * k11 + rotor.mass * k33, k11 * k33 - k14 * k14
+    # Never negative: (excess k11 - M k33)^2 + 4 excess M k14^2, and lead has the sign of excess.
+    spread = math.sqrt(max(middle * middle - 4.0 * lead * last, 0.0))
+    # The sum without cancellation gives the one root, the product the other.
+    q = 0.5 * (middle + math.copysign(spread, middle))
+    roots = [last / q] if q != 0.0 else []
+    if lead != 0.0:
+        roots.append(q / lead)
+    return tuple(sorted(math.sqrt(s) for s in roots if s > 0.0))

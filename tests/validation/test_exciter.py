@@ -1,0 +1,73 @@
+"""The cases of the exciter and of balancing in two planes, and the sample behind the regression's error."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from solvers.rotor.yatsun_regression import RANGES
+from validation import exciter, two_plane, two_plane_figures
+from validation.exciter_figures import Comparison, compare, sample, table
+
+
+def test_cases_of_the_exciter() -> None:
+    found = {case.name: case for case in exciter.cases()}
+    assert all(case.group == "exciter" for case in found.values())
+    errata = {name for name, case in found.items() if case.verdict == "erratum"}
+    assert errata == {"exciter/n1", "exciter/table-drag-empty", "exciter/table-drag-loaded"}
+    assert Counter(case.verdict for case in found.values())["differs"] == 0
+
+
+def test_cases_of_two_planes() -> None:
+    found = two_plane.cases()
+    assert all(case.group == "two_plane" and case.verdict == "agrees" for case in found)
+    # Balanced: one of the four demonstrations with balls.
+    assert sum(case.printed == "balanced" for case in found) == 1
+
+
+def test_the_figure_of_two_planes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Four panels that say what the conditions say; the balanced one falls, the others stay."""
+    kept = []
+    monkeypatch.setattr(two_plane_figures, "save", lambda figure, *rest: kept.append(figure) or _Files())
+    two_plane_figures.balls_figure(tmp_path)
+    panels = kept[0].axes
+    assert [axes.get_title().rpartition(" ")[2] for axes in panels] == ["no", "yes", "no", "no"]
+    falls = [max(line.get_ydata()[-1] for line in axes.get_lines()[:2]) < 0.01 for axes in panels]
+    assert falls == [False, True, False, False]
+
+
+class _Files:
+    png = Path("none")
+
+
+def test_the_sample_covers_the_ranges() -> None:
+    """Each value spread evenly: in each tenth of its range a tenth of the machines, to a sixth of that."""
+    values = sample()
+    assert values.shape == (196, 4)
+    for column, (low, high) in zip(values.T, RANGES.values(), strict=True):
+        counts, _ = np.histogram(column, bins=10, range=(low, high))
+        assert counts.sum() == 196 and np.all(np.abs(counts - 19.6) < 3.3)
+    # And no two values move together.
+    assert np.abs(np.corrcoef(values.T) - np.eye(4)).max() < 0.05
+
+
+def test_the_table_counts_what_it_says() -> None:
+    values = np.array(
+        [[0.006, 0.4, 0.2, 0.03], [0.015, 0.4, 0.2, 0.03], [0.025, 0.4, 0.2, 0.03], [0.04, 0.4, 0.2, 0.03]]
+    )
+    found = Comparison(values, np.array([10.0, 10.0, 10.0, 10.0]), np.array([10.5, 11.0, 13.0, 9.0]))
+    assert found.error == pytest.approx([0.05, 0.1, 0.3, -0.1])
+    last = table(found).splitlines()[-1]
+    assert last.startswith("| all | 4 | 25 % | 75 % |")
+
+
+@pytest.mark.slow
+def test_the_regression_misses_its_six_per_cent() -> None:
+    """What the page on the exciter says of it, on a quarter of the sample."""
+    error = np.abs(compare(48).error)
+    assert np.mean(error <= 0.06) < 0.6 < np.mean(error <= 0.3)
+    assert math.isfinite(error.max())
