@@ -9,9 +9,11 @@ from solvers.branches import find_branches
 from solvers.coupled_terms import Array, Balance, Complex, Index
 from solvers.rotor.vibration import solve_each
 
-# Shares of the full added mass from which Newton starts: 1 is the wall wet all over, 0 a liquid that the
-# deflection has left behind.
-_STARTS = (1.0, 0.75, 0.5, 0.25, 0.0)
+# Shares of the full added mass from which Newton starts where walls run dry: 1 is the wall wet all over, 0 a
+# liquid that the deflection has left behind.
+_STARTS = tuple(np.linspace(0.0, 1.0, 13).tolist())
+# Where none of these leads anywhere.
+_MORE_STARTS = tuple(np.linspace(-0.3, 1.3, 81).tolist())
 _STEPS, _HALVINGS = 25, 5
 _ROUNDING = 1e-11  # of the largest term of the balance
 _SAME = 1e-6  # relative distance of two solutions that count as one
@@ -96,10 +98,7 @@ def several_planes(balance: Balance) -> tuple[Complex, Index, NDArray[np.bool_]]
     wet = np.asarray(np.isfinite(straight).all(axis=1))
     wet &= np.all(np.abs(balance.forward(np.where(wet[:, None], straight, 0.0))) <= balance.limit, axis=1)
     answer, which = straight[wet], everyone[wet]
-    starts = [(balance.linear(everyone, share), everyone) for share in _STARTS]
-    begin, owner = (np.concatenate(parts) for parts in zip(*starts, strict=True))
-    sound = np.asarray(np.isfinite(begin).all(axis=1))
-    answer, which = _added(balance, answer, which, begin[sound], owner[sound])[:2]
+    answer, which = _added(balance, answer, which, *_linear_starts(balance, everyone, _STARTS))
     fresh = np.arange(which.size)
     # A fold is followed one speed at a time, in both directions.
     for _ in range(balance.speed.size):
@@ -111,7 +110,23 @@ def several_planes(balance: Balance) -> tuple[Complex, Index, NDArray[np.bool_]]
         before = which.size
         answer, which = _added(balance, answer, which, begin[inside], owner[inside])
         fresh = np.arange(before, which.size)
+    lost = np.setdiff1d(everyone, which)
+    if lost.size:
+        answer, which = _added(balance, answer, which, *_linear_starts(balance, lost, _MORE_STARTS))
     return answer, which, np.isin(everyone, which)
+
+
+def _linear_starts(balance: Balance, which: Index, shares: tuple[float, ...]) -> tuple[Complex, Index]:
+    """Solutions with several shares of the added mass at each of some speeds, and their speeds.
+
+    Left out are those with every wall wet: from there Newton's first step leads to the whole mass's one.
+    """
+    begin = np.concatenate([balance.linear(which, share) for share in shares])
+    owner = np.tile(which, len(shares))
+    sound = np.asarray(np.isfinite(begin).all(axis=1))
+    begin, owner = begin[sound], owner[sound]
+    bent = np.any(np.abs(balance.forward(begin)) > balance.limit[owner], axis=1)
+    return begin[bent], owner[bent]
 
 
 def _added(

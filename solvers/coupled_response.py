@@ -15,7 +15,7 @@ from solvers.coupled_terms import Balance, Liquid, backward_mass, balance, direc
 from solvers.liquid_models import LiquidModel, synchronous_model
 from solvers.response import Response
 from solvers.rotor.system import RotorSystem
-from solvers.rotor.vibration import critical_speeds, orbit, solve_each, unbalance_response
+from solvers.rotor.vibration import Orbit, critical_speeds, orbit, solve_each, unbalance_response
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -123,14 +123,8 @@ def _arranged(
 ) -> CoupledResponse:
     """The solutions as tables over speed and branch, and the largest of each speed."""
     motion = orbit(system, answer, place)
-    size = np.abs(motion.forward)
-    order = np.lexsort((size, which))
-    counts = np.bincount(which, minlength=terms.speed.size)
-    column = np.arange(which.size) - np.repeat(np.cumsum(counts) - counts, counts)
-    table = np.full((2, terms.speed.size, int(counts.max())), complex(np.nan, np.nan))
-    table[:, which[order], column] = motion.forward[order], motion.backward[order]
-    chosen = order[np.cumsum(counts) - 1]
-    bounded = np.isfinite(size[chosen])
+    table, chosen = _ranked(motion, which, terms.speed.size)
+    bounded = np.isfinite(np.abs(motion.forward[chosen]))
     q = np.where(bounded[:, None], answer[chosen], 0.0)
     forward = terms.forward(q)
     law = terms.liquid(which[chosen], np.abs(forward))
@@ -162,6 +156,16 @@ def _arranged(
         chamber_backward=np.conj(0.5 * q @ terms.plane.T),
         residual=_residual(terms, q, forward, law),
     )
+
+
+def _ranked(motion: Orbit, which: Index, speeds: int) -> tuple[Complex, Index]:
+    """Both parts over speed and branch, by rising forward part, and the largest solution of each speed."""
+    order = np.lexsort((np.abs(motion.forward), which))
+    counts = np.bincount(which, minlength=speeds)
+    column = np.arange(which.size) - np.repeat(np.cumsum(counts) - counts, counts)
+    table = np.full((2, speeds, int(counts.max())), complex(np.nan, np.nan))
+    table[:, which[order], column] = motion.forward[order], motion.backward[order]
+    return table, order[np.cumsum(counts) - 1]
 
 
 def _centre_of_mass(terms: Balance, forward: Complex, law: Liquid) -> tuple[Array, Array]:

@@ -7,10 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from fluid.numbers import LayerNumbers, layer_numbers
+from solvers.coupled_response import wet_critical_speeds
 from solvers.hydrostatics import optimal_volume
 from solvers.response import critical_speed
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.vibration import critical_speeds, modes, orbit, unbalance_response
 from study.fidelity import axial_gravity, choose
-from study.run import jeffcott
+from study.machine import dry_rotor
+from study.record import ModeRecord
+from study.run_motion import main_critical_speeds, rest_modes
 from study.scene import Scene
 
 
@@ -60,12 +65,14 @@ class Explanation:
     Parameters
     ----------
     name : of the scene
-    critical_speed_dry, critical_speed_wet : without liquid, and with it at small deflections, rad/s
-    damping_ratio : of the support
+    critical_speed_dry, critical_speed_wet : without liquid, and with it at small deflections, rad/s; of
+        several the one at which the unbalance moves the axis most
+    damping_ratio : of the support; of several modes the one next to the dry critical speed, at that speed
     speed_ratio : first and last speed over the dry critical speed
     captured_from : speed above which the liquid rides with the drum, rad/s; None if at every speed
     layers : one for each chamber; None for an empty one
     models : which model answers at each speed, and why
+    modes : of the dry rotor at rest; none for a planar rotor, whose only one is the critical speed
     """
 
     name: str
@@ -76,6 +83,7 @@ class Explanation:
     captured_from: float | None
     layers: tuple[LayerExplanation | None, ...]
     models: tuple[ModelSpan, ...]
+    modes: tuple[ModeRecord, ...] = ()
 
 
 def explain_scene(scene: Scene) -> Explanation:
@@ -85,13 +93,11 @@ def explain_scene(scene: Scene) -> Explanation:
     ------
     InputError : the scene asks for a liquid model that does not answer the response to an unbalance
     """
-    rotor, gravity, choice = jeffcott(scene), axial_gravity(scene), choose(scene)
+    gravity, choice = axial_gravity(scene), choose(scene)
     ends = np.array([scene.speeds.start, scene.speeds.stop])
-    stiffness = complex(rotor.dynamic_stiffness(ends)[1])
-    force = rotor.unbalance * ends[1] ** 2
-    dry = abs(force / stiffness) if stiffness else 0.0
+    bare = _bare(scene, gravity, choice.model)
     layers: list[LayerExplanation | None] = []
-    for fill in scene.chambers:
+    for fill, dry in zip(scene.chambers, bare.deflection, strict=True):
         if fill.volume == 0.0:
             layers.append(None)
             continue
@@ -99,22 +105,52 @@ def explain_scene(scene: Scene) -> Explanation:
             LayerExplanation(
                 numbers=layer_numbers(fill, ends, scene.gravity, gravity),
                 depth=fill.depth,
-                added_mass_ratio=fill.full_mass / rotor.mass,
-                liquid_mass_ratio=fill.mass / rotor.mass,
+                added_mass_ratio=fill.full_mass / bare.mass,
+                liquid_mass_ratio=fill.mass / bare.mass,
                 optimal_volume=float(optimal_volume(fill.chamber, dry, ends[1], gravity)),
             )
         )
-    frequency = rotor.natural_frequency
     return Explanation(
         name=scene.name,
-        critical_speed_dry=frequency,
-        critical_speed_wet=critical_speed(rotor, scene.chambers, gravity, choice.model),
-        damping_ratio=rotor.damping_ratio,
-        speed_ratio=(ends[0] / frequency, ends[1] / frequency),
+        critical_speed_dry=bare.critical_speed,
+        critical_speed_wet=bare.critical_speed_wet,
+        damping_ratio=bare.damping_ratio,
+        speed_ratio=(ends[0] / bare.critical_speed, ends[1] / bare.critical_speed),
         captured_from=choice.captured_from,
         layers=tuple(layers),
         models=_spans(scene, choice.in_range, choice.model, choice.reason),
+        modes=bare.modes,
     )
+
+
+@dataclass(frozen=True)
+class _Bare:
+    """The rotor without liquid in numbers; its deflection at each chamber is that of the last speed."""
+
+    mass: float
+    critical_speed: float
+    critical_speed_wet: float
+    damping_ratio: float
+    deflection: tuple[float, ...]
+    modes: tuple[ModeRecord, ...] = ()
+
+
+def _bare(scene: Scene, gravity: float, model: str) -> _Bare:
+    rotor, last = dry_rotor(scene), np.array([scene.speeds.stop])
+    system, fills = rotor.system(), scene.chambers
+    answer = unbalance_response(system, last)
+    moved = [float(np.abs(orbit(system, answer, fill.chamber.plane).forward[0])) for fill in fills]
+    deflection = tuple(one if np.isfinite(one) else 0.0 for one in moved)
+    if isinstance(rotor, Jeffcott):
+        wet = critical_speed(rotor, fills, gravity, model)
+        return _Bare(rotor.mass, rotor.natural_frequency, wet, rotor.damping_ratio, deflection)
+    speeds = critical_speeds(system)[0], wet_critical_speeds(system, fills, gravity, model)[0]
+    position = fills[0].chamber.plane if fills else 0.0
+    dry, wet = main_critical_speeds(system, fills, position, *speeds)
+    turning = modes(system, dry if np.isfinite(dry) else 0.0)
+    nearest = int(np.argmin(np.abs(turning.frequency[0] - dry))) if np.isfinite(dry) else 0
+    ratio = float(turning.damping_ratio[0, nearest])
+    return _Bare(rotor.mass, dry, wet, ratio, deflection, rest_modes(system))
 
 
 def _spans(scene: Scene, in_range: np.ndarray, model: str, reason: str) -> tuple[ModelSpan, ...]:

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from study.netcdf import dataset, flags, write_dataset
+from study.netcdf import variable as var
 from study.record import one_line, versions
-from study.results import write_dataset
 from study.stability import StabilityRecord
 
 
@@ -23,21 +24,15 @@ def write_map(record: StabilityRecord, path: Path) -> None:
     record : the map
     path : the file to write or replace
     """
-    import xarray as xr
-
     over, bands = ("volume", "speed"), max(map(len, record.edges), default=0)
     ends = np.full((record.volume.size, bands, 2), np.nan)
     for row, found in zip(ends, record.edges, strict=True):
         row[: len(found)] = np.reshape(found, (len(found), 2))
 
-    def var(dims: tuple[str, ...], values: Any, units: str, name: str, text: str) -> xr.Variable:
-        return xr.Variable(dims, values, {"units": units, "long_name": name, "description": text})
-
     mode = "of the whirl that grows most"
-    held = var(over, record.in_range.astype(np.int8), "1", "in range", "the plane layer holds there")
-    held.attrs |= {"flag_values": np.arange(2, dtype=np.int8), "flag_meanings": "no yes"}
+    held = flags(over, record.in_range, "no yes", "in range", "the plane layer holds there")
     edge = "of a band in which a whirl grows; the ends of the range of speeds count as edges"
-    dataset = xr.Dataset(
+    whole = dataset(
         {
             "growth": var(over, record.growth, "s-1", "growth rate", f"{mode}; above 0 unstable"),
             "whirl_speed": var(over, record.whirl_speed, "rad s-1", "whirl speed", f"{mode}, in space"),
@@ -51,7 +46,7 @@ def write_map(record: StabilityRecord, path: Path) -> None:
         },
         attrs=_attributes(record),
     )
-    write_dataset(dataset, path)
+    write_dataset(whole, path)
 
 
 def _attributes(record: StabilityRecord) -> dict[str, str]:
@@ -64,7 +59,6 @@ def _attributes(record: StabilityRecord) -> dict[str, str]:
         "friction": record.friction,
         "damping": record.damping,
         "notes": "\n".join(map(one_line, record.notes)) or "none",
-        "Conventions": "CF-1.11",
         "history": "written by leblanc map",
         **{f"version_{package}": version for package, version in versions().items()},
     }

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from meshes.border import InputError
 from solvers.response import Response
+from solvers.rotor.campbell import Campbell
 
 Array = NDArray[np.float64]
 
@@ -27,6 +28,7 @@ class ChamberRecord:
     radius, inner_radius, height, mean_surface_radius : m; the last one of the undisturbed layer
     volume : of the liquid, m^3
     liquid_name : as the scene names it
+    plane : position along the axis where that matters, m
     """
 
     radius: float
@@ -35,6 +37,54 @@ class ChamberRecord:
     volume: float
     liquid_name: str
     mean_surface_radius: float
+    plane: float = 0.0
+
+
+@dataclass(frozen=True)
+class ModeRecord:
+    """Free vibration of the dry rotor at rest.
+
+    Parameters
+    ----------
+    frequency : damped, rad/s; 0 where overdamped
+    damping_ratio : 1 where overdamped
+    moves : what moves most, in words
+    """
+
+    frequency: float
+    damping_ratio: float
+    moves: str
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What a rotor that tilts, or moves differently in two directions, adds to a planar one.
+
+    The axis goes round as forward e^{i Omega t} + backward e^{-i Omega t}; the deflections of the response
+    are the forward part. s speeds, b branches, c chambers.
+
+    Parameters
+    ----------
+    position : along the axis of the plane reported, m
+    backward, backward_dry : m, shape (s,)
+    branch_backward : m, shape (s, b)
+    chamber_forward : at each chamber, m, shape (s, c)
+    modes : of the dry rotor at rest, by rising frequency
+    campbell : natural frequencies of the dry rotor over its speed
+    critical_speeds_dry, critical_speeds_wet : undamped, each with the direction of its whirl, -1 to 1
+    zero : what angles count from, in words
+    """
+
+    position: float
+    backward: NDArray[np.complex128]
+    backward_dry: NDArray[np.complex128]
+    branch_backward: NDArray[np.complex128]
+    chamber_forward: NDArray[np.complex128]
+    modes: tuple[ModeRecord, ...]
+    campbell: Campbell
+    critical_speeds_dry: tuple[tuple[float, float], ...]
+    critical_speeds_wet: tuple[tuple[float, float], ...]
+    zero: str
 
 
 @dataclass(frozen=True)
@@ -53,7 +103,9 @@ class StudyRecord:
     axis : "horizontal" or "vertical"
     chambers : one for each chamber
     capture_speed : below it gravity keeps the liquid from riding with the drum, rad/s; None if never
-    critical_speed_dry, critical_speed_wet : without liquid and with its added mass, rad/s
+    critical_speed_dry, critical_speed_wet : without liquid and with its added mass, rad/s; of several the one
+        at which the unbalance moves the axis most
+    motion : None for a planar rotor
 
     Raises
     ------
@@ -73,6 +125,7 @@ class StudyRecord:
     capture_speed: float | None
     critical_speed_dry: float
     critical_speed_wet: float
+    motion: Motion | None = None
 
     def __post_init__(self) -> None:
         if self.axis not in ("horizontal", "vertical"):
@@ -86,6 +139,24 @@ class StudyRecord:
             expected = (count, *branches[1:]) if field.name.startswith("branch_") else (count,)
             if shape != expected:
                 raise InputError(f"response.{field.name}", shape, f"of shape {expected}")
+
+    @property
+    def amplitude(self) -> Array:
+        """Largest distance of the axis from the line it rests in, of the branch reported, m, shape (n,)."""
+        more = 0.0 if self.motion is None else np.abs(self.motion.backward)
+        return np.asarray(np.abs(self.response.deflection) + more)
+
+    @property
+    def amplitude_dry(self) -> Array:
+        """The same of the rotor without liquid, m, shape (n,)."""
+        more = 0.0 if self.motion is None else np.abs(self.motion.backward_dry)
+        return np.asarray(np.abs(self.response.deflection_dry) + more)
+
+    @property
+    def branch_amplitude(self) -> Array:
+        """The same of every branch, nan where there is none, m, shape (n, b)."""
+        more = 0.0 if self.motion is None else np.abs(self.motion.branch_backward)
+        return np.asarray(np.abs(self.response.branch_deflection) + more)
 
 
 def phase(deflection: NDArray[np.complex128]) -> Array:
@@ -125,13 +196,13 @@ def models_used(response: Response) -> tuple[str, ...]:
     return tuple(dict.fromkeys(response.model.tolist()))
 
 
-def peak(deflection: NDArray[np.complex128]) -> int | None:
+def peak(deflection: NDArray[np.complex128] | Array) -> int | None:
     """Index of the largest deflection, the first of equals; None if there is no finite one.
 
     Parameters
     ----------
-    deflection : complex, nan where nothing was found, m, shape (n,)
+    deflection : complex or its size, nan where nothing was found, m, shape (n,)
     """
     size = np.abs(deflection)
-    known = np.isfinite(size)
+    known = np.asarray(np.isfinite(size))
     return int(np.argmax(np.where(known, size, -1.0))) if known.any() else None

@@ -11,16 +11,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from meshes.border import InputError
-from solvers.response import Response
+from study.netcdf import replacing
 from study.record import MM, RPM, StudyRecord, models_used, one_line, peak, versions
-from study.results import replacing
+from study.words import NOT_FOUND
+from study.words import number as number  # what else prints a study wants them too
+from study.words import ranges as ranges
 
 IMAGE_TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
-MOST_RANGES = 4  # listed one by one
-NOT_FOUND, MINUS = "not found", "\N{MINUS SIGN}"
+AGAINST = 0.5  # from here on a whirl counts as one with or against the spin
 
 # Of the page in the template: mm, characters in a line.
 PAGE_HEIGHT, LINE_HEIGHT, CHARACTERS = 262.0, 4.1, 125
@@ -80,42 +80,6 @@ class Input:
     assumed: bool
 
 
-def number(value: float) -> str:
-    """Value to four digits for print, without zeros at the end."""
-    if not math.isfinite(value):
-        return NOT_FOUND if math.isnan(value) else "infinite"
-    if value == 0.0:
-        return "0"
-    exponent = math.floor(math.log10(abs(value)))
-    if not -4 <= exponent < 6:
-        return f"{value:.3e}".replace("-", MINUS)
-    text = f"{value:.{max(0, 3 - exponent)}f}"
-    return (text.rstrip("0").rstrip(".") if "." in text else text).replace("-", MINUS)
-
-
-def ranges(speed: NDArray[np.float64], mask: NDArray[np.bool_]) -> str:
-    """Speeds at which a condition holds, in words.
-
-    Parameters
-    ----------
-    speed : rad/s, in any order, shape (n,)
-    mask : the condition, shape (n,)
-    """
-    if not mask.any():
-        return "none"
-    if mask.all():
-        return "all speeds"
-    order = np.argsort(speed, kind="stable")
-    rpm, holds = speed[order] * RPM, mask[order]
-    change = np.flatnonzero(np.diff(np.concatenate(([False], holds, [False]))))
-    first, last = rpm[change[::2]], rpm[change[1::2] - 1]
-    if first.size > MOST_RANGES:
-        return f"{first.size} ranges between {number(first[0])} and {number(last[-1])} rpm"
-    pairs = zip(first.tolist(), last.tolist(), strict=True)
-    parts = [number(a) if a == b else f"{number(a)} to {number(b)}" for a, b in pairs]
-    return "; ".join(parts) + " rpm"
-
-
 def comparisons(record: StudyRecord) -> list[Comparison]:
     """Largest and last amplitude, with and without liquid.
 
@@ -124,19 +88,19 @@ def comparisons(record: StudyRecord) -> list[Comparison]:
     record : the study
     """
     r = record.response
-    wet, dry = peak(r.deflection), peak(r.deflection_dry)
+    wet, dry = peak(record.amplitude), peak(record.amplitude_dry)
     at_wet, at_dry = (NOT_FOUND if i is None else number(r.speed[i] * RPM) for i in (wet, dry))
     return [
-        _compared("Largest amplitude (mm)", r, wet, dry),
+        _compared("Largest amplitude (mm)", record, wet, dry),
         Comparison("at the speed (rpm)", at_wet, at_dry, ""),
-        _compared(f"Amplitude at {number(r.speed[-1] * RPM)} rpm (mm)", r, -1, -1),
+        _compared(f"Amplitude at {number(r.speed[-1] * RPM)} rpm (mm)", record, -1, -1),
     ]
 
 
-def _compared(label: str, r: Response, wet: int | None, dry: int | None) -> Comparison:
+def _compared(label: str, record: StudyRecord, wet: int | None, dry: int | None) -> Comparison:
     """Amplitudes at two places in the list of speeds."""
-    with_liquid = math.nan if wet is None else float(abs(r.deflection[wet]))
-    without = math.nan if dry is None else float(abs(r.deflection_dry[dry]))
+    with_liquid = math.nan if wet is None else float(record.amplitude[wet])
+    without = math.nan if dry is None else float(record.amplitude_dry[dry])
     comparable = without > 0.0 and math.isfinite(without) and math.isfinite(with_liquid)
     ratio = number(with_liquid / without) if comparable else ""
     return Comparison(label, number(with_liquid * MM), number(without * MM), ratio)
@@ -156,12 +120,33 @@ def facts(record: StudyRecord) -> list[tuple[str, str]]:
     return [
         ("Mass of the liquid", f"{number(record.liquid_mass * 1e3)} g"),
         (f"Liquid at {number(r.speed[-1] * RPM)} rpm", angle),
-        ("Critical speed with liquid", f"{number(record.critical_speed_wet * RPM)} rpm"),
-        ("Critical speed without liquid", f"{number(record.critical_speed_dry * RPM)} rpm"),
+        *_vibration(record),
         ("Dry patch on the wall", ranges(r.speed, r.dry_patch)),
         ("Model out of range", ranges(r.speed, ~r.in_range)),
         ("Reported answer unstable", ranges(r.speed, ~r.stable)),
         ("Not converged", ranges(r.speed, ~r.converged)),
+    ]
+
+
+def _vibration(record: StudyRecord) -> list[tuple[str, str]]:
+    """Critical speeds and natural frequencies; "b" marks a whirl against the spin."""
+    if record.motion is None:
+        return [
+            ("Critical speed with liquid", f"{number(record.critical_speed_wet * RPM)} rpm"),
+            ("Critical speed without liquid", f"{number(record.critical_speed_dry * RPM)} rpm"),
+        ]
+
+    def listed(speeds: tuple[tuple[float, float], ...]) -> str:
+        words = [f"{speed * RPM:.4g}" + (" b" if sense < -AGAINST else "") for speed, sense in speeds]
+        return ", ".join(words) + " rpm" if words else "none"
+
+    at_rest = [
+        f"{one.frequency / (2.0 * math.pi):.3g} ({one.damping_ratio:.2g})" for one in record.motion.modes
+    ]
+    return [
+        ("Critical speeds with liquid", listed(record.motion.critical_speeds_wet)),
+        ("Critical speeds without liquid", listed(record.motion.critical_speeds_dry)),
+        ("Natural frequencies at rest (damping ratios)", ", ".join(at_rest) + " Hz"),
     ]
 
 
@@ -194,15 +179,17 @@ def remarks(record: StudyRecord) -> list[str]:
     record : the study
     """
     r, found = record.response, [one_line(note) for note in record.notes]
-    highest = peak(r.deflection)
+    highest = peak(record.amplitude)
     if highest is None:
         found.append("No answer was found at any speed.")
     elif r.speed.size > 1 and r.speed[highest] in (r.speed.min(), r.speed.max()):
         found.append("The largest amplitude lies at an end of the range of speeds.")
-    if (infinite := np.isinf(r.deflection)).any():
+    if (infinite := np.isinf(record.amplitude)).any():
         found.append(f"Undamped, the amplitude is infinite at: {ranges(r.speed, infinite)}.")
     if highest is not None and not r.in_range[highest]:
         found.append("The largest amplitude lies where the liquid model is out of range.")
+    if record.motion is not None and any(way < -AGAINST for _, way in record.motion.critical_speeds_dry):
+        found.append("Critical speeds marked b belong to whirl against the spin.")
     if not r.in_range[-1]:
         found.append("At the last speed the liquid model is out of range.")
     return found
@@ -285,9 +272,12 @@ def write_summary(record: StudyRecord, figures: Mapping[str, Path], path: Path) 
     texts = [parts["name"] * 2, parts["source"] + parts["machine"], parts["elsewhere"], *parts["remarks"]]
     texts += [text for _, _, text in parts["models"]]
     rows = len(parts["comparisons"]) + len(parts["facts"]) // 2 + _input_rows(parts["inputs"]) + 9
+    columns = max(2, math.ceil(len(figures) / 2))  # two rows of figures
     page = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     template = resources.files("study").joinpath("templates", "summary.html.j2").read_text(encoding="utf-8")
-    text = page.from_string(template).render(parts, figure_height=_figure_height(texts, rows))
+    text = page.from_string(template).render(
+        parts, figure_height=_figure_height(texts, rows), figure_columns=columns
+    )
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
 

@@ -1,99 +1,90 @@
-"""What `run` writes for other programs: the dataset (the only door to xarray) and the JSON object."""
+"""What `run` writes for other programs: the dataset and the JSON object."""
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 from itertools import pairwise
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from study.netcdf import dataset, flags
+from study.netcdf import variable as var
 from study.record import ChamberRecord as ChamberRecord  # a record and its files are asked for together
 from study.record import StudyRecord as StudyRecord
 from study.record import models_used, one_line, phase, versions
 
 if TYPE_CHECKING:
-    import xarray as xr
+    from study.netcdf import Dataset, Variable
 
 SCALARS = ("liquid_mass", "critical_speed_dry", "critical_speed_wet", "capture_speed")
 STATES = ("dry_patch", "stable", "model", "in_range", "converged")  # over speed
 
 
-@contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """Path to write to instead of `path`; takes its place once all is written, so no reader sees half a file.
-
-    Parameters
-    ----------
-    path : the file to write; its folder is made if it is missing
-    """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        yield temporary
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
-def _var(dims: tuple[str, ...], values: Any, units: str, long_name: str, text: str) -> xr.Variable:
-    """Variable with what a reader needs to use it."""
-    import xarray as xr
-
-    return xr.Variable(dims, values, {"units": units, "long_name": long_name, "description": text})
-
-
-def _flags(dims: tuple[str, ...], values: NDArray[Any], meanings: str, name: str, text: str) -> xr.Variable:
-    """Variable that stores one of a few states as a byte; the last of the meanings has the value 1."""
-    variable = _var(dims, values.astype(np.int8), "1", name, text)
-    variable.attrs["flag_values"] = np.arange(2 - len(meanings.split()), 2, dtype=np.int8)
-    variable.attrs["flag_meanings"] = meanings
-    return variable
-
-
-def _pair(name: str, dims: tuple[str, ...], values: NDArray[Any], long_name: str) -> dict[str, xr.Variable]:
+def _pair(name: str, dims: tuple[str, ...], values: NDArray[Any], long_name: str) -> dict[str, Variable]:
     """Real and imaginary part of a deflection, both nan where one is."""
     values = np.where(np.isnan(values), complex(np.nan, np.nan), values)
     return {
-        f"{name}_real": _var(dims, values.real, "m", f"{long_name}, real part", "along the unbalance"),
-        f"{name}_imag": _var(dims, values.imag, "m", f"{long_name}, imaginary part", "90 deg ahead of it"),
+        f"{name}_real": var(dims, values.real, "m", f"{long_name}, real part", "along the unbalance"),
+        f"{name}_imag": var(dims, values.imag, "m", f"{long_name}, imaginary part", "90 deg ahead of it"),
     }
 
 
-def _variables(record: StudyRecord) -> dict[str, xr.Variable]:
+def _variables(record: StudyRecord) -> dict[str, Variable]:
     """Variables of the dataset by name."""
     r, over, each, rate = record.response, ("speed",), ("speed", "branch"), "rad s-1"
     states = np.where(np.isnan(r.branch_deflection), -1, r.branch_stable)
     mass, dry, wet, capture = (np.array(getattr(record, name), dtype=np.float64) for name in SCALARS)
     lag, slow = "from the unbalance, positive with the spin, a lag is negative", "against slow disturbances"
     return {
-        "amplitude": _var(over, np.abs(r.deflection), "m", "amplitude", "of the branch reported"),
-        "amplitude_dry": _var(over, np.abs(r.deflection_dry), "m", "amplitude", "without liquid"),
-        "phase": _var(over, phase(r.deflection), "rad", "phase of the deflection", lag),
-        "phase_dry": _var(over, phase(r.deflection_dry), "rad", "phase without liquid", lag),
+        "amplitude": var(over, record.amplitude, "m", "amplitude", "of the branch reported"),
+        "amplitude_dry": var(over, record.amplitude_dry, "m", "amplitude", "without liquid"),
+        "phase": var(over, phase(r.deflection), "rad", "phase of the deflection", lag),
+        "phase_dry": var(over, phase(r.deflection_dry), "rad", "phase without liquid", lag),
         **_pair("deflection", over, r.deflection, "deflection of the branch reported"),
         **_pair("deflection_dry", over, r.deflection_dry, "deflection without liquid"),
-        "liquid_offset": _var(over, r.liquid_offset, "m", "liquid offset", "rotation axis to centre of mass"),
-        "liquid_angle": _var(over, r.liquid_angle, "rad", "angle of the liquid's centre of mass", lag),
-        "dry_patch": _flags(over, r.dry_patch, "no yes", "dry patch", "the wall is dry somewhere"),
-        "stable": _flags(over, r.stable, "no yes", "the branch reported is stable", slow),
-        "model": _var(over, r.model, "1", "liquid model", "used at this speed"),
-        "in_range": _flags(over, r.in_range, "no yes", "in range", "the liquid model holds there"),
-        "converged": _flags(over, r.converged, "no yes", "converged", "every branch was found"),
+        "liquid_offset": var(over, r.liquid_offset, "m", "liquid offset", "rotation axis to centre of mass"),
+        "liquid_angle": var(over, r.liquid_angle, "rad", "angle of the liquid's centre of mass", lag),
+        "dry_patch": flags(over, r.dry_patch, "no yes", "dry patch", "the wall is dry somewhere"),
+        "stable": flags(over, r.stable, "no yes", "the branch reported is stable", slow),
+        "model": var(over, r.model, "1", "liquid model", "used at this speed"),
+        "in_range": flags(over, r.in_range, "no yes", "in range", "the liquid model holds there"),
+        "converged": flags(over, r.converged, "no yes", "converged", "every branch was found"),
         **_pair("branch", each, r.branch_deflection, "deflection of every branch"),
-        "branch_stable": _flags(each, states, "absent unstable stable", "stability of every branch", slow),
-        "liquid_mass": _var((), mass, "kg", "liquid mass", "of all chambers"),
-        "critical_speed_dry": _var((), dry, rate, "critical speed without liquid", "undamped"),
-        "critical_speed_wet": _var((), wet, rate, "critical speed with liquid", "undamped, wall wet"),
-        "capture_speed": _var((), capture, rate, "capture speed", "the liquid rides with the drum above it"),
+        "branch_stable": flags(each, states, "absent unstable stable", "stability of every branch", slow),
+        "liquid_mass": var((), mass, "kg", "liquid mass", "of all chambers"),
+        "critical_speed_dry": var((), dry, rate, "critical speed without liquid", "undamped"),
+        "critical_speed_wet": var((), wet, rate, "critical speed with liquid", "undamped, wall wet"),
+        "capture_speed": var((), capture, rate, "capture speed", "the liquid rides with the drum above it"),
+        **_motion_variables(record),
     }
 
 
-def to_dataset(record: StudyRecord) -> xr.Dataset:
+def _motion_variables(record: StudyRecord) -> dict[str, Variable]:
+    """What a rotor that is not planar adds; dimensions `mode` and `chamber` besides those of all records."""
+    motion, over, each, rate = record.motion, ("speed",), ("speed", "branch"), "rad s-1"
+    if motion is None:
+        return {}
+    c, against = motion.campbell, "turning against the spin"
+    by_spin = ("spin", "mode")
+    at_rest = np.array([(one.frequency, one.damping_ratio) for one in motion.modes]).reshape(-1, 2)
+    sense = "-1 against the spin to 1 with it"
+    return {
+        **_pair("backward", over, motion.backward, f"part of the deflection {against}"),
+        **_pair("backward_dry", over, motion.backward_dry, f"part {against}, without liquid"),
+        **_pair("branch_backward", each, motion.branch_backward, f"part of every branch {against}"),
+        **_pair("chamber", ("speed", "chamber"), motion.chamber_forward, "deflection at each chamber"),
+        "position": var((), motion.position, "m", "position", "of the plane reported, along the axis"),
+        "spin": var(("spin",), c.spin, rate, "spin speed", "of the Campbell diagram"),
+        "campbell_frequency": var(by_spin, c.frequency, rate, "natural frequency", "damped, without liquid"),
+        "campbell_damping_ratio": var(by_spin, c.damping_ratio, "1", "damping ratio", "without liquid"),
+        "campbell_direction": var(by_spin, c.direction, "1", "direction of the whirl", sense),
+        "natural_frequency": var(("rest_mode",), at_rest[:, 0], rate, "natural frequency", "at rest, dry"),
+        "natural_damping_ratio": var(("rest_mode",), at_rest[:, 1], "1", "damping ratio", "at rest, dry"),
+    }
+
+
+def to_dataset(record: StudyRecord) -> Dataset:
     """Dataset of a study, dimensions `speed` and `branch`.
 
     netCDF has no complex numbers and no truth values: deflections are pairs `_real`, `_imag`, truth values
@@ -108,15 +99,13 @@ def to_dataset(record: StudyRecord) -> xr.Dataset:
     -------
     Variables with `units`, `long_name` and `description`; scene, digest and versions in the attributes.
     """
-    import xarray as xr
-
     speed, branches = record.response.speed, record.response.branch_deflection.shape[1]
     rank = np.arange(branches, dtype=np.int32)
-    return xr.Dataset(
+    return dataset(
         _variables(record),
         coords={
-            "speed": _var(("speed",), speed, "rad s-1", "spin speed", "of the rotor about its axis"),
-            "branch": _var(("branch",), rank, "1", "branch", "rank by rising amplitude"),
+            "speed": var(("speed",), speed, "rad s-1", "spin speed", "of the rotor about its axis"),
+            "branch": var(("branch",), rank, "1", "branch", "rank by rising amplitude"),
         },
         attrs={
             "title": one_line(record.name),
@@ -127,23 +116,10 @@ def to_dataset(record: StudyRecord) -> xr.Dataset:
             "model": ", ".join(models_used(record.response)),
             "axis": record.axis,
             "notes": "\n".join(map(one_line, record.notes)) or "none",
-            "Conventions": "CF-1.11",
             "history": "written by leblanc run",
             **{f"version_{package}": version for package, version in versions().items()},
         },
     )
-
-
-def write_dataset(dataset: xr.Dataset, path: Path) -> None:
-    """Write a dataset as netCDF 4.
-
-    Parameters
-    ----------
-    dataset : from `to_dataset`
-    path : the file to write or replace; an interrupted run leaves the old one whole
-    """
-    with replacing(path) as temporary:
-        dataset.to_netcdf(temporary, engine="h5netcdf")
 
 
 def _finite(values: NDArray[Any]) -> list[Any]:
@@ -176,8 +152,8 @@ def run_json(record: StudyRecord) -> dict[str, Any]:
     branches, branch_stable = _finite(r.branch_deflection[present]), r.branch_stable[present].tolist()
     return {
         "speed": _finite(r.speed),
-        "amplitude": _finite(np.abs(r.deflection)),
-        "amplitude_dry": _finite(np.abs(r.deflection_dry)),
+        "amplitude": _finite(record.amplitude),
+        "amplitude_dry": _finite(record.amplitude_dry),
         "phase": _finite(phase(r.deflection)),
         "liquid_offset": _finite(r.liquid_offset),
         "liquid_angle": _finite(r.liquid_angle),
@@ -188,4 +164,21 @@ def run_json(record: StudyRecord) -> dict[str, Any]:
         **{name: getattr(record, name) for name in ("name", "digest", *SCALARS)},
         "assumed": list(record.assumed),
         "notes": list(record.notes),
+        **_motion_json(record),
+    }
+
+
+def _motion_json(record: StudyRecord) -> dict[str, Any]:
+    """What a rotor that is not planar adds; critical speeds as [rad/s, direction of the whirl]."""
+    motion = record.motion
+    if motion is None:
+        return {}
+    return {
+        "position": motion.position,
+        "backward": _finite(motion.backward),
+        "chamber_deflection": _finite(motion.chamber_forward),
+        "natural_frequency": [one.frequency for one in motion.modes],
+        "natural_damping_ratio": [one.damping_ratio for one in motion.modes],
+        "critical_speeds_dry": [list(one) for one in motion.critical_speeds_dry],
+        "critical_speeds_wet": [list(one) for one in motion.critical_speeds_wet],
     }

@@ -54,6 +54,26 @@ class Quantity:
 
 
 @dataclass(frozen=True)
+class Several:
+    """One quantity, or three of them, along x, y, z."""
+
+    each: Quantity
+
+    @property
+    def allowed(self) -> str:
+        """The rule in words."""
+        return f"{self.each.allowed}; or a list of three, along x, y, z"
+
+    def __call__(self, value: object) -> float | tuple[float, ...]:
+        """Value or values in SI units."""
+        if not isinstance(value, list):
+            return self.each(value)
+        if len(value) != 3:
+            raise Refused(self.allowed)
+        return tuple(map(self.each, value))
+
+
+@dataclass(frozen=True)
 class Whole:
     """A whole number within bounds."""
 
@@ -137,7 +157,8 @@ class Entries:
     @property
     def allowed(self) -> str:
         """The rule in words."""
-        return f"a list of {self.low} to {self.high} {self.what}"
+        size = f"{self.low}" if self.low == self.high else f"{self.low} to {self.high}"
+        return f"a list of {size} {self.what}"
 
     def __call__(self, value: object) -> list[object]:
         """The list."""

@@ -9,18 +9,12 @@ import numpy as np
 from fluid.fill import Fill
 from solvers.hydrostatics import optimal_volume
 from solvers.response import Response, critical_speed, synchronous_response
-from solvers.rotor.jeffcott import Jeffcott
 from study.fidelity import Choice, axial_gravity, choose
-from study.record import MM, RPM, ChamberRecord, StudyRecord
-from study.scene import Scene
-
-ML = 1e6  # millilitres in one cubic metre
-
-
-def jeffcott(scene: Scene) -> Jeffcott:
-    """The scene's rotor without liquid."""
-    rotor = scene.rotor
-    return Jeffcott(rotor.mass, rotor.stiffness, rotor.damping, rotor.unbalance)
+from study.inputs import ML, input_rows
+from study.machine import jeffcott as jeffcott
+from study.record import MM, RPM, ChamberRecord, Motion, StudyRecord
+from study.run_motion import motion_response
+from study.scene import Rotor, Scene
 
 
 def run_scene(scene: Scene) -> StudyRecord:
@@ -36,7 +30,7 @@ def run_scene(scene: Scene) -> StudyRecord:
 
     Raises
     ------
-    InputError : the scene asks for a liquid model that does not answer this
+    InputError : the scene asks for a liquid model that does not answer this, or its rotor is an exciter
 
     Examples
     --------
@@ -46,28 +40,34 @@ def run_scene(scene: Scene) -> StudyRecord:
     201
     """
     choice = choose(scene)
-    gravity = axial_gravity(scene)
-    rotor = jeffcott(scene)
-    answer = synchronous_response(rotor, scene.chambers, scene.speed_array(), gravity, choice.model)
+    motion: Motion | None = None
+    if isinstance(scene.rotor, Rotor):
+        gravity, rotor = axial_gravity(scene), jeffcott(scene)
+        answer = synchronous_response(rotor, scene.chambers, scene.speed_array(), gravity, choice.model)
+        dry, wet = rotor.natural_frequency, critical_speed(rotor, scene.chambers, gravity, choice.model)
+    else:
+        coupled, motion, (dry, wet) = motion_response(scene, choice.model)
+        answer = coupled.response
     answer = replace(answer, in_range=answer.in_range & choice.in_range)
     return StudyRecord(
         name=scene.name,
         source=scene.source,
         assumed=scene.assumed,
-        inputs=_inputs(scene),
+        inputs=input_rows(scene),
         digest=scene.digest,
         response=answer,
         liquid_mass=sum(fill.mass for fill in scene.chambers),
-        notes=_notes(scene, choice, answer),
+        notes=_notes(scene, choice, answer, motion),
         axis=scene.rotor.axis,
-        chambers=tuple(_chamber(fill) for fill in scene.chambers),
+        chambers=tuple(_chamber(fill, motion) for fill in scene.chambers),
         capture_speed=choice.captured_from,
-        critical_speed_dry=rotor.natural_frequency,
-        critical_speed_wet=critical_speed(rotor, scene.chambers, gravity, choice.model),
+        critical_speed_dry=dry,
+        critical_speed_wet=wet,
+        motion=motion,
     )
 
 
-def _chamber(fill: Fill) -> ChamberRecord:
+def _chamber(fill: Fill, motion: Motion | None) -> ChamberRecord:
     chamber = fill.chamber
     return ChamberRecord(
         chamber.radius,
@@ -76,40 +76,11 @@ def _chamber(fill: Fill) -> ChamberRecord:
         fill.volume,
         fill.liquid.name,
         fill.surface_radius,
+        0.0 if motion is None else chamber.plane,
     )
 
 
-def _inputs(scene: Scene) -> tuple[tuple[str, str, str], ...]:
-    """Label, value with its unit and field path of what the scene says."""
-    rotor = scene.rotor
-    frequency = jeffcott(scene).natural_frequency
-    rows = [
-        ("Rotor mass", f"{rotor.mass:.4g} kg", "rotor.mass"),
-        ("Support stiffness", f"{rotor.stiffness:.4g} N/m", "rotor.stiffness"),
-        (
-            "Critical speed without liquid",
-            f"{frequency * RPM:.4g} rpm ({frequency:.4g} rad/s)",
-            "rotor.critical_speed",
-        ),
-        ("Support damping", f"{rotor.damping:.4g} N s/m", "rotor.damping"),
-        ("Damping ratio", f"{jeffcott(scene).damping_ratio:.4g}", "rotor.damping_ratio"),
-        ("Unbalance", f"{rotor.unbalance * 1e6:.4g} g mm", "rotor.unbalance"),
-        ("Axis", rotor.axis, "rotor.axis"),
-    ]
-    for k, fill in enumerate(scene.chambers):
-        label, chamber = f"Chamber {k + 1}", fill.chamber
-        inner = f", inner radius {chamber.inner_radius * MM:.4g} mm" if chamber.inner_radius > 0.0 else ""
-        rows += [
-            (f"{label}: radius", f"{chamber.radius * MM:.4g} mm{inner}", f"chambers.{k}.radius"),
-            (f"{label}: height", f"{chamber.height * MM:.4g} mm", f"chambers.{k}.height"),
-            (f"{label}: liquid", f"{fill.volume * ML:.4g} ml of {fill.liquid.name}", f"chambers.{k}.volume"),
-        ]
-    speeds = scene.speeds
-    span = f"{speeds.start * RPM:.4g} to {speeds.stop * RPM:.4g} rpm, {speeds.count} speeds"
-    return (*rows, ("Speeds", span, "speeds"))
-
-
-def _notes(scene: Scene, choice: Choice, answer: Response) -> tuple[str, ...]:
+def _notes(scene: Scene, choice: Choice, answer: Response, motion: Motion | None) -> tuple[str, ...]:
     """Limits of validity and findings, in words."""
     notes: list[str] = []
     if choice.captured_from is not None:
@@ -119,27 +90,54 @@ def _notes(scene: Scene, choice: Choice, answer: Response) -> tuple[str, ...]:
             "the results are marked out of range. Above it gravity's pull on the liquid turns backwards in "
             "the drum and adds nothing to the synchronous response in linear theory."
         )
-    notes.append(
-        "Stability is that of slow disturbances, the liquid being in equilibrium at every moment, without "
-        "liquid friction; self-excited whirl of the liquid is not part of it."
-    )
+    if motion is not None:
+        notes += _motion_notes(scene, motion, answer)
+    else:
+        notes.append(
+            "Stability is that of slow disturbances, the liquid being in equilibrium at every moment, "
+            "without liquid friction; self-excited whirl of the liquid is not part of it."
+        )
     several = np.count_nonzero(np.isfinite(answer.branch_deflection), axis=1) > 1
     if several.any():
         first, last = answer.speed[several][[0, -1]] * RPM
         notes.append(
             f"Several deflections satisfy the balance between {first:.4g} and {last:.4g} rpm; the largest "
-            "stable one is reported, where a slow run-up arrives."
+            f"{'stable ' if motion is None else ''}one is reported, where a slow run-up arrives."
         )
-    return (*notes, *_volume_notes(scene, answer))
+    return (*notes, *_volume_notes(scene, answer, motion))
 
 
-def _volume_notes(scene: Scene, answer: Response) -> list[str]:
+def _motion_notes(scene: Scene, motion: Motion, answer: Response) -> list[str]:
+    """How a rotor that is not planar is reported, and how far its orbit is from a circle."""
+    place = "the first chamber" if scene.chambers else "the origin of positions"
+    notes = [
+        f"Amplitudes are the largest radius of the axis' orbit in the plane of {place}, at "
+        f"{motion.position * MM:.4g} mm; angles are those of its part that turns with the spin, from "
+        f"{'the unbalance' if motion.zero == 'unbalance' else motion.zero}.",
+        "Only the balance of forces is solved: whether it is stable, and self-excited whirl of the liquid, "
+        "are not part of it.",
+    ]
+    size, against = np.abs(answer.deflection), np.abs(motion.backward)
+    known = np.isfinite(size) & (size + against > 0.0)
+    if known.any():
+        share = against[known] / (size + against)[known]
+        worst = int(np.argmax(share))
+        if share[worst] > 1e-6 and scene.chambers:
+            notes.append(
+                f"Against the spin goes up to {share[worst]:.2g} of the orbit, at "
+                f"{answer.speed[known][worst] * RPM:.4g} rpm; the liquid answers that part by linear theory."
+            )
+    return notes
+
+
+def _volume_notes(scene: Scene, answer: Response, motion: Motion | None) -> list[str]:
     """The volume beyond which more liquid does nothing, for the deflection at the last speed."""
     notes: list[str] = []
-    deflection, speed = abs(answer.deflection[-1]), answer.speed[-1]
-    if not np.isfinite(deflection):
-        return notes
+    speed = answer.speed[-1]
     for k, fill in enumerate(scene.chambers):
+        deflection = abs(answer.deflection[-1] if motion is None else motion.chamber_forward[-1, k])
+        if not np.isfinite(deflection):
+            continue
         best = float(optimal_volume(fill.chamber, deflection, speed, axial_gravity(scene)))
         has = "wet all round" if fill.volume > best else "dry in part"
         notes.append(

@@ -4,45 +4,28 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from os import PathLike
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from fluid.fill import Fill
 from meshes.chamber import Chamber
 from study.friction import Friction
+from study.runup_table import RunupTable
 from study.scene_file import check_table, read_toml
-from study.scene_table import RotorTable, SceneTable
+from study.scene_rotor import AnyRotor, rotor_from_table
+from study.scene_rotor import Exciter as Exciter  # what a scene's rotor may be
+from study.scene_rotor import Rotor as Rotor
+from study.scene_rotor import TubRotor as TubRotor
+from study.scene_rotor import TwoPlaneRotor as TwoPlaneRotor
+from study.scene_table import SceneTable
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
 _DIGITS = 10  # of each number in the digest; spellings of one value differ in the sixteenth
-
-
-@dataclass(frozen=True)
-class Rotor:
-    """A rotor on an isotropic support, moving in one plane.
-
-    Parameters
-    ----------
-    kind : "jeffcott"
-    mass : M without the liquid, kg
-    stiffness : K, N/m
-    damping : C of the support, external, N s/m
-    unbalance : U0 = m e, kg m
-    axis : "horizontal" if gravity lies across the axis, "vertical" if along it
-    """
-
-    kind: Literal["jeffcott"]
-    mass: float
-    stiffness: float
-    damping: float
-    unbalance: float
-    axis: Literal["horizontal", "vertical"]
 
 
 @dataclass(frozen=True)
@@ -75,24 +58,46 @@ class Model:
 
 
 @dataclass(frozen=True)
+class Motor:
+    """A motor that drives the rotor.
+
+    Parameters
+    ----------
+    inertia : of all that it turns, about the axis, kg m^2
+    speeds : rising, rad/s
+    torques : at those speeds, straight lines between them, N m
+    """
+
+    inertia: float
+    speeds: tuple[float, ...]
+    torques: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class Runup:
-    """A ramp of the spin speed, then held.
+    """A ramp of the spin speed, then held; or the speed that a motor reaches.
 
     Parameters
     ----------
     start, stop : rad/s
-    rate : rad/s^2
+    rate : rad/s^2; None with a motor
     duration : ramp and hold together, s
     cells : of each liquid layer
     back : down again at the same rate
+    dispersion : the layers' waves disperse
+    samples : of the results over time
+    motor : None with a ramp
     """
 
     start: float
     stop: float
-    rate: float
+    rate: float | None
     duration: float
     cells: int
     back: bool
+    dispersion: bool = False
+    samples: int = 2000
+    motor: Motor | None = None
 
 
 @dataclass(frozen=True)
@@ -104,8 +109,8 @@ class Scene:
     name, source : free text
     assumed : paths of the values that the source does not give
     gravity : m/s^2
-    rotor : without the liquid
-    chambers : each with its liquid, at least one
+    rotor : without the liquid; its `kind` tells which of the four it is
+    chambers : each with its liquid
     speeds : at which the machine is studied
     model : of the liquid
     runup : None unless the scene has one
@@ -115,7 +120,7 @@ class Scene:
     source: str
     assumed: tuple[str, ...]
     gravity: float
-    rotor: Rotor
+    rotor: AnyRotor
     chambers: tuple[Fill, ...]
     speeds: Speeds
     model: Model
@@ -171,30 +176,20 @@ def _scene(table: SceneTable) -> Scene:
         source=table.source,
         assumed=table.assumed,
         gravity=table.gravity,
-        rotor=_rotor(table.rotor),
+        rotor=rotor_from_table(table.rotor),
         chambers=tuple(
             Fill(Chamber(one.radius, one.height, one.inner_radius, one.plane), one.liquid, one.volume)
             for one in table.chambers
         ),
         speeds=Speeds(**table.speeds.model_dump()),
         model=Model(table.model.liquid, Friction(law, coefficient)),
-        runup=None if table.runup is None else Runup(**table.runup.model_dump()),
+        runup=None if table.runup is None else _runup(table.runup),
     )
 
 
-def _rotor(table: RotorTable) -> Rotor:
-    """Stiffness and damping from a critical speed and a damping ratio, both of the rotor without liquid.
-
-    K = M omega^2 and C = 2 zeta sqrt(K M).
-    """
-    stiffness, damping = table.stiffness, table.damping
-    if table.critical_speed is not None:
-        stiffness = table.mass * table.critical_speed**2
-    assert stiffness is not None
-    if table.damping_ratio is not None:
-        damping = 2.0 * table.damping_ratio * math.sqrt(stiffness * table.mass)
-    assert damping is not None
-    return Rotor(table.kind, table.mass, stiffness, damping, table.unbalance, table.axis)
+def _runup(table: RunupTable) -> Runup:
+    values = table.model_dump(exclude={"motor"})
+    return Runup(**values, motor=None if table.motor is None else Motor(**table.motor.model_dump()))
 
 
 def _rounded(value: Any) -> Any:

@@ -13,10 +13,14 @@ from pydantic_core import ErrorDetails
 
 from meshes.border import InputError
 from study.faults import SceneFault, SceneFaults, field_path, shown
+from study.rotor_table import ALTERNATIVES
 from study.rules import Refused
-from study.scene_table import ALTERNATIVES, TABLES, SceneTable
+from study.scene_table import SCENES, TABLES, SceneTable
+from study.table import Table
 
 MAX_BYTES = 10_000_000
+
+_Tables = Mapping[tuple[str, ...], type[Table]]
 
 
 def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
@@ -76,57 +80,87 @@ def check_table(table: Mapping[str, Any], file: str) -> SceneTable:
     """
     faults: list[SceneFault] = []
     checked = None
+    kind = _kind(table)
     try:
-        checked = SceneTable.model_validate(table)
+        checked = SCENES[kind].model_validate(table)
     except ValidationError as error:
-        faults.extend(_broken_rules(error, file, ()))
-    faults.extend(_alternatives(table.get("rotor"), file))
+        faults.extend(_broken_rules(error, file, (), TABLES[kind]))
+    faults.extend(_alternatives(table, kind, file))
+    faults.extend(_drive(table.get("runup"), TABLES[kind], file))
     faults.extend(_assumed(table, file))
     if checked is None or faults:
         raise SceneFaults(faults)
     return checked
 
 
-def _broken_rules(error: ValidationError, file: str, place: tuple[str | int, ...]) -> Iterator[SceneFault]:
+def _kind(table: Mapping[str, Any]) -> str:
+    """Kind of the rotor; the simplest where the table does not say, so that the rest can still be judged."""
+    rotor = table.get("rotor")
+    kind = rotor.get("kind") if isinstance(rotor, Mapping) else None
+    return kind if isinstance(kind, str) and kind in SCENES else "jeffcott"
+
+
+def _broken_rules(
+    error: ValidationError, file: str, place: tuple[str | int, ...], tables: _Tables
+) -> Iterator[SceneFault]:
     """One fault for each broken rule."""
     for item in error.errors(include_url=False):
         keys = (*place, *item["loc"])
         cause = item.get("ctx", {}).get("error")
         if isinstance(cause, ValidationError):  # of a table within a value
-            yield from _broken_rules(cause, file, keys)
+            yield from _broken_rules(cause, file, keys, tables)
             continue
         value = None if item["type"] == "missing" else shown(item["input"])
-        yield SceneFault(file, field_path(keys), value, _allowed(item, keys, cause))
+        yield SceneFault(file, field_path(keys), value, _allowed(item, keys, cause, tables))
 
 
-def _allowed(item: ErrorDetails, keys: tuple[str | int, ...], cause: object) -> str:
+def _allowed(item: ErrorDetails, keys: tuple[str | int, ...], cause: object, tables: _Tables) -> str:
     """What the value must be, in words."""
     if isinstance(cause, InputError | Refused):
         return cause.allowed
     pattern = tuple("*" if isinstance(key, int) else key for key in keys)
     if item["type"] == "missing":
-        return f"given: {_rule(pattern)}"
+        return f"given: {_rule(pattern, tables)}"
     if item["type"] == "extra_forbidden":
-        return "left out or spelled as one of: " + ", ".join(TABLES[pattern[:-1]].model_fields)
-    return _rule(pattern)
+        return "left out or spelled as one of: " + ", ".join(tables[pattern[:-1]].model_fields)
+    return _rule(pattern, tables)
 
 
-def _rule(pattern: tuple[str, ...]) -> str:
+def _rule(pattern: tuple[str, ...], tables: _Tables) -> str:
     """The rule of a field in words."""
-    for rule in TABLES[pattern[:-1]].model_fields[pattern[-1]].metadata if pattern[-1] != "*" else ():
+    for rule in tables[pattern[:-1]].model_fields[pattern[-1]].metadata if pattern[-1] != "*" else ():
         if hasattr(rule, "func"):
             return str(rule.func.allowed)
-    return "a table of " + ", ".join(TABLES[pattern].model_fields)
+    return "a table of " + ", ".join(tables[pattern].model_fields)
 
 
-def _alternatives(rotor: Any, file: str) -> Iterator[SceneFault]:
+def _alternatives(table: Mapping[str, Any], kind: str, file: str) -> Iterator[SceneFault]:
     """Pairs of keys of which one must be given, and one only."""
-    for pair in ALTERNATIVES if isinstance(rotor, Mapping) else ():
-        text = f"exactly one of {pair[0]} and {pair[1]}"
-        if not any(key in rotor for key in pair):
-            yield SceneFault(file, f"rotor.{pair[0]}", None, f"given: {text}")
-        elif all(key in rotor for key in pair):
-            yield SceneFault(file, f"rotor.{pair[1]}", shown(rotor[pair[1]]), f"given alone: {text}")
+    for place, pair in ALTERNATIVES.get(kind, ()):
+        found: Any = table
+        for key in place:
+            found = found.get(key) if isinstance(found, Mapping) else None
+        if not isinstance(found, Mapping):
+            continue  # a fault by itself
+        text, path = f"exactly one of {pair[0]} and {pair[1]}", ".".join(place)
+        if not any(key in found for key in pair):
+            yield SceneFault(file, f"{path}.{pair[0]}", None, f"given: {text}")
+        elif all(key in found for key in pair):
+            yield SceneFault(file, f"{path}.{pair[1]}", shown(found[pair[1]]), f"given alone: {text}")
+
+
+def _drive(runup: Any, tables: _Tables, file: str) -> Iterator[SceneFault]:
+    """The ramp of a run-up, which a motor takes the place of."""
+    if not isinstance(runup, Mapping):
+        return
+    if "motor" not in runup:
+        if "rate" not in runup:
+            yield SceneFault(file, "runup.rate", None, f"given: {_rule(('runup', 'rate'), tables)}")
+        return
+    if "rate" in runup:
+        yield SceneFault(file, "runup.rate", shown(runup["rate"]), "left out where runup.motor is given")
+    if runup.get("back") is True:
+        yield SceneFault(file, "runup.back", "true", "false where runup.motor is given")
 
 
 def _assumed(table: Mapping[str, Any], file: str) -> Iterator[SceneFault]:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationInfo, field_validator
+from pydantic import BeforeValidator, ValidationInfo, field_validator
 
 from fluid.liquid import KNOWN_LIQUIDS, Liquid
 from meshes.chamber import Chamber
 from study import units
-from study.rules import Entries, Flag, OneOf, Quantity, Refused, Text, Whole
+from study.rotor_table import ROTORS, ExciterTable, JeffcottTable, TubTable, TwoPlaneTable
+from study.rules import Entries, OneOf, Quantity, Refused, Text, Whole
+from study.runup_table import MotorTable, RunupTable
+from study.table import Length, Position, Speed, Table
 
 MAX_CHAMBERS = 1000
 MAX_SPEEDS = 100_000
@@ -18,29 +21,10 @@ MAX_ASSUMED = 10_000
 _LIQUID_MODELS = ("auto", "statics", "linear", "long_wave", "kdv", "fem")
 _ROUNDING = 1e-9  # relative; a chamber filled to the brim may be written with nine digits
 
-_LENGTH = BeforeValidator(Quantity(units.LENGTH, 1e-6, 1e3))
 _Path = Annotated[str, BeforeValidator(Text(200))]
-_SPEED = BeforeValidator(Quantity(units.ANGULAR_SPEED, 1e-6, 1e6))
 
 
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class RotorTable(_Table):
-    """[rotor]."""
-
-    kind: Annotated[Literal["jeffcott"], BeforeValidator(OneOf(("jeffcott",)))]
-    mass: Annotated[float, BeforeValidator(Quantity(units.MASS, 1e-9, 1e9))]
-    critical_speed: Annotated[float | None, _SPEED] = None
-    stiffness: Annotated[float | None, BeforeValidator(Quantity(units.STIFFNESS, 1e-9, 1e15))] = None
-    damping_ratio: Annotated[float | None, BeforeValidator(Quantity(units.NUMBER, 0.0, 1e3))] = None
-    damping: Annotated[float | None, BeforeValidator(Quantity(units.DAMPING, 0.0, 1e15))] = None
-    unbalance: Annotated[float, BeforeValidator(Quantity(units.UNBALANCE, 0.0, 1e9))]
-    axis: Annotated[Literal["horizontal", "vertical"], BeforeValidator(OneOf(("horizontal", "vertical")))]
-
-
-class LiquidTable(_Table):
+class LiquidTable(Table):
     """liquid = { density = ..., viscosity = ... }."""
 
     density: Annotated[float, BeforeValidator(Quantity(units.DENSITY, 1e-3, 1e6))]
@@ -62,13 +46,13 @@ class LiquidRule:
         raise Refused(self.allowed)
 
 
-class ChamberTable(_Table):
+class ChamberTable(Table):
     """[[chambers]]."""
 
-    radius: Annotated[float, _LENGTH]
+    radius: Length
     inner_radius: Annotated[float, BeforeValidator(Quantity(units.LENGTH, 0.0, 1e3))] = 0.0
-    height: Annotated[float, _LENGTH]
-    plane: Annotated[float, BeforeValidator(Quantity(units.LENGTH, -1e3, 1e3))] = 0.0
+    height: Length
+    plane: Position = 0.0
     liquid: Annotated[Liquid, BeforeValidator(LiquidRule())]
     volume: Annotated[float, BeforeValidator(Quantity(units.VOLUME, 0.0, 1e9))]
 
@@ -92,11 +76,11 @@ class ChamberTable(_Table):
         return min(value, capacity)
 
 
-class SpeedsTable(_Table):
+class SpeedsTable(Table):
     """[speeds]."""
 
-    start: Annotated[float, _SPEED]
-    stop: Annotated[float, _SPEED]
+    start: Speed
+    stop: Speed
     count: Annotated[int, BeforeValidator(Whole(1, MAX_SPEEDS))]
 
     @field_validator("stop")
@@ -115,7 +99,7 @@ class SpeedsTable(_Table):
         return value
 
 
-class FrictionTable(_Table):
+class FrictionTable(Table):
     """friction = { linear = ... } or { quadratic = ... }."""
 
     linear: Annotated[float | None, BeforeValidator(Quantity(units.RATE, 0.0, 1e6))] = None
@@ -138,59 +122,76 @@ class FrictionRule:
         raise Refused(self.allowed)
 
 
-class ModelTable(_Table):
+class ModelTable(Table):
     """[model]."""
 
     liquid: Annotated[str, BeforeValidator(OneOf(_LIQUID_MODELS))] = "auto"
     friction: Annotated[Any, BeforeValidator(FrictionRule())] = ("stokes", 0.0)
 
 
-class RunupTable(_Table):
-    """[runup]."""
-
-    start: Annotated[float, _SPEED]
-    stop: Annotated[float, _SPEED]
-    rate: Annotated[float, BeforeValidator(Quantity(units.ANGULAR_ACCELERATION, 1e-9, 1e9))]
-    duration: Annotated[float, BeforeValidator(Quantity(units.TIME, 1e-9, 1e9))]
-    cells: Annotated[int, BeforeValidator(Whole(8, 65536))] = 128
-    back: Annotated[bool, BeforeValidator(Flag())] = False
-
-    @field_validator("stop")
-    @classmethod
-    def _above_start(cls, value: float, info: ValidationInfo) -> float:
-        start = info.data.get("start")
-        if start is not None and value <= start:
-            raise Refused(f"above runup.start, {start:g} rad/s")
-        return value
+_TABLES = BeforeValidator(Entries(0, MAX_CHAMBERS, "tables headed [[chambers]]"))
 
 
-class SceneTable(_Table):
-    """The whole file."""
+class SceneTable(Table):
+    """The whole file, whatever the rotor."""
 
     name: Annotated[str, BeforeValidator(Text(200))]
     source: Annotated[str, BeforeValidator(Text(4000, may_be_empty=True))] = ""
     assumed: Annotated[tuple[_Path, ...], BeforeValidator(Entries(0, MAX_ASSUMED, "field paths"))] = ()
     gravity: Annotated[float, BeforeValidator(Quantity(units.ACCELERATION, 1e-6, 1e6))] = 9.81
-    rotor: RotorTable
-    chambers: Annotated[
-        tuple[ChamberTable, ...], BeforeValidator(Entries(1, MAX_CHAMBERS, "tables headed [[chambers]]"))
-    ]
+    rotor: Table
+    chambers: Annotated[tuple[ChamberTable, ...], _TABLES] = ()
     speeds: SpeedsTable
     model: ModelTable = ModelTable()
     runup: RunupTable | None = None
 
 
-# Each table by its place in the file; "*" stands for the number of an entry.
-TABLES: dict[tuple[str, ...], type[_Table]] = {
-    (): SceneTable,
-    ("rotor",): RotorTable,
+class JeffcottScene(SceneTable):
+    """A file whose rotor is a "jeffcott"."""
+
+    rotor: JeffcottTable
+    chambers: Annotated[
+        tuple[ChamberTable, ...], BeforeValidator(Entries(1, MAX_CHAMBERS, "tables headed [[chambers]]"))
+    ]
+
+
+class TwoPlaneScene(SceneTable):
+    """A file whose rotor is a "two_plane"."""
+
+    rotor: TwoPlaneTable
+
+
+class TubScene(SceneTable):
+    """A file whose rotor is a "tub"."""
+
+    rotor: TubTable
+
+
+class ExciterScene(SceneTable):
+    """A file whose rotor is an "exciter"."""
+
+    rotor: ExciterTable
+
+
+SCENES: dict[str, type[SceneTable]] = {
+    "jeffcott": JeffcottScene,
+    "two_plane": TwoPlaneScene,
+    "tub": TubScene,
+    "exciter": ExciterScene,
+}
+
+# Tables that all kinds share, by their place in the file; "*" stands for the number of an entry.
+_COMMON: dict[tuple[str, ...], type[Table]] = {
     ("chambers", "*"): ChamberTable,
     ("chambers", "*", "liquid"): LiquidTable,
     ("speeds",): SpeedsTable,
     ("model",): ModelTable,
     ("model", "friction"): FrictionTable,
     ("runup",): RunupTable,
+    ("runup", "motor"): MotorTable,
 }
 
-# Exactly one key of each pair describes the support of the rotor.
-ALTERNATIVES = (("critical_speed", "stiffness"), ("damping_ratio", "damping"))
+# Each table of a scene by the kind of its rotor and its place in the file.
+TABLES: dict[str, dict[tuple[str, ...], type[Table]]] = {
+    kind: {(): scene} | _COMMON | ROTORS[kind] for kind, scene in SCENES.items()
+}

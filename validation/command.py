@@ -11,7 +11,10 @@ if TYPE_CHECKING:
 
     from validation.case import Case
 
-GROUPS = ("errata", "optimal_volume", "vector_model", "horizontal_rig", "vertical_rig", "layer")
+GROUPS = (
+    *("errata", "optimal_volume", "vector_model", "horizontal_rig", "vertical_rig", "layer", "whirl", "tub"),
+    *("two_plane", "exciter"),
+)
 
 
 def validate(
@@ -56,7 +59,18 @@ def all_cases(group: str | None = None) -> list[Case]:
 
 def _group(name: str) -> Callable[[], list[Case]]:
     """The function that computes a group."""
-    from validation import errata, horizontal_rig, layer, optimal_volume, vector_model, vertical_rig
+    from validation import (
+        errata,
+        exciter,
+        horizontal_rig,
+        layer,
+        optimal_volume,
+        tub,
+        two_plane,
+        vector_model,
+        vertical_rig,
+        whirl,
+    )
 
     return {
         "errata": errata.cases,
@@ -65,6 +79,10 @@ def _group(name: str) -> Callable[[], list[Case]]:
         "horizontal_rig": horizontal_rig.cases,
         "vertical_rig": vertical_rig.cases,
         "layer": layer.cases,
+        "whirl": whirl.cases,
+        "tub": tub.cases,
+        "two_plane": two_plane.cases,
+        "exciter": exciter.cases,
     }[name]
 
 

@@ -45,6 +45,8 @@ def _lines(answer: Explanation) -> list[str]:
             ("captured", f"above {answer.captured_from * RPM:.4g} rpm the liquid rides with the drum")
         )
     lines = [answer.name, *_table(rows)]
+    if answer.modes:
+        lines += ["natural frequencies at rest, without liquid", *_table(_mode_rows(answer))]
     for k, layer in enumerate(answer.layers):
         lines += [f"chamber {k + 1}", *_table([("fill", "empty")] if layer is None else _layer_rows(layer))]
     lines.append("liquid model")
@@ -54,6 +56,19 @@ def _lines(answer: Explanation) -> list[str]:
             f"  {span.first * RPM:.5g} to {span.last * RPM:.5g} rpm: {span.model}{holds}: {span.reason}"
         )
     return lines
+
+
+def _mode_rows(answer: Explanation) -> list[tuple[str, str]]:
+    """One mode each: frequency and words."""
+    from study.record import RPM
+
+    return [
+        (
+            f"{one.frequency * RPM / 60.0:.4g} Hz",
+            f"{one.frequency * RPM:.4g} rpm, damping ratio {one.damping_ratio:.3g}, mostly a {one.moves}",
+        )
+        for one in answer.modes
+    ]
 
 
 def _layer_rows(layer: LayerExplanation) -> list[tuple[str, str]]:

@@ -28,8 +28,9 @@ def run(
     record = run_scene(machine)
 
     from study.figures import write_figures
+    from study.netcdf import write_dataset
     from study.report import comparisons, write_summary
-    from study.results import run_json, to_dataset, write_dataset
+    from study.results import run_json, to_dataset
 
     write_dataset(to_dataset(record), folder / "response.nc")
     figures = write_figures(record, folder)

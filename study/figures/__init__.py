@@ -7,29 +7,35 @@ the only door to matplotlib.
 from __future__ import annotations
 
 import math
-import shutil
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MultipleLocator, NullFormatter
 from numpy.typing import ArrayLike
 
-from meshes.border import InputError
-from study.figures import chamber, over_speed, wave, wave_axes, wave_time
+from study.figures import campbell, chamber, over_speed, wave, wave_axes, wave_time
+from study.figures.caption import caption, zero_of
 from study.figures.curves import Curves, prepare
-from study.figures.page import RIGHT, WIDTH, Frame, lay_out, number
+from study.figures.page import (
+    FILM_DPI,
+    MOST_LINES,
+    RIGHT,
+    WIDTH,
+    Frame,
+    lay_out,
+    number,
+    require_film,
+    write_film,
+)
 from study.figures.page import FigureFiles as FigureFiles  # what a caller of this package needs
 from study.figures.page import save as save
 from study.figures.page import style as style
 from study.figures.wave import WaveHistory, WaveRecord
-from study.record import RPM, StudyRecord, models_used, one_line
-from study.results import replacing
+from study.record import MM, RPM, StudyRecord
 
 Draw = Callable[[Axes, Curves, StudyRecord], None]
 DrawTime = Callable[[Axes, WaveRecord, WaveHistory], None]
@@ -43,42 +49,46 @@ HEADING_ROW = 0.14
 WAVE_HEIGHT, PROFILE_LEFT, PROFILE_BELOW, ASIDE = 2.75, 3.55, 0.15, 0.15  # inches
 NOTED_LINES = 10  # of a caption with notes
 RPM_ROOM = 0.42  # for a second axis on the right, inches
-FILM_DPI = 100
 
 
 def amplitude_figure(record: StudyRecord) -> Figure:
     """Amplitude over speed with and without liquid."""
-    return _over_speed(record, [(2.75, over_speed.draw_amplitude)], "Amplitude of the deflection.")
+    text = "Amplitude of the deflection."
+    if record.motion is not None:
+        text = f"Largest radius of the axis' orbit at {number(record.motion.position * MM)} mm."
+    return _over_speed(record, [(2.75, over_speed.draw_amplitude)], text)
 
 
 def liquid_figure(record: StudyRecord) -> Figure:
     """Distance and angle of the liquid's centre of mass over speed."""
     panels = [(1.55, over_speed.draw_offset), (1.55, over_speed.draw_angle)]
-    text = "Centre of mass of the liquid: distance from the rotation axis, angle from the unbalance."
+    text = f"Centre of mass of the liquid: distance from the rotation axis, angle from {zero_of(record)}."
     return _over_speed(record, panels, text)
 
 
 def phase_figure(record: StudyRecord) -> Figure:
     """Phase of the deflection over speed with and without liquid."""
-    text = "Angle from the unbalance to the deflection; a lag is negative."
+    text = f"Angle from {zero_of(record)} to the deflection; a lag is negative."
     return _over_speed(record, [(2.75, over_speed.draw_phase)], text)
 
 
 def chamber_figure(record: StudyRecord) -> Figure:
     """Chambers as seen along the axis at the largest deflection and at the working speed."""
     views = chamber.choose_views(record)
+    zero = "unbalance" if record.motion is None else record.motion.zero
     with style():
         figure = Figure()
         cells = [(drawing, index) for index in views.instants for drawing in views.drawings]
         if not cells:
             axes = figure.add_axes((0, 0, 1, 1), frame_on=False, xticks=[], yticks=[])
             axes.text(0.5, 0.5, "no chamber, or no deflection found", ha="center")
-            lay_out(figure, [[axes]], [1.0], CHAMBER_FRAME, _caption(record, "Chamber seen along the axis."))
+            lay_out(figure, [[axes]], [1.0], CHAMBER_FRAME, caption(record, "Chamber seen along the axis."))
             return figure
         drawn = []
         for i, (chambers, index) in enumerate(cells):
             axes = figure.add_axes((0, 0, 1, 1), label=str(i))
-            chamber.draw_chambers(axes, chambers, complex(record.response.deflection[index]), views)
+            at = chamber.moved(record, chambers, index)
+            chamber.draw_chambers(axes, chambers, at, views, zero)
             if i % len(views.drawings) == 0:
                 chamber.write_numbers(axes, record, views, index)
             drawn.append(axes)
@@ -86,10 +96,26 @@ def chamber_figure(record: StudyRecord) -> Figure:
         columns = len(drawn) if len(views.drawings) < 3 else len(views.drawings)
         rows = [drawn[i : i + columns] for i in range(0, len(drawn), columns)]
         sides = [min(2.7, (WIDTH - CHAMBER_FRAME.left - RIGHT) / columns)] * len(rows)
-        caption = _caption(record, f"Chamber seen along the axis. {chamber.describe_scale(views)}")
+        part = "" if record.motion is None else " Drawn is the part of the motion that turns with the spin."
+        words = caption(record, f"Chamber seen along the axis. {chamber.describe_scale(views)}{part}")
         more = HEADING_ROW * chamber.more_heading_rows(record, views)
         frame = replace(CHAMBER_FRAME, top=CHAMBER_FRAME.top + more, between=CHAMBER_FRAME.between + more)
-        lay_out(figure, rows, sides, frame, caption)
+        lay_out(figure, rows, sides, frame, words, MOST_LINES if record.motion is None else NOTED_LINES)
+    return figure
+
+
+def campbell_figure(record: StudyRecord) -> Figure:
+    """Natural frequencies of the dry rotor over its speed."""
+    with style():
+        figure = Figure()
+        axes = figure.add_axes((0, 0, 1, 1))
+        campbell.draw_campbell(axes, record)
+        for scale in (axes.xaxis, axes.yaxis):
+            scale.set_major_formatter(FuncFormatter(number))
+        above = axes.secondary_xaxis("top", functions=(_to_rate, _to_rpm))
+        above.set_xlabel("Speed (rad/s)")
+        text = "Damped natural frequencies without liquid, by the sense in which the axis goes round."
+        lay_out(figure, [[axes]], [2.75], SPEED_FRAME, caption(record, text))
     return figure
 
 
@@ -136,8 +162,8 @@ def history_figure(record: WaveRecord, history: WaveHistory) -> Figure:
                 scale.yaxis.set_major_formatter(FuncFormatter(number))
             axes.tick_params(labelbottom=axes is rows[-1][0])
         rows[-1][0].set_xlabel("Time (s)")
-        caption = f"{text} {wave_axes.describe_case(record)}{wave_axes.describe_notes(record)}"
-        lay_out(figure, rows, [height for height, _ in panels], TIME_FRAME, caption, NOTED_LINES)
+        words = f"{text} {wave_axes.describe_case(record)}{wave_axes.describe_notes(record)}"
+        lay_out(figure, rows, [height for height, _ in panels], TIME_FRAME, words, NOTED_LINES)
         for (axes,) in rows:
             box = axes.get_position()
             axes.set_position((box.x0, box.y0, box.width - RPM_ROOM / WIDTH, box.height))
@@ -166,30 +192,10 @@ def animate(
     ------
     InputError : another kind of file, an .mp4 without an ffmpeg, a layer deeper than the wall's radius
     """
-    from matplotlib.animation import FFMpegWriter, PillowWriter
-
-    kind = path.suffix.lower()
-    if kind not in (".gif", ".mp4"):
-        raise InputError("--animate", str(path), "a file that ends in .gif or .mp4")
-    if kind == ".mp4" and not FFMpegWriter.isAvailable():
-        raise InputError("--animate", str(path), "a .gif, since no ffmpeg was found to write an .mp4")
+    require_film(path)
     wave.require_room(record, history)
-    indices = wave.frames(record, history)
-    player = matplotlib.rcParams["animation.ffmpeg_path"]
-    with style(), replacing(path) as part, TemporaryDirectory() as folder:
-        matplotlib.rcParams["animation.ffmpeg_path"] = player
-        writer = (PillowWriter if kind == ".gif" else FFMpegWriter)(fps=wave.FRAME_RATE)
-        figure, show = _film(record, history)
-        # The writers tell the format by the ending.
-        whole = Path(folder) / f"film{kind}"
-        with writer.saving(figure, str(whole), FILM_DPI):
-            for count, index in enumerate(indices.tolist(), start=1):
-                show(index)
-                writer.grab_frame()
-                if drawn is not None:
-                    drawn(count, indices.size)
-        shutil.copyfile(whole, part)
-    return int(indices.size)
+    frames = wave.frames(record, history).tolist()
+    return write_film(lambda: _film(record, history), frames, wave.FRAME_RATE, path, drawn)
 
 
 def _film(record: WaveRecord, history: WaveHistory) -> tuple[Figure, Callable[[int], None]]:
@@ -226,15 +232,15 @@ def write_figures(record: StudyRecord, directory: Path) -> tuple[FigureFiles, ..
     record : the study
     directory : where the files go; made if it is missing
     """
-    return tuple(
-        save(draw(record), directory, name, title)
-        for name, title, draw in (
-            ("amplitude", "Amplitude over speed", amplitude_figure),
-            ("liquid", "Liquid's centre of mass over speed", liquid_figure),
-            ("phase", "Phase of the deflection over speed", phase_figure),
-            ("chamber", "Chamber seen along the axis", chamber_figure),
-        )
-    )
+    figures = [
+        ("amplitude", "Amplitude over speed", amplitude_figure),
+        ("liquid", "Liquid's centre of mass over speed", liquid_figure),
+        ("phase", "Phase of the deflection over speed", phase_figure),
+        ("chamber", "Chamber seen along the axis", chamber_figure),
+    ]
+    if record.motion is not None:
+        figures.append(("campbell", "Natural frequencies over speed", campbell_figure))
+    return tuple(save(draw(record), directory, name, title) for name, title, draw in figures)
 
 
 def _over_speed(record: StudyRecord, panels: Sequence[tuple[float, Draw]], text: str) -> Figure:
@@ -260,7 +266,7 @@ def _over_speed(record: StudyRecord, panels: Sequence[tuple[float, Draw]], text:
         above = rows[0][0].secondary_xaxis("top", functions=(_to_rate, _to_rpm))
         above.set_xlabel("Speed (rad/s)")
         above.xaxis.set_major_formatter(FuncFormatter(number))
-        lay_out(figure, rows, [height for height, _ in panels], SPEED_FRAME, _caption(record, text))
+        lay_out(figure, rows, [height for height, _ in panels], SPEED_FRAME, caption(record, text))
     return figure
 
 
@@ -270,10 +276,3 @@ def _to_rate(rpm: ArrayLike) -> ArrayLike:
 
 def _to_rpm(rate: ArrayLike) -> ArrayLike:
     return np.asarray(rate) * RPM
-
-
-def _caption(record: StudyRecord, text: str) -> str:
-    """What the figure shows, the scene, the model and the values it assumes."""
-    assumed = ", ".join(map(one_line, record.assumed)) or "nothing"
-    model = ", ".join(models_used(record.response))
-    return f"{text} Scene: {one_line(record.name)}. Liquid model: {model}. Assumed: {assumed}."

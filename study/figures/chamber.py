@@ -47,17 +47,24 @@ def choose_views(record: StudyRecord) -> Views:
     record : the study; a speed at which nothing was found is not drawn
     """
     deflection = record.response.deflection
-    last, highest = deflection.size - 1, peak(deflection)
+    last, highest = deflection.size - 1, peak(record.amplitude)
     instants = [i for i in (highest, last) if i is not None and np.isfinite(deflection[i])]
-    if highest is None or highest == last or deflection[highest] == 0.0:
+    if highest is None or highest == last or record.amplitude[highest] == 0.0:
         instants = instants[-1:]
     drawings = side_by_side(record.chambers)
     drawn = drawings[:MOST_DRAWINGS]
-    amplitudes = tuple(float(abs(deflection[i])) for i in instants)
+    amplitudes = tuple(abs(moved(record, drawing, i)) for drawing in drawn for i in instants)
     chambers = tuple(chamber for drawing in drawn for chamber in drawing)
     scale = exaggeration(chambers, amplitudes) if chambers else Exaggeration(1.0, 1.0)
     left_out = sum(map(len, drawings[MOST_DRAWINGS:]))
     return Views(drawn, instants, scale, max(amplitudes, default=0.0), left_out)
+
+
+def moved(record: StudyRecord, chambers: tuple[ChamberRecord, ...], index: int) -> complex:
+    """Deflection of the axis at the chambers of one drawing, m; the unbalance along the real axis."""
+    if record.motion is None:
+        return complex(record.response.deflection[index])
+    return complex(record.motion.chamber_forward[index, record.chambers.index(chambers[0])])
 
 
 def describe_scale(views: Views) -> str:
@@ -89,7 +96,11 @@ def describe_state(record: StudyRecord, index: int) -> str:
     w, offset = r.deflection[index], r.liquid_offset[index]
     if w == 0.0:
         return "no deflection"
-    text = f"deflection {abs(w) * MM:.3g} mm at {_degrees(float(phase(w)))}\N{DEGREE SIGN}"
+    place = f"{abs(w) * MM:.3g} mm at {_degrees(float(phase(w)))}\N{DEGREE SIGN}"
+    text = f"deflection {place}"
+    if record.motion is not None:
+        several = len({chamber.plane for chamber in record.chambers}) > 1
+        text = f"{'first chamber' if several else 'deflection'} {place}"
     if offset > 0.0:
         text += f"\nliquid {offset * MM:.3g} mm at {_degrees(float(r.liquid_angle[index]))}\N{DEGREE SIGN}"
     return text
@@ -99,7 +110,13 @@ def _degrees(angle: float) -> str:
     return f"{math.degrees(angle):.0f}".replace("-0", "0", 1).replace("-", MINUS)
 
 
-def draw_chambers(axes: Axes, chambers: tuple[ChamberRecord, ...], deflection: complex, views: Views) -> None:
+def draw_chambers(
+    axes: Axes,
+    chambers: tuple[ChamberRecord, ...],
+    deflection: complex,
+    views: Views,
+    zero: str = "unbalance",
+) -> None:
     """Walls, liquid, axes, unbalance and spin.
 
     Parameters
@@ -108,6 +125,7 @@ def draw_chambers(axes: Axes, chambers: tuple[ChamberRecord, ...], deflection: c
     chambers : that lie inside one another, the widest first
     deflection : complex, the unbalance along the real axis, m
     views : how much deflection and layer are exaggerated
+    zero : what the real axis points to
     """
     centre = deflection * views.scale.deflection * MM
     widest = chambers[0].radius * MM
@@ -124,7 +142,7 @@ def draw_chambers(axes: Axes, chambers: tuple[ChamberRecord, ...], deflection: c
         for radius in (chamber.radius, chamber.inner_radius):
             if radius > 0.0:
                 axes.plot(*_circle(centre, radius * MM), color=WALL, linewidth=1.4)
-    _unbalance(axes, centre, widest)
+    _unbalance(axes, centre, widest, zero)
     axes.plot([0.0, centre.real], [0.0, centre.imag], color=CENTRE, linewidth=1.2)
     axes.plot([0.0], [0.0], "+", color="black", markersize=9, markeredgewidth=1.2, label="rotation axis")
     axes.plot(
@@ -141,7 +159,9 @@ def draw_chambers(axes: Axes, chambers: tuple[ChamberRecord, ...], deflection: c
     axes.set_aspect("equal")
     if len(views.drawings) > 1:
         names = ", ".join(f"{chamber.radius * MM:.4g}" for chamber in chambers)
-        axes.set_title(f"radius {names} mm", fontsize=7, color="0.3", pad=3.0)
+        planes = {chamber.plane for drawing in views.drawings for chamber in drawing}
+        place = f", at {chambers[0].plane * MM:.4g}".replace("-", MINUS) if len(planes) > 1 else ""
+        axes.set_title(f"radius {names}{place} mm", fontsize=7, color="0.3", pad=3.0)
     axes.axis("off")
 
 
@@ -162,12 +182,12 @@ def write_numbers(axes: Axes, record: StudyRecord, views: Views, index: int) -> 
     axes.annotate(describe_state(record, index), (middle, 0.0), xytext=(0.0, -2.0), va="top", **place)
 
 
-def _unbalance(axes: Axes, centre: complex, radius: float) -> None:
+def _unbalance(axes: Axes, centre: complex, radius: float, label: str) -> None:
     """A heavy spot on the wall along the unbalance, and an arrow for the sense of the spin."""
     spot = centre + radius
     arm = {"linewidth": 0.8, "linestyle": (0, (5, 2)), "color": UNBALANCE}
     axes.plot([centre.real, spot.real], [centre.imag, spot.imag], **arm)
-    axes.plot([spot.real], [spot.imag], "s", color=UNBALANCE, markersize=6, label="unbalance", zorder=4)
+    axes.plot([spot.real], [spot.imag], "s", color=UNBALANCE, markersize=6, label=label, zorder=4)
     sweep = np.linspace(math.radians(115.0), math.radians(155.0), 30)
     arc: Array = centre + 1.13 * radius * np.exp(1j * sweep)
     axes.plot(arc.real, arc.imag, color="0.3", linewidth=1.0)

@@ -189,11 +189,15 @@ def prepare(record: StudyRecord) -> Curves:
     limits = (float(rpm[0]) - margin, float(rpm[-1]) + margin)
     deflection, branches = _bounded(r.deflection), _bounded(r.branch_deflection)
     size, size_dry = np.abs(deflection), np.abs(_bounded(r.deflection_dry))
-    lines = [size * MM, size_dry * MM, r.liquid_offset * MM]
+    amplitude, amplitude_dry, each = (
+        np.where(np.isfinite(x), x, np.nan)
+        for x in (record.amplitude, record.amplitude_dry, record.branch_amplitude)
+    )
+    lines = [amplitude * MM, amplitude_dry * MM, r.liquid_offset * MM]
     lines.append(lag_degrees(r.liquid_angle, r.liquid_offset))
     lines.append(lag_degrees(phase(deflection), size))
     lines.append(lag_degrees(phase(r.deflection_dry), size_dry))
-    table = np.column_stack([*lines, np.abs(branches) * MM])[order]
+    table = np.column_stack([*lines, each * MM])[order]
     drawn = thin(table, COLUMNS)
     kept = order[drawn]
     chain = link(branches[kept])

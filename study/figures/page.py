@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import shutil
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import matplotlib
@@ -16,13 +18,15 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Figure  # handed on to who draws elsewhere
 from matplotlib.font_manager import findfont, get_font
 
-from study.results import replacing
+from meshes.border import InputError
+from study.netcdf import replacing
 
 # Lengths in inches.
 WIDTH, RIGHT = 6.3, 0.25
 LEGEND_ROW, CAPTION_ROW, MARGIN = 0.145, 0.125, 0.06
 CAPTION_SIZE, MOST_LINES = 7.0, 4  # points; lines of the caption
 LEGEND_CHARACTERS = 100  # in one row
+FILM_DPI = 100
 
 
 @dataclass(frozen=True)
@@ -155,3 +159,63 @@ def _wrapped(text: str, width: float, most: int) -> list[str]:
             used += _advance(character)
     lines = [line.rstrip() for line in lines]
     return lines if len(lines) <= most else [*lines[: most - 1], lines[most - 1][:-3] + "..."]
+
+
+def require_film(path: Path) -> str:
+    """Ending of a film's path.
+
+    Raises
+    ------
+    InputError : it is neither .gif nor .mp4
+    """
+    kind = path.suffix.lower()
+    if kind not in (".gif", ".mp4"):
+        raise InputError("--animate", str(path), "a file that ends in .gif or .mp4")
+    return kind
+
+
+def write_film(
+    make: Callable[[], tuple[Figure, Callable[[int], None]]],
+    frames: Sequence[int],
+    rate: int,
+    path: Path,
+    drawn: Callable[[int, int], None] | None = None,
+) -> int:
+    """Write a film, whole or not at all.
+
+    Parameters
+    ----------
+    make : the figure, and what sets it to a frame
+    frames : numbers of the frames in their order
+    rate : of frames, 1/s
+    path : a .gif, or an .mp4 if there is an ffmpeg
+    drawn : called after each frame with the number of frames drawn and of all
+
+    Returns
+    -------
+    Number of frames.
+
+    Raises
+    ------
+    InputError : another kind of file, an .mp4 without an ffmpeg
+    """
+    from matplotlib.animation import FFMpegWriter, PillowWriter
+
+    kind = require_film(path)
+    if kind == ".mp4" and not FFMpegWriter.isAvailable():
+        raise InputError("--animate", str(path), "a .gif, since no ffmpeg was found to write an .mp4")
+    player = matplotlib.rcParams["animation.ffmpeg_path"]
+    with style(), replacing(path) as part, TemporaryDirectory() as folder:
+        matplotlib.rcParams["animation.ffmpeg_path"] = player
+        writer = (PillowWriter if kind == ".gif" else FFMpegWriter)(fps=rate)
+        figure, show = make()
+        # The writers tell the format by the ending.
+        whole = Path(folder) / f"film{kind}"
+        with writer.saving(figure, str(whole), FILM_DPI):
+            for count, frame in enumerate(frames, start=1):
+                show(frame)
+                writer.grab_frame()
+                if drawn is not None:
+                    drawn(count, len(frames))
+        shutil.copyfile(whole, part)
+    return len(frames)

@@ -122,7 +122,7 @@ def side_by_side(chambers: tuple[ChamberRecord, ...]) -> list[tuple[ChamberRecor
     drawings: list[list[ChamberRecord]] = []
     for chamber in sorted(dict.fromkeys(chambers), key=lambda c: -c.radius):
         for drawing in drawings:
-            if chamber.radius <= drawing[-1].inner_radius:
+            if chamber.radius <= drawing[-1].inner_radius and chamber.plane == drawing[-1].plane:
                 drawing.append(chamber)
                 break
         else:

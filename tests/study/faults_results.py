@@ -231,12 +231,12 @@ FAULTS: tuple[Fault, ...] = (
     ),
     Fault(
         "study.results",
-        '_imag": _var(dims, values.imag',
-        '_imag": _var(dims, values.real',
+        '_imag": var(dims, values.imag',
+        '_imag": var(dims, values.real',
         dataset_is_the_record,
     ),
     Fault(
-        "study.results",
+        "study.netcdf",
         "np.arange(2 - len(meanings.split()), 2",
         "np.arange(3 - len(meanings.split()), 3",
         dataset_is_the_record,
@@ -302,5 +302,5 @@ FAULTS: tuple[Fault, ...] = (
     Fault(
         "study.report", "record.liquid_mass * 1e3", "record.liquid_mass * 1e6", summary_compares_and_converts
     ),
-    Fault("study.report", "rpm[change[1::2] - 1]", "rpm[change[1::2]]", ranges_name_their_ends),
+    Fault("study.words", "rpm[change[1::2] - 1]", "rpm[change[1::2]]", ranges_name_their_ends),
 )

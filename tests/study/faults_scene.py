@@ -50,15 +50,17 @@ def one_box_in_three_units() -> None:
 
 FAULTS: tuple[Fault, ...] = (
     Fault(
-        "study.scene",
+        "study.scene_rotor",
         "table.mass * table.critical_speed**2",
         "table.mass * table.critical_speed",
         free_vibration,
     ),
-    Fault("study.scene", "table.mass * table.critical_speed**2", "table.critical_speed**2", free_vibration),
-    Fault("study.scene", "2.0 * table.damping_ratio", "table.damping_ratio", free_vibration),
     Fault(
-        "study.scene",
+        "study.scene_rotor", "table.mass * table.critical_speed**2", "table.critical_speed**2", free_vibration
+    ),
+    Fault("study.scene_rotor", "2.0 * table.damping_ratio", "table.damping_ratio", free_vibration),
+    Fault(
+        "study.scene_rotor",
         "math.sqrt(stiffness * table.mass)",
         "math.sqrt(stiffness / table.mass)",
         free_vibration,

@@ -23,11 +23,34 @@ VALUES = st.one_of(
     st.text(max_size=8),
     st.dates(),
     st.sampled_from(
-        ["1 m", "4 kg", "1000 rpm", "10 ml", "water", "jeffcott", "vertical", "stokes", 10**400, 0.1]
+        [
+            "1 m",
+            "4 kg",
+            "1000 rpm",
+            "10 ml",
+            "water",
+            "jeffcott",
+            "two_plane",
+            "tub",
+            "exciter",
+            "vertical",
+            "stokes",
+            10**400,
+            0.1,
+        ]
     ),
 )
 KEYS = st.one_of(
-    st.sampled_from(sorted({key for table in scene_table.TABLES.values() for key in table.model_fields})),
+    st.sampled_from(
+        sorted(
+            {
+                key
+                for kind in scene_table.TABLES.values()
+                for table in kind.values()
+                for key in table.model_fields
+            }
+        )
+    ),
     st.text(max_size=4),
 )
 CONTENTS = st.recursive(

@@ -11,8 +11,9 @@ import pytest
 import xarray as xr
 
 from meshes.border import InputError
+from study.netcdf import replacing, write_dataset
 from study.record import StudyRecord
-from study.results import replacing, run_json, to_dataset, write_dataset
+from study.results import run_json, to_dataset
 from tests.study import faults_results as oracles
 from tests.study.records import folded, record_of, response_of, rig
 

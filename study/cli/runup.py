@@ -1,0 +1,115 @@
+"""`leblanc runup`: rotor and liquid through the speeds in time."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from study.cli.output import out_dir, print_json, say
+
+if TYPE_CHECKING:
+    from study.runup import RunupRecord
+    from study.scene import Scene
+
+
+def runup(
+    scene: Annotated[Path, typer.Argument(help="Scene file (TOML) with a table [runup].")],
+    cells: Annotated[int | None, typer.Option(help="Cells round each wall [default: the scene's].")] = None,
+    samples: Annotated[
+        int | None, typer.Option(help="How many times are recorded [default: the scene's].")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the files [default: out/<scene name>].")
+    ] = None,
+    animate: Annotated[
+        Path | None, typer.Option(help="GIF or MP4 of the chambers and of the amplitude.")
+    ] = None,
+    no_check: Annotated[
+        bool, typer.Option("--no-check", help="Do not run again with half the cells to estimate the error.")
+    ] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
+) -> None:
+    """Through resonance in time, up and down: figures, data file, energy balance."""
+    from study.scene import load_scene
+
+    machine = load_scene(scene)
+
+    from study.runup import planned
+
+    planned(machine)
+    if animate is not None:
+        from study.figures.page import require_film
+
+        require_film(animate)
+    folder = out_dir(machine.name, out)
+    record = _run(machine, cells, samples, not no_check)
+
+    from study.figures.runup import write_figures
+    from study.runup_results import runup_json, write_runup
+
+    write_runup(record, folder / "runup.nc")
+    write_figures(record, folder)
+    if animate is not None:
+        _film(machine, record, animate)
+    if json:
+        print_json(runup_json(record))
+    else:
+        _tell(record, folder)
+    _finish(record, scene)
+
+
+def _run(machine: Scene, cells: int | None, samples: int | None, check: bool) -> RunupRecord:
+    """The run itself, with a bar on a terminal."""
+    from rich.progress import Progress
+
+    from study.runup import runup_scene
+
+    with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
+        task = bar.add_task("running up", total=1.0)
+        return runup_scene(machine, cells, samples, check, lambda done: bar.update(task, completed=done))
+
+
+def _film(machine: Scene, record: RunupRecord, path: Path) -> None:
+    """The film, run once more with the layers kept."""
+    from rich.progress import Progress
+
+    from study.figures.runup_film import animate
+    from study.runup_film import film
+
+    with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
+        task = bar.add_task("drawing", total=None)
+        reel = film(machine, record)
+        frames = animate(
+            record, reel, path, lambda done, total: bar.update(task, completed=done, total=total)
+        )
+    say(f"wrote {path}, {frames} frames")
+
+
+def _tell(record: RunupRecord, folder: Path) -> None:
+    """The run in words."""
+    from study.record import MM, RPM
+
+    h = record.history
+    rows = [("largest amplitude", record.peak()), ("at the end", h.time.size - 1)]
+    if record.turning < h.time.size - 1:
+        rows.insert(1, ("largest on the way down", record.peak(back=True)))
+    for label, k in rows:
+        print(f"{label:26}{h.amplitude[k] * MM:10.4g} mm at {h.speed[k] * RPM:8.5g} rpm, {h.time[k]:.4g} s")
+    for note in record.notes:
+        print(f"note: {note}")
+    print(f"Look at {folder / 'runup_speed.png'}; the data are in {folder / 'runup.nc'}")
+
+
+def _finish(record: RunupRecord, scene: Path) -> None:
+    """Say what did not come to its end, after all that was reached is written."""
+    from study.faults import NotConverged
+
+    history = record.history
+    if history.reason.startswith("interrupted"):
+        raise KeyboardInterrupt
+    if not history.converged:
+        raise NotConverged([f"{scene}: {history.reason}; what was reached is written"])
+    say(f"{record.name}: {history.steps} steps done, energy closed to {history.audit.closure:.1e}")

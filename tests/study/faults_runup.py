@@ -1,0 +1,105 @@
+"""Seeded faults of a scene's run-up, its film and its files."""
+
+from __future__ import annotations
+
+from tests.faults import Fault
+from tests.study import test_runup as oracle
+
+FAULTS: tuple[Fault, ...] = (
+    Fault(
+        "study.runup",
+        "self.history.deflection[:, 0] * np.exp(-1j * self.history.angle)",
+        "self.history.deflection[:, 0] * np.exp(1j * self.history.angle)",
+        oracle.check_dry_run,
+    ),
+    Fault(
+        "study.runup",
+        "math.pi * np.maximum(1.0, np.ceil(",
+        "math.pi * np.maximum(0.5, 0.5 * np.ceil(",
+        oracle.check_turn_mean,
+    ),
+    Fault("study.runup", "/ (2.0 * half))", "/ half)", oracle.check_turn_mean),
+    Fault("study.runup", "0.5 * (values[1:] + values[:-1])", "values[1:]", oracle.check_lines),
+    Fault(
+        "study.runup",
+        "history.speed + history.mean_rotation[:, k]",
+        "history.speed - history.mean_rotation[:, k]",
+        oracle.check_gravity_across,
+    ),
+    Fault(
+        "study.runup",
+        "capture_speed(fill.surface_radius, scene.gravity)",
+        "capture_speed(fill.chamber.radius, scene.gravity)",
+        oracle.check_gravity_across,
+    ),
+    Fault(
+        "study.runup",
+        "covering_speed(fill, axial_gravity(scene))",
+        "covering_speed(fill, 2.0 * axial_gravity(scene))",
+        oracle.check_gravity_along,
+    ),
+    Fault("study.runup", "max(held, covering", "min(held, covering", oracle.check_gravity_along),
+    Fault(
+        "study.runup",
+        ">= wall.radius - wall.inner_radius",
+        ">= wall.radius + wall.inner_radius",
+        oracle.check_inner_wall,
+    ),
+    Fault("study.runup", "plan.rate, plan.duration", "plan.duration, plan.rate", oracle.check_drive),
+    Fault(
+        "study.runup",
+        "Motor(plan.start, motor",
+        "Motor(plan.stop, motor",
+        oracle.check_drive,
+    ),
+    Fault(
+        "study.runup",
+        'scene.gravity if scene.rotor.axis == "horizontal"',
+        'scene.gravity if scene.rotor.axis == "vertical"',
+        oracle.check_pool,
+    ),
+    Fault(
+        "study.runup",
+        "synchronous_response(jeffcott(scene), scene.chambers, passed",
+        "synchronous_response(jeffcott(scene), (), passed",
+        oracle.check_steady,
+    ),
+    Fault(
+        "study.runup",
+        "unstable_bands(system, [scene.chambers], passed, friction)",
+        "unstable_bands(system, [scene.chambers], passed, (1, 1.0))",
+        oracle.check_bands,
+    ),
+    Fault(
+        "study.runup_results",
+        '"liquid_angle": np.angle(position)',
+        '"liquid_angle": -np.angle(position)',
+        oracle.check_json,
+    ),
+    Fault("study.runup_film", "turn = np.exp(-1j", "turn = np.exp(1j", oracle.check_film),
+    Fault("study.runup_film", "np.angle(-turn)", "np.angle(turn)", oracle.check_pool),
+    Fault(
+        "study.runup_film",
+        "1.0 - np.sqrt(np.maximum(1.0 - 2.0 * machine.area",
+        "1.0 - np.sqrt(np.maximum(1.0 - machine.area",
+        oracle.check_film,
+    ),
+    Fault(
+        "study.runup_film",
+        "corners[1, k + 1] - corners[1, k]",
+        "corners[1, k] - corners[1, k + 1]",
+        oracle.check_film,
+    ),
+    Fault(
+        "study.figures.runup_film",
+        "half - math.sin(half) * math.cos(half)",
+        "half + math.sin(half) * math.cos(half)",
+        oracle.check_pool,
+    ),
+    Fault(
+        "study.figures.runup",
+        "y, good = rpm[point], size[point, column], calm[point, column]",
+        "y, good = rpm[point], size[point, column], ~calm[point, column]",
+        oracle.check_steady_lines,
+    ),
+)
