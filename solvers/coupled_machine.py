@@ -11,16 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from fluid.friction import LINEAR, NONE, QUADRATIC, STOKES, stokes_coefficient
-from fluid.waves import free_wave_frequencies
 from meshes.border import InputError, require_not_negative
+from solvers.coupled_fill import LAWS, layer_capture, layer_properties, pool_offset
 from solvers.layer_loads import ring
 from solvers.machine import ENERGY, GAINS, MASS, MEASURES, RADIUS, TALLIES, WEIGHT, Machine, Room, State
 from solvers.rotor.system import RotorSystem
 
 Array = NDArray[np.float64]
 
-LAWS = {"none": NONE, "linear": LINEAR, "stokes": STOKES, "quadratic": QUADRATIC}
 # A layer is let go at this share of the spin speed that captures it, lest it be caught and let go in turns.
 _RELEASE = 0.98
 
@@ -61,6 +59,11 @@ class Coupled:
     def spin(self) -> float:
         """Spin speed, rad/s."""
         return float(self.state.rotor[-3])
+
+    @property
+    def held_by_spin(self) -> bool:
+        """Gravity acts across the axis, and some liquid rides with the drum against it."""
+        return bool(self.machine.gravity.any() and self.active.any())
 
     @property
     def masses(self) -> Array:
@@ -147,8 +150,8 @@ def couple(
     if friction[0] not in LAWS:
         raise InputError("friction", friction[0], "one of " + ", ".join(LAWS))
     require_not_negative("friction", friction[1])
-    layers = np.array([_properties(fill, friction, dispersion) for fill in fills]).reshape(len(fills), 7)
-    capture = np.array([_capture(fill, gravity) for fill in fills])
+    layers = np.array([layer_properties(fill, friction, dispersion) for fill in fills]).reshape(len(fills), 7)
+    capture = np.array([layer_capture(fill, gravity) for fill in fills])
     mean = [fill.volume / (2.0 * math.pi * fill.chamber.height * fill.chamber.radius**2) for fill in fills]
     area = np.repeat(np.array(mean).reshape(-1, 1), cells, axis=1)
     n = len(system.coordinates)
@@ -159,7 +162,7 @@ def couple(
         "fills": tuple(fills),
         "layers": layers,
         "capture": capture,
-        "pool": np.array([_pool(fill) if gravity > 0.0 else 0.0 for fill in fills]),
+        "pool": np.array([pool_offset(fill) if gravity > 0.0 else 0.0 for fill in fills]),
         "area": area,
         "momentum": -spin * np.square(area),
         "active": capture < spin,
@@ -233,7 +236,23 @@ def switch(machine: Coupled) -> float:
     rotor and liquid stays.
     """
     limit = np.where(machine.active, _RELEASE * machine.capture, machine.capture)
-    wanted = machine.spin > limit
+    return _rearrange(machine, machine.spin > limit)
+
+
+def fall(machine: Coupled) -> float:
+    """Let the deepest layer fall to the bottom before its time; energy brought in, J.
+
+    It is caught again at a speed higher by a fifth.
+    """
+    deepest = int(np.argmax(np.where(machine.active, machine.area.max(axis=1), -1.0)))
+    wanted = machine.active.copy()
+    wanted[deepest] = False
+    machine.capture[deepest] = 1.2 * machine.spin
+    return _rearrange(machine, wanted)
+
+
+def _rearrange(machine: Coupled, wanted: NDArray[np.bool_]) -> float:
+    """Make the wanted layers the active ones; energy brought in, J."""
     if np.array_equal(wanted, machine.active):
         return 0.0
     before = machine.energy()
@@ -263,39 +282,3 @@ def switch(machine: Coupled) -> float:
         whole += layer[MASS] * plane.T @ plane
     machine.state.rotor[n : 2 * n] += np.linalg.solve(whole, lost)
     return machine.energy() - before
-
-
-def _properties(fill: Fill, friction: tuple[str, float], dispersion: bool) -> tuple[float, ...]:
-    """Row of `Machine.layers`."""
-    chamber, (name, coefficient) = fill.chamber, friction
-    log = math.log(chamber.radius / fill.surface_radius) if fill.surface_radius > 0.0 else math.inf
-    lid = 0.0
-    if name == "stokes" and 0.0 < log < math.inf:
-        slip = abs(float(free_wave_frequencies(1, log, 1.0)[1]))
-        coefficient = float(stokes_coefficient(fill.liquid.viscosity, slip)) / chamber.radius
-        lid = 2.0 * chamber.radius / chamber.height
-    weight = fill.liquid.density * chamber.height
-    spread = log**2 if dispersion and log < math.inf else 0.0
-    return chamber.radius, weight, fill.mass, float(LAWS[name]), coefficient, lid, spread
-
-
-def _capture(fill: Fill, gravity: float) -> float:
-    """Speed above which the liquid is a layer, rad/s; infinite for liquid without a free surface, or none."""
-    if not 0.0 < fill.volume < fill.chamber.capacity * (1.0 - 1e-9) or fill.surface_radius <= 0.0:
-        return math.inf
-    return math.sqrt(gravity / fill.surface_radius)
-
-
-def _pool(fill: Fill) -> float:
-    """Centre of mass of liquid that lies at the bottom of a chamber, along the first direction, m.
-
-    A segment of the circle; an inner wall is left out.
-    """
-    from scipy.optimize import brentq
-
-    if fill.volume == 0.0 or fill.volume >= fill.chamber.capacity * (1.0 - 1e-9):
-        return 0.0
-    radius = fill.chamber.radius
-    share = fill.volume / (fill.chamber.height * radius**2)
-    half = brentq(lambda a: a - math.sin(a) * math.cos(a) - share, 0.0, math.pi)
-    return -radius * 2.0 * math.sin(half) ** 3 / (3.0 * share)

@@ -201,6 +201,8 @@ def _couple(machine, state, room, dt):
         gap, size = _disagreement(machine, room, dt)
         left = gap / max(size, 1e-300)
         after = _spin_after(machine, state, room, dt)
+        if after <= 0.0:
+            return STOPPED, fastest, left
         left = max(left, abs(after - room.spins[1]) / spin)
         if left <= _AGREED:
             return DONE, fastest, left
@@ -292,6 +294,8 @@ def advance(machine, state, room, stop, courant, most):
             last[2], last[3] = max(last[2], fastest), 0.5 * last[3]
             continue
         if status != DONE:
+            copy(room.area, state.area)
+            copy(room.momentum, state.momentum)
             return status
         _tally(machine, state, room, dt)
         _accept(state, room, dt, fastest)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from meshes.border import InputError
-from solvers.coupled_machine import Coupled, couple, switch
+from solvers.coupled_machine import Coupled, couple, fall, switch
 from solvers.coupled_reading import reading
 from solvers.drive import Drive, Ramp, torque_curve
 from solvers.machine import (
@@ -34,10 +34,11 @@ Complex = NDArray[np.complex128]
 Flags = NDArray[np.bool_]
 
 _MOST = 200_000_000  # steps between two samples
+_AT_AXIS, _NOT_COUPLED = 2, 4
 _REASONS = {
-    2: "the surface of a layer came to the axis",
+    _AT_AXIS: "the surface of a layer came to the axis",
     3: "the time steps ran out",
-    4: "rotor and layers did not agree in the shortest steps",
+    _NOT_COUPLED: "rotor and layers did not agree in the shortest steps",
     5: "the motor stands",
 }
 
@@ -241,10 +242,18 @@ def _march(
     energy, captured, reason = machine.energy(), 0.0, ""
     rows = [reading(machine)]
     for k, stop in enumerate(time[1:].tolist()):
-        captured += switch(machine)
-        status = machine.advance(stop, float(rate[k]), numerics.courant, _MOST)
-        if status != 0:
-            reason = f"{_REASONS[status]} at {machine.time:.6g} s, {machine.spin:.6g} rad/s"
+        try:
+            captured += switch(machine)
+            status = machine.advance(stop, float(rate[k]), numerics.courant, _MOST)
+            while status in (_AT_AXIS, _NOT_COUPLED) and machine.held_by_spin:
+                # Gravity has won: what is thrown about so much lies at the bottom.
+                captured += fall(machine)
+                status = machine.advance(stop, float(rate[k]), numerics.courant, _MOST)
+            reason = _REASONS.get(status, "")
+        except KeyboardInterrupt:
+            reason = "interrupted"
+        if reason:
+            reason = f"{reason} at {machine.time:.6g} s, {machine.spin:.6g} rad/s"
             break
         rows.append(reading(machine))
         if k % 64 == 0:

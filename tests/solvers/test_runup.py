@@ -295,6 +295,22 @@ def test_liquid_is_captured_and_let_go() -> None:
     assert np.all(np.isnan(history.depth_max[~caught, 0]))
 
 
+def test_liquid_that_gravity_throws_about_falls_back() -> None:
+    """Hardly any friction: the layer caught at the speed of capture collapses; the run goes on without it."""
+    ramp = Ramp(8.0, 14.0, 3.0, 2.0)
+    numerics = replace(ALONE, cells=32, samples=400)
+    history = run_up(ROTOR.system(), [layer(2e-3)], ramp, ("none", 0.0), 9.81, numerics)
+    assert history.converged
+    caught = history.captured[:, 0]
+    assert np.isfinite(history.amplitude).all()
+    # Caught above sqrt(g/a), and once fallen, not again before a fifth more.
+    changes = np.flatnonzero(np.diff(caught.astype(int)) == -1)
+    assert changes.size > 0
+    for change in changes:
+        again = history.speed[change + 1 :][caught[change + 1 :]]
+        assert again.size == 0 or again.min() > 1.15 * history.speed[change]
+
+
 # --- extremes ---
 
 

@@ -327,7 +327,7 @@ def check_small_parts() -> None:
 
 
 LAYER, STEP, PARTS = "solvers.coupled_layer", "solvers.coupled_step", "solvers.coupled_parts"
-STAGES, SET = "solvers.layer_step", "solvers.coupled_machine"
+STAGES, SET, OF_FILL = "solvers.layer_step", "solvers.coupled_machine", "solvers.coupled_fill"
 FAULTS = (
     Fault(
         LAYER,
@@ -448,12 +448,12 @@ FAULTS = (
     Fault(SET, "(np.array([-gravity, 0.0])", "(np.array([gravity, 0.0])", check_gravity),
     Fault(SET, '"momentum": -spin * np.square(area)', '"momentum": spin * np.square(area)', check_stokes),
     Fault(
-        SET,
+        OF_FILL,
         "lid = 2.0 * chamber.radius / chamber.height",
         "lid = chamber.radius / chamber.height",
         check_stokes,
     ),
-    Fault(SET, "slip)) / chamber.radius", "slip))", check_stokes),
+    Fault(OF_FILL, "slip)) / chamber.radius", "slip))", check_stokes),
 )
 
 
