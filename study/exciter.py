@@ -224,8 +224,19 @@ def exciter_json(record: ExciterRecord) -> dict[str, Any]:
     record : the answer
     """
     first, through, last = map(_number, record.characteristic)
+    nothing = [None] * record.speed.size
+    ratio = record.speed / record.machine.natural_frequency
+    lag = np.arctan2(2.0 * record.numbers.damping * ratio, 1.0 - np.square(ratio))
     return {
         "speed": record.speed.tolist(),
+        "amplitude": (record.fast + np.where(record.dual_frequency, record.slow, 0.0)).tolist(),
+        "amplitude_dry": record.fast.tolist(),
+        "phase": (-lag).tolist(),
+        "liquid_offset": nothing,
+        "liquid_angle": nothing,
+        "dry_patch": [False] * record.speed.size,
+        "stable": record.dual_frequency.tolist(),
+        "model": ["balls"] * record.speed.size,
         "stuck_speeds": [[_number(q) for q in row] for row in record.stuck],
         "amplitude_slow": record.slow.tolist(),
         "amplitude_fast": record.fast.tolist(),

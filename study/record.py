@@ -88,6 +88,24 @@ class Motion:
 
 
 @dataclass(frozen=True)
+class SelfExcited:
+    """Whirl that grows by itself from the even layer, in linear theory.
+
+    Parameters
+    ----------
+    growth : of the whirl that grows most, 1/s, nan where it was not found, shape (n,)
+    whirl_speed : of that whirl in the standing frame, rad/s, shape (n,)
+    bands : of speed in which some whirl grows, rad/s; the ends of the range of speeds count as edges
+    friction : of the liquid, in words
+    """
+
+    growth: Array
+    whirl_speed: Array
+    bands: tuple[tuple[float, float], ...]
+    friction: str
+
+
+@dataclass(frozen=True)
 class StudyRecord:
     """Everything that `run` writes down: the scene in words, the response, what a reader must know.
 
@@ -106,6 +124,7 @@ class StudyRecord:
     critical_speed_dry, critical_speed_wet : without liquid and with its added mass, rad/s; of several the one
         at which the unbalance moves the axis most
     motion : None for a planar rotor
+    whirl : None where it was not asked for
 
     Raises
     ------
@@ -126,6 +145,7 @@ class StudyRecord:
     critical_speed_dry: float
     critical_speed_wet: float
     motion: Motion | None = None
+    whirl: SelfExcited | None = None
 
     def __post_init__(self) -> None:
         if self.axis not in ("horizontal", "vertical"):

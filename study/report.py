@@ -124,8 +124,17 @@ def facts(record: StudyRecord) -> list[tuple[str, str]]:
         ("Dry patch on the wall", ranges(r.speed, r.dry_patch)),
         ("Model out of range", ranges(r.speed, ~r.in_range)),
         ("Reported answer unstable", ranges(r.speed, ~r.stable)),
+        *_whirl(record),
         ("Not converged", ranges(r.speed, ~r.converged)),
     ]
+
+
+def _whirl(record: StudyRecord) -> list[tuple[str, str]]:
+    """Where a whirl grows by itself, by its refined edges."""
+    if record.whirl is None:
+        return []
+    words = [f"{low * RPM:.5g} to {high * RPM:.5g} rpm" for low, high in record.whirl.bands]
+    return [("Self-excited whirl", ", ".join(words) or "none")]
 
 
 def _vibration(record: StudyRecord) -> list[tuple[str, str]]:

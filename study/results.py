@@ -46,7 +46,7 @@ def _variables(record: StudyRecord) -> dict[str, Variable]:
         "liquid_offset": var(over, r.liquid_offset, "m", "liquid offset", "rotation axis to centre of mass"),
         "liquid_angle": var(over, r.liquid_angle, "rad", "angle of the liquid's centre of mass", lag),
         "dry_patch": flags(over, r.dry_patch, "no yes", "dry patch", "the wall is dry somewhere"),
-        "stable": flags(over, r.stable, "no yes", "the branch reported is stable", slow),
+        "stable": flags(over, r.stable, "no yes", "the branch reported is stable", f"{slow} and whirls"),
         "model": var(over, r.model, "1", "liquid model", "used at this speed"),
         "in_range": flags(over, r.in_range, "no yes", "in range", "the liquid model holds there"),
         "converged": flags(over, r.converged, "no yes", "converged", "every branch was found"),
@@ -57,6 +57,18 @@ def _variables(record: StudyRecord) -> dict[str, Variable]:
         "critical_speed_wet": var((), wet, rate, "critical speed with liquid", "undamped, wall wet"),
         "capture_speed": var((), capture, rate, "capture speed", "the liquid rides with the drum above it"),
         **_motion_variables(record),
+        **_whirl_variables(record),
+    }
+
+
+def _whirl_variables(record: StudyRecord) -> dict[str, Variable]:
+    """Self-excited whirl over speed."""
+    if record.whirl is None:
+        return {}
+    most, over = "of the whirl that grows most", ("speed",)
+    return {
+        "growth": var(over, record.whirl.growth, "s-1", "growth rate", f"{most}; above 0 unstable"),
+        "whirl_speed": var(over, record.whirl.whirl_speed, "rad s-1", "whirl speed", f"{most}, in space"),
     }
 
 
@@ -165,6 +177,18 @@ def run_json(record: StudyRecord) -> dict[str, Any]:
         "assumed": list(record.assumed),
         "notes": list(record.notes),
         **_motion_json(record),
+        **_whirl_json(record),
+    }
+
+
+def _whirl_json(record: StudyRecord) -> dict[str, Any]:
+    """Self-excited whirl over speed, and the bands of speed in which it grows."""
+    if record.whirl is None:
+        return {}
+    return {
+        "growth": _finite(record.whirl.growth),
+        "whirl_speed": _finite(record.whirl.whirl_speed),
+        "whirl_bands": [list(band) for band in record.whirl.bands],
     }
 
 

@@ -12,9 +12,10 @@ from solvers.response import Response, critical_speed, synchronous_response
 from study.fidelity import Choice, axial_gravity, choose
 from study.inputs import ML, input_rows
 from study.machine import jeffcott as jeffcott
-from study.record import MM, RPM, ChamberRecord, Motion, StudyRecord
+from study.record import MM, RPM, ChamberRecord, Motion, SelfExcited, StudyRecord
 from study.run_motion import motion_response
 from study.scene import Rotor, Scene
+from study.self_excited import describe_whirl, self_excited, stable_with
 
 
 def run_scene(scene: Scene) -> StudyRecord:
@@ -48,7 +49,10 @@ def run_scene(scene: Scene) -> StudyRecord:
     else:
         coupled, motion, (dry, wet) = motion_response(scene, choice.model)
         answer = coupled.response
-    answer = replace(answer, in_range=answer.in_range & choice.in_range)
+    whirl = self_excited(scene)
+    answer = replace(
+        answer, in_range=answer.in_range & choice.in_range, stable=stable_with(whirl, answer.stable)
+    )
     return StudyRecord(
         name=scene.name,
         source=scene.source,
@@ -57,13 +61,14 @@ def run_scene(scene: Scene) -> StudyRecord:
         digest=scene.digest,
         response=answer,
         liquid_mass=sum(fill.mass for fill in scene.chambers),
-        notes=_notes(scene, choice, answer, motion),
+        notes=_notes(scene, choice, answer, motion, whirl),
         axis=scene.rotor.axis,
         chambers=tuple(_chamber(fill, motion) for fill in scene.chambers),
         capture_speed=choice.captured_from,
         critical_speed_dry=dry,
         critical_speed_wet=wet,
         motion=motion,
+        whirl=whirl,
     )
 
 
@@ -80,7 +85,9 @@ def _chamber(fill: Fill, motion: Motion | None) -> ChamberRecord:
     )
 
 
-def _notes(scene: Scene, choice: Choice, answer: Response, motion: Motion | None) -> tuple[str, ...]:
+def _notes(
+    scene: Scene, choice: Choice, answer: Response, motion: Motion | None, whirl: SelfExcited
+) -> tuple[str, ...]:
     """Limits of validity and findings, in words."""
     notes: list[str] = []
     if choice.captured_from is not None:
@@ -94,9 +101,9 @@ def _notes(scene: Scene, choice: Choice, answer: Response, motion: Motion | None
         notes += _motion_notes(scene, motion, answer)
     else:
         notes.append(
-            "Stability is that of slow disturbances, the liquid being in equilibrium at every moment, "
-            "without liquid friction; self-excited whirl of the liquid is not part of it."
+            "Branches are judged against slow disturbances, the liquid being in equilibrium at every moment."
         )
+    notes.append(describe_whirl(whirl))
     several = np.count_nonzero(np.isfinite(answer.branch_deflection), axis=1) > 1
     if several.any():
         first, last = answer.speed[several][[0, -1]] * RPM
@@ -114,8 +121,6 @@ def _motion_notes(scene: Scene, motion: Motion, answer: Response) -> list[str]:
         f"Amplitudes are the largest radius of the axis' orbit in the plane of {place}, at "
         f"{motion.position * MM:.4g} mm; angles are those of its part that turns with the spin, from "
         f"{'the unbalance' if motion.zero == 'unbalance' else motion.zero}.",
-        "Only the balance of forces is solved: whether it is stable, and self-excited whirl of the liquid, "
-        "are not part of it.",
     ]
     size, against = np.abs(answer.deflection), np.abs(motion.backward)
     known = np.isfinite(size) & (size + against > 0.0)

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from study.cli.output import out_dir, print_json, say
+
+if TYPE_CHECKING:
+    from study.scene import Scene
 
 
 def run(
@@ -22,6 +25,10 @@ def run(
 
     machine = load_scene(scene)
     folder = out_dir(machine.name, out)
+
+    if machine.rotor.kind == "exciter":
+        _run_exciter(machine, folder, json)
+        return
 
     from study.run import run_scene
 
@@ -56,3 +63,21 @@ def run(
             ]
         )
     say(f"{record.name}: {answer.speed.size} speeds done")
+
+
+def _run_exciter(machine: Scene, folder: Path, json: bool) -> None:
+    """Stuck speeds and vibration of a table with balls."""
+    from study.exciter import describe_exciter, exciter_json, run_exciter
+    from study.figures.exciter import write_exciter_figure
+
+    record = run_exciter(machine)
+    write_exciter_figure(record, folder)
+    if json:
+        print_json(exciter_json(record))
+    else:
+        print("\n".join(describe_exciter(record)))
+    if not record.converged:
+        from study.faults import NotConverged
+
+        raise NotConverged([f"{record.name}: a time integration beside the formulas did not stay finite"])
+    say(f"{record.name}: {record.speed.size} speeds done")

@@ -180,3 +180,20 @@ def test_words(record: ExciterRecord) -> None:
     assert f"{record.critical / RPM:.5g} rpm" in " ".join(lines)
     assert sum(line.startswith("Integrated at") for line in lines) == len(record.checks)
     assert any("balls leave" in line for line in lines) and any("balls stay" in line for line in lines)
+
+
+def test_the_command_answers_an_exciter(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """With the keys of every `run`; the platform's fast vibration is that of a plain oscillator."""
+    from study.cli import main
+
+    scene = ROOT / "examples" / "vibratory_table.toml"
+    assert main(["run", str(scene), "--json", "--out", str(tmp_path)]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    speed, n = np.array(answer["speed"]), len(answer["speed"])
+    keys = ("amplitude", "amplitude_dry", "phase", "liquid_offset", "liquid_angle", "dry_patch", "stable")
+    assert all(len(answer[key]) == n for key in (*keys, "model"))
+    whole, stiffness, damping = 90.75, 145083.0, 150.0
+    wanted = 0.0105 * speed**2 / (stiffness - whole * speed**2 + 1j * damping * speed)
+    np.testing.assert_allclose(answer["amplitude_dry"], np.abs(wanted), rtol=1e-6)
+    np.testing.assert_allclose(answer["phase"], np.angle(wanted), rtol=1e-6, atol=1e-9)
+    assert (tmp_path / "exciter.png").stat().st_size > 10_000

@@ -121,9 +121,3 @@ def test_a_wrong_value_is_named(
     check(str(caught.value), path, one.field, one.said)
     assert one.field in [fault.field for fault in caught.value.faults]
     assert shell(path, capsys) == str(caught.value) + "\n"
-
-
-def test_a_run_of_an_exciter_is_refused_for_now(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = tmp_path / "scene.toml"
-    path.write_text(HEAD + EXCITER, encoding="utf-8")
-    assert "rotor.kind" in shell(path, capsys)

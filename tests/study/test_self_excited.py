@@ -1,0 +1,52 @@
+"""What self-excited whirl makes of a study's stability, and how it is told."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from study.record import SelfExcited
+from study.scene import load_scene
+from study.self_excited import describe_whirl, self_excited, stable_with
+
+
+def found(growth: list[float], bands: tuple[tuple[float, float], ...]) -> SelfExcited:
+    return SelfExcited(np.array(growth), np.array([50.0, 60.0, 70.0]), bands, "none")
+
+
+def check_stable() -> None:
+    """Growing whirls take stability away, and give none back."""
+    whirl = found([-1.0, 0.0, 0.5], ((80.0, 90.0),))
+    stable = stable_with(whirl, np.array([True, False, True]))
+    np.testing.assert_array_equal(stable, [True, False, False])
+    np.testing.assert_array_equal(stable_with(whirl, np.ones(3, dtype=bool)), [True, True, False])
+
+
+def check_words() -> None:
+    """Edges and the fastest whirl in rpm."""
+    text = describe_whirl(found([-1.0, 0.25, 0.5], ((20.0 * np.pi, 30.0 * np.pi),)))
+    assert "600 to 900 rpm" in text and "668.5 rpm" in text and "0.5 1/s" in text
+    assert describe_whirl(found([-1.0, -1.0, 0.0], ())).startswith("No whirl")
+    assert "not found" in describe_whirl(found([np.nan, 0.0, 0.0], ()))
+
+
+def check_rig() -> None:
+    """The horizontal rig whirls just above its critical speed, slower than it spins."""
+    whirl = self_excited(load_scene("examples/horizontal_rig.toml"))
+    ((low, high),) = whirl.bands
+    speed = load_scene("examples/horizontal_rig.toml").speed_array()
+    grows = whirl.growth > 0.0
+    assert 104.0 < low < 110.0 < high < 160.0
+    np.testing.assert_array_equal(grows, (speed > low) & (speed < high))
+    assert np.all(whirl.whirl_speed[grows] < speed[grows])
+
+
+def test_stability() -> None:
+    check_stable()
+
+
+def test_words() -> None:
+    check_words()
+
+
+def test_rig() -> None:
+    check_rig()
