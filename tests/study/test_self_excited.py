@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from fluid.friction import STOKES
+from solvers.whirl import asynchronous_growth
+from study.machine import dry_rotor
 from study.record import SelfExcited
 from study.scene import load_scene
 from study.self_excited import describe_whirl, self_excited, stable_with
@@ -38,6 +41,11 @@ def check_rig() -> None:
     assert 104.0 < low < 110.0 < high < 160.0
     np.testing.assert_array_equal(grows, (speed > low) & (speed < high))
     assert np.all(whirl.whirl_speed[grows] < speed[grows])
+    # Refined edges: growth there is its slope, some 0.1 in a unit of speed, times 1e-8 of the speed.
+    scene = load_scene("examples/horizontal_rig.toml")
+    system = dry_rotor(scene).system()
+    at_edges, _ = asynchronous_growth(system, scene.chambers, [low, high], (STOKES, 0.0))
+    assert np.all(np.abs(at_edges) < 1e-6)
 
 
 def test_stability() -> None:
