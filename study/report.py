@@ -25,6 +25,7 @@ AGAINST = 0.5  # from here on a whirl counts as one with or against the spin
 # Of the page in the template: mm, characters in a line.
 PAGE_HEIGHT, LINE_HEIGHT, CHARACTERS = 262.0, 4.1, 125
 INPUT_CHARACTERS = 38  # in a line of one column
+TALL = 74.0  # height of a figure with room, mm
 FIGURE_HEIGHTS = (40.0, 70.0)
 
 # What the model does, and what it takes for granted.
@@ -248,7 +249,7 @@ def _input_rows(values: list[Input]) -> int:
 
 
 def write_summary(record: StudyRecord, figures: Mapping[str, Path], path: Path) -> None:
-    """Write the summary as one HTML file that holds its figures and prints on one page.
+    """Write the summary as one HTML file that holds its figures; one page, two for a rotor that tilts.
 
     Parameters
     ----------
@@ -281,12 +282,11 @@ def write_summary(record: StudyRecord, figures: Mapping[str, Path], path: Path) 
     texts = [parts["name"] * 2, parts["source"] + parts["machine"], parts["elsewhere"], *parts["remarks"]]
     texts += [text for _, _, text in parts["models"]]
     rows = len(parts["comparisons"]) + len(parts["facts"]) // 2 + _input_rows(parts["inputs"]) + 9
-    columns = max(2, math.ceil(len(figures) / 2))  # two rows of figures
+    # What a rotor that tilts has to say leaves no room for figures: they stand on a second page.
+    height = _figure_height(texts, rows) if record.motion is None else TALL
     page = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     template = resources.files("study").joinpath("templates", "summary.html.j2").read_text(encoding="utf-8")
-    text = page.from_string(template).render(
-        parts, figure_height=_figure_height(texts, rows), figure_columns=columns
-    )
+    text = page.from_string(template).render(parts, figure_height=height, figure_columns=2)
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
 

@@ -41,7 +41,9 @@ def run(
 
     write_dataset(to_dataset(record), folder / "response.nc")
     figures = write_figures(record, folder)
-    write_summary(record, {figure.title: figure.svg for figure in figures}, folder / "summary.html")
+    # The page has room for four; the phase stands in its own file.
+    shown = [figure for figure in figures if len(figures) < 5 or figure.name != "phase"]
+    write_summary(record, {figure.title: figure.svg for figure in shown}, folder / "summary.html")
     if json:
         print_json(run_json(record))
     else:
