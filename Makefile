@@ -48,3 +48,9 @@ pictures: $(BIN)/.installed
 	$(BIN)/leblanc run examples/horizontal_rig.toml --out out/pictures
 	cp out/pictures/amplitude.png docs/images/horizontal_rig_amplitude.png
 	cp out/pictures/chamber.png docs/images/horizontal_rig_chamber.png
+	$(BIN)/leblanc map examples/horizontal_rig.toml --out out/pictures
+	cp out/pictures/map.png docs/images/whirl_map.png
+	$(BIN)/leblanc runup examples/runup.toml --out out/pictures
+	cp out/pictures/runup_speed.png docs/images/runup_example_speed.png
+	$(BIN)/python -m validation.tub_figures --out docs/images
+	$(BIN)/python -m validation.two_plane_figures --out docs/images

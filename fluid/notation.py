@@ -43,6 +43,7 @@ MOTION = (
     Symbol("deflection", "w", "m", "deflection of the geometric axis, complex, in the frame of the drum"),
     Symbol("amplitude, whirl_amplitude", "w_0, e", "m", "modulus of the deflection"),
     Symbol("unbalance", "U", "kg m", "mass times its distance from the axis"),
+    Symbol("growth", r"-\mathrm{Im}\,\omega", "1/s", "growth rate of a whirl"),
     Symbol("pull", "f_r", "m/s^2", r"radial part of the body force in the drum frame"),
 )
 LAYER = (
@@ -50,6 +51,8 @@ LAYER = (
     Symbol("free_surface_radius", "r_s", "m", "local radius of the free surface"),
     Symbol("depth", "h_0, h", "m", "depth of the layer at rest, local depth"),
     Symbol("layer_log", "L", "", r"$\ln(R/r_s)$, the depth in conformal measure"),
+    Symbol("layer_tanh", "T", "", r"$\tanh L$"),
+    Symbol("rate", "k", "1/s", "rate at which friction takes the liquid's velocity in the drum"),
     Symbol("curvature", r"\kappa", "", "$(R/a)^2$"),
     Symbol("area", "A", "m^2", "liquid area per radian, $(R^2 - r_s^2)/2$"),
     Symbol("velocity", "u", "m/s", "velocity along the wall relative to the drum, positive with the spin"),
@@ -69,7 +72,21 @@ WAVES = (
     Symbol("diffusion", r"\nu_b", "rad^2/s", "diffusion of a wave along the drum"),
     Symbol("forcing", "F", "m/s^2", r"acceleration of the axis, $\omega_w^2 w_0$"),
 )
-GROUPS = {"The chamber": CHAMBER, "The motion": MOTION, "The layer": LAYER, "Waves of one family": WAVES}
+MACHINE = (
+    Symbol("mass, damping, gyroscopic, stiffness", "M, C, G, K", "", "matrices of a rotor, G for 1 rad/s"),
+    Symbol("coordinates", "q", "", "of a rotor, in the standing frame from the static equilibrium"),
+    Symbol("planes, at", "B_j", "", "displacement of the axis at a chamber for unit coordinates"),
+    Symbol("moment", "P", "kg m", "first moment of a layer about its chamber's axis, in the drum frame"),
+    Symbol("relative_momentum", "N", "kg m/s", "momentum of a layer relative to its axis, standing frame"),
+    Symbol("acceleration, guess", r"\bar a", "m/s^2", "mean acceleration of a chamber's axis over a step"),
+)
+GROUPS = {
+    "The chamber": CHAMBER,
+    "The motion": MOTION,
+    "The layer": LAYER,
+    "Waves of one family": WAVES,
+    "The coupled machine": MACHINE,
+}
 
 
 def page() -> str:
