@@ -73,7 +73,7 @@ WAVES = (
     Symbol("forcing", "F", "m/s^2", r"acceleration of the axis, $\omega_w^2 w_0$"),
 )
 MACHINE = (
-    Symbol("mass, damping, gyroscopic, stiffness", "M, C, G, K", "", "matrices of a rotor, G for 1 rad/s"),
+    Symbol("matrices", "M, C, G, K", "", "mass, damping, gyroscopic (for 1 rad/s) and stiffness of a rotor"),
     Symbol("coordinates", "q", "", "of a rotor, in the standing frame from the static equilibrium"),
     Symbol("planes, at", "B_j", "", "displacement of the axis at a chamber for unit coordinates"),
     Symbol("moment", "P", "kg m", "first moment of a layer about its chamber's axis, in the drum frame"),
