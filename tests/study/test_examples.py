@@ -35,6 +35,9 @@ def test_the_examples_of_each_kind() -> None:
         "washing_machine",
         "two_plane_rig",
         "tub",
+        "vibratory_table",
+        "runup",
+        "weak_motor",
     }
 
 
