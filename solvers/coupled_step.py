@@ -41,6 +41,7 @@ from solvers.machine import (
 _jit: Any = njit(**COMPILED)
 # Parts of one function: compiled one by one and linked they would cost twice the time to compile.
 _inner: Any = njit(inline="always")
+_leaf: Any = njit(**(COMPILED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
 
 RAN_OUT, NOT_COUPLED, STOPPED = 3, 4, 5
 # A step is done once two estimates of the mean accelerations differ by this, relative to the largest. Where
@@ -76,7 +77,7 @@ def _move_layers(machine, state, room, dt):
     return DONE, fastest
 
 
-@_inner
+@_leaf
 def _measure_layers(machine, state, room):
     """The layers' momenta at both ends of the step, and the inertia of their flows."""
     turn, spins = room.turn, room.spins
@@ -90,7 +91,7 @@ def _measure_layers(machine, state, room):
         flow_inertia(room.begin[j], layer, cosine / size, sine / size, room.inertia[j])
 
 
-@_inner
+@_leaf
 def _move_rotor(machine, state, room, dt):
     """Change of the rotor's velocities over the step, given the layers' momenta [theory: coupling, eq. 5]."""
     change, swing, left, turn = room.change, room.swing, room.left, room.turn
@@ -119,7 +120,7 @@ def _move_rotor(machine, state, room, dt):
     solve(left, change)
 
 
-@_inner
+@_leaf
 def _disagreement(machine, room, dt):
     """Mean accelerations that the rotor's change means; their distance from the guess, and their size."""
     gap, size, spin = 0.0, 0.0, room.spins[0]
@@ -134,7 +135,7 @@ def _disagreement(machine, room, dt):
     return gap, size
 
 
-@_inner
+@_leaf
 def _spin_after(machine, state, room, dt):
     """Spin at the end of the step: on its ramp, or by the motor [theory: coupling, eq. 6]."""
     n = room.change.size
@@ -155,7 +156,7 @@ def _spin_after(machine, state, room, dt):
     return after
 
 
-@_inner
+@_leaf
 def _tally(machine, state, room, dt):
     """Add one step's work and losses [theory: coupling, eq. 9-10]."""
     sums, n = state.sums, room.change.size
@@ -216,7 +217,7 @@ def _couple(machine, state, room, dt):
     return NOT_COUPLED, fastest, left
 
 
-@_inner
+@_leaf
 def _guess(state, room, dt):
     """Mean accelerations of the step to come, on a line through the last two steps'."""
     count = room.guess.shape[0]
@@ -228,7 +229,7 @@ def _guess(state, room, dt):
             room.guess[j, i] = here + ahead * (here - state.memory[j, 2 + i])
 
 
-@_inner
+@_leaf
 def _accept(state, room, dt, fastest):
     """Make the step's end the state."""
     n, count = room.change.size, room.guess.shape[0]
