@@ -13,6 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 NONE, LINEAR, STOKES, QUADRATIC = 0, 1, 2, 3
+# The laws by the names that users give them.
+LAWS = {"none": NONE, "linear": LINEAR, "stokes": STOKES, "quadratic": QUADRATIC}
 
 
 def damping_rate(law: int, coefficient: float, lid: float, depth: Any, area: Any, velocity: Any) -> Any:

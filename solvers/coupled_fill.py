@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 
 from fluid.fill import Fill
-from fluid.friction import LINEAR, NONE, QUADRATIC, STOKES, stokes_coefficient
+from fluid.friction import LAWS, stokes_coefficient
 from fluid.waves import free_wave_frequencies
-
-LAWS = {"none": NONE, "linear": LINEAR, "stokes": STOKES, "quadratic": QUADRATIC}
 
 
 def layer_properties(fill: Fill, friction: tuple[str, float], dispersion: bool) -> tuple[float, ...]:

@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
+from fluid.friction import LAWS
 from meshes.border import InputError, require_not_negative
-from solvers.coupled_fill import LAWS, layer_capture, layer_properties, pool_offset
+from solvers.coupled_fill import layer_capture, layer_properties, pool_offset
 from solvers.layer_loads import ring
 from solvers.machine import ENERGY, GAINS, MASS, MEASURES, RADIUS, TALLIES, WEIGHT, Machine, Room, State
 from solvers.rotor.system import RotorSystem

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from fluid.friction import LINEAR, NONE, QUADRATIC, STOKES, stokes_coefficient
+from fluid.friction import LAWS, NONE, STOKES, stokes_coefficient
 from meshes.border import InputError, require_positive
 from solvers.layer_state import Complex, MovingLayer, depth, settle_statics, start
 from solvers.prescribed import LayerFilm, LayerHistory, Numerics, Whirl
@@ -160,13 +160,12 @@ def friction_law(law: str, coefficient: float, fill: Fill, whirl: Whirl) -> tupl
     ------
     InputError : no such law
     """
-    laws = {"none": NONE, "linear": LINEAR, "stokes": STOKES, "quadratic": QUADRATIC}
-    if law not in laws:
-        raise InputError("friction", law, "one of " + ", ".join(laws))
+    if law not in LAWS:
+        raise InputError("friction", law, "one of " + ", ".join(LAWS))
     if law == "stokes":
         shear = float(stokes_coefficient(fill.liquid.viscosity, whirl.slip))
         return STOKES, shear / fill.chamber.radius
-    return laws[law], coefficient
+    return LAWS[law], coefficient
 
 
 def _history(layer: MovingLayer, rows: list[Complex]) -> LayerHistory:

@@ -131,6 +131,19 @@ def run_exciter(scene: Scene) -> ExciterRecord:
     return answer_exciter(machine_of(scene.rotor), scene.speed_array(), scene.name, scene.assumed)
 
 
+def printed_critical(numbers: Dimensionless) -> float:
+    """Critical speed over the natural frequency by the source's regression, nan outside its ranges.
+
+    Parameters
+    ----------
+    numbers : of the exciter
+    """
+    values = (numbers.smallness, numbers.drag, numbers.unbalance, numbers.damping)
+    if all(low <= x <= high for x, (low, high) in zip(values, RANGES.values(), strict=True)):
+        return float(printed_critical_speed(*values))
+    return math.nan
+
+
 def describe_exciter(record: ExciterRecord) -> list[str]:
     """The answer in a few lines of words.
 
@@ -192,12 +205,9 @@ def answer_exciter(
     motions = [platform_motion(numbers, n, q) for n, q in zip(spin / unit, stuck[:, 0], strict=True)]
     slow, fast = np.abs(np.array(motions)).T * machine.length
     known = characteristic_speeds(numbers)
-    critical = printed = math.nan
+    critical = math.nan
     if not math.isnan(known.merger):
         critical = critical_speed(numbers, machine.ball_count, start).holds * unit
-    values = (numbers.smallness, numbers.drag, numbers.unbalance, numbers.damping)
-    if all(low <= x <= high for x, (low, high) in zip(values, RANGES.values(), strict=True)):
-        printed = float(printed_critical_speed(*values)) * unit
     return ExciterRecord(
         name=name,
         assumed=assumed,
@@ -211,7 +221,7 @@ def answer_exciter(
         dual_frequency=spin <= critical if math.isfinite(critical) else np.ones(spin.shape, dtype=bool),
         characteristic=(known.second_pair * unit, known.through_resonance * unit, known.merger * unit),
         critical=critical,
-        printed_critical=printed,
+        printed_critical=printed_critical(numbers) * unit,
         checks=_checks(machine, numbers, _checked_speeds(spin, critical, checks), start),
     )
 

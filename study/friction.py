@@ -42,3 +42,13 @@ def parse_friction(text: str, field: str) -> Friction:
         require_not_negative(field, value)
         return Friction(_WITH[law], value)
     raise InputError(field, text, "none, stokes, linear:RATE or quadratic:NUMBER")
+
+
+def friction_words(friction: Friction) -> str:
+    """Law of the liquid's friction with its coefficient."""
+    return {
+        "none": "none",
+        "stokes": "laminar (Stokes)",
+        "linear": f"linear, {friction.coefficient:g} 1/s",
+        "quadratic": f"quadratic, {friction.coefficient:g}",
+    }[friction.law]

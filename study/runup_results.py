@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from study.friction import friction_words
 from study.netcdf import dataset, flags, variable, write_dataset
 from study.record import one_line, versions
 from study.runup import RunupRecord
-from study.runup_words import friction_words
 
 Values = NDArray[Any]
 

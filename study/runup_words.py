@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from study.friction import Friction
+from study.friction import Friction, friction_words
 from study.record import MM, RPM, peak
 
 if TYPE_CHECKING:
@@ -21,16 +21,6 @@ Bands = tuple[tuple[float, float], ...]
 ML = 1e6  # millilitres in one cubic metre
 CLOSURE = 1e-3  # of the work: what the energy balance may leave
 ERROR = 0.02  # of the largest amplitude: an error estimate to speak of
-
-
-def friction_words(friction: Friction) -> str:
-    """Law of the liquid's friction with its coefficient."""
-    return {
-        "none": "none",
-        "stokes": "laminar (Stokes)",
-        "linear": f"linear, {friction.coefficient:g} 1/s",
-        "quadratic": f"quadratic, {friction.coefficient:g}",
-    }[friction.law]
 
 
 def describe_inputs(scene: Scene, plan: Runup, numerics: RunupNumerics) -> tuple[tuple[str, str, str], ...]:

@@ -10,7 +10,7 @@ from solvers.whirl_edges import unstable_bands
 from study.machine import dry_rotor
 from study.record import RPM, SelfExcited
 from study.scene import Scene
-from study.stability import friction_words, solver_friction
+from study.stability import small_whirl_friction, solver_friction
 
 
 def self_excited(scene: Scene) -> SelfExcited:
@@ -26,7 +26,7 @@ def self_excited(scene: Scene) -> SelfExcited:
     bands: tuple[tuple[float, float], ...] = ()
     if speed[-1] > speed[0]:
         bands = unstable_bands(system, [scene.chambers], speed, friction, growth[None])[0]
-    return SelfExcited(growth, whirl_speed, bands, friction_words(scene.model.friction))
+    return SelfExcited(growth, whirl_speed, bands, small_whirl_friction(scene.model.friction))
 
 
 def stable_with(found: SelfExcited, stable: NDArray[np.bool_]) -> NDArray[np.bool_]:

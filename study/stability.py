@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from fluid.friction import LINEAR, NONE, QUADRATIC, STOKES
+from fluid.friction import LAWS
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
 from meshes.border import InputError
 from solvers.whirl import growth_map
 from solvers.whirl_edges import Bands, unstable_bands
-from study.friction import Friction
+from study.friction import Friction, friction_words
 from study.machine import dry_rotor, jeffcott
 from study.record import RPM
 from study.scene import Rotor, Scene
@@ -25,7 +25,6 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 ML = 1e6  # millilitres in one cubic metre
-LAWS = {"none": NONE, "linear": LINEAR, "stokes": STOKES, "quadratic": QUADRATIC}
 VOLUMES, SPEEDS = 101, 201
 FEWEST, MOST = 2, 4000  # volumes or speeds of a map
 _AT_ONCE = 20  # volumes between reports of progress
@@ -117,7 +116,7 @@ def map_scene(
         whirl_speed=whirl_speed,
         in_range=held & thin,
         edges=edges,
-        friction=friction_words(law),
+        friction=small_whirl_friction(law),
         damping=_damping_words(scene),
         scene_volume=sum(fill.volume for fill in scene.chambers),
         scene_edges=own,
@@ -140,14 +139,11 @@ def solver_friction(friction: Friction) -> tuple[int, float]:
     return LAWS[friction.law], friction.coefficient
 
 
-def friction_words(friction: Friction) -> str:
-    """Law of friction with its coefficient, in words."""
-    return {
-        "none": "none",
-        "stokes": "laminar (Stokes)",
-        "linear": f"linear, {friction.coefficient:g} 1/s",
-        "quadratic": "none (the quadratic law does not act on small whirls)",
-    }[friction.law]
+def small_whirl_friction(friction: Friction) -> str:
+    """Law of friction as a small whirl meets it, in words."""
+    if friction.law == "quadratic":
+        return "none (the quadratic law does not act on small whirls)"
+    return friction_words(friction)
 
 
 def fills_over_volume(

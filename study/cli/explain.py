@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -22,7 +22,17 @@ def explain(
     from study.explain import explain_scene
     from study.scene import load_scene
 
-    answer = explain_scene(load_scene(scene))
+    machine = load_scene(scene)
+    if machine.rotor.kind == "exciter":
+        from study.exciter_explain import explain_exciter
+
+        found = explain_exciter(machine)
+        if json:
+            print_json(found)
+        else:
+            print("\n".join(_exciter_lines(found)))
+        return
+    answer = explain_scene(machine)
     if json:
         print_json(answer)
     else:
@@ -56,6 +66,35 @@ def _lines(answer: Explanation) -> list[str]:
             f"  {span.first * RPM:.5g} to {span.last * RPM:.5g} rpm: {span.model}{holds}: {span.reason}"
         )
     return lines
+
+
+def _exciter_lines(found: dict[str, Any]) -> list[str]:
+    """The explanation of a vibrating table in words."""
+    from study.record import RPM
+
+    def rpm(value: float | None) -> str:
+        return "none" if value is None else f"{value * RPM:.5g} rpm"
+
+    numbers, speeds = found["dimensionless"], found["characteristic_speeds"]
+    first, last = found["speed_ratio"]
+    words = {
+        "smallness": "share of the balls in the moving mass over their rolling inertia",
+        "drag": "drag of the balls",
+        "unbalance": "unbalance over that of the balls",
+        "damping": "damping ratio of the platform",
+    }
+    return [
+        found["name"],
+        *_table(
+            [
+                ("natural frequency", rpm(found["natural_frequency"])),
+                ("speeds", f"{first:.3g} to {last:.3g} times the natural frequency"),
+                *((key, f"{numbers[key]:.4g}: {text}") for key, text in words.items()),
+                ("three stuck speeds", f"from {rpm(speeds['second_pair'])} to {rpm(speeds['merger'])}"),
+                ("printed critical", f"{rpm(found['critical_speed_printed'])} by the source's regression"),
+            ]
+        ),
+    ]
 
 
 def _mode_rows(answer: Explanation) -> list[tuple[str, str]]:

@@ -11,9 +11,10 @@ import numpy as np
 from study.figures.curves import gapped, joined, lag_degrees, link, spans, widened
 from study.figures.over_speed import DRY, SHADE, UNSTABLE, WET
 from study.figures.page import WIDTH, Figure, FigureFiles, Frame, lay_out, number, save, style
+from study.friction import friction_words
 from study.record import MM, RPM, Array, one_line
 from study.runup import Flags, RunupRecord
-from study.runup_words import friction_words, switches
+from study.runup_words import switches
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 Line = tuple[Array, Array]

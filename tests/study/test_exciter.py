@@ -197,3 +197,20 @@ def test_the_command_answers_an_exciter(capsys: pytest.CaptureFixture[str], tmp_
     np.testing.assert_allclose(answer["amplitude_dry"], np.abs(wanted), rtol=1e-6)
     np.testing.assert_allclose(answer["phase"], np.angle(wanted), rtol=1e-6, atol=1e-9)
     assert (tmp_path / "exciter.png").stat().st_size > 10_000
+
+
+def test_the_command_explains_an_exciter(capsys: pytest.CaptureFixture[str]) -> None:
+    from study.cli import main
+
+    scene = str(ROOT / "examples" / "vibratory_table.toml")
+    assert main(["explain", scene, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    # 90 kg, two balls of 0.325 kg, 0.1 kg of unbalance on 145 083 N/m.
+    assert found["natural_frequency"] == pytest.approx(math.sqrt(145083.0 / 90.75), rel=1e-6)
+    assert found["critical_speed_printed"] == pytest.approx(11.38 * found["natural_frequency"], rel=1e-3)
+    # n2 = 1 + 1/(4 h b) of the source.
+    h, b = found["dimensionless"]["damping"], found["dimensionless"]["drag"]
+    through = found["characteristic_speeds"]["through_resonance"] / found["natural_frequency"]
+    assert through == pytest.approx(1.0 + 1.0 / (4.0 * h * b), rel=1e-3)
+    assert main(["explain", scene]) == 0
+    assert "381.82 rpm" in capsys.readouterr().out

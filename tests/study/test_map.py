@@ -240,4 +240,4 @@ def test_validation_agrees() -> None:
     from validation.whirl import cases
 
     found = cases()
-    assert len(found) == 10 and {one.verdict for one in found} == {"agrees"}
+    assert len(found) == 15 and {one.verdict for one in found} == {"agrees"}
