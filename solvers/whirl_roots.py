@@ -7,6 +7,8 @@ zeros count whose real part is positive [theory: whirl, eq. 13].
 
 from __future__ import annotations
 
+import os
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +21,7 @@ Complex = NDArray[np.complex128]
 Flags = NDArray[np.bool_]
 
 _CHUNK = 4096  # points whose arrays fit the processor's cache
+_THREADS = 4
 _SWEEPS = 90
 _CHECK = 2  # sweeps between looks at who is done
 _STEP, _NEAR = 1e-7, 1e-5  # of the root, of the distance to the next: a step after which a root is exact
@@ -100,9 +103,12 @@ def planar_modes(problem: PlanarProblem) -> Modes:
     Modes, 2 + 2 g of them; with laminar friction up to twice as many
     """
     points = problem.spin.size
-    parts = [_chunk(problem.part(slice(i, i + _CHUNK))) for i in range(0, points, _CHUNK)]
-    if len(parts) == 1:
-        return parts[0]
+    chunks = [problem.part(slice(i, i + _CHUNK)) for i in range(0, points, _CHUNK)]
+    if len(chunks) == 1:
+        return _chunk(chunks[0])
+    # Each chunk is work on long arrays, which lets other threads run; their number changes no digit.
+    with ThreadPoolExecutor(max_workers=min(_THREADS, os.cpu_count() or 1)) as pool:
+        parts = list(pool.map(_chunk, chunks))
     return Modes(
         np.concatenate([one.slip for one in parts], axis=1),
         np.concatenate([one.rounding for one in parts], axis=1),
