@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,7 @@ from meshes.border import InputError
 from solvers.coupled_machine import Coupled, couple, fall, switch
 from solvers.coupled_reading import reading
 from solvers.drive import Drive, Ramp, torque_curve
+from solvers.linear_machine import LinearCoupled, couple_linear, read_linear, switch_linear
 from solvers.machine import (
     BORES,
     DISAGREED,
@@ -34,7 +36,7 @@ Complex = NDArray[np.complex128]
 Flags = NDArray[np.bool_]
 
 _MOST = 200_000_000  # steps between two samples
-_AT_AXIS, _NOT_COUPLED = 2, 4
+_THROWN = _AT_AXIS, _NOT_COUPLED = 2, 4
 _REASONS = {
     _AT_AXIS: "the surface of a layer came to the axis",
     3: "the time steps ran out",
@@ -178,6 +180,7 @@ def run_up(
     gravity: float = 0.0,
     numerics: RunupNumerics | None = None,
     progress: Callable[[float], None] | None = None,
+    model: str = "long_wave",
 ) -> RunupHistory:
     """Run a rotor with liquid layers through its speeds; at first liquid and rotor are at rest in the drum.
 
@@ -192,6 +195,7 @@ def run_up(
         at the bottom and moves with the drum as a mass
     numerics : resolution
     progress : called with the share of the time that is done
+    model : of the liquid: "long_wave", or "linear" for small waves at a hundredth of the cost
 
     Returns
     -------
@@ -202,16 +206,18 @@ def run_up(
     InputError : a value out of its range
     """
     numerics = numerics or RunupNumerics()
-    machine = couple(
-        system, fills, drive.corners()[1, 0], friction, gravity, numerics.cells, numerics.dispersion
-    )
+    if model not in MODELS:
+        raise InputError("model", model, "one of " + ", ".join(MODELS))
+    build = MODELS[model][0]
+    start = drive.corners()[1, 0]
+    machine = build(system, fills, start, friction, gravity, numerics.cells, numerics.dispersion)
     share = 0.8 if numerics.companion else 1.0
-    history = _march(machine, drive, numerics, lambda part: progress and progress(share * part))
+    history = _march(machine, model, drive, numerics, lambda part: progress and progress(share * part))
     if not numerics.companion or not history.converged or numerics.cells < 16:
         return history
     cells = numerics.cells // 2
-    coarse = couple(system, fills, drive.corners()[1, 0], friction, gravity, cells, numerics.dispersion)
-    other = _march(coarse, drive, replace(numerics, cells=cells), lambda _: None)
+    coarse = build(system, fills, start, friction, gravity, cells, numerics.dispersion)
+    other = _march(coarse, model, drive, replace(numerics, cells=cells), lambda _: None)
     if progress:
         progress(1.0)
     if not other.converged:
@@ -233,19 +239,31 @@ def _times(drive: Drive, samples: int) -> tuple[Array, Array]:
     return time, rate
 
 
+# Of each model: what makes its machine, what catches and lets go its liquid, what reads it.
+MODELS: dict[str, tuple[Callable[..., Any], Callable[[Any], float], Callable[[Any], dict[str, Any]]]] = {
+    "long_wave": (couple, switch, reading),
+    "linear": (couple_linear, switch_linear, read_linear),
+}
+
+
 def _march(
-    machine: Coupled, drive: Drive, numerics: RunupNumerics, progress: Callable[[float], object]
+    machine: Coupled | LinearCoupled,
+    model: str,
+    drive: Drive,
+    numerics: RunupNumerics,
+    progress: Callable[[float], object],
 ) -> RunupHistory:
     """The run itself, sample by sample."""
     time, rate = _times(drive, numerics.samples)
     machine.drive(torque_curve(drive), 0.0 if isinstance(drive, Ramp) else drive.inertia)
     energy, captured, reason = machine.energy(), 0.0, ""
-    rows = [reading(machine)]
+    _, catch, read = MODELS[model]
+    rows = [read(machine)]
     for k, stop in enumerate(time[1:].tolist()):
         try:
-            captured += switch(machine)
+            captured += catch(machine)
             status = machine.advance(stop, float(rate[k]), numerics.courant, _MOST)
-            while status in (_AT_AXIS, _NOT_COUPLED) and machine.held_by_spin:
+            while isinstance(machine, Coupled) and status in _THROWN and machine.held_by_spin:
                 # Gravity has won: what is thrown about so much lies at the bottom.
                 captured += fall(machine)
                 status = machine.advance(stop, float(rate[k]), numerics.courant, _MOST)
@@ -255,7 +273,7 @@ def _march(
         if reason:
             reason = f"{reason} at {machine.time:.6g} s, {machine.spin:.6g} rad/s"
             break
-        rows.append(reading(machine))
+        rows.append(read(machine))
         if k % 64 == 0:
             progress((k + 1) / rate.size)
     sums = machine.sums

@@ -10,8 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from fluid.waves import capture_speed
-from fluid.whirl import covering_speed, is_full
 from meshes.border import InputError
 from solvers.drive import Drive, Motor, Ramp
 from solvers.response import Response, synchronous_response
@@ -20,10 +18,10 @@ from study.fidelity import axial_gravity
 from study.friction import Friction
 from study.machine import dry_rotor, jeffcott
 from study.record import Array, ChamberRecord, phase
+from study.runup_range import judged, liquid_model
 from study.runup_words import Bands, describe_inputs, describe_run
 from study.scene import Rotor, Runup, Scene
 from study.stability import solver_friction
-from study.validity import RANGES
 
 Flags = NDArray[np.bool_]
 Complex = NDArray[np.complex128]
@@ -44,6 +42,7 @@ class RunupRecord:
     kind, axis : of the rotor; "horizontal" or "vertical"
     friction : law and coefficient
     gravity : across the axis, m/s^2
+    model : of the liquid, "long_wave" or "linear"
     numerics : resolution
     history : of rotor and liquid
     turning : index of the last time before the speed falls again; the last one of all if it never does
@@ -63,6 +62,7 @@ class RunupRecord:
     axis: str
     friction: Friction
     gravity: float
+    model: str
     numerics: RunupNumerics
     history: RunupHistory
     turning: int
@@ -125,7 +125,8 @@ def runup_scene(
     law, gravity = scene.model.friction, across_gravity(scene)
     rotor = dry_rotor(scene).system()
     friction = (law.law, law.coefficient)
-    history = run_up(rotor, scene.chambers, drive_of(plan), friction, gravity, numerics, progress)
+    model = liquid_model(scene)
+    history = run_up(rotor, scene.chambers, drive_of(plan), friction, gravity, numerics, progress, model)
     steady, bands = steady_response(scene, history.speed), whirl_bands(scene, history.speed)
     in_range, faults = judged(scene, history)
     fastest = np.flatnonzero(history.speed == history.speed.max())
@@ -139,6 +140,7 @@ def runup_scene(
         axis=scene.rotor.axis,
         friction=law,
         gravity=gravity,
+        model=model,
         numerics=numerics,
         history=history,
         turning=int(fastest[-1]) if plan.back else history.time.size - 1,
@@ -214,55 +216,6 @@ def _passed(speed: Array, count: int) -> Array:
     """Speeds evenly over those of a run with the spin, which a motor may have turned round; none if still."""
     low, high = max(float(speed.min()), 1e-3 * float(speed.max())), float(speed.max())
     return np.linspace(low, high, count) if 0.0 < low < high else np.empty(0)
-
-
-def judged(scene: Scene, history: RunupHistory) -> tuple[Flags, tuple[str, ...]]:
-    """Where the layer is a fair picture of the liquid, and in words why it is none elsewhere.
-
-    A layer must turn fast enough itself, whatever the drum does, must not be deep beside its radius
-    [theory: long_wave, eq. 4], and must leave the inner wall clear.
-
-    Parameters
-    ----------
-    scene : the machine
-    history : its run-up, k times
-
-    Returns
-    -------
-    Truth values, shape (k,), and one sentence for each reason
-    """
-    good = np.ones(history.time.shape, dtype=bool)
-    words: list[str] = []
-    deepest = RANGES["long_wave"]["relative_depth"][1]
-    for k, fill in enumerate(scene.chambers):
-        if fill.volume == 0.0 or is_full(fill):
-            continue
-        wall, label = fill.chamber, f"chamber {k + 1}"
-        own = history.speed + history.mean_rotation[:, k]
-        held = history.captured[:, k] & (np.abs(own) > held_from(scene, fill))
-        reached = np.nan_to_num(history.depth_max[:, k]) >= wall.radius - wall.inner_radius
-        touches = reached & (wall.inner_radius > 0.0)
-        shallow = fill.depth <= deepest * wall.radius
-        reasons = (
-            (held, f"the liquid in {label} turns too slowly to stand round the wall against gravity"),
-            (~touches, f"the surface reaches the inner wall of {label}"),
-            (np.full(good.shape, shallow), f"the layer in {label} is deeper than {deepest:g} of its radius"),
-        )
-        for holds, why in reasons:
-            good &= holds
-            if not holds.all():
-                words.append(f"Out of range for {1.0 - np.mean(holds):.0%} of the samples: {why}.")
-    return good, tuple(words)
-
-
-def held_from(scene: Scene, fill: Fill) -> float:
-    """Rotation of the liquid itself above which it stands round its wall in spite of gravity, rad/s.
-
-    Its centrifugal acceleration at the surface must exceed gravity [theory: waves, eq. 11]; if the axis
-    stands, the paraboloid must also cover the wall's height and leave an inner wall clear.
-    """
-    held = float(capture_speed(fill.surface_radius, scene.gravity))
-    return max(held, covering_speed(fill, axial_gravity(scene)))
 
 
 def turn_mean(values: Complex, angle: Array) -> Complex:

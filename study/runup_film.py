@@ -16,6 +16,7 @@ from solvers.runup import RunupNumerics
 from study.machine import dry_rotor
 from study.record import Array
 from study.runup import RunupRecord, drive_of, planned
+from study.runup_range import liquid_model
 from study.scene import Scene
 
 Complex = NDArray[np.complex128]
@@ -46,6 +47,17 @@ class Reel:
     theta: Array
     depth: Array
     pool: Array
+
+
+def require_layers(scene: Scene) -> None:
+    """A film shows the layers cell by cell.
+
+    Raises
+    ------
+    InputError : the scene's liquid model has no cells
+    """
+    if liquid_model(scene) == "linear":
+        raise InputError("model.liquid", "linear", "auto or long_wave for a film")
 
 
 def film(scene: Scene, record: RunupRecord, frames: int = FRAMES) -> Reel:

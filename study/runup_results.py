@@ -83,6 +83,7 @@ def _attributes(record: RunupRecord) -> dict[str, Any]:
         "rotor": record.kind,
         "axis": record.axis,
         "friction": friction_words(record.friction),
+        "model": record.model,
         "cells": np.int32(numerics.cells),
         "dispersion": "with" if numerics.dispersion else "without",
         "energy": json.dumps(_energy(record)),
@@ -149,6 +150,6 @@ def runup_json(record: RunupRecord) -> dict[str, Any]:
         found
         | ends
         | {name: getattr(h, name) for name in ("error_estimate", "converged", "reason", "steps")}
-        | {"energy": _energy(record), "cells": record.numerics.cells}
+        | {"energy": _energy(record), "cells": record.numerics.cells, "model": record.model}
         | {name: getattr(record, name) for name in names}
     )

@@ -50,6 +50,14 @@ def describe_inputs(scene: Scene, plan: Runup, numerics: RunupNumerics) -> tuple
     return tuple(rows)
 
 
+def model_words(model: str, numerics: RunupNumerics) -> str:
+    """Liquid model of a run-up with its resolution."""
+    if model == "linear":
+        return f"exact linear theory in time, steps as of {numerics.cells} cells"
+    shallow = "with dispersion" if numerics.dispersion else "without dispersion"
+    return f"annular long waves in time, {numerics.cells} cells, {shallow}"
+
+
 def describe_run(
     scene: Scene, history: RunupHistory, steady: Response | None, bands: Bands
 ) -> tuple[str, ...]:

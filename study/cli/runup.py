@@ -42,8 +42,10 @@ def runup(
     planned(machine)
     if animate is not None:
         from study.figures.page import require_film
+        from study.runup_film import require_layers
 
         require_film(animate)
+        require_layers(machine)
     folder = out_dir(machine.name, out)
     record = _run(machine, cells, samples, not no_check)
 

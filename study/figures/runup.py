@@ -14,7 +14,7 @@ from study.figures.page import WIDTH, Figure, FigureFiles, Frame, lay_out, numbe
 from study.friction import friction_words
 from study.record import MM, RPM, Array, one_line
 from study.runup import Flags, RunupRecord
-from study.runup_words import switches
+from study.runup_words import model_words, switches
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 Line = tuple[Array, Array]
@@ -290,11 +290,10 @@ def caption(record: RunupRecord, text: str) -> str:
     """What a figure shows, the scene, model, friction, resolution, error and what is assumed."""
     h, numerics = record.history, record.numerics
     error = "not estimated" if math.isnan(h.error_estimate) else f"{h.error_estimate:.1%} of the largest"
-    shallow = "with dispersion" if numerics.dispersion else "without dispersion"
     assumed = ", ".join(map(one_line, record.assumed)) or "nothing"
     stopped = "" if h.converged else f" Stopped: {one_line(h.reason)}."
     return (
-        f"{text}{stopped} Scene: {one_line(record.name)}, {record.axis} axis. Liquid model: annular long "
-        f"waves in time, {numerics.cells} cells, {shallow}; liquid friction: "
+        f"{text}{stopped} Scene: {one_line(record.name)}, {record.axis} axis. Liquid model: "
+        f"{model_words(record.model, numerics)}; liquid friction: "
         f"{friction_words(record.friction)}. Error of the amplitude: {error}. Assumed: {assumed}."
     )

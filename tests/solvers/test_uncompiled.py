@@ -12,7 +12,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.mark.parametrize("name", ["uncompiled_faults", "uncompiled_coupled"])
+@pytest.mark.parametrize("name", ["uncompiled_faults", "uncompiled_coupled", "uncompiled_linear"])
 def test_compiled_lines_are_held_by_oracles(name: str) -> None:
     chosen = [f"tests/solvers/{name}.py", "-q", "-n", "0", "-p", "no:cacheprovider"]
     done = subprocess.run(

@@ -21,26 +21,26 @@ FAULTS: tuple[Fault, ...] = (
     Fault("study.runup", "/ (2.0 * half))", "/ half)", oracle.check_turn_mean),
     Fault("study.runup", "0.5 * (values[1:] + values[:-1])", "values[1:]", oracle.check_lines),
     Fault(
-        "study.runup",
+        "study.runup_range",
         "history.speed + history.mean_rotation[:, k]",
         "history.speed - history.mean_rotation[:, k]",
         oracle.check_gravity_across,
     ),
     Fault(
-        "study.runup",
+        "study.runup_range",
         "capture_speed(fill.surface_radius, scene.gravity)",
         "capture_speed(fill.chamber.radius, scene.gravity)",
         oracle.check_gravity_across,
     ),
     Fault(
-        "study.runup",
+        "study.runup_range",
         "covering_speed(fill, axial_gravity(scene))",
         "covering_speed(fill, 2.0 * axial_gravity(scene))",
         oracle.check_gravity_along,
     ),
-    Fault("study.runup", "max(held, covering", "min(held, covering", oracle.check_gravity_along),
+    Fault("study.runup_range", "max(held, covering", "min(held, covering", oracle.check_gravity_along),
     Fault(
-        "study.runup",
+        "study.runup_range",
         ">= wall.radius - wall.inner_radius",
         ">= wall.radius + wall.inner_radius",
         oracle.check_inner_wall,
@@ -101,5 +101,11 @@ FAULTS: tuple[Fault, ...] = (
         "y, good = rpm[point], size[point, column], calm[point, column]",
         "y, good = rpm[point], size[point, column], ~calm[point, column]",
         oracle.check_steady_lines,
+    ),
+    Fault(
+        "study.runup_range",
+        'return "long_wave" if asked == "auto"',
+        'return "linear" if asked == "auto"',
+        oracle.check_liquid_model,
     ),
 )

@@ -28,8 +28,6 @@ from study.figures import runup_film as film_figures
 from study.runup import (
     RunupRecord,
     drive_of,
-    held_from,
-    judged,
     planned,
     runup_scene,
     steady_response,
@@ -37,6 +35,7 @@ from study.runup import (
     whirl_bands,
 )
 from study.runup_film import Reel, film
+from study.runup_range import held_from, judged, liquid_model
 from study.runup_results import runup_json, write_runup
 from study.scene import Scene, scene_from_table
 
@@ -481,6 +480,7 @@ def made_up(history: RunupHistory, machine: Scene | None = None) -> RunupRecord:
         axis=machine.rotor.axis,
         friction=machine.model.friction,
         gravity=machine.gravity,
+        model="long_wave",
         numerics=runup_module.numerics_of(planned(machine)),
         history=history,
         turning=history.time.size - 1,
@@ -693,3 +693,25 @@ def test_an_interrupted_run_leaves_its_files(tmp_path: Path, monkeypatch: pytest
     with pytest.raises(KeyboardInterrupt):
         runup(file, out=tmp_path / "out")
     assert (tmp_path / "out" / "runup.nc").exists()
+
+
+def check_liquid_model() -> None:
+    """Long waves unless the scene asks for linear layers; what has no time is refused."""
+    for asked, taken in (("auto", "long_wave"), ("long_wave", "long_wave"), ("linear", "linear")):
+        machine = replace(scene(), model=replace(scene().model, liquid=asked))
+        assert liquid_model(machine) == taken
+    for asked in ("statics", "kdv", "fem"):
+        with pytest.raises(InputError, match="liquid"):
+            liquid_model(replace(scene(), model=replace(scene().model, liquid=asked)))
+
+
+def test_liquid_model() -> None:
+    check_liquid_model()
+
+
+def test_linear_waves_out_of_their_range_are_told() -> None:
+    linear = replace(scene(), model=replace(scene().model, liquid="linear"))
+    fill = linear.chambers[0]
+    depth = np.array([[1.2], [1.5]]) * fill.depth
+    good, words = judged(linear, history_of(2, 1, depth_max=depth, depth_min=2.0 * fill.depth - depth))
+    assert good.tolist() == [True, False] and any("linear theory" in one for one in words)

@@ -1,0 +1,175 @@
+"""Seeded faults of the linear layers' time step, and their oracles, run as plain Python."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fluid.fill import Fill
+from fluid.friction import LINEAR
+from fluid.liquid import Liquid
+from meshes.chamber import Chamber
+from solvers.linear_machine import LinearCoupled, couple_linear
+from solvers.machine import DRIVE, FRICTION, GRAVITY, MOTOR, SUPPORT, UNBALANCE
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.whirl import asynchronous_growth
+from tests.faults import Fault, seeded
+
+FILL = Fill(Chamber(0.25, 0.04), Liquid("water", 1000.0, 1e-6), 2e-3)
+ROTOR = Jeffcott(3.0, 3.0 * 15.0**2, 6.0, 4e-3)
+
+
+def machine(cells: int, friction: float = 2.0, gravity: float = 0.0) -> LinearCoupled:
+    found = couple_linear(ROTOR.system(), [FILL], 30.0, ("linear", friction), gravity, cells, False)
+    found.machine.place[:4] = 2e-3, -1e-3, 5e-3, 2e-3
+    found.machine.rate[:4] = 0.05, 0.02, -0.1, 0.04
+    return found
+
+
+def check_energy() -> None:
+    """The balance closes with the square of the step, spin and friction changing things."""
+    left = []
+    for cells in (32, 64):
+        found = machine(cells, gravity=3.0)
+        before = found.energy()
+        assert found.advance(0.3, 20.0, 0.8, 10**5) == 0
+        s = found.sums
+        gained = s[UNBALANCE] + s[DRIVE] + s[GRAVITY] - s[SUPPORT] - s[FRICTION]
+        left.append(abs(gained - (found.energy() - before)) / abs(s[UNBALANCE]))
+    assert left[1] < 5e-3
+    assert left[1] < 0.4 * left[0]
+
+
+def check_growth() -> None:
+    """A machine let go grows, or dies, as its characteristic equation says."""
+    for rate in (0.0, 5.0):
+        free = Jeffcott(3.0, 3.0 * 15.0**2, 0.0, 0.0).system()
+        found = couple_linear(free, [FILL], 22.0, ("linear", rate), 0.0, 64, False)
+        found.machine.place[0] = 1e-6
+        seen = []
+        times = np.linspace(0.0, 3.0, 61)[1:]
+        for stop in times.tolist():
+            assert found.advance(stop, 0.0, 0.8, 10**5) == 0
+            seen.append(complex(*found.machine.place[:2]))
+        growth = np.polyfit(times[40:], np.log(np.abs(seen))[40:], 1)[0]
+        wanted, _ = asynchronous_growth(free, [FILL], [22.0], (LINEAR, rate))
+        assert growth == pytest.approx(wanted[0], rel=0.05, abs=0.02)
+
+
+def check_tallies() -> None:
+    """Works and heats are the integrals of their powers over what is sampled."""
+    found = machine(64, gravity=3.0)
+    rows, times = [], np.linspace(0.0, 0.2, 81)
+    for stop in times.tolist():
+        if stop > 0.0:
+            assert found.advance(stop, 20.0, 0.8, 10**5) == 0
+        m = found.machine
+        v, d, turn = m.rate[:2], m.rate[2:4], np.exp(1j * m.turning[1])
+        force = ((found.spin**2 - 20j) * found.system.unbalance * turn).real
+        offset, whole = complex(*m.place[2:4]), m.carried[0]
+        slip = complex(*d) - 1j * whole * offset
+        kappa, inertia = m.layers[0, 1], m.layers[0, 4]
+        k = m.layers[0, 2]
+        heat = 2.0 * k * (1.0 + kappa) * abs(slip) ** 2 + inertia * k * (found.spin - whole) ** 2
+        gained = k * (found.spin - whole)
+        wave = -2.0 * k * (1.0 + kappa) * (np.conj(1j * whole * offset) * slip).real
+        swing = (np.conj(offset) * complex(*d)).imag - whole * abs(offset) ** 2
+        drive = inertia * found.spin * gained + wave + 2.0 * kappa * 2.0 * gained * swing
+        weight = 2.0 * float(m.gravity @ d)
+        rows.append((force @ v, v @ found.system.damping @ v, weight, heat, drive))
+    wanted = np.trapezoid(np.array(rows).T, times)
+    for name, value in zip((UNBALANCE, SUPPORT, GRAVITY, FRICTION, DRIVE), wanted, strict=True):
+        assert found.sums[name] == pytest.approx(value, rel=1e-2, abs=1e-5)
+
+
+def check_motor() -> None:
+    """Torque of the motor, less what spins the liquid and what the unbalance takes."""
+    found = couple_linear(
+        replace(ROTOR, unbalance=0.1).system(), [FILL], 30.0, ("linear", 2.0), 0.0, 64, False
+    )
+    found.machine.rate[:4] = 0.05, 0.02, -0.1, 0.04
+    found.drive(np.array([[0.0, 80.0], [6.0, 0.0]]), 0.05)
+    m = found.machine
+
+    def momentum() -> float:
+        turn = np.exp(1j * m.turning[1])
+        cross = m.rate[:2] @ (1j * found.system.unbalance * turn).real
+        return float(0.05 * found.spin + m.layers[0, 4] * m.carried[0] + cross)
+
+    before, rows, times = momentum(), [], np.linspace(0.0, 0.1, 41)
+    for stop in times.tolist():
+        if stop > 0.0:
+            assert found.advance(stop, 0.0, 0.8, 10**5) == 0
+            m = found.machine
+        turn = np.exp(1j * m.turning[1])
+        swung = -found.spin * m.rate[:2] @ (found.system.unbalance * turn).real
+        torque = float(np.interp(found.spin, [0.0, 80.0], [6.0, 0.0]))
+        rows.append((torque + swung, torque * found.spin))
+    push, work = np.trapezoid(np.array(rows).T, times)
+    assert momentum() - before == pytest.approx(push, rel=5e-3)
+    assert found.sums[MOTOR] == pytest.approx(work, rel=1e-3)
+
+
+def check_inertia() -> None:
+    """Moment of inertia of the layer, and the squared ratio of the radii."""
+    layer = couple_linear(ROTOR.system(), [FILL], 30.0, ("none", 0.0), 0.0, 8, False).machine.layers[0]
+    inner = FILL.surface_radius
+    assert layer[4] == pytest.approx(0.5 * FILL.mass * (0.25**2 + inner**2), rel=1e-12)
+    assert layer[1] == pytest.approx((0.25 / inner) ** 2, rel=1e-12)
+
+
+STEP, SET = "solvers.linear_step", "solvers.linear_machine"
+FAULTS = (
+    Fault(STEP, "mass * (b[0, i] * b[0, k] + b[1, i] * b[1, k])", "mass * b[0, i] * b[0, k]", check_growth),
+    Fault(STEP, "4.0 * kappa * whole * sign", "2.0 * kappa * whole * sign", check_growth),
+    Fault(STEP, "whole * friction + 2.0 * kappa", "-whole * friction + 2.0 * kappa", check_growth),
+    Fault(STEP, "2.0 * kappa * (after - before) / dt", "0.0 * (after - before) / dt", check_energy),
+    Fault(STEP, "-2.0 * kappa * whole * whole", "2.0 * kappa * whole * whole", check_growth),
+    Fault(STEP, "m.gravity[part] - forces", "-m.gravity[part] - forces", check_energy),
+    Fault(STEP, "1.0 + kappa + 0.5 * dt * friction", "1.0 + 0.5 * dt * friction", check_growth),
+    Fault(
+        STEP,
+        "spins[0] * (m.unbalance[i] * first).imag",
+        "spins[0] * (m.unbalance[i] * last).imag",
+        check_energy,
+    ),
+    Fault(STEP, "m.carried[j] * (1.0 - share)", "m.carried[j]", check_energy),
+    Fault(
+        STEP,
+        "m.sums[UNBALANCE] -= m.swing[i] * mean",
+        "m.sums[UNBALANCE] += m.swing[i] * mean",
+        check_tallies,
+    ),
+    Fault(STEP, "u + whole * y, v - whole * x", "u - whole * y, v + whole * x", check_tallies),
+    Fault(STEP, "(x * q - y * p)", "(x * p + y * q)", check_energy),
+    Fault(
+        STEP, "m.layers[j, INERTIA] * spin * gained", "m.layers[j, INERTIA] * whole * gained", check_tallies
+    ),
+    Fault(STEP, "m.gravity[0] * u + m.gravity[1] * v", "m.gravity[0] * v", check_tallies),
+    Fault(STEP, "(spin - whole) ** 2", "(spin - whole)", check_tallies),
+    Fault(STEP, "load -= m.change[i]", "load += m.change[i]", check_motor),
+    Fault(
+        STEP, "load += m.layers[j, INERTIA] * gained", "load -= m.layers[j, INERTIA] * gained", check_motor
+    ),
+    Fault(STEP, "m.sums[MOTOR] += dt * spin", "m.sums[MOTOR] += dt", check_motor),
+    Fault(
+        SET,
+        "0.5 * layer[INERTIA] * m.carried",
+        "layer[INERTIA] * m.carried",
+        check_energy,
+    ),
+    Fault(SET, "chamber.radius**4 * area * (1.0 - area)", "chamber.radius**4 * area", check_inertia),
+)
+
+
+@pytest.mark.parametrize("fault", FAULTS, ids=str)
+def test_fault_is_caught(fault: Fault) -> None:
+    with seeded(fault), pytest.raises((AssertionError, ArithmeticError)):
+        fault.oracle()
+
+
+@pytest.mark.parametrize("oracle", dict.fromkeys(f.oracle for f in FAULTS), ids=lambda o: o.__name__)
+def test_oracle_passes_without_fault(oracle) -> None:  # type: ignore[no-untyped-def]
+    oracle()
