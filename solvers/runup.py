@@ -107,8 +107,11 @@ class EnergyAudit:
 
     @property
     def closure(self) -> float:
-        """The remainder over the largest of the works, 0 where nothing was done."""
-        work = max(abs(self.unbalance), abs(self.drive), abs(self.gravity))
+        """The remainder over the larger of the unbalance's work and all that was dissipated.
+
+        What it takes to spin the liquid up as a whole does not count.
+        """
+        work = max(abs(self.unbalance), self.support + self.friction + self.bores)
         return abs(self.remainder) / work if work > 0.0 else 0.0
 
 

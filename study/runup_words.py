@@ -84,7 +84,7 @@ def _numbers(history: RunupHistory) -> list[str]:
             "more cells would sharpen it."
         )
     if closure > CLOSURE:
-        notes.append(f"The energy balance leaves {closure:.1%} of the work done unaccounted for.")
+        notes.append(f"The energy balance leaves {closure:.1%} of the work unaccounted for.")
     return notes
 
 

@@ -84,8 +84,9 @@ def check_table(table: Mapping[str, Any], file: str) -> SceneTable:
     try:
         checked = SCENES[kind].model_validate(table)
     except ValidationError as error:
-        faults.extend(_broken_rules(error, file, (), TABLES[kind]))
-    faults.extend(_alternatives(table, kind, file))
+        faults.extend(_broken_rules(error, file, (), TABLES[kind], _is_unknown_kind(table)))
+    if not _is_unknown_kind(table):
+        faults.extend(_alternatives(table, kind, file))
     faults.extend(_drive(table.get("runup"), TABLES[kind], file))
     faults.extend(_assumed(table, file))
     if checked is None or faults:
@@ -100,15 +101,27 @@ def _kind(table: Mapping[str, Any]) -> str:
     return kind if isinstance(kind, str) and kind in SCENES else "jeffcott"
 
 
+def _is_unknown_kind(table: Mapping[str, Any]) -> bool:
+    """The table names a kind of rotor that there is not: which keys it may have is not known then."""
+    rotor = table.get("rotor")
+    return isinstance(rotor, Mapping) and "kind" in rotor and rotor["kind"] not in tuple(SCENES)
+
+
 def _broken_rules(
-    error: ValidationError, file: str, place: tuple[str | int, ...], tables: _Tables
+    error: ValidationError,
+    file: str,
+    place: tuple[str | int, ...],
+    tables: _Tables,
+    any_rotor: bool = False,
 ) -> Iterator[SceneFault]:
-    """One fault for each broken rule."""
+    """One fault for each broken rule; `any_rotor` leaves out what keys a rotor must and may not have."""
     for item in error.errors(include_url=False):
         keys = (*place, *item["loc"])
+        if any_rotor and keys[:1] == ("rotor",) and item["type"] in ("missing", "extra_forbidden"):
+            continue
         cause = item.get("ctx", {}).get("error")
         if isinstance(cause, ValidationError):  # of a table within a value
-            yield from _broken_rules(cause, file, keys, tables)
+            yield from _broken_rules(cause, file, keys, tables, any_rotor)
             continue
         value = None if item["type"] == "missing" else shown(item["input"])
         yield SceneFault(file, field_path(keys), value, _allowed(item, keys, cause, tables))

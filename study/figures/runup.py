@@ -277,7 +277,9 @@ def energy_figure(record: RunupRecord) -> Figure:
         axes.grid(visible=False, axis="y")
         axes.set_xlabel("Energy (J)")
         axes.xaxis.set_major_formatter(number)
-        text = f"Energy over the whole run; not accounted for: {audit.closure:.2%} of the largest work."
+        text = (
+            f"Energy over the whole run; not accounted for: {audit.closure:.2%} of the work."
+        )
         lay_out(figure, [[axes]], [2.3], ENERGY_FRAME, caption(record, text), LINES)
     return figure
 

@@ -445,6 +445,7 @@ FAULTS = (
         "state.rotor[2 * n + 1] += room.spins[1] * dt",
         check_momentum,
     ),
+    Fault(SET, "0.5 * layer[MASS] * rate @ rate + momentum", "momentum", check_energy),
     Fault(SET, "(np.array([-gravity, 0.0])", "(np.array([gravity, 0.0])", check_gravity),
     Fault(SET, '"momentum": -spin * np.square(area)', '"momentum": spin * np.square(area)', check_stokes),
     Fault(

@@ -121,3 +121,12 @@ def test_a_wrong_value_is_named(
     check(str(caught.value), path, one.field, one.said)
     assert one.field in [fault.field for fault in caught.value.faults]
     assert shell(path, capsys) == str(caught.value) + "\n"
+
+
+def test_an_unknown_kind_is_one_fault(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Which keys such a rotor has is not known: they are no faults of their own."""
+    text = (Path(__file__).parents[2] / "examples" / "tub.toml").read_text(encoding="utf-8")
+    path = tmp_path / "scene.toml"
+    path.write_text(text.replace('kind = "tub"', 'kind = "bathtub"'), encoding="utf-8")
+    said = shell(path, capsys)
+    assert said.count("\n") == 1 and 'rotor.kind = "bathtub"' in said and "tub, exciter" in said
