@@ -1,11 +1,17 @@
-"""The chamber of a liquid balancer: a cylinder or a concentric annulus."""
+"""The chamber of a liquid balancer: a cylinder or a concentric annulus; one, or many at once."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from meshes.border import InputError, require_not_negative, require_positive
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -52,3 +58,33 @@ class Chamber:
     def capacity(self) -> float:
         """Volume of liquid that fills the chamber, m^3."""
         return self.section_area * self.height
+
+
+@dataclass(frozen=True)
+class Chambers:
+    """Many chambers as arrays, taken from `Chamber`s, which check their values.
+
+    Parameters
+    ----------
+    radius, height, inner_radius : of each, m, shape (n,)
+    """
+
+    radius: Array
+    height: Array
+    inner_radius: Array
+
+    @classmethod
+    def of(cls, chambers: Sequence[Chamber]) -> Chambers:
+        """Arrays of some chambers."""
+        sizes = np.array([(one.radius, one.height, one.inner_radius) for one in chambers]).reshape(-1, 3)
+        return cls(*np.ascontiguousarray(sizes.T))
+
+    def at(self, which: NDArray[np.intp]) -> Chambers:
+        """Those at some indices, in their order, shape (m,)."""
+        return Chambers(self.radius[which], self.height[which], self.inner_radius[which])
+
+    @property
+    def capacity(self) -> Array:
+        """Volume of liquid that fills each, m^3, shape (n,)."""
+        ring = (self.radius - self.inner_radius) * (self.radius + self.inner_radius)
+        return np.asarray(math.pi * ring * self.height)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,9 +18,9 @@ def bracketed_root(
     relative: float = 4.0 * np.finfo(float).eps,
     iterations: int = 200,
 ) -> tuple[Array, NDArray[np.bool_]]:
-    """Root of each of n functions between the ends of its bracket, by Illinois steps and bisection.
+    """Root of each of n functions between the ends of its bracket [Chandrupatla97].
 
-    Every step shrinks the bracket; every third one halves it, so that the worst case is bisection's.
+    Steps by inverse quadratic interpolation where the last three points allow it, otherwise by halving.
 
     Parameters
     ----------
@@ -34,28 +35,68 @@ def bracketed_root(
     root : shape (n,); an end of the bracket where the function does not change sign
     found : shape (n,), False where it does not, or where the steps ran out
     """
-    low, high = low.astype(float), high.astype(float)
-    everyone = np.arange(low.size)
-    at_low, at_high = function(low, everyone), function(high, everyone)
-    root = np.where(np.abs(at_low) <= np.abs(at_high), low, high)
-    found = (at_low == 0.0) | (at_high == 0.0)
-    active = everyone[~found & (np.sign(at_low) != np.sign(at_high))]
-    for step in range(iterations):
+    # The newest point, the one across the root from it, and the one before.
+    new, across = low.astype(float), high.astype(float)
+    everyone = np.arange(new.size)
+    at_new, at_across = function(new, everyone), function(across, everyone)
+    root = np.where(np.abs(at_new) <= np.abs(at_across), new, across)
+    found = (at_new == 0.0) | (at_across == 0.0)
+    active = everyone[~found & (np.sign(at_new) != np.sign(at_across))]
+    points = _Points(*(x[active] for x in (new, across, new, at_new, at_across, at_new)))
+    share = np.full(active.size, 0.5)
+    for _ in range(iterations):
         if active.size == 0:
             break
-        a, b, fa, fb = low[active], high[active], at_low[active], at_high[active]
-        middle = 0.5 * (a + b)
-        secant = a + (b - a) * (fa / (fa - fb))
-        x = np.where((step % 3 == 2) | ~((secant > a) & (secant < b)), middle, secant)
-        fx = function(x, active)
-        left = np.sign(fx) == np.sign(fa)
-        # Illinois: the end that stays is given half its value, or the secant would creep.
-        low[active], at_low[active] = np.where(left, x, a), np.where(left, fx, 0.5 * fa)
-        high[active], at_high[active] = np.where(left, b, x), np.where(left, 0.5 * fb, fx)
-        root[active] = x
-        width = np.abs(high[active] - low[active])
-        scale = np.maximum(np.abs(high[active]), np.abs(low[active]))
-        done = (fx == 0.0) | (width <= relative * scale)
+        x = points.new + share * (points.across - points.new)
+        points = points.step(x, function(x, active))
+        best = np.abs(points.at_new) <= np.abs(points.at_across)
+        root[active] = np.where(best, points.new, points.across)
+        width = np.abs(points.across - points.new)
+        least = 0.5 * relative * np.maximum(np.abs(points.new), np.abs(points.across))
+        done = (points.at_new == 0.0) | (width <= 2.0 * least)
         found[active[done]] = True
-        active = active[~done]
+        keep = ~done
+        active, points = active[keep], points.at(keep)
+        share = points.share(least[keep] / width[keep])
     return root, found
+
+
+class _Points(NamedTuple):
+    """Three points of each function and its values there; the root is between the first two."""
+
+    new: Array
+    across: Array
+    before: Array
+    at_new: Array
+    at_across: Array
+    at_before: Array
+
+    def at(self, which: NDArray[np.bool_]) -> _Points:
+        """Those of some functions."""
+        return _Points(*(x[which] for x in self))
+
+    def step(self, x: Array, fx: Array) -> _Points:
+        """With a further point inside the bracket."""
+        same = np.sign(fx) == np.sign(self.at_new)
+        return _Points(
+            new=x,
+            across=np.where(same, self.across, self.new),
+            before=np.where(same, self.new, self.across),
+            at_new=fx,
+            at_across=np.where(same, self.at_across, self.at_new),
+            at_before=np.where(same, self.at_new, self.at_across),
+        )
+
+    def share(self, least: Array) -> Array:
+        """How far from the newest point towards the one across it the next one lies, 0 to 1."""
+        a, b, c, fa, fb, fc = self
+        xi, phi = _over(a - b, c - b), _over(fa - fb, fc - fb)
+        curved = (np.square(phi) < xi) & (np.square(1.0 - phi) < 1.0 - xi)
+        inverse = _over(fa, fb - fa) * _over(fc, fb - fc)
+        inverse += _over(c - a, b - a) * _over(fa, fc - fa) * _over(fb, fc - fb)
+        return np.clip(np.where(curved, inverse, 0.5), least, 1.0 - least)
+
+
+def _over(numerator: Array, denominator: Array) -> Array:
+    """Quotient; 0 over 0."""
+    return np.divide(numerator, denominator, out=np.zeros_like(numerator), where=denominator != 0.0)

@@ -63,7 +63,9 @@ def one_plane(balance: Balance) -> tuple[Complex, Index, NDArray[np.bool_]]:
     reach = np.minimum(_over(force, np.abs(support.imag)), _over(most, np.abs(elastic))) * (1.0 + 1e-9)
     bounded = np.isfinite(reach) | np.isinf(limit)
     stop = np.where(moved & bounded & np.isfinite(limit), np.maximum(reach, limit), limit)
-    bent, owner, found = find_branches(pull, elastic, np.abs(support.imag), force, limit, stop)
+    # The slope of the unbalance never exceeds a full chamber's mass; a hair's breadth holds the rounding.
+    steepest = squared * (full * (1.0 + 1e-9) - mass)
+    bent, owner, found = find_branches(pull, elastic, np.abs(support.imag), force, steepest, limit, stop)
     linear = np.flatnonzero(moved & (straight <= limit))
     still = np.flatnonzero(sound & ~moved)
     size = np.concatenate((straight[linear], bent, np.abs(alone[still])))

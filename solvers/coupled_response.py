@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fluid.fill import Fill
+from fluid.fill import Fill, Fills
 from meshes.border import InputError
 from solvers.coupled_branches import one_plane, several_planes
 from solvers.coupled_terms import Balance, Liquid, backward_mass, balance, directions
@@ -226,6 +226,7 @@ def _added_mass(
     for fill, p in zip(wet, directions(system, wet), strict=True):
         full = fill.full_mass
         if speed is not None:
-            full = float(law.synchronous(fill, np.array([speed]), np.zeros(1), gravity).slope[0])
+            state = law.synchronous(Fills.of([fill]), np.array([speed]), np.zeros(1), np.array([gravity]))
+            full = float(state.slope[0])
         total += 0.5 * full * np.outer(p, np.conj(p)) + 0.5 * backward_mass(fill) * np.outer(np.conj(p), p)
     return total

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fluid.fill import Fill
+from fluid.fill import Fill, Fills
 from fluid.waves import force_ratio
 from solvers.liquid_models import LiquidModel
 from solvers.rotor.system import RotorSystem
@@ -101,7 +101,8 @@ class Balance:
             # The law costs most of the time, and up to the limit it is known.
             rows = np.flatnonzero(bent[:, j])
             if rows.size:
-                one = self.model.synchronous(fill, self.speed[which[rows]], deflection[rows, j], self.gravity)
+                same, gravity = Fills.same(fill, rows.size), np.full(rows.size, self.gravity)
+                one = self.model.synchronous(same, self.speed[which[rows]], deflection[rows, j], gravity)
                 unbalance[rows, j], slope[rows, j] = one.unbalance, one.slope
                 for flag, found in zip(flags, (one.dry_patch, one.in_range, one.converged), strict=True):
                     flag[rows, j] = found
@@ -128,7 +129,8 @@ def balance(
     for fill, p in zip(wet, plane, strict=True):
         back = 0.5 * backward_mass(fill) * np.outer(np.conj(p), p)
         stiffness = stiffness - squared[:, None, None] * back
-    limits = [model.linear_limit(fill, speed, gravity) for fill in wet]
+    along = np.full(speed.size, gravity)
+    limits = [model.linear_limit(Fills.same(fill, speed.size), speed, along) for fill in wet]
     return Balance(
         speed=speed,
         stiffness=stiffness,

@@ -7,7 +7,6 @@ farthest point from the rotation axis. Unlike the surface constant C it keeps it
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,13 +15,19 @@ from numpy.typing import ArrayLike, NDArray
 from fluid.moments import Moments
 from fluid.paraboloid import steepness
 from meshes.border import InputError
-from meshes.chamber import Chamber
-from solvers import wall_arc
+from meshes.chamber import Chambers
+from solvers.chamber_integrals import (
+    AnyChamber,
+    moments,
+    plan_moments,
+    same_shape,
+    volume_and_plan,
+    volume_under,
+)
 
 Array = NDArray[np.float64]
 
 _ITERATIONS = 200
-_CHUNK = 256
 _ROUNDING = 8.0 * np.finfo(float).eps
 
 
@@ -32,7 +37,7 @@ class Equilibrium:
 
     Parameters
     ----------
-    chamber : the chamber
+    chamber : the chamber, or one for each state
     eccentricity : distance e of the rotation axis from the chamber's centre, m
     steepness : beta R^2/h of the surface
     wetted_height : Z over the chamber's height: unclamped surface height at the farthest wall point
@@ -41,7 +46,7 @@ class Equilibrium:
     converged : the volume was met to rounding
     """
 
-    chamber: Chamber
+    chamber: AnyChamber
     eccentricity: Array
     steepness: Array
     wetted_height: Array
@@ -75,88 +80,15 @@ class Equilibrium:
         slope : its derivative with respect to the eccentricity, m^3, shape (...,); V + 2 beta times the
             spread of the free surface's plan [theory: statics, eq. 17]
         """
-        x, plan, plan_x, plan_xx = _over_walls(
-            wall_arc.unbalance,
-            (3, 0, 1, 2),
-            *_walls(self.chamber, self.eccentricity, self.steepness, self.wetted_height),
+        x, plan, plan_x, plan_xx = plan_moments(
+            self.chamber, self.eccentricity, self.steepness, self.wetted_height
         )
         mean = np.divide(plan_x, plan, out=np.zeros_like(plan), where=plan > 0.0)
         return x, self.volume + 2.0 * np.maximum(plan_xx - mean * plan_x, 0.0)
 
 
-@dataclass(frozen=True)
-class _Wall:
-    """A cylindrical wall in its own units: the liquid inside the outer one less that inside the inner one."""
-
-    sign: float
-    radius: float
-    height: float
-    eps: Array
-    steep: Array
-    zeta: Array
-
-
-def _walls(chamber: Chamber, e: Array, steep: Array, zeta: Array) -> list[_Wall]:
-    eps = e / chamber.radius
-    walls = [_Wall(1.0, chamber.radius, chamber.height, eps, steep, zeta)]
-    if chamber.inner_radius > 0.0:
-        ratio = chamber.inner_radius / chamber.radius
-        # How far the surface falls from the outer wall's farthest point to the inner one's.
-        fall = steep * (1.0 - ratio) * (1.0 + ratio + 2.0 * eps)
-        inner = np.maximum(zeta - fall, 0.0)
-        walls.append(_Wall(-1.0, chamber.inner_radius, chamber.height, eps / ratio, steep * ratio**2, inner))
-    return walls
-
-
-def _over_walls(
-    integrals: Callable[[Array, Array, Array], tuple[Array, ...]], powers: tuple[int, ...], *walls: _Wall
-) -> tuple[Array, ...]:
-    """Integrals of the outer wall less those of the inner one, scaled by R^power h."""
-    shape = walls[0].eps.shape
-    total = np.zeros((len(powers), walls[0].eps.size))
-    for wall in walls:
-        scales = np.array([wall.sign * wall.radius**power * wall.height for power in powers])
-        eps, steep, zeta = wall.eps.ravel(), wall.steep.ravel(), wall.zeta.ravel()
-        # Some hundred nodes a state: a few hundred states at once stay in the processor's cache.
-        for start in range(0, eps.size, _CHUNK):
-            part = slice(start, start + _CHUNK)
-            total[:, part] += scales[:, None] * np.stack(integrals(eps[part], steep[part], zeta[part]))
-    return tuple(row.reshape(shape) for row in total)
-
-
-def _all_moments(eps: Array, steep: Array, zeta: Array) -> tuple[Array, ...]:
-    m = wall_arc.integrate(eps, steep, zeta)
-    return m.volume, m.x, m.z, m.xx, m.yy, m.zz, m.xz
-
-
-def moments(chamber: Chamber, eccentricity: ArrayLike, steep: ArrayLike, wetted_height: ArrayLike) -> Moments:
-    """Moments of the liquid under a given surface.
-
-    Parameters
-    ----------
-    chamber : the chamber
-    eccentricity : e, m, shape (...,)
-    steep : beta R^2/h, shape (...,)
-    wetted_height : height of the unclamped surface at the farthest wall point over h, shape (...,)
-
-    Returns
-    -------
-    Moments about the rotation axis and the chamber's floor, over the density, shape (...,)
-    """
-    e, b, zeta = _same_shape(eccentricity, steep, wetted_height)
-    v, x, z, xx, yy, zz, xz = _over_walls(_all_moments, (2, 3, 2, 4, 4, 2, 3), *_walls(chamber, e, b, zeta))
-    h = chamber.height
-    none = np.zeros_like(v)
-    return Moments(volume=v, x=x, y=none, z=z * h, xx=xx, yy=yy, zz=zz * h**2, xy=none, xz=xz * h, yz=none)
-
-
-def volume_under(chamber: Chamber, eccentricity: Array, steep: Array, wetted_height: Array) -> Array:
-    """Volume of the liquid under a given surface, m^3, shape (...,); see `moments` for the parameters."""
-    return _volume_and_plan(chamber, eccentricity, steep, wetted_height)[0]
-
-
 def equilibrium(
-    chamber: Chamber,
+    chamber: AnyChamber,
     volume: ArrayLike,
     eccentricity: ArrayLike,
     speed: ArrayLike,
@@ -169,7 +101,7 @@ def equilibrium(
 
     Parameters
     ----------
-    chamber : the chamber
+    chamber : the chamber, or one for each state, shape (n,)
     volume : V, m^3, shape (...,), from 0 to the chamber's capacity
     eccentricity : e, m, shape (...,), >= 0
     speed : spin speed Omega, rad/s, shape (...,)
@@ -190,23 +122,25 @@ def equilibrium(
     >>> bool(abs(state.nearest_depth) < 1e-6)  # the surface just touches the near wall at the floor
     True
     """
-    v, e, spin, g = _same_shape(volume, eccentricity, speed, gravity)
+    v, e, spin, g = same_shape(volume, eccentricity, speed, gravity)
     _check("eccentricity", e)
     _check("speed", spin)
     _check("gravity", g)
     _check("volume", v)
     # A volume given as the capacity may exceed it by rounding.
-    if np.any(v > chamber.capacity * (1.0 + 1e-12)):
-        worst = float(np.max(v))
-        raise InputError("volume", worst, f"at most the chamber's capacity ({chamber.capacity:g} m^3)")
+    capacity = np.broadcast_to(np.asarray(chamber.capacity), v.shape)
+    if np.any(v > capacity * (1.0 + 1e-12)):
+        worst = int(np.argmax(v - capacity))
+        allowed = f"at most the chamber's capacity ({capacity.flat[worst]:g} m^3)"
+        raise InputError("volume", float(v.flat[worst]), allowed)
     steep = steepness(spin, g, chamber.radius, chamber.height)
-    zeta, reached, converged = _solve(chamber, np.minimum(v, chamber.capacity), e, steep)
+    zeta, reached, converged = _solve(chamber, np.minimum(v, capacity), e, steep)
     nearest = zeta - 4.0 * steep * e / chamber.radius
     return Equilibrium(chamber, e, steep, zeta, nearest, reached, converged)
 
 
 def optimal_volume(
-    chamber: Chamber, eccentricity: ArrayLike, speed: ArrayLike, gravity: ArrayLike = 9.81
+    chamber: AnyChamber, eccentricity: ArrayLike, speed: ArrayLike, gravity: ArrayLike = 9.81
 ) -> Array:
     """Volume whose surface just touches the near wall at the floor [DR18, eq. 18-19; theory: statics, eq. 8].
 
@@ -214,7 +148,7 @@ def optimal_volume(
 
     Parameters
     ----------
-    chamber : the chamber
+    chamber : the chamber, or one for each state, shape (n,)
     eccentricity : deflection e, m, shape (...,)
     speed : spin speed Omega, rad/s, shape (...,)
     gravity : along the axis, m/s^2, shape (...,)
@@ -229,7 +163,7 @@ def optimal_volume(
     >>> print(f"{optimal_volume(Chamber(0.2, 0.05), 0.001, 90.0) * 1e6:.8f} ml")
     54.43957239 ml
     """
-    e, spin, g = _same_shape(eccentricity, speed, gravity)
+    e, spin, g = same_shape(eccentricity, speed, gravity)
     _check("eccentricity", e)
     _check("speed", spin)
     _check("gravity", g)
@@ -237,12 +171,14 @@ def optimal_volume(
     return volume_under(chamber, e, steep, 4.0 * steep * e / chamber.radius)
 
 
-def _solve(chamber: Chamber, volume: Array, e: Array, steep: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
+def _solve(
+    chamber: AnyChamber, volume: Array, e: Array, steep: Array
+) -> tuple[Array, Array, NDArray[np.bool_]]:
     """Wetted height for a volume, the volume reached, and whether it is the one asked for."""
-    capacity = chamber.capacity
     shape = volume.shape
+    capacity = np.broadcast_to(np.asarray(chamber.capacity), shape).ravel()
+    eps = (e / chamber.radius).ravel()
     volume, e, steep = volume.ravel(), e.ravel(), steep.ravel()
-    eps = e / chamber.radius
     nearest = np.where(eps < 1.0, 0.0, eps - 1.0)
     full = 1.0 + steep * (1.0 + eps - nearest) * (1.0 + eps + nearest)
     fill = volume / capacity
@@ -257,8 +193,9 @@ def _solve(chamber: Chamber, volume: Array, e: Array, steep: Array) -> tuple[Arr
         todo = np.flatnonzero(~converged)
         if todo.size == 0:
             break
-        z, v = guess[todo], volume[todo]
-        wet, plan = _volume_and_plan(chamber, e[todo], steep[todo], z)
+        z, v, most = guess[todo], volume[todo], capacity[todo]
+        here = chamber.at(todo) if isinstance(chamber, Chambers) else chamber
+        wet, plan = volume_and_plan(here, e[todo], steep[todo], z)
         off = wet - v
         low[todo] = np.where(off <= 0.0, z, low[todo])
         high[todo] = np.where(off >= 0.0, z, high[todo])
@@ -268,7 +205,7 @@ def _solve(chamber: Chamber, volume: Array, e: Array, steep: Array) -> tuple[Arr
         converged[todo] = (np.abs(off) <= _ROUNDING * np.maximum(v, plan * z)) | (
             top - bottom <= _ROUNDING * top
         )
-        step = _logit_step(z, full[todo], wet, v, capacity, plan)
+        step = _logit_step(z, full[todo], wet, v, most, plan)
         converged[todo] |= (np.abs(step - z) <= _ROUNDING * z) & (np.abs(off) <= 1e-12 * v)
         middle = np.where(top > 4.0 * bottom, np.sqrt(bottom * top), 0.5 * (bottom + top))
         guess[todo] = np.where((step > bottom) & (step < top), step, middle)
@@ -276,7 +213,7 @@ def _solve(chamber: Chamber, volume: Array, e: Array, steep: Array) -> tuple[Arr
 
 
 def _logit_step(
-    zeta: Array, full: Array, reached: Array, volume: Array, capacity: float, plan: Array
+    zeta: Array, full: Array, reached: Array, volume: Array, capacity: Array, plan: Array
 ) -> Array:
     """Newton step on log(wet/dry) as a function of log(zeta/(full - zeta)); nan-free, may be outside."""
     tiny = np.finfo(float).tiny
@@ -288,16 +225,6 @@ def _logit_step(
     shift = np.clip(np.divide(off, slope, out=np.zeros_like(off), where=slope > 0.0), -50.0, 50.0)
     odds = zeta / left * np.exp(-shift)
     return np.asarray(full * odds / (1.0 + odds))
-
-
-def _volume_and_plan(chamber: Chamber, e: Array, steep: Array, zeta: Array) -> tuple[Array, Array]:
-    """Volume under the surface and its derivative with respect to the wetted height over h."""
-    volume, plan = _over_walls(wall_arc.volume_and_plan, (2, 2), *_walls(chamber, e, steep, zeta))
-    return volume, plan
-
-
-def _same_shape(*values: ArrayLike) -> tuple[Array, ...]:
-    return tuple(np.array(x) for x in np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in values)))
 
 
 def _check(field: str, value: Array) -> None:

@@ -8,18 +8,22 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from fluid.fill import Fill
-from fluid.paraboloid import steepness
+from fluid.fill import Fills
+from fluid.paraboloid import CYLINDER_STEEPNESS, steepness
 from meshes.border import InputError
-from solvers import hydrostatics
 from solvers.bracket import bracketed_root
+from solvers.chamber_integrals import volume_under
+from solvers.hydrostatics import equilibrium
 
 Array = NDArray[np.float64]
+
+# The limit of the straight line is taken a hair low, so that the law is the line up to it and with it.
+_HAIR = 1e-9
 
 
 @dataclass(frozen=True)
 class SynchronousAnswer:
-    """The liquid of one chamber under synchronous whirl; all shapes (n,).
+    """The liquid of chambers under synchronous whirl; all shapes (n,).
 
     Parameters
     ----------
@@ -42,11 +46,19 @@ class LiquidModel(Protocol):
 
     name: str
 
-    def synchronous(self, fill: Fill, speed: Array, deflection: Array, gravity: float) -> SynchronousAnswer:
-        """Answer at spin speeds and deflections, shape (n,); `gravity` is along the axis, m/s^2."""
+    def synchronous(self, fills: Fills, speed: Array, deflection: Array, gravity: Array) -> SynchronousAnswer:
+        """Answer of fills at spin speeds and deflections, all shape (n,).
+
+        Parameters
+        ----------
+        fills : one for each state, none of them empty
+        speed : spin speed Omega, rad/s
+        deflection : e, m
+        gravity : along the axis, m/s^2
+        """
         ...
 
-    def linear_limit(self, fill: Fill, speed: Array, gravity: float) -> Array:
+    def linear_limit(self, fills: Fills, speed: Array, gravity: Array) -> Array:
         """Deflection up to which the unbalance is exactly the full mass times the deflection, m, (n,)."""
         ...
 
@@ -56,51 +68,58 @@ class Statics:
 
     name = "statics"
 
-    def synchronous(self, fill: Fill, speed: Array, deflection: Array, gravity: float) -> SynchronousAnswer:
+    def synchronous(self, fills: Fills, speed: Array, deflection: Array, gravity: Array) -> SynchronousAnswer:
         """See `LiquidModel`; holds at every deflection."""
-        state = hydrostatics.equilibrium(fill.chamber, fill.volume, deflection, speed, gravity)
+        state = equilibrium(fills.chamber, fills.volume, deflection, speed, gravity)
         moment, slope = state.unbalance()
-        density = fill.liquid.density
         return SynchronousAnswer(
-            unbalance=density * moment,
-            slope=density * slope,
+            unbalance=fills.density * moment,
+            slope=fills.density * slope,
             dry_patch=state.dry_patch,
             in_range=np.ones(speed.shape, dtype=bool),
             converged=state.converged,
         )
 
-    def linear_limit(self, fill: Fill, speed: Array, gravity: float) -> Array:
+    def linear_limit(self, fills: Fills, speed: Array, gravity: Array) -> Array:
         """Deflection at which the surface reaches the near wall under the lid, m, shape (n,).
 
         Up to it the wall is wet all over, the inner wall is dry, and the liquid adds the mass of a full
         chamber [theory: statics, eq. 9]; 0 where the upright surface does not even do that.
         """
-        chamber = fill.chamber
-        # Without gravity along the axis the surface has one shape at all speeds.
-        steep, back = np.unique(
-            steepness(speed, gravity, chamber.radius, chamber.height), return_inverse=True
-        )
-
-        def excess(deflection: Array, which: NDArray[np.intp]) -> Array:
-            touching = 1.0 + 4.0 * steep[which] * deflection / chamber.radius
-            return hydrostatics.volume_under(chamber, deflection, steep[which], touching) - fill.volume
-
-        everyone = np.arange(steep.size)
-        farthest = np.full(steep.shape, chamber.radius)
-        limit = np.where(excess(farthest, everyone) <= 0.0, chamber.radius, 0.0)
-        between = np.flatnonzero((excess(np.zeros_like(steep), everyone) < 0.0) & (limit == 0.0))
-        if between.size:
-
-            def missing(deflection: Array, which: NDArray[np.intp]) -> Array:
-                return excess(deflection, between[which])
-
-            root, _ = bracketed_root(missing, np.zeros(between.size), farthest[between], relative=1e-10)
-            # A hair below the root, so that the law is the straight line up to the limit and with it.
-            limit[between] = root * (1.0 - 1e-9)
+        chamber = fills.chamber
+        steep = steepness(speed, gravity, chamber.radius, chamber.height)
+        # A cylinder about the rotation axis touches the wall where the deflection is the mean depth.
+        limit = fills.depth * (1.0 - _HAIR)
+        bowl = np.flatnonzero(steep < CYLINDER_STEEPNESS)
+        if bowl.size:
+            limit[bowl] = _touching(fills.at(bowl), steep[bowl])
         # With the wall wet all over the surface rises under the inner wall as the deflection grows.
         ratio, eps = chamber.inner_radius / chamber.radius, limit / chamber.radius
         inner = 1.0 + 4.0 * steep * eps - steep * (1.0 - ratio) * (1.0 + ratio + 2.0 * eps)
-        return np.where(inner <= 0.0, limit, 0.0)[back]
+        return np.where((ratio == 0.0) | (inner <= 0.0), limit, 0.0)
+
+
+def _touching(fills: Fills, steep: Array) -> Array:
+    """Deflection at which a bowl touches the near wall under the lid, m; 0 if it always does, R if never."""
+    chamber = fills.chamber
+
+    def excess(deflection: Array, which: NDArray[np.intp]) -> Array:
+        here = chamber.at(which)
+        touching = 1.0 + 4.0 * steep[which] * deflection / here.radius
+        return volume_under(here, deflection, steep[which], touching) - fills.volume[which]
+
+    everyone = np.arange(steep.size)
+    limit = np.where(excess(chamber.radius, everyone) <= 0.0, chamber.radius, 0.0)
+    between = np.flatnonzero((excess(np.zeros_like(steep), everyone) < 0.0) & (limit == 0.0))
+    if between.size:
+
+        def missing(deflection: Array, which: NDArray[np.intp]) -> Array:
+            return excess(deflection, between[which])
+
+        ends = np.zeros(between.size), chamber.radius[between]
+        root, _ = bracketed_root(missing, *ends, relative=1e-10)
+        limit[between] = root * (1.0 - _HAIR)
+    return limit
 
 
 class Linear:
@@ -108,19 +127,18 @@ class Linear:
 
     name = "linear"
 
-    def synchronous(self, fill: Fill, speed: Array, deflection: Array, gravity: float) -> SynchronousAnswer:
+    def synchronous(self, fills: Fills, speed: Array, deflection: Array, gravity: Array) -> SynchronousAnswer:
         """See `LiquidModel`; holds while the deflection is below the mean depth of the layer."""
-        dry = deflection >= fill.depth
-        full_mass = fill.full_mass if fill.volume > 0.0 else 0.0
+        dry = deflection >= fills.depth
         return SynchronousAnswer(
-            unbalance=full_mass * deflection,
-            slope=np.full(deflection.shape, full_mass),
+            unbalance=fills.full_mass * deflection,
+            slope=fills.full_mass,
             dry_patch=dry & (deflection > 0.0),
             in_range=~dry,
             converged=np.ones(deflection.shape, dtype=bool),
         )
 
-    def linear_limit(self, fill: Fill, speed: Array, gravity: float) -> Array:
+    def linear_limit(self, fills: Fills, speed: Array, gravity: Array) -> Array:
         """Infinite: the law is a straight line."""
         return np.full(speed.shape, np.inf)
 

@@ -13,7 +13,8 @@ from fluid.fill import Fill
 from meshes.border import InputError
 from solvers.bracket import bracketed_root
 from solvers.branches import find_branches
-from solvers.liquid_models import LiquidModel, synchronous_model
+from solvers.liquid_models import synchronous_model
+from solvers.machine_pairs import LiquidState, Pairs, PlanarMachine, pair_machines
 from solvers.rotor.jeffcott import Jeffcott
 
 Array = NDArray[np.float64]
@@ -58,17 +59,6 @@ class Response:
     branch_stable: NDArray[np.bool_]
 
 
-@dataclass(frozen=True)
-class _Liquid:
-    """All chambers together at (speed, deflection) pairs, shape (m,)."""
-
-    unbalance: Array
-    slope: Array
-    dry_patch: NDArray[np.bool_]
-    in_range: NDArray[np.bool_]
-    converged: NDArray[np.bool_]
-
-
 def synchronous_response(
     rotor: Jeffcott, fills: Sequence[Fill], speed: ArrayLike, gravity: float = 9.81, model: str = "auto"
 ) -> Response:
@@ -98,32 +88,55 @@ def synchronous_response(
     True
     """
     spin = np.array(speed, dtype=float).reshape(-1)
-    if not np.all(np.isfinite(spin) & (spin > 0.0)):
-        raise InputError("speed", spin.tolist(), "finite numbers above 0")
-    liquid = synchronous_model(model)
-    stiffness = rotor.dynamic_stiffness(spin)
-    force = rotor.unbalance * np.square(spin)
-    dry = _divide(force, stiffness)
-    modulus, which, converged = _all_deflections(rotor, fills, spin, gravity, liquid)
+    owner = np.zeros(spin.size, dtype=np.intp)
+    return machine_responses([(rotor, fills)], owner, spin, np.array([gravity]), model)
+
+
+def machine_responses(
+    machines: Sequence[PlanarMachine], owner: Index, speed: Array, gravity: Array, model: str = "auto"
+) -> Response:
+    """`synchronous_response` of many machines at once: of n pairs of a machine and a speed.
+
+    Parameters
+    ----------
+    machines : rotors, each with its chambers and their liquid
+    owner : which machine each pair has, shape (n,)
+    speed : spin speeds Omega, rad/s, shape (n,), > 0
+    gravity : along the axis of each machine, m/s^2, shape (machines,)
+    model : liquid model, `auto`, `statics` or `linear`
+
+    Returns
+    -------
+    Response over the pairs
+
+    Raises
+    ------
+    InputError : a speed that is not positive and finite, an unknown model
+    """
+    if not np.all(np.isfinite(speed) & (speed > 0.0)):
+        raise InputError("speed", speed.tolist(), "finite numbers above 0")
+    pairs = pair_machines(machines, owner, speed, gravity, synchronous_model(model))
+    dry = _divide(pairs.unbalance * np.square(speed), pairs.dynamic_stiffness)
+    modulus, which, converged = _all_deflections(pairs)
     bounded = np.isfinite(modulus)
     deflection = np.where(bounded, modulus, 0.0)
-    state = _evaluate(fills, spin[which], deflection, gravity, liquid)
-    stable = bounded & _is_stable(rotor, spin[which], deflection, state)
-    phased = np.where(bounded, _with_phase(rotor, spin[which], deflection, state), complex(np.inf, 0.0))
-    table = _Table.arrange(spin.size, which, deflection, stable)
+    state = pairs.liquid(deflection, which)
+    stable = bounded & _is_stable(pairs, which, deflection, state)
+    phased = np.where(bounded, _with_phase(pairs, which, deflection, state), complex(np.inf, 0.0))
+    table = _Table.arrange(speed.size, which, deflection, stable)
     chosen = table.reported
-    offset = _offset(fills, deflection[chosen], state.unbalance[chosen])
+    farthest = np.array([max((f.chamber.radius for f in fills), default=0.0) for _, fills in machines])
     answer = phased[chosen]
     np.logical_and.at(converged, which, state.converged)
     return Response(
-        speed=spin,
+        speed=speed,
         deflection=answer,
         deflection_dry=dry,
-        liquid_offset=offset,
+        liquid_offset=_offset(pairs, farthest[owner], deflection[chosen], state.unbalance[chosen]),
         liquid_angle=np.angle(answer),
         dry_patch=state.dry_patch[chosen],
         stable=stable[chosen],
-        model=np.full(spin.shape, liquid.name),
+        model=np.full(speed.shape, pairs.model.name),
         in_range=state.in_range[chosen],
         converged=converged,
         branch_deflection=table.spread(phased, complex(np.nan, np.nan)),
@@ -145,10 +158,11 @@ def critical_speed(
     Omega, rad/s, between sqrt(K/(M + m_f)) and sqrt(K/M)
     """
     liquid = synchronous_model(model)
-    wet = [fill for fill in fills if fill.volume > 0.0]
+    wet, along = [fill for fill in fills if fill.volume > 0.0], np.array([gravity])
 
     def stiffness(speed: Array, _: Index) -> Array:
-        slope = _evaluate(wet, speed, np.zeros_like(speed), gravity, liquid).slope
+        pairs = pair_machines([(rotor, wet)], np.zeros(speed.size, dtype=np.intp), speed, along, liquid)
+        slope = pairs.liquid(np.zeros_like(speed), np.arange(speed.size)).slope
         return np.asarray(rotor.stiffness - (rotor.mass + slope) * np.square(speed))
 
     # The slope of the unbalance never exceeds a full chamber's mass; a hair's breadth holds the rounding.
@@ -165,81 +179,54 @@ def _divide(force: Array, stiffness: NDArray[np.complex128]) -> NDArray[np.compl
     return np.where(force == 0.0, 0.0, out)
 
 
-def _evaluate(
-    fills: Sequence[Fill], speed: Array, deflection: Array, gravity: float, model: LiquidModel
-) -> _Liquid:
-    """Sum of the chambers at each pair."""
-    none = np.zeros(speed.shape)
-    yes, no = np.ones(speed.shape, dtype=bool), np.zeros(speed.shape, dtype=bool)
-    total = _Liquid(none, none, no, yes, yes)
-    for fill in fills:
-        one = model.synchronous(fill, speed, deflection, gravity)
-        total = _Liquid(
-            unbalance=total.unbalance + one.unbalance,
-            slope=total.slope + one.slope,
-            dry_patch=total.dry_patch | (one.dry_patch & (fill.volume > 0.0)),
-            in_range=total.in_range & one.in_range,
-            converged=total.converged & one.converged,
-        )
-    return total
+def _all_deflections(pairs: Pairs) -> tuple[Array, Index, NDArray[np.bool_]]:
+    """Moduli of all solutions, the pair each belongs to, and whether a pair's are all there."""
+    squared, limit = np.square(pairs.speed), pairs.limit
+    force, damping = pairs.unbalance * squared, pairs.damping * pairs.speed
+    straight = np.abs(_divide(force, pairs.dynamic_stiffness - pairs.full_mass * squared))
+    linear = np.flatnonzero((straight <= limit) | (force == 0.0))
 
-
-def _all_deflections(
-    rotor: Jeffcott, fills: Sequence[Fill], speed: Array, gravity: float, model: LiquidModel
-) -> tuple[Array, Index, NDArray[np.bool_]]:
-    """Moduli of all solutions, the speed each belongs to, and whether a speed's are all there."""
-    everyone = np.arange(speed.size)
-    if rotor.unbalance == 0.0:
-        return np.zeros_like(speed), everyone, np.ones(speed.shape, dtype=bool)
-    wet = [fill for fill in fills if fill.volume > 0.0]
-    force, damping = rotor.unbalance * np.square(speed), rotor.damping * speed
-    limits = [model.linear_limit(fill, speed, gravity) for fill in wet]
-    limit = np.min(limits, axis=0) if limits else np.full(speed.shape, np.inf)
-    added = rotor.dynamic_stiffness(speed) - sum(fill.full_mass for fill in wet) * np.square(speed)
-    straight = np.abs(_divide(force, added))
-    linear = np.flatnonzero(straight <= limit)
-
-    elastic = rotor.stiffness - (rotor.mass + sum(fill.mass for fill in wet)) * np.square(speed)
-    most = force + np.square(speed) * sum(fill.mass * fill.chamber.radius for fill in wet)
-    by_damping, by_stiffness = np.full((2, speed.size), np.inf)
+    elastic = pairs.stiffness - (pairs.mass + pairs.liquid_mass) * squared
+    most = force + squared * pairs.reach
+    by_damping, by_stiffness = np.full((2, squared.size), np.inf)
     np.divide(force, damping, out=by_damping, where=damping > 0.0)
     np.divide(most, np.abs(elastic), out=by_stiffness, where=elastic != 0.0)
     # No solution is farther out than the damper or the spring allows.
     reach = np.minimum(by_damping, by_stiffness) * (1.0 + 1e-9)
     bounded = np.isfinite(reach) | np.isinf(limit)
-
-    def pull(deflection: Array, which: Index) -> Array:
-        """Liquid's pull beyond its mass at the chamber's centre; never decreases with the deflection."""
-        state = _evaluate(wet, speed[which], deflection, gravity, model)
-        own = sum(fill.mass for fill in wet) * deflection
-        return np.asarray(np.square(speed[which]) * np.maximum(state.unbalance - own, 0.0))
-
     stop = np.where(bounded & np.isfinite(limit), np.maximum(reach, limit), limit)
-    bent, which, converged = find_branches(pull, elastic, damping, force, limit, stop)
+    # Without a force nothing moves, and there is nothing to look for.
+    stop, force = np.where(force > 0.0, stop, limit), np.where(force > 0.0, force, 1.0)
+    # The slope of the unbalance never exceeds a full chamber's mass; a hair's breadth holds the rounding.
+    steepest = squared * (pairs.full_mass * (1.0 + 1e-9) - pairs.liquid_mass)
+    bent, which, converged = find_branches(pairs.pull, elastic, damping, force, steepest, limit, stop)
     modulus, owner = np.concatenate((straight[linear], bent)), np.concatenate((linear, which))
-    lost = np.setdiff1d(everyone, owner)
+    lost = np.setdiff1d(np.arange(squared.size), owner)
     if lost.size:
         converged[lost] = False
         modulus = np.concatenate((modulus, np.full(lost.size, np.inf)))
         owner = np.concatenate((owner, lost))
-    return modulus, owner, converged & bounded & np.isfinite(straight)
+    at_rest = pairs.unbalance == 0.0
+    return modulus, owner, (converged & bounded & np.isfinite(straight)) | at_rest
 
 
-def _with_phase(rotor: Jeffcott, speed: Array, deflection: Array, state: _Liquid) -> NDArray[np.complex128]:
+def _with_phase(pairs: Pairs, which: Index, deflection: Array, state: LiquidState) -> NDArray[np.complex128]:
     """Complex deflections: w lags the unbalance by the angle of the wet rotor's dynamic stiffness."""
-    stiffness = rotor.dynamic_stiffness(speed)
-    pull = np.square(speed) * state.unbalance
-    total = stiffness * deflection - pull
+    pull = np.square(pairs.speed[which]) * state.unbalance
+    total = pairs.dynamic_stiffness[which] * deflection - pull
     return np.asarray(deflection * np.exp(-1j * np.angle(total)), dtype=complex)
 
 
-def _is_stable(rotor: Jeffcott, speed: Array, deflection: Array, state: _Liquid) -> NDArray[np.bool_]:
+def _is_stable(pairs: Pairs, which: Index, deflection: Array, state: LiquidState) -> NDArray[np.bool_]:
     """Stability against disturbances that are slow beside the liquid's waves [theory: rotor, eq. 8]."""
+    spin, own, damping, stiffness = (
+        x[which] for x in (pairs.speed, pairs.mass, pairs.damping, pairs.stiffness)
+    )
     secant = np.divide(state.unbalance, deflection, out=state.slope.copy(), where=deflection > 0.0)
-    mass, spin, damping = rotor.mass + secant, speed, rotor.damping
-    radial = rotor.stiffness - np.square(spin) * (rotor.mass + state.slope)
-    tangential = rotor.stiffness - np.square(spin) * (rotor.mass + secant)
-    matrix = np.zeros((speed.size, 4, 4))
+    mass = own + secant
+    radial = stiffness - np.square(spin) * (own + state.slope)
+    tangential = stiffness - np.square(spin) * (own + secant)
+    matrix = np.zeros((which.size, 4, 4))
     matrix[:, 0, 2] = matrix[:, 1, 3] = 1.0
     matrix[:, 2, 0], matrix[:, 3, 1] = -radial / mass, -tangential / mass
     matrix[:, 2, 1], matrix[:, 3, 0] = damping * spin / mass, -damping * spin / mass
@@ -251,13 +238,10 @@ def _is_stable(rotor: Jeffcott, speed: Array, deflection: Array, state: _Liquid)
     return np.asarray(roots.real.max(axis=1, initial=-np.inf) <= slack)
 
 
-def _offset(fills: Sequence[Fill], deflection: Array, unbalance: Array) -> Array:
+def _offset(pairs: Pairs, farthest: Array, deflection: Array, unbalance: Array) -> Array:
     """Distance of the liquid's centre of mass from the rotation axis; without liquid, that of a drop."""
-    mass = sum(fill.mass for fill in fills)
-    if mass > 0.0:
-        return unbalance / mass
-    farthest = max((fill.chamber.radius for fill in fills), default=0.0)
-    return np.where(deflection > 0.0, deflection + farthest, 0.0)
+    drop = np.where(deflection > 0.0, deflection + farthest, 0.0)
+    return np.divide(unbalance, pairs.liquid_mass, out=drop, where=pairs.liquid_mass > 0.0)
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from fluid.moments import Moments
 
 Array = NDArray[np.float64]
+Index = NDArray[np.intp]
 
 # The wall is divided at v = pi - psi = pi/4. Far part: the nearest singularity (v = 0 when the rotation axis
 # touches the wall) is pi/4 beyond the end of a panel of half-length 3/8 pi: the error falls as 3**(-2 n).
@@ -36,6 +37,7 @@ _NARROWEST = 3e-6
 class _Panel:
     """Nodes of a panel, last axis; `rise` is the change of depth over it, None outside the ramp."""
 
+    rows: Index  # states that have this panel; the other fields are theirs
     half: Array  # half the panel's length in its own variable, shape (..., 1)
     density: Array  # ds over that half, with the quadrature's weights
     s: Array  # r^2
@@ -55,6 +57,12 @@ def _clip(x: Array) -> Array:
     return np.minimum(np.maximum(x, 0.0), 1.0)
 
 
+def _present(start: Array, stop: Array, rise: Array | None) -> Index:
+    """States in which a panel is there: one of no length still counts if the surface crosses it like a wall."""
+    there = stop > start
+    return np.flatnonzero(there if rise is None else there | (rise != 0.0))
+
+
 def _half_angle_squared_sine(depth_drop: Array, span: Array) -> Array:
     """sin^2(psi/2) where the depth has dropped that much; span = 4 B eps; 1 where it never drops so far."""
     inside = (depth_drop < span) & (depth_drop > 0.0)
@@ -65,12 +73,15 @@ def _half_angle_squared_sine(depth_drop: Array, span: Array) -> Array:
 
 def _far_panel(eps: Array, span: Array, zeta: Array, start: Array, stop: Array, rise: Array | None) -> _Panel:
     """Wall from psi = start to stop, both in the far part."""
+    rows = _present(start, stop, rise)
+    eps, span, zeta, start, stop = (x[rows] for x in (eps, span, zeta, start, stop))
     half = 0.5 * (stop - start)[..., None]
     psi = 0.5 * (stop + start)[..., None] + half * _FAR[0]
     e = eps[..., None]
     sin, cos = np.sin(psi), np.cos(psi)
     depth = _clip(zeta[..., None] - span[..., None] * np.square(np.sin(0.5 * psi)))
     return _Panel(
+        rows=rows,
         half=half,
         density=_FAR[1] * 2.0 * e * sin,
         s=np.square(1.0 + e) - 4.0 * e * np.square(np.sin(0.5 * psi)),
@@ -78,7 +89,7 @@ def _far_panel(eps: Array, span: Array, zeta: Array, start: Array, stop: Array, 
         chord=sin,
         abscissa=e + cos,
         depth=depth,
-        rise=rise,
+        rise=None if rise is None else rise[rows],
     )
 
 
@@ -86,6 +97,8 @@ def _near_panel(
     eps: Array, span: Array, nearest: Array, start: Array, stop: Array, rise: Array | None
 ) -> _Panel:
     """Wall from sin(v/2) = start to stop, v = pi - psi; `nearest` is the depth at v = 0."""
+    rows = _present(start, stop, rise)
+    eps, span, nearest, start, stop = (x[rows] for x in (eps, span, nearest, start, stop))
     safe = np.maximum(eps, np.finfo(float).tiny)
     width = np.maximum(np.abs(1.0 - eps) / (2.0 * np.sqrt(safe)), _NARROWEST)
     first, last = np.arcsinh(start / width), np.arcsinh(stop / width)
@@ -97,6 +110,7 @@ def _near_panel(
     sin_v = 2.0 * sine * np.sqrt(1.0 - squared)
     abscissa = (e - 1.0) + 2.0 * squared
     return _Panel(
+        rows=rows,
         half=half,
         density=_NEAR[1] * 8.0 * e * k * sine * np.cosh(u),
         s=np.square(1.0 - e) + 4.0 * e * squared,
@@ -104,7 +118,7 @@ def _near_panel(
         chord=sin_v,
         abscissa=abscissa,
         depth=_clip(nearest[..., None] + span[..., None] * squared),
-        rise=rise,
+        rise=None if rise is None else rise[rows],
     )
 
 
@@ -112,10 +126,13 @@ def _disc_panel(
     steep: Array, nearest: Array, inner: Array, start: Array, stop: Array, rise: Array | None
 ) -> _Panel:
     """Full circles from s = inner - start down to inner - stop; `nearest` is the depth at s = inner."""
+    rows = _present(start, stop, rise)
+    steep, nearest, inner, start, stop = (x[rows] for x in (steep, nearest, inner, start, stop))
     half = 0.5 * (stop - start)[..., None]
     fall = 0.5 * (stop + start)[..., None] + half * _DISC[0]
     zero = np.zeros_like(fall)
     return _Panel(
+        rows=rows,
         half=half,
         density=np.broadcast_to(_DISC[1], fall.shape),
         s=np.maximum(inner[..., None] - fall, 0.0),
@@ -123,7 +140,7 @@ def _disc_panel(
         chord=zero,
         abscissa=zero,
         depth=_clip(nearest[..., None] - steep[..., None] * fall),
-        rise=rise,
+        rise=None if rise is None else rise[rows],
     )
 
 
@@ -190,11 +207,11 @@ def volume_and_plan(eps: Array, steep: Array, zeta: Array) -> tuple[Array, ...]:
     """Volume of the liquid and plan area of its free surface, in chamber units; see `integrate`."""
     volume, plan, area = np.zeros((3, *eps.shape))
     for panel in _panels(eps, steep, zeta):
-        weighted = panel.weight * panel.phi
-        volume += (weighted * panel.depth).sum(-1)
+        weighted, rows = panel.weight * panel.phi, panel.rows
+        volume[rows] += (weighted * panel.depth).sum(-1)
         if panel.rise is not None:
-            plan += panel.rise * _mean(panel, panel.phi)
-            area += weighted.sum(-1)
+            plan[rows] += panel.rise * _mean(panel, panel.phi)
+            area[rows] += weighted.sum(-1)
     # The plan shrinks as 1/B: its area then comes from the rise, which keeps its digits.
     return volume, np.where(steep > 1.0, plan / np.maximum(steep, 1.0), area)
 
@@ -214,11 +231,12 @@ def unbalance(eps: Array, steep: Array, zeta: Array) -> tuple[Array, ...]:
     """
     x, plan, plan_x, plan_xx = np.zeros((4, *eps.shape))
     for panel in _panels(eps, steep, zeta):
-        x += (panel.weight * panel.depth * panel.chord).sum(-1)
+        rows = panel.rows
+        x[rows] += (panel.weight * panel.depth * panel.chord).sum(-1)
         if panel.rise is not None:
-            plan += panel.rise * _mean(panel, panel.phi)
-            plan_x += panel.rise * _mean(panel, panel.chord)
-            plan_xx += panel.rise * _mean(panel, _second_moment(panel))
+            plan[rows] += panel.rise * _mean(panel, panel.phi)
+            plan_x[rows] += panel.rise * _mean(panel, panel.chord)
+            plan_xx[rows] += panel.rise * _mean(panel, _second_moment(panel))
     return x, plan, plan_x, plan_xx
 
 
@@ -232,9 +250,9 @@ def integrate(eps: Array, steep: Array, zeta: Array) -> Moments:
 
     Parameters
     ----------
-    eps : eccentricity over radius e/R, shape (...,), >= 0
-    steep : B = beta R^2/h, shape (...,), >= 0
-    zeta : height of the unclamped surface at the wall's farthest point over h, shape (...,), >= 0
+    eps : eccentricity over radius e/R, shape (n,), >= 0
+    steep : B = beta R^2/h, shape (n,), >= 0
+    zeta : height of the unclamped surface at the wall's farthest point over h, shape (n,), >= 0
 
     Returns
     -------
@@ -242,14 +260,14 @@ def integrate(eps: Array, steep: Array, zeta: Array) -> Moments:
     """
     v, x, z, xx, yy, zz, xz = np.zeros((7, *eps.shape))
     for panel in _panels(eps, steep, zeta):
-        depth = panel.depth
+        depth, rows = panel.depth, panel.rows
         liquid = panel.weight * depth
-        v += (liquid * panel.phi).sum(-1)
-        x += (liquid * panel.chord).sum(-1)
-        xx += (liquid * _second_moment(panel)).sum(-1)
-        yy += (0.5 * liquid * panel.s * _sine_excess(panel.phi)).sum(-1)
-        z += (0.5 * liquid * depth * panel.phi).sum(-1)
-        zz += (liquid * depth**2 * panel.phi).sum(-1) / 3.0
-        xz += (0.5 * liquid * depth * panel.chord).sum(-1)
+        v[rows] += (liquid * panel.phi).sum(-1)
+        x[rows] += (liquid * panel.chord).sum(-1)
+        xx[rows] += (liquid * _second_moment(panel)).sum(-1)
+        yy[rows] += (0.5 * liquid * panel.s * _sine_excess(panel.phi)).sum(-1)
+        z[rows] += (0.5 * liquid * depth * panel.phi).sum(-1)
+        zz[rows] += (liquid * depth**2 * panel.phi).sum(-1) / 3.0
+        xz[rows] += (0.5 * liquid * depth * panel.chord).sum(-1)
     none = np.zeros(eps.shape)
     return Moments(volume=v, x=x, y=none, z=z, xx=xx, yy=yy, zz=zz, xy=none, xz=xz, yz=none)

@@ -12,6 +12,7 @@ from fluid.fill import Fill
 from fluid.friction import NONE
 from fluid.whirl import Layer, is_full, plane_layer
 from meshes.border import InputError
+from solvers.machine_pairs import PlanarMachine
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.whirl_laminar import laminar_modes
@@ -107,7 +108,7 @@ def growth_at(
         raise InputError("speed", speed.tolist(), "finite numbers above 0")
     rotor = planar(system)
     if rotor is not None:
-        return _planar_growth(rotor, rows, row, speed, friction)
+        return machines_growth([(rotor, fills) for fills in rows], [friction] * len(rows), row, speed)
     growth, whirl_speed = np.full((2, speed.size), np.nan)
     for k in np.unique(row).tolist():
         here = np.flatnonzero(row == k)
@@ -191,27 +192,46 @@ def planar(system: RotorSystem) -> Jeffcott | None:
     return Jeffcott(mass, stiffness, damping, 0.0)
 
 
-def _planar_growth(
-    rotor: Jeffcott, rows: Sequence[Sequence[Fill]], row: Index, speed: Array, friction: Friction
+def machines_growth(
+    machines: Sequence[PlanarMachine], frictions: Sequence[Friction], owner: Index, speed: Array
 ) -> tuple[Array, Array]:
-    """Growth at points (row, speed) of a rotor in one plane [theory: whirl, eq. 8]."""
+    """Growth of many planar machines at once [theory: whirl, eq. 8].
+
+    Parameters
+    ----------
+    machines : rotors, each with its chambers and their liquid
+    frictions : of each machine's liquid, as for `asynchronous_growth`
+    owner : which machine each point has, shape (n,)
+    speed : of each point, rad/s, shape (n,), above 0
+
+    Returns
+    -------
+    growth and whirl_speed as from `asynchronous_growth`, shape (n,)
+    """
     growth, whirl_speed = np.full((2, speed.size), np.nan)
-    tables = [planar_layers(rotor.mass, fills, friction) for fills in rows]
-    counts = np.array([len(layers) for _, layers in tables], dtype=np.intp)
-    for count in np.unique(counts).tolist():
-        _require_few(count)
-        own = np.flatnonzero(counts == count)
-        here = np.flatnonzero(counts[row] == count)
+    tables = [
+        planar_layers(rotor.mass, fills, friction)
+        for (rotor, fills), friction in zip(machines, frictions, strict=True)
+    ]
+    support = np.array([(rotor.stiffness, rotor.damping) for rotor, _ in machines]).reshape(-1, 2)
+    # The number of modes depends on that of the layers and on whether their drag depends on the mode.
+    kinds = [(len(layers), any(one.stokes > 0.0 for one in layers)) for _, layers in tables]
+    for kind in sorted(set(kinds)):
+        _require_few(kind[0])
+        own = np.array([i for i, one in enumerate(kinds) if one == kind], dtype=np.intp)
+        index = np.full(len(machines), -1, dtype=np.intp)
+        index[own] = np.arange(own.size)
+        here = np.flatnonzero(index[owner] >= 0)
         if here.size == 0:
             continue
-        place = np.searchsorted(own, row[here])
+        place = index[owner[here]]
         mass = np.array([tables[i][0] for i in own])[place]
         layers = np.array(
             [[(x.mass, x.layer_tanh, x.rate, x.stokes) for x in tables[i][1]] for i in own]
-        ).reshape(own.size, count, 4)[place]
-        problem = PlanarProblem(
-            mass, rotor.stiffness, rotor.damping, speed[here], *(layers[:, :, k].T for k in range(4))
-        )
+        ).reshape(own.size, kind[0], 4)[place]
+        stiffness, damping = support[own[place]].T
+        columns = (layers[:, :, k].T for k in range(4))
+        problem = PlanarProblem(mass, stiffness, damping, speed[here], *columns)
         modes = planar_modes(problem)
         found = dominant(modes.slip + problem.spin, modes.rounding, problem.spin)
         for table, values in zip((growth, whirl_speed), found, strict=True):

@@ -31,19 +31,19 @@ _TINY = 1e-290
 
 @dataclass(frozen=True)
 class PlanarProblem:
-    """A rotor with layers at p points, each with its own spin and fills; g layers.
+    """A rotor with layers at p points, each a machine of its own at its own spin; g layers.
 
     Parameters
     ----------
     mass : M with all liquid that has no free surface, kg, shape (p,)
-    stiffness, damping : K, N/m, and C, N s/m
+    stiffness, damping : K, N/m, and C, N s/m, shape (p,)
     spin : Omega, rad/s, shape (p,), above 0
     liquid, layer_tanh, rate, stokes : of each layer as in `fluid.whirl.Layer`, shape (g, p)
     """
 
     mass: Array
-    stiffness: float
-    damping: float
+    stiffness: Array
+    damping: Array
     spin: Array
     liquid: Array
     layer_tanh: Array
@@ -53,10 +53,7 @@ class PlanarProblem:
     def part(self, which: slice | Flags | NDArray[np.intp]) -> PlanarProblem:
         """The same at some of the points."""
         return PlanarProblem(
-            self.mass[which],
-            self.stiffness,
-            self.damping,
-            self.spin[which],
+            *(x[which] for x in (self.mass, self.stiffness, self.damping, self.spin)),
             *(x[:, which] for x in (self.liquid, self.layer_tanh, self.rate, self.stokes)),
         )
 

@@ -68,12 +68,14 @@ def _bend() -> Case:
     """The deflection at which a volume stops to be enough is the one whose optimal volume it is."""
     import numpy as np
 
-    from fluid.fill import Fill
+    from fluid.fill import Fill, Fills
     from fluid.liquid import known_liquid
 
     chamber, e = Chamber(0.2, 0.05), 3e-3
     volume = float(optimal_volume(chamber, e, 1.0, gravity=0.0))
-    bend = Statics().linear_limit(Fill(chamber, known_liquid("water"), volume), np.array([50.0]), 0.0)
+    bend = Statics().linear_limit(
+        Fills.of([Fill(chamber, known_liquid("water"), volume)]), np.array([50.0]), np.zeros(1)
+    )
     return compare(
         "optimal_volume/bend",
         "theory: statics, eq. 9",

@@ -17,6 +17,7 @@ def _optimal() -> None:
 
 ARC = "solvers.wall_arc"
 STATICS = "solvers.hydrostatics"
+INTEGRALS = "solvers.chamber_integrals"
 
 FAULTS: tuple[Fault, ...] = (
     Fault(ARC, "np.arctan2(sin, e + cos)", "np.arctan2(sin, e - cos)", _whole),
@@ -32,10 +33,10 @@ FAULTS: tuple[Fault, ...] = (
     Fault(ARC, "series = 4.0 / 6.0 * small**3", "series = 4.0 / 5.0 * small**3", _whole),
     Fault(STATICS, "2.0 * np.maximum(plan_xx - mean * plan_x, 0.0)", "2.0 * plan_xx", oracle.check_slope),
     Fault(STATICS, "self.volume + 2.0 * np.max", "2.0 * np.max", oracle.check_slope),
-    Fault(STATICS, "(1.0 + ratio + 2.0 * eps)", "(1.0 + ratio + eps)", oracle.check_slope),
+    Fault(INTEGRALS, "(1.0 + ratio + 2.0 * eps)", "(1.0 + ratio + eps)", oracle.check_slope),
     Fault(STATICS, "np.square(1.0 + self.eccentricity / radius)", "1.0", oracle.check_bowl),
     Fault(STATICS, "4.0 * steep * e / chamber.radius)", "2.0 * steep * e / chamber.radius)", _optimal),
-    Fault(STATICS, "_all_moments, (2, 3, 2, 4, 4, 2, 3)", "_all_moments, (2, 2, 2, 4, 4, 2, 3)", _whole),
+    Fault(INTEGRALS, "_all_moments, (2, 3, 2, 4, 4, 2, 3)", "_all_moments, (2, 2, 2, 4, 4, 2, 3)", _whole),
     Fault("fluid.paraboloid", "fall = 2.0 * g * h", "fall = g * h", _whole),
     Fault("fluid.paraboloid", "0.5 * height - beta", "0.5 * height + beta", oracle.check_clear_constant),
 )

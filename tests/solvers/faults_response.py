@@ -8,8 +8,8 @@ from tests.solvers import test_response as oracle
 FAULTS: tuple[Fault, ...] = (
     Fault(
         "fluid.fill",
-        "self.chamber.radius**2 * self.chamber.height",
-        "self.chamber.radius * self.chamber.height",
+        "self.density * math.pi * np.square(self.chamber.radius) * self",
+        "self.density * np.square(self.chamber.radius) * self",
         oracle.check_added_mass,
     ),
     Fault(
@@ -26,32 +26,32 @@ FAULTS: tuple[Fault, ...] = (
     ),
     Fault(
         "solvers.response",
-        "force = rotor.unbalance * np.square(spin)",
-        "force = rotor.unbalance * spin",
+        "force, damping = pairs.unbalance * squared",
+        "force, damping = pairs.unbalance * pairs.speed",
         oracle.check_added_mass,
     ),
     Fault(
         "solvers.response",
-        "pull = np.square(speed) * state.unbalance",
-        "pull = speed * state.unbalance",
+        "pull = np.square(pairs.speed[which]) * state.unbalance",
+        "pull = pairs.speed[which] * state.unbalance",
         oracle.check_balance,
     ),
     Fault(
         "solvers.response",
-        "elastic = rotor.stiffness - (rotor.mass + sum",
-        "elastic = rotor.stiffness - (rotor.mass - sum",
+        "elastic = pairs.stiffness - (pairs.mass + pairs",
+        "elastic = pairs.stiffness - (pairs.mass - pairs",
         oracle.check_balance,
     ),
     Fault(
         "solvers.response",
-        "np.square(spin) * (rotor.mass + state.slope)",
-        "np.square(spin) * (rotor.mass + secant)",
+        "np.square(spin) * (own + state.slope)",
+        "np.square(spin) * (own + secant)",
         oracle.check_middle_branch,
     ),
     Fault(
         "solvers.response",
-        "return unbalance / mass",
-        "return unbalance / mass - deflection",
+        "np.divide(unbalance, pairs.liquid_mass",
+        "np.divide(unbalance - deflection, pairs.liquid_mass",
         oracle.check_added_mass,
     ),
     Fault(

@@ -32,3 +32,17 @@ def test_no_change_of_sign_is_said() -> None:
 def test_root_at_an_end() -> None:
     root, found = bracketed_root(lambda x, k: x, np.array([0.0]), np.array([1.0]))
     assert found.all() and root[0] == 0.0
+
+
+def test_smooth_functions_take_few_steps() -> None:
+    """Quadratic interpolation: some ten points for full accuracy, where halving takes fifty."""
+    calls = 0
+
+    def function(x: np.ndarray, k: np.ndarray) -> np.ndarray:
+        nonlocal calls
+        calls += 1
+        return np.exp(x) - 2.0 - k
+
+    root, found = bracketed_root(function, np.zeros(5), np.full(5, 4.0))
+    assert found.all() and calls < 15
+    np.testing.assert_allclose(root, np.log(2.0 + np.arange(5)), rtol=1e-15)

@@ -12,7 +12,7 @@ from mpmath import mp, mpf
 
 from fluid.paraboloid import clear_surface_constant
 from meshes.border import InputError
-from meshes.chamber import Chamber
+from meshes.chamber import Chamber, Chambers
 from solvers.hydrostatics import equilibrium, optimal_volume
 from tests.oracles import LiquidReference, liquid_reference
 
@@ -197,6 +197,52 @@ def test_pull_never_decreases(log_speed: float, fill: float, inner: float) -> No
     slack = 1e-12 * chamber.radius * max(1.0, math.pi * 0.2**3 * 0.05 / (volume * 0.2))
     assert np.all(np.diff(offset) >= -slack)
     assert np.all((offset >= -slack) & (offset <= chamber.radius + slack))
+
+
+@given(
+    log_speed=st.floats(-1.0, 4.0),
+    fill=st.floats(-6.0, 0.0),
+    inner=st.floats(0.0, 0.95),
+    horizontal=st.booleans(),
+)
+@settings(max_examples=60)
+def test_unbalance_never_grows_faster_than_a_full_chamber(
+    log_speed: float, fill: float, inner: float, horizontal: bool
+) -> None:
+    chamber = Chamber(0.2, 0.05, inner_radius=0.2 * inner)
+    e = np.concatenate(([0.0], np.geomspace(1e-6, 0.4, 200)))
+    gravity = 0.0 if horizontal else GRAVITY
+    state = equilibrium(chamber, chamber.capacity * 10.0**fill, e, 10.0**log_speed, gravity)
+    _, slope = state.unbalance()
+    # The search for branches grants rounding a billionth.
+    assert np.all(slope <= math.pi * 0.2**2 * 0.05 * (1.0 + 1e-9))
+
+
+def check_many_chambers() -> None:
+    """One chamber for each state: as each alone, with and without inner walls."""
+    ones = [Chamber(0.2, 0.05), Chamber(0.1, 0.3, 0.06), Chamber(0.35, 0.02, 0.3), Chamber(0.06, 0.08)]
+    fill, e, speed = (
+        np.array([0.2, 0.5, 0.9, 1.0]),
+        np.array([0.02, 0.01, 0.05, 0.1]),
+        np.array([9.0, 30.0, 60.0, 4.0]),
+    )
+    volume = fill * np.array([one.capacity for one in ones])
+    np.testing.assert_allclose(Chambers.of(ones).capacity, [one.capacity for one in ones], rtol=1e-15)
+    for gravity in (0.0, GRAVITY):
+        many = equilibrium(Chambers.of(ones), volume, e, speed, gravity)
+        assert many.converged.all()
+        moment, slope = many.unbalance()
+        for k, one in enumerate(ones):
+            alone = equilibrium(one, volume[k], e[k], speed[k], gravity)
+            # Powers of the radius are rounded differently for one and for many.
+            np.testing.assert_allclose((moment[k], slope[k]), alone.unbalance(), rtol=1e-13)
+            assert many.dry_patch[k] == alone.dry_patch
+    with pytest.raises(InputError, match="capacity"):
+        equilibrium(Chambers.of(ones), 1.1 * volume, e, speed)
+
+
+def test_many_chambers() -> None:
+    check_many_chambers()
 
 
 @given(

@@ -328,7 +328,8 @@ def check_laminar() -> None:
             one = np.ones((1, 1))
             mass, stiffness, damping = (m[0, 0] for m in (system.mass, system.stiffness, system.damping))
             problem = PlanarProblem(
-                *(np.array([mass]), stiffness, damping, np.array([spin]), fill.mass * one),
+                *(np.array([x]) for x in (mass, stiffness, damping, spin)),
+                fill.mass * one,
                 *(layer.layer_tanh * one, 0.0 * one, layer.stokes * one),
             )
             slip = planar_modes(problem).slip[:, 0]

@@ -1,0 +1,171 @@
+"""Planar machines with liquid at spin speeds, as arrays over pairs of a machine and a speed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fluid.fill import Fill, Fills
+from solvers.liquid_models import LiquidModel
+from solvers.rotor.jeffcott import Jeffcott
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Flags = NDArray[np.bool_]
+# A rotor with the fills of its chambers.
+PlanarMachine = tuple[Jeffcott, Sequence[Fill]]
+
+
+@dataclass(frozen=True)
+class LiquidState:
+    """All chambers of a machine together, shape (m,).
+
+    Parameters
+    ----------
+    unbalance : first moment of the liquid about the rotation axis, kg m
+    slope : its derivative with respect to the deflection, kg
+    dry_patch, in_range, converged : of any, all and all chambers with liquid
+    """
+
+    unbalance: Array
+    slope: Array
+    dry_patch: Flags
+    in_range: Flags
+    converged: Flags
+
+
+@dataclass(frozen=True)
+class Slot:
+    """One chamber of each pair that has one with liquid.
+
+    Parameters
+    ----------
+    fills : of those pairs, shape (k,)
+    place : index into `fills` of each pair, -1 where it has no such chamber, shape (n,)
+    limit : deflection up to which the chamber adds its full mass, m; infinite where there is none, shape (n,)
+    """
+
+    fills: Fills
+    place: Index
+    limit: Array
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """n pairs of a machine and a speed.
+
+    Parameters
+    ----------
+    mass, stiffness, damping, unbalance : M, K, C, U0 of the rotor, SI, shape (n,)
+    speed : spin speed Omega, rad/s, shape (n,)
+    gravity : along the axis, m/s^2, shape (n,)
+    model : of the liquid
+    slots : one for each chamber of the machine that has most
+    liquid_mass, full_mass, reach : sums over the chambers of the liquid's mass, of the mass that would fill
+        them, and of liquid mass times radius, shape (n,)
+    """
+
+    mass: Array
+    stiffness: Array
+    damping: Array
+    unbalance: Array
+    speed: Array
+    gravity: Array
+    model: LiquidModel
+    slots: tuple[Slot, ...]
+    liquid_mass: Array
+    full_mass: Array
+    reach: Array
+
+    @property
+    def dynamic_stiffness(self) -> NDArray[np.complex128]:
+        """K - M Omega^2 + i C Omega of the dry rotors in the drum frame, N/m, shape (n,)."""
+        elastic = self.stiffness - self.mass * np.square(self.speed)
+        return np.asarray(elastic + 1j * self.damping * self.speed, dtype=complex)
+
+    @property
+    def limit(self) -> Array:
+        """Deflection up to which every chamber adds its full mass, m, shape (n,)."""
+        limits = [slot.limit for slot in self.slots]
+        return np.min(limits, axis=0) if limits else np.full(self.speed.shape, np.inf)
+
+    def liquid(self, deflection: Array, which: Index) -> LiquidState:
+        """The liquid of some pairs at deflections, shape (m,)."""
+        unbalance, slope = np.zeros((2, *deflection.shape))
+        dry = np.zeros(deflection.shape, dtype=bool)
+        in_range, converged = np.ones((2, *deflection.shape), dtype=bool)
+        for slot in self.slots:
+            place = slot.place[which]
+            rows = np.flatnonzero(place >= 0)
+            if rows.size == 0:
+                continue
+            here, own = slot.fills.at(place[rows]), which[rows]
+            e = deflection[rows]
+            one = self.model.synchronous(here, self.speed[own], e, self.gravity[own])
+            unbalance[rows] += one.unbalance
+            slope[rows] += one.slope
+            dry[rows] |= one.dry_patch
+            in_range[rows] &= one.in_range
+            converged[rows] &= one.converged
+        return LiquidState(unbalance, slope, dry, in_range, converged)
+
+    def pull(self, deflection: Array, which: Index) -> Array:
+        """The liquid's pull beyond its mass at the chamber's centre, N; never falls with deflection, (m,).
+
+        Up to its limit a chamber's law is known; beyond it the model is asked.
+        """
+        total = np.zeros(deflection.shape)
+        for slot in self.slots:
+            place = slot.place[which]
+            rows = np.flatnonzero(place >= 0)
+            own, e = which[rows], deflection[rows]
+            here = slot.fills.at(place[rows])
+            moment = here.full_mass * e
+            bent = np.flatnonzero(e > slot.limit[own])
+            if bent.size:
+                k = own[bent]
+                law = self.model.synchronous(here.at(bent), self.speed[k], e[bent], self.gravity[k])
+                moment[bent] = law.unbalance
+            total[rows] += np.maximum(moment - here.mass * e, 0.0)
+        return np.asarray(np.square(self.speed[which]) * total)
+
+
+def pair_machines(
+    machines: Sequence[PlanarMachine], owner: Index, speed: Array, gravity: Array, model: LiquidModel
+) -> Pairs:
+    """Arrays over pairs of a machine and a speed.
+
+    Parameters
+    ----------
+    machines : rotors with their fills; empty fills are left out
+    owner : index of each pair's machine, shape (n,)
+    speed : Omega, rad/s, shape (n,)
+    gravity : along the axis of each machine, m/s^2, shape (machines,)
+    model : of the liquid
+    """
+    rotors = np.array([(r.mass, r.stiffness, r.damping, r.unbalance) for r, _ in machines]).reshape(-1, 4)
+    wet = [[fill for fill in fills if fill.volume > 0.0] for _, fills in machines]
+    own_gravity = gravity[owner]
+    slots, sums = [], np.zeros((3, owner.size))
+    for k in range(max(map(len, wet), default=0)):
+        having = np.array([i for i, fills in enumerate(wet) if len(fills) > k], dtype=np.intp)
+        fills = Fills.of([wet[i][k] for i in having])
+        index = np.full(len(machines), -1, dtype=np.intp)
+        index[having] = np.arange(having.size)
+        place = index[owner]
+        rows = np.flatnonzero(place >= 0)
+        here = fills.at(place[rows])
+        limit = np.full(owner.shape, np.inf)
+        limit[rows] = model.linear_limit(here, speed[rows], own_gravity[rows])
+        sums[:, rows] += here.mass, here.full_mass, here.mass * here.chamber.radius
+        slots.append(Slot(fills, place, limit))
+    mass, stiffness, damping, unbalance = np.ascontiguousarray(rotors[owner].T)
+    return Pairs(
+        *(mass, stiffness, damping, unbalance, speed, own_gravity, model, tuple(slots)),
+        liquid_mass=sums[0],
+        full_mass=sums[1],
+        reach=sums[2],
+    )

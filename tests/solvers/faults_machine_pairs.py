@@ -1,0 +1,60 @@
+"""Seeded faults of many machines at once."""
+
+from __future__ import annotations
+
+from tests.faults import Fault
+from tests.solvers import test_branches, test_hydrostatics, test_response
+from tests.solvers import test_machine_pairs as oracle
+
+PAIRS, RESPONSE, BRANCHES = "solvers.machine_pairs", "solvers.response", "solvers.branches"
+
+FAULTS: tuple[Fault, ...] = (
+    Fault(PAIRS, "elastic + 1j * self.damping", "elastic - 1j * self.damping", oracle.check_sums),
+    Fault(
+        PAIRS,
+        "here.full_mass, here.mass * here.chamber.radius",
+        "here.full_mass, here.mass",
+        oracle.check_sums,
+    ),
+    Fault(PAIRS, "place = index[owner]", "place = index[owner[::-1]]", oracle.check_each_as_if_alone),
+    Fault(PAIRS, "moment - here.mass * e", "moment", oracle.check_sums),
+    Fault(PAIRS, "unbalance[rows] += one.unbalance", "unbalance[rows] = one.unbalance", oracle.check_sums),
+    Fault(PAIRS, "slope[rows] += one.slope", "slope[rows] = one.slope", oracle.check_sums),
+    Fault(PAIRS, "moment[bent] = law.unbalance", "moment[bent] = law.slope", oracle.check_sums),
+    Fault(
+        "fluid.fill", "return self.density * self.volume", "return self.volume", oracle.check_arrays_of_fills
+    ),
+    Fault(
+        "fluid.fill",
+        "self.density * math.pi * np.square(self.chamber.radius)",
+        "self.density * math.pi * self.chamber.radius",
+        oracle.check_arrays_of_fills,
+    ),
+    Fault(
+        "fluid.fill",
+        "film / (self.chamber.radius + surface)",
+        "film / (2.0 * self.chamber.radius)",
+        oracle.check_arrays_of_fills,
+    ),
+    Fault(
+        "meshes.chamber",
+        "(self.radius - self.inner_radius) * (self.radius + self.inner_radius)\n        return np",
+        "(self.radius - self.inner_radius) * self.radius\n        return np",
+        test_hydrostatics.check_many_chambers,
+    ),
+    Fault(
+        "solvers.chamber_integrals",
+        "np.asarray(chamber.inner_radius) / chamber.radius, 1e-60",
+        "np.max(chamber.inner_radius) / chamber.radius, 1e-60",
+        test_hydrostatics.check_many_chambers,
+    ),
+    Fault(BRANCHES, "for slope in (a - rise, a)", "for slope in (a,)", test_response.check_all_branches),
+    Fault(BRANCHES, "+ np.square(c) * low", "+ np.square(c) * high * 4.0", test_branches.check_one_way),
+    Fault("solvers.whirl", "support[own[place]].T", "support[place].T", oracle.check_growth),
+    Fault(
+        "solvers.whirl",
+        "mass = np.array([tables[i][0] for i in own])[place]",
+        "mass = np.array([tables[0][0] for i in own])[place]",
+        oracle.check_growth,
+    ),
+)
