@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from meshes.border import InputError
 from solvers.response import machine_responses
 from solvers.whirl import machines_growth
-from study.fidelity import axial_gravity, choose
+from study.fidelity import axial_gravity, choose_all
 from study.machine import jeffcott
 from study.record import phase
 from study.run import run_scene
@@ -38,6 +38,7 @@ class Answers:
     growth, whirl_speed : of the whirl that grows most by itself, 1/s and rad/s
     dry_patch, stable, in_range, converged : as in `solvers.response.Response`; stable against whirls as well
     model : of the liquid, by name
+    error_estimate : of the model taken, relative, of amplitude and liquid the larger one; nan where unknown
     """
 
     speed: Array
@@ -53,6 +54,7 @@ class Answers:
     in_range: Flags
     converged: Flags
     model: NDArray[np.str_]
+    error_estimate: Array
 
 
 def answer_scenes(scenes: Sequence[Scene]) -> Answers:
@@ -98,17 +100,18 @@ def _planar(scenes: Sequence[Scene]) -> Answers:
     shape = len(scenes), scenes[0].speeds.count
     machines = [(jeffcott(scene), scene.chambers) for scene in scenes]
     gravity = np.array([axial_gravity(scene) for scene in scenes])
-    choices = [choose(scene) for scene in scenes]
+    choices = choose_all(scenes)
     speed = np.stack([scene.speed_array() for scene in scenes]).ravel()
     owner = np.repeat(np.arange(len(scenes)), shape[1])
     frictions = [solver_friction(scene.model.friction) for scene in scenes]
     growth, whirl_speed = machines_growth(machines, frictions, owner, speed)
-    model = np.repeat(np.array([choice.model for choice in choices]), shape[1])
+    model = np.concatenate([choice.models for choice in choices])
     found: dict[str, Any] = {
         "speed": speed,
         "growth": growth,
         "whirl_speed": whirl_speed,
         "model": model,
+        "error_estimate": np.concatenate([choice.error for choice in choices]),
     }
     for name in np.unique(model).tolist():
         rows = np.flatnonzero(model == name)
@@ -137,6 +140,7 @@ def _single(scene: Scene) -> Answers:
         "phase": phase(one.deflection),
         "growth": nothing if whirl is None else whirl.growth,
         "whirl_speed": nothing if whirl is None else whirl.whirl_speed,
+        "error_estimate": nothing if record.error_estimate is None else record.error_estimate,
     }
     rest = [field.name for field in fields(Answers) if field.name not in found]
     found |= {name: getattr(one, name) for name in rest}

@@ -13,6 +13,7 @@ from solvers.response import critical_speed
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import critical_speeds, modes, orbit, unbalance_response
 from study.fidelity import axial_gravity, choose
+from study.fidelity_words import ModelSpan, model_spans
 from study.machine import dry_rotor
 from study.record import ModeRecord
 from study.run_motion import main_critical_speeds, rest_modes
@@ -40,25 +41,6 @@ class LayerExplanation:
 
 
 @dataclass(frozen=True)
-class ModelSpan:
-    """A range of speeds that one model answers.
-
-    Parameters
-    ----------
-    first, last : rad/s
-    model : its name
-    in_range : it holds there
-    reason : why it is taken, in words
-    """
-
-    first: float
-    last: float
-    model: str
-    in_range: bool
-    reason: str
-
-
-@dataclass(frozen=True)
 class Explanation:
     """A scene in numbers.
 
@@ -71,8 +53,10 @@ class Explanation:
     speed_ratio : first and last speed over the dry critical speed
     captured_from : speed above which the liquid rides with the drum, rad/s; None if at every speed
     layers : one for each chamber; None for an empty one
-    models : which model answers at each speed, and why
+    models : which model answers at each speed, how well, and why
+    tolerance : relative error that the scene allows
     modes : of the dry rotor at rest; none for a planar rotor, whose only one is the critical speed
+    runup : which liquid model the run-up will take, in words; empty without one
     """
 
     name: str
@@ -83,7 +67,9 @@ class Explanation:
     captured_from: float | None
     layers: tuple[LayerExplanation | None, ...]
     models: tuple[ModelSpan, ...]
+    tolerance: float
     modes: tuple[ModeRecord, ...] = ()
+    runup: str = ""
 
 
 def explain_scene(scene: Scene) -> Explanation:
@@ -118,9 +104,19 @@ def explain_scene(scene: Scene) -> Explanation:
         speed_ratio=(ends[0] / bare.critical_speed, ends[1] / bare.critical_speed),
         captured_from=choice.captured_from,
         layers=tuple(layers),
-        models=_spans(scene, choice.in_range, choice.model, choice.reason),
+        models=model_spans(choice, scene.speed_array()),
+        tolerance=choice.tolerance,
         modes=bare.modes,
+        runup=_runup(scene),
     )
+
+
+def _runup(scene: Scene) -> str:
+    if scene.runup is None:
+        return ""
+    from study.runup_choice import runup_outlook
+
+    return runup_outlook(scene)
 
 
 @dataclass(frozen=True)
@@ -151,15 +147,3 @@ def _bare(scene: Scene, gravity: float, model: str) -> _Bare:
     nearest = int(np.argmin(np.abs(turning.frequency[0] - dry))) if np.isfinite(dry) else 0
     ratio = float(turning.damping_ratio[0, nearest])
     return _Bare(rotor.mass, dry, wet, ratio, deflection, rest_modes(system))
-
-
-def _spans(scene: Scene, in_range: np.ndarray, model: str, reason: str) -> tuple[ModelSpan, ...]:
-    """Consecutive speeds with the same answer."""
-    speed = scene.speed_array()
-    edges = np.flatnonzero(np.diff(in_range.astype(int))) + 1
-    spans = []
-    for part in np.split(np.arange(speed.size), edges):
-        holds = bool(in_range[part[0]])
-        why = reason if holds else f"{reason}; but gravity across the axis is stronger than the spin here"
-        spans.append(ModelSpan(float(speed[part[0]]), float(speed[part[-1]]), model, holds, why))
-    return tuple(spans)

@@ -1,7 +1,8 @@
-"""Which liquid model a scene needs at each speed, and where that model holds."""
+"""Which liquid model a scene needs at each speed: cheapest within the tolerance."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,28 +11,51 @@ from numpy.typing import NDArray
 from fluid.fill import Fill
 from fluid.waves import capture_speed
 from meshes.border import InputError
-from solvers.liquid_models import SYNCHRONOUS_MODELS
-from study.scene import Scene
+from solvers.coupled_error import coupled_error
+from solvers.gravity_error import planar_gravity_error
+from solvers.liquid_models import SYNCHRONOUS_MODELS, synchronous_model
+from solvers.machine_pairs import pair_machines
+from solvers.model_error import ROUNDING, LinearError, planar_enclosure
+from study.machine import dry_rotor, jeffcott
+from study.scene import Rotor, Scene
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
 class Choice:
-    """The liquid model of a scene.
+    """The liquid model of a scene at each of its speeds, shape (n,).
 
     Parameters
     ----------
-    model : name of the model taken
-    reason : why, in plain words
-    in_range : where it holds, shape (n,) over the scene's speeds
-    captured_from : speed above which the liquid rides with the drum, rad/s; None if at every speed
+    model : the most exact of the models taken
+    models : name of the model taken at each speed
+    asked : the scene names the model itself
+    in_range : the liquid rides with the drum
+    captured_from : speed above which it does, rad/s; None if at every speed
+    tolerance : relative error that the scene allows
+    error : estimated relative error of what is taken, of amplitude and liquid the larger one; nan where there
+        is no estimate
+    linear : error of the linear theory against the exact equilibrium
+    gravity : estimated error by gravity across the axis, which no model of a steady answer has; nan where the
+        liquid does not ride with the drum
     """
 
     model: str
-    reason: str
-    in_range: NDArray[np.bool_]
+    models: NDArray[np.str_]
+    asked: bool
+    in_range: Flags
     captured_from: float | None
+    tolerance: float
+    error: Array
+    linear: LinearError
+    gravity: Array
+
+    @property
+    def missed(self) -> Flags:
+        """Where even the model taken is not known to be within the tolerance, shape (n,)."""
+        return ~(self.error <= self.tolerance)
 
 
 def axial_gravity(scene: Scene) -> float:
@@ -39,29 +63,97 @@ def axial_gravity(scene: Scene) -> float:
     return scene.gravity if scene.rotor.axis == "vertical" else 0.0
 
 
+def across_gravity(scene: Scene) -> float:
+    """Gravity across the rotor's axis, m/s^2: none if the axis stands."""
+    return scene.gravity if scene.rotor.axis == "horizontal" else 0.0
+
+
 def choose(scene: Scene) -> Choice:
-    """Liquid model for the synchronous response of a scene.
+    """Liquid model for the synchronous response of a scene at each of its speeds.
 
     Raises
     ------
-    InputError : the scene asks for a model that does not answer the synchronous response
+    InputError : the scene asks for a model that does not answer the synchronous response, or is an exciter
     """
-    asked = scene.model.liquid
-    if asked not in ("auto", *SYNCHRONOUS_MODELS):
-        allowed = ", ".join(("auto", *SYNCHRONOUS_MODELS))
-        raise InputError("model.liquid", asked, f"one of {allowed} for the response to an unbalance")
-    model = "statics" if asked == "auto" else asked
-    reason = {
-        "auto": "the deflection turns with the drum, so the liquid is at rest in it; the exact equilibrium "
-        "answers that at any amplitude, and no cheaper model does once part of the wall is dry",
-        "statics": "the scene asks for the exact equilibrium",
-        "linear": "the scene asks for the linear theory, which holds while the deflection is below the mean "
-        "depth of the layer",
-    }[asked]
-    speed = scene.speed_array()
+    return choose_all([scene])[0]
+
+
+def choose_all(scenes: Sequence[Scene]) -> list[Choice]:
+    """`choose` for several scenes, those of planar rotors all at once.
+
+    Raises
+    ------
+    InputError : as `choose`
+    """
+    for scene in scenes:
+        if scene.model.liquid not in ("auto", *SYNCHRONOUS_MODELS):
+            allowed = ", ".join(("auto", *SYNCHRONOUS_MODELS))
+            raise InputError(
+                "model.liquid", scene.model.liquid, f"one of {allowed} for the response to an unbalance"
+            )
+    planar = [scene for scene in scenes if isinstance(scene.rotor, Rotor)]
+    found = iter(_planar_errors(planar) if planar else ())
+    errors = [next(found) if isinstance(scene.rotor, Rotor) else _other_errors(scene) for scene in scenes]
+    return [_choice(scene, *pair) for scene, pair in zip(scenes, errors, strict=True)]
+
+
+def _planar_errors(scenes: Sequence[Scene]) -> list[tuple[LinearError, Array]]:
+    """Error of the linear theory, and by gravity across the axis, of each scene."""
+    speeds = [scene.speed_array() for scene in scenes]
+    owner = np.repeat(np.arange(len(scenes)), [one.size for one in speeds])
+    speed, gravity = np.concatenate(speeds), np.array([axial_gravity(scene) for scene in scenes])
+    machines = [(jeffcott(scene), scene.chambers) for scene in scenes]
+    pairs = pair_machines(machines, owner, speed, gravity, synchronous_model("linear"))
+    bounds = planar_enclosure(pairs)
+    error = bounds.error()
+    across = np.array([across_gravity(scene) for scene in scenes])[owner]
+    thrown = planar_gravity_error(pairs, across, bounds.most)
+    ends = np.cumsum([one.size for one in speeds])
+    parts = [slice(stop - one.size, stop) for stop, one in zip(ends, speeds, strict=True)]
+    return [
+        (
+            LinearError(error.amplitude[part], error.liquid[part], error.wet[part], error.strain[part]),
+            thrown[part],
+        )
+        for part in parts
+    ]
+
+
+def _other_errors(scene: Scene) -> tuple[LinearError, Array]:
+    """The same of a rotor that tilts, or moves differently in two directions."""
+    position = scene.chambers[0].chamber.plane if scene.chambers else 0.0
+    return coupled_error(
+        dry_rotor(scene).system(),
+        scene.chambers,
+        scene.speed_array(),
+        axial_gravity(scene),
+        position,
+        across_gravity(scene),
+    )
+
+
+def _choice(scene: Scene, linear: LinearError, gravity: Array) -> Choice:
+    """The cheapest model that the errors allow, or the one asked for."""
+    speed, asked, tolerance = scene.speed_array(), scene.model.liquid, scene.model.tolerance
+    # What gravity does to all models alike does not speak for the dearer one. Where a wall may run dry the
+    # exact equilibrium says where.
+    enough = linear.wet & (linear.worst <= tolerance)
+    if asked != "auto":
+        enough = np.full(speed.shape, asked == "linear")
+    models = np.where(enough, "linear", "statics")
     captured_from = _captured_from(scene)
-    in_range = np.ones(speed.shape, dtype=bool) if captured_from is None else speed > captured_from
-    return Choice(model, reason, in_range, captured_from)
+    held = np.ones(speed.shape, dtype=bool) if captured_from is None else speed > captured_from
+    return Choice(
+        model="linear" if enough.all() else "statics",
+        models=models,
+        asked=asked != "auto",
+        in_range=held,
+        captured_from=captured_from,
+        tolerance=tolerance,
+        error=np.where(enough, linear.worst, ROUNDING) + gravity,
+        linear=linear,
+        gravity=gravity,
+    )
 
 
 def _captured_from(scene: Scene) -> float | None:

@@ -125,6 +125,8 @@ class StudyRecord:
         at which the unbalance moves the axis most
     motion : None for a planar rotor
     whirl : None where it was not asked for
+    error_estimate : relative, of amplitude and liquid the larger one, nan where there is none, shape (n,);
+        None where nothing was estimated
 
     Raises
     ------
@@ -146,6 +148,7 @@ class StudyRecord:
     critical_speed_wet: float
     motion: Motion | None = None
     whirl: SelfExcited | None = None
+    error_estimate: Array | None = None
 
     def __post_init__(self) -> None:
         if self.axis not in ("horizontal", "vertical"):

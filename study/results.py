@@ -56,9 +56,18 @@ def _variables(record: StudyRecord) -> dict[str, Variable]:
         "critical_speed_dry": var((), dry, rate, "critical speed without liquid", "undamped"),
         "critical_speed_wet": var((), wet, rate, "critical speed with liquid", "undamped, wall wet"),
         "capture_speed": var((), capture, rate, "capture speed", "the liquid rides with the drum above it"),
+        **_error_variables(record),
         **_motion_variables(record),
         **_whirl_variables(record),
     }
+
+
+def _error_variables(record: StudyRecord) -> dict[str, Variable]:
+    """Estimated error over speed."""
+    if record.error_estimate is None:
+        return {}
+    text = "relative, of amplitude and liquid the larger one"
+    return {"error_estimate": var(("speed",), record.error_estimate, "1", "estimated error", text)}
 
 
 def _whirl_variables(record: StudyRecord) -> dict[str, Variable]:
@@ -176,6 +185,7 @@ def run_json(record: StudyRecord) -> dict[str, Any]:
         **{name: getattr(record, name) for name in ("name", "digest", *SCALARS)},
         "assumed": list(record.assumed),
         "notes": list(record.notes),
+        **({} if record.error_estimate is None else {"error_estimate": _finite(record.error_estimate)}),
         **_motion_json(record),
         **_whirl_json(record),
     }

@@ -8,8 +8,10 @@ import numpy as np
 
 from fluid.fill import Fill
 from solvers.hydrostatics import optimal_volume
-from solvers.response import Response, critical_speed, synchronous_response
+from solvers.mixed_response import mixed_response
+from solvers.response import Response, critical_speed
 from study.fidelity import Choice, axial_gravity, choose
+from study.fidelity_words import fidelity_notes
 from study.inputs import ML, input_rows
 from study.machine import jeffcott as jeffcott
 from study.record import MM, RPM, ChamberRecord, Motion, SelfExcited, StudyRecord
@@ -44,10 +46,10 @@ def run_scene(scene: Scene) -> StudyRecord:
     motion: Motion | None = None
     if isinstance(scene.rotor, Rotor):
         gravity, rotor = axial_gravity(scene), jeffcott(scene)
-        answer = synchronous_response(rotor, scene.chambers, scene.speed_array(), gravity, choice.model)
+        answer = mixed_response(rotor, scene.chambers, scene.speed_array(), gravity, choice.models)
         dry, wet = rotor.natural_frequency, critical_speed(rotor, scene.chambers, gravity, choice.model)
     else:
-        coupled, motion, (dry, wet) = motion_response(scene, choice.model)
+        coupled, motion, (dry, wet) = motion_response(scene, choice)
         answer = coupled.response
     whirl = self_excited(scene)
     answer = replace(
@@ -69,6 +71,7 @@ def run_scene(scene: Scene) -> StudyRecord:
         critical_speed_wet=wet,
         motion=motion,
         whirl=whirl,
+        error_estimate=choice.error,
     )
 
 
@@ -89,7 +92,7 @@ def _notes(
     scene: Scene, choice: Choice, answer: Response, motion: Motion | None, whirl: SelfExcited
 ) -> tuple[str, ...]:
     """Limits of validity and findings, in words."""
-    notes: list[str] = []
+    notes: list[str] = list(fidelity_notes(choice, answer.speed))
     if choice.captured_from is not None:
         notes.append(
             f"Below {choice.captured_from * RPM:.3g} rpm gravity across the axis is stronger than the "

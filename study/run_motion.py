@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from solvers.coupled_response import CoupledResponse, coupled_response, wet_critical_speeds
+from solvers.mixed_response import mixed_coupled
 from solvers.rotor.campbell import campbell
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.vibration import (
@@ -16,7 +17,7 @@ from solvers.rotor.vibration import (
     unbalance_response,
     whirl_direction,
 )
-from study.fidelity import axial_gravity
+from study.fidelity import Choice, axial_gravity
 from study.machine import dry_rotor
 from study.record import ModeRecord, Motion
 from study.scene import Scene, TubRotor
@@ -36,13 +37,13 @@ _WORDS = {
 }
 
 
-def motion_response(scene: Scene, model: str) -> tuple[CoupledResponse, Motion, tuple[float, float]]:
+def motion_response(scene: Scene, choice: Choice) -> tuple[CoupledResponse, Motion, tuple[float, float]]:
     """Response of a scene's rotor with all its chambers, and what its vibration is without them.
 
     Parameters
     ----------
     scene : the machine
-    model : liquid model of the forward part
+    choice : liquid model of the forward part at each speed
 
     Returns
     -------
@@ -54,9 +55,9 @@ def motion_response(scene: Scene, model: str) -> tuple[CoupledResponse, Motion, 
     InputError : an exciter, or an unknown model
     """
     system, gravity = dry_rotor(scene).system(), axial_gravity(scene)
-    found = coupled_response(system, scene.chambers, scene.speed_array(), gravity, model)
+    found = mixed_coupled(system, scene.chambers, scene.speed_array(), gravity, choice.models)
     dry, dry_shape = critical_speeds(system)
-    wet, wet_shape = wet_critical_speeds(system, scene.chambers, gravity, model)
+    wet, wet_shape = wet_critical_speeds(system, scene.chambers, gravity, choice.model)
     motion = Motion(
         position=found.position,
         backward=found.backward,

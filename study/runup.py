@@ -13,12 +13,14 @@ from fluid.fill import Fill
 from meshes.border import InputError
 from solvers.drive import Drive, Motor, Ramp
 from solvers.response import Response, synchronous_response
-from solvers.runup import RunupHistory, RunupNumerics, run_up
+from solvers.runup import RunupHistory, RunupNumerics
+from study.fidelity import across_gravity as across_gravity  # of a run-up, asked for with it
 from study.fidelity import axial_gravity
 from study.friction import Friction
 from study.machine import dry_rotor, jeffcott
 from study.record import Array, ChamberRecord, phase
-from study.runup_range import judged, liquid_model
+from study.runup_choice import chosen_run
+from study.runup_range import judged
 from study.runup_words import Bands, describe_inputs, describe_run
 from study.scene import Rotor, Runup, Scene
 from study.stability import solver_friction
@@ -51,6 +53,9 @@ class RunupRecord:
     bands : of speed in which some whirl grows by itself, rad/s, an end of the range counting as an edge
     chambers, planes : one for each chamber; its position along the axis, m
     notes : limits of validity and findings, in words
+    model_reason : why that liquid model, in words
+    model_error : estimated error of the amplitude over its largest, by the model and by its steps; nan where
+        one of them is not known
     """
 
     name: str
@@ -72,6 +77,8 @@ class RunupRecord:
     chambers: tuple[ChamberRecord, ...]
     planes: tuple[float, ...]
     notes: tuple[str, ...]
+    model_reason: str = ""
+    model_error: float = math.nan
 
     @property
     def deflection(self) -> Complex:
@@ -123,12 +130,10 @@ def runup_scene(
     plan = planned(scene)
     numerics = numerics_of(plan, cells, samples, check)
     law, gravity = scene.model.friction, across_gravity(scene)
-    rotor = dry_rotor(scene).system()
-    friction = (law.law, law.coefficient)
-    model = liquid_model(scene)
-    history = run_up(rotor, scene.chambers, drive_of(plan), friction, gravity, numerics, progress, model)
+    taken = chosen_run(scene, drive_of(plan), gravity, numerics, progress)
+    history = taken.history
     steady, bands = steady_response(scene, history.speed), whirl_bands(scene, history.speed)
-    in_range, faults = judged(scene, history)
+    in_range, faults = judged(scene, history, taken.model)
     fastest = np.flatnonzero(history.speed == history.speed.max())
     return RunupRecord(
         name=scene.name,
@@ -140,7 +145,9 @@ def runup_scene(
         axis=scene.rotor.axis,
         friction=law,
         gravity=gravity,
-        model=model,
+        model=taken.model,
+        model_reason=taken.reason,
+        model_error=taken.error,
         numerics=numerics,
         history=history,
         turning=int(fastest[-1]) if plan.back else history.time.size - 1,
@@ -149,7 +156,7 @@ def runup_scene(
         bands=bands,
         chambers=tuple(_chamber(fill) for fill in scene.chambers),
         planes=tuple(fill.chamber.plane for fill in scene.chambers),
-        notes=(*describe_run(scene, history, steady, bands), *faults),
+        notes=(f"Liquid model: {taken.reason}", *describe_run(scene, history, steady, bands), *faults),
     )
 
 
@@ -186,11 +193,6 @@ def numerics_of(
         dispersion=plan.dispersion,
         companion=check,
     )
-
-
-def across_gravity(scene: Scene) -> float:
-    """Gravity across the rotor's axis, m/s^2: none if the axis stands."""
-    return scene.gravity if scene.rotor.axis == "horizontal" else 0.0
 
 
 def steady_response(scene: Scene, speed: Array) -> Response | None:

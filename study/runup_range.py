@@ -1,4 +1,4 @@
-"""Where the layer of a run-up is a fair picture of the liquid, and which model it takes."""
+"""Where the layer of a run-up is a fair picture of the liquid, and which models may be asked for."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Flags = NDArray[np.bool_]
 
 
 def liquid_model(scene: Scene) -> str:
-    """Liquid model of a scene's run-up: long waves, or the linear theory if it asks for that.
+    """Most exact liquid model that a scene's run-up may take: the one it asks for, or long waves.
 
     Raises
     ------
@@ -30,7 +30,7 @@ def liquid_model(scene: Scene) -> str:
     return "long_wave" if asked == "auto" else asked
 
 
-def judged(scene: Scene, history: RunupHistory) -> tuple[Flags, tuple[str, ...]]:
+def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tuple[Flags, tuple[str, ...]]:
     """Where the layer is a fair picture of the liquid, and in words why it is none elsewhere.
 
     A layer must turn fast enough itself, whatever the drum does, must not be deep beside its radius
@@ -40,6 +40,7 @@ def judged(scene: Scene, history: RunupHistory) -> tuple[Flags, tuple[str, ...]]
     ----------
     scene : the machine
     history : its run-up, k times
+    model : of its layers; what the scene asks for, or long waves, if None
 
     Returns
     -------
@@ -48,7 +49,7 @@ def judged(scene: Scene, history: RunupHistory) -> tuple[Flags, tuple[str, ...]]
     good = np.ones(history.time.shape, dtype=bool)
     words: list[str] = []
     deepest, highest = RANGES["long_wave"]["relative_depth"][1], RANGES["linear"]["wave_amplitude"][1]
-    linear = liquid_model(scene) == "linear"
+    linear = (model or liquid_model(scene)) == "linear"
     for k, fill in enumerate(scene.chambers):
         if fill.volume == 0.0 or is_full(fill):
             continue

@@ -84,6 +84,8 @@ def _attributes(record: RunupRecord) -> dict[str, Any]:
         "axis": record.axis,
         "friction": friction_words(record.friction),
         "model": record.model,
+        "model_reason": one_line(record.model_reason),
+        "model_error": record.model_error,
         "cells": np.int32(numerics.cells),
         "dispersion": "with" if numerics.dispersion else "without",
         "energy": json.dumps(_energy(record)),
@@ -151,5 +153,6 @@ def runup_json(record: RunupRecord) -> dict[str, Any]:
         | ends
         | {name: getattr(h, name) for name in ("error_estimate", "converged", "reason", "steps")}
         | {"energy": _energy(record), "cells": record.numerics.cells, "model": record.model}
+        | {"model_reason": record.model_reason, "model_error": record.model_error}
         | {name: getattr(record, name) for name in names}
     )

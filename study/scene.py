@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from fluid.fill import Fill
 from meshes.chamber import Chamber
 from study.friction import Friction
+from study.optimise_table import Aim, aim_of
 from study.runup_table import RunupTable
 from study.scene_file import check_table, read_toml
 from study.scene_rotor import AnyRotor, rotor_from_table
@@ -51,10 +52,12 @@ class Model:
     ----------
     liquid : "auto", "statics", "linear", "long_wave", "kdv" or "fem"
     friction : on the wall
+    tolerance : relative error that "auto" may make
     """
 
     liquid: str
     friction: Friction
+    tolerance: float = 1e-3
 
 
 @dataclass(frozen=True)
@@ -114,6 +117,7 @@ class Scene:
     speeds : at which the machine is studied
     model : of the liquid
     runup : None unless the scene has one
+    optimise : what its liquid is chosen for; None unless the scene says so
     """
 
     name: str
@@ -125,6 +129,7 @@ class Scene:
     speeds: Speeds
     model: Model
     runup: Runup | None
+    optimise: Aim | None = None
 
     def speed_array(self) -> NDArray[np.float64]:
         """Spin speeds, rad/s, shape (count,)."""
@@ -135,7 +140,10 @@ class Scene:
     @property
     def digest(self) -> str:
         """Fingerprint of the content (SHA-256): the same however units, keys and blanks are written."""
-        content = json.dumps(_rounded(asdict(self)), sort_keys=True)
+        values = asdict(self)
+        if self.optimise is None:  # a scene without that table is the scene it was before there was one
+            del values["optimise"]
+        content = json.dumps(_rounded(values), sort_keys=True)
         return hashlib.sha256(content.encode()).hexdigest()
 
 
@@ -182,8 +190,9 @@ def _scene(table: SceneTable) -> Scene:
             for one in table.chambers
         ),
         speeds=Speeds(**table.speeds.model_dump()),
-        model=Model(table.model.liquid, Friction(law, coefficient)),
+        model=Model(table.model.liquid, Friction(law, coefficient), table.model.tolerance),
         runup=None if table.runup is None else _runup(table.runup),
+        optimise=None if table.optimise is None else aim_of(table.optimise),
     )
 
 

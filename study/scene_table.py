@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, ValidationInfo, field_validator
 from fluid.liquid import KNOWN_LIQUIDS, Liquid
 from meshes.chamber import Chamber
 from study import units
+from study.optimise_table import DutyTable, OptimiseTable
 from study.rotor_table import ROTORS, ExciterTable, JeffcottTable, TubTable, TwoPlaneTable
 from study.rules import Entries, OneOf, Quantity, Refused, Text, Whole
 from study.runup_table import MotorTable, RunupTable
@@ -127,6 +128,7 @@ class ModelTable(Table):
 
     liquid: Annotated[str, BeforeValidator(OneOf(_LIQUID_MODELS))] = "auto"
     friction: Annotated[Any, BeforeValidator(FrictionRule())] = ("stokes", 0.0)
+    tolerance: Annotated[float, BeforeValidator(Quantity(units.NUMBER, 1e-12, 1.0))] = 1e-3
 
 
 _TABLES = BeforeValidator(Entries(0, MAX_CHAMBERS, "tables headed [[chambers]]"))
@@ -144,6 +146,7 @@ class SceneTable(Table):
     speeds: SpeedsTable
     model: ModelTable = ModelTable()
     runup: RunupTable | None = None
+    optimise: OptimiseTable | None = None
 
 
 class JeffcottScene(SceneTable):
@@ -189,6 +192,8 @@ _COMMON: dict[tuple[str, ...], type[Table]] = {
     ("model", "friction"): FrictionTable,
     ("runup",): RunupTable,
     ("runup", "motor"): MotorTable,
+    ("optimise",): OptimiseTable,
+    ("optimise", "duty", "*"): DutyTable,
 }
 
 # Each table of a scene by the kind of its rotor and its place in the file.

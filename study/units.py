@@ -60,6 +60,7 @@ ANGLE = Dimension("angle", "rad", "30 deg")
 TIME = Dimension("time", "s", "14 s")
 RATE = Dimension("rate", "1/s", "0.5 1/s")
 ACCELERATION = Dimension("acceleration", "m/s^2", "9.81 m/s^2")
+TEMPERATURE = Dimension("temperature", "K", "20 degC")
 ANGULAR_SPEED = Dimension("angular speed", "rad/s", "1000 rpm", also=("1/s",))
 ANGULAR_ACCELERATION = Dimension("angular acceleration", "rad/s^2", "8 rad/s^2", also=("1/s^2",))
 
@@ -133,10 +134,22 @@ def _from_text(text: str, dimension: Dimension, field: str) -> float:
     number, unit = float(match[1]), match[2] or ""
     if not unit and dimension.unit:
         raise InputError(field, text, f"{dimension.allowed}; this text has no unit")
+    if dimension is TEMPERATURE:
+        return _kelvin(number, unit, text, field)
     factor = _factor("1" + unit if unit.startswith("/") else unit, dimension)
     if isinstance(factor, str):
         raise InputError(field, text, f"{dimension.allowed}; {factor}")
     return _scaled(number, factor)
+
+
+def _kelvin(number: float, unit: str, text: str, field: str) -> float:
+    """Temperature on the absolute scale; degrees count from an offset, which a factor cannot say."""
+    import pint
+
+    try:
+        return float(_registry().Quantity(number, _registry().parse_units(unit)).to("kelvin").magnitude)
+    except (pint.PintError, ArithmeticError) as error:
+        raise InputError(field, text, TEMPERATURE.allowed) from error
 
 
 def _scaled(number: float, factor: float) -> float:

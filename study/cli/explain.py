@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isfinite, isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,6 +13,7 @@ from study.cli.output import print_json
 if TYPE_CHECKING:
     from fluid.numbers import Array
     from study.explain import Explanation, LayerExplanation
+    from study.fidelity_words import ModelSpan
 
 
 def explain(
@@ -41,6 +43,7 @@ def explain(
 
 def _lines(answer: Explanation) -> list[str]:
     """The explanation in words."""
+    from study.fidelity_words import percent
     from study.record import RPM
 
     dry, wet = answer.critical_speed_dry * RPM, answer.critical_speed_wet * RPM
@@ -59,12 +62,33 @@ def _lines(answer: Explanation) -> list[str]:
         lines += ["natural frequencies at rest, without liquid", *_table(_mode_rows(answer))]
     for k, layer in enumerate(answer.layers):
         lines += [f"chamber {k + 1}", *_table([("fill", "empty")] if layer is None else _layer_rows(layer))]
-    lines.append("liquid model")
+    lines.append(f"liquid model, with a tolerance of {percent(answer.tolerance)}")
     for span in answer.models:
-        holds = "" if span.in_range else " (out of range)"
-        lines.append(
-            f"  {span.first * RPM:.5g} to {span.last * RPM:.5g} rpm: {span.model}{holds}: {span.reason}"
-        )
+        lines += _span_lines(span)
+    if answer.runup:
+        from textwrap import wrap
+
+        lines += ["liquid model of the run-up", *(f"  {line}" for line in wrap(answer.runup, 100))]
+    return lines
+
+
+def _span_lines(span: ModelSpan) -> list[str]:
+    """One range of speeds: the model, its error, why, and what the next better one gives."""
+    from textwrap import wrap
+
+    from study.fidelity_words import percent
+    from study.record import RPM
+
+    holds = "" if span.in_range else " (out of range)"
+    known = "not known" if isnan(span.error) else "without a bound"
+    error = percent(span.error) if isfinite(span.error) else known
+    first, last = f"{span.first * RPM:.5g}", f"{span.last * RPM:.5g}"
+    speeds = first if first == last else f"{first} to {last}"
+    lines = [f"  {speeds} rpm: {span.model}{holds}"]
+    for label, text in (("estimated error", error), ("why", span.reason), ("next better", span.better)):
+        # A number stays with its unit.
+        begin, *rest = (line.replace("\xa0", " ") for line in wrap(text.replace(" %", "\xa0%"), 88))
+        lines += [f"    {label:17}{begin}", *(f"{'':21}{line}" for line in rest)]
     return lines
 
 

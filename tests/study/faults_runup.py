@@ -53,7 +53,7 @@ FAULTS: tuple[Fault, ...] = (
         oracle.check_drive,
     ),
     Fault(
-        "study.runup",
+        "study.fidelity",
         'scene.gravity if scene.rotor.axis == "horizontal"',
         'scene.gravity if scene.rotor.axis == "vertical"',
         oracle.check_pool,

@@ -46,6 +46,7 @@ def outputs(record: StudyRecord) -> dict[str, np.ndarray]:
         "phase": phase(one.deflection),
         "growth": whirl.growth,
         "whirl_speed": whirl.whirl_speed,
+        "error_estimate": record.error_estimate,
     }
 
 
@@ -77,6 +78,7 @@ def check_each_is_what_run_gives() -> None:
                 np.testing.assert_allclose(mine, value, rtol=1e-9, atol=scale)
             else:
                 np.testing.assert_array_equal(mine, value)
+    assert any(set(row) == {"linear", "statics"} for row in answers.model.tolist())
     assert answers.dry_patch.any() and not answers.stable.all() and not answers.in_range.all()
 
 

@@ -1,0 +1,118 @@
+"""`leblanc sweep`: a grid or a sample of scenes, resumable, on one machine or a cluster."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from study.cli.output import out_dir, print_json, say
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from study.sweep_file import Sweep
+    from study.sweep_store import Store
+    from study.sweep_summary import Summary
+
+_SHOWN = 10  # kinds of reasons
+
+
+def sweep(
+    study: Annotated[Path, typer.Argument(help="Study file (TOML).")],
+    workers: Annotated[
+        int | None, typer.Option(min=0, help="Local processes, 0 for none but this [default: the cores].")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Address of a Dask scheduler, in place of local processes.")
+    ] = None,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Start anew, without what is in the store.")] = False,
+    netcdf: Annotated[bool, typer.Option("--netcdf", help="Write a netCDF copy of the store.")] = False,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the files [default: out/<study name>].")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
+) -> None:
+    """Answers of many scenes that differ in a few values; go on with it by the same command."""
+    from study.sampling import sampling_note
+    from study.sweep_file import load_sweep
+
+    plan = load_sweep(study)
+    folder = out_dir(plan.name, out)
+    note = sampling_note(plan)
+    if note is not None:
+        say(f"{plan.name}: {note}")
+
+    from study.sweep_summary import summarise, sweep_json
+
+    store = _run(plan, folder, workers, scheduler, fresh)
+    found = summarise(store, plan)
+    if netcdf:
+        from study.sweep_copy import write_copy
+
+        write_copy(store, folder / "sweep.nc")
+    if json:
+        print_json(sweep_json(store, plan, found))
+    else:
+        print("\n".join(_lines(store, plan, found)))
+    _finish(plan, found)
+
+
+def _run(plan: Sweep, folder: Path, workers: int | None, scheduler: str | None, fresh: bool) -> Store:
+    """Do what is missing, with a bar on a terminal."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    from study.sweep import run_sweep
+
+    columns = (TextColumn("samples"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    console, quiet = Console(stderr=True), not sys.stderr.isatty()
+    with Progress(*columns, console=console, transient=True, disable=quiet) as bar:
+        task = bar.add_task("samples", total=None)
+        show: Callable[[int, int], None] = lambda done, total: bar.update(task, completed=done, total=total)  # noqa: E731
+        return run_sweep(plan, folder, workers, scheduler, fresh, show)
+
+
+def _finish(plan: Sweep, found: Summary) -> None:
+    """Say on stderr how it went; with no sample done at all that is a failure."""
+    from study.faults import NotConverged, SceneFault, SceneFaults
+
+    for reason, count in found.reasons[:_SHOWN]:
+        say(f"{plan.name}: {count} of {found.samples} samples: {reason}")
+    if found.not_converged == found.samples:
+        raise NotConverged([f"{plan.name}: no sample converged at every speed"])
+    if found.failed == found.samples:
+        raise SceneFaults([SceneFault(plan.name, "vary", None, "such that some sample is a scene")])
+    say(f"{plan.name}: {found.done} of {found.samples} samples done")
+
+
+def _lines(store: Store, plan: Sweep, found: Summary) -> list[str]:
+    """Statistics and sensitivities in words."""
+    lines = [f"{'':24}{'mean':>12}{'deviation':>12}{'5 %':>12}{'50 %':>12}{'95 %':>12}  unit"]
+    for name, one in found.single.items():
+        unit = store.attributes(name)["units"]
+        numbers = [one.mean[0], one.deviation[0], *one.quantiles[0, [0, 2, 4]]]
+        lines.append(f"{name.replace('_', ' '):24}" + "".join(f"{x:12.4g}" for x in numbers) + f"  {unit}")
+    lines += _share_lines(plan, found)
+    lines.append(f"The data are in {store.path}")
+    return lines
+
+
+def _share_lines(plan: Sweep, found: Summary) -> list[str]:
+    """Shares of the variance, a line for each field."""
+    lines = []
+    for name in ("peak_amplitude", "last_amplitude", "peak_growth"):
+        one = found.sensitivities[name]
+        if one is None or (name == "peak_amplitude" and plan.scene.speeds.count == 1):
+            continue
+        lines.append(f"share of the variance of {name.replace('_', ' ')} ({one.method}):")
+        for j, field in enumerate(plan.fields):
+            line = f"  {field.path:30} first {one.first[j]:7.3f}"
+            if one.first_interval is not None:
+                line += f" +- {one.first_interval[j]:.3f}"
+            if one.total is not None and one.total_interval is not None:
+                line += f"   total {one.total[j]:7.3f} +- {one.total_interval[j]:.3f}"
+            lines.append(line)
+    return lines

@@ -1,0 +1,159 @@
+"""What a sweep costs: time over the number of workers, memory, the share that is not the answers themselves.
+
+`python -m validation.benchmarks.sweep [SAMPLES]` prints a table.
+"""
+
+from __future__ import annotations
+
+import os
+import resource
+import sys
+import tempfile
+import threading
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from study.scene_file import read_toml
+from study.sweep import run_sweep
+from study.sweep_file import Sweep, load_sweep
+
+_EXAMPLES = Path(__file__).parents[2] / "examples"
+_STUDY = """
+scene = "scene.toml"
+method = "sobol"
+samples = {samples}
+seed = 11
+[vary]
+"rotor.mass" = {{ uniform = ["3 kg", "12 kg"] }}
+"rotor.unbalance" = {{ lognormal = ["0.6 kg*mm", 1.3] }}
+"chambers.0.volume" = {{ uniform = ["2 ml", "200 ml"] }}
+"""
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Of one sweep.
+
+    Parameters
+    ----------
+    workers : local processes; 0 for none but this
+    samples : answered
+    seconds : by the clock
+    processor : seconds of all processes together
+    memory : largest of any process, and of this one, bytes
+    """
+
+    workers: int
+    samples: int
+    seconds: float
+    processor: float
+    memory: tuple[int, int]
+
+
+def one_speed_study(folder: Path, samples: int) -> Sweep:
+    """The horizontal rig at one speed with the exact equilibrium of the liquid; three values vary.
+
+    Parameters
+    ----------
+    folder : for the files
+    samples : how many
+    """
+    import json
+
+    table = read_toml(_EXAMPLES / "horizontal_rig.toml")
+    table["speeds"] = {"start": "1500 rpm", "stop": "1500 rpm", "count": 1}
+    table["model"]["liquid"] = "statics"
+    lines = [f"{key} = {json.dumps(table[key])}" for key in ("name", "source")]
+    lines += [f"{key}.{name} = {json.dumps(value)}" for key in ("rotor", "speeds", "model")
+              for name, value in table[key].items()]  # fmt: skip
+    for chamber in table["chambers"]:
+        lines += ["[[chambers]]", *(f"{name} = {json.dumps(value)}" for name, value in chamber.items())]
+    (folder / "scene.toml").write_text("\n".join(lines), encoding="utf-8")
+    (folder / "study.toml").write_text(_STUDY.format(samples=samples), encoding="utf-8")
+    return load_sweep(folder / "study.toml")
+
+
+def cost(samples: int, workers: int) -> Cost:
+    """Cost of the study, start of the workers and writing included.
+
+    Parameters
+    ----------
+    samples : how many
+    workers : local processes, 0 for none but this
+    """
+    with tempfile.TemporaryDirectory() as name:
+        sweep = one_speed_study(Path(name), samples)
+        most = _Watch()
+        before, begin = _processor(), time.perf_counter()
+        with most:
+            run_sweep(sweep, Path(name) / "out", workers)
+        seconds = time.perf_counter() - begin
+    return Cost(workers, samples, seconds, _processor() - before, (most.any, most.own))
+
+
+def _processor() -> float:
+    """Seconds of processor time of this process and of those it waited for."""
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(one.ru_utime + one.ru_stime for one in used)
+
+
+class _Watch:
+    """Largest resident memory of this process and of its children while the body runs."""
+
+    def __init__(self) -> None:
+        self.any = self.own = 0
+        self._end = threading.Event()
+        self._thread = threading.Thread(target=self._look, daemon=True)
+
+    def __enter__(self) -> None:
+        self._thread.start()
+
+    def __exit__(self, *_: object) -> None:
+        self._end.set()
+        self._thread.join()
+
+    def _look(self) -> None:
+        while not self._end.wait(0.1):
+            self.own = max(self.own, _resident(os.getpid()))
+            self.any = max(self.any, self.own, *map(_resident, _children(os.getpid())))
+
+
+def _resident(process: int) -> int:
+    """Resident memory, bytes; 0 if it has ended."""
+    try:
+        pages = Path(f"/proc/{process}/statm").read_text(encoding="ascii").split()[1]
+    except (OSError, IndexError):
+        return 0
+    return int(pages) * os.sysconf("SC_PAGE_SIZE")
+
+
+def _children(process: int) -> list[int]:
+    found = []
+    for listed in Path(f"/proc/{process}/task").glob("*/children"):
+        try:
+            found += [int(one) for one in listed.read_text(encoding="ascii").split()]
+        except OSError:  # a thread that has ended
+            continue
+    return found
+
+
+def main(samples: int) -> None:
+    """Print the table.
+
+    Parameters
+    ----------
+    samples : of the largest sweep
+    """
+    print("| samples | workers | s | processor s | us a sample | largest process, MB | first process, MB |")
+    print("|---|---|---|---|---|---|---|")
+    for count, workers in ((samples // 10, 0), (samples, 0), (samples, 1), (samples, 2)):
+        one = cost(count, workers)
+        any_, own = (size / 1e6 for size in one.memory)
+        each = one.processor / count * 1e6
+        print(f"| {count} | {workers} | {one.seconds:.1f} | {one.processor:.1f} | {each:.0f} "
+              f"| {any_:.0f} | {own:.0f} |", flush=True)  # fmt: skip
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 100_000)
