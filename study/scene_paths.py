@@ -123,13 +123,18 @@ def _must_be_alone(table: Mapping[str, Any], keys: Keys) -> None:
 def with_values(table: Mapping[str, Any], changes: Iterable[tuple[Keys, Any]]) -> dict[str, Any]:
     """The content of a scene with other values; only what leads to them is copied.
 
+    A single speed has one value: its start and stop move together.
+
     Parameters
     ----------
     table : content of a scene file
     changes : keys along the path of each value, and the value
     """
-    changed = dict(table)
-    for keys, value in changes:
+    changed, pairs = dict(table), list(changes)
+    ends = [(keys, value) for keys, value in pairs if keys in (("speeds", "start"), ("speeds", "stop"))]
+    if len(ends) == 1 and table["speeds"]["count"] == 1:
+        pairs += [(("speeds", end), ends[0][1]) for end in ("start", "stop")]
+    for keys, value in pairs:
         node: Any = changed
         for key in keys[:-1]:
             below = node[key] if isinstance(key, int) else node.get(key, {})

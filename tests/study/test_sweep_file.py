@@ -225,3 +225,18 @@ def test_other_values_leave_the_table_as_it_was(tmp_path: Path) -> None:
     assert changed["chambers"][0] is table["chambers"][0]
     assert scene_from_table(changed).model.liquid == "auto"
     assert np.isclose(scene_from_table(changed).chambers[1].volume, 1e-5, rtol=1e-15)
+
+
+def test_a_single_speed_moves_as_one(tmp_path: Path) -> None:
+    """Of one speed start and stop stay equal, whichever is varied; of several each is its own."""
+    table = study_in(tmp_path).table
+    for end in ("start", "stop"):
+        one = table | {"speeds": {"start": 10.0, "stop": 10.0, "count": 1}}
+        assert with_values(one, [(("speeds", end), 55.0)])["speeds"] == {
+            "start": 55.0,
+            "stop": 55.0,
+            "count": 1,
+        }
+        many = table | {"speeds": {"start": 10.0, "stop": 90.0, "count": 3}}
+        moved = with_values(many, [(("speeds", end), 55.0)])["speeds"]
+        assert moved == many["speeds"] | {end: 55.0}
