@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from meshes.border import InputError
 
@@ -75,7 +75,7 @@ class Emulator:
     settled: bool
     error: CrossValidation
 
-    def predict(self, values: Array) -> tuple[Array, Array]:
+    def predict(self, values: ArrayLike) -> tuple[Array, Array]:
         """Output and its standard deviation.
 
         Parameters
@@ -90,14 +90,14 @@ class Emulator:
         ------
         InputError : a value outside the ranges
         """
-        slack = 1e-9 * (self.high - self.low)
+        points, slack = np.asarray(values, dtype=float), 1e-9 * (self.high - self.low)
         for k, name in enumerate(self.fields):
-            column = values[:, k]
+            column = points[:, k]
             wrong = ~((column >= self.low[k] - slack[k]) & (column <= self.high[k] + slack[k]))
             if wrong.any():
                 allowed = f"inside the range of the samples, {self.low[k]:g} to {self.high[k]:g}"
                 raise InputError(name, float(column[wrong][0]), allowed)
-        mean, deviation = self.process.predict(_unit(values, self.low, self.high, self.wide), return_std=True)
+        mean, deviation = self.process.predict(_unit(points, self.low, self.high, self.wide), return_std=True)
         mean, deviation = self.centre + self.scale * mean, self.scale * deviation
         return (np.exp(mean), np.exp(mean) * deviation) if self.positive else (mean, deviation)
 

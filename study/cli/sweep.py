@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -13,6 +13,7 @@ from study.cli.output import out_dir, print_json, say
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from study.emulator import Emulator
     from study.sweep_file import Sweep
     from study.sweep_store import Store
     from study.sweep_summary import Summary
@@ -30,6 +31,9 @@ def sweep(
     ] = None,
     fresh: Annotated[bool, typer.Option("--fresh", help="Start anew, without what is in the store.")] = False,
     netcdf: Annotated[bool, typer.Option("--netcdf", help="Write a netCDF copy of the store.")] = False,
+    emulate: Annotated[
+        bool, typer.Option("--emulate", help="Fit emulators to the outputs and tell their errors.")
+    ] = False,
     out: Annotated[
         Path | None, typer.Option(help="Folder for the files [default: out/<study name>].")
     ] = None,
@@ -53,11 +57,45 @@ def sweep(
         from study.sweep_copy import write_copy
 
         write_copy(store, folder / "sweep.nc")
+    emulators = None
+    if emulate:
+        from study.sweep_emulator import emulated_outputs
+
+        emulators = emulated_outputs(store, plan.seed)
     if json:
-        print_json(sweep_json(store, plan, found))
+        print_json(sweep_json(store, plan, found) | _emulator_json(emulators))
     else:
-        print("\n".join(_lines(store, plan, found)))
+        print("\n".join([*_lines(store, plan, found), *_emulator_lines(emulators)]))
     _finish(plan, found)
+
+
+def _emulator_json(emulators: dict[str, Emulator | str] | None) -> dict[str, Any]:
+    """Cross-validated errors by output, or why there is none."""
+    if emulators is None:
+        return {}
+    return {
+        "emulators": {
+            name: {"reason": one} if isinstance(one, str) else {"settled": one.settled, "error": one.error}
+            for name, one in emulators.items()
+        }
+    }
+
+
+def _emulator_lines(emulators: dict[str, Emulator | str] | None) -> list[str]:
+    """The same in words."""
+    lines = []
+    for name, one in (emulators or {}).items():
+        label = f"emulator of {name.replace('_', ' ')}"
+        if isinstance(one, str):
+            lines.append(f"{label}: none; {one}")
+            continue
+        error, of = one.error, "" if one.positive else " of the spread"
+        lines.append(
+            f"{label}: off by {error.root_mean_square:.2g}{of} on unseen samples (root mean square; "
+            f"largest {error.largest:.2g}, by the mean alone {error.spread:.2g}), "
+            f"{error.within_two:.0%} within twice what it claims"
+        )
+    return lines
 
 
 def _run(plan: Sweep, folder: Path, workers: int | None, scheduler: str | None, fresh: bool) -> Store:
