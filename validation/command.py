@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 GROUPS = (
     *("errata", "optimal_volume", "vector_model", "horizontal_rig", "vertical_rig", "layer", "whirl", "tub"),
-    *("two_plane", "exciter"),
+    *("two_plane", "exciter", "fill_sweep"),
 )
 
 
@@ -62,6 +62,7 @@ def _group(name: str) -> Callable[[], list[Case]]:
     from validation import (
         errata,
         exciter,
+        fill_sweep,
         horizontal_rig,
         layer,
         optimal_volume,
@@ -83,6 +84,7 @@ def _group(name: str) -> Callable[[], list[Case]]:
         "tub": tub.cases,
         "two_plane": two_plane.cases,
         "exciter": exciter.cases,
+        "fill_sweep": fill_sweep.cases,
     }[name]
 
 

@@ -1,0 +1,120 @@
+"""`leblanc optimise`: the best volume of liquid for each chamber."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from study.cli.output import out_dir, print_json, say
+
+if TYPE_CHECKING:
+    from study.optimise import OptimumRecord
+    from study.optimise_table import Aim
+    from study.scene import Scene
+
+
+def optimise(
+    scene: Annotated[Path, typer.Argument(help="Scene file (TOML), with or without a table [optimise].")],
+    objective: Annotated[
+        str | None,
+        typer.Option(
+            help="working_speed, peak, mean, least_mass or robust [default: the scene's, or working_speed]."
+        ),
+    ] = None,
+    deflection: Annotated[
+        str | None, typer.Option(help="Given deflection: the least liquid that covers the walls at it.")
+    ] = None,
+    limit: Annotated[
+        str | None, typer.Option(help="Vibration limit of the objective least_mass [default: the scene's].")
+    ] = None,
+    steady: Annotated[
+        bool, typer.Option("--steady", help="Peak of the steady response even if the scene has a run-up.")
+    ] = False,
+    seed: Annotated[int | None, typer.Option(help="Of the random sample of the objective robust.")] = None,
+    no_front: Annotated[
+        bool, typer.Option("--no-front", help="Leave out what must be given up for what.")
+    ] = False,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the files [default: out/<scene name>].")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
+) -> None:
+    """Best volume(s) for an objective, within constraints: figures, data file."""
+    from study.scene import load_scene
+
+    machine = load_scene(scene)
+    aim = _aim(machine, objective, deflection, limit, steady, seed)
+    folder = out_dir(machine.name, out)
+    record = _run(machine, aim, not no_front)
+
+    from study.figures.optimise import write_figures
+    from study.optimise_results import optimum_json, write_optimum
+
+    write_optimum(record, folder / "optimum.nc")
+    files = write_figures(record, folder)
+    if json:
+        print_json(optimum_json(record))
+    else:
+        from study.optimise_words import describe_optimum
+
+        print("\n".join(describe_optimum(record)))
+        shown = ", ".join(str(one.png) for one in files)
+        print(f"The data are in {folder / 'optimum.nc'}" + (f"; look at {shown}" if shown else ""))
+    say(f"{record.scene.name}: {record.evaluations} sets of volumes judged")
+
+
+def _aim(
+    machine: Scene,
+    objective: str | None,
+    deflection: str | None,
+    limit: str | None,
+    steady: bool,
+    seed: int | None,
+) -> Aim:
+    """The scene's aim with what the options say in its place."""
+    from meshes.border import InputError
+    from study.optimise_table import OBJECTIVES, Aim
+
+    aim = machine.optimise or Aim()
+    if objective is not None:
+        if objective not in OBJECTIVES:
+            raise InputError("--objective", objective, "one of " + ", ".join(OBJECTIVES))
+        aim = replace(aim, objective=objective)
+    if deflection is not None:
+        aim = replace(aim, deflection=_length(deflection, "--deflection"))
+    if limit is not None:
+        aim = replace(aim, vibration_limit=_length(limit, "--limit"))
+    if seed is not None:
+        if seed < 0:
+            raise InputError("--seed", seed, "a whole number, 0 or above")
+        aim = replace(aim, seed=seed)
+    return replace(aim, steady=aim.steady or steady)
+
+
+def _length(text: str, option: str) -> float:
+    """A length above 0 in metres."""
+    from meshes.border import InputError
+    from study.units import LENGTH, parse_option
+
+    value = parse_option(text, LENGTH, option)
+    if not 1e-12 <= value <= 1e3:
+        raise InputError(option, text, "from 1e-12 to 1000 m")
+    return value
+
+
+def _run(machine: Scene, aim: Aim, front: bool) -> OptimumRecord:
+    """The search itself, with a count on a terminal."""
+    from rich.progress import Progress, SpinnerColumn, TextColumn
+
+    from study.optimise import optimise_scene
+
+    columns = SpinnerColumn(), TextColumn("{task.completed} sets of volumes judged")
+    with Progress(*columns, transient=True, disable=not sys.stderr.isatty()) as bar:
+        task = bar.add_task("judging", total=None)
+        return optimise_scene(
+            machine, aim=aim, front=front, progress=lambda count: bar.update(task, completed=count)
+        )

@@ -1,0 +1,111 @@
+"""What the volumes of a scene's chambers are judged by: the vibration to be made small [theory: optimum]."""
+
+from __future__ import annotations
+
+import math
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from study.fill_answers import FilledMachine, with_volumes
+from study.scene import Scene
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+class Vibration(Protocol):
+    """A vibration that depends on the volumes of m sets, m^3, shape (m, c)."""
+
+    def exact(self, volumes: Array, bound: float = math.inf) -> Array:
+        """Vibration, m, shape (m,); above the bound an estimate from below will do."""
+        ...
+
+    def least(self, volumes: Array, bound: float = math.inf) -> tuple[Array, Flags]:
+        """The same, known for sure where it is least; elsewhere estimates from below.
+
+        Parameters
+        ----------
+        volumes : m^3, shape (m, c)
+        bound : what is above it need not be known for sure even if it is least
+
+        Returns
+        -------
+        vibration, m, and where that is sure, shape (m,) each
+        """
+        ...
+
+
+class AlwaysExact:
+    """A vibration that costs the same to know for sure."""
+
+    def exact(self, volumes: Array, bound: float = math.inf) -> Array:
+        """See `Vibration`."""
+        raise NotImplementedError
+
+    def least(self, volumes: Array, bound: float = math.inf) -> tuple[Array, Flags]:
+        """See `Vibration`; sure everywhere."""
+        return self.exact(volumes, bound), np.ones(volumes.shape[0], dtype=bool)
+
+
+class AtSpeed(AlwaysExact):
+    """Amplitude at one speed, or the weighted mean over several [theory: optimum, eq. 2].
+
+    Parameters
+    ----------
+    machine : with any volumes
+    speeds, weights : rad/s and their shares, shape (k,)
+    """
+
+    def __init__(self, machine: FilledMachine, speeds: Array, weights: Array) -> None:
+        self.machine, self.speeds, self.weights = machine, speeds, weights / weights.sum()
+
+    def exact(self, volumes: Array, bound: float = math.inf) -> Array:
+        """See `Vibration`."""
+        count = self.speeds.size
+        pairs = self.machine.at(np.repeat(volumes, count, axis=0), np.tile(self.speeds, volumes.shape[0]))
+        return np.asarray(pairs.amplitude.reshape(-1, count) @ self.weights)
+
+
+class RunupPeak(AlwaysExact):
+    """Largest amplitude of a run-up in time.
+
+    Parameters
+    ----------
+    scene : with a table `runup`
+    cells : round each wall; the scene's if None
+    """
+
+    def __init__(self, scene: Scene, cells: int | None = None) -> None:
+        from study.runup import across_gravity, drive_of, numerics_of, planned
+        from study.runup_range import liquid_model
+
+        plan = planned(scene)
+        self.scene, self.drive, self.gravity = scene, drive_of(plan), across_gravity(scene)
+        self.numerics = numerics_of(plan, cells, check=False)
+        self.model = liquid_model(scene)
+        self._known: dict[bytes, float] = {}
+
+    @property
+    def asked(self) -> int:
+        """How many run-ups were made."""
+        return len(self._known)
+
+    def exact(self, volumes: Array, bound: float = math.inf) -> Array:
+        """See `Vibration`; infinite for a run that did not come to its end."""
+        return np.array([self._one(np.ascontiguousarray(row)) for row in volumes])
+
+    def _one(self, volumes: Array) -> float:
+        from solvers.runup import run_up
+        from study.machine import dry_rotor
+
+        key = volumes.tobytes()
+        if key not in self._known:
+            law, fills = self.scene.model.friction, with_volumes(self.scene, volumes).chambers
+            system = dry_rotor(self.scene).system()
+            friction = (law.law, law.coefficient)
+            numerics, drive = self.numerics, self.drive
+            run = run_up(system, fills, drive, friction, self.gravity, numerics, None, self.model)
+            self._known[key] = float(run.amplitude.max()) if run.converged else math.inf
+        return self._known[key]

@@ -1,0 +1,62 @@
+"""The front of an optimum: a sweep from no liquid to the fullest, and what the search met by the way."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.fill_judged import Array
+from solvers.fill_search import Found
+from study.constraints import growth
+from study.goal import Goal
+from study.pareto import Front, front_of, not_dominated
+from study.scene import Scene
+
+_SWEEP, _SPARING = 40, 12  # volumes of the dedicated sweep; where an answer costs much
+_MOST_IN_FRONT = 60  # of the points judged by the way
+
+
+def front_around(
+    scene: Scene, goal: Goal, found: Found, vibration: float, speeds: Array
+) -> tuple[Front, Front]:
+    """What must be given up for what.
+
+    Parameters
+    ----------
+    scene, goal : the machine and what it is judged by
+    found : by the search
+    vibration : of the best volumes, m
+    speeds : at which small whirls are looked at, rad/s
+
+    Returns
+    -------
+    the front, and all of the sweep from no liquid to the fullest chamber, shares as in the best volumes
+    """
+    judge, known = goal.judge, found.judged.details
+    count = _SPARING if goal.costly else _SWEEP
+    high = np.array([fill.chamber.capacity for fill in scene.chambers])
+    share = np.concatenate(([0.0], np.geomspace(1e-3, 1.0, count)))
+    along = found.point if found.point.max() > 0.0 else high
+    room = float(np.min(high[along > 0.0] / along[along > 0.0]))
+    rows = [np.minimum(share[:, None] * room * along, high), found.point[None]]
+    swept = np.unique(np.concatenate(rows), axis=0)
+    exact = np.flatnonzero((known["sure"] == 1.0) & np.isfinite(known["vibration"]))
+    by_the_way = exact[_thin(known["vibration"][exact], known["mass"][exact])]
+    volume = np.concatenate((swept, found.points[by_the_way]))
+    size = np.concatenate((judge.vibration.exact(swept), known["vibration"][by_the_way]))
+    size[np.all(volume == found.point, axis=1)] = vibration
+    margin, mass = -growth(scene, volume, speeds), volume @ judge.density
+    part = slice(0, swept.shape[0])
+    whole = Front(volume[part], size[part], mass[part], margin[part])
+    return front_of(volume, size, mass, margin), whole
+
+
+def _thin(vibration: Array, mass: Array) -> NDArray[np.intp]:
+    """Of the points that are not beaten in vibration and mass a few, evenly chosen."""
+    kept = np.flatnonzero(not_dominated(np.stack((vibration, mass), axis=1)))
+    kept = kept[np.argsort(mass[kept], kind="stable")]
+    return (
+        kept[np.unique(np.linspace(0, max(kept.size - 1, 0), _MOST_IN_FRONT).astype(int))]
+        if kept.size
+        else kept
+    )

@@ -1,0 +1,89 @@
+"""What the best volumes cost to find: processor time of the search for one, two and three chambers.
+
+`python -m validation.benchmarks.optimise` prints a table; times are of one core, with the front left out.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from study.optimise import optimise_scene
+from study.optimise_table import Aim
+from study.scene import Scene, load_scene
+
+_EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+SCENES = ("runup", "centrifuge", "washing_machine", "horizontal_rig", "vertical_rig")
+OBJECTIVES = ("working_speed", "peak", "mean", "least_mass")
+
+
+@dataclass(frozen=True)
+class Cost:
+    """One search.
+
+    Parameters
+    ----------
+    scene, chambers, objective : what was asked
+    seconds : of processor time
+    judged : sets of volumes
+    """
+
+    scene: str
+    chambers: int
+    objective: str
+    seconds: float
+    judged: int
+
+
+def measured(name: str, objective: str) -> Cost:
+    """Cost of one search; the mean is over four speeds, the peak is the steady one."""
+    scene = load_scene(_EXAMPLES / f"{name}.toml")
+    aim = Aim(objective, steady=True, duty=_duty(scene), vibration_limit=_limit(scene, objective))
+    begin = time.process_time()
+    best = optimise_scene(scene, aim=aim, front=False)
+    seconds = time.process_time() - begin
+    return Cost(scene.name, len(scene.chambers), objective, seconds, best.evaluations)
+
+
+def _duty(scene: Scene) -> tuple[tuple[float, float], ...]:
+    """Mostly the last speed, and the way there."""
+    speeds = scene.speeds
+    return tuple(
+        (speeds.start + share * (speeds.stop - speeds.start), weight)
+        for share, weight in ((0.25, 0.1), (0.5, 0.2), (0.75, 0.2), (1.0, 0.5))
+    )
+
+
+def _limit(scene: Scene, objective: str) -> float | None:
+    """Half of what the liquid can do."""
+    if objective != "least_mass":
+        return None
+    best = optimise_scene(replace(scene, optimise=None), aim=Aim("working_speed"), front=False)
+    return 0.5 * (best.value + best.baseline)
+
+
+def table() -> str:
+    """All searches as a table in Markdown."""
+    lines = ["| scene | chambers | objective | seconds | sets of volumes |", "|---|---:|---|---:|---:|"]
+    for name in SCENES:
+        for objective in OBJECTIVES:
+            one = measured(name, objective)
+            lines.append(
+                f"| {one.scene} | {one.chambers} | {one.objective} | {one.seconds:.2f} | {one.judged} |"
+            )
+            print(lines[-1], flush=True)
+    return "\n".join(lines)
+
+
+def main() -> None:
+    """Print the table."""
+    from threadpoolctl import threadpool_limits
+
+    with threadpool_limits(1):
+        measured("runup", "working_speed")  # imports and caches
+        table()
+
+
+if __name__ == "__main__":
+    main()
