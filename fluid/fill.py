@@ -94,6 +94,21 @@ class Fills:
         """One fill so many times."""
         return cls.of([fill]).at(np.zeros(count, dtype=np.intp))
 
+    @classmethod
+    def joined(cls, parts: Sequence[Fills]) -> Fills:
+        """Some arrays one behind the other."""
+        columns = [
+            np.concatenate([take(part) for part in parts])
+            for take in (
+                lambda one: one.chamber.radius,
+                lambda one: one.chamber.height,
+                lambda one: one.chamber.inner_radius,
+                lambda one: one.density,
+                lambda one: one.volume,
+            )
+        ]
+        return cls(Chambers(*columns[:3]), columns[3], columns[4])
+
     def at(self, which: NDArray[np.intp]) -> Fills:
         """Those at some indices, in their order, shape (m,)."""
         return Fills(self.chamber.at(which), self.density[which], self.volume[which])

@@ -187,8 +187,11 @@ def _solve(
     converged = (fill <= 0.0) | (fill >= 1.0)
     # The depth nowhere exceeds the wetted height, so the fill is a lower bound of it.
     low, high = np.minimum(fill, full), full.copy()
-    # A nearly flat surface stands at that bound.
+    # A surface clear of the walls is known [theory: statics, eq. 3]; a nearly flat one is near the bound.
+    disc = np.pi * np.square(chamber.radius) * chamber.height
+    clear = 0.5 + steep * (volume / disc + eps * (2.0 + eps))
     guess = np.where(full < 2.0, low, np.sqrt(low * high))
+    guess = np.where((clear > low) & (clear < high), clear, guess)
     for _ in range(_ITERATIONS):
         todo = np.flatnonzero(~converged)
         if todo.size == 0:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -94,22 +94,18 @@ class Pairs:
 
     def liquid(self, deflection: Array, which: Index) -> LiquidState:
         """The liquid of some pairs at deflections, shape (m,)."""
-        unbalance, slope = np.zeros((2, *deflection.shape))
-        dry = np.zeros(deflection.shape, dtype=bool)
-        in_range, converged = np.ones((2, *deflection.shape), dtype=bool)
-        for slot in self.slots:
-            place = slot.place[which]
-            rows = np.flatnonzero(place >= 0)
-            if rows.size == 0:
-                continue
-            here, own = slot.fills.at(place[rows]), which[rows]
-            e = deflection[rows]
-            one = self.model.synchronous(here, self.speed[own], e, self.gravity[own])
-            unbalance[rows] += one.unbalance
-            slope[rows] += one.slope
-            dry[rows] |= one.dry_patch
-            in_range[rows] &= one.in_range
-            converged[rows] &= one.converged
+        size, found = deflection.size, self.chambers(which)
+        dry = np.zeros(size, dtype=bool)
+        in_range, converged = np.ones((2, size), dtype=bool)
+        if found is None:
+            return LiquidState(*np.zeros((2, size)), dry, in_range, converged)
+        rows, fills, _ = found
+        own = which[rows]
+        one = self.model.synchronous(fills, self.speed[own], deflection[rows], self.gravity[own])
+        np.logical_or.at(dry, rows, one.dry_patch)
+        np.logical_and.at(in_range, rows, one.in_range)
+        np.logical_and.at(converged, rows, one.converged)
+        unbalance, slope = (np.bincount(rows, x, minlength=size) for x in (one.unbalance, one.slope))
         return LiquidState(unbalance, slope, dry, in_range, converged)
 
     def pull(self, deflection: Array, which: Index) -> Array:
@@ -117,20 +113,33 @@ class Pairs:
 
         Up to its limit a chamber's law is known; beyond it the model is asked.
         """
-        total = np.zeros(deflection.shape)
-        for slot in self.slots:
-            place = slot.place[which]
-            rows = np.flatnonzero(place >= 0)
-            own, e = which[rows], deflection[rows]
-            here = slot.fills.at(place[rows])
-            moment = here.full_mass * e
-            bent = np.flatnonzero(e > slot.limit[own])
-            if bent.size:
-                k = own[bent]
-                law = self.model.synchronous(here.at(bent), self.speed[k], e[bent], self.gravity[k])
-                moment[bent] = law.unbalance
-            total[rows] += np.maximum(moment - here.mass * e, 0.0)
+        found = self.chambers(which)
+        if found is None:
+            return np.zeros(deflection.shape)
+        rows, fills, limit = found
+        e = deflection[rows]
+        moment = fills.full_mass * e
+        bent = np.flatnonzero(e > limit)
+        if bent.size:
+            k = which[rows[bent]]
+            law = self.model.synchronous(fills.at(bent), self.speed[k], e[bent], self.gravity[k])
+            moment[bent] = law.unbalance
+        total = np.bincount(rows, np.maximum(moment - fills.mass * e, 0.0), minlength=deflection.size)
         return np.asarray(np.square(self.speed[which]) * total)
+
+    def chambers(self, which: Index) -> tuple[Index, Fills, Array] | None:
+        """All chambers of some pairs at once: whose they are, and their limits; None if there are none.
+
+        A model that is asked once for many states takes little longer than for a few.
+        """
+        places = [slot.place[which] for slot in self.slots]
+        rows = [np.flatnonzero(place >= 0) for place in places]
+        if not any(one.size for one in rows):
+            return None
+        parts = zip(self.slots, places, rows, strict=True)
+        fills = Fills.joined([slot.fills.at(place[one]) for slot, place, one in parts])
+        limits = [slot.limit[which[one]] for slot, one in zip(self.slots, rows, strict=True)]
+        return np.concatenate(rows), fills, np.concatenate(limits)
 
 
 def pair_machines(
@@ -158,14 +167,30 @@ def pair_machines(
         place = index[owner]
         rows = np.flatnonzero(place >= 0)
         here = fills.at(place[rows])
-        limit = np.full(owner.shape, np.inf)
-        limit[rows] = model.linear_limit(here, speed[rows], own_gravity[rows])
         sums[:, rows] += here.mass, here.full_mass, here.mass * here.chamber.radius
-        slots.append(Slot(fills, place, limit))
+        slots.append(Slot(fills, place, np.full(owner.shape, np.inf)))
     mass, stiffness, damping, unbalance = np.ascontiguousarray(rotors[owner].T)
-    return Pairs(
+    pairs = Pairs(
         *(mass, stiffness, damping, unbalance, speed, own_gravity, model, tuple(slots)),
         liquid_mass=sums[0],
         full_mass=sums[1],
         reach=sums[2],
     )
+    return replace(pairs, slots=_with_limits(pairs))
+
+
+def _with_limits(pairs: Pairs) -> tuple[Slot, ...]:
+    """The slots with the limits of all chambers, which the model is asked for at once."""
+    everyone = np.arange(pairs.speed.size)
+    found = pairs.chambers(everyone)
+    if found is None:
+        return pairs.slots
+    rows, fills, _ = found
+    limits = pairs.model.linear_limit(fills, pairs.speed[rows], pairs.gravity[rows])
+    slots, first = [], 0
+    for slot in pairs.slots:
+        limit, there = slot.limit.copy(), slot.place >= 0
+        limit[there] = limits[first : first + np.count_nonzero(there)]
+        first += np.count_nonzero(there)
+        slots.append(replace(slot, limit=limit))
+    return tuple(slots)

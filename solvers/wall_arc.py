@@ -58,7 +58,7 @@ def _clip(x: Array) -> Array:
 
 
 def _present(start: Array, stop: Array, rise: Array | None) -> Index:
-    """States in which a panel is there: one of no length still counts if the surface crosses it like a wall."""
+    """States in which a panel is there; one of no length counts if the surface crosses it like a wall."""
     there = stop > start
     return np.flatnonzero(there if rise is None else there | (rise != 0.0))
 
@@ -71,9 +71,13 @@ def _half_angle_squared_sine(depth_drop: Array, span: Array) -> Array:
     return out
 
 
-def _far_panel(eps: Array, span: Array, zeta: Array, start: Array, stop: Array, rise: Array | None) -> _Panel:
+def _far_panel(
+    eps: Array, span: Array, zeta: Array, start: Array, stop: Array, rise: Array | None
+) -> _Panel | None:
     """Wall from psi = start to stop, both in the far part."""
     rows = _present(start, stop, rise)
+    if rows.size == 0:
+        return None
     eps, span, zeta, start, stop = (x[rows] for x in (eps, span, zeta, start, stop))
     half = 0.5 * (stop - start)[..., None]
     psi = 0.5 * (stop + start)[..., None] + half * _FAR[0]
@@ -95,9 +99,11 @@ def _far_panel(eps: Array, span: Array, zeta: Array, start: Array, stop: Array, 
 
 def _near_panel(
     eps: Array, span: Array, nearest: Array, start: Array, stop: Array, rise: Array | None
-) -> _Panel:
+) -> _Panel | None:
     """Wall from sin(v/2) = start to stop, v = pi - psi; `nearest` is the depth at v = 0."""
     rows = _present(start, stop, rise)
+    if rows.size == 0:
+        return None
     eps, span, nearest, start, stop = (x[rows] for x in (eps, span, nearest, start, stop))
     safe = np.maximum(eps, np.finfo(float).tiny)
     width = np.maximum(np.abs(1.0 - eps) / (2.0 * np.sqrt(safe)), _NARROWEST)
@@ -124,9 +130,11 @@ def _near_panel(
 
 def _disc_panel(
     steep: Array, nearest: Array, inner: Array, start: Array, stop: Array, rise: Array | None
-) -> _Panel:
+) -> _Panel | None:
     """Full circles from s = inner - start down to inner - stop; `nearest` is the depth at s = inner."""
     rows = _present(start, stop, rise)
+    if rows.size == 0:
+        return None
     steep, nearest, inner, start, stop = (x[rows] for x in (steep, nearest, inner, start, stop))
     half = 0.5 * (stop - start)[..., None]
     fall = 0.5 * (stop + start)[..., None] + half * _DISC[0]
@@ -164,14 +172,15 @@ def _panels(eps: Array, steep: Array, zeta: Array) -> list[_Panel]:
     lid_fall = _fall(deepest - 1.0, steep, inner)
     floor_fall = _fall(deepest, steep, inner)
     bottom = deepest - steep * inner
-    return [
+    panels = (
         _far_panel(eps, span, zeta, none, lid_far, None),
         _far_panel(eps, span, zeta, lid_far, floor_far, _clip(zeta) - _clip(middle)),
         _near_panel(eps, span, nearest, lid_near, near_end, None),
         _near_panel(eps, span, nearest, floor_near, lid_near, _clip(middle) - _clip(nearest)),
         _disc_panel(steep, deepest, inner, none, lid_fall, None),
         _disc_panel(steep, deepest, inner, lid_fall, floor_fall, _clip(deepest) - _clip(bottom)),
-    ]
+    )
+    return [panel for panel in panels if panel is not None]
 
 
 def _fall(depth: Array, steep: Array, inner: Array) -> Array:

@@ -17,9 +17,9 @@ FAULTS: tuple[Fault, ...] = (
         oracle.check_sums,
     ),
     Fault(PAIRS, "place = index[owner]", "place = index[owner[::-1]]", oracle.check_each_as_if_alone),
-    Fault(PAIRS, "moment - here.mass * e", "moment", oracle.check_sums),
-    Fault(PAIRS, "unbalance[rows] += one.unbalance", "unbalance[rows] = one.unbalance", oracle.check_sums),
-    Fault(PAIRS, "slope[rows] += one.slope", "slope[rows] = one.slope", oracle.check_sums),
+    Fault(PAIRS, "moment - fills.mass * e", "moment", oracle.check_sums),
+    Fault(PAIRS, "(one.unbalance, one.slope))", "(one.slope, one.unbalance))", oracle.check_sums),
+    Fault(PAIRS, "moment = fills.full_mass * e", "moment = fills.mass * e", oracle.check_sums),
     Fault(PAIRS, "moment[bent] = law.unbalance", "moment[bent] = law.slope", oracle.check_sums),
     Fault(
         "fluid.fill", "return self.density * self.volume", "return self.volume", oracle.check_arrays_of_fills

@@ -16,13 +16,13 @@ FAULTS: tuple[Fault, ...] = (
         "solvers.rotor.jeffcott",
         "- self.mass * np.square(speed) + 1j",
         "+ self.mass * np.square(speed) + 1j",
-        oracle.check_added_mass,
+        oracle.check_balance,
     ),
     Fault(
         "solvers.rotor.jeffcott",
         "+ 1j * self.damping * speed",
         "- 1j * self.damping * speed",
-        oracle.check_added_mass,
+        oracle.check_balance,
     ),
     Fault(
         "solvers.response",
