@@ -90,6 +90,17 @@ class Emulator:
         ------
         InputError : a value outside the ranges
         """
+        mean, deviation = self.process.predict(self._points(values), return_std=True)
+        mean, deviation = self.centre + self.scale * mean, self.scale * deviation
+        return (np.exp(mean), np.exp(mean) * deviation) if self.positive else (mean, deviation)
+
+    def output(self, values: ArrayLike) -> Array:
+        """Output alone, at a fraction of the cost; see `predict`."""
+        mean = self.centre + self.scale * self.process.predict(self._points(values))
+        return np.exp(mean) if self.positive else mean
+
+    def _points(self, values: ArrayLike) -> Array:
+        """Values over their ranges."""
         points, slack = np.asarray(values, dtype=float), 1e-9 * (self.high - self.low)
         for k, name in enumerate(self.fields):
             column = points[:, k]
@@ -97,9 +108,7 @@ class Emulator:
             if wrong.any():
                 allowed = f"inside the range of the samples, {self.low[k]:g} to {self.high[k]:g}"
                 raise InputError(name, float(column[wrong][0]), allowed)
-        mean, deviation = self.process.predict(_unit(points, self.low, self.high, self.wide), return_std=True)
-        mean, deviation = self.centre + self.scale * mean, self.scale * deviation
-        return (np.exp(mean), np.exp(mean) * deviation) if self.positive else (mean, deviation)
+        return _unit(points, self.low, self.high, self.wide)
 
 
 def emulate(fields: Sequence[str], values: Array, output: Array, seed: int = 0) -> Emulator:

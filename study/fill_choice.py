@@ -32,7 +32,7 @@ _FEW = SearchPlan(
     levels=(14, 9, 5), crossed=False, finest=1e-3, sweeps=6, settled=5e-4, hair=2e-5, edge=1e-3, sections=10
 )
 _AGAIN = 3  # searches at most, if a peak turns out to have been hidden between the speeds looked at
-_CLOSER = 6  # of the best run-ups on few cells are run again on all
+_CLOSER = 6  # of the best that a cheaper judge found are judged again
 
 
 def bounds_of(scene: Scene, aim: Aim) -> tuple[Array, Array]:
@@ -127,12 +127,21 @@ def on_all_cells(scene: Scene, goal: Goal, found: Found) -> tuple[Found, Goal]:
     if coarse.numerics.cells >= scene.runup.cells:
         return found, goal
     fine = replace(goal, judge=replace(goal.judge, vibration=RunupPeak(scene), best=math.inf))
+    return judged_again(fine, found), fine
+
+
+def judged_again(fine: Goal, found: Found) -> Found:
+    """The best of what a search with a cheaper judge found, by the goal's own judge.
+
+    Parameters
+    ----------
+    fine : the goal
+    found : by the search
+    """
     allowed = np.maximum(found.judged.excess, 0.0) <= max(found.excess, 0.0)
     order = np.flatnonzero(allowed)[np.argsort(found.judged.objective[allowed], kind="stable")]
     tried = np.unique(np.concatenate((found.point[None], found.points[order[:_CLOSER]])), axis=0)
     again = fine.judge(tried)
     best = int(np.argmin(np.where(again.excess <= max(found.excess, 0.0), again.objective, math.inf)))
-    chosen = replace(
-        found, point=tried[best], objective=float(again.objective[best]), excess=float(again.excess[best])
-    )
-    return chosen, fine
+    objective, excess = float(again.objective[best]), float(again.excess[best])
+    return replace(found, point=tried[best], objective=objective, excess=excess)

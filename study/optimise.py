@@ -15,9 +15,10 @@ from solvers.fill_judged import Judgement
 from solvers.fill_search import Found
 from study.constraints import Verdict, growth
 from study.covering import Covering, covering
+from study.emulated_fills import EmulatedAnswer, EmulatedVibration
 from study.fidelity import axial_gravity
 from study.fill_answers import FilledMachine, with_volumes
-from study.fill_choice import best_volumes, bounds_of, on_all_cells
+from study.fill_choice import best_volumes, bounds_of, judged_again, on_all_cells
 from study.given_deflection import cover_walls, dry_verdict, liquid_unbalance, one_point
 from study.goal import Goal, goal_of, growth_speeds
 from study.objectives import RunupPeak
@@ -55,6 +56,7 @@ class OptimumRecord:
     front : what must be given up for what; None if it was not asked for
     sweep : from no liquid to the fullest chamber, shares as in the answer; None with the front
     notes : limits and findings, in words
+    emulated : what the emulator that the search asked says of the answer; None without one
     """
 
     scene: Scene
@@ -79,6 +81,7 @@ class OptimumRecord:
     front: Front | None
     sweep: Front | None
     notes: tuple[str, ...]
+    emulated: EmulatedAnswer | None = None
 
 
 def optimise_scene(
@@ -87,6 +90,7 @@ def optimise_scene(
     aim: Aim | None = None,
     front: bool = True,
     progress: Callable[[int], None] | None = None,
+    emulator: EmulatedVibration | None = None,
 ) -> OptimumRecord:
     """Best volume for each chamber of a scene.
 
@@ -97,6 +101,7 @@ def optimise_scene(
     aim : in place of the scene's
     front : find out as well what must be given up for what
     progress : called with the number of sets of volumes judged so far
+    emulator : asked by the search in place of the solvers, which then judge the best that it found
 
     Returns
     -------
@@ -123,9 +128,17 @@ def optimise_scene(
         return _at_given_deflection(scene, wish, wish.deflection)
     machine = FilledMachine(scene)
     goal = goal_of(scene, wish, machine, lambda one: best_volumes(scene, one, low, high, progress))
-    found = best_volumes(scene, goal, low, high, progress)
-    chosen, sure = on_all_cells(scene, goal, found)
-    record = _record(scene, wish, sure, machine, chosen)
+    if emulator is None:
+        found = best_volumes(scene, goal, low, high, progress)
+        chosen, sure = on_all_cells(scene, goal, found)
+        record = _record(scene, wish, sure, machine, chosen)
+    else:
+        low, high = emulator.inside(low, high, np.array([fill.volume for fill in scene.chambers]))
+        quick = replace(goal, judge=replace(goal.judge, vibration=emulator), costly=False)
+        chosen = judged_again(goal, best_volumes(scene, quick, low, high, progress))
+        told = emulator.answer(chosen.point)
+        record = _record(scene, wish, goal, machine, chosen)
+        record = replace(record, emulated=told, notes=(told.words(), *record.notes))
     if not front:
         return record
     edge, sweep = front_around(scene, goal, chosen, record.vibration, growth_speeds(scene, wish))

@@ -103,6 +103,7 @@ def optimum_json(record: OptimumRecord) -> dict[str, Any]:
             for name, one in record.constraints.items()
         },
         "evaluations": record.evaluations,
+        **({} if record.emulated is None else {"emulator": record.emulated}),
         "unit": record.unit,
         "meaning": record.meaning,
         "working_speed": record.working_speed,

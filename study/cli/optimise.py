@@ -35,6 +35,10 @@ def optimise(
         bool, typer.Option("--steady", help="Peak of the steady response even if the scene has a run-up.")
     ] = False,
     seed: Annotated[int | None, typer.Option(help="Of the random sample of the objective robust.")] = None,
+    emulator: Annotated[
+        Path | None,
+        typer.Option(help="Store of a sweep over the volumes: the search asks an emulator of it."),
+    ] = None,
     no_front: Annotated[
         bool, typer.Option("--no-front", help="Leave out what must be given up for what.")
     ] = False,
@@ -49,7 +53,7 @@ def optimise(
     machine = load_scene(scene)
     aim = _aim(machine, objective, deflection, limit, steady, seed)
     folder = out_dir(machine.name, out)
-    record = _run(machine, aim, not no_front)
+    record = _run(machine, aim, not no_front, emulator)
 
     from study.figures.optimise import write_figures
     from study.optimise_results import optimum_json, write_optimum
@@ -106,15 +110,21 @@ def _length(text: str, option: str) -> float:
     return value
 
 
-def _run(machine: Scene, aim: Aim, front: bool) -> OptimumRecord:
+def _run(machine: Scene, aim: Aim, front: bool, store: Path | None) -> OptimumRecord:
     """The search itself, with a count on a terminal."""
     from rich.progress import Progress, SpinnerColumn, TextColumn
 
+    from study.emulated_fills import emulated_vibration
     from study.optimise import optimise_scene
 
+    emulator = None if store is None else emulated_vibration(store, machine, aim)
     columns = SpinnerColumn(), TextColumn("{task.completed} sets of volumes judged")
     with Progress(*columns, transient=True, disable=not sys.stderr.isatty()) as bar:
         task = bar.add_task("judging", total=None)
         return optimise_scene(
-            machine, aim=aim, front=front, progress=lambda count: bar.update(task, completed=count)
+            machine,
+            aim=aim,
+            front=front,
+            progress=lambda count: bar.update(task, completed=count),
+            emulator=emulator,
         )

@@ -89,9 +89,11 @@ def front_figure(record: OptimumRecord) -> Figure:
 
 
 def _known(record: OptimumRecord) -> tuple[Array, Array, Array]:
-    """Volumes, vibrations and excesses of the points whose vibration is sure and finite."""
+    """Volumes, vibrations and excesses of the points that are finite and sure, or by the emulator."""
     found = record.judged
-    good = (found.details["sure"] == 1.0) & np.isfinite(found.details["vibration"])
+    good = np.isfinite(found.details["vibration"])
+    if record.emulated is None:
+        good &= found.details["sure"] == 1.0
     points, vibration, excess = record.points[good], found.details["vibration"][good], found.excess[good]
     if record.sweep is not None and record.volume.size == 1:
         points = np.concatenate((points, record.sweep.volume))

@@ -63,6 +63,18 @@ seed = 11
 "chambers.1.liquid" = { choice = ["water", "brine", { density = 900, viscosity = 0 }] }
 """
 
+# Both fills from where the wall is dry in part to where it is wet, in the other order than the scene's.
+SMOOTH_FILLS = """
+scene = "scene.toml"
+method = "sobol"
+samples = 48
+seed = 5
+
+[vary]
+"chambers.1.volume" = { uniform = ["0.9 ml", "30 ml"] }
+"chambers.0.volume" = { uniform = ["0.9 ml", "30 ml"] }
+"""
+
 
 def write_study(folder: Path, study: str = STUDY, scene: str = SCENE) -> Path:
     (folder / "scene.toml").write_text(scene, encoding="utf-8")

@@ -34,6 +34,7 @@ def check_error_is_that_of_unseen_samples() -> None:
     emulator = emulate(NAMES, values, known(values), seed=2)
     fresh = inside(emulator, drawn(2000, 3))
     output, deviation = emulator.predict(fresh)
+    np.testing.assert_allclose(emulator.output(fresh), output, rtol=1e-12)
     off = output / known(fresh) - 1.0
     # A fold learns from four fifths of the samples, so it does no better than all of them together; with an
     # error that falls as the distance to the fifth (twice the smoothness), the distance being the root of one
