@@ -97,17 +97,16 @@ class Fills:
     @classmethod
     def joined(cls, parts: Sequence[Fills]) -> Fills:
         """Some arrays one behind the other."""
-        columns = [
-            np.concatenate([take(part) for part in parts])
-            for take in (
-                lambda one: one.chamber.radius,
-                lambda one: one.chamber.height,
-                lambda one: one.chamber.inner_radius,
-                lambda one: one.density,
-                lambda one: one.volume,
-            )
-        ]
-        return cls(Chambers(*columns[:3]), columns[3], columns[4])
+        walls = [part.chamber for part in parts]
+        return cls(
+            Chambers(
+                np.concatenate([one.radius for one in walls]),
+                np.concatenate([one.height for one in walls]),
+                np.concatenate([one.inner_radius for one in walls]),
+            ),
+            np.concatenate([part.density for part in parts]),
+            np.concatenate([part.volume for part in parts]),
+        )
 
     def at(self, which: NDArray[np.intp]) -> Fills:
         """Those at some indices, in their order, shape (m,)."""

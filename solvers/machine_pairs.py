@@ -98,14 +98,14 @@ class Pairs:
         dry = np.zeros(size, dtype=bool)
         in_range, converged = np.ones((2, size), dtype=bool)
         if found is None:
-            return LiquidState(*np.zeros((2, size)), dry, in_range, converged)
+            return LiquidState(np.zeros(size), np.zeros(size), dry, in_range, converged)
         rows, fills, _ = found
         own = which[rows]
         one = self.model.synchronous(fills, self.speed[own], deflection[rows], self.gravity[own])
         np.logical_or.at(dry, rows, one.dry_patch)
         np.logical_and.at(in_range, rows, one.in_range)
         np.logical_and.at(converged, rows, one.converged)
-        unbalance, slope = (np.bincount(rows, x, minlength=size) for x in (one.unbalance, one.slope))
+        unbalance, slope = (_summed(rows, x, size) for x in (one.unbalance, one.slope))
         return LiquidState(unbalance, slope, dry, in_range, converged)
 
     def pull(self, deflection: Array, which: Index) -> Array:
@@ -124,7 +124,7 @@ class Pairs:
             k = which[rows[bent]]
             law = self.model.synchronous(fills.at(bent), self.speed[k], e[bent], self.gravity[k])
             moment[bent] = law.unbalance
-        total = np.bincount(rows, np.maximum(moment - fills.mass * e, 0.0), minlength=deflection.size)
+        total = _summed(rows, np.maximum(moment - fills.mass * e, 0.0), deflection.size)
         return np.asarray(np.square(self.speed[which]) * total)
 
     def chambers(self, which: Index) -> tuple[Index, Fills, Array] | None:
@@ -140,6 +140,11 @@ class Pairs:
         fills = Fills.joined([slot.fills.at(place[one]) for slot, place, one in parts])
         limits = [slot.limit[which[one]] for slot, one in zip(self.slots, rows, strict=True)]
         return np.concatenate(rows), fills, np.concatenate(limits)
+
+
+def _summed(rows: Index, values: Array, size: int) -> Array:
+    """Sums of the values of each row, shape (size,)."""
+    return np.asarray(np.bincount(rows, values, minlength=size), dtype=np.float64)
 
 
 def pair_machines(
@@ -190,7 +195,8 @@ def _with_limits(pairs: Pairs) -> tuple[Slot, ...]:
     slots, first = [], 0
     for slot in pairs.slots:
         limit, there = slot.limit.copy(), slot.place >= 0
-        limit[there] = limits[first : first + np.count_nonzero(there)]
-        first += np.count_nonzero(there)
+        count = int(np.count_nonzero(there))
+        limit[there] = limits[first : first + count]
+        first += count
         slots.append(replace(slot, limit=limit))
     return tuple(slots)

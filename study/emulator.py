@@ -97,7 +97,7 @@ class Emulator:
     def output(self, values: ArrayLike) -> Array:
         """Output alone, at a fraction of the cost; see `predict`."""
         mean = self.centre + self.scale * self.process.predict(self._points(values))
-        return np.exp(mean) if self.positive else mean
+        return np.asarray(np.exp(mean) if self.positive else mean)
 
     def _points(self, values: ArrayLike) -> Array:
         """Values over their ranges."""
