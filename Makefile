@@ -2,7 +2,7 @@ VENV ?= .venv
 PYTHON ?= python3
 BIN := $(VENV)/bin
 
-.PHONY: study test test-slow test-ross lint clean pictures
+.PHONY: study test test-slow test-ross lint clean pictures trade
 
 study: $(BIN)/.installed
 	$(BIN)/leblanc run examples/horizontal_rig.toml
@@ -54,3 +54,11 @@ pictures: $(BIN)/.installed
 	cp out/pictures/runup_speed.png docs/images/runup_example_speed.png
 	$(BIN)/python -m validation.tub_figures --out docs/images
 	$(BIN)/python -m validation.two_plane_figures --out docs/images
+	$(BIN)/leblanc optimise examples/runup.toml --out out/pictures
+	cp out/pictures/objective.png docs/images/optimise_objective.png
+	$(BIN)/leblanc optimise examples/washing_machine.toml --objective peak --steady --out out/pictures
+	cp out/pictures/front.png docs/images/optimise_front.png
+
+# Accuracy against cost of every model on every example: kept in validation/trade, drawn in docs/images.
+trade: $(BIN)/.installed
+	$(BIN)/python -m validation.trade --out docs/images
