@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from study.batch import Answers, answer_scenes
+from solvers.response import machine_responses
+from study.batch import answer_scenes
+from study.fidelity import axial_gravity
+from study.machine import jeffcott
 from study.scene import Rotor, Scene, Speeds
 
 Array = NDArray[np.float64]
-Answer = Callable[[Sequence[Scene]], Answers]
+Flags = NDArray[np.bool_]
 
-AT_ONCE = 1500  # scenes; more at once would only take memory
+AT_ONCE = 4000  # pairs; more at once would only take memory
 
 
 @dataclass(frozen=True)
@@ -39,14 +41,12 @@ class FilledMachine:
     Parameters
     ----------
     scene : the machine; its volumes and speeds are replaced
-    answer : gives the outputs of `run` of many scenes
     """
 
-    def __init__(self, scene: Scene, answer: Answer = answer_scenes) -> None:
+    def __init__(self, scene: Scene) -> None:
         # One model for all volumes: a change of model within its tolerance would look like a better volume.
         liquid = "statics" if scene.model.liquid == "auto" else scene.model.liquid
         self.scene = replace(scene, optimise=None, runup=None, model=replace(scene.model, liquid=liquid))
-        self._answer = answer
         self._known: dict[tuple[bytes, float], tuple[float, float]] = {}
 
     @property
@@ -76,24 +76,35 @@ class FilledMachine:
         new = list(fresh.items())
         for first in range(0, len(new), AT_ONCE):
             part = new[first : first + AT_ONCE]
-            scenes = [self._one(rows[k], float(speed[k])) for _, k in part]
-            self._keep([key for key, _ in part], self._answer(scenes))
+            which = np.array([k for _, k in part], dtype=np.intp)
+            amplitude, dry = (self._planar if self.planar else self._one_by_one)(rows[which], speed[which])
+            amplitude = np.where(np.isnan(amplitude), math.inf, amplitude)
+            for (key, _), one, dried in zip(part, amplitude.tolist(), dry.tolist(), strict=True):
+                self._known[key] = one, float(dried)
         found = np.array([self._known[key] for key in keys]).reshape(-1, 2)
         return FillAnswers(found[:, 0], found[:, 1])
 
     def over(self, volumes: Array, speeds: Speeds) -> Array:
         """Amplitudes over evenly spaced speeds, m, shape (m, count); other rotors need their neighbours."""
         scenes = [replace(with_volumes(self.scene, row), speeds=speeds) for row in volumes]
-        answers = self._answer(scenes)
+        answers = answer_scenes(scenes)
         return np.where(np.isnan(answers.amplitude), math.inf, answers.amplitude)
 
-    def _one(self, volumes: Array, speed: float) -> Scene:
-        return replace(with_volumes(self.scene, volumes), speeds=Speeds(speed, speed, 1))
+    def _planar(self, volumes: Array, speed: Array) -> tuple[Array, Flags]:
+        """Amplitude and dry wall at m pairs; whirls that grow by themselves are judged apart."""
+        different, owner = np.unique(volumes, axis=0, return_inverse=True)
+        rotor = jeffcott(self.scene)
+        machines = [(rotor, with_volumes(self.scene, row).chambers) for row in different]
+        gravity = np.full(len(machines), axial_gravity(self.scene))
+        found = machine_responses(machines, owner.reshape(-1), speed, gravity, self.scene.model.liquid)
+        return np.abs(found.deflection), found.dry_patch
 
-    def _keep(self, keys: list[tuple[bytes, float]], answers: Answers) -> None:
-        amplitude = np.where(np.isnan(answers.amplitude), math.inf, answers.amplitude)[:, 0]
-        for key, one, dry in zip(keys, amplitude.tolist(), answers.dry_patch[:, 0].tolist(), strict=True):
-            self._known[key] = one, float(dry)
+    def _one_by_one(self, volumes: Array, speed: Array) -> tuple[Array, Flags]:
+        """The same of rotors that tilt."""
+        pairs = zip(volumes, speed.tolist(), strict=True)
+        scenes = [replace(with_volumes(self.scene, row), speeds=Speeds(one, one, 1)) for row, one in pairs]
+        found = answer_scenes(scenes)
+        return found.amplitude[:, 0], found.dry_patch[:, 0]
 
 
 def with_volumes(scene: Scene, volumes: Array) -> Scene:

@@ -42,7 +42,8 @@ def chosen_run(
     """Run a scene up with the cheapest liquid model whose estimated error is within its tolerance.
 
     Linear layers take a twentieth of the time of long waves and are tried first. What they cannot have rules
-    them out before: a motor that feels the wave, and friction that small waves do not feel.
+    them out before: a motor that feels the wave, friction that small waves do not feel, and a tolerance that
+    not even the smallest waves are known to meet.
 
     Parameters
     ----------
@@ -92,8 +93,6 @@ def runup_outlook(scene: Scene) -> str:
     if asked != "auto":
         return f"{asked}, as the scene asks"
     ruled_out, wave = _ruled_out(scene), largest_wave(tolerance)
-    if not ruled_out and wave == 0.0:
-        ruled_out = f"linear layers are not known to be within {percent(tolerance)}"
     if ruled_out:
         return f"long waves: {ruled_out}"
     return (
@@ -108,6 +107,8 @@ def _ruled_out(scene: Scene) -> str:
         return "a motor feels the torque of the waves, which linear layers leave out"
     if scene.model.friction.law == "quadratic":
         return "linear layers do not feel quadratic friction"
+    if largest_wave(scene.model.tolerance) == 0.0:
+        return f"linear layers are not known to be within {percent(scene.model.tolerance)}"
     return ""
 
 
