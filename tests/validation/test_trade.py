@@ -1,0 +1,93 @@
+"""The kept comparisons of accuracy and cost: whole, of the scenes as they stand, and made again."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from study.scene import load_scene
+from study.trade import error_table
+from study.trade_cases import response_question, runup_question
+from study.trade_judge import Row, dominates
+from validation.trade import fingerprint, kept, names
+from validation.trade.__main__ import table
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def rows_of(result: dict[str, Any], question: str) -> list[Row]:
+    found = []
+    for values in result["rows"]:
+        if values["question"] == question:
+            one = {key: value for key, value in values.items() if key != "time_ratio"}
+            lost = {key: math.nan for key in ("error", "peak_error") if one[key] is None}
+            found.append(Row(**(one | lost | {"used": tuple(one["used"])})))
+    return found
+
+
+def questions() -> list[tuple[str, str]]:
+    return [(name, one["question"]) for name in names() for one in kept(name)["questions"]]
+
+
+def test_every_shipped_scene_is_kept_as_it_stands() -> None:
+    """`python -m validation.trade` makes them again where this fails."""
+    assert names() == sorted(path.stem for path in EXAMPLES.glob("*.toml"))
+    for name in names():
+        scene = load_scene(EXAMPLES / f"{name}.toml")
+        assert kept(name)["fingerprint"] == fingerprint(EXAMPLES / f"{name}.toml"), name
+        wanted = ["response"] if scene.runup is None else ["response", "runup"]
+        assert [one["question"] for one in kept(name)["questions"]] == wanted
+
+
+@pytest.mark.parametrize(("name", "question"), questions())
+def test_default_is_never_dominated(name: str, question: str) -> None:
+    """No other row is at least as accurate and cheaper by more than the times spread."""
+    result = kept(name)
+    own = next(one["reference_error"] for one in result["questions"] if one["question"] == question)
+    rows = rows_of(result, question)
+    default = next(row for row in rows if row.default)
+    assert [row.label for row in rows if dominates(row, default, own)] == []
+
+
+@pytest.mark.parametrize(("name", "question"), questions())
+def test_front_and_default_are_sound(name: str, question: str) -> None:
+    """On the front is what nothing dominates; the default response keeps the tolerance."""
+    result = kept(name)
+    own = next(one["reference_error"] for one in result["questions"] if one["question"] == question)
+    rows = rows_of(result, question)
+    for row in rows:
+        beaten = math.isnan(row.error) or any(dominates(other, row, own) for other in rows)
+        assert row.on_front == (not beaten)
+        assert row.memory >= 0 and row.time > 0.0 and row.spread >= 0.0
+    default = next(row for row in rows if row.default)
+    assert sum(row.default for row in rows) == 1
+    # A run-up takes the cells that the scene gives, and an exciter's formulas make no promise.
+    assert default.error <= result["tolerance"] or question == "runup" or default.model != "auto"
+
+
+def check_made_again() -> None:
+    """Two scenes: the errors of the cheap cases are the kept ones.
+
+    A bound of 1e-6 of each error and 1e-11 of the answer leaves room for another order of sums.
+    """
+    for name in ("centrifuge", "runup"):
+        scene = load_scene(EXAMPLES / f"{name}.toml")
+        for question in (response_question(scene), runup_question(scene)):
+            stored = {row.label: row for row in rows_of(kept(name), question.name)}
+            assert set(stored) == {case.label for case in question.cases}
+            cheap = [case for case in question.cases if case.model != "fem" and (case.resolution or 0) <= 32]
+            for label, (error, peak) in error_table(question, cheap).items():
+                assert error == pytest.approx(stored[label].error, rel=1e-6, abs=1e-11)
+                assert peak == pytest.approx(stored[label].peak_error, rel=1e-6, abs=1e-11)
+
+
+def test_made_again() -> None:
+    check_made_again()
+
+
+def test_table() -> None:
+    """One line for each scene and question."""
+    assert len(table()) == 2 + len(questions())
