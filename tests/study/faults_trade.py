@@ -12,10 +12,11 @@ FAULTS: tuple[Fault, ...] = (
     Fault(_JUDGE, "one.time + noise < other.time", "one.time - noise < other.time", oracle.check_dominates),
     Fault(
         _JUDGE,
-        "noise = max(one.spread * one.time, other.spread",
-        "noise = max(one.spread, 0.0 * other.spread",
+        "one.spread * one.time, other.spread * other.time,",
+        "one.spread * one.time, 0.0 * other.time,",
         oracle.check_dominates,
     ),
+    Fault(_JUDGE, "_REPRODUCED * min(", "0.0 * min(", oracle.check_dominates),
     Fault(_JUDGE, "fine / (2.0**order - 1.0)", "fine / 2.0**order", oracle.check_reference_error),
     Fault(_JUDGE, "math.log2(coarse / fine)", "math.log2(fine / coarse)", oracle.check_reference_error),
     Fault(

@@ -56,6 +56,9 @@ def check_dominates() -> None:
     assert not dominates(row(5e-4, 0.95), rival, 1e-5)  # within the spread of 0.1
     assert not dominates(row(5e-4, 0.8, 0.3), rival, 1e-5)  # its own spread
     assert not dominates(row(5e-4, 0.8, 0.0), row(1e-3, 1.0, 0.3), 1e-5)  # the other's
+    # What is quieter than any repetition of it.
+    assert not dominates(row(5e-4, 0.975, 0.0), row(1e-3, 1.0, 0.0), 1e-5)
+    assert dominates(row(5e-4, 0.965, 0.0), row(1e-3, 1.0, 0.0), 1e-5)
     assert not dominates(row(2e-3, 0.1), rival, 1e-5)
     assert dominates(row(1.1e-3, 0.1), rival, 2e-4)
     assert not dominates(row(0.0, 1.2), rival, 1e-5)
