@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from typing import Protocol
 
 import numpy as np
@@ -37,12 +38,12 @@ class Vibration(Protocol):
         ...
 
 
-class AlwaysExact:
+class AlwaysExact(ABC):
     """A vibration that costs the same to know for sure."""
 
+    @abstractmethod
     def exact(self, volumes: Array, bound: float = math.inf) -> Array:
         """See `Vibration`."""
-        raise NotImplementedError
 
     def least(self, volumes: Array, bound: float = math.inf) -> tuple[Array, Flags]:
         """See `Vibration`; sure everywhere."""

@@ -12,6 +12,8 @@ from study.trade_answers import RESPONSE, Answer, Case
 from study.trade_cases import Question
 
 _ROUNDING = 1e-12  # relative error of what is called exact
+# Least difference of times that counts, relative: the same computation under two names was within 2.5 %.
+_REPRODUCED = 0.03
 _LEAST_ORDER = 0.25  # of convergence; what converges slower is not extrapolated
 
 
@@ -248,7 +250,7 @@ def reference_error(question: Question, ladder: Sequence[Answer]) -> tuple[float
 def dominates(one: Row, other: Row, own: float) -> bool:
     """Whether a row is at least as accurate as another and cheaper by more than the times spread.
 
-    Errors closer than the reference's own one count as equal.
+    Errors closer than the reference's own one count as equal, and so do times within 3 % of each other.
 
     Parameters
     ----------
@@ -257,8 +259,13 @@ def dominates(one: Row, other: Row, own: float) -> bool:
     """
     if not (math.isfinite(one.error) and math.isfinite(other.error)):
         return math.isfinite(one.error) and not math.isfinite(other.error)
-    noise = max(one.spread * one.time, other.spread * other.time)
+    noise = _noise(one, other)
     return one.error <= other.error + own and one.time + noise < other.time
+
+
+def _noise(one: Row, other: Row) -> float:
+    """Difference of two times that is no difference, s."""
+    return max(one.spread * one.time, other.spread * other.time, _REPRODUCED * min(one.time, other.time))
 
 
 def recommend(rows: Sequence[Row], own: float, tolerance: float) -> int:
@@ -281,5 +288,5 @@ def recommend(rows: Sequence[Row], own: float, tolerance: float) -> int:
     if not within:
         return -1
     best = min(within, key=lambda k: rows[k].time)
-    noise = max(rows[k].spread * rows[k].time for k in (0, best))
+    noise = _noise(rows[best], rows[0])
     return 0 if 0 in within and rows[0].time <= rows[best].time + noise else best
