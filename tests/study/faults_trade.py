@@ -52,7 +52,5 @@ FAULTS: tuple[Fault, ...] = (
     Fault(_CASES, "_HELD * _capture(scene)", "_capture(scene)", oracle.check_passage),
     Fault(_CASES, "length = (stop - start) / plan.rate", "length = stop / plan.rate", oracle.check_passage),
     Fault(_CASES, "chosen = [top, speed.size - 1]", "chosen = [0]", oracle.check_speeds),
-    Fault("study.trade_child", "1024 * int(lines[name]", "1000 * int(lines[name]", oracle.check_memory),
-    Fault("study.trade_child", "resident()[1] - before", "resident()[0] - before", oracle.check_memory),
     Fault(_FIGURE, "sum(map(box.overlap, taken))", "0.0 * sum(map(box.overlap, taken))", oracle.check_labels),
 )
