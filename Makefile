@@ -2,7 +2,7 @@ VENV ?= .venv
 PYTHON ?= python3
 BIN := $(VENV)/bin
 
-.PHONY: study test test-slow test-ross lint clean pictures trade
+.PHONY: study test test-slow test-ross lint clean figures docs trade notebooks
 
 study: $(BIN)/.installed
 	$(BIN)/leblanc run examples/horizontal_rig.toml
@@ -39,25 +39,29 @@ $(BIN)/.installed-lint: pyproject.toml | $(BIN)/python
 	$(BIN)/python -m pip install --quiet --editable ".[test,lint]"
 	touch $@
 
+$(BIN)/.installed-notebooks: pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --editable ".[notebooks]"
+	touch $@
+
+$(BIN)/.installed-docs: pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --editable ".[docs]"
+	touch $@
+
+# The comparisons with measurements, prints and other codes, executed: a notebook whose claims fail stops the make.
+notebooks: $(BIN)/.installed-notebooks
+	$(BIN)/python -m validation.run_notebooks --out out/notebooks
+
 clean:
 	rm -rf $(VENV) .venv-ross out .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
 
-# The pictures of the README and the docs, drawn by the examples.
-pictures: $(BIN)/.installed
-	mkdir -p docs/images
-	$(BIN)/leblanc run examples/horizontal_rig.toml --out out/pictures
-	cp out/pictures/amplitude.png docs/images/horizontal_rig_amplitude.png
-	cp out/pictures/chamber.png docs/images/horizontal_rig_chamber.png
-	$(BIN)/leblanc map examples/horizontal_rig.toml --out out/pictures
-	cp out/pictures/map.png docs/images/whirl_map.png
-	$(BIN)/leblanc runup examples/runup.toml --out out/pictures
-	cp out/pictures/runup_speed.png docs/images/runup_example_speed.png
-	$(BIN)/python -m validation.tub_figures --out docs/images
-	$(BIN)/python -m validation.two_plane_figures --out docs/images
-	$(BIN)/leblanc optimise examples/runup.toml --out out/pictures
-	cp out/pictures/objective.png docs/images/optimise_objective.png
-	$(BIN)/leblanc optimise examples/washing_machine.toml --objective peak --steady --out out/pictures
-	cp out/pictures/front.png docs/images/optimise_front.png
+# Every picture of the README and the pages, drawn again: some minutes. Look at them before they are committed.
+figures: $(BIN)/.installed
+	$(BIN)/python docs/figures.py
+
+# The documentation site in out/docs: pictures drawn again and compared, the pages' commands run, notebooks executed
+# unless they were after their last change, warnings as errors.
+docs: $(BIN)/.installed-docs
+	$(BIN)/python docs/build.py --out out/docs
 
 # Accuracy against cost of every model on every example: kept in validation/trade, drawn in docs/images.
 trade: $(BIN)/.installed

@@ -12,8 +12,24 @@ from numpy.typing import NDArray
 from fluid.liquid import Liquid
 from meshes.border import InputError, require_not_negative
 from meshes.chamber import Chamber, Chambers
+from meshes.chamber_section import layer_depth, level
 
 Array = NDArray[np.float64]
+
+FULL = 1.0 - 1e-9  # of the capacity; beyond it there is no free surface
+
+
+def compartment_share(count: int) -> float:
+    """Part of the added mass of a free surface that closed compartments take away [theory: sections, eq. 8].
+
+    In each of n equal sectors the liquid keeps its volume, so its surface cannot shift as a whole:
+    (n/pi)^2 sin^2(pi/n), the mean over all directions of the deflection.
+
+    Parameters
+    ----------
+    count : bodies of liquid that cannot mix, n; 1 if it can
+    """
+    return 0.0 if count == 1 else (count / math.pi * math.sin(math.pi / count)) ** 2
 
 
 @dataclass(frozen=True)
@@ -50,20 +66,57 @@ class Fill:
 
     @property
     def full_mass(self) -> float:
-        """Mass m_f of liquid that would fill the whole cylinder, kg: the added mass of a layer."""
+        """Mass m_f of liquid that would fill the cylinder, kg: the added mass of a layer without baffles."""
         return self.liquid.density * math.pi * self.chamber.radius**2 * self.chamber.height
+
+    @property
+    def added_mass(self) -> float:
+        """Mass that the liquid adds in a small whirl with the spin, kg [theory: sections, eq. 8].
+
+        In a section of another shape it is that of the liquid and of the air inside the surface.
+        """
+        if self.chamber.section is not None:
+            air = math.pi * self.chamber.height * self.surface_radius**2
+            return self.liquid.density * (self.volume + air)
+        lost = compartment_share(self.compartments) * self.surface_radius**2
+        return self.full_mass - self.liquid.density * math.pi * self.chamber.height * lost
 
     @property
     def surface_radius(self) -> float:
         """Mean free-surface radius a of the uniform layer at fast spin, m."""
+        section, area = self.chamber.section, self.volume / self.chamber.height
+        if section is not None:
+            return level(section, area)[0] if 0.0 < area < section.area * FULL else self.chamber.radius
         squared = self.chamber.radius**2 - self.volume / (math.pi * self.chamber.height)
         return math.sqrt(max(squared, self.chamber.inner_radius**2))
 
     @property
     def depth(self) -> float:
-        """Mean layer depth h0 = R - a, m, without cancellation for thin layers."""
+        """Mean layer depth h0 = R - a, m, without cancellation for thin layers; the least elsewhere."""
+        section, area = self.chamber.section, self.volume / self.chamber.height
+        if section is not None:
+            return layer_depth(section, area) if 0.0 < area < section.area * FULL else 0.0
         film = self.volume / (math.pi * self.chamber.height)
         return film / (self.chamber.radius + self.surface_radius)
+
+    @property
+    def uneven(self) -> bool:
+        """The waves at fast spin are not those of a clear ring: baffles in the liquid, or another section."""
+        baffles, radius = self.chamber.baffles, self.chamber.radius
+        if self.chamber.section is not None:
+            return 0.0 < self.volume < self.chamber.capacity * FULL
+        if baffles is None or not 0.0 < self.volume < self.chamber.capacity * FULL:
+            return False
+        return baffles.wetted_span(radius, self.surface_radius) is not None
+
+    @property
+    def compartments(self) -> int:
+        """Bodies of liquid that baffles keep apart, from the wall through the surface; 1 if it can pass."""
+        baffles = self.chamber.baffles
+        if baffles is None or not self.uneven:
+            return 1
+        span = baffles.wetted_span(self.chamber.radius, self.surface_radius)
+        return baffles.count if span == (self.surface_radius, self.chamber.radius) else 1
 
 
 @dataclass(frozen=True)
@@ -75,18 +128,22 @@ class Fills:
     chamber : of each
     density : of its liquid, kg/m^3, shape (n,)
     volume : V, m^3, shape (n,)
+    added_mass : in a small whirl with the spin, kg, shape (n,); 0 without liquid
     """
 
     chamber: Chambers
     density: Array
     volume: Array
+    added_mass: Array
 
     @classmethod
     def of(cls, fills: Sequence[Fill]) -> Fills:
         """Arrays of some fills."""
-        density = np.array([one.liquid.density for one in fills])
         return cls(
-            Chambers.of([one.chamber for one in fills]), density, np.array([one.volume for one in fills])
+            Chambers.of([one.chamber for one in fills]),
+            np.array([one.liquid.density for one in fills]),
+            np.array([one.volume for one in fills]),
+            np.array([one.added_mass if one.volume > 0.0 else 0.0 for one in fills]),
         )
 
     @classmethod
@@ -106,22 +163,17 @@ class Fills:
             ),
             np.concatenate([part.density for part in parts]),
             np.concatenate([part.volume for part in parts]),
+            np.concatenate([part.added_mass for part in parts]),
         )
 
     def at(self, which: NDArray[np.intp]) -> Fills:
         """Those at some indices, in their order, shape (m,)."""
-        return Fills(self.chamber.at(which), self.density[which], self.volume[which])
+        return Fills(self.chamber.at(which), self.density[which], self.volume[which], self.added_mass[which])
 
     @property
     def mass(self) -> Array:
         """Mass of the liquid m_l, kg, shape (n,)."""
         return self.density * self.volume
-
-    @property
-    def full_mass(self) -> Array:
-        """Mass m_f of liquid that would fill the whole cylinder, kg, shape (n,); 0 without liquid."""
-        full = self.density * math.pi * np.square(self.chamber.radius) * self.chamber.height
-        return np.where(self.volume > 0.0, full, 0.0)
 
     @property
     def depth(self) -> Array:

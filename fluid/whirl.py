@@ -13,13 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fluid.fill import Fill
+from fluid.fill import FULL, Fill
 from fluid.friction import LINEAR, STOKES, damping_rate
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-
-FULL = 1.0 - 1e-9  # of the capacity; beyond it there is no free surface
 
 
 @dataclass(frozen=True)

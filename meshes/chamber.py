@@ -9,25 +9,30 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from meshes.baffles import Baffles
 from meshes.border import InputError, require_not_negative, require_positive
+from meshes.chamber_section import ChamberSection
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Chamber:
-    """Circular chamber, concentric with the rotor's geometric axis.
+    """Chamber about the rotor's geometric axis: circular, or with a section of its own.
 
     Parameters
     ----------
-    radius : outer wall radius R, m
+    radius : outer wall radius R, m; with a section the distance of its farthest point
     height : extent along the axis h_c, m
     inner_radius : inner wall radius R_i, m; 0 if there is no inner wall
     plane : axial position of the chamber on the rotor, m
+    baffles : thin radial plates over the whole height; None without any
+    section : any other section; None for circular walls
 
     Raises
     ------
-    InputError : a length that is not finite and positive, or an inner wall outside the outer one
+    InputError : a length that is not finite and positive, an inner wall outside the outer one, baffles whose
+        inner edge lies outside their outer one, a section with baffles, an inner or another outer radius
 
     Examples
     --------
@@ -39,6 +44,8 @@ class Chamber:
     height: float
     inner_radius: float = 0.0
     plane: float = 0.0
+    baffles: Baffles | None = None
+    section: ChamberSection | None = None
 
     def __post_init__(self) -> None:
         require_positive("radius", self.radius)
@@ -48,10 +55,20 @@ class Chamber:
             raise InputError("inner_radius", self.inner_radius, f"below radius ({self.radius:g} m)")
         if not math.isfinite(self.plane):
             raise InputError("plane", self.plane, "a finite number")
+        if self.baffles is not None and self.baffles.tip_radius >= self.radius - self.baffles.wall_gap:
+            allowed = f"below radius - wall_gap ({self.radius - self.baffles.wall_gap:g} m)"
+            raise InputError("baffles.tip_radius", self.baffles.tip_radius, allowed)
+        if self.section is not None:
+            if self.baffles is not None or self.inner_radius > 0.0:
+                raise InputError("section", self.section.name, "given without baffles and inner_radius")
+            if not math.isclose(self.radius, self.section.farthest, rel_tol=1e-9):
+                raise InputError("radius", self.radius, f"that of the section ({self.section.farthest:g} m)")
 
     @property
     def section_area(self) -> float:
         """Area of the section across the axis, m^2."""
+        if self.section is not None:
+            return self.section.area
         return math.pi * (self.radius - self.inner_radius) * (self.radius + self.inner_radius)
 
     @property

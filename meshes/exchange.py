@@ -1,32 +1,27 @@
-"""Sections from and to mesh files: Gmsh `.msh` and VTK `.vtu`. The only door to meshio."""
+"""Meshes from and to files: Gmsh `.msh`, VTK `.vtu` and XDMF `.xdmf`. The only door to meshio."""
 
 from __future__ import annotations
 
 import contextlib
 import io
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from meshes.body import Body
 from meshes.border import InputError, require_positive
-from meshes.quality import triangle_areas
+from meshes.file_contents import LINES, PLANE, SPACE, FileContents, dropped_in_words, named_lines, plane_cells
+from meshes.liquid_section import LiquidSection, liquid_section
+from meshes.named_walls import NamedSection, name_walls
 from meshes.section import Section
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-
-SUFFIXES = (".msh", ".vtu")
-
-# Cells that a section has no use for: nodes and edges that Gmsh writes along with the triangles.
-_DROPPED = frozenset({"vertex", "line", "line3"})
-_TRIANGLES = ("triangle", "triangle6")
-
-# Reverses a triangle and keeps its first vertex and the numbering of its midside nodes.
-_REVERSED = np.array([0, 2, 1, 5, 4, 3])
+SUFFIXES = (".msh", ".vtu", ".xdmf")
 
 
 def read_section(path: str | Path, scale: float = 1.0) -> Section:
@@ -37,7 +32,7 @@ def read_section(path: str | Path, scale: float = 1.0) -> Section:
 
     Parameters
     ----------
-    path : a `.msh` file (Gmsh 2.2 or 4.1, text or binary) or a `.vtu` file
+    path : a `.msh` file (Gmsh 2.2 or 4.1, text or binary), a `.vtu` or an `.xdmf` file
     scale : length of the file's unit, m: 1e-3 for a mesh drawn in millimetres
 
     Returns
@@ -49,27 +44,57 @@ def read_section(path: str | Path, scale: float = 1.0) -> Section:
     InputError : no such file, not a mesh, cells other than triangles, a mesh that does not lie in a plane
         z = constant, triangles that `Section` refuses
     """
-    require_positive("scale", scale)
-    file = _known(path)
-    if not file.is_file():
-        raise InputError("path", str(path), "an existing mesh file")
-    with _guarded(path, "a mesh file that can be read, .msh or .vtu") as meshio:
-        mesh = meshio.read(file)
-        blocks = [(str(block.type), np.asarray(block.data)) for block in mesh.cells]
-        points = np.asarray(mesh.points, dtype=np.float64)
-    triangles = _triangles(path, blocks)
-    used, inverse = np.unique(triangles, return_inverse=True)
-    if used[0] < 0 or used[-1] >= len(points):
-        raise InputError("path", str(path), "a mesh whose triangles use nodes that are there")
-    width = triangles.shape[1]
-    numbers: Indices = inverse.astype(np.int64).reshape(-1, width)
-    plane = scale * _in_plane(path, points[used])
-    clockwise = triangle_areas(plane, numbers[:, :3]) < 0.0
-    numbers = np.where(clockwise[:, None], np.take(numbers, _REVERSED[:width], axis=1), numbers)
+    return read_walls(path, scale).section
+
+
+def read_walls(path: str | Path, scale: float = 1.0, slits: Sequence[str] = ()) -> NamedSection:
+    """Section from a mesh file, with the walls that Gmsh's physical groups name.
+
+    Parameters
+    ----------
+    path, scale : as for `read_section`
+    slits : physical groups of lines inside the section along which it is opened: baffles without thickness
+
+    Returns
+    -------
+    The section, its named walls, and what was dropped, in words. Groups without a name are called by their
+    number, as "group 3".
+
+    Raises
+    ------
+    InputError : as `read_section`; a slit that is no group of lines inside the section
+    """
+    contents = _contents(path, scale)
+    points, cells, number = plane_cells(path, contents, scale, ("triangle", "triangle6"))
     try:
-        return Section(plane, numbers)
+        section = Section(points, cells)
     except InputError as fault:
         raise InputError("path", str(path), f"a valid section; {fault}") from fault
+    return name_walls(section, named_lines(contents, number), slits, dropped_in_words(contents))
+
+
+def read_liquid_section(path: str | Path, scale: float = 1.0) -> LiquidSection:
+    """Section of liquid at rest from a mesh file.
+
+    Parameters
+    ----------
+    path, scale : as for `read_section`; triangles or quadrilaterals, straight or quadratic. The nodes nearest
+        to the origin are taken for the free surface
+
+    Returns
+    -------
+    The mesh; its free surface and its walls are found anew.
+
+    Raises
+    ------
+    InputError : as `read_section`; a mesh that `liquid_section` refuses
+    """
+    contents = _contents(path, scale)
+    points, cells, _ = plane_cells(path, contents, scale, tuple(PLANE.values()))
+    try:
+        return liquid_section(points, cells, float(np.hypot(*points.T).min()))
+    except InputError as fault:
+        raise InputError("path", str(path), f"a valid section of liquid; {fault}") from fault
 
 
 def write_section(
@@ -84,7 +109,8 @@ def write_section(
     Parameters
     ----------
     section : the section, in metres
-    path : a `.msh` file (Gmsh 4.1, binary) or a `.vtu` file; its folder must exist
+    path : a `.msh` file (Gmsh 4.1, binary), a `.vtu` file, or an `.xdmf` file, which gets an `.h5` file
+        beside it; the folder must exist
     point_data : fields at the nodes by name, each of shape (N, ...); `.msh` takes 1, 3 or 9 components
     cell_data : fields on the triangles by name, each of shape (M, ...)
 
@@ -92,22 +118,87 @@ def write_section(
     ------
     InputError : another kind of file, a field of another length, a file that cannot be written
     """
+    block = (PLANE[section.triangles.shape[1]], section.triangles)
+    _write(path, section.points, [block], point_data, cell_data)
+
+
+def write_mesh(
+    mesh: LiquidSection | Body,
+    path: str | Path,
+    *,
+    point_data: Mapping[str, ArrayLike] | None = None,
+    cell_data: Mapping[str, ArrayLike] | None = None,
+) -> None:
+    """Write a section or a body of liquid, and fields on it, to a mesh file.
+
+    A `.msh` file also gets the lines of a section's free surface and walls, in physical groups named
+    "surface", "outer wall", and "wall 1", "wall 2", ... for pieces that stand free; fields are 0 there.
+
+    Parameters
+    ----------
+    mesh : in metres
+    path, point_data, cell_data : as for `write_section`
+
+    Raises
+    ------
+    InputError : as `write_section`
+    """
+    if isinstance(mesh, Body):
+        _write(path, mesh.points, [(SPACE[mesh.cells.shape[1]], mesh.cells)], point_data, cell_data)
+        return
+    blocks, names = [(PLANE[mesh.cells.shape[1]], mesh.cells)], ["liquid"]
+    if Path(path).suffix.lower() == ".msh":
+        line = LINES[mesh.surface.shape[1]]
+        blocks.append((line, mesh.surface))
+        names.append("surface")
+        free = np.cumsum(~mesh.fixed_piece)
+        for piece, fixed in enumerate(mesh.fixed_piece):
+            blocks.append((line, mesh.wall[mesh.wall_piece == piece]))
+            names.append("outer wall" if fixed else f"wall {free[piece]}")
+    _write(path, mesh.points, blocks, point_data, cell_data, names)
+
+
+def _write(
+    path: str | Path,
+    points: Array,
+    blocks: list[tuple[str, NDArray[Any]]],
+    point_data: Mapping[str, ArrayLike] | None,
+    cell_data: Mapping[str, ArrayLike] | None,
+    names: Sequence[str] = (),
+) -> None:
     file = _known(path)
-    at_points = _fields("point_data", point_data, len(section.points))
-    at_cells = _fields("cell_data", cell_data, len(section.triangles))
-    # Both formats keep three coordinates.
-    points = np.column_stack([section.points, np.zeros(len(section.points))])
-    kind = _TRIANGLES[section.order - 1]
+    at_points = _fields("point_data", point_data, len(points))
+    at_cells = _fields("cell_data", cell_data, len(blocks[0][1]))
+    # All formats keep three coordinates.
+    space = points if points.shape[1] == 3 else np.column_stack([points, np.zeros(len(points))])
+    sides = [len(data) for _, data in blocks[1:]]
+    fields = {
+        key: [values, *(np.zeros((count, *values.shape[1:])) for count in sides)]
+        for key, values in at_cells.items()
+    }
     # Binary, since meshio's text output of fields cannot be read back under numpy 2.
     gmsh = file.suffix.lower() == ".msh"
     options: dict[str, Any] = {"file_format": "gmsh", "binary": True} if gmsh else {}
+    groups: dict[str, NDArray[Any]] = {}
+    if gmsh and names:
+        numbers = {name: 1 + k for k, name in enumerate(dict.fromkeys(names))}
+        groups = {name: np.array([k, 2 if name == names[0] else 1]) for name, k in numbers.items()}
+        # Every block is a piece of geometry of its own, which the nodes on it belong to.
+        owner = np.tile([2, 1], (len(space), 1))
+        for k, (_, data) in enumerate(blocks[1:], start=2):
+            owner[data] = [1, k]
+        # The nodes of each piece follow one another in the file: put so, they keep their fields.
+        order = np.lexsort((owner[:, 1], owner[:, 0]))
+        space, new = space[order], np.argsort(order)
+        blocks = [(kind, new[data]) for kind, data in blocks]
+        at_points = {key: values[order] for key, values in at_points.items()}
+        at_points["gmsh:dim_tags"] = owner[order]
+        count = [len(data) for _, data in blocks]
+        fields["gmsh:geometrical"] = [np.full(n, 1 + k) for k, n in enumerate(count)]
+        fields["gmsh:physical"] = [np.full(n, numbers[name]) for name, n in zip(names, count, strict=True)]
     with _guarded(path, "a file that can be written, in a folder that exists") as meshio:
-        mesh = meshio.Mesh(
-            points,
-            [(kind, np.array(section.triangles))],
-            point_data=at_points,
-            cell_data={name: [values] for name, values in at_cells.items()},
-        )
+        cells = [(kind, np.array(data)) for kind, data in blocks]
+        mesh = meshio.Mesh(space, cells, point_data=at_points, cell_data=fields, field_data=groups)
         mesh.write(file, **options)
 
 
@@ -141,27 +232,18 @@ def _guarded(path: str | Path, allowed: str) -> Iterator[Any]:
         raise InputError("path", str(path), f"{allowed} ({reason})") from fault
 
 
-def _triangles(path: str | Path, blocks: list[tuple[str, NDArray[Any]]]) -> Indices:
-    """The one kind of triangles among the cells of a file."""
-    found = sorted({kind for kind, data in blocks if kind not in _DROPPED and len(data)})
-    if len(found) != 1 or found[0] not in _TRIANGLES:
-        names = ", ".join(found) if found else "no cells with an area"
-        raise InputError(
-            "path", str(path), f"a mesh of triangles, all straight or all quadratic; it holds {names}"
-        )
-    return np.concatenate([data for kind, data in blocks if kind == found[0]]).astype(np.int64)
-
-
-def _in_plane(path: str | Path, points: Array) -> Array:
-    """The x and y of points that share their z."""
-    if not np.all(np.isfinite(points)):
-        raise InputError("path", str(path), "a mesh with finite coordinates")
-    if points.shape[1] == 2:
-        return points
-    extent = np.ptp(points, axis=0)
-    if not extent[2] <= 1e-9 * max(extent[0], extent[1]):
-        raise InputError("path", str(path), "a mesh in a plane z = constant")
-    return points[:, :2]
+def _contents(path: str | Path, scale: float) -> FileContents:
+    require_positive("scale", scale)
+    file = _known(path)
+    if not file.is_file():
+        raise InputError("path", str(path), "an existing mesh file")
+    with _guarded(path, "a mesh file that can be read, " + " or ".join(SUFFIXES)) as meshio:
+        mesh = meshio.read(file)
+        blocks = [(str(block.type), np.asarray(block.data)) for block in mesh.cells]
+        tags = mesh.cell_data.get("gmsh:physical", [np.zeros(len(data)) for _, data in blocks])
+        groups = [np.asarray(tag).astype(np.int64) for tag in tags]
+        names = {(int(of[1]), int(of[0])): str(name) for name, of in mesh.field_data.items() if len(of) == 2}
+        return FileContents(np.asarray(mesh.points, dtype=np.float64), blocks, groups, names)
 
 
 def _fields(name: str, fields: Mapping[str, ArrayLike] | None, length: int) -> dict[str, NDArray[Any]]:

@@ -10,17 +10,11 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from meshes.border import InputError, require_positive
+from meshes.quality import SIDES as SIDES
+from meshes.quality import jacobians
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-
-# Sides of a cell by its number of nodes: start, end and, if curved, the node between.
-SIDES = {
-    3: np.array([[0, 1], [1, 2], [2, 0]]),
-    6: np.array([[0, 1, 3], [1, 2, 4], [2, 0, 5]]),
-    4: np.array([[0, 1], [1, 2], [2, 3], [3, 0]]),
-    9: np.array([[0, 1, 4], [1, 2, 5], [2, 3, 6], [3, 0, 7]]),
-}
 
 # Nodes of the surface lie on the circle to this fraction of its radius.
 _ON_CIRCLE = 1e-9
@@ -74,40 +68,110 @@ def liquid_section(points: Array, cells: Indices, surface_radius: float) -> Liqu
 
     Raises
     ------
-    InputError : a shape or a number that does not fit, no side on the circle, more than two cells on a side
+    InputError : a shape or a number that does not fit, a cell inverted, folded or without area, cells that
+        overlap along a side or share its middle node wrongly, nodes inside the circle, no side on the circle,
+        a body of liquid that has no free surface
     """
     require_positive("surface_radius", surface_radius)
-    nodes, numbers = np.array(points, dtype=np.float64), np.array(cells, dtype=np.int64)
-    if nodes.ndim != 2 or nodes.shape[1] != 2 or not np.all(np.isfinite(nodes)):
-        raise InputError("points", nodes.shape, "an array of shape (N, 2), finite")
-    if numbers.ndim != 2 or numbers.shape[1] not in SIDES or len(numbers) == 0:
-        raise InputError("cells", numbers.shape, "an array of shape (M, 3), (M, 6), (M, 4) or (M, 9)")
-    if numbers.min() < 0 or numbers.max() >= len(nodes):
-        raise InputError("cells", int(numbers.max()), f"node numbers from 0 to {len(nodes) - 1}")
-    free = _free_sides(numbers)
-    away = np.abs(np.hypot(*nodes[free].transpose(2, 0, 1)) - surface_radius)
-    on_circle = np.all(away <= _ON_CIRCLE * surface_radius, axis=1)
-    # A wall may touch the circle from outside with all its nodes; there the angle rises along the side.
-    start, end = nodes[free[:, 0]], nodes[free[:, 1]]
-    on_circle &= start[:, 0] * end[:, 1] < start[:, 1] * end[:, 0]
-    if not on_circle.any():
-        raise InputError("surface_radius", surface_radius, "the radius of the circle that bounds the mesh")
-    surface, wall = free[on_circle], free[~on_circle]
+    nodes, numbers = _checked(points, cells)
+    _check_shapes(nodes, numbers)
+    free = free_sides(numbers)
+    surface, wall = _surface_and_wall(nodes, numbers, free, surface_radius)
     piece = _pieces(wall, len(nodes))
-    fixed = _outermost(nodes, numbers, wall, piece)
+    body = _components(np.repeat(numbers[:, 0], numbers.shape[1]), numbers.ravel(), len(nodes))
+    _check_bodies(nodes, body, numbers, surface)
+    fixed = _outermost(nodes, body, wall, piece)
     for array in (nodes, numbers, surface, wall, piece, fixed):
         array.setflags(write=False)
     return LiquidSection(nodes, numbers, surface, wall, piece, fixed, float(surface_radius))
 
 
-def _free_sides(cells: Indices) -> Indices:
-    """Sides that one cell alone has, with that cell on the left."""
+def _checked(points: Array, cells: Indices) -> tuple[Array, Indices]:
+    """Copies of the arrays, of shapes and numbers that fit."""
+    nodes, numbers = np.array(points, dtype=np.float64), np.array(cells)
+    if nodes.ndim != 2 or nodes.shape[1] != 2 or not np.all(np.isfinite(nodes)):
+        raise InputError("points", nodes.shape, "an array of shape (N, 2), finite")
+    if numbers.ndim != 2 or numbers.shape[1] not in SIDES or len(numbers) == 0:
+        raise InputError("cells", numbers.shape, "an array of shape (M, 3), (M, 6), (M, 4) or (M, 9)")
+    if not np.issubdtype(numbers.dtype, np.integer):
+        raise InputError("cells", str(numbers.dtype), "an array of whole numbers")
+    if numbers.min() < 0 or numbers.max() >= len(nodes):
+        outside = numbers.max() if numbers.min() >= 0 else numbers.min()
+        raise InputError("cells", int(outside), f"node numbers from 0 to {len(nodes) - 1}")
+    return nodes, numbers.astype(np.int64)
+
+
+def _check_shapes(points: Array, cells: Indices) -> None:
+    corners = points[cells[:, : len(SIDES[cells.shape[1]])]]
+    longest = np.max(np.sum((corners - np.roll(corners, 1, axis=1)) ** 2, axis=2), axis=1)
+    # A needle thinner than this fraction of its length is lost in the rounding of its coordinates.
+    bad = np.flatnonzero(jacobians(points, cells).min(axis=1) <= 1e-12 * longest)
+    if len(bad):
+        k = int(bad[0])
+        x, y = corners[k].mean(axis=0)
+        found = f"{len(bad)} of {len(cells)}, the first number {k} near ({x:g}, {y:g}) m"
+        raise InputError("cells", found, "counter-clockwise, with an area, and not folded")
+
+
+def _surface_and_wall(
+    nodes: Array, cells: Indices, free: Indices, surface_radius: float
+) -> tuple[Indices, Indices]:
+    """Part the free sides into those on the circle and the others."""
+    radius = np.hypot(*nodes[free].transpose(2, 0, 1))
+    on_circle = np.all(np.abs(radius - surface_radius) <= _ON_CIRCLE * surface_radius, axis=1)
+    # A wall may touch the circle from outside with all its nodes; there the angle rises along the side.
+    start, end = nodes[free[:, 0]], nodes[free[:, 1]]
+    on_circle &= start[:, 0] * end[:, 1] < start[:, 1] * end[:, 0]
+    if not on_circle.any():
+        raise InputError("surface_radius", surface_radius, "the radius of the circle that bounds the mesh")
+    corners = cells[:, : len(SIDES[cells.shape[1]])]
+    least = float(np.hypot(*nodes[np.unique(corners)].T).min())
+    if least < surface_radius * (1.0 - _ON_CIRCLE):
+        raise InputError(
+            "surface_radius", surface_radius, f"at most the least radius of the mesh ({least:g} m)"
+        )
+    return free[on_circle], free[~on_circle]
+
+
+def _check_bodies(points: Array, body: Indices, cells: Indices, surface: Indices) -> None:
+    closed = ~np.isin(body[cells[:, 0]], body[surface[:, 0]])
+    if closed.any():
+        x, y = points[cells[np.argmax(closed), 0]]
+        raise InputError(
+            "cells", f"a body of liquid near ({x:g}, {y:g}) m", "a mesh whose bodies all have a free surface"
+        )
+
+
+def free_sides(cells: Indices) -> Indices:
+    """Sides that one cell alone has.
+
+    Parameters
+    ----------
+    cells : node numbers, as for `LiquidSection`
+
+    Returns
+    -------
+    Sides with their cell on the left, shape (S, 2 or 3): start, end, node between.
+
+    Raises
+    ------
+    InputError : cells that overlap along a side, sides that share the node between
+    """
     sides = SIDES[cells.shape[1]]
     every = cells[:, sides].reshape(-1, sides.shape[1])
-    ends = np.sort(every[:, :2], axis=1)
-    _, first, count = np.unique(ends, axis=0, return_index=True, return_counts=True)
-    if count.max() > 2:
-        raise InputError("cells", "a side with more than two cells", "at most two cells on a side")
+    nodes = int(cells.max()) + 1
+    if len(np.unique(every[:, 0] * nodes + every[:, 1])) < len(every):
+        raise InputError("cells", "a side with two cells on the same hand", "free of overlaps")
+    pair = np.minimum(every[:, 0], every[:, 1]) * nodes + np.maximum(every[:, 0], every[:, 1])
+    _, first, number, count = np.unique(pair, return_index=True, return_inverse=True, return_counts=True)
+    if sides.shape[1] == 3:
+        between = every[:, 2]
+        own = len(np.unique(between)) == len(first)
+        if (
+            not (own and np.array_equal(between[first][number], between))
+            or np.isin(between, every[:, :2]).any()
+        ):
+            raise InputError("cells", "sides that share or lack a node between", "one such node per side")
     alone: Indices = every[np.sort(first[count == 1])]
     return alone
 
@@ -120,10 +184,9 @@ def _pieces(sides: Indices, nodes: int) -> Indices:
     return np.unique(joined, return_inverse=True)[1].astype(np.int64)
 
 
-def _outermost(points: Array, cells: Indices, wall: Indices, piece: Indices) -> NDArray[np.bool_]:
+def _outermost(points: Array, body_of_node: Indices, wall: Indices, piece: Indices) -> NDArray[np.bool_]:
     """Of each body of liquid the piece of wall with the node farthest from the axis."""
     count = int(piece.max(initial=-1)) + 1
-    body_of_node = _components(np.repeat(cells[:, 0], cells.shape[1]), cells.ravel(), len(points))
     radius, body = np.zeros(count), np.zeros(count, dtype=np.int64)
     np.maximum.at(radius, piece, np.hypot(*points[wall[:, 0]].T))
     body[piece] = body_of_node[wall[:, 0]]

@@ -53,7 +53,7 @@ def coupled_error(
         exact = LinearError(nothing, nothing, np.ones(speed.shape, dtype=bool), np.zeros(speed.shape))
         return exact, np.zeros(speed.shape)
     full, own, radius, depth = np.array(
-        [(fill.full_mass, fill.mass, fill.chamber.radius, fill.depth) for fill in terms.fills]
+        [(fill.added_mass, fill.mass, fill.chamber.radius, fill.depth) for fill in terms.fills]
     ).T
     place = np.concatenate((terms.plane, _at(system, position)))
     answer, spread = _answer(terms, full, place)

@@ -224,7 +224,7 @@ def _added_mass(
     n = len(system.coordinates)
     total = np.zeros((n, n), dtype=complex)
     for fill, p in zip(wet, directions(system, wet), strict=True):
-        full = fill.full_mass
+        full = fill.added_mass
         if speed is not None:
             state = law.synchronous(Fills.of([fill]), np.array([speed]), np.zeros(1), np.array([gravity]))
             full = float(state.slope[0])

@@ -13,10 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill, Fills
+from fluid.friction import NONE
 from fluid.waves import force_ratio
 from solvers.liquid_models import LiquidModel
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.vibration import dynamic_stiffness, solve_each
+from solvers.section_layer import section_layer
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -79,7 +81,7 @@ class Balance:
         which : of the speeds, shape (k,)
         share : shape (k,) or a number
         """
-        full = np.array([fill.full_mass for fill in self.fills])
+        full = np.array([fill.added_mass for fill in self.fills])
         added = 0.5 * np.einsum("c,ci,cj->ij", full, self.plane, np.conj(self.plane))
         size = (share * np.square(self.speed[which]))[:, None, None]
         return solve_each(self.stiffness[which] - size * added, self.force[which])
@@ -93,7 +95,7 @@ class Balance:
         deflection : m, shape (k, c)
         """
         shape = deflection.shape
-        full = np.array([fill.full_mass for fill in self.fills])
+        full = np.array([fill.added_mass for fill in self.fills])
         unbalance, slope = full * deflection, np.broadcast_to(full, shape).copy()
         flags = np.zeros(shape, dtype=bool), np.ones(shape, dtype=bool), np.ones(shape, dtype=bool)
         bent = ~(deflection <= self.limit[which])
@@ -155,10 +157,14 @@ def backward_mass(fill: Fill) -> float:
     """Mass with which a layer resists a backward whirl at the speed of its spin, kg.
 
     m_f G(kappa, -1), G = 1 - 8/(1 + 7 kappa) [theory: rotor, eq. 28]; that of the liquid where it fills its
-    chamber.
+    chamber; with baffles in the liquid the part of the answer that turns with the whirl.
     """
     full = fill.volume >= fill.chamber.capacity * (1.0 - 1e-9)
     if full or fill.surface_radius == 0.0:
         return fill.mass
+    if fill.uneven:
+        layer = section_layer(fill, (NONE, 0.0))
+        assert layer is not None
+        return fill.full_mass * float(layer.liquid.force_ratio([-2.0])[0])
     curvature = (fill.chamber.radius / fill.surface_radius) ** 2
     return fill.full_mass * float(force_ratio(curvature, -1.0)) if curvature > 1.0 else 0.0

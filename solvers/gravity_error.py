@@ -63,7 +63,7 @@ def planar_gravity_error(pairs: Pairs, across: Array, most: Array) -> Array:
         rows = np.flatnonzero((slot.place >= 0) & (across > 0.0))
         here = slot.fills.at(slot.place[rows])
         change = law_error(here, pairs.speed[rows], across[rows])
-        weighted[rows] += here.full_mass * change
+        weighted[rows] += here.added_mass * change
         largest[rows] = np.maximum(largest[rows], change)
     # One over the stiffness that holds the largest deflection.
     compliance = np.full(most.shape, np.inf)

@@ -131,8 +131,8 @@ class Linear:
         """See `LiquidModel`; holds while the deflection is below the mean depth of the layer."""
         dry = deflection >= fills.depth
         return SynchronousAnswer(
-            unbalance=fills.full_mass * deflection,
-            slope=fills.full_mass,
+            unbalance=fills.added_mass * deflection,
+            slope=fills.added_mass,
             dry_patch=dry & (deflection > 0.0),
             in_range=~dry,
             converged=np.ones(deflection.shape, dtype=bool),
@@ -143,7 +143,18 @@ class Linear:
         return np.full(speed.shape, np.inf)
 
 
-SYNCHRONOUS_MODELS: dict[str, LiquidModel] = {model.name: model for model in (Statics(), Linear())}
+class Elements(Linear):
+    """The same with baffles, whose waves are found by finite elements [theory: sections, eq. 8].
+
+    The deflection stays below the mean depth: in no compartment does the surface come nearer to the wall.
+    """
+
+    name = "fem"
+
+
+SYNCHRONOUS_MODELS: dict[str, LiquidModel] = {
+    model.name: model for model in (Statics(), Linear(), Elements())
+}
 
 
 def synchronous_model(name: str) -> LiquidModel:

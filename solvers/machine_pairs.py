@@ -64,8 +64,8 @@ class Pairs:
     gravity : along the axis, m/s^2, shape (n,)
     model : of the liquid
     slots : one for each chamber of the machine that has most
-    liquid_mass, full_mass, reach : sums over the chambers of the liquid's mass, of the mass that would fill
-        them, and of liquid mass times radius, shape (n,)
+    liquid_mass, added_mass, reach : sums over the chambers of the liquid's mass, of the mass that it adds in
+        a small whirl, and of liquid mass times radius, shape (n,)
     """
 
     mass: Array
@@ -77,7 +77,7 @@ class Pairs:
     model: LiquidModel
     slots: tuple[Slot, ...]
     liquid_mass: Array
-    full_mass: Array
+    added_mass: Array
     reach: Array
 
     @property
@@ -118,7 +118,7 @@ class Pairs:
             return np.zeros(deflection.shape)
         rows, fills, limit = found
         e = deflection[rows]
-        moment = fills.full_mass * e
+        moment = fills.added_mass * e
         bent = np.flatnonzero(e > limit)
         if bent.size:
             k = which[rows[bent]]
@@ -172,13 +172,13 @@ def pair_machines(
         place = index[owner]
         rows = np.flatnonzero(place >= 0)
         here = fills.at(place[rows])
-        sums[:, rows] += here.mass, here.full_mass, here.mass * here.chamber.radius
+        sums[:, rows] += here.mass, here.added_mass, here.mass * here.chamber.radius
         slots.append(Slot(fills, place, np.full(owner.shape, np.inf)))
     mass, stiffness, damping, unbalance = np.ascontiguousarray(rotors[owner].T)
     pairs = Pairs(
         *(mass, stiffness, damping, unbalance, speed, own_gravity, model, tuple(slots)),
         liquid_mass=sums[0],
-        full_mass=sums[1],
+        added_mass=sums[1],
         reach=sums[2],
     )
     return replace(pairs, slots=_with_limits(pairs))

@@ -60,7 +60,7 @@ class Enclosure:
     straight : deflection up to which the law is the linear one, m
     depth : of the shallowest layer, m
     defect : bound of what the law is below the linear one up to `most`, kg m
-    full_mass : of all chambers, kg
+    added_mass : of all chambers, kg
     """
 
     linear: Array
@@ -69,7 +69,7 @@ class Enclosure:
     straight: Array
     depth: Array
     defect: Array
-    full_mass: Array
+    added_mass: Array
 
     def error(self) -> LinearError:
         """Bounds of the relative errors [theory: model_error, eq. 15 and 16]."""
@@ -77,9 +77,9 @@ class Enclosure:
         bounded = np.isfinite(self.linear) & np.isfinite(self.most)
         linear, least, most = (np.where(bounded, e, 0.0) for e in (self.linear, self.least, self.most))
         amplitude = _relative(linear, least, most, bounded)
-        full, lost = self.full_mass, np.where(bounded, self.defect, 0.0)
+        full, lost = self.added_mass, np.where(bounded, self.defect, 0.0)
         liquid = _relative(full * linear, full * least - lost, full * most, bounded)
-        none = still | (self.full_mass == 0.0)
+        none = still | (self.added_mass == 0.0)
         strain = np.where(still, 0.0, np.inf)
         measured = (self.straight > 0.0) & np.isfinite(self.linear)
         np.divide(self.linear, self.straight, out=strain, where=measured)
@@ -140,7 +140,7 @@ def planar_enclosure(pairs: Pairs) -> Enclosure:
     squared = np.square(pairs.speed)
     force, damping = pairs.unbalance * squared, pairs.damping * pairs.speed
     elastic = pairs.stiffness - pairs.mass * squared
-    beyond, frozen = elastic - pairs.full_mass * squared, elastic - pairs.liquid_mass * squared
+    beyond, frozen = elastic - pairs.added_mass * squared, elastic - pairs.liquid_mass * squared
     linear = _ratio(force, np.hypot(beyond, damping))
     laws = _laws(pairs)
     # No deflection is farther out than the damper, or the spring with the liquid as a dead mass, allows.
@@ -153,7 +153,7 @@ def planar_enclosure(pairs: Pairs) -> Enclosure:
     least = np.maximum(least, _smallest(beyond, damping, force, squared * defect, linear))
     straight = laws.smallest([one.straight * one.radius for one in laws.surfaces])
     depth = laws.smallest([fills.depth for fills in laws.fills])
-    return Enclosure(linear, np.minimum(least, most), most, straight, depth, defect, pairs.full_mass)
+    return Enclosure(linear, np.minimum(least, most), most, straight, depth, defect, pairs.added_mass)
 
 
 def _laws(pairs: Pairs) -> Laws:

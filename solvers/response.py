@@ -166,7 +166,7 @@ def critical_speed(
         return np.asarray(rotor.stiffness - (rotor.mass + slope) * np.square(speed))
 
     # The slope of the unbalance never exceeds a full chamber's mass; a hair's breadth holds the rounding.
-    heaviest = rotor.mass + sum(fill.full_mass for fill in wet)
+    heaviest = rotor.mass + sum(fill.added_mass for fill in wet)
     ends = np.sqrt(rotor.stiffness / np.array([heaviest, rotor.mass])) * np.array([1.0 - 1e-9, 1.0 + 1e-9])
     root, _ = bracketed_root(stiffness, ends[:1], ends[1:])
     return float(root[0])
@@ -183,7 +183,7 @@ def _all_deflections(pairs: Pairs) -> tuple[Array, Index, NDArray[np.bool_]]:
     """Moduli of all solutions, the pair each belongs to, and whether a pair's are all there."""
     squared, limit = np.square(pairs.speed), pairs.limit
     force, damping = pairs.unbalance * squared, pairs.damping * pairs.speed
-    straight = np.abs(_divide(force, pairs.dynamic_stiffness - pairs.full_mass * squared))
+    straight = np.abs(_divide(force, pairs.dynamic_stiffness - pairs.added_mass * squared))
     linear = np.flatnonzero((straight <= limit) | (force == 0.0))
 
     elastic = pairs.stiffness - (pairs.mass + pairs.liquid_mass) * squared
@@ -198,7 +198,7 @@ def _all_deflections(pairs: Pairs) -> tuple[Array, Index, NDArray[np.bool_]]:
     # Without a force nothing moves, and there is nothing to look for.
     stop, force = np.where(force > 0.0, stop, limit), np.where(force > 0.0, force, 1.0)
     # The slope of the unbalance never exceeds a full chamber's mass; a hair's breadth holds the rounding.
-    steepest = squared * (pairs.full_mass * (1.0 + 1e-9) - pairs.liquid_mass)
+    steepest = squared * (pairs.added_mass * (1.0 + 1e-9) - pairs.liquid_mass)
     bent, which, converged = find_branches(pairs.pull, elastic, damping, force, steepest, limit, stop)
     modulus, owner = np.concatenate((straight[linear], bent)), np.concatenate((linear, which))
     lost = np.setdiff1d(np.arange(squared.size), owner)

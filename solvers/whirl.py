@@ -15,6 +15,9 @@ from meshes.border import InputError
 from solvers.machine_pairs import PlanarMachine
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
+from solvers.section_layer import section_layer, section_layers
+from solvers.section_standing import standing_modes
+from solvers.section_whirl import drum_modes
 from solvers.whirl_laminar import laminar_modes
 from solvers.whirl_roots import PlanarProblem, planar_modes
 from solvers.whirl_system import SystemModes, circles_of, coupled_matrices, linear_modes
@@ -132,6 +135,9 @@ def system_modes(
         if is_full(fill):
             at = system.at(fill.chamber.plane)
             heavy = replace(heavy, mass=heavy.mass + fill.mass * at.T @ at)
+    if any(fill.uneven for fill in fills):
+        cut = [(fill.chamber.plane, section_layer(fill, friction)) for fill in fills]
+        return standing_modes(heavy, [(plane, one) for plane, one in cut if one is not None], speed)
     found = [(fill.chamber.plane, plane_layer(fill, friction)) for fill in fills]
     layers = [(plane, one) for plane, one in found if one is not None]
     _require_few(len(layers))
@@ -209,6 +215,10 @@ def machines_growth(
     growth and whirl_speed as from `asynchronous_growth`, shape (n,)
     """
     growth, whirl_speed = np.full((2, speed.size), np.nan)
+    uneven = np.array([any(fill.uneven for fill in fills) for _, fills in machines], dtype=bool)
+    for i in np.flatnonzero(uneven).tolist():
+        here = np.flatnonzero(owner == i)
+        growth[here], whirl_speed[here] = _uneven_growth(machines[i], frictions[i], speed[here])
     tables = [
         planar_layers(rotor.mass, fills, friction)
         for (rotor, fills), friction in zip(machines, frictions, strict=True)
@@ -218,7 +228,7 @@ def machines_growth(
     kinds = [(len(layers), any(one.stokes > 0.0 for one in layers)) for _, layers in tables]
     for kind in sorted(set(kinds)):
         _require_few(kind[0])
-        own = np.array([i for i, one in enumerate(kinds) if one == kind], dtype=np.intp)
+        own = np.array([i for i, one in enumerate(kinds) if one == kind and not uneven[i]], dtype=np.intp)
         index = np.full(len(machines), -1, dtype=np.intp)
         index[own] = np.arange(own.size)
         here = np.flatnonzero(index[owner] >= 0)
@@ -237,6 +247,15 @@ def machines_growth(
         for table, values in zip((growth, whirl_speed), found, strict=True):
             table[here] = np.where(modes.converged, values, np.nan)
     return growth, whirl_speed
+
+
+def _uneven_growth(machine: PlanarMachine, friction: Friction, speed: Array) -> tuple[Array, Array]:
+    """Growth of one machine whose chambers have baffles in the liquid [theory: sections, eq. 3]."""
+    rotor, fills = machine
+    heavy, layers = section_layers(rotor, fills, friction)
+    modes = drum_modes(heavy, layers, speed)
+    growth, slip = _fastest(modes, np.zeros(speed.shape))
+    return growth, slip + speed
 
 
 def planar_layers(mass: float, fills: Sequence[Fill], friction: Friction) -> tuple[float, list[Layer]]:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
+from fluid.fill import Fill
 from fluid.numbers import LayerNumbers, layer_numbers
 from solvers.coupled_response import wet_critical_speeds
 from solvers.hydrostatics import optimal_volume
@@ -30,7 +32,8 @@ class LayerExplanation:
     depth : mean depth of the layer at fast spin, m
     added_mass_ratio : mass of a full chamber over the rotor's, m_f/M
     liquid_mass_ratio : mass of the liquid over the rotor's
-    optimal_volume : that just covers the wall at the dry rotor's deflection at the last speed, m^3
+    optimal_volume : that just covers the wall at the dry rotor's deflection at the last speed, m^3; nan where
+        baffles cut the liquid or the section is no circle
     """
 
     numbers: LayerNumbers
@@ -91,9 +94,9 @@ def explain_scene(scene: Scene) -> Explanation:
             LayerExplanation(
                 numbers=layer_numbers(fill, ends, scene.gravity, gravity),
                 depth=fill.depth,
-                added_mass_ratio=fill.full_mass / bare.mass,
+                added_mass_ratio=fill.added_mass / bare.mass,
                 liquid_mass_ratio=fill.mass / bare.mass,
-                optimal_volume=float(optimal_volume(fill.chamber, dry, ends[1], gravity)),
+                optimal_volume=_covering(fill, dry, ends[1], gravity),
             )
         )
     return Explanation(
@@ -109,6 +112,13 @@ def explain_scene(scene: Scene) -> Explanation:
         modes=bare.modes,
         runup=_runup(scene),
     )
+
+
+def _covering(fill: Fill, deflection: float, speed: float, gravity: float) -> float:
+    """Volume that just covers the wall of a clear circular chamber, m^3."""
+    if fill.compartments > 1 or fill.chamber.section is not None:
+        return math.nan
+    return float(optimal_volume(fill.chamber, deflection, speed, gravity))
 
 
 def _runup(scene: Scene) -> str:

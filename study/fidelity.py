@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -10,7 +11,9 @@ from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.waves import capture_speed
+from fluid.whirl import covering_speed
 from meshes.border import InputError
+from meshes.chamber_section import rest_offset, surface_is_whole
 from solvers.coupled_error import coupled_error
 from solvers.gravity_error import planar_gravity_error
 from solvers.liquid_models import SYNCHRONOUS_MODELS, synchronous_model
@@ -21,6 +24,8 @@ from study.scene import Rotor, Scene
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+
+_BALANCED = 1e-3  # of the surface's radius, that the liquid at rest may lie off the axis
 
 
 @dataclass(frozen=True)
@@ -40,6 +45,7 @@ class Choice:
     linear : error of the linear theory against the exact equilibrium
     gravity : estimated error by gravity across the axis, which no model of a steady answer has; nan where the
         liquid does not ride with the drum
+    cut : baffles cut the liquid of a chamber into compartments, or its section is no circle
     """
 
     model: str
@@ -51,6 +57,7 @@ class Choice:
     error: Array
     linear: LinearError
     gravity: Array
+    cut: bool = False
 
     @property
     def missed(self) -> Flags:
@@ -91,10 +98,40 @@ def choose_all(scenes: Sequence[Scene]) -> list[Choice]:
             raise InputError(
                 "model.liquid", scene.model.liquid, f"one of {allowed} for the response to an unbalance"
             )
+        _check_walls(scene)
     planar = [scene for scene in scenes if isinstance(scene.rotor, Rotor)]
     found = iter(_planar_errors(planar) if planar else ())
     errors = [next(found) if isinstance(scene.rotor, Rotor) else _other_errors(scene) for scene in scenes]
     return [_choice(scene, *pair) for scene, pair in zip(scenes, errors, strict=True)]
+
+
+def _check_walls(scene: Scene) -> None:
+    """What there is no model for."""
+    for k, fill in enumerate(scene.chambers):
+        section, area = fill.chamber.section, fill.volume / fill.chamber.height
+        if fill.compartments == 2:
+            allowed = "3 or more where they reach from the wall through the surface: two compartments answer \
+differently in two directions"
+            raise InputError(f"chambers.{k}.baffles.count", 2, allowed)
+        if section is None or not fill.uneven:
+            continue
+        if not surface_is_whole(section, area):
+            allowed = (
+                f"one whose walls the free surface, a circle of {fill.surface_radius:g} m about the axis, "
+                "does not meet; `leblanc modes` takes others"
+            )
+            raise InputError(f"chambers.{k}.section", section.name, allowed)
+        if (away := rest_offset(section, area)) > _BALANCED * fill.surface_radius:
+            allowed = f"balanced about the axis: the liquid at rest would lie {away:.3g} m off it"
+            raise InputError(f"chambers.{k}.section", section.name, allowed)
+    if is_cut(scene) and scene.model.liquid not in ("auto", "fem"):
+        allowed = "auto or fem where baffles cut the liquid into compartments or the section is no circle"
+        raise InputError("model.liquid", scene.model.liquid, allowed)
+
+
+def is_cut(scene: Scene) -> bool:
+    """The exact equilibrium of a circular chamber does not hold in some chamber."""
+    return any(fill.compartments > 1 or fill.chamber.section is not None for fill in scene.chambers)
 
 
 def _planar_errors(scenes: Sequence[Scene]) -> list[tuple[LinearError, Array]]:
@@ -138,22 +175,38 @@ def _choice(scene: Scene, linear: LinearError, gravity: Array) -> Choice:
     # What gravity does to all models alike does not speak for the dearer one. Where a wall may run dry the
     # exact equilibrium says where.
     enough = linear.wet & (linear.worst <= tolerance)
-    if asked != "auto":
-        enough = np.full(speed.shape, asked == "linear")
-    models = np.where(enough, "linear", "statics")
+    cut = is_cut(scene)
+    small = "fem" if cut or asked == "fem" else "linear"
+    if cut or asked != "auto":
+        enough = np.full(speed.shape, asked != "statics")
+    models = np.where(enough, small, "statics")
     captured_from = _captured_from(scene)
     held = np.ones(speed.shape, dtype=bool) if captured_from is None else speed > captured_from
+    error = np.where(enough, linear.worst, ROUNDING) + gravity
+    if cut:
+        # The exact equilibrium of compartments, which would judge small disturbances, is not computed.
+        held = held & (speed > max(_covers(fill, axial_gravity(scene)) for fill in scene.chambers))
+        error = np.full(speed.shape, np.nan)
     return Choice(
-        model="linear" if enough.all() else "statics",
+        model=small if enough.all() else "statics",
         models=models,
         asked=asked != "auto",
         in_range=held,
         captured_from=captured_from,
         tolerance=tolerance,
-        error=np.where(enough, linear.worst, ROUNDING) + gravity,
+        error=error,
         linear=linear,
         gravity=gravity,
+        cut=cut,
     )
+
+
+def _covers(fill: Fill, gravity: float) -> float:
+    """Speed above which the layer covers the wall over its whole height, rad/s."""
+    if fill.chamber.section is None or not fill.uneven:
+        return covering_speed(fill, gravity)
+    inner = fill.surface_radius
+    return math.sqrt(gravity * fill.chamber.height / (fill.depth * (fill.depth + 2.0 * inner)))
 
 
 def _captured_from(scene: Scene) -> float | None:

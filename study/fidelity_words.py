@@ -49,7 +49,7 @@ class ModelSpan:
 
 def model_spans(choice: Choice, speed: Array) -> tuple[ModelSpan, ...]:
     """Consecutive speeds with the same model that are alike in range and within the tolerance."""
-    kinds = np.stack((choice.models == "linear", choice.in_range, choice.missed))
+    kinds = np.stack((choice.models != "statics", choice.in_range, choice.missed))
     edges = np.flatnonzero((np.diff(kinds.astype(int), axis=1) != 0).any(axis=0)) + 1
     return tuple(_span(choice, speed, part) for part in np.split(np.arange(speed.size), edges))
 
@@ -73,12 +73,16 @@ def _span(choice: Choice, speed: Array, part: Index) -> ModelSpan:
 
 def _reason(choice: Choice, model: str, part: Index) -> str:
     """Why that model."""
+    if choice.cut:
+        why = "baffles cut the liquid into compartments, or the section is no circle: only small \
+disturbances of the liquid are computed there"
+        return why if choice.in_range[part[0]] else f"{why}; at this speed it does not cover the wall"
     if not choice.in_range[part[0]]:
         return (
             "gravity across the axis is stronger than the spin: the liquid does not ride with the drum and \
 no model of a steady answer holds; the numbers are those of liquid that does"
         )
-    why = _linear_reason(choice, part) if model == "linear" else _statics_reason(choice, part)
+    why = _statics_reason(choice, part) if model == "statics" else _linear_reason(choice, part)
     if choice.asked:
         why = f"the scene asks for it; {why}"
     if choice.missed[part[0]] and choice.gravity[part].max() > choice.tolerance:
@@ -127,6 +131,8 @@ end of the wall or an inner wall, and a wall that runs dry holds less liquid on 
 
 def _better(choice: Choice, model: str, part: Index) -> str:
     """What the next better model is, costs and gives."""
+    if choice.cut:
+        return "none: no other model knows such chambers"
     if not choice.in_range[part[0]]:
         return "none that is steady: `leblanc runup` carries the liquid as a mass at the bottom until it \
 is caught"
@@ -134,7 +140,7 @@ is caught"
     if gravity > 0.0 and (model == "statics" or gravity > choice.tolerance):
         return f"long waves in time (`leblanc runup`, seconds a speed) have gravity's waves, estimated at \
 {percent(gravity)}"
-    if model == "linear":
+    if model != "statics":
         worst = choice.linear.worst[part].max()
         gives = "the same" if worst < _EXACT else f"less than {percent(worst)} of change"
         return f"the exact equilibrium gives {gives if np.isfinite(worst) else 'the answer'} for about a \
@@ -147,6 +153,11 @@ judged apart, by linear theory"
 
 def fidelity_notes(choice: Choice, speed: Array) -> tuple[str, ...]:
     """The models of a response and where the tolerance is not met, in words."""
+    if choice.cut:
+        return (
+            "Liquid model: finite elements for small disturbances at every speed, since baffles cut the "
+            "liquid or a section is no circle; the error by the size of the disturbance is not estimated.",
+        )
     exact = int(np.count_nonzero(choice.models == "statics"))
     counts = f"{speed.size - exact} of {speed.size} speeds by linear theory, {exact} by the exact equilibrium"
     notes = []
@@ -167,6 +178,19 @@ def fidelity_notes(choice: Choice, speed: Array) -> tuple[str, ...]:
             f"tolerance of {percent(choice.tolerance)}{best}."
         )
     return tuple(notes)
+
+
+def speeds_words(span: ModelSpan) -> str:
+    """First and last speed of a range, rpm; one where they are the same."""
+    first, last = f"{span.first * RPM:.5g}", f"{span.last * RPM:.5g}"
+    return first if first == last else f"{first} to {last}"
+
+
+def error_words(span: ModelSpan) -> str:
+    """Largest estimated error in a range of speeds."""
+    if np.isfinite(span.error):
+        return percent(span.error)
+    return "not known" if np.isnan(span.error) else "without a bound"
 
 
 def percent(value: float) -> str:

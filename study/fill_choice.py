@@ -104,7 +104,7 @@ def _likely_deflections(scene: Scene, speed: float) -> list[float]:
         return []
     rotor = jeffcott(scene)
     force, stiffness = rotor.unbalance * speed**2, complex(rotor.dynamic_stiffness(np.array(speed)))
-    added = sum(fill.full_mass for fill in scene.chambers) * speed**2
+    added = sum(fill.added_mass for fill in scene.chambers) * speed**2
     sizes = [abs(stiffness - added), abs(stiffness)]
     wet, dry = (force / size if size > 0.0 else math.inf for size in sizes)
     return [e for e in (wet, dry, 2.0 * wet, 0.5 * wet, math.sqrt(wet * dry)) if 0.0 < e < math.inf]

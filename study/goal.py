@@ -128,7 +128,7 @@ def _resonances(scene: Scene) -> tuple[float, ...]:
     rotor = scene.rotor
     if not isinstance(rotor, Rotor):
         return ()
-    added = sum(fill.full_mass for fill in scene.chambers)
+    added = sum(fill.added_mass for fill in scene.chambers)
     return math.sqrt(rotor.stiffness / (rotor.mass + added)), math.sqrt(rotor.stiffness / rotor.mass)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from meshes.baffles import Baffles
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.tub import Mount, Tub
 from solvers.rotor.two_plane import TwoPlane
@@ -32,16 +33,29 @@ def input_rows(scene: Scene) -> tuple[Row, ...]:
     for k, fill in enumerate(scene.chambers):
         label, chamber = f"Chamber {k + 1}", fill.chamber
         inner = f", inner radius {chamber.inner_radius * MM:.4g} mm" if chamber.inner_radius > 0.0 else ""
+        wall = (f"{label}: radius", f"{chamber.radius * MM:.4g} mm{inner}", f"chambers.{k}.radius")
+        if chamber.section is not None:
+            reach = f"{chamber.section.name}, up to {chamber.radius * MM:.4g} mm from the axis"
+            wall = (f"{label}: section", reach, f"chambers.{k}.section")
         rows += [
-            (f"{label}: radius", f"{chamber.radius * MM:.4g} mm{inner}", f"chambers.{k}.radius"),
+            wall,
             (f"{label}: height", f"{chamber.height * MM:.4g} mm", f"chambers.{k}.height"),
             (f"{label}: liquid", f"{fill.volume * ML:.4g} ml of {fill.liquid.name}", f"chambers.{k}.volume"),
         ]
+        if chamber.baffles is not None:
+            rows.append((f"{label}: baffles", _baffles(chamber.baffles), f"chambers.{k}.baffles"))
         if not isinstance(machine, Jeffcott):
             rows.append((f"{label}: plane", f"{chamber.plane * MM:.4g} mm", f"chambers.{k}.plane"))
     speeds = scene.speeds
     span = f"{speeds.start * RPM:.4g} to {speeds.stop * RPM:.4g} rpm, {speeds.count} speeds"
     return (*rows, ("Speeds", span, "speeds"))
+
+
+def _baffles(baffles: Baffles) -> str:
+    """How many, and from where to where."""
+    inner = f"{baffles.tip_radius * MM:.4g} mm from the axis" if baffles.tip_radius > 0.0 else "the axis"
+    outer = f"{baffles.wall_gap * MM:.4g} mm off the wall" if baffles.wall_gap > 0.0 else "the wall"
+    return f"{baffles.count}, from {outer} to {inner}"
 
 
 def _jeffcott(rotor: Jeffcott) -> list[Row]:

@@ -28,6 +28,27 @@ def jeffcott(scene: Scene) -> Jeffcott:
     return Jeffcott(rotor.mass, rotor.stiffness, rotor.damping, rotor.unbalance)
 
 
+def require_clear(scene: Scene, what: str) -> None:
+    """Refuse baffles and sections of other shapes where nothing knows them.
+
+    Parameters
+    ----------
+    scene : the machine
+    what : what is asked for, in words that follow "left out for"
+
+    Raises
+    ------
+    InputError : a chamber with baffles or a section from a file
+    """
+    for k, fill in enumerate(scene.chambers):
+        if fill.chamber.section is not None:
+            raise InputError(f"chambers.{k}.section", fill.chamber.section.name, f"left out for {what}")
+        if fill.chamber.baffles is not None:
+            raise InputError(
+                f"chambers.{k}.baffles", f"{fill.chamber.baffles.count} of them", f"left out for {what}"
+            )
+
+
 def dry_rotor(scene: Scene) -> Jeffcott | TwoPlane | Tub:
     """The scene's rotor without liquid, whose `system()` gives its equations of motion.
 

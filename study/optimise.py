@@ -21,6 +21,7 @@ from study.fill_answers import FilledMachine, with_volumes
 from study.fill_choice import best_volumes, bounds_of, judged_again, on_all_cells
 from study.given_deflection import cover_walls, dry_verdict, liquid_unbalance, one_point
 from study.goal import Goal, goal_of, growth_speeds
+from study.machine import require_clear
 from study.objectives import RunupPeak
 from study.optimise_table import Aim
 from study.optimum_front import front_around
@@ -123,6 +124,7 @@ def optimise_scene(
     wish = wish if objective is None else replace(wish, objective=objective)
     if not scene.chambers:
         raise InputError("chambers", "none", "at least one to choose the volume of")
+    require_clear(scene, "a search over volumes, which rests on the exact equilibrium in a clear ring")
     low, high = bounds_of(scene, wish)
     if wish.deflection is not None:
         return _at_given_deflection(scene, wish, wish.deflection)

@@ -9,7 +9,9 @@ from importlib import metadata
 import numpy as np
 from numpy.typing import NDArray
 
+from meshes.baffles import Baffles
 from meshes.border import InputError
+from meshes.chamber_section import ChamberSection, layer_depth
 from solvers.response import Response
 from solvers.rotor.campbell import Campbell
 
@@ -29,6 +31,8 @@ class ChamberRecord:
     volume : of the liquid, m^3
     liquid_name : as the scene names it
     plane : position along the axis where that matters, m
+    baffles : None without any
+    section : None for circular walls
     """
 
     radius: float
@@ -38,6 +42,16 @@ class ChamberRecord:
     liquid_name: str
     mean_surface_radius: float
     plane: float = 0.0
+    baffles: Baffles | None = None
+    section: ChamberSection | None = None
+
+    @property
+    def least_depth(self) -> float:
+        """Depth of the undisturbed layer where it is thinnest, m."""
+        area = self.volume / self.height
+        if self.section is not None and 0.0 < area < self.section.area:
+            return layer_depth(self.section, area)
+        return self.radius - self.mean_surface_radius
 
 
 @dataclass(frozen=True)

@@ -1,299 +1,178 @@
-"""The one-page summary of a study: one HTML file that needs nothing else."""
+"""The page of a report: one HTML file that needs nothing else, and what all reports have in common."""
 
 from __future__ import annotations
 
-import base64
-import math
-from collections.abc import Mapping
+import platform
+import shlex
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from importlib import resources
+from importlib import metadata, resources
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from meshes.border import InputError
+from study.fidelity_words import ModelSpan, error_words, speeds_words
+from study.model_words import described
 from study.netcdf import replacing
-from study.record import MM, RPM, StudyRecord, models_used, one_line, peak, versions
-from study.words import NOT_FOUND
-from study.words import number as number  # what else prints a study wants them too
-from study.words import ranges as ranges
+from study.optimise_table import Aim
+from study.record import one_line
+from study.report_inputs import Inputs, scene_inputs
+from study.report_parts import Table, table
+from study.scene import Scene
 
-IMAGE_TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
-AGAINST = 0.5  # from here on a whirl counts as one with or against the spin
-
-# Of the page in the template: mm, characters in a line.
-PAGE_HEIGHT, LINE_HEIGHT, CHARACTERS = 262.0, 4.1, 125
-INPUT_CHARACTERS = 38  # in a line of one column
-TALL = 74.0  # height of a figure with room, mm
-FIGURE_HEIGHTS = (40.0, 70.0)
-
-# What the model does, and what it takes for granted.
-MODELS = {
-    "statics": (
-        "At each speed the liquid rests in the turning drum, its free surface a paraboloid about the "
-        "rotation axis that holds the given volume.",
-        "This takes steady synchronous whirl for granted and a liquid that friction has brought up to the "
-        "drum's speed; waves, self-excited whirl and surface tension are left out.",
-    ),
-    "linear": (
-        "The liquid answers with small waves on a rigidly turning ring, by the exact linear theory of plane "
-        "frictionless flow.",
-        "This takes a wet wall all round for granted, disturbances small against the depth of the layer, and "
-        "a layer of the same depth all along the axis.",
-    ),
-    "long_wave": (
-        "The liquid answers with long waves of any height in an annular layer, bores included, which keep "
-        "mass and angular momentum.",
-        "This takes a layer thin against its waves for granted, the pressure of a layer without radial "
-        "acceleration, and the same depth all along the axis.",
-    ),
-    "kdv": (
-        "The liquid answers with one family of weakly nonlinear, dispersive waves that stand still as seen "
-        "from the whirl.",
-        "This takes whirl near the resonance of that family for granted, and waves low against the depth of "
-        "the layer.",
-    ),
-    "fem": (
-        "The liquid answers with small disturbances, by finite elements on the section of the chamber.",
-        "This takes plane frictionless flow for granted, disturbances small against the depth of the layer, "
-        "and an undisturbed surface that is a circle.",
-    ),
-}
+# What the numbers, the files and the figures come from.
+PACKAGES = (
+    "leblanc", "numpy", "scipy", "numba", "py-pde", "scikit-fem", "xarray", "h5netcdf", "matplotlib",
+)  # fmt: skip
+AUTHORS = "The leblanc developers"
+TITLE = "leblanc: passive liquid balancers and rotors partly filled with liquid"
 
 
 @dataclass(frozen=True)
-class Comparison:
-    """With liquid, without, and their ratio, as printed."""
-
-    label: str
-    wet: str
-    dry: str
-    ratio: str
-
-
-@dataclass(frozen=True)
-class Input:
-    """One value of the scene as printed."""
-
-    label: str
-    value: str
-    assumed: bool
-
-
-def comparisons(record: StudyRecord) -> list[Comparison]:
-    """Largest and last amplitude, with and without liquid.
+class About:
+    """What a report is about and how to make it again.
 
     Parameters
     ----------
-    record : the study
+    name, source, digest : of the scene
+    inputs : what it says
+    elsewhere : assumed values that are not among the inputs
+    command : that writes the report; empty if it was no command
+    data : file of the numbers beside the report; empty if there is none
     """
-    r = record.response
-    wet, dry = peak(record.amplitude), peak(record.amplitude_dry)
-    at_wet, at_dry = (NOT_FOUND if i is None else number(r.speed[i] * RPM) for i in (wet, dry))
-    return [
-        _compared("Largest amplitude (mm)", record, wet, dry),
-        Comparison("at the speed (rpm)", at_wet, at_dry, ""),
-        _compared(f"Amplitude at {number(r.speed[-1] * RPM)} rpm (mm)", record, -1, -1),
-    ]
+
+    name: str
+    source: str
+    digest: str
+    inputs: Inputs
+    elsewhere: tuple[str, ...] = ()
+    command: str = ""
+    data: str = ""
 
 
-def _compared(label: str, record: StudyRecord, wet: int | None, dry: int | None) -> Comparison:
-    """Amplitudes at two places in the list of speeds."""
-    with_liquid = math.nan if wet is None else float(record.amplitude[wet])
-    without = math.nan if dry is None else float(record.amplitude_dry[dry])
-    comparable = without > 0.0 and math.isfinite(without) and math.isfinite(with_liquid)
-    ratio = number(with_liquid / without) if comparable else ""
-    return Comparison(label, number(with_liquid * MM), number(without * MM), ratio)
-
-
-def facts(record: StudyRecord) -> list[tuple[str, str]]:
-    """What else a reader wants to know: label and value.
+def about(
+    scene: Scene, command: str = "", data: str = "", aim: Aim | None = None, unused: tuple[str, ...] = ()
+) -> About:
+    """What a report of a scene is about.
 
     Parameters
     ----------
-    record : the study
+    scene : the machine
+    command, data : as in `About`
+    aim : of an optimisation, in place of the scene's
+    unused : tables of the scene that the report's numbers do not depend on
     """
-    r = record.response
-    angle = "none"
-    if r.liquid_offset[-1] > 0.0:
-        angle = f"{number(math.degrees(r.liquid_angle[-1]))} deg from the unbalance"
-    return [
-        ("Mass of the liquid", f"{number(record.liquid_mass * 1e3)} g"),
-        (f"Liquid at {number(r.speed[-1] * RPM)} rpm", angle),
-        *_vibration(record),
-        ("Dry patch on the wall", ranges(r.speed, r.dry_patch)),
-        ("Model out of range", ranges(r.speed, ~r.in_range)),
-        ("Reported answer unstable", ranges(r.speed, ~r.stable)),
-        *_whirl(record),
-        ("Not converged", ranges(r.speed, ~r.converged)),
-    ]
+    inputs = scene_inputs(scene, aim, unused)
+    paths = [cell.path for cell in inputs.cells if cell.assumed]
+    elsewhere = tuple(
+        one
+        for one in scene.assumed
+        if not any(own == one or own.startswith(f"{one}.") or one.startswith(f"{own}.") for own in paths)
+    )
+    return About(scene.name, scene.source, scene.digest, inputs, elsewhere, command, data)
 
 
-def _whirl(record: StudyRecord) -> list[tuple[str, str]]:
-    """Where a whirl grows by itself, by its refined edges."""
-    if record.whirl is None:
-        return []
-    words = [f"{low * RPM:.5g} to {high * RPM:.5g} rpm" for low, high in record.whirl.bands]
-    return [("Self-excited whirl", ", ".join(words) or "none")]
-
-
-def _vibration(record: StudyRecord) -> list[tuple[str, str]]:
-    """Critical speeds and natural frequencies; "b" marks a whirl against the spin."""
-    if record.motion is None:
-        return [
-            ("Critical speed with liquid", f"{number(record.critical_speed_wet * RPM)} rpm"),
-            ("Critical speed without liquid", f"{number(record.critical_speed_dry * RPM)} rpm"),
-        ]
-
-    def listed(speeds: tuple[tuple[float, float], ...]) -> str:
-        words = [f"{speed * RPM:.4g}" + (" b" if sense < -AGAINST else "") for speed, sense in speeds]
-        return ", ".join(words) + " rpm" if words else "none"
-
-    at_rest = [
-        f"{one.frequency / (2.0 * math.pi):.3g} ({one.damping_ratio:.2g})" for one in record.motion.modes
-    ]
-    return [
-        ("Critical speeds with liquid", listed(record.motion.critical_speeds_wet)),
-        ("Critical speeds without liquid", listed(record.motion.critical_speeds_dry)),
-        ("Natural frequencies at rest (damping ratios)", ", ".join(at_rest) + " Hz"),
-    ]
-
-
-def machine(record: StudyRecord) -> str:
-    """What was studied, in one sentence.
+def command_line(name: str, scene: Path, *options: tuple[str, object, object]) -> str:
+    """The command that makes the same report again, wherever its files go.
 
     Parameters
     ----------
-    record : the study
+    name : of the command
+    scene : the file, as it was given
+    options : name, value and default of each; those at their default are left out, a flag stands alone
     """
-    r = record.response
-    count = len(record.chambers)
-    volume = number(sum(chamber.volume for chamber in record.chambers) * 1e6)
-    liquids = " and ".join(dict.fromkeys(one_line(c.liquid_name) for c in record.chambers))
-    chambers = f"{count} chambers, together" if count > 1 else "one chamber"
-    carries = f"{chambers} with {volume} ml of {liquids}" if count else "no chamber"
-    speeds = f"at {number(r.speed[0] * RPM)} rpm"
-    if r.speed.size > 1:
-        speeds = (
-            f"from {number(r.speed[0] * RPM)} to {number(r.speed[-1] * RPM)} rpm in {r.speed.size} speeds"
-        )
-    return f"A rotor with a {record.axis} axis that carries {carries}, {speeds}."
+    words = ["leblanc", name, str(scene)]
+    for option, value, default in options:
+        if value != default:
+            words += [option] if value is True else [option, str(value)]
+    return " ".join(map(shlex.quote, words))
 
 
-def remarks(record: StudyRecord) -> list[str]:
-    """Notes of the record and what its numbers themselves ask a reader to bear in mind.
-
-    Parameters
-    ----------
-    record : the study
-    """
-    r, found = record.response, [one_line(note) for note in record.notes]
-    highest = peak(record.amplitude)
-    if highest is None:
-        found.append("No answer was found at any speed.")
-    elif r.speed.size > 1 and r.speed[highest] in (r.speed.min(), r.speed.max()):
-        found.append("The largest amplitude lies at an end of the range of speeds.")
-    if (infinite := np.isinf(record.amplitude)).any():
-        found.append(f"Undamped, the amplitude is infinite at: {ranges(r.speed, infinite)}.")
-    if highest is not None and not r.in_range[highest]:
-        found.append("The largest amplitude lies where the liquid model is out of range.")
-    if record.motion is not None and any(way < -AGAINST for _, way in record.motion.critical_speeds_dry):
-        found.append("Critical speeds marked b belong to whirl against the spin.")
-    if not r.in_range[-1]:
-        found.append("At the last speed the liquid model is out of range.")
+def versions() -> dict[str, str]:
+    """Versions of Python and of what the numbers, files and figures come from."""
+    found = {"Python": platform.python_version()}
+    for package in PACKAGES:
+        try:
+            found[package] = metadata.version(package)
+        except metadata.PackageNotFoundError:  # run from a source tree that was never installed
+            found[package] = "not installed"
     return found
 
 
-def inputs(record: StudyRecord) -> list[Input]:
-    """Values of the scene; those that no source gives are marked, a whole table by its own path.
+def citation() -> str:
+    """How to cite the program, as its citation file says."""
+    return f"{AUTHORS}. {TITLE}. Version {versions()['leblanc']}."
+
+
+def why(spans: Sequence[ModelSpan]) -> Table:
+    """Which liquid model answers at which speeds, how well, and why.
 
     Parameters
     ----------
-    record : the study
+    spans : ranges of speed
     """
-    marked = tuple(record.assumed)
-    return [
-        Input(one_line(label), one_line(value), any(path == a or path.startswith(f"{a}.") for a in marked))
-        for label, value, path in record.inputs
+    rows = [
+        (
+            speeds_words(span),
+            span.model + ("" if span.in_range else " (out of range)"),
+            error_words(span),
+            f"{span.reason[:1].upper()}{span.reason[1:]}.",
+        )
+        for span in spans
     ]
+    return table("", ("Speeds (rpm)", "Model", "Estimated error", "Why"), rows, words=True)
 
 
-def models(record: StudyRecord) -> list[tuple[str, str, str]]:
-    """Each liquid model that was used: its name, where it was used, what it does and takes for granted."""
-    r = record.response
-    names = models_used(r)
-    return [
-        (name, ranges(r.speed, r.model == name) if len(names) > 1 else "", " ".join(MODELS.get(name, ())))
-        for name in names
-    ]
+def models(names: Sequence[str]) -> list[tuple[str, str]]:
+    """Each liquid model that was used, and what it does and takes for granted."""
+    return described(names)
 
 
-def _figure_height(texts: list[str], rows: int) -> float:
-    """Height in mm that leaves two rows of figures and all texts on one page.
+def notes(given: Sequence[str], elsewhere: Sequence[str] = ()) -> list[str]:
+    """Notes of a record without those that the page says in another place.
 
     Parameters
     ----------
-    texts : that run over the width of the page
-    rows : lines of the tables and headings
+    given : of the record
+    elsewhere : of these
     """
-    lines = rows + sum(math.ceil(len(text) / CHARACTERS) for text in texts)
-    low, high = FIGURE_HEIGHTS
-    return round(min(max(0.5 * (PAGE_HEIGHT - LINE_HEIGHT * lines), low), high), 1)
+    left_out = set(map(one_line, elsewhere))
+    return [line for line in map(one_line, given) if line and line not in left_out]
 
 
-def _input_rows(values: list[Input]) -> int:
-    """Lines of the three columns of inputs; long ones take two."""
-    lines = sum(math.ceil((len(value.label) + len(value.value) + 4) / INPUT_CHARACTERS) for value in values)
-    return math.ceil(lines / 3)
-
-
-def write_summary(record: StudyRecord, figures: Mapping[str, Path], path: Path) -> None:
-    """Write the summary as one HTML file that holds its figures; one page, two for a rotor that tilts.
+def write_page(body: str, what: About, parts: Mapping[str, Any], path: Path) -> None:
+    """Write a report.
 
     Parameters
     ----------
-    record : the study
-    figures : title and file (SVG or PNG) of each figure, in the order of the page
+    body : name of its template
+    what : it is about
+    parts : of the template, besides those of all reports
     path : the file to write or replace
-
-    Raises
-    ------
-    InputError : a figure that is neither SVG nor PNG
     """
-    from jinja2 import Environment, StrictUndefined
+    from jinja2 import Environment, FunctionLoader, StrictUndefined
 
-    fields = [field for _, _, field in record.inputs]
-    elsewhere = [a for a in record.assumed if not any(f == a or f.startswith(f"{a}.") for f in fields)]
-    parts: dict[str, Any] = {
-        "name": one_line(record.name),
-        "source": one_line(record.source),
-        "machine": machine(record),
-        "inputs": inputs(record),
-        "elsewhere": ", ".join(map(one_line, elsewhere)),
-        "comparisons": comparisons(record),
-        "facts": facts(record),
-        "models": models(record),
-        "remarks": remarks(record),
+    page = Environment(
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        loader=FunctionLoader(_template),
+    )
+    common = {
+        "name": one_line(what.name),
+        "source": one_line(what.source),
+        "inputs": what.inputs,
+        "elsewhere": ", ".join(map(one_line, what.elsewhere)),
+        "command": one_line(what.command),
+        "data": what.data,
+        "digest": what.digest,
         "versions": versions(),
-        "digest": record.digest,
-        "figures": [(title, _embedded(file)) for title, file in figures.items()],
+        "citation": citation(),
     }
-    texts = [parts["name"] * 2, parts["source"] + parts["machine"], parts["elsewhere"], *parts["remarks"]]
-    texts += [text for _, _, text in parts["models"]]
-    rows = len(parts["comparisons"]) + len(parts["facts"]) // 2 + _input_rows(parts["inputs"]) + 9
-    # What a rotor that tilts has to say leaves no room for figures: they stand on a second page.
-    height = _figure_height(texts, rows) if record.motion is None else TALL
-    page = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    template = resources.files("study").joinpath("templates", "summary.html.j2").read_text(encoding="utf-8")
-    text = page.from_string(template).render(parts, figure_height=height, figure_columns=2)
+    text = page.get_template(f"{body}.html.j2").render(common, **parts)
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
 
-def _embedded(file: Path) -> str:
-    """Address that holds the whole picture."""
-    if file.suffix not in IMAGE_TYPES:
-        raise InputError("figures", str(file), " or ".join(IMAGE_TYPES))
-    content = base64.b64encode(file.read_bytes()).decode("ascii")
-    return f"data:{IMAGE_TYPES[file.suffix]};base64,{content}"
+def _template(name: str) -> str:
+    return resources.files("study").joinpath("templates", name).read_text(encoding="utf-8")

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from fluid.fill import Fill
+from meshes.chamber_section import liquid_of
 from solvers.hydrostatics import optimal_volume
 from solvers.mixed_response import mixed_response
 from solvers.response import Response, critical_speed
@@ -85,6 +86,8 @@ def _chamber(fill: Fill, motion: Motion | None) -> ChamberRecord:
         fill.liquid.name,
         fill.surface_radius,
         0.0 if motion is None else chamber.plane,
+        chamber.baffles,
+        chamber.section,
     )
 
 
@@ -114,7 +117,21 @@ def _notes(
             f"Several deflections satisfy the balance between {first:.4g} and {last:.4g} rpm; the largest "
             f"{'stable ' if motion is None else ''}one is reported, where a slow run-up arrives."
         )
-    return (*notes, *_volume_notes(scene, answer, motion))
+    return (*notes, *_volume_notes(scene, answer, motion), *_mesh_notes(scene))
+
+
+def _mesh_notes(scene: Scene) -> list[str]:
+    """What is poor in the meshes of chambers with a section of their own."""
+    notes = []
+    for k, fill in enumerate(scene.chambers):
+        if fill.chamber.section is None or not fill.uneven:
+            continue
+        from meshes.findings import mesh_findings, wave_findings
+
+        liquid = liquid_of(fill.chamber.section, fill.surface_radius)
+        found = (*mesh_findings(fill.chamber.section.mesh), *wave_findings(liquid, 1))
+        notes += [f"Mesh of chamber {k + 1}: {one}." for one in found]
+    return notes
 
 
 def _motion_notes(scene: Scene, motion: Motion, answer: Response) -> list[str]:
@@ -144,7 +161,7 @@ def _volume_notes(scene: Scene, answer: Response, motion: Motion | None) -> list
     speed = answer.speed[-1]
     for k, fill in enumerate(scene.chambers):
         deflection = abs(answer.deflection[-1] if motion is None else motion.chamber_forward[-1, k])
-        if not np.isfinite(deflection):
+        if not np.isfinite(deflection) or fill.compartments > 1 or fill.chamber.section is not None:
             continue
         best = float(optimal_volume(fill.chamber, deflection, speed, axial_gravity(scene)))
         has = "wet all round" if fill.volume > best else "dry in part"

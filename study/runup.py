@@ -17,7 +17,7 @@ from solvers.runup import RunupHistory, RunupNumerics
 from study.fidelity import across_gravity as across_gravity  # of a run-up, asked for with it
 from study.fidelity import axial_gravity
 from study.friction import Friction
-from study.machine import dry_rotor, jeffcott
+from study.machine import dry_rotor, jeffcott, require_clear
 from study.record import Array, ChamberRecord, phase
 from study.runup_choice import chosen_run
 from study.runup_range import judged
@@ -127,6 +127,7 @@ def runup_scene(
     ------
     InputError : no run-up in the scene, a rotor without linear equations of motion, a value out of its range
     """
+    require_clear(scene, "a run-up, whose waves run in a clear ring; model.friction may stand for baffles")
     plan = planned(scene)
     numerics = numerics_of(plan, cells, samples, check)
     law, gravity = scene.model.friction, across_gravity(scene)

@@ -9,7 +9,6 @@ from typing import Any
 from pydantic import ValidationError
 
 from fluid.fill import Fill
-from meshes.chamber import Chamber
 from study.faults import SceneFaults, one_line
 from study.rotor_table import ROTORS
 from study.rules import Quantity
@@ -83,7 +82,7 @@ def _in_si(table: Mapping[str, Any], place: tuple[str, ...], tables: _Tables) ->
 
 def _fill(table: Mapping[str, Any]) -> Fill:
     one = ChamberTable.model_validate(table)
-    return Fill(Chamber(one.radius, one.height, one.inner_radius, one.plane), one.liquid, one.volume)
+    return Fill(one.chamber(), one.liquid, one.volume)
 
 
 def make_scenes(make: Maker, rows: Iterable[Sequence[Any]]) -> tuple[list[Scene | None], list[str]]:

@@ -5,16 +5,15 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 from fluid.fill import Fill
-from meshes.chamber import Chamber
 from study.friction import Friction
 from study.optimise_table import Aim, aim_of
 from study.runup_table import RunupTable
-from study.scene_file import check_table, read_toml
+from study.scene_file import check_table, read_scene
 from study.scene_rotor import AnyRotor, rotor_from_table
 from study.scene_rotor import Exciter as Exciter  # what a scene's rotor may be
 from study.scene_rotor import Rotor as Rotor
@@ -140,9 +139,18 @@ class Scene:
     @property
     def digest(self) -> str:
         """Fingerprint of the content (SHA-256): the same however units, keys and blanks are written."""
-        values = asdict(self)
-        if self.optimise is None:  # a scene without that table is the scene it was before there was one
+        sections = [fill.chamber.section for fill in self.chambers]
+        clear = tuple(replace(fill, chamber=replace(fill.chamber, section=None)) for fill in self.chambers)
+        values = asdict(replace(self, chambers=clear))
+        # A scene without a part that came later is the scene it was before there was one.
+        if self.optimise is None:
             del values["optimise"]
+        for fill, section in zip(values["chambers"], sections, strict=True):
+            del fill["chamber"]["section"]
+            if section is not None:
+                fill["chamber"]["section"] = section.digest
+            if fill["chamber"]["baffles"] is None:
+                del fill["chamber"]["baffles"]
         content = json.dumps(_rounded(values), sort_keys=True)
         return hashlib.sha256(content.encode()).hexdigest()
 
@@ -158,7 +166,7 @@ def load_scene(path: str | PathLike[str]) -> Scene:
     ------
     SceneFaults : with everything that is wrong, not just the first
     """
-    return scene_from_table(read_toml(path), str(path))
+    return scene_from_table(read_scene(path), str(path))
 
 
 def scene_from_table(table: Mapping[str, Any], file: str = "scene") -> Scene:
@@ -185,10 +193,7 @@ def _scene(table: SceneTable) -> Scene:
         assumed=table.assumed,
         gravity=table.gravity,
         rotor=rotor_from_table(table.rotor),
-        chambers=tuple(
-            Fill(Chamber(one.radius, one.height, one.inner_radius, one.plane), one.liquid, one.volume)
-            for one in table.chambers
-        ),
+        chambers=tuple(Fill(one.chamber(), one.liquid, one.volume) for one in table.chambers),
         speeds=Speeds(**table.speeds.model_dump()),
         model=Model(table.model.liquid, Friction(law, coefficient), table.model.tolerance),
         runup=None if table.runup is None else _runup(table.runup),

@@ -66,6 +66,25 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
         raise fault("valid TOML without numbers of thousands of digits") from error
 
 
+def read_scene(path: str | PathLike[str]) -> dict[str, Any]:
+    """Content of a scene file; the files that it names are looked for beside it.
+
+    Parameters
+    ----------
+    path : the file
+
+    Raises
+    ------
+    SceneFaults : as `read_toml`
+    """
+    table = read_toml(path)
+    chambers = table.get("chambers")
+    for one in chambers if isinstance(chambers, list) else ():
+        if isinstance(one, dict) and isinstance(one.get("section"), str) and one["section"]:
+            one["section"] = str(Path(path).parent / one["section"])
+    return table
+
+
 def check_table(table: Mapping[str, Any], file: str) -> SceneTable:
     """Every value of a scene checked and in SI units.
 
@@ -87,6 +106,7 @@ def check_table(table: Mapping[str, Any], file: str) -> SceneTable:
         faults.extend(_broken_rules(error, file, (), TABLES[kind], _is_unknown_kind(table)))
     if not _is_unknown_kind(table):
         faults.extend(_alternatives(table, kind, file))
+    faults.extend(_walls(table.get("chambers"), TABLES[kind], file))
     faults.extend(_drive(table.get("runup"), TABLES[kind], file))
     faults.extend(_assumed(table, file))
     if checked is None or faults:
@@ -160,6 +180,22 @@ def _alternatives(table: Mapping[str, Any], kind: str, file: str) -> Iterator[Sc
             yield SceneFault(file, f"{path}.{pair[0]}", None, f"given: {text}")
         elif all(key in found for key in pair):
             yield SceneFault(file, f"{path}.{pair[1]}", shown(found[pair[1]]), f"given alone: {text}")
+
+
+def _walls(chambers: Any, tables: _Tables, file: str) -> Iterator[SceneFault]:
+    """Walls of a chamber: circles with a radius, or a section from a file."""
+    for k, one in enumerate(chambers if isinstance(chambers, list) else ()):
+        if not isinstance(one, Mapping):
+            continue
+        if "section" not in one:
+            if "radius" not in one:
+                text = f"given: {_rule(('chambers', '*', 'radius'), tables)}; or chambers.{k}.section"
+                yield SceneFault(file, f"chambers.{k}.radius", None, text)
+            continue
+        for key in ("radius", "inner_radius", "baffles"):
+            if key in one:
+                text = f"left out where chambers.{k}.section is given"
+                yield SceneFault(file, f"chambers.{k}.{key}", shown(one[key]), text)
 
 
 def _drive(runup: Any, tables: _Tables, file: str) -> Iterator[SceneFault]:

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, ValidationInfo, field_validator
 
 from fluid.liquid import KNOWN_LIQUIDS, Liquid
+from meshes.baffles import Baffles
+from meshes.border import InputError
 from meshes.chamber import Chamber
+from meshes.chamber_section import ChamberSection, chamber_section
 from study import units
 from study.optimise_table import DutyTable, OptimiseTable
 from study.rotor_table import ROTORS, ExciterTable, JeffcottTable, TubTable, TwoPlaneTable
 from study.rules import Entries, OneOf, Quantity, Refused, Text, Whole
 from study.runup_table import MotorTable, RunupTable
-from study.table import Length, Position, Speed, Table
+from study.table import LENGTH, Length, Position, Speed, Table
 
 MAX_CHAMBERS = 1000
 MAX_SPEEDS = 100_000
+MAX_BAFFLES = 360
 MAX_ASSUMED = 10_000
 
 _LIQUID_MODELS = ("auto", "statics", "linear", "long_wave", "kdv", "fem")
@@ -47,13 +53,54 @@ class LiquidRule:
         raise Refused(self.allowed)
 
 
+class BafflesTable(Table):
+    """baffles = { count = ..., tip_radius = ... }."""
+
+    count: Annotated[int, BeforeValidator(Whole(1, MAX_BAFFLES))]
+    tip_radius: Annotated[float, BeforeValidator(Quantity(units.LENGTH, 0.0, 1e3))] = 0.0
+    wall_gap: Annotated[float, BeforeValidator(Quantity(units.LENGTH, 0.0, 1e3))] = 0.0
+    first_angle: Annotated[float, BeforeValidator(Quantity(units.ANGLE, -7.0, 7.0))] = 0.0
+
+
+class SectionRule:
+    """A mesh file of a chamber's section, read with its unit."""
+
+    allowed = "the path of a mesh file of the section, .msh, .vtu or .xdmf"
+
+    def __call__(self, value: object, info: ValidationInfo) -> ChamberSection:
+        """The section."""
+        if not isinstance(value, str) or not value:
+            raise Refused(self.allowed)
+        try:
+            return section_from_file(value, info.data.get("section_unit", 1.0))
+        except InputError as error:
+            raise Refused(f"{self.allowed}: {error.allowed}") from error
+
+
+@lru_cache(maxsize=64)
+def section_from_file(path: str, unit: float) -> ChamberSection:
+    """Section of a chamber from a mesh file, about the file's origin.
+
+    Parameters
+    ----------
+    path : of the file
+    unit : its unit of length, m
+    """
+    from meshes.exchange import read_section
+
+    return chamber_section(Path(path).name, read_section(path, unit))
+
+
 class ChamberTable(Table):
     """[[chambers]]."""
 
-    radius: Length
+    section_unit: Annotated[float, BeforeValidator(Quantity(units.LENGTH, 1e-9, 1e3))] = 1.0
+    section: Annotated[Any, BeforeValidator(SectionRule())] = None
+    radius: Annotated[float | None, LENGTH] = None
     inner_radius: Annotated[float, BeforeValidator(Quantity(units.LENGTH, 0.0, 1e3))] = 0.0
     height: Length
     plane: Position = 0.0
+    baffles: BafflesTable | None = None
     liquid: Annotated[Liquid, BeforeValidator(LiquidRule())]
     volume: Annotated[float, BeforeValidator(Quantity(units.VOLUME, 0.0, 1e9))]
 
@@ -65,16 +112,39 @@ class ChamberTable(Table):
             raise Refused(f"below the radius of the chamber, {radius:g} m")
         return value
 
+    @field_validator("baffles")
+    @classmethod
+    def _inside_the_chamber(cls, value: BafflesTable | None, info: ValidationInfo) -> BafflesTable | None:
+        radius = info.data.get("radius")
+        if value is not None and radius is not None and value.tip_radius >= radius - value.wall_gap:
+            raise Refused(f"a tip_radius below radius - wall_gap, {radius - value.wall_gap:g} m")
+        return value
+
     @field_validator("volume")
     @classmethod
     def _fits_the_chamber(cls, value: float, info: ValidationInfo) -> float:
-        sizes = {key: info.data[key] for key in ("radius", "inner_radius", "height") if key in info.data}
-        if len(sizes) < 3:
+        section, height = info.data.get("section"), info.data.get("height")
+        radius, inner = info.data.get("radius"), info.data.get("inner_radius")
+        if height is None:
             return value
-        capacity = Chamber(**sizes).capacity
+        if section is not None:
+            capacity = float(section.area * height)
+        elif radius is not None and inner is not None:
+            capacity = Chamber(radius, height, inner).capacity
+        else:
+            return value
         if value > capacity * (1.0 + _ROUNDING):
             raise Refused(f"at most what the chamber holds, {capacity:.6g} m^3 ({capacity * 1e6:.6g} ml)")
         return min(value, capacity)
+
+    def chamber(self) -> Chamber:
+        """The chamber."""
+        if self.section is not None:
+            farthest = self.section.farthest
+            return Chamber(farthest, self.height, plane=self.plane, section=self.section)
+        assert self.radius is not None
+        baffles = None if self.baffles is None else Baffles(**self.baffles.model_dump())
+        return Chamber(self.radius, self.height, self.inner_radius, self.plane, baffles)
 
 
 class SpeedsTable(Table):
@@ -187,6 +257,7 @@ SCENES: dict[str, type[SceneTable]] = {
 _COMMON: dict[tuple[str, ...], type[Table]] = {
     ("chambers", "*"): ChamberTable,
     ("chambers", "*", "liquid"): LiquidTable,
+    ("chambers", "*", "baffles"): BafflesTable,
     ("speeds",): SpeedsTable,
     ("model",): ModelTable,
     ("model", "friction"): FrictionTable,

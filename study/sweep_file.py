@@ -15,7 +15,7 @@ from study.distributions import KINDS, REFUSALS, Choice, Distribution, Levels, r
 from study.faults import SceneFault, SceneFaults, field_path, shown
 from study.rules import Quantity, Refused
 from study.scene import Exciter, Scene, scene_from_table
-from study.scene_file import read_toml
+from study.scene_file import read_scene, read_toml
 from study.scene_paths import Keys, keys_of, rule_at
 from study.study_table import MAX_SAMPLES, check_study
 
@@ -118,7 +118,7 @@ def load_sweep(path: str | PathLike[str]) -> Sweep:
     file = str(path)
     table = check_study(read_toml(path), file)
     scene_path = Path(path).parent / table.scene
-    scene_table = read_toml(scene_path)
+    scene_table = read_scene(scene_path)
     scene = scene_from_table(scene_table, str(scene_path))
     if isinstance(scene.rotor, Exciter):
         allowed = "a scene whose rotor answers at its speeds: jeffcott, two_plane or tub"

@@ -17,12 +17,13 @@ class Table(BaseModel):
 
 
 # Rules of values that some tables may leave out.
+LENGTH = BeforeValidator(Quantity(units.LENGTH, 1e-6, 1e3))
 POSITION = BeforeValidator(Quantity(units.LENGTH, -1e3, 1e3))
 SPEED = BeforeValidator(Quantity(units.ANGULAR_SPEED, 1e-6, 1e6))
 DAMPING = BeforeValidator(Quantity(units.DAMPING, 0.0, 1e15))
 STIFFNESS = BeforeValidator(Quantity(units.STIFFNESS, 1e-9, 1e15))
 
-Length = Annotated[float, BeforeValidator(Quantity(units.LENGTH, 1e-6, 1e3))]
+Length = Annotated[float, LENGTH]
 Position = Annotated[float, POSITION]
 Place = Annotated[
     tuple[Position, Position, Position], BeforeValidator(Entries(3, 3, "lengths, along x, y, z"))

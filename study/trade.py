@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from study.machine import require_clear
 from study.record import one_line
 from study.scene import Scene
 from study.trade_answers import Answer, Case, answer, taste
@@ -61,6 +62,7 @@ def trade_scene(
     repeats : how often what is short is timed
     progress : is told what runs and the share that is done
     """
+    require_clear(scene, "a comparison of models, most of which know circular walls alone")
     tell = progress or (lambda _, __: None)
     tolerance = scene.model.tolerance
     found = []

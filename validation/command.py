@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 GROUPS = (
     *("errata", "optimal_volume", "vector_model", "horizontal_rig", "vertical_rig", "layer", "whirl", "tub"),
-    *("two_plane", "exciter", "fill_sweep"),
+    *("two_plane", "exciter", "runup", "fill_sweep"),
 )
 
 
@@ -66,6 +66,7 @@ def _group(name: str) -> Callable[[], list[Case]]:
         horizontal_rig,
         layer,
         optimal_volume,
+        runup_given,
         tub,
         two_plane,
         vector_model,
@@ -84,6 +85,7 @@ def _group(name: str) -> Callable[[], list[Case]]:
         "tub": tub.cases,
         "two_plane": two_plane.cases,
         "exciter": exciter.cases,
+        "runup": runup_given.cases,
         "fill_sweep": fill_sweep.cases,
     }[name]
 

@@ -33,6 +33,7 @@ def cases() -> list[Case]:
     """Every case of the tub and of the bearing's cage."""
     return [
         _supercritical(),
+        _measured(),
         _frequencies(),
         *_with_distance(),
         *_springs(),
@@ -54,6 +55,22 @@ def _supercritical() -> Case:
         float(found.amplitude[0]),
         tolerance=1e-3,
         note="printed is m_2 e/(m_1 + m_2) of the table; 3.7 mm for 1800 g mm of section 4 is an erratum",
+    )
+
+
+def _measured() -> Case:
+    """The one amplitude that was measured, with an unbalance that cannot be the one that is stated."""
+    size = 1e3 * amplitude(suspended_tub(), _SPEEDS, "z")
+    share = 1800e-6 / (DRUM_MASS * ECCENTRICITY)
+    return Case(
+        name="tub/measured-amplitude",
+        source="DG21, section 4",
+        quantity="vertical amplitude with an unbalance of 1800 g mm, mm, y_D = 0; no speed is given",
+        printed="4 measured, 3.7 computed by the authors",
+        computed=f"{share * size[-1]:.2g} at {_SPEEDS[-1] / _RPM:.0f} rpm, {share * size.max():.2g} at most",
+        difference=f"with the table's m_2 e it is {size[-1]:.3g} and {size.max():.3g}",
+        verdict="differs",
+        note="the amplitude fits the table's unbalance, a hundred times the stated one; " + _ASSUMED,
     )
 
 

@@ -25,19 +25,19 @@ from validation.case import Case, compare
 Array = NDArray[np.float64]
 
 _SOURCE = "Wolf's problem, scan in steps of 5e-4"
-_NATURAL = 100.0  # rad/s
+NATURAL = 100.0  # rad/s
 _STEP, _DIGIT = 5e-4, 5e-4
 _BANDS = ((0.1, 0.1, 1.1225, 1.475), (0.5, 0.2, 0.969, 1.699))
 _PEAKS = ((0.0, 0.066), (0.05, 0.046))
-_RANGE = np.linspace(0.3, 4.0, 1481)
+RANGE = np.linspace(0.3, 4.0, 1481)
 
 
 def cases() -> list[Case]:
     """Edges, peaks, the weak growth that support damping alone leaves, and the limits without a band."""
     found: list[Case] = []
     for mu, depth, low, high in _BANDS:
-        rotor, fill = _machine(mu, depth, 0.0)
-        ((band,),) = unstable_bands(rotor.system(), [[fill]], _RANGE * _NATURAL)
+        rotor, fill = layered_rotor(mu, depth, 0.0)
+        ((band,),) = unstable_bands(rotor.system(), [[fill]], RANGE * NATURAL)
         for name, printed, edge in (("lower", low, band[0]), ("upper", high, band[1])):
             found.append(
                 compare(
@@ -45,7 +45,7 @@ def cases() -> list[Case]:
                     _SOURCE,
                     f"{name} edge over the natural frequency, m_f/M = {mu:g}, h0/R = {depth:g}, no damping",
                     printed,
-                    edge / _NATURAL,
+                    edge / NATURAL,
                     tolerance=1.2 * _STEP,
                     note="agrees within a step of the scan",
                 )
@@ -62,14 +62,14 @@ def _in_time() -> list[Case]:
     free, damped_points = (1.15, 1.3, 1.45), (1.0, 1.7)
     points = [(one, 0.0, 0.0) for one in free] + [(one, 0.02, 30.0) for one in damped_points]
     for ratio, zeta, rate in points:
-        rotor, fill = _machine(0.1, 0.1, zeta)
+        rotor, fill = layered_rotor(0.1, 0.1, zeta)
         law = (LINEAR, rate) if rate else (NONE, 0.0)
-        speed = ratio * _NATURAL
+        speed = ratio * NATURAL
         growth, _ = asynchronous_growth(rotor.system(), [fill], [speed], law)
         named = ("linear", rate) if rate else ("none", 0.0)
         numerics = RunupNumerics(cells=256, dispersion=True)
         # The mode that dies slowest stands alone late.
-        duration = (400.0 if rate else 150.0) / _NATURAL
+        duration = (400.0 if rate else 150.0) / NATURAL
         seen = whirl_in_time(rotor.system(), [fill], speed, named, duration, numerics)
         damped = f", damping ratio {zeta:g}, friction {rate:g} 1/s" if rate else ", no damping"
         found.append(
@@ -87,18 +87,28 @@ def _in_time() -> list[Case]:
     return found
 
 
-def _machine(mu: float, depth: float, zeta: float) -> tuple[Jeffcott, Fill]:
-    """Rotor of 100 rad/s with one chamber: m_f/M, h0/R, damping ratio."""
+def layered_rotor(mu: float, depth: float, zeta: float) -> tuple[Jeffcott, Fill]:
+    """Rotor of 100 rad/s with one chamber of water.
+
+    Parameters
+    ----------
+    mu, depth, zeta : m_f/M, h0/R, damping ratio of the support
+    """
     chamber, water = Chamber(0.1, 0.02), known_liquid("water")
     fill = Fill(chamber, water, (1.0 - (1.0 - depth) ** 2) * chamber.capacity)
     mass = fill.full_mass / mu
-    return Jeffcott(mass, mass * _NATURAL**2, 2.0 * zeta * mass * _NATURAL, 0.0), fill
+    return Jeffcott(mass, mass * NATURAL**2, 2.0 * zeta * mass * NATURAL, 0.0), fill
 
 
-def _growth(zeta: float, friction: tuple[int, float] = (NONE, 0.0)) -> Array:
-    """Growth over the natural frequency, m_f/M = 0.1, h0/R = 0.1."""
-    rotor, fill = _machine(0.1, 0.1, zeta)
-    return asynchronous_growth(rotor.system(), [fill], _RANGE * _NATURAL, friction)[0] / _NATURAL
+def growth_over_speed(zeta: float, friction: tuple[int, float] = (NONE, 0.0)) -> Array:
+    """Growth over the natural frequency at the speeds of `RANGE`, m_f/M = 0.1, h0/R = 0.1.
+
+    Parameters
+    ----------
+    zeta, friction : damping ratio of the support; law and coefficient of the liquid's
+    """
+    rotor, fill = layered_rotor(0.1, 0.1, zeta)
+    return asynchronous_growth(rotor.system(), [fill], RANGE * NATURAL, friction)[0] / NATURAL
 
 
 def _peaks() -> list[Case]:
@@ -108,7 +118,7 @@ def _peaks() -> list[Case]:
             _SOURCE,
             f"largest growth over the natural frequency, m_f/M = h0/R = 0.1, damping ratio {zeta:g}",
             printed,
-            float(_growth(zeta).max()),
+            float(growth_over_speed(zeta).max()),
             # Half of the last digit.
             tolerance=_DIGIT / printed,
         )
@@ -118,8 +128,8 @@ def _peaks() -> list[Case]:
 
 def _weak() -> Case:
     """Damping of the support alone leaves every speed unstable; with laminar friction a band remains."""
-    alone, both = _growth(0.05), _growth(0.05, (STOKES, 0.0))
-    unstable = _RANGE[both > 0.0]
+    alone, both = growth_over_speed(0.05), growth_over_speed(0.05, (STOKES, 0.0))
+    unstable = RANGE[both > 0.0]
     return Case(
         name="whirl/damping-alone",
         source=_SOURCE,
@@ -136,8 +146,8 @@ def _weak() -> Case:
 
 def _limits() -> list[Case]:
     """No whirl grows without liquid, in a full chamber, and on supports of a thousand times the frequency."""
-    rotor, fill = _machine(0.1, 0.1, 0.0)
-    chamber, water, speed = fill.chamber, fill.liquid, _RANGE * _NATURAL
+    rotor, fill = layered_rotor(0.1, 0.1, 0.0)
+    chamber, water, speed = fill.chamber, fill.liquid, RANGE * NATURAL
     rigid = Jeffcott(rotor.mass, rotor.stiffness * 1e6, 0.0, 0.0)
     found = []
     for name, machine, volume in (

@@ -16,14 +16,14 @@ import typer
 from typer.main import get_command
 
 from meshes.border import InputError
-from study.cli import explain, layer, map, new, optimise, run, runup, sweep, trade, volume
+from study.cli import explain, layer, map, modes, new, optimise, run, runup, sweep, trade, view, volume
 from study.cli.output import say
 from study.faults import NotConverged, SceneFaults, one_line
 
 DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED, INTERRUPTED = 0, 1, 2, 3, 130
 
 # Modules with one command each, a function of the module's name, in the order of the help.
-COMMANDS = (new, explain, run, volume, layer, map, runup, optimise, sweep, trade)
+COMMANDS = (new, explain, run, volume, layer, modes, map, runup, optimise, sweep, trade, view)
 
 # What typer raises for a wrong command line; its home moved between versions.
 _UsageError: type[Exception] = typer.BadParameter.__mro__[1]

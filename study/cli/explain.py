@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from math import isfinite, isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -65,6 +64,7 @@ def _lines(answer: Explanation) -> list[str]:
     lines.append(f"liquid model, with a tolerance of {percent(answer.tolerance)}")
     for span in answer.models:
         lines += _span_lines(span)
+    lines += _model_lines(answer)
     if answer.runup:
         from textwrap import wrap
 
@@ -76,19 +76,27 @@ def _span_lines(span: ModelSpan) -> list[str]:
     """One range of speeds: the model, its error, why, and what the next better one gives."""
     from textwrap import wrap
 
-    from study.fidelity_words import percent
-    from study.record import RPM
+    from study.fidelity_words import error_words, speeds_words
 
     holds = "" if span.in_range else " (out of range)"
-    known = "not known" if isnan(span.error) else "without a bound"
-    error = percent(span.error) if isfinite(span.error) else known
-    first, last = f"{span.first * RPM:.5g}", f"{span.last * RPM:.5g}"
-    speeds = first if first == last else f"{first} to {last}"
-    lines = [f"  {speeds} rpm: {span.model}{holds}"]
-    for label, text in (("estimated error", error), ("why", span.reason), ("next better", span.better)):
+    lines = [f"  {speeds_words(span)} rpm: {span.model}{holds}"]
+    told = (("estimated error", error_words(span)), ("why", span.reason), ("next better", span.better))
+    for label, text in told:
         # A number stays with its unit.
         begin, *rest = (line.replace("\xa0", " ") for line in wrap(text.replace(" %", "\xa0%"), 88))
         lines += [f"    {label:17}{begin}", *(f"{'':21}{line}" for line in rest)]
+    return lines
+
+
+def _model_lines(answer: Explanation) -> list[str]:
+    """What each model does and takes for granted."""
+    from textwrap import wrap
+
+    from study.model_words import described
+
+    lines = []
+    for name, text in described(span.model for span in answer.models):
+        lines += [f"  {name}", *(f"    {line}" for line in wrap(text, 105))]
     return lines
 
 
@@ -136,10 +144,15 @@ def _mode_rows(answer: Explanation) -> list[tuple[str, str]]:
 
 def _layer_rows(layer: LayerExplanation) -> list[tuple[str, str]]:
     """One chamber: label and words."""
+    from math import isnan
+
     from study.record import MM
 
     n = layer.numbers
     cylinder = n.steepness[0] > 1e20
+    covers = "not known for such a chamber"
+    if not isnan(layer.optimal_volume):
+        covers = f"from {layer.optimal_volume * 1e6:.4g} ml at the dry rotor's last deflection"
     return [
         ("fill", f"{n.fill:.4g} of the capacity"),
         ("layer at fast spin", f"{layer.depth * MM:.4g} mm deep, h0/R = {n.relative_depth:.4g}"),
@@ -155,7 +168,7 @@ def _layer_rows(layer: LayerExplanation) -> list[tuple[str, str]]:
         ),
         ("Reynolds number", _span(n.reynolds)),
         ("wall layer", f"{_span(n.skin)} of the depth"),
-        ("covers the wall", f"from {layer.optimal_volume * 1e6:.4g} ml at the dry rotor's last deflection"),
+        ("covers the wall", covers),
     ]
 
 

@@ -27,7 +27,7 @@ def map(
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
-    """Growth rate and whirl speed of self-excited whirl, edges of the unstable bands, a figure."""
+    """Growth rate and whirl speed of self-excited whirl, edges of the unstable bands, figure, report."""
     from study.friction import parse_friction
     from study.scene import load_scene
     from study.units import VOLUME, parse_option
@@ -50,16 +50,29 @@ def map(
 
     from study.figures.stability_map import map_figure, save
     from study.map_results import map_json, write_map
+    from study.report import about, command_line
+    from study.report_map import write_map_report
+    from study.stability import SPEEDS, VOLUMES
 
     write_map(record, folder / "map.nc")
     files = save(map_figure(record), folder, "map", "Self-excited whirl over speed and volume")
+    command = command_line(
+        "map",
+        scene,
+        ("--volumes", volumes, VOLUMES),
+        ("--speeds", speeds, SPEEDS),
+        ("--max-volume", max_volume, None),
+        ("--friction", friction, None),
+    )
+    what = about(machine, command, "map.nc", unused=("runup", "optimise"))
+    write_map_report(record, what, files, folder / "map.html")
     if json:
         print_json(map_json(record))
     else:
         print(f"liquid friction: {record.friction}; support: {record.damping}")
         for note in record.notes:
             print(note)
-        print(f"Look at {files.png}; the data are in {folder / 'map.nc'}")
+        print(f"Read {folder / 'map.html'}; the data are in {folder / 'map.nc'}")
 
     lost = int((record.growth != record.growth).sum())
     if lost:

@@ -47,7 +47,7 @@ def optimise(
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
-    """Best volume(s) for an objective, within constraints: figures, data file."""
+    """Best volume(s) for an objective, within constraints: figures, data file, report."""
     from study.scene import load_scene
 
     machine = load_scene(scene)
@@ -57,17 +57,32 @@ def optimise(
 
     from study.figures.optimise import write_figures
     from study.optimise_results import optimum_json, write_optimum
+    from study.report import about, command_line
+    from study.report_optimise import write_optimise_report
 
     write_optimum(record, folder / "optimum.nc")
     files = write_figures(record, folder)
+    command = command_line(
+        "optimise",
+        scene,
+        ("--objective", objective, None),
+        ("--deflection", deflection, None),
+        ("--limit", limit, None),
+        ("--steady", steady, False),
+        ("--seed", seed, None),
+        ("--emulator", emulator, None),
+        ("--no-front", no_front, False),
+    )
+    in_time = aim.objective == "peak" and not aim.steady
+    what = about(machine, command, "optimum.nc", aim, () if in_time else ("runup",))
+    write_optimise_report(record, what, files, folder / "optimise.html")
     if json:
         print_json(optimum_json(record))
     else:
         from study.optimise_words import describe_optimum
 
         print("\n".join(describe_optimum(record)))
-        shown = ", ".join(str(one.png) for one in files)
-        print(f"The data are in {folder / 'optimum.nc'}" + (f"; look at {shown}" if shown else ""))
+        print(f"Read {folder / 'optimise.html'}; the data are in {folder / 'optimum.nc'}")
     say(f"{record.scene.name}: {record.evaluations} sets of volumes judged")
 
 

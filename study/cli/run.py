@@ -20,14 +20,14 @@ def run(
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
-    """Answer of the machine at each speed: figures, data file, one-page summary."""
+    """Answer of the machine at each speed: figures, data file, report."""
     from study.scene import load_scene
 
     machine = load_scene(scene)
     folder = out_dir(machine.name, out)
 
     if machine.rotor.kind == "exciter":
-        _run_exciter(machine, folder, json)
+        _run_exciter(machine, scene, folder, json)
         return
 
     from study.run import run_scene
@@ -36,14 +36,14 @@ def run(
 
     from study.figures import write_figures
     from study.netcdf import write_dataset
-    from study.report import comparisons, write_summary
+    from study.report import about, command_line
+    from study.report_run import comparisons, write_run_report
     from study.results import run_json, to_dataset
 
     write_dataset(to_dataset(record), folder / "response.nc")
     figures = write_figures(record, folder)
-    # The page has room for four; the phase stands in its own file.
-    shown = [figure for figure in figures if len(figures) < 5 or figure.name != "phase"]
-    write_summary(record, {figure.title: figure.svg for figure in shown}, folder / "summary.html")
+    what = about(machine, command_line("run", scene), "response.nc", unused=("runup", "optimise"))
+    write_run_report(machine, record, what, figures, folder / "summary.html")
     if json:
         print_json(run_json(record))
     else:
@@ -67,17 +67,22 @@ def run(
     say(f"{record.name}: {answer.speed.size} speeds done")
 
 
-def _run_exciter(machine: Scene, folder: Path, json: bool) -> None:
+def _run_exciter(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
     """Stuck speeds and vibration of a table with balls."""
     from study.exciter import describe_exciter, exciter_json, run_exciter
     from study.figures.exciter import write_exciter_figure
+    from study.report import about, command_line
+    from study.report_exciter import write_exciter_report
 
     record = run_exciter(machine)
-    write_exciter_figure(record, folder)
+    figure = write_exciter_figure(record, folder)
+    what = about(machine, command_line("run", scene), unused=("model", "runup", "optimise"))
+    write_exciter_report(record, what, figure, folder / "summary.html")
     if json:
         print_json(exciter_json(record))
     else:
         print("\n".join(describe_exciter(record)))
+        print(f"Read {folder / 'summary.html'}")
     if not record.converged:
         from study.faults import NotConverged
 

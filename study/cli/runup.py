@@ -32,7 +32,7 @@ def runup(
     ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
-    """Through resonance in time, up and down: figures, data file, energy balance."""
+    """Through resonance in time, up and down: figures, data file, energy balance, report."""
     from study.scene import load_scene
 
     machine = load_scene(scene)
@@ -50,10 +50,16 @@ def runup(
     record = _run(machine, cells, samples, not no_check)
 
     from study.figures.runup import write_figures
+    from study.report import about, command_line
+    from study.report_runup import write_runup_report
     from study.runup_results import runup_json, write_runup
 
     write_runup(record, folder / "runup.nc")
-    write_figures(record, folder)
+    figures = write_figures(record, folder)
+    options = ("--cells", cells, None), ("--samples", samples, None), ("--no-check", no_check, False)
+    command = command_line("runup", scene, *options)
+    what = about(machine, command, "runup.nc", unused=("speeds", "optimise"))
+    write_runup_report(record, what, figures, folder / "runup.html")
     if animate is not None:
         _film(machine, record, animate)
     if json:
@@ -102,7 +108,7 @@ def _tell(record: RunupRecord, folder: Path) -> None:
         print(f"{label:26}{h.amplitude[k] * MM:10.4g} mm at {h.speed[k] * RPM:8.5g} rpm, {h.time[k]:.4g} s")
     for note in record.notes:
         print(f"note: {note}")
-    print(f"Look at {folder / 'runup_speed.png'}; the data are in {folder / 'runup.nc'}")
+    print(f"Read {folder / 'runup.html'}; the data are in {folder / 'runup.nc'}")
 
 
 def _finish(record: RunupRecord, scene: Path) -> None:

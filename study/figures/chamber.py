@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from study.figures.section import Exaggeration, exaggeration, liquid_outline, side_by_side
+from study.figures.uneven import bodies, is_uneven, plates, wall_line
 from study.record import MM, RPM, Array, ChamberRecord, StudyRecord, peak, phase
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -132,6 +133,9 @@ def draw_chambers(
     reach = 1.18 * widest + views.largest * views.scale.deflection * MM
     for chamber in chambers:
         depth = (chamber.radius - chamber.mean_surface_radius) * views.scale.depth
+        if is_uneven(chamber):
+            _draw_uneven(axes, chamber, centre, depth, views.scale.depth)
+            continue
         angle, inner, outer = liquid_outline(chamber, centre / MM, depth)
         if depth > 0.0:
             x = np.concatenate([outer * np.cos(angle), (inner * np.cos(angle))[::-1]]) * MM
@@ -163,6 +167,29 @@ def draw_chambers(
         place = f", at {chambers[0].plane * MM:.4g}".replace("-", MINUS) if len(planes) > 1 else ""
         axes.set_title(f"radius {names}{place} mm", fontsize=7, color="0.3", pad=3.0)
     axes.axis("off")
+
+
+def _draw_uneven(
+    axes: Axes, chamber: ChamberRecord, centre: complex, depth: float, depth_factor: float
+) -> None:
+    """Walls, baffles and each body of liquid of a chamber that is no clear ring."""
+    if depth > 0.0:
+        for points in bodies(chamber, centre / MM, depth):
+            axes.fill(*(points.T * MM), facecolor=LIQUID, edgecolor="none", label="liquid")
+            wall, surface = np.split(points * MM, 2)
+            wet = np.hypot(*(wall[::-1] - surface).T) > 1e-9 * chamber.radius * MM
+            axes.plot(*np.where(wet[:, None], surface, np.nan).T, color="#0072B2", linewidth=0.7)
+    if chamber.section is not None:
+        for line in wall_line(chamber.section):
+            axes.plot(line[:, 0] * MM + centre.real, line[:, 1] * MM + centre.imag, color=WALL, linewidth=1.4)
+        return
+    for radius in (chamber.radius, chamber.inner_radius):
+        if radius > 0.0:
+            axes.plot(*_circle(centre, radius * MM), color=WALL, linewidth=1.4)
+    if chamber.baffles is not None:
+        for ends in plates(chamber.baffles, chamber.radius, depth_factor):
+            x, y = np.array([centre + end * MM for end in ends]).view(float).reshape(-1, 2).T
+            axes.plot(x, y, color=WALL, linewidth=1.4)
 
 
 def write_numbers(axes: Axes, record: StudyRecord, views: Views, index: int) -> None:

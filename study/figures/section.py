@@ -93,7 +93,7 @@ def exaggeration(chambers: tuple[ChamberRecord, ...], deflections: tuple[float, 
     chambers : those that are drawn
     deflections : amplitudes that are drawn, m, 0 or above
     """
-    layers = [(c.radius - c.mean_surface_radius, c) for c in chambers]
+    layers = [(c.least_depth, c) for c in chambers]
     layers = [(depth, c) for depth, c in layers if depth > 0.0]
     depth_factor = 1.0
     if layers:

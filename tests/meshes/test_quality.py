@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from meshes.quality import assess, edge_polynomials, jacobians, triangle_areas
+from meshes.quality import assess, cell_areas, edge_polynomials, jacobians, triangle_areas
 
 ONE = np.array([[0, 1, 2]])
 EQUILATERAL = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, math.sqrt(0.75)]])
@@ -107,3 +107,43 @@ def test_midside_nodes_on_the_chords_leave_edges_straight() -> None:
     assert np.all(edge_polynomials(straight[None])[2] == 0.0)
     # the coordinates carry 1e-13 of rounding
     assert triangle_areas(straight, SIX)[0] == pytest.approx(math.sqrt(3) / 4, abs=1e-12)
+
+
+def check_quadrilaterals() -> None:
+    """Area, Jacobian, angle and aspect ratio of quadrilaterals, straight and mapped."""
+    rhombus = np.array([[0.0, 0.0], [2.0, 0.0], [3.0, 1.0], [1.0, 1.0]])
+    four = np.array([[0, 1, 2, 3]])
+    assert cell_areas(rhombus, four)[0] == pytest.approx(2.0, rel=1e-14)
+    assert jacobians(rhombus, four)[0] == pytest.approx(2.0, rel=1e-14)  # constant over a parallelogram
+    quality = assess(rhombus, four)
+    assert quality.worst_angle in (pytest.approx(math.pi / 4), pytest.approx(3 * math.pi / 4))
+    # The longest side is 2, the breadth across it 1.
+    assert quality.aspect_ratio == pytest.approx(2.0, rel=1e-14)
+    # A quarter of a ring, mapped: both arcs are parabolas with a third of the sagitta lost from the circle.
+    angle, radius = np.meshgrid(np.linspace(0, math.pi / 2, 3), np.array([1.0, 1.5, 2.0]))
+    nodes = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
+    order = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1), (1, 1)]
+    ring = np.array([nodes[k] for k in order])
+    sagitta, half = 1 - math.sqrt(0.5), math.sqrt(0.5)
+    sector = half * half + 2 / 3 * sagitta * 2 * half
+    assert cell_areas(ring, np.arange(9)[None])[0] == pytest.approx(3 * sector, rel=1e-13)
+    # The Jacobian against differences of the biquadratic map itself, which are exact in its middle.
+    jacobian = jacobians(ring, np.arange(9)[None])[0].reshape(7, 7)
+    along, around = nodes[2, 1] - nodes[0, 1], nodes[1, 2] - nodes[1, 0]
+    assert jacobian[3, 3] == pytest.approx(along[0] * around[1] - along[1] * around[0], rel=1e-13)
+    start, end, middle = nodes[0, 0], nodes[0, 2], nodes[0, 1]
+    leaving = 4 * middle - 3 * start - end
+    out = -3 * nodes[0, 0] + 4 * nodes[1, 0] - nodes[2, 0]
+    assert jacobian[0, 0] == pytest.approx(out[0] * leaving[1] - out[1] * leaving[0], rel=1e-13)
+    # Integrated by Simpson's rule on its 7 x 7 points, exact for cubics: the area again.
+    weights = np.array([1, 4, 2, 4, 2, 4, 1]) / 18
+    assert weights @ jacobian @ weights == pytest.approx(3 * sector, rel=1e-12)
+
+
+def test_quadrilaterals() -> None:
+    check_quadrilaterals()
+
+
+def test_a_dart_is_inverted() -> None:
+    dart = np.array([[0.0, 0.0], [1.0, 0.0], [0.2, 0.2], [0.0, 1.0]])
+    assert assess(dart, np.array([[0, 1, 2, 3]])).inverted == 1

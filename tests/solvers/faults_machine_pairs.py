@@ -12,23 +12,17 @@ FAULTS: tuple[Fault, ...] = (
     Fault(PAIRS, "elastic + 1j * self.damping", "elastic - 1j * self.damping", oracle.check_sums),
     Fault(
         PAIRS,
-        "here.full_mass, here.mass * here.chamber.radius",
-        "here.full_mass, here.mass",
+        "here.added_mass, here.mass * here.chamber.radius",
+        "here.added_mass, here.mass",
         oracle.check_sums,
     ),
     Fault(PAIRS, "place = index[owner]", "place = index[owner[::-1]]", oracle.check_each_as_if_alone),
     Fault(PAIRS, "moment - fills.mass * e", "moment", oracle.check_sums),
     Fault(PAIRS, "(one.unbalance, one.slope))", "(one.slope, one.unbalance))", oracle.check_sums),
-    Fault(PAIRS, "moment = fills.full_mass * e", "moment = fills.mass * e", oracle.check_sums),
+    Fault(PAIRS, "moment = fills.added_mass * e", "moment = fills.mass * e", oracle.check_sums),
     Fault(PAIRS, "moment[bent] = law.unbalance", "moment[bent] = law.slope", oracle.check_sums),
     Fault(
         "fluid.fill", "return self.density * self.volume", "return self.volume", oracle.check_arrays_of_fills
-    ),
-    Fault(
-        "fluid.fill",
-        "self.density * math.pi * np.square(self.chamber.radius)",
-        "self.density * math.pi * self.chamber.radius",
-        oracle.check_arrays_of_fills,
     ),
     Fault(
         "fluid.fill",

@@ -7,12 +7,6 @@ from tests.solvers import test_response as oracle
 
 FAULTS: tuple[Fault, ...] = (
     Fault(
-        "fluid.fill",
-        "self.density * math.pi * np.square(self.chamber.radius) * self",
-        "self.density * np.square(self.chamber.radius) * self",
-        oracle.check_added_mass,
-    ),
-    Fault(
         "solvers.rotor.jeffcott",
         "- self.mass * np.square(speed) + 1j",
         "+ self.mass * np.square(speed) + 1j",

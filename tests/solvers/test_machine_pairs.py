@@ -81,7 +81,7 @@ def check_sums() -> None:
         stiffness = rotor.stiffness - rotor.mass * SPEED[k] ** 2 + 1j * rotor.damping * SPEED[k]
         np.testing.assert_allclose(pairs.dynamic_stiffness[k], stiffness, rtol=1e-14)
         full = sum(f.liquid.density * math.pi * f.chamber.radius**2 * f.chamber.height for f in wet)
-        np.testing.assert_allclose((pairs.liquid_mass[k], pairs.full_mass[k]), (mass, full), rtol=1e-14)
+        np.testing.assert_allclose((pairs.liquid_mass[k], pairs.added_mass[k]), (mass, full), rtol=1e-14)
         reach = sum(f.liquid.density * f.volume * f.chamber.radius for f in wet)
         np.testing.assert_allclose(pairs.reach[k], reach, rtol=1e-14)
     assert np.isinf(pairs.limit[OWNER == 3]).all() and np.isfinite(pairs.limit[OWNER == 1]).all()
@@ -98,7 +98,7 @@ def check_arrays_of_fills() -> None:
     for name in ("mass", "depth"):
         np.testing.assert_allclose(getattr(arrays, name), [getattr(f, name) for f in fills], rtol=1e-14)
     full = [fill.full_mass if fill.volume > 0.0 else 0.0 for fill in fills]
-    np.testing.assert_allclose(arrays.full_mass, full, rtol=1e-14)
+    np.testing.assert_allclose(arrays.added_mass, full, rtol=1e-14)
     back = arrays.at(np.array([3, 1]))
     np.testing.assert_array_equal(back.volume, arrays.volume[[3, 1]])
     np.testing.assert_array_equal(back.chamber.inner_radius, arrays.chamber.inner_radius[[3, 1]])

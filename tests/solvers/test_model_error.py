@@ -95,11 +95,11 @@ def check_law_bound() -> None:
     surfaces = upright_surfaces(fills, speed, gravity)
     bound = defect_bound(surfaces, deflection)
     law = Statics().synchronous(fills, speed, deflection, gravity)
-    lacking = fills.full_mass * deflection - law.unbalance
-    digits = 1e-11 * fills.full_mass * (deflection + fills.chamber.radius)
+    lacking = fills.added_mass * deflection - law.unbalance
+    digits = 1e-11 * fills.added_mass * (deflection + fills.chamber.radius)
     assert (bound >= lacking - digits).all()
     assert (bound[deflection <= surfaces.straight * surfaces.radius] == 0.0).all()
-    ratio = (bound / np.maximum(lacking, 1e-300))[lacking > 1e-6 * fills.full_mass * deflection]
+    ratio = (bound / np.maximum(lacking, 1e-300))[lacking > 1e-6 * fills.added_mass * deflection]
     # Two Newton steps: next to right for most, a small factor for the rest.
     assert np.median(ratio) < 1.02
     assert np.percentile(ratio, 90) < 2.5
@@ -113,7 +113,7 @@ def test_slope_is_between_the_liquids_mass_and_the_full_one() -> None:
     """What the bounds rest on [theory: model_error, eq. 1], to the rounding of two integrals."""
     fills, speed, gravity, deflection = chambers(600, 8)
     slope = Statics().synchronous(fills, speed, deflection, gravity).slope
-    assert (slope <= fills.full_mass * (1.0 + 1e-9)).all()
+    assert (slope <= fills.added_mass * (1.0 + 1e-9)).all()
     assert (slope >= fills.mass * (1.0 - 1e-9)).all()
 
 
@@ -294,7 +294,7 @@ def check_gravity() -> None:
     )  # fmt: skip
     most = rotor.unbalance * slow**2 / 4.0e9
     change = law_error(fills, slow, np.array([G]))
-    expected = change * (1.0 + fills.full_mass * slow**2 / 4.0e9)
+    expected = change * (1.0 + fills.added_mass * slow**2 / 4.0e9)
     np.testing.assert_allclose(planar_gravity_error(one, np.array([G]), most), expected, rtol=1e-9)
 
 

@@ -29,8 +29,8 @@ FAULTS: tuple[Fault, ...] = (
     Fault(_ERROR, "full * least - lost", "full * least + lost", error.check_coverage),
     Fault(
         _ERROR,
-        "elastic - pairs.full_mass * squared",
-        "elastic + pairs.full_mass * squared",
+        "elastic - pairs.added_mass * squared",
+        "elastic + pairs.added_mass * squared",
         error.check_enclosure,
     ),
     Fault(_ERROR, "force + squared * pairs.reach", "force - squared * pairs.reach", error.check_enclosure),

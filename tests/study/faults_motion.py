@@ -19,7 +19,7 @@ FAULTS: tuple[Fault, ...] = (
         oracle.check_amplitude_of_an_ellipse,
     ),
     Fault(
-        "study.explain", "fill.full_mass / bare.mass", "fill.mass / bare.mass", oracle.check_explained_mass
+        "study.explain", "fill.added_mass / bare.mass", "fill.mass / bare.mass", oracle.check_explained_mass
     ),
     Fault(
         "study.run_motion", "int(np.argmax(size))", "int(np.argmin(size))", oracle.check_one_rotor_two_ways

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from study import figures, report, results
+from study import figures, results
 from study.figures import curves, section
 from study.record import ChamberRecord, peak, phase
 from tests.faults import Fault
@@ -172,34 +172,6 @@ def drawing_keeps_wet_wet_and_dry_dry() -> None:
         assert max(deflections) * scale.deflection > 0.01 * CHAMBER.radius  # visible
 
 
-def summary_compares_and_converts() -> None:
-    record = rig()
-    r = record.response
-    largest, at, last = report.comparisons(record)
-    wet, dry = np.abs(r.deflection), np.abs(r.deflection_dry)
-    # Four digits are printed.
-    assert math.isclose(float(largest.wet), wet.max() * 1000.0, rel_tol=6e-4)
-    assert math.isclose(float(largest.dry), dry.max() * 1000.0, rel_tol=6e-4)
-    assert math.isclose(float(largest.ratio), wet.max() / dry.max(), rel_tol=6e-4)
-    assert math.isclose(float(at.wet), r.speed[wet.argmax()] * 30.0 / math.pi, rel_tol=6e-4)
-    assert math.isclose(float(at.dry), r.speed[dry.argmax()] * 30.0 / math.pi, rel_tol=6e-4)
-    assert math.isclose(float(last.ratio), wet[-1] / dry[-1], rel_tol=6e-4)
-    found = dict(report.facts(record))
-    angle = float(found["Liquid at 2000 rpm"].split()[0].replace("\N{MINUS SIGN}", "-"))
-    assert math.isclose(angle, math.degrees(r.liquid_angle[-1]), rel_tol=6e-4)
-    assert math.isclose(
-        float(found["Mass of the liquid"].split()[0]), record.liquid_mass * 1000.0, rel_tol=6e-4
-    )
-
-
-def ranges_name_their_ends() -> None:
-    speed = np.array([100.0, 200.0, 300.0, 400.0, 500.0, 600.0]) * RPM
-    holds = np.array([False, True, True, False, True, False])
-    assert report.ranges(speed, holds) == "200 to 300; 500 rpm"
-    assert report.ranges(speed[::-1], holds[::-1]) == "200 to 300; 500 rpm"
-    assert report.ranges(speed, ~holds) == "100; 400; 600 rpm"
-
-
 def top_axis_is_in_radians_per_second() -> None:
     figure = figures.phase_figure(rig(21))
     top = figure.axes[0].child_axes[0]
@@ -287,20 +259,4 @@ FAULTS: tuple[Fault, ...] = (
     Fault(
         "study.figures", "np.asarray(rpm) / RPM", "np.asarray(rpm) * RPM", top_axis_is_in_radians_per_second
     ),
-    Fault(
-        "study.report",
-        "number(with_liquid / without)",
-        "number(without / with_liquid)",
-        summary_compares_and_converts,
-    ),
-    Fault(
-        "study.report",
-        "math.degrees(r.liquid_angle[-1])",
-        "math.degrees(-r.liquid_angle[-1])",
-        summary_compares_and_converts,
-    ),
-    Fault(
-        "study.report", "record.liquid_mass * 1e3", "record.liquid_mass * 1e6", summary_compares_and_converts
-    ),
-    Fault("study.words", "rpm[change[1::2] - 1]", "rpm[change[1::2]]", ranges_name_their_ends),
 )

@@ -197,6 +197,7 @@ def test_the_command_answers_an_exciter(capsys: pytest.CaptureFixture[str], tmp_
     np.testing.assert_allclose(answer["amplitude_dry"], np.abs(wanted), rtol=1e-6)
     np.testing.assert_allclose(answer["phase"], np.angle(wanted), rtol=1e-6, atol=1e-9)
     assert (tmp_path / "exciter.png").stat().st_size > 10_000
+    assert "Vibratory table" in (tmp_path / "summary.html").read_text(encoding="utf-8")
 
 
 def test_the_command_explains_an_exciter(capsys: pytest.CaptureFixture[str]) -> None:

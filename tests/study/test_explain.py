@@ -72,7 +72,7 @@ def test_a_horizontal_axis_needs_capture() -> None:
     check_capture()
 
 
-@pytest.mark.parametrize("model", ["long_wave", "kdv", "fem"])
+@pytest.mark.parametrize("model", ["long_wave", "kdv"])
 def test_models_that_do_not_answer_are_refused(model: str) -> None:
     asked = scene_from_table(table() | {"model": {"liquid": model}})
     with pytest.raises(InputError, match=r"model\.liquid"):

@@ -18,7 +18,7 @@ from study.explain import explain_scene
 from study.figures import amplitude_figure, campbell_figure, chamber_figure
 from study.figures.section import side_by_side
 from study.machine import dry_rotor
-from study.report import comparisons, facts
+from study.report_run import comparisons, facts
 from study.run import run_scene
 from study.scene import Scene, load_scene, scene_from_table
 from tests.study.test_run import KEYS

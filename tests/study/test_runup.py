@@ -642,7 +642,7 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert len(got["time"]) == 20
     assert got["cells"] == 8
     assert got["error_estimate"] is None
-    assert {path.name for path in (tmp_path / "out").iterdir()} == FILES | {"runup.nc"}
+    assert {path.name for path in (tmp_path / "out").iterdir()} == FILES | {"runup.nc", "runup.html"}
     runup(file, cells=8, samples=20, out=tmp_path / "out")
     text = capsys.readouterr()
     assert "largest amplitude" in text.out
@@ -683,7 +683,7 @@ def test_what_was_reached_is_written(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert got["converged"] is False
     # 20 rad/s are gone after 0.2 s.
     assert 0.0 < got["time"][-1] < 0.25
-    assert {path.name for path in (tmp_path / "out").iterdir()} == FILES | {"runup.nc"}
+    assert {path.name for path in (tmp_path / "out").iterdir()} == FILES | {"runup.nc", "runup.html"}
 
 
 def test_an_interrupted_run_leaves_its_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

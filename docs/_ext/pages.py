@@ -1,0 +1,161 @@
+"""What the pages take from the code: commands, ranges of the models, kept errors; the style of references."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from docutils import nodes
+from pybtex.plugin import register_plugin
+from pybtex.style.formatting.plain import Style
+from pybtex.style.labels import BaseLabelStyle
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+_WIDTH = 100
+
+
+class KeyLabels(BaseLabelStyle):
+    """A reference is called by its key, as in the docstrings."""
+
+    def format_labels(self, sorted_entries: Sequence[Any]) -> list[str]:
+        """Labels of the entries."""
+        return [entry.key for entry in sorted_entries]
+
+
+class Keyed(Style):
+    """Plain references with their keys."""
+
+    default_label_style = KeyLabels
+
+    def format_entry(self, label: str, entry: Any, bib_data: Any = None) -> Any:
+        """An entry; what shows no year is called undated."""
+        entry.fields.setdefault("year", "undated")
+        return super().format_entry(label, entry, bib_data)
+
+
+class Commands(SphinxDirective):
+    """A section for each command of `leblanc`: what its `--help` prints."""
+
+    def run(self) -> list[nodes.Node]:
+        """The sections, in the order of the command line."""
+        found: list[nodes.Node] = []
+        for name in command_names():
+            title = f"leblanc {name}"
+            text = command_help(name)
+            block = nodes.literal_block(text, text, language="text")
+            heading = nodes.title(title, title)
+            found.append(nodes.section("", heading, block, ids=[f"leblanc-{name}"], names=[title]))
+        return found
+
+
+def command_names() -> list[str]:
+    """Commands of `leblanc`."""
+    return list(_commands())
+
+
+def command_help(name: str) -> str:
+    """The help of one command, in lines of a fixed width."""
+    command = _commands()[name]
+    context = command.make_context(name, [], resilient_parsing=True)
+    context.info_name, context.terminal_width, context.max_content_width = f"leblanc {name}", _WIDTH, _WIDTH
+    return str(command.get_help(context))
+
+
+def _commands() -> dict[str, Any]:
+    """The commands themselves, by name."""
+    import typer.main
+
+    from study.cli import app
+
+    commands: dict[str, Any] = vars(typer.main.get_command(app))["commands"]
+    return commands
+
+
+class Ranges(SphinxDirective):
+    """The numbers that bound a model, as `study.validity` has them."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        """A table, or a sentence where there is no bound."""
+        from study.validity import MEANING, RANGES
+
+        bounds = RANGES.get(self.arguments[0], {})
+        if not bounds:
+            return [nodes.paragraph("", "No number bounds this model.")]
+        rows = [(name, MEANING[name], _interval(*bounds[name])) for name in bounds]
+        return [table(("number", "meaning", "range"), rows, code=(0,))]
+
+
+def _interval(least: float, most: float) -> str:
+    return f"at least {least:g}" if math.isinf(most) else f"{least:g} to {most:g}"
+
+
+class KeptErrors(SphinxDirective):
+    """Errors and times of a model in the kept comparison of all shipped scenes."""
+
+    required_arguments = 2
+
+    def run(self) -> list[nodes.Node]:
+        """A table with the best row of the model for each scene."""
+        model, question = self.arguments
+        rows = list(_kept_rows(model, question))
+        head = ("scene", "resolution", "error", "CPU time")
+        if not any(size for _, size, *_ in rows):
+            return [table(("scene", *head[2:]), [(row[0], *row[2:]) for row in rows], code=(0,))]
+        return [table(head, rows, code=(0,))]
+
+
+def _kept_rows(model: str, question: str) -> list[tuple[str, str, str, str]]:
+    from validation.trade import kept, names
+
+    found = []
+    for name in names():
+        rows = [r for r in kept(name)["rows"] if r["question"] == question and r["model"] == model]
+        rows = [r for r in rows if r["error"] is not None and not r["variant"]]
+        # The finest is often the reference itself: one step below it says what a user gets.
+        rows = sorted(rows, key=lambda r: r["resolution"] or 0)
+        for row in rows[:1] if len(rows) < 3 else (rows[0], rows[len(rows) // 2], rows[-2]):
+            error = f"{row['error']:.1e}" if row["resolved"] else "below the best answer's own"
+            size = "" if row["resolution"] is None else f"{row['resolution']} cells"
+            found.append((name, size, error, _time(row["time"])))
+    return found
+
+
+def _time(seconds: float) -> str:
+    return f"{1e3 * seconds:.3g} ms" if seconds < 1.0 else f"{seconds:.3g} s"
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[str]], code: Sequence[int] = ()) -> nodes.table:
+    """A table of text.
+
+    Parameters
+    ----------
+    head : of the columns
+    rows : their cells
+    code : columns that are names in the code
+    """
+    group = nodes.tgroup(cols=len(head))
+    group += [nodes.colspec(colwidth=1) for _ in head]
+    group += nodes.thead("", _row(head, ()))
+    group += nodes.tbody("", *(_row(row, code) for row in rows))
+    return nodes.table("", group)
+
+
+def _row(cells: Sequence[str], code: Sequence[int]) -> nodes.row:
+    row = nodes.row()
+    for k, cell in enumerate(cells):
+        inner = nodes.literal(cell, cell) if k in code else nodes.Text(cell)
+        row += nodes.entry("", nodes.paragraph("", "", inner))
+    return row
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Register with Sphinx."""
+    register_plugin("pybtex.style.formatting", "keyed", Keyed)
+    app.add_directive("all-commands", Commands)
+    app.add_directive("model-ranges", Ranges)
+    app.add_directive("kept-errors", KeptErrors)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

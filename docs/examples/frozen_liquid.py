@@ -1,0 +1,61 @@
+"""The smallest liquid model: the liquid is frozen to the drum, an even ring about its axis.
+
+Run it: `python docs/examples/frozen_liquid.py`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fluid.fill import Fill, Fills
+from fluid.liquid import known_liquid
+from meshes.chamber import Chamber
+from solvers.liquid_models import SYNCHRONOUS_MODELS, SynchronousAnswer
+from solvers.response import Response, synchronous_response
+from solvers.rotor.jeffcott import Jeffcott
+
+Array = NDArray[np.float64]
+
+
+class Frozen:
+    """An even ring of ice on the wall: its unbalance is its mass times the deflection, at any amplitude."""
+
+    name = "frozen"
+
+    def synchronous(self, fills: Fills, speed: Array, deflection: Array, gravity: Array) -> SynchronousAnswer:
+        """See `solvers.liquid_models.LiquidModel`."""
+        mass = fills.density * fills.volume
+        everywhere = np.ones(deflection.shape, dtype=bool)
+        return SynchronousAnswer(
+            unbalance=mass * deflection,
+            slope=mass,
+            dry_patch=~everywhere,
+            in_range=everywhere,
+            converged=everywhere,
+        )
+
+    def linear_limit(self, fills: Fills, speed: Array, gravity: Array) -> Array:
+        """Nowhere is it that of a full chamber."""
+        return np.zeros(speed.shape)
+
+
+SYNCHRONOUS_MODELS[Frozen.name] = Frozen()
+
+
+def answers() -> tuple[Response, Response]:
+    """A rotor with a ring of ice, and the same rotor that is heavier by the ice."""
+    fill = Fill(Chamber(radius=0.25, height=0.04), known_liquid("water"), volume=0.5e-3)
+    speed = np.linspace(5.0, 100.0, 39)
+    light = Jeffcott(mass=30.0, stiffness=18750.0, damping=90.0, unbalance=0.1)
+    heavy = Jeffcott(mass=30.0 + fill.mass, stiffness=18750.0, damping=90.0, unbalance=0.1)
+    return (
+        synchronous_response(light, [fill], speed, model=Frozen.name),
+        synchronous_response(heavy, [], speed),
+    )
+
+
+if __name__ == "__main__":
+    frozen, heavier = answers()
+    gap = np.abs(frozen.deflection - heavier.deflection).max() / np.abs(heavier.deflection).max()
+    print(f"largest amplitude {1e3 * np.abs(frozen.deflection).max():.3f} mm, apart by {gap:.0e}")

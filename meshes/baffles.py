@@ -1,0 +1,81 @@
+"""Radial baffles of a chamber: thin plates along the axis, from the wall or from near it towards the axis."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshes.border import InputError, require_not_negative
+
+Array = NDArray[np.float64]
+
+# Tips nearer to the free surface or to the wall than this fraction of its radius are on it.
+_TOUCHES = 1e-9
+
+
+@dataclass(frozen=True)
+class Baffles:
+    """Radial baffles, all alike and evenly spaced; they have no thickness.
+
+    Four kinds follow from the two ends, with the free surface at r = a: attached to the wall and ending in
+    the liquid; attached and piercing the surface, so that the liquid cannot go around; with a gap at the wall
+    and piercing the surface; and standing free in the liquid.
+
+    Parameters
+    ----------
+    count : how many, 1 or more
+    tip_radius : distance of the inner edge from the axis, m; a + gap for a gap below the surface, 0 if the
+        baffles meet on the axis
+    wall_gap : distance of the outer edge from the wall, m; 0 if attached
+    first_angle : angle of the first, rad
+
+    Raises
+    ------
+    InputError : a count that is not whole and positive, a negative length, a number that is not finite
+    """
+
+    count: int
+    tip_radius: float = 0.0
+    wall_gap: float = 0.0
+    first_angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.count != int(self.count) or self.count < 1:
+            raise InputError("count", self.count, "a whole number, 1 or more")
+        require_not_negative("tip_radius", self.tip_radius)
+        require_not_negative("wall_gap", self.wall_gap)
+        if not math.isfinite(self.first_angle):
+            raise InputError("first_angle", self.first_angle, "a finite angle in radians")
+
+    @property
+    def angles(self) -> Array:
+        """Angle of each baffle, rad, shape (count,), rising from `first_angle`."""
+        return np.asarray(self.first_angle + 2.0 * math.pi / self.count * np.arange(self.count))
+
+    def wetted_span(self, radius: float, surface_radius: float) -> tuple[float, float] | None:
+        """Radii between which a baffle stands in the liquid.
+
+        Parameters
+        ----------
+        radius : wall radius R, m
+        surface_radius : radius a of the free surface, m
+
+        Returns
+        -------
+        Inner and outer radius, m, set to a or R where the baffle reaches them; None if it stays dry.
+
+        Raises
+        ------
+        InputError : an inner edge outside the outer one
+        """
+        inner, outer = self.tip_radius, radius - self.wall_gap
+        if inner >= outer:
+            raise InputError("tip_radius", inner, f"below radius - wall_gap ({outer:g} m)")
+        if outer <= surface_radius * (1.0 + _TOUCHES):
+            return None
+        if self.wall_gap <= _TOUCHES * radius:
+            outer = radius
+        return (surface_radius if inner <= surface_radius * (1.0 + _TOUCHES) else inner), outer

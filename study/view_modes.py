@@ -1,0 +1,187 @@
+"""Pictures of the liquid's own oscillations: a mode of sloshing in a chamber of the machine."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fluid.fill import Fill
+from meshes.border import InputError
+from meshes.polar import ring
+from solvers.sloshing import sloshing_modes
+from solvers.sloshing_system import condense
+from study.fidelity import across_gravity
+from study.record import RPM, Array, one_line
+from study.scene import Scene
+from study.view_answer import require_circles
+from study.view_film import Film
+from study.view_parts import Instant, Picture, Stage
+from study.view_scale import Scale
+from study.view_scene import compose
+from study.view_surfaces import LiquidShape
+
+Complex = NDArray[np.complex128]
+
+MOST_MODES = 40
+AROUND, ACROSS = 120, 4  # elements around and across the layer
+LIFT = 0.6  # of the layer's depth, or of the room inside it: displacement as drawn
+ROUND = 48  # frames of a period
+
+
+@dataclass(frozen=True)
+class Mode:
+    """One oscillation of the liquid in a spinning chamber, m(t) = Re(mode e^{-i sigma t}).
+
+    Parameters
+    ----------
+    number : from 1, by rising size of the frequency
+    frequency : sigma seen from the drum, with the spin positive, rad/s
+    crests : around the drum
+    angle : of the rays, rising, rad, shape (n,); two at a baffle
+    displacement : of the surface along the radius, its largest size 1, shape (n,)
+    fill : the chamber with its liquid
+    speed : of the spin, rad/s
+    converged : of the solver
+    """
+
+    number: int
+    frequency: float
+    crests: int
+    angle: Array
+    displacement: Complex
+    fill: Fill
+    speed: float
+    converged: bool
+
+
+def solve_mode(scene: Scene, number: int, speed: float | None = None, chamber: int = 1) -> Mode:
+    """A mode of the liquid in one chamber of a scene, by finite elements [theory: sloshing, eq. 10-12].
+
+    Parameters
+    ----------
+    scene : the machine
+    number : which mode, from 1 by rising size of the frequency
+    speed : spin, rad/s; the scene's last if None
+    chamber : which one, from 1
+
+    Raises
+    ------
+    InputError : no such chamber or mode, no free surface, a speed that is not above 0
+    """
+    require_circles(scene)
+    if not 1 <= number <= MOST_MODES:
+        raise InputError("--mode", number, f"a whole number from 1 to {MOST_MODES}")
+    if not 1 <= chamber <= len(scene.chambers):
+        count = len(scene.chambers)
+        allowed = (
+            f"from 1 to {count}, the chambers of this scene" if count else "left out: there is no chamber"
+        )
+        raise InputError("--chamber", chamber, allowed)
+    spin = scene.speeds.stop if speed is None else speed
+    if not (math.isfinite(spin) and spin > 0.0):
+        raise InputError("--speed", spin, "a finite number above 0")
+    fill = scene.chambers[chamber - 1]
+    size, inner = fill.surface_radius, fill.chamber.inner_radius
+    if fill.volume == 0.0 or size <= inner * (1.0 + 1e-9) or size <= 1e-9 * fill.chamber.radius:
+        raise InputError("--chamber", chamber, "one with liquid and a free surface")
+    section = ring(fill.chamber.radius, size, AROUND, ACROSS, baffles=fill.chamber.baffles)
+    modes = sloshing_modes(condense(section), spin, number)
+    place = np.full(len(section.points), -1)
+    place[modes.surface_nodes] = np.arange(modes.surface_nodes.size)
+    # Along each side the angle falls from its start to its end.
+    sides = place[section.surface][:, [1, 2, 0]] if section.order == 2 else place[section.surface][:, ::-1]
+    middle = section.points[section.surface[:, :2]].mean(axis=1)
+    order = np.argsort(np.arctan2(middle[:, 1], middle[:, 0]))
+    nodes = sides[order].ravel()
+    points = section.points[modes.surface_nodes[nodes]]
+    # Counted from the first side, so that the seam does not fall within a side.
+    angle = np.unwrap(np.arctan2(points[:, 1], points[:, 0]))
+    return Mode(
+        number,
+        float(modes.frequency[number - 1]),
+        int(modes.crests[number - 1]),
+        angle,
+        modes.displacement[number - 1][nodes],
+        fill,
+        spin,
+        bool(modes.converged),
+    )
+
+
+def shape_of(mode: Mode, phase: float, lift: float) -> LiquidShape:
+    """Liquid of a mode at a phase of its oscillation; the area per angle swings, so that the volume stays.
+
+    Parameters
+    ----------
+    mode : the oscillation
+    phase : sigma t, rad
+    lift : largest displacement, m
+    """
+    chamber, size = mode.fill.chamber, mode.fill.surface_radius
+    moved = lift * (mode.displacement * np.exp(-1j * phase)).real
+    free = np.sqrt(np.maximum(size**2 + 2.0 * size * moved, chamber.inner_radius**2))
+    free = np.minimum(free, chamber.radius)[:, None]
+    count = mode.angle.size
+    outer, inner = np.full(count, chamber.radius), np.full(count, chamber.inner_radius)
+    height = np.repeat(np.array([[0.0, chamber.height]]), count, axis=0)
+    return LiquidShape(0j, mode.angle, inner, outer, np.repeat(free, 2, axis=1), height)
+
+
+def drawn_lift(mode: Mode) -> float:
+    """Largest displacement as drawn, m; the true one is any small number.
+
+    Parameters
+    ----------
+    mode : the oscillation
+    """
+    size = mode.fill.surface_radius
+    return LIFT * min(mode.fill.chamber.radius - size, size - mode.fill.chamber.inner_radius)
+
+
+def mode_picture(scene: Scene, mode: Mode, phase: float = 0.0) -> Picture:
+    """Picture of a mode at a phase of its oscillation.
+
+    Parameters
+    ----------
+    scene : the machine
+    mode : the oscillation
+    phase : sigma t, rad
+    """
+    place = 0.0
+    lying = scene.rotor.axis == "horizontal"
+    stage = Stage((mode.fill,), (place,), lying, Scale(), 0.0, zero="", gravity=not lying)
+    sense = "with the spin" if mode.frequency > 0.0 else "against the spin"
+    crests = f"{mode.crests} crest{'s' if mode.crests > 1 else ''}"
+    if mode.fill.chamber.baffles is not None:
+        crests = f"between baffles; of its harmonics the strongest has {crests}"
+    caption = [
+        "The wave is drawn much higher than it is; its true height is any small one.",
+        "Seen from the drum.",
+    ]
+    if across_gravity(scene) > 0.0:
+        caption.append("Gravity across the axis is left out.")
+    instant = Instant(
+        deflection=(0j,),
+        lean=0j,
+        bodies=(shape_of(mode, phase, drawn_lift(mode)),),
+        title=f"{one_line(scene.name)}: sloshing mode {mode.number} at {mode.speed * RPM:.4g} rpm",
+        state=f"{crests} around, {sense}\n{abs(mode.frequency):.4g} rad/s seen from the drum",
+        caption=" ".join(caption),
+    )
+    return compose(stage, instant)
+
+
+def mode_film(scene: Scene, mode: Mode, frames: int = ROUND) -> Film:
+    """One period of a mode.
+
+    Parameters
+    ----------
+    scene, mode : the machine, the oscillation
+    frames : of the period
+    """
+    sense = 1.0 if mode.frequency > 0.0 else -1.0
+    # The phase sigma t runs backwards for a wave against the spin.
+    return Film(frames, lambda k: mode_picture(scene, mode, sense * 2.0 * math.pi * k / frames))

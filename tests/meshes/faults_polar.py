@@ -1,0 +1,29 @@
+"""Seeded faults of the polar mesh."""
+
+from __future__ import annotations
+
+from tests.faults import Fault
+from tests.meshes import test_polar as oracle
+
+FAULTS: tuple[Fault, ...] = (
+    Fault(
+        "meshes.polar",
+        "turns = baffles.first_angle",
+        "turns = -baffles.first_angle",
+        oracle.check_geometry,
+    ),
+    Fault(
+        "meshes.polar",
+        "radii[0], radii[-1] = surface_radius, radius",
+        "radii[-1] = 1.01 * radius",
+        oracle.check_geometry,
+    ),
+    Fault("meshes.polar", "np.power(t, rise) if fall", "np.power(t, fall) if fall", oracle.check_grading),
+    Fault("meshes.polar", "(4.0 * near / gap)", "(near / depth)", oracle.check_grading),
+    Fault(
+        "meshes.polar",
+        "start + length * _between(count * times",
+        "start + length * _between(count",
+        oracle.check_grading,
+    ),
+)

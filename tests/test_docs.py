@@ -1,0 +1,370 @@
+"""The documentation hangs together: contents, links, pictures, citations, the examples that it shows."""
+
+from __future__ import annotations
+
+import importlib
+import math
+import re
+import sys
+import tomllib
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).parent.parent
+DOCS = ROOT / "docs"
+PAGES = sorted(path for path in DOCS.rglob("*.md"))
+_CODE = re.compile(r"```.*?```|`[^`\n]*`", re.DOTALL)
+_LINK = re.compile(r"\]\(([^)\s]+)\)")
+_CONTENTS = re.compile(r"```\{toctree\}\n(.*?)```", re.DOTALL)
+
+
+def _module(name: str, folder: str = "docs") -> ModuleType:
+    """A module that lies with the pages."""
+    sys.path.insert(0, str(ROOT / folder))
+    try:
+        return importlib.import_module(name)
+    finally:
+        sys.path.pop(0)
+
+
+def _slug(title: str) -> str:
+    """Anchor of a heading, as GitHub makes it."""
+    plain = re.sub(r"[^\w\- ]", "", re.sub(r"[`*$]", "", title).strip().lower())
+    return plain.replace(" ", "-")
+
+
+def _anchors(page: Path) -> set[str]:
+    text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    return {_slug(title) for title in re.findall(r"^#+ (.*)$", text, re.MULTILINE)}
+
+
+def test_links_and_pictures_lead_somewhere() -> None:
+    lost = []
+    for page in [*PAGES, ROOT / "README.md", ROOT / "CHANGELOG.md"]:
+        for target in _LINK.findall(_CODE.sub("", page.read_text(encoding="utf-8"))):
+            if "://" in target:
+                continue
+            file, _, anchor = target.partition("#")
+            there = (page.parent / file).resolve() if file else page
+            if not there.exists() or (anchor and anchor not in _anchors(there)):
+                lost.append(f"{page.relative_to(ROOT)}: {target}")
+    assert not lost
+
+
+def _listed() -> set[Path]:
+    """Pages that the contents lead to from the index."""
+    found, ahead = {DOCS / "index.md"}, [DOCS / "index.md"]
+    while ahead:
+        page = ahead.pop()
+        for block in _CONTENTS.findall(page.read_text(encoding="utf-8")):
+            for entry in (line.strip() for line in block.splitlines()):
+                if not entry or entry.startswith(":"):
+                    continue
+                for one in page.parent.glob(
+                    f"{entry}.md" if not entry.endswith("*") else f"{entry[:-1]}*.md"
+                ):
+                    if one not in found:
+                        found.add(one)
+                        ahead.append(one)
+    return found
+
+
+def test_every_page_is_in_the_contents() -> None:
+    assert not {str(p.relative_to(DOCS)) for p in set(PAGES) - _listed()}
+
+
+def test_contents_name_only_pages_that_exist() -> None:
+    lost = []
+    for page in PAGES:
+        for block in _CONTENTS.findall(page.read_text(encoding="utf-8")):
+            for entry in (line.strip() for line in block.splitlines()):
+                if entry and not entry.startswith(":") and not entry.endswith("*"):
+                    lost += [] if (page.parent / f"{entry}.md").is_file() else [entry]
+    assert not lost
+
+
+def test_every_picture_has_a_recipe_and_a_place_in_the_gallery() -> None:
+    figures = _module("figures")
+    drawn = [name for recipe in figures.RECIPES for name in recipe.pictures]
+    assert len(drawn) == len(set(drawn))
+    assert set(drawn) == {path.stem for path in figures.IMAGES.glob("*.png")}
+    gallery = (DOCS / "gallery.md").read_text(encoding="utf-8")
+    assert set(drawn) == set(re.findall(r"\(images/(\w+)\.png\)", gallery))
+    for recipe in figures.RECIPES:
+        assert gallery.count(f"`{recipe.shown()}`") >= len(recipe.pictures)
+
+
+def test_programs_that_draw_are_there() -> None:
+    from typer.main import get_command
+
+    from study.cli import app
+
+    commands = get_command(app).commands  # type: ignore[attr-defined]
+    for recipe in _module("figures").RECIPES:
+        first, *rest = recipe.program
+        if first == "leblanc":
+            assert rest[0] in commands
+            assert rest[1].startswith("--") or (ROOT / rest[1]).is_file()
+        elif first.endswith(".py"):
+            assert (ROOT / first).is_file()
+        else:
+            assert (ROOT / (first.replace(".", "/") + ".py")).is_file()
+
+
+def test_pictures_that_differ_are_told_apart(tmp_path: Path) -> None:
+    figures = _module("figures")
+    from matplotlib.image import imsave
+
+    white = np.ones((40, 50, 3))
+    marked = white.copy()
+    marked[:10, :25] = 0.0  # 250 of 2000 points
+    faint = white - 0.05
+    for name, picture in (("white", white), ("marked", marked), ("faint", faint), ("small", white[:20])):
+        imsave(tmp_path / f"{name}.png", picture)
+
+    def gap(other: str) -> float:
+        return float(figures.difference(tmp_path / "white.png", tmp_path / f"{other}.png"))
+
+    assert gap("white") == gap("faint") == 0.0
+    assert math.isclose(gap("marked"), 0.125)
+    assert gap("small") == 1.0
+
+
+def test_every_command_is_written_about() -> None:
+    from typer.main import get_command
+
+    from study.cli import app
+
+    text = "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
+    commands = get_command(app).commands  # type: ignore[attr-defined]
+    assert not [name for name in commands if f"leblanc {name}" not in text]
+
+
+def test_every_public_module_is_in_the_reference(tmp_path: Path) -> None:
+    pages = _module("api_pages", "docs/_ext")
+    text = "\n".join(page.read_text(encoding="utf-8") for page in pages.write(tmp_path))
+    named = set(re.findall(r"^\.\. automodule:: (\S+)$", text, re.MULTILINE))
+    files = [p for name in pages.PACKAGES for p in (ROOT / name).rglob("*.py") if p.name != "__main__.py"]
+    wanted = {
+        ".".join(p.relative_to(ROOT).with_suffix("").parts)
+        for p in files
+        if p.name != "__init__.py" and "notebooks" not in p.parts
+    }
+    assert not wanted - named
+    assert all(f"api/{name}" in (DOCS / "api.md").read_text(encoding="utf-8") for name in pages.PACKAGES)
+
+
+def test_equation_numbers_are_unique_on_a_page() -> None:
+    for page in (DOCS / "theory").glob("*.md"):
+        tags = re.findall(r"\\tag\{(\w+)\}", page.read_text(encoding="utf-8"))
+        assert len(tags) == len(set(tags)), page.name
+
+
+def test_pages_of_models_have_their_parts() -> None:
+    wanted = (
+        "## Assumptions",
+        "## Equations",
+        "## Range",
+        "## Error",
+        "## How to ask for it",
+        "## Weak spots",
+    )
+    for page in (DOCS / "models").glob("*.md"):
+        if page.stem not in {"overview", "rotors"}:
+            text = page.read_text(encoding="utf-8")
+            assert not [part for part in wanted if part not in text], page.name
+
+
+def test_ranges_that_the_pages_show_are_those_of_the_code() -> None:
+    from study.validity import RANGES
+
+    shown = set()
+    for page in PAGES:
+        shown |= set(re.findall(r"```\{model-ranges\} (\w+)", page.read_text(encoding="utf-8")))
+    assert set(RANGES) <= shown
+
+
+class TestConsole:
+    """Commands of the pages; `docs/build.py` runs them all."""
+
+    def test_blocks_parse(self) -> None:
+        console = _module("console")
+        for name in _module("build").RUN:
+            text = (DOCS / name).read_text(encoding="utf-8")
+            found = [block for block in console._BLOCK.finditer(text) if block["kind"] == "console"]
+            assert text.count("```console\n") == len(found), name
+            assert text.count("<!-- console:") == sum(block["mark"] == "console" for block in found), name
+            assert all(console.steps(block["body"], words=False) for block in found), name
+            files = [block for block in console._BLOCK.finditer(text) if block["mark"] in {"file", "append"}]
+            assert text.count("<!-- file:") + text.count("<!-- append:") == len(files), name
+            assert all(tomllib.loads(block["body"]) for block in files), name
+
+    def test_commands_and_outputs_are_told_apart(self) -> None:
+        found = _module("console").steps("$ one \\\n  --more\nfirst\nsecond\n$ two\n", words=False)
+        assert [(one.command, one.shown) for one in found] == [
+            ("one \\\n  --more", ("first", "second")),
+            ("two", ()),
+        ]
+
+    @pytest.mark.parametrize(
+        ("shown", "printed", "same"),
+        [
+            ("peak 22.82 mm", "peak 22.83 mm", True),  # a unit in the last place
+            ("peak 22.82 mm", "peak 23.82 mm", False),
+            ("peak 0.001 mm", "peak 0.003 mm", False),
+            ("error 6.3e-08", "error 6.2e-08", True),
+            ("error 6.3e-08", "error 6.3e-07", False),
+            ("mass 100.05", "mass 100.1", True),  # a part in a thousand
+            ("peak 22.82 mm", "least 22.82 mm", False),
+            ("share \N{MINUS SIGN}0.025", "share -0.025", True),
+            ("at 3 and 4", "at 3", False),
+        ],
+    )
+    def test_lines(self, shown: str, printed: str, same: bool) -> None:
+        assert _module("console").agree([shown], [printed], words=False) is same
+
+    def test_dots_stand_for_any_lines(self) -> None:
+        agree = _module("console").agree
+        assert agree(["a", "...", "d"], ["a", "b", "c", "d"], words=False)
+        assert agree(["a", "..."], ["a"], words=False)
+        assert not agree(["a", "...", "d"], ["a", "b"], words=False)
+        assert not agree(["a"], ["a", "b"], words=False)
+
+    def test_words_alone(self) -> None:
+        agree = _module("console").agree
+        assert agree(["took 3 ms"], ["took 900 ms"], words=True)
+        assert not agree(["took 3 ms"], ["took 3 s"], words=True)
+
+    def test_a_page_is_run_and_shown_anew(self, tmp_path: Path) -> None:
+        console, page = _module("console"), tmp_path / "page.md"
+        page.write_text(
+            "<!-- file: a.toml -->\n```toml\nx = 1\n```\n\n```console\n$ cat a.toml\nx = 5\n```\n\n"
+            "<!-- console: shown -->\n```console\n$ false\n```\n"
+        )
+        assert len(console.check(page)) == 1
+        console.check(page, write=True)
+        assert "$ cat a.toml\nx = 1\n" in page.read_text()
+        assert console.check(page) == []
+
+
+class TestDocstrings:
+    """Docstrings as they come on the site."""
+
+    @pytest.fixture
+    def texts(self) -> ModuleType:
+        pytest.importorskip("sphinx")
+        sys.path.insert(0, str(DOCS / "_ext"))
+        try:
+            return importlib.import_module("docstrings")
+        finally:
+            sys.path.pop(0)
+
+    def test_citations_become_links(self, texts: ModuleType) -> None:
+        cited = texts.cited("theory: waves, eq. 5; DR18, eq. 8", {"DR18"})
+        assert cited == (
+            "[theory: :doc:`waves </theory/waves>`, eq. :ref:`5 <waves-eq-5>`; :cite:label:`DR18`, eq. 8]"
+        )
+
+    def test_what_is_no_markup_stays_as_it_is(self, texts: ModuleType) -> None:
+        assert texts.plain("(R/a)**2, |w|, u_t", {}, set()) == r"(R/a)\*\*2, \|w\|, u\_t"
+
+    def test_sections(self, texts: ModuleType) -> None:
+        lines = [
+            "What it does.",
+            "",
+            "Parameters",
+            "----------",
+            "a, b : lengths, m",
+            "    of both",
+            "c : a mass",
+        ]
+        found = "\n".join(
+            texts.converted(lines, {"a": "float", "b": "float", "c": "Mass"}, {"Mass": "x.Mass"}, set())
+        )
+        assert "**a**, **b** \N{EN DASH} ``float``\n   lengths, m\n   of both" in found
+        assert "**c** \N{EN DASH} :py:obj:`Mass <x.Mass>`\n   a mass" in found
+
+    def test_keys_in_pages_become_links_but_not_in_code(self, texts: ModuleType) -> None:
+        linked = texts.linked("see [DR18, eq. 8], `[DR18]` and [X99]", {"DR18"})
+        assert linked == "see [{cite:label}`DR18`, eq. 8], `[DR18]` and [X99]"
+
+
+class TestExamples:
+    """What the page on contributing shows."""
+
+    def test_a_frozen_liquid_is_dead_weight(self) -> None:
+        from solvers.liquid_models import SYNCHRONOUS_MODELS
+
+        try:
+            frozen, heavier = _module("frozen_liquid", "docs/examples").answers()
+        finally:
+            SYNCHRONOUS_MODELS.pop("frozen", None)
+            sys.modules.pop("frozen_liquid", None)
+        # The balance of the wet rotor is solved to 1e-12 of the deflection, amplified near resonance by
+        # 1/(2 zeta) = 8.
+        assert np.allclose(frozen.deflection, heavier.deflection, rtol=1e-10, atol=0.0)
+        assert frozen.converged.all()
+
+    def test_uneven_supports_have_two_critical_speeds(self) -> None:
+        from solvers.rotor.vibration import modes, unbalance_response
+
+        rotor = _module("uneven_supports", "docs/examples").ROTOR
+        natural = modes(rotor.system(), damped=False).eigenvalue[0].imag
+        stiff = np.array([rotor.sideways, rotor.upwards])
+        assert np.allclose(natural, np.sqrt(stiff / rotor.mass), rtol=1e-12)
+        speed = np.array([20.0, 45.0, 90.0])
+        plane = stiff - rotor.mass * speed[:, None] ** 2 + 1j * rotor.damping * speed[:, None]
+        force = rotor.unbalance * speed[:, None] ** 2 * np.array([1.0, -1j])
+        assert np.allclose(unbalance_response(rotor.system(), speed), force / plane, rtol=1e-12)
+
+    def test_the_smallest_scene_runs(self) -> None:
+        from study.run import run_scene
+        from study.scene import load_scene
+
+        record = run_scene(load_scene(DOCS / "examples" / "smallest_scene.toml"))
+        answer = record.response
+        # w = U/(M + m_f - K/Omega^2) without damping, which takes (2 zeta r/(r^2 - 1))^2/2 = 0.9 %
+        # at r = 2, zeta = 0.1; no wall is dry, the 0.18 mm are less than the depth of 1.2 mm.
+        full = math.pi * 0.065**2 * 0.02 * 998.2
+        expected = 6e-4 / (4.0 + full - 4.0 * (1000.0 / 2000.0) ** 2)
+        assert math.isclose(abs(answer.deflection[-1]), expected, rel_tol=0.01)
+
+    def test_code_in_the_pages_runs(
+        self, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        monkeypatch.chdir(ROOT)
+        text = (DOCS / "howto" / "python.md").read_text(encoding="utf-8")
+        blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+        for block in blocks:
+            exec(compile(block, "python.md", "exec"), {})
+        assert len(capsys.readouterr().out.splitlines()) == len(blocks) == 2
+
+
+def test_kept_measurements_are_those_that_the_page_tables(tmp_path: Path) -> None:
+    from validation.benchmarks.keep import keep, kept_results
+    from validation.benchmarks.report import _figures
+    from validation.benchmarks.table import _row, growth_markdown
+
+    page = (DOCS / "benchmarks.md").read_text(encoding="utf-8")
+    results = kept_results()
+    for section in results.sections:
+        assert not [one.setting for one in section.samples if _row(one) not in page]
+    for growths in (results.over_cells, results.over_speeds):
+        assert growth_markdown(growths).strip() in page
+    assert not [one for one in [*_figures(results)[1:], *results.remarks] if one not in page]
+    text = (ROOT / "validation" / "benchmarks" / "results.json").read_text(encoding="utf-8")
+    assert keep(results, tmp_path).read_text(encoding="utf-8") == text
+
+
+def test_kept_comparisons_are_read_as_they_were_written() -> None:
+    from study.trade_results import trade_json
+    from validation.kept_figures import PICTURED, kept_trade
+    from validation.trade import kept
+
+    for name in PICTURED:
+        again, before = trade_json(kept_trade(name)), kept(name)
+        same = [key for key in again if key != "versions"]
+        assert {key: again[key] for key in same} == {key: before[key] for key in same}

@@ -1,0 +1,131 @@
+"""The notebooks as texts: what each must say, what it may import, and that it ends by asserting its cases."""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from validation.run_notebooks import texts
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = {"meshes", "fluid", "solvers", "study", "validation"}
+SECTIONS = ("## Who measured or printed what", "## Assumed", "## What does not agree", "## Asserted")
+NOTEBOOKS = texts()
+
+
+@dataclass(frozen=True)
+class Notebook:
+    """A notebook by its cells, comment marks taken off the text."""
+
+    head: str
+    words: list[str]
+    code: list[str]
+
+
+def read(path: Path) -> Notebook:
+    head, *cells = re.split(r"^# %%", path.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    words = [cell for cell in cells if cell.startswith(" [markdown]\n")]
+    code = [cell.partition("\n")[2] for cell in cells if not cell.startswith(" [markdown]")]
+    plain = ["\n".join(line.removeprefix("#")[1:] for line in one.splitlines()[1:]).strip() for one in words]
+    return Notebook(head, plain, code)
+
+
+def test_there_are_eight_in_their_order() -> None:
+    assert [path.stem.partition("_")[0] for path in NOTEBOOKS] == list("12345678")
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_header_belongs_to_no_machine(path: Path) -> None:
+    head = read(path).head
+    assert "format_name: percent" in head and "name: python3" in head
+    assert not re.search(r"jupytext_version|argv|/|\\", head)
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_says_what_a_reader_must_know(path: Path) -> None:
+    book = read(path)
+    title, *rest = book.words[0].splitlines()
+    assert title.startswith(f"# {path.stem[0]}. ")
+    lines = [line for words in (*rest, *book.words[1:]) for line in words.splitlines()]
+    assert not [line for line in lines if line.startswith("# ")]
+    places = [lines.index(section) for section in SECTIONS]
+    assert places == sorted(places)
+    # Something stands below each heading but the last, below which is code.
+    for section, place in zip(SECTIONS[:-1], places, strict=False):
+        below = next(line for line in lines[place + 1 :] if line.strip())
+        assert not below.startswith("#"), section
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_text_is_plain_markdown(path: Path) -> None:
+    text = "\n\n".join(read(path).words)
+    bare = re.sub(r"`[^`\n]*`", "", text)
+    assert not re.search(r"</?[a-zA-Z][^>]*>", bare), "HTML"
+    assert not re.search(r"\]\(\s*/|https?://", text), "a link away from the project"
+    assert all(paragraph.count("$") % 2 == 0 for paragraph in bare.split("\n\n"))
+    for page in re.findall(r"`((?:docs|examples|validation)/[\w/.]+\.\w+)`", text):
+        # One of the pages is in the repository that a measurement comes from.
+        assert (ROOT / page).exists() or page == "docs/balance_ring_analysis.md", page
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_sources_are_known(path: Path) -> None:
+    keys = set(re.findall(r"@\w+\{(\w+),", (ROOT / "references.bib").read_text(encoding="utf-8")))
+    cited = set(re.findall(r"\[([A-Z]{2}\d{2})[\],]", "\n".join(read(path).words)))
+    assert cited <= keys
+
+
+def _names(code: str) -> set[str]:
+    return {n.attr if isinstance(n, ast.Attribute) else n.id for n in ast.walk(ast.parse(code))
+            if isinstance(n, ast.Attribute | ast.Name)}  # fmt: skip
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_calls_public_functions_of_the_packages(path: Path) -> None:
+    code = "\n".join(read(path).code)
+    tree = ast.parse(code)
+    assert not [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef | ast.ClassDef)]
+    assert not [name for name in _names(code) if name.startswith("_")]
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            modules = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            modules = [node.module or ""]
+            assert not [alias.name for alias in node.names if alias.name.startswith("_")]
+        else:
+            continue
+        assert all(m.partition(".")[0] in PACKAGES | sys.stdlib_module_names for m in modules), modules
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_ends_by_asserting_its_cases(path: Path) -> None:
+    """Each list of cases that is shown is asserted in the last cell, by the verdicts."""
+    book = read(path)
+    whole = "\n".join(book.code)
+    tabled = re.findall(r"^case_table\((\w+)\)", whole, flags=re.MULTILINE)
+    assert tabled
+    last = ast.parse(book.code[-1])
+    assert isinstance(last.body[-1], ast.Assert)
+    asserted = {
+        call.args[0].id
+        for call in ast.walk(last)
+        if isinstance(call, ast.Call)
+        and isinstance(call.func, ast.Name)
+        and call.func.id == "verdicts"
+        and isinstance(call.args[0], ast.Name)
+    }
+    assert set(tabled) <= asserted
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_jupytext_reads_the_same_cells(path: Path) -> None:
+    jupytext = pytest.importorskip("jupytext")
+    cells = jupytext.read(path, fmt="py:percent").cells
+    book = read(path)
+    assert [one.source for one in cells if one.cell_type == "markdown"] == book.words
+    assert len([one for one in cells if one.cell_type == "code"]) == len(book.code)

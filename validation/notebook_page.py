@@ -1,0 +1,187 @@
+"""What the notebooks show: tables and figures that display themselves in Jupyter and on a page of Sphinx."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, get_args
+
+from validation.case import Case, Value, Verdict
+
+if TYPE_CHECKING:
+    from study.figures.page import Figure
+    from study.scene import Scene
+
+_DPI, _WIDE = 160, 110  # dots of a file and of the screen to an inch
+_PLAIN = 10.0  # relative differences below are told in per cent, larger ones as factors
+_PLURAL = {"agrees": "agree", "erratum": "errata", "trend": "trends", "differs": "differ"}
+
+_LEFT = 'style="text-align: left; vertical-align: top"'
+_BREAK = re.compile(r"(?<=[/_])(?=\w)")  # where a path or a name may go on in the next line
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of words and numbers.
+
+    Parameters
+    ----------
+    header : one word for each column
+    rows : as many cells each
+    foot : a line below, or empty
+    """
+
+    header: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    foot: str = ""
+
+    def __repr__(self) -> str:
+        lines = [" | ".join(row) for row in (self.header, *self.rows)]
+        return "\n".join([*lines, self.foot] if self.foot else lines)
+
+    def _repr_html_(self) -> str:
+        """As Jupyter and Sphinx ask for it; line breaks in a cell are kept."""
+        first, *others = (escape(one) for one in self.header)
+        # The first column says what a row is about, mostly in the most words.
+        head = f'<th {_LEFT[:-1]}; width: 42%">{first}</th>'
+        head += "".join(f"<th {_LEFT}>{one}</th>" for one in others)
+        rows = ["".join(f"<td {_LEFT}>{_lines(one)}</td>" for one in row) for row in self.rows]
+        body = "".join(f'<tr style="break-inside: avoid">{row}</tr>' for row in rows)
+        foot = f"<p>{escape(self.foot)}</p>" if self.foot else ""
+        inside = f"<thead><tr>{head}</tr></thead><tbody>{body}</tbody>"
+        return f'<table style="table-layout: auto">{inside}</table>{foot}'
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure as PNG.
+
+    Parameters
+    ----------
+    png : the file's content
+    width : on the screen, pixels
+    """
+
+    png: bytes
+    width: int
+
+    def __repr__(self) -> str:
+        return "figure"
+
+    def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
+        """As Jupyter asks for it."""
+        return self.png, {"width": self.width}
+
+
+def case_table(cases: Sequence[Case]) -> Table:
+    """Cases as printed, computed, difference and verdict, with what a reader must know to judge them.
+
+    Parameters
+    ----------
+    cases : in the order of the table
+    """
+    rows = []
+    for one in cases:
+        what = f"{one.quantity}\n[{one.source}; case {one.name.partition('/')[2]}]"
+        what += f"\n{one.note}" if one.note else ""
+        shown = (_shown(one.printed), _shown(one.computed), _difference(one.difference))
+        rows.append((what, *shown, one.verdict))
+    found = verdicts(cases)
+    counts = (
+        f"{len(names)} {_PLURAL[verdict] if len(names) > 1 else verdict}" for verdict, names in found.items()
+    )
+    header = ("What is compared", "Printed", "Computed", "Difference", "Verdict")
+    return Table(header, tuple(rows), f"Of {len(cases)}: " + ", ".join(counts) + ".")
+
+
+def verdicts(cases: Sequence[Case]) -> dict[str, set[str]]:
+    """Names of the cases, without their group, by verdict; verdicts that none has are left out.
+
+    Parameters
+    ----------
+    cases : of one group
+    """
+    found = {
+        verdict: {one.name.partition("/")[2] for one in cases if one.verdict == verdict}
+        for verdict in get_args(Verdict)
+    }
+    return {verdict: names for verdict, names in found.items() if names}
+
+
+def picture(figure: Figure | Path) -> Picture:
+    """A figure, drawn here or read from a PNG.
+
+    Parameters
+    ----------
+    figure : of the page's size, or a file
+    """
+    from study.figures.page import WIDTH, style
+
+    width = round(WIDTH * _WIDE)
+    if isinstance(figure, Path):
+        return Picture(figure.read_bytes(), width)
+    content = io.BytesIO()
+    with style():
+        figure.savefig(content, format="png", dpi=_DPI, metadata={"Software": None})
+    return Picture(content.getvalue(), width)
+
+
+def drawn(draw: Callable[[Path], Path]) -> Picture:
+    """A figure that is only to be had as a file.
+
+    Parameters
+    ----------
+    draw : writes it to a folder and tells where
+    """
+    with TemporaryDirectory() as folder:
+        return picture(draw(Path(folder)))
+
+
+def example(name: str) -> Scene:
+    """A scene of the folder `examples` beside this package.
+
+    Parameters
+    ----------
+    name : stem of the file
+    """
+    from study.scene import load_scene
+
+    return load_scene(Path(__file__).parents[1] / "examples" / f"{name}.toml")
+
+
+def _lines(words: str) -> str:
+    """A cell's words in HTML, their line breaks kept, with places where long names may break."""
+    return _BREAK.sub("<wbr>", escape(words)).replace("\n", "<br>")
+
+
+def _shown(value: Value) -> str:
+    if value is None:
+        return "none"
+    return value if isinstance(value, str) else f"{value:.6g}"
+
+
+def _difference(value: Value) -> str:
+    """Relative differences in per cent, large ones as a factor."""
+    if not isinstance(value, float):
+        return _shown(value)
+    if value == 0.0:
+        return "0"
+    if abs(value) < _PLAIN:
+        return f"{100.0 * value:+.3g} %"
+    return f"printed is {value + 1.0:,.0f} times the computed"
+
+
+def from_markdown(lines: Sequence[str]) -> Table:
+    """A table that another module prints in Markdown.
+
+    Parameters
+    ----------
+    lines : header, rule and rows
+    """
+    cells = [tuple(one.strip() for one in line.strip().strip("|").split("|")) for line in lines]
+    return Table(cells[0], tuple(cells[2:]))

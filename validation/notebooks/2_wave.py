@@ -1,0 +1,118 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # 2. The wave in the layer: exact theory and computed flow
+#
+# A layer of liquid lies on the wall of a drum that whirls. What force does it put on the drum? Three
+# answers are compared: the exact linear theory of the plane inviscid layer (`docs/theory/waves.md`), the
+# nonlinear long-wave model of the package (`docs/theory/long_wave.md`), and two-phase flow computed with
+# OpenFOAM.
+
+# %% [markdown]
+# ## Who measured or printed what
+#
+# * Nothing here was measured in a laboratory. The reference is a computation: interFoam, volume of fluid,
+#   plane flow with a gas of density 1 inside the layer, made for this comparison and kept in
+#   `validation/data/openfoam_layer.json`. It solves the full equations, but has an error of its own, which
+#   the file tells and the next cell prints.
+# * Cases A and B: a whirl at the spin speed, and at whirl ratios (whirl over spin speed) of 0.5, 0.85 and
+#   1.3; the wall is frictionless. Case C: a whirl at the retrograde free wave, where a bore goes round the
+#   wall; the wall holds the liquid.
+#
+# ## Assumed
+#
+# * Plane flow, no gravity across the axis, no surface tension. The layer is a tenth of the radius.
+# * The flow's wall friction in case C is not known as a law: taken is that of a laminar layer that
+#   oscillates with the whirl (Stokes), on the wall alone, since a plane flow has neither floor nor lid.
+
+# %%
+from validation import layer
+from validation.layer_figures import bore_figure, bore_summary, force_figure
+from validation.notebook_page import Table, case_table, picture, verdicts
+from validation.scenes import data
+
+Table(("How sure the computed flow is, by its file",), ((data("openfoam_layer.json")["accuracy"],),))
+
+# %% [markdown]
+# ## Smooth layers
+#
+# The linear force has no bound at the two free waves with one crest. Between and beside them the long waves
+# (crosses, here with few cells) and the computed flow (squares) lie on the exact line. At whirl ratio 1 the
+# force is that of a full drum.
+
+# %%
+picture(force_figure())
+
+# %% [markdown]
+# ## A bore
+#
+# At the free wave the linear theory has no answer. The whirl drags the wave round, the bore loses energy,
+# and its torque turns the whole layer backwards in the drum, which takes it out of resonance: the force
+# turns from *90 degrees ahead* to *along*. The computed flow took about a quarter of an hour of a core;
+# each line here takes about a second.
+
+# %%
+picture(bore_figure())
+
+# %%
+header = (
+    "Long waves",
+    "crest over the computed flow's, mm",
+    "trough",
+    "rotation at the last common time, rad/s",
+)
+Table(header, tuple((name, *(f"{one:+.2f}" for one in values)) for name, values in bore_summary().items()))
+
+# %% [markdown]
+# ## Number by number
+#
+# For case C the deviation is the distance of the complex forces over the size of the reference's, whirl
+# period by whirl period. Called agreement is 10 % in the first three periods and 35 % in the next three,
+# since two meshes of the computed flow differ by up to 29 % in single periods.
+
+# %%
+cases = layer.cases()
+case_table(cases)
+
+# %% [markdown]
+# ## What does not agree
+#
+# * At whirl ratio 0.5 the deviation is just above the 1 % asked for. The force is small there, and the gas
+#   of the computed flow, which the models do not have, adds 0.001 to it by the file's own estimate: that is
+#   the difference.
+# * The fifth period of the bore is off by more than half in every variant: the computed force falls for one
+#   period while all four models pass smoothly through. That is more than the two meshes of the computed
+#   flow are said to differ by.
+# * Neither dispersion nor friction changes much of the force. With friction the mean rotation of the liquid
+#   stays near that of the computed flow; without, it runs ahead. With dispersion the crests stand far above
+#   those of the computed flow, as the small table shows: dispersion helps smooth waves, and the undular
+#   bore that it makes of this one is too high.
+# * A layer under a real whirl has a floor, a lid and turbulence. None of that is compared here.
+#
+# ## Asserted
+
+# %%
+assert verdicts(cases) == {
+    "agrees": {"A_f1", "A_f2", "B_0.85_f1", "B_1.3_f1", "B_1.3_f2", "C_0.05_f1-mean-rotation"},
+    "differs": {"B_0.5_f1", *(f"C_0.05_f1-{one}" for one in ("plain", "dispersion", "friction", "both"))},
+}
+fifth = [
+    str(one.difference).split(", ")[4]
+    for one in cases
+    if one.name.startswith("layer/C") and one.printed == 0.0
+]
+assert all(float(one) > 50.0 for one in fifth[:4])
+half = next(case for case in cases if case.name == "layer/B_0.5_f1")
+# The gas adds 0.001; without it the deviation is within the 0.6 % that the flow is said to be sure of.
+assert isinstance(half.printed, float) and isinstance(half.computed, float)
+assert abs(half.printed - 0.001 - half.computed) <= 0.006 * half.computed

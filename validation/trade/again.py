@@ -1,0 +1,104 @@
+"""Errors of the kept comparisons made again, those of the cases that are cheap."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+from study.scene import load_scene
+from study.trade import TradeRecord, error_table
+from study.trade_cases import Question, questions
+from study.trade_judge import Comparison, Row
+from validation.case import Case, compare
+from validation.trade import kept, names
+
+_EXAMPLES = Path(__file__).parents[2] / "examples"
+# Errors are made again on two scenes, up to so many cells.
+_SCENES, _CELLS = ("centrifuge", "runup"), 32
+# Another order of sums changes an answer by some 1e-13; below that an error is rounding.
+_TOLERANCE, _ROUNDING = 1e-6, 1e-11
+
+
+def cases() -> list[Case]:
+    """The kept error beside the one found now, and for each scene whether the default is beaten."""
+    found = []
+    for name in _SCENES:
+        scene = load_scene(_EXAMPLES / f"{name}.toml")
+        for question in questions(scene):
+            found += _errors(name, question)
+    return [*found, *(_default(name, one) for name in names() for one in record(name).comparisons)]
+
+
+def _errors(name: str, question: Question) -> list[Case]:
+    kept_rows = (row for one in record(name).comparisons for row in one.rows)
+    rows = {row.label: row for row in kept_rows if row.question == question.name}
+    cheap = [case for case in question.cases if case.model != "fem" and (case.resolution or 0) <= _CELLS]
+    found = []
+    for label, (error, _) in error_table(question, cheap).items():
+        found.append(_error(f"{name}-{question.name}", label, name, rows[label].error, error))
+    return found
+
+
+def _error(where: str, label: str, name: str, printed: float, error: float) -> Case:
+    """One error as it was kept and as it is now."""
+    words = (
+        f"trade/{where}-{label.replace(' ', '-')}",
+        f"validation/trade/{name}.json",
+        f"error of {label}: {where.replace('-', ', ')}",
+    )
+    if max(printed, error) <= _ROUNDING:
+        return Case(*words, printed, error, "rounding", "agrees", "exact here")
+    return compare(*words, printed, error, tolerance=_TOLERANCE)
+
+
+def _default(name: str, one: Comparison) -> Case:
+    """Whether some other model or resolution is as good and cheaper."""
+    beaten = one.dominated_by
+    return Case(
+        f"trade/{name}-{one.question}-default",
+        f"validation/trade/{name}.json",
+        f"models and resolutions that beat the default in error and time on {name}, {one.question}",
+        "none",
+        ", ".join(beaten) or "none",
+        f"the default's error is {one.default.error:.1e}",
+        "differs" if beaten else "agrees",
+    )
+
+
+def record(name: str) -> TradeRecord:
+    """A kept comparison as `trade` found it.
+
+    Parameters
+    ----------
+    name : stem of the scene's file
+    """
+    content = kept(name)
+    comparisons = tuple(_comparison(one, content["rows"]) for one in content["questions"])
+    words = content["name"], f"kept in validation/trade/{name}.json"
+    return TradeRecord(
+        *words, tuple(content["assumed"]), content["digest"], content["tolerance"], comparisons
+    )
+
+
+def _comparison(one: dict[str, Any], rows: list[dict[str, Any]]) -> Comparison:
+    return Comparison(
+        question=one["question"],
+        about=one["about"],
+        reference=one["reference"],
+        reference_error=_number(one["reference_error"]),
+        order=_number(one["order"]),
+        rows=tuple(_row(row) for row in rows if row["question"] == one["question"]),
+        dominated_by=tuple(one["default_dominated_by"]),
+        overhead=_number(one["default_overhead"]),
+    )
+
+
+def _row(values: dict[str, Any]) -> Row:
+    one = {key: value for key, value in values.items() if key != "time_ratio"}
+    numbers = {key: _number(one[key]) for key in ("error", "peak_error")}
+    return Row(**(one | numbers | {"used": tuple(one["used"])}))
+
+
+def _number(value: float | None) -> float:
+    return math.nan if value is None else value
