@@ -102,23 +102,25 @@ def reduce_liquid(system: LiquidSystem) -> ReducedLiquid:
         answers += [answer.real, answer.imag]
     basis = spanned(np.hstack(answers))
     motions = solve_triangular(root.T, basis, lower=False)
+    turn, spread = (basis.T @ one @ basis for one in (gyration, surface))
     return ReducedLiquid(
         inertia=np.eye(basis.shape[1]),
-        gyration=basis.T @ gyration @ basis,
-        surface=basis.T @ surface @ basis,
-        moment=(drive.T @ basis),
+        gyration=0.5 * (turn - turn.T),
+        surface=0.5 * (spread + spread.T),
+        moment=drive.T @ basis,
         motions=np.asarray(motions),
         liquid_area=system.liquid_area,
         enclosed_area=system.enclosed_area,
     )
 
 
-def spanned(vectors: Any) -> Any:
+def spanned(vectors: Any, distinct: float = _DISTINCT) -> Any:
     """Orthonormal columns that span others, but for what rounding and near repetition add.
 
     Parameters
     ----------
     vectors : real or complex, shape (n, k)
+    distinct : part of a vector that must stand across the others
 
     Returns
     -------
@@ -131,6 +133,6 @@ def spanned(vectors: Any) -> Any:
             for other in kept:
                 one = one - other * np.vdot(other, one)
         size = float(np.linalg.norm(one))
-        if size > _DISTINCT:
+        if size > distinct:
             kept.append(one / size)
     return np.stack(kept, axis=1)

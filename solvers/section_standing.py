@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshes.border import InputError
-from solvers.reduced_liquid import KEPT, spanned
+from solvers.reduced_liquid import KEPT, ReducedLiquid, spanned
 from solvers.rotor.system import RotorSystem
 from solvers.section_layer import SectionLayer
 from solvers.section_whirl import SLOW, MostGrowing, most_growing, roots
@@ -25,7 +25,8 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Placed = tuple[float, SectionLayer]
 
-_ALIKE = 1e-3  # of the moment, that may answer in the other sense: what an uneven mesh makes of even baffles
+_ALIKE = 1e-3  # of the answer, that may go in the other sense: what an uneven mesh makes of even walls
+_DISTINCT = 1e-7  # of an answer that must stand across the others
 _QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])  # multiplies by i
 
 
@@ -55,7 +56,7 @@ class CircleLayer:
 
 
 def circle_layer(layer: SectionLayer) -> CircleLayer:
-    """The motions of a layer that a circular whirl drives.
+    """The motions of a layer that a circular whirl drives [theory: sections, eq. 9].
 
     Parameters
     ----------
@@ -72,24 +73,44 @@ def circle_layer(layer: SectionLayer) -> CircleLayer:
         for s in (point, -point.conjugate()):
             matrix = -s * s * liquid.inertia + 2j * s * liquid.gyration + liquid.surface
             answers.append(np.linalg.solve(matrix, drive))
-    basis = spanned(np.hstack(answers))
+    basis = spanned(np.hstack(answers), _DISTINCT)
+    # What rounding, or an uneven mesh, makes of motions in the other sense stays out.
     x, y = liquid.moment @ basis
-    if np.abs(y + 1j * x).max() > _ALIKE * np.abs(x).max():
-        allowed = "3 or more for a rotor that is not planar: fewer answer differently in two directions"
-        raise InputError("chambers.baffles.count", "1 or 2", allowed)
+    basis = basis[:, np.abs(y + 1j * x) <= _ALIKE * np.abs(x).max()]
 
     def seen(matrix: Array) -> Complex:
         return np.asarray(basis.conj().T @ matrix @ basis)
 
-    return CircleLayer(
+    found = CircleLayer(
         density=layer.density,
         liquid_area=liquid.liquid_area,
         gyration=seen(liquid.gyration),
         surface=seen(liquid.surface),
         laminar=seen(layer.laminar),
-        moment=np.sqrt(2.0) * x,
+        moment=np.sqrt(2.0) * (liquid.moment[0] @ basis),
         rate=layer.rate,
     )
+    _require_alike(liquid, found)
+    return found
+
+
+def _require_alike(liquid: ReducedLiquid, circle: CircleLayer) -> None:
+    """Refuse a liquid that does not answer alike in all directions."""
+    s = np.array([0.0, *KEPT])
+    matrix = liquid.compliance(s)
+    sum_xy, difference = matrix[:, 0, 0] + matrix[:, 1, 1], matrix[:, 0, 0] - matrix[:, 1, 1]
+    turned = 0.5 * (sum_xy - 1j * (matrix[:, 0, 1] - matrix[:, 1, 0]))
+    counter = 0.5 * (difference + 1j * (matrix[:, 0, 1] + matrix[:, 1, 0]))
+    one = np.eye(len(circle.moment))
+    at = s[:, None, None]
+    motion = -np.square(at) * one + 2j * at * circle.gyration + circle.surface
+    answer = np.linalg.solve(
+        motion, np.broadcast_to(circle.moment.conj()[:, None], (s.size, one.shape[0], 1))
+    )
+    off = np.abs((circle.moment @ answer)[..., 0] - turned) + np.abs(counter)
+    if (off > _ALIKE * np.abs(turned).max()).any():
+        allowed = "3 or more for a rotor that is not planar: fewer answer differently in two directions"
+        raise InputError("chambers.baffles.count", "1 or 2", allowed)
 
 
 @dataclass(frozen=True, eq=False)

@@ -73,7 +73,6 @@ FAULTS: tuple[Fault, ...] = (
     ),
     Fault(STANDING, "for way in (-1j, 1j):", "for way in (1j, -1j):", oracle.check_two_frames),
     Fault(STANDING, "-0.5j * (one[0] - one[1])", "0.5j * (one[0] - one[1])", oracle.check_two_frames),
-    Fault(STANDING, "np.sqrt(2.0) * x", "x", oracle.check_two_frames),
     Fault(
         STANDING,
         "pull = -one.density",
