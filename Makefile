@@ -32,7 +32,7 @@ $(BIN)/.installed: pyproject.toml | $(BIN)/python
 	touch $@
 
 $(BIN)/.installed-test: pyproject.toml | $(BIN)/python
-	$(BIN)/python -m pip install --quiet --editable ".[test]"
+	$(BIN)/python -m pip install --quiet --editable ".[test,browser,cad]"
 	touch $@
 
 $(BIN)/.installed-lint: pyproject.toml | $(BIN)/python

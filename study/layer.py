@@ -16,13 +16,15 @@ from solvers.hydrostatics import equilibrium
 from solvers.prescribed import Numerics, Whirl
 from study.friction import Friction
 from study.layer_answer import NO_FRICTION, LayerAnswer, angles, wave_amplitude
+from study.layer_fem import fem_answer
 from study.layer_waves import kdv_answer, long_wave_answer
 from study.validity import judge, strained
 
 if TYPE_CHECKING:
     from study.figures.wave import WaveRecord
 
-MODELS = ("statics", "linear", "long_wave", "kdv")
+MODELS = ("statics", "linear", "long_wave", "kdv", "fem")
+CELLS = 96  # of finite elements around the liquid
 
 
 def answer_layer(
@@ -46,10 +48,11 @@ def answer_layer(
         others no force
     model : `statics` (synchronous whirl only), `linear` [theory: waves, eq. 5] `long_wave`, stepped in
         time until it settles [theory: long_wave, eq. 4], or `kdv`, one family of steady waves next to its
-        resonance [theory: kdv, eq. 18]
-    friction : law of the wall friction; the linear theory knows none
+        resonance [theory: kdv, eq. 18], or `fem`, small whirls with baffles in the layer [theory: sloshing,
+        eq. 13]
+    friction : law of the wall friction; the linear theory and finite elements know none
     gravity : across the axis, m/s^2; for the linear and the long-wave model
-    numerics : resolution of the long-wave model; `dispersion` takes the exact one for `kdv`
+    numerics : resolution of the long waves and of the elements; `dispersion` takes the exact one for `kdv`
 
     Raises
     ------
@@ -63,9 +66,13 @@ def answer_layer(
         raise InputError("--whirl-speed", whirl_speed, "a finite number other than 0")
     if model not in MODELS:
         raise InputError("--model", model, "one of " + ", ".join(MODELS))
+    if model != "fem" and fill.chamber.baffles is not None:
+        raise InputError("--baffles", fill.chamber.baffles.count, f"0 for --model {model}; fem takes them")
     begin = time.perf_counter()
     whirl = Whirl(speed, whirl_speed, whirl_amplitude, gravity=gravity)
-    if model in ("long_wave", "kdv"):
+    if model == "fem":
+        answer = fem_answer(fill, whirl, friction, numerics.cells if numerics else CELLS)
+    elif model in ("long_wave", "kdv"):
         wave = long_wave_answer if model == "long_wave" else kdv_answer
         answer = wave(fill, whirl, friction, numerics or Numerics())
     else:

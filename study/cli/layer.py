@@ -22,8 +22,15 @@ def layer(
     speed: Annotated[str, typer.Option(help="Spin speed, rad/s or with a unit.")],
     whirl_speed: Annotated[str, typer.Option(help="Whirl speed in space.")],
     whirl_amplitude: Annotated[str, typer.Option(help="Radius of the whirl.")],
-    model: Annotated[str, typer.Option(help="statics, linear, long_wave or kdv.")] = "linear",
-    cells: Annotated[int, typer.Option(help="Cells round the wall (long_wave).")] = 256,
+    model: Annotated[str, typer.Option(help="statics, linear, long_wave, kdv or fem.")] = "linear",
+    cells: Annotated[
+        int | None, typer.Option(help="Cells round the wall [default: long_wave 256, fem 96].")
+    ] = None,
+    baffles: Annotated[int, typer.Option(help="Number of radial baffles (fem).")] = 0,
+    baffle_tip_radius: Annotated[
+        str, typer.Option(help="Distance of their inner edges from the axis; 0: through the surface.")
+    ] = "0",
+    baffle_wall_gap: Annotated[str, typer.Option(help="Distance of their outer edges from the wall.")] = "0",
     dispersion: Annotated[
         bool, typer.Option("--dispersion", help="Exact linear dispersion (long_wave, kdv).")
     ] = False,
@@ -47,6 +54,7 @@ def layer(
 
     from fluid.fill import Fill
     from fluid.liquid import known_liquid
+    from meshes.baffles import Baffles
     from meshes.chamber import Chamber
     from solvers.prescribed import Numerics
     from study.faults import NotConverged
@@ -55,7 +63,13 @@ def layer(
     from study.layer_waves import layer_history
     from study.units import ACCELERATION, ANGULAR_SPEED, LENGTH, TIME, VOLUME, parse_option
 
-    chamber = Chamber(parse_option(radius, LENGTH, "--radius"), parse_option(height, LENGTH, "--height"))
+    tip = parse_option(baffle_tip_radius, LENGTH, "--baffle-tip-radius")
+    gap = parse_option(baffle_wall_gap, LENGTH, "--baffle-wall-gap")
+    chamber = Chamber(
+        parse_option(radius, LENGTH, "--radius"),
+        parse_option(height, LENGTH, "--height"),
+        baffles=Baffles(baffles, tip, gap) if baffles else None,
+    )
     asked: dict[str, Any] = {
         "fill": Fill(chamber, known_liquid(liquid), parse_option(volume, VOLUME, "--volume")),
         "speed": parse_option(speed, ANGULAR_SPEED, "--speed"),
@@ -64,7 +78,7 @@ def layer(
         "model": model,
         "friction": parse_friction(friction, "--friction"),
         "gravity": parse_option(gravity, ACCELERATION, "--gravity"),
-        "numerics": Numerics(cells, dispersion),
+        "numerics": Numerics((96 if model == "fem" else 256) if cells is None else cells, dispersion),
     }
     grown = parse_option(ramp, TIME, "--ramp")
     if duration is not None:
@@ -92,6 +106,7 @@ def layer(
 _HELP = {
     "statics": "less liquid or a smaller whirl may help",
     "linear": "friction takes the bound off: --model kdv or long_wave",
+    "fem": "a whirl speed off the free waves may help",
     "kdv": "friction may help, or --model long_wave",
     "long_wave": "friction or --duration may help",
 }
