@@ -50,7 +50,7 @@ def fem_answer(fill: Fill, whirl: Whirl, friction: Friction, cells: int) -> Laye
     chamber, inner = fill.chamber, fill.surface_radius
     system = condense(ring(chamber.radius, inner, cells, _ACROSS, baffles=chamber.baffles))
     pull = whirl.speed**2 * whirl.amplitude or 1.0  # without any amplitude the limit of the ratio
-    force = pull * FORWARD
+    force = (pull * FORWARD).astype(complex)
     field = displacement_field(system, whirl.spin, whirl.slip, force)
     total = newton_force(system, whirl.spin, whirl.slip, force, field)
     moment = -(system.moment @ field) / system.liquid_area
