@@ -128,6 +128,12 @@ RECIPES = (
     _example("view", "runup", "--speed", "24 rad/s", view_runup_resonance="view"),
     _example("view", "vertical_rig", "--speed", "8 rad/s", view_vertical_rig_slow="view"),
     _example("view", "centrifuge", "--mode", "3", view_mode="view"),
+    Recipe(
+        ("leblanc", "view", "docs/examples/closed_baffles.toml"),
+        ("view_closed_baffles",),
+        {"view_closed_baffles": "view"},
+    ),
+    Recipe(("docs/examples/lobes.py",), ("view_lobes",), {"view_lobes": "view"}),
     Recipe(("docs/mesh_pictures.py",), ("meshes_sections", "meshes_bodies")),
     Recipe(
         (

@@ -31,11 +31,13 @@ class ChamberSection:
     name : of the file it came from
     digest : fingerprint of its nodes and triangles
     mesh : the section, about the geometric axis
+    cell_size : at the walls of an outline that was meshed for it, m; None for a mesh from a file
     """
 
     name: str = field(compare=False)
     digest: str
     mesh: Section = field(compare=False, repr=False)
+    cell_size: float | None = field(default=None, compare=False)
 
     @property
     def area(self) -> float:
@@ -53,18 +55,19 @@ class ChamberSection:
         return math.sqrt(float(distance_range(arcs, len(self.mesh.triangles))[1].max()))
 
 
-def chamber_section(name: str, mesh: Section) -> ChamberSection:
+def chamber_section(name: str, mesh: Section, cell_size: float | None = None) -> ChamberSection:
     """Give a section its name and fingerprint.
 
     Parameters
     ----------
     name : of the file it came from
     mesh : the section, about the geometric axis
+    cell_size : at the walls of an outline that was meshed for it, m
     """
     content = hashlib.sha256()
     for array in (mesh.points.astype("<f8"), mesh.triangles.astype("<i8")):
         content.update(np.ascontiguousarray(array).tobytes())
-    return ChamberSection(name, content.hexdigest(), mesh)
+    return ChamberSection(name, content.hexdigest(), mesh, cell_size)
 
 
 @lru_cache(maxsize=1024)

@@ -30,7 +30,7 @@ _TRIANGLE, _LINE = {1: 2, 2: 9}, {1: 1, 2: 8}
 
 def outline_section(
     path: str | Path,
-    wall_size: float,
+    wall_size: float | None = None,
     *,
     inside_size: float = math.inf,
     growth: float = 1.3,
@@ -47,7 +47,7 @@ def outline_section(
     Parameters
     ----------
     path : a `.dxf` drawing; or a `.step`, `.iges` or `.brep` model with a plane face, or with a solid
-    wall_size : size of the triangles at walls, m
+    wall_size : size of the triangles at walls, m; a hundredth of the largest extent if not given
     inside_size : size of the largest triangles, m
     growth : size of a triangle over that of its neighbour nearer to the wall, above 1, 3 at most
     order : 1 for straight edges; 2 for quadratic ones, whose nodes on walls lie on the outline
@@ -73,13 +73,14 @@ def outline_section(
     if metre is None:
         raise InputError("scale", scale, "given: the file does not name its unit")
     require_positive("scale", metre)
-    sizes = (wall_size / metre, inside_size / metre, math.log(growth))
     with _gmsh(path) as gmsh:
         if drawn:
             cracks = _build(path, gmsh, curves, slits)
         else:
             cracks = []
             _import(path, gmsh, file, height)
+        at_wall = _default_size(gmsh) if wall_size is None else wall_size / metre
+        sizes = (at_wall, max(at_wall, inside_size / metre), math.log(growth))
         points, triangles, ends = _mesh(gmsh, sizes, order, cracks)
     try:
         points, triangles = open_slits(metre * points, triangles, ends)
@@ -88,15 +89,22 @@ def outline_section(
         raise InputError("path", str(path), f"an outline that wall_size resolves; {fault}") from fault
 
 
-def _check(path: str | Path, wall_size: float, inside_size: float, growth: float, order: int) -> Path:
+def _default_size(gmsh: Any) -> float:
+    """A hundredth of the largest extent of the model, in its unit."""
+    x0, y0, _, x1, y1, _ = gmsh.model.getBoundingBox(-1, -1)
+    return 0.01 * float(max(x1 - x0, y1 - y0))
+
+
+def _check(path: str | Path, wall_size: float | None, inside_size: float, growth: float, order: int) -> Path:
     file = Path(path)
     if file.suffix.lower() not in SUFFIXES:
         raise InputError("path", str(path), "an outline, " + " or ".join(SUFFIXES))
     if not file.is_file():
         raise InputError("path", str(path), "an existing file")
-    require_positive("wall_size", wall_size)
-    if not inside_size >= wall_size:
-        raise InputError("inside_size", inside_size, f"wall_size ({wall_size:g} m) or above")
+    if wall_size is not None:
+        require_positive("wall_size", wall_size)
+    if not inside_size >= (wall_size or 0.0):
+        raise InputError("inside_size", inside_size, f"wall_size ({wall_size or 0.0:g} m) or above")
     if not 1.0 < growth <= 3.0:
         raise InputError("growth", growth, "above 1, 3 at most")
     if order not in (1, 2):

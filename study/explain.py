@@ -16,6 +16,7 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import critical_speeds, modes, orbit, unbalance_response
 from study.fidelity import axial_gravity, choose
 from study.fidelity_words import ModelSpan, model_spans
+from study.inputs import baffle_words
 from study.machine import dry_rotor
 from study.record import ModeRecord
 from study.run_motion import main_critical_speeds, rest_modes
@@ -34,6 +35,7 @@ class LayerExplanation:
     liquid_mass_ratio : mass of the liquid over the rotor's
     optimal_volume : that just covers the wall at the dry rotor's deflection at the last speed, m^3; nan where
         baffles cut the liquid or the section is no circle
+    walls : baffles, or the file of the section, in words; empty for a plain ring
     """
 
     numbers: LayerNumbers
@@ -41,6 +43,7 @@ class LayerExplanation:
     added_mass_ratio: float
     liquid_mass_ratio: float
     optimal_volume: float
+    walls: str = ""
 
 
 @dataclass(frozen=True)
@@ -97,6 +100,7 @@ def explain_scene(scene: Scene) -> Explanation:
                 added_mass_ratio=fill.added_mass / bare.mass,
                 liquid_mass_ratio=fill.mass / bare.mass,
                 optimal_volume=_covering(fill, dry, ends[1], gravity),
+                walls=_walls(fill),
             )
         )
     return Explanation(
@@ -119,6 +123,18 @@ def _covering(fill: Fill, deflection: float, speed: float, gravity: float) -> fl
     if fill.compartments > 1 or fill.chamber.section is not None:
         return math.nan
     return float(optimal_volume(fill.chamber, deflection, speed, gravity))
+
+
+def _walls(fill: Fill) -> str:
+    """What is there besides a plain ring."""
+    if fill.chamber.section is not None:
+        return f"section of {fill.chamber.section.name}"
+    if fill.chamber.baffles is None:
+        return ""
+    effect = "they cut the liquid into compartments"
+    if fill.compartments < 2:
+        effect = "at rest in the drum the liquid lies as without them"
+    return f"baffles: {baffle_words(fill.chamber.baffles)}; {effect}"
 
 
 def _runup(scene: Scene) -> str:

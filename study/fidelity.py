@@ -25,6 +25,7 @@ from study.scene import Rotor, Scene
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
+_NO_DEPTH = 1e-6  # over the surface's radius: a slit that reaches the surface leaves the circle whole
 _BALANCED = 1e-3  # of the surface's radius, that the liquid at rest may lie off the axis
 
 
@@ -115,7 +116,7 @@ differently in two directions"
             raise InputError(f"chambers.{k}.baffles.count", 2, allowed)
         if section is None or not fill.uneven:
             continue
-        if not surface_is_whole(section, area):
+        if not surface_is_whole(section, area) or fill.depth <= _NO_DEPTH * fill.surface_radius:
             allowed = (
                 f"one whose walls the free surface, a circle of {fill.surface_radius:g} m about the axis, "
                 "does not meet; `leblanc modes` takes others"

@@ -43,7 +43,7 @@ def input_rows(scene: Scene) -> tuple[Row, ...]:
             (f"{label}: liquid", f"{fill.volume * ML:.4g} ml of {fill.liquid.name}", f"chambers.{k}.volume"),
         ]
         if chamber.baffles is not None:
-            rows.append((f"{label}: baffles", _baffles(chamber.baffles), f"chambers.{k}.baffles"))
+            rows.append((f"{label}: baffles", baffle_words(chamber.baffles), f"chambers.{k}.baffles"))
         if not isinstance(machine, Jeffcott):
             rows.append((f"{label}: plane", f"{chamber.plane * MM:.4g} mm", f"chambers.{k}.plane"))
     speeds = scene.speeds
@@ -51,8 +51,13 @@ def input_rows(scene: Scene) -> tuple[Row, ...]:
     return (*rows, ("Speeds", span, "speeds"))
 
 
-def _baffles(baffles: Baffles) -> str:
-    """How many, and from where to where."""
+def baffle_words(baffles: Baffles) -> str:
+    """How many, and from where to where.
+
+    Parameters
+    ----------
+    baffles : of a chamber
+    """
     inner = f"{baffles.tip_radius * MM:.4g} mm from the axis" if baffles.tip_radius > 0.0 else "the axis"
     outer = f"{baffles.wall_gap * MM:.4g} mm off the wall" if baffles.wall_gap > 0.0 else "the wall"
     return f"{baffles.count}, from {outer} to {inner}"

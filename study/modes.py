@@ -6,7 +6,6 @@ import math
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +14,13 @@ from fluid.liquid import Liquid
 from fluid.waves import free_wave_frequencies
 from meshes.border import InputError, require_positive
 from meshes.chamber import Chamber
+from meshes.findings import wave_findings
 from meshes.liquid_section import LiquidSection
 from solvers.sloshing import SloshingModes, sloshing_modes, spectrum
 from solvers.sloshing_damping import ModeDamping, mode_damping
 from solvers.sloshing_forced import forced_response
 from solvers.sloshing_system import LiquidSystem, condense
-from study.modes_sections import Resolution, round_sections, section_of_file
+from study.modes_sections import Resolution, SectionSource, round_sections, section_of_file
 
 Array = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ class ModesAnswer:
     crests : round the drum, of the largest share, shape (k,)
     travelling : 0 for a standing oscillation to 1 for a wave that runs one way, shape (k,)
     multiplicity : modes with that frequency, shape (k,)
-    error_estimate : of the frequency, relative, from a mesh twice as coarse; None for a mesh from a file
+    error_estimate : of the frequency, relative, from a mesh twice as coarse
     synchronous_force_ratio : force of the liquid in a synchronous whirl over that of all that the wall
         encloses, the mean over its directions
     surface_radius : a, m
@@ -67,7 +67,7 @@ class ModesAnswer:
     crests: NDArray[np.int64]
     travelling: Array
     multiplicity: NDArray[np.int64]
-    error_estimate: Array | None
+    error_estimate: Array
     synchronous_force_ratio: float
     surface_radius: float
     circulations: int
@@ -103,21 +103,19 @@ def answer_modes(
     speed: float,
     count: int = 12,
     resolution: Resolution | None = None,
-    mesh: Path | None = None,
-    scale: float = 1.0,
+    source: SectionSource | None = None,
 ) -> tuple[ModesAnswer, ModesRecord]:
     """Modes of the liquid in one chamber.
 
     Parameters
     ----------
-    chamber : a round one, with baffles or without; with `mesh` its height and, for comparison, its radius
+    chamber : a round one, with baffles or without; with `source` its height and, for comparison, its radius
     volume : of the liquid, m^3
     liquid : for its viscosity
     speed : spin, rad/s
     count : how many modes
-    resolution : of the mesh; with `mesh` the longest side at the surface, as cells around
-    mesh : file with the section of the chamber, triangles; its origin is the geometric axis
-    scale : length of that file's unit, m
+    resolution : of the mesh; with `source` the longest side at the surface, as cells around
+    source : file with the section of the chamber
 
     Returns
     -------
@@ -133,20 +131,21 @@ def answer_modes(
     if not 1 <= count <= 500:
         raise InputError("--count", count, "from 1 to 500")
     fineness = resolution or Resolution()
-    if mesh is None:
+    if source is None:
         sections, notes, title = round_sections(chamber, volume, liquid, fineness)
     else:
-        sections, notes, title = section_of_file(chamber, volume, fineness, mesh, scale)
+        sections, notes, title = section_of_file(chamber, volume, fineness, source)
     system = condense(sections[-1])
     known = spectrum(system)
     modes = sloshing_modes(system, speed, count, known)
     damping = mode_damping(system, modes, liquid.viscosity, chamber.height)
     size = np.abs(modes.frequency)
-    estimate = None
-    if len(sections) > 1:
-        estimate = _error(condense(sections[0]), size / speed, fineness.order)
+    estimate = _error(condense(sections[0]), size / speed, fineness.order)
+    notes += (
+        [f"mesh: {one}" for one in wave_findings(sections[-1], int(modes.crests.max()))] if source else []
+    )
     notes += _found(damping, _depth(sections[-1]), estimate)
-    clear = mesh is None and _is_ring(sections[-1], chamber.radius)
+    clear = source is None and _is_ring(sections[-1], chamber.radius)
     answer = ModesAnswer(
         frequency=modes.frequency,
         exact=_exact(modes, chamber.radius, system.section.surface_radius) if clear else (None,) * len(size),
@@ -189,10 +188,10 @@ def _error(coarse: LiquidSystem, size: Array, order: int) -> Array:
     return found
 
 
-def _found(damping: ModeDamping, depth: float, estimate: Array | None) -> list[str]:
+def _found(damping: ModeDamping, depth: float, estimate: Array) -> list[str]:
     """What to know about errors and damping."""
     notes = []
-    worst = 0.0 if estimate is None else float(np.max(np.nan_to_num(estimate, nan=1.0)))
+    worst = float(np.max(np.nan_to_num(estimate, nan=1.0)))
     if worst > _ROUGH:
         notes.append(
             f"the mesh is coarse for the fastest of these modes (error about {worst:.1g}): more --segments"
@@ -230,7 +229,7 @@ def table_lines(answer: ModesAnswer) -> list[str]:
             f"{sigma:12.6g}", f"{same if same > 1 else '':>7}", f"{answer.crests[k]:8d}",
             f"  {_runs(sigma, float(answer.travelling[k])):<9}",
             f"{'' if exact is None else f'{exact:.6g}':>12}",
-            f"{'' if error is None else f'{error[k]:.1g}':>9}",
+            f"{error[k]:>9.1g}",
             f"{answer.damping[k]:11.4g}", f"{answer.damping_ratio[k]:9.2g}",
         )  # fmt: skip
         lines.append("".join(cells))

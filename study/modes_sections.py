@@ -14,6 +14,7 @@ from meshes.baffles import Baffles
 from meshes.border import InputError, require_positive
 from meshes.chamber import Chamber
 from meshes.liquid_section import LiquidSection
+from study.section_file import is_outline, section_of_any_file
 
 # A radius of the section that differs by more from the one given.
 _OTHER = 1e-3
@@ -45,6 +46,22 @@ class Resolution:
             raise InputError("--layers", self.layers, "from 1 to 200")
         if self.order not in (1, 2):
             raise InputError("--order", self.order, "1 (linear elements) or 2 (quadratic ones)")
+
+
+@dataclass(frozen=True)
+class SectionSource:
+    """File with the section of a chamber; its origin is the geometric axis.
+
+    Parameters
+    ----------
+    path : a mesh, or an outline
+    unit : length of the file's unit, m; None for the one that it names, of a mesh for 1 m
+    size : of the cells at walls of an outline, m; None for a hundredth of its largest extent
+    """
+
+    path: Path
+    unit: float | None = None
+    size: float | None = None
 
 
 def ring_sections(
@@ -106,36 +123,44 @@ def round_sections(
 
 
 def section_of_file(
-    chamber: Chamber, volume: float, fineness: Resolution, mesh: Path, scale: float
+    chamber: Chamber, volume: float, fineness: Resolution, source: SectionSource
 ) -> tuple[list[LiquidSection], list[str], str]:
-    """Mesh of the liquid in a chamber from a file, notes, and the section in words.
+    """Coarser and finer mesh of the liquid in a chamber from a file, notes, and the section in words.
 
     Parameters
     ----------
     chamber : its height counts; its radius is compared
     volume : of the liquid, m^3
     fineness : longest side at the surface, as cells around
-    mesh : the file
-    scale : length of its unit, m
+    source : the file
 
     Raises
     ------
     InputError : baffles besides those of the file, a file that cannot be used, more liquid than it holds
     """
-    from meshes.exchange import read_section
+    from meshes.findings import mesh_findings
+    from meshes.halving import halved, straightened
     from meshes.waterline_cut import liquid_outside, surface_radius_of
 
-    require_positive("--mesh-unit", scale)
+    if source.unit is not None:
+        require_positive("--mesh-unit", source.unit)
+    if source.size is not None:
+        require_positive("--mesh-size", source.size)
     if chamber.baffles is not None:
         raise InputError("--baffles", chamber.baffles.count, "left out with --mesh, which has its own walls")
-    section = read_section(mesh, scale)
+    section = section_of_any_file(source.path, source.unit, source.size, ("--mesh-unit", "--mesh-size"))
     a = surface_radius_of(section, volume / chamber.height)
-    notes = ["a mesh from a file is taken as it is, its error is not estimated: give a finer one as well"]
+    notes = [f"mesh: {one}" for one in mesh_findings(section)]
+    if section.order == 1 and not is_outline(source.path):
+        notes.append("straight sides: the error is that on these walls, whatever curves they stand for")
     farthest = float(np.hypot(*section.points.T).max())
     if abs(farthest / chamber.radius - 1.0) > _OTHER:
         notes.append(
             f"the section reaches to {farthest * 1e3:.5g} mm from the axis: that counts, not --radius"
         )
-    size = 2.0 * math.pi * a / fineness.segments
-    liquid = liquid_outside(section, a, order=fineness.order, surface_size=size, wall_size=2.0 * size)
-    return [liquid], notes, f"Section of {mesh.name}"
+    size = 4.0 * math.pi * a / fineness.segments
+    liquid = liquid_outside(section, a, order=2, surface_size=size, wall_size=2.0 * size)
+    sections = [liquid, halved(liquid)]
+    if fineness.order == 1:
+        sections = [straightened(one) for one in sections]
+    return sections, notes, f"Section of {source.path.name}"

@@ -31,7 +31,7 @@ from study.scene import Exciter, Rotor, Runup, Scene
 from study.words import number
 
 BAFFLES = "Chamber", "baffles", "tips at (mm)", "gap at the wall (mm)", "first at (deg)"
-SECTIONS = "Chamber", "section", "area (cm²)", "farthest wall (mm)"
+SECTIONS = "Chamber", "section", "area (cm²)", "farthest wall (mm)", "cells at the wall (mm)"
 MOST = 6  # points of a curve that are listed one by one
 
 
@@ -147,11 +147,13 @@ def _chamber(mark: Marker, fill: Fill, k: int) -> Row:
 
 def _section(mark: Marker, one: ChamberSection, k: int) -> Row:
     at = f"chambers.{k}"
+    cells = "as in the file" if one.cell_size is None else number(one.cell_size * MM)
     return (
         Cell(f"{k + 1}"),
         mark.cell(one.name, f"{at}.section"),
         mark.cell(number(one.area * 1e4), f"{at}.section", f"{at}.section_unit"),
         mark.cell(number(one.farthest * MM), f"{at}.section_unit", f"{at}.section"),
+        mark.cell(cells, f"{at}.section_size"),
     )
 
 

@@ -169,7 +169,10 @@ def planned(scene: Scene) -> Runup:
     InputError : it asks for none
     """
     if scene.runup is None:
-        allowed = "a table [runup] with start, stop, duration, and rate or motor"
+        allowed = (
+            "a table [runup] in the scene with start, stop, duration, and rate or motor; "
+            "what `leblanc new` writes has one, commented out"
+        )
         raise InputError("runup", "missing", allowed)
     return scene.runup
 

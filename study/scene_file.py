@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Iterator, Mapping
 from os import PathLike
@@ -19,6 +20,15 @@ from study.scene_table import SCENES, TABLES, SceneTable
 from study.table import Table
 
 MAX_BYTES = 10_000_000
+
+_LONGEST_LINE = 60  # characters of a line that are shown
+_LINE = re.compile(r"line (\d+)")
+# Slips of the pen, each excluding the others, and the remedy.
+_SLIPS = (
+    (re.compile(r"=\s*[+-]?\d+,\d"), "the decimal sign is a point"),
+    (re.compile(r"=\s*[+-]?[\d.]+\s*[A-Za-z%]"), 'a number with a unit stands in quotes, as "10 ml"'),
+    (re.compile(r"=\s*(?!true|false|nan|inf)[A-Za-z]"), "a text stands in quotes"),
+)
 
 _Tables = Mapping[tuple[str, ...], type[Table]]
 
@@ -60,10 +70,19 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
     except RecursionError as error:
         raise fault("TOML with less deeply nested lists and tables") from error
     except tomllib.TOMLDecodeError as error:
-        end = f"at line {text.count(chr(10)) + 1}, the end of the file"
-        raise fault(f"valid TOML: {str(error).replace('at end of document', end)}") from error
+        raise fault(f"valid TOML: {_toml_fault(text, str(error))}") from error
     except ValueError as error:
         raise fault("valid TOML without numbers of thousands of digits") from error
+
+
+def _toml_fault(text: str, said: str) -> str:
+    """What is no TOML, with the line and what may have been meant."""
+    lines = text.splitlines() or [""]
+    said = said.replace("at end of document", f"at line {len(lines)}, the end of the file")
+    place = _LINE.search(said)
+    line = lines[min(int(place[1]), len(lines)) - 1].partition(" #")[0].strip() if place else ""
+    hints = (hint for pattern, hint in _SLIPS if pattern.search(line))
+    return "; ".join((f"{said}: {line[:_LONGEST_LINE]}" if line else said, *hints))
 
 
 def read_scene(path: str | PathLike[str]) -> dict[str, Any]:
@@ -97,6 +116,9 @@ def check_table(table: Mapping[str, Any], file: str) -> SceneTable:
     ------
     SceneFaults : with all that is wrong
     """
+    if "vary" in table and "rotor" not in table:
+        text = "a scene; this is a study of many scenes, which `leblanc sweep` answers"
+        raise SceneFaults([SceneFault(file, "", None, text)])
     faults: list[SceneFault] = []
     checked = None
     kind = _kind(table)

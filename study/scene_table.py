@@ -6,6 +6,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import BeforeValidator, ValidationInfo, field_validator
 
 from fluid.liquid import KNOWN_LIQUIDS, Liquid
@@ -18,6 +19,7 @@ from study.optimise_table import DutyTable, OptimiseTable
 from study.rotor_table import ROTORS, ExciterTable, JeffcottTable, TubTable, TwoPlaneTable
 from study.rules import Entries, OneOf, Quantity, Refused, Text, Whole
 from study.runup_table import MotorTable, RunupTable
+from study.section_file import OUTLINES, is_outline, section_of_any_file
 from study.table import LENGTH, Length, Position, Speed, Table
 
 MAX_CHAMBERS = 1000
@@ -63,38 +65,44 @@ class BafflesTable(Table):
 
 
 class SectionRule:
-    """A mesh file of a chamber's section, read with its unit."""
+    """A file of a chamber's section, read with its unit: a mesh, or an outline and the size of its cells."""
 
-    allowed = "the path of a mesh file of the section, .msh, .vtu or .xdmf"
+    allowed = f"the path of a mesh file of the section, .msh, .vtu or .xdmf, or of an outline, {OUTLINES}"
 
     def __call__(self, value: object, info: ValidationInfo) -> ChamberSection:
         """The section."""
         if not isinstance(value, str) or not value:
             raise Refused(self.allowed)
+        if not Path(value).is_file():
+            raise Refused(f"{self.allowed}; there is no such file")
         try:
-            return section_from_file(value, info.data.get("section_unit", 1.0))
+            return section_from_file(value, info.data.get("section_unit"), info.data.get("section_size"))
         except InputError as error:
-            raise Refused(f"{self.allowed}: {error.allowed}") from error
+            reason = error.allowed if error.field == "path" else f"{error.field} {error.allowed}"
+            raise Refused(f"{self.allowed}: {reason}") from error
 
 
 @lru_cache(maxsize=64)
-def section_from_file(path: str, unit: float) -> ChamberSection:
-    """Section of a chamber from a mesh file, about the file's origin.
+def section_from_file(path: str, unit: float | None, size: float | None = None) -> ChamberSection:
+    """Section of a chamber from a mesh file or an outline, about the file's origin.
 
     Parameters
     ----------
     path : of the file
-    unit : its unit of length, m
+    unit : its unit of length, m; None for the one that it names, of a mesh for 1 m
+    size : of the cells at walls of an outline, m; None for a hundredth of its largest extent
     """
-    from meshes.exchange import read_section
-
-    return chamber_section(Path(path).name, read_section(path, unit))
+    mesh = section_of_any_file(path, unit, size, ("section_unit", "section_size"))
+    if size is None and is_outline(path):
+        size = 0.01 * float(np.ptp(mesh.points, axis=0).max())
+    return chamber_section(Path(path).name, mesh, size)
 
 
 class ChamberTable(Table):
     """[[chambers]]."""
 
-    section_unit: Annotated[float, BeforeValidator(Quantity(units.LENGTH, 1e-9, 1e3))] = 1.0
+    section_unit: Annotated[float | None, BeforeValidator(Quantity(units.LENGTH, 1e-9, 1e3))] = None
+    section_size: Annotated[float | None, BeforeValidator(Quantity(units.LENGTH, 1e-9, 1e3))] = None
     section: Annotated[Any, BeforeValidator(SectionRule())] = None
     radius: Annotated[float | None, LENGTH] = None
     inner_radius: Annotated[float, BeforeValidator(Quantity(units.LENGTH, 0.0, 1e3))] = 0.0

@@ -53,6 +53,9 @@ def check_study(table: Mapping[str, Any], file: str) -> StudyTable:
     ------
     SceneFaults : with all that is wrong
     """
+    if "rotor" in table and "vary" not in table:
+        text = "a study with the keys scene, method and [vary]; this is a scene, which `leblanc run` answers"
+        raise SceneFaults([SceneFault(file, "", None, text)])
     faults: list[SceneFault] = []
     checked = None
     try:

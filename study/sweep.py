@@ -19,7 +19,7 @@ from study.sweep_block import Block, BlockAnswer
 from study.sweep_file import Sweep
 from study.sweep_outputs import PENDING
 from study.sweep_store import Store, field_values, locked, open_store, write_block
-from study.workers import answer_blocks
+from study.workers import answer_blocks, require_scheduler
 
 Progress = Callable[[int, int], None]
 
@@ -56,6 +56,8 @@ def run_sweep(
     SceneFaults : the scene asks for what no sample can answer
     NotConverged : the cluster was lost
     """
+    if fresh and scheduler is not None:
+        require_scheduler(scheduler)  # before the old store is gone
     with locked(folder):
         store = open_store(folder, sweep, fresh)
         missing = _missing(store)

@@ -2,7 +2,8 @@
 
 A cycle is an angle here: "1 Hz" and "60 rpm" are both 2 pi rad/s. (pint alone takes a hertz for 1/s, which
 would make a speed in hertz 2 pi too small.) "1/s" is read as rad/s where an angular speed is wanted, as the
-literature writes it; a rate in 1/s that is no rotation takes neither hertz nor rpm.
+literature writes it, while "1/min" is refused there: nameplates mean turns by it. A rate in 1/s that is no
+rotation takes neither hertz nor rpm.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ class Dimension:
     name : in words, as in "must be a length"
     unit : its SI unit, that of plain numbers; empty for a pure number
     example : how a user may write one
-    also : other units taken as equal to the SI unit
+    also : other units taken as equal to the SI unit, but not their multiples
     """
 
     name: str
@@ -72,6 +73,8 @@ _GROUP = rf"\(\s*{_FACTOR}(?:{_JOIN}{_FACTOR})*\s*\){_POWER}"
 _UNIT = rf"(?:1?\s*/\s*)?(?:{_FACTOR}|{_GROUP})(?:{_JOIN}(?:{_FACTOR}|{_GROUP}))*"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*({_UNIT})?\s*", re.ASCII)
 _SPELLINGS = str.maketrans({"·": "*", "⋅": "*", "²": "^2", "³": "^3"})
+_DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d")
+_TURNS_A_MINUTE = re.compile(r"(?:RPM|Rpm|(?:rev|r|U)\s*/\s*min)")  # as nameplates have it
 _HERTZ = re.compile(r"(?<![A-Za-z])([A-Za-z]*?)(?:Hz|hertz)(?![A-Za-z])")
 
 
@@ -130,7 +133,8 @@ def _from_text(text: str, dimension: Dimension, field: str) -> float:
     """Number and unit to SI."""
     match = _QUANTITY.fullmatch(text.translate(_SPELLINGS)) if len(text) <= _LONGEST else None
     if match is None:
-        raise InputError(field, text[:_LONGEST], dimension.allowed)
+        hint = "; the decimal sign is a point" if _DECIMAL_COMMA.match(text) else ""
+        raise InputError(field, text[:_LONGEST], dimension.allowed + hint)
     number, unit = float(match[1]), match[2] or ""
     if not unit and dimension.unit:
         raise InputError(field, text, f"{dimension.allowed}; this text has no unit")
@@ -169,17 +173,28 @@ def _factor(unit: str, dimension: Dimension) -> float | str:
     import pint
 
     try:
-        factor, base = _base(unit)
+        factor, base = _base("rpm" if _TURNS_A_MINUTE.fullmatch(unit) else unit)
     except pint.UndefinedUnitError as error:
         names = error.unit_names
-        return f"there is no unit {names if isinstance(names, str) else ' or '.join(names)}"
+        return _no_unit([names] if isinstance(names, str) else list(names))
     except (pint.PintError, ArithmeticError):
         return f"{unit} cannot be used as a unit"
     if factor is None or not 1e-30 < factor < 1e30:
         return f"{unit} cannot be used as a unit"
-    if base not in [_base(name)[1] for name in (dimension.unit, *dimension.also)]:
+    if base == _base(dimension.unit)[1]:
+        return float(factor)
+    if base not in [_base(name)[1] for name in dimension.also]:
         return f"{unit} measures something else"
-    return float(factor)
+    if not math.isclose(factor, 1.0, rel_tol=1e-12):
+        return f"{unit} may mean turns or radians"
+    return 1.0
+
+
+def _no_unit(names: list[str]) -> str:
+    """Names that are no units, and what may have been meant."""
+    said = f"there is no unit {' or '.join(names)}"
+    small = names[0].lower()
+    return f"{said}, but {small}" if small != names[0] and small in _registry() else said
 
 
 def _base(unit: str) -> tuple[float | None, Any]:

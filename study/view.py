@@ -8,7 +8,7 @@ from pathlib import Path
 
 from meshes.border import InputError
 from study.scene import Scene
-from study.view_answer import Sight, look_at, places_of, require_circles
+from study.view_answer import Sight, look_at, places_of
 from study.view_film import Film, require_frames, runup_film, runup_scale, sweep_film
 from study.view_page import write_html
 from study.view_parts import Picture, Stage
@@ -124,7 +124,6 @@ def film_of(scene: Scene, frames: int, factor: float | None, progress: Callable[
     from study.runup import runup_scene
     from study.runup_film import film, require_layers
 
-    require_circles(scene)
     require_layers(scene)
     record = runup_scene(scene, check=False, progress=progress)
     reel = film(scene, record, frames)

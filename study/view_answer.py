@@ -68,10 +68,8 @@ def look_at(scene: Scene, speed: float | None = None) -> Sight:
 
     Raises
     ------
-    InputError : a speed that is not above 0, an exciter, a chamber with a section of its own, a liquid model
-        that does not answer this
+    InputError : a speed that is not above 0, an exciter, a liquid model that does not answer this
     """
-    require_circles(scene)
     if speed is not None:
         if not (math.isfinite(speed) and speed > 0.0):
             raise InputError("--speed", speed, "a finite number above 0")
@@ -89,19 +87,6 @@ def look_at(scene: Scene, speed: float | None = None) -> Sight:
     return Sight(
         record, scene.chambers, places, moved, axial_gravity(scene), deflection, _lean(scene, record)
     )
-
-
-def require_circles(scene: Scene) -> None:
-    """All chambers have circular walls, with or without baffles.
-
-    Raises
-    ------
-    InputError : one has a section of its own
-    """
-    for k, fill in enumerate(scene.chambers):
-        if fill.chamber.section is not None:
-            allowed = "left out for a picture, which shows chambers with circular walls"
-            raise InputError(f"chambers.{k}.section", fill.chamber.section.name, allowed)
 
 
 def _lean(scene: Scene, record: StudyRecord) -> Complex:

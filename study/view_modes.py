@@ -7,19 +7,24 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from fluid.fill import Fill
+from meshes.body import columns
 from meshes.border import InputError
+from meshes.chamber_section import surface_is_whole
+from meshes.liquid_section import LiquidSection
 from meshes.polar import ring
-from solvers.sloshing import sloshing_modes
+from meshes.waterline_cut import liquid_outside
+from solvers.sloshing import SloshingModes, sloshing_modes
 from solvers.sloshing_system import condense
 from study.fidelity import across_gravity
 from study.record import RPM, Array, one_line
 from study.scene import Scene
-from study.view_answer import require_circles
+from study.view_bodies import LiquidBodies
 from study.view_film import Film
 from study.view_parts import Instant, Picture, Stage
-from study.view_scale import Scale
+from study.view_scale import Scale, inner_room
 from study.view_scene import compose
 from study.view_surfaces import LiquidShape
 
@@ -45,6 +50,7 @@ class Mode:
     fill : the chamber with its liquid
     speed : of the spin, rad/s
     converged : of the solver
+    moved : the liquid at rest with the displacement of each of its nodes; None between circular walls
     """
 
     number: int
@@ -55,6 +61,7 @@ class Mode:
     fill: Fill
     speed: float
     converged: bool
+    moved: tuple[LiquidSection, Complex] | None = None
 
 
 def solve_mode(scene: Scene, number: int, speed: float | None = None, chamber: int = 1) -> Mode:
@@ -71,7 +78,6 @@ def solve_mode(scene: Scene, number: int, speed: float | None = None, chamber: i
     ------
     InputError : no such chamber or mode, no free surface, a speed that is not above 0
     """
-    require_circles(scene)
     if not 1 <= number <= MOST_MODES:
         raise InputError("--mode", number, f"a whole number from 1 to {MOST_MODES}")
     if not 1 <= chamber <= len(scene.chambers):
@@ -87,7 +93,13 @@ def solve_mode(scene: Scene, number: int, speed: float | None = None, chamber: i
     size, inner = fill.surface_radius, fill.chamber.inner_radius
     if fill.volume == 0.0 or size <= inner * (1.0 + 1e-9) or size <= 1e-9 * fill.chamber.radius:
         raise InputError("--chamber", chamber, "one with liquid and a free surface")
-    section = ring(fill.chamber.radius, size, AROUND, ACROSS, baffles=fill.chamber.baffles)
+    shape = fill.chamber.section
+    area = fill.volume / fill.chamber.height
+    # A baffle without thickness takes nothing from the circle, but leaves no depth.
+    if shape is not None and not (surface_is_whole(shape, area) and fill.depth > 1e-6 * size):
+        allowed = "one whose free surface meets no wall; `leblanc modes --out` draws the others"
+        raise InputError("--chamber", chamber, allowed)
+    section = _liquid(fill)
     modes = sloshing_modes(condense(section), spin, number)
     place = np.full(len(section.points), -1)
     place[modes.surface_nodes] = np.arange(modes.surface_nodes.size)
@@ -108,10 +120,55 @@ def solve_mode(scene: Scene, number: int, speed: float | None = None, chamber: i
         fill,
         spin,
         bool(modes.converged),
+        None if fill.chamber.section is None else (section, _spread(section, modes, number)),
     )
 
 
-def shape_of(mode: Mode, phase: float, lift: float) -> LiquidShape:
+def _liquid(fill: Fill) -> LiquidSection:
+    """Mesh of the liquid at rest."""
+    size = fill.surface_radius
+    if fill.chamber.section is None:
+        return ring(fill.chamber.radius, size, AROUND, ACROSS, baffles=fill.chamber.baffles)
+    side = 4.0 * math.pi * size / AROUND  # bisection makes sides up to half as long
+    return liquid_outside(fill.chamber.section.mesh, size, order=2, surface_size=side, wall_size=2.0 * side)
+
+
+def _spread(section: LiquidSection, modes: SloshingModes, number: int) -> Complex:
+    """Displacement of all nodes, that of the surface fading towards the walls, where there is none.
+
+    Only for the eye: walls stay where they are and cells do not fold.
+    """
+    surface = modes.surface_nodes
+    wall = np.setdiff1d(section.wall, surface)
+    below, near = cKDTree(section.points[surface]).query(section.points)
+    above, _ = cKDTree(section.points[wall]).query(section.points)
+    share = np.divide(above, above + below, out=np.zeros_like(above), where=above + below > 0.0)
+    share[wall], share[surface] = 0.0, 1.0
+    return np.asarray(share * modes.displacement[number - 1][near])
+
+
+def _moment(displacement: Complex, phase: float, lift: float) -> Array:
+    """Displacement at a phase, m."""
+    return np.asarray(lift * (displacement * np.exp(-1j * phase)).real)
+
+
+def _body_of(mode: Mode, phase: float, lift: float) -> LiquidBodies:
+    """Liquid of a mode between walls of any shape."""
+    assert mode.moved is not None
+    section, displacement = mode.moved
+    moved = _moment(displacement, phase, lift)
+    away = np.hypot(*section.points.T)
+    # As on the surface of a ring: the area per angle swings.
+    points = section.points * np.sqrt(1.0 + 2.0 * moved / away)[:, None]
+    surface = np.zeros(len(points), dtype=bool)
+    surface[section.surface] = True
+    height = mode.fill.chamber.height
+    full, none = np.full(len(points), height), np.zeros(len(points), dtype=bool)
+    body = columns(points, section.cells, full, height, none, surface, layers=1, order=2)
+    return LiquidBodies(0j, (body,))
+
+
+def shape_of(mode: Mode, phase: float, lift: float) -> LiquidShape | LiquidBodies:
     """Liquid of a mode at a phase of its oscillation; the area per angle swings, so that the volume stays.
 
     Parameters
@@ -120,8 +177,10 @@ def shape_of(mode: Mode, phase: float, lift: float) -> LiquidShape:
     phase : sigma t, rad
     lift : largest displacement, m
     """
+    if mode.moved is not None:
+        return _body_of(mode, phase, lift)
     chamber, size = mode.fill.chamber, mode.fill.surface_radius
-    moved = lift * (mode.displacement * np.exp(-1j * phase)).real
+    moved = _moment(mode.displacement, phase, lift)
     free = np.sqrt(np.maximum(size**2 + 2.0 * size * moved, chamber.inner_radius**2))
     free = np.minimum(free, chamber.radius)[:, None]
     count = mode.angle.size
@@ -137,8 +196,7 @@ def drawn_lift(mode: Mode) -> float:
     ----------
     mode : the oscillation
     """
-    size = mode.fill.surface_radius
-    return LIFT * min(mode.fill.chamber.radius - size, size - mode.fill.chamber.inner_radius)
+    return LIFT * min(mode.fill.depth, inner_room(mode.fill))
 
 
 def mode_picture(scene: Scene, mode: Mode, phase: float = 0.0) -> Picture:
@@ -155,6 +213,8 @@ def mode_picture(scene: Scene, mode: Mode, phase: float = 0.0) -> Picture:
     stage = Stage((mode.fill,), (place,), lying, Scale(), 0.0, zero="", gravity=not lying)
     sense = "with the spin" if mode.frequency > 0.0 else "against the spin"
     crests = f"{mode.crests} crest{'s' if mode.crests > 1 else ''}"
+    if mode.fill.chamber.section is not None:
+        crests = f"between walls of its own shape; of its harmonics the strongest has {crests}"
     if mode.fill.chamber.baffles is not None:
         crests = f"between baffles; of its harmonics the strongest has {crests}"
     caption = [

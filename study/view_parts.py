@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from study.record import MM, Array
+from study.view_bodies import LiquidBodies
 from study.view_scale import Scale
 from study.view_surfaces import LiquidShape
 
@@ -129,7 +130,7 @@ class Instant:
 
     deflection: tuple[complex, ...]
     lean: complex
-    bodies: tuple[LiquidShape | None, ...]
+    bodies: tuple[LiquidShape | LiquidBodies | None, ...]
     title: str
     state: str
     caption: str

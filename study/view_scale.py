@@ -11,9 +11,12 @@ from numpy.typing import NDArray
 from fluid.fill import Fill
 from meshes.border import InputError
 from meshes.chamber import Chamber
+from meshes.liquid_section import free_sides
+from meshes.waterline_cut import area_outside
 from solvers.hydrostatics import optimal_volume
 from study.figures.section import rounded_down
 from study.record import Array
+from study.view_bodies import is_cut
 
 Complex = NDArray[np.complex128]
 
@@ -67,12 +70,38 @@ def drawn_volume(fill: Fill, depth: float) -> float:
 
     Returns
     -------
-    m^3; that of the scene for a factor of 1
+    m^3; that of the scene for a factor of 1. In a section of its own the layer grows by as much everywhere
+    as where it is thinnest
     """
-    if depth == 1.0:
+    if depth == 1.0 or (fill.chamber.section is not None and not fill.uneven):
         return fill.volume
     layer = depth * fill.depth
+    if fill.chamber.section is not None:
+        inner = fill.surface_radius + fill.depth - layer
+        return area_outside(fill.chamber.section.mesh, inner) * fill.chamber.height
     return math.pi * fill.chamber.height * layer * (2.0 * fill.chamber.radius - layer)
+
+
+def wet_deflection(fill: Fill, depth: float, speed: Array, gravity: float) -> Array:
+    """Deflection up to which the wall stays wet all round.
+
+    In a section of its own, and between closed baffles, the depth where the layer is thinnest: a bowl under
+    gravity along the axis and the compartments leave more.
+
+    Parameters
+    ----------
+    fill : the chamber with its liquid
+    depth : factor of its depth as drawn
+    speed : spin speeds, rad/s, shape (s,)
+    gravity : along the axis, m/s^2
+
+    Returns
+    -------
+    m, shape (s,)
+    """
+    if is_cut(fill):
+        return np.full(speed.shape, depth * fill.depth if fill.uneven else math.inf)
+    return drying_deflection(fill.chamber, drawn_volume(fill, depth), speed, gravity)
 
 
 def drying_deflection(chamber: Chamber, volume: float, speed: Array, gravity: float) -> Array:
@@ -141,11 +170,28 @@ def _two_digits(factor: float) -> float:
 
 def _deeper(fills: tuple[Fill, ...], span: float) -> float:
     """Factor that makes the thinnest layer visible, if there is room in all chambers."""
-    layers = [(f.depth, f.chamber) for f in fills if f.volume > 0.0]
-    if not any(depth < THIN * span for depth, c in layers):
+    layers = [f for f in fills if f.volume > 0.0 and f.depth > 0.0]
+    if not any(f.depth < THIN * span for f in layers):
         return 1.0
-    fits = [min(DEEP * c.radius, FILLED * (c.radius - c.inner_radius)) / depth for depth, c in layers]
-    return _two_digits(min(fits))
+    return _two_digits(
+        min(min(DEEP * f.chamber.radius, FILLED * (f.depth + inner_room(f))) / f.depth for f in layers)
+    )
+
+
+def inner_room(fill: Fill) -> float:
+    """From the free surface inwards to the nearest wall, or to the axis, m.
+
+    Parameters
+    ----------
+    fill : the chamber with its liquid
+    """
+    chamber = fill.chamber
+    if chamber.section is None:
+        return fill.surface_radius - chamber.inner_radius
+    sides = free_sides(chamber.section.mesh.triangles)
+    away = np.hypot(*chamber.section.mesh.points[np.unique(sides)].T)
+    inside = float(away[away < fill.surface_radius].max(initial=0.0))
+    return fill.surface_radius - inside
 
 
 def _wettings(
@@ -158,8 +204,7 @@ def _wettings(
         if fill.volume == 0.0 or not moves.any():
             continue
         edge, here = (
-            drying_deflection(fill.chamber, drawn_volume(fill, one), speed, gravity)[moves] / size[moves, k]
-            for one in (1.0, depth)
+            wet_deflection(fill, one, speed, gravity)[moves] / size[moves, k] for one in (1.0, depth)
         )
         wet = wet and bool(np.all(edge >= 1.0))
         most = min(most, CLEAR * float(here.min()))

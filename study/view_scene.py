@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
-import numpy as np
+from itertools import pairwise
 
+import numpy as np
+from numpy.typing import NDArray
+
+from meshes.body import WALL_PARTS
 from meshes.chamber import Chamber
 from study.record import Array
+from study.view_bodies import LiquidBodies
 from study.view_marks import ABOVE, AWAY, BELOW, axes, marks
 from study.view_parts import ROUND, Complex, Indices, Instant, Picture, Piece, Stage, circle, line, placed
 from study.view_surfaces import LiquidShape, strips
+from study.view_walls import baffles, plates_of, section_walls, straight
 
 SKIN = 0.003  # walls are drawn so much outside the liquid, over the radius, so that the two do not coincide
+_ON_PLATE = 1e-6  # of a plate's length, that a face may be off it
 
 
 def compose(stage: Stage, instant: Instant) -> Picture:
@@ -26,8 +33,11 @@ def compose(stage: Stage, instant: Instant) -> Picture:
         centre = factor * instant.deflection[k]
         pieces += _walls(stage, fill.chamber, k, centre, place - 0.5 * fill.chamber.height)
         body = instant.bodies[k]
-        if body is not None:
-            pieces += _liquid(stage, body, k, place - 0.5 * fill.chamber.height)
+        floor = place - 0.5 * fill.chamber.height
+        if isinstance(body, LiquidBodies):
+            pieces += _bodies(stage, body, plates_of(fill.chamber, stage.scale.depth), k, floor)
+        elif body is not None:
+            pieces += _liquid(stage, body, k, floor)
     lines, labels = axes(stage, instant)
     signs, names = marks(stage, instant)
     low, high = stage.ends
@@ -58,6 +68,11 @@ def _between(stage: Stage, name: str, look: str, *edges: tuple[Complex, float]) 
 def _walls(stage: Stage, chamber: Chamber, k: int, centre: complex, floor: float) -> list[Piece]:
     """Outer and inner wall, floor, and the rims of floor and lid."""
     lid, skin = floor + chamber.height, SKIN * chamber.radius
+    plates = plates_of(chamber, stage.scale.depth)
+    if chamber.section is not None:
+        floor, lid = floor - skin, lid + skin
+        pieces = section_walls(stage, chamber.section, k, centre, floor, lid, skin)
+        return [*pieces, *baffles(stage, plates, k, centre, floor, lid)]
     outer = circle(centre, chamber.radius + skin)
     inner = circle(centre, max(chamber.inner_radius - skin, 0.0))
     floor, lid = floor - skin, lid + skin
@@ -75,22 +90,7 @@ def _walls(stage: Stage, chamber: Chamber, k: int, centre: complex, floor: float
         for ring in rings
         for height in (floor, lid)
     ]
-    return [*pieces, *_baffles(stage, chamber, k, centre, (floor, lid))]
-
-
-def _baffles(
-    stage: Stage, chamber: Chamber, k: int, centre: complex, heights: tuple[float, float]
-) -> list[Piece]:
-    """Radial plates over the whole height."""
-    if chamber.baffles is None:
-        return []
-    ends = np.array([max(chamber.baffles.tip_radius, chamber.inner_radius), chamber.radius])
-    ends[1] -= chamber.baffles.wall_gap
-    plates = [centre + ends * np.exp(1j * angle) for angle in chamber.baffles.angles]
-    return [
-        _between(stage, f"baffle {k + 1}", "metal", *((plate, height) for height in heights))
-        for plate in plates
-    ]
+    return [*pieces, *baffles(stage, plates, k, centre, floor, lid)]
 
 
 def _liquid(stage: Stage, body: LiquidShape, k: int, floor: float) -> list[Piece]:
@@ -134,3 +134,40 @@ def _waterlines(stage: Stage, body: LiquidShape, k: int, floor: float) -> list[P
         cells = np.stack([first, (first + 1) % body.angle.size], axis=-1).astype(np.int64)
         pieces.append(Piece(f"waterline {k + 1}", points, cells, "waterline"))
     return pieces
+
+
+def _bodies(stage: Stage, liquid: LiquidBodies, plates: Complex, k: int, floor: float) -> list[Piece]:
+    """Free surfaces, the other faces of some bodies, and the lines where the surfaces end."""
+    pieces = []
+    for body in liquid.bodies:
+        across = liquid.centre + body.points[:, 0] + 1j * body.points[:, 1]
+        points = placed(stage, across, body.points[:, 2], floor)
+        surface, wall = straight(body.surface), straight(body.wall)
+        part = np.repeat(body.wall_part, len(wall) // max(len(body.wall), 1))
+        pieces.append(Piece(f"surface {k + 1}", points, surface, "surface"))
+        bare = ~_on_plates(body.points[wall].mean(axis=1), plates)
+        pieces += [
+            Piece(f"liquid {k + 1}", points, wall[bare & (part == one)], "liquid")
+            for one in range(len(WALL_PARTS))
+        ]
+        pieces.append(Piece(f"waterline {k + 1}", points, _shore(surface, wall), "waterline"))
+    return pieces
+
+
+def _on_plates(points: Array, plates: Complex) -> NDArray[np.bool_]:
+    """Which points lie on baffles, whose own faces show there."""
+    across = points[:, 0] + 1j * points[:, 1]
+    found = np.zeros(across.size, dtype=bool)
+    for line_ in plates:
+        for start, end in pairwise(line_):
+            share = (across - start) / (end - start)
+            found |= (np.abs(share.imag) < _ON_PLATE) & (share.real >= 0.0) & (share.real <= 1.0)
+    return found
+
+
+def _shore(surface: Indices, wall: Indices) -> Indices:
+    """Edges that faces of the free surface share with faces on walls."""
+    edges = [np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1) for faces in (surface, wall)]
+    number = max(int(one.max(initial=0)) for one in edges) + 1
+    open_, closed = (one[:, 0] * number + one[:, 1] for one in edges)
+    return np.asarray(edges[0][np.isin(open_, closed)], dtype=np.int64)

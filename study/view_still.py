@@ -12,6 +12,7 @@ from solvers.hydrostatics import optimal_volume
 from study.figures.caption import zero_of
 from study.record import MM, RPM, one_line
 from study.view_answer import Sight
+from study.view_bodies import LiquidBodies, bodies_at_rest, is_cut, wall_is_dry
 from study.view_parts import Instant, Picture, Stage
 from study.view_scale import Scale, drawn_volume
 from study.view_scene import compose
@@ -68,7 +69,7 @@ def still(sight: Sight, index: int, scale: Scale, stage: Stage | None = None) ->
     return compose(stage_of(sight, scale) if stage is None else stage, instant)
 
 
-def liquid_at(sight: Sight, k: int, index: int, scale: Scale) -> LiquidShape | None:
+def liquid_at(sight: Sight, k: int, index: int, scale: Scale) -> LiquidShape | LiquidBodies | None:
     """Liquid of a chamber at a speed, in equilibrium with the deflection as drawn; None if there is none.
 
     Parameters
@@ -82,6 +83,8 @@ def liquid_at(sight: Sight, k: int, index: int, scale: Scale) -> LiquidShape | N
     volume = drawn_volume(fill, scale.depth)
     found = complex(sight.deflection[index, k])
     deflection = scale.deflection * found if cmath.isfinite(found) else 0j
+    if is_cut(fill):
+        return bodies_at_rest(fill, volume, deflection, speed, sight.gravity)
     return body_at_rest(fill.chamber, volume, deflection, speed, sight.gravity)
 
 
@@ -140,11 +143,13 @@ def is_dry(sight: Sight, k: int, index: int, fill: Fill, scale: Scale | None = N
     scale : of the drawing; None for the truth
     """
     factors = scale or Scale()
-    size = abs(complex(sight.deflection[index, k])) * factors.deflection
-    if not (0.0 < size < math.inf):
+    moved = complex(sight.deflection[index, k]) * factors.deflection
+    if fill.volume == 0.0 or not (0.0 < abs(moved) < math.inf):
         return False
-    least = optimal_volume(fill.chamber, size, float(sight.speed[index]), sight.gravity)
-    return bool(drawn_volume(fill, factors.depth) < least)
+    speed, volume = float(sight.speed[index]), drawn_volume(fill, factors.depth)
+    if is_cut(fill):
+        return wall_is_dry(fill, volume, moved, speed, sight.gravity)
+    return bool(volume < optimal_volume(fill.chamber, abs(moved), speed, sight.gravity))
 
 
 def place_in_words(deflection: complex, zero: str) -> str:
@@ -183,7 +188,14 @@ def describe_drawing(sight: Sight, index: int, scale: Scale) -> list[str]:
         )
         words.append(f"A wall is {state} in the picture alone.")
     if any(fill.compartments > 1 for fill in sight.fills):
-        words.append("The liquid is drawn as if it could pass the baffles.")
+        words.append("Baffles close the compartments: each keeps its volume.")
+    open_ = [fill for fill in sight.fills if fill.chamber.baffles is not None and fill.compartments == 1]
+    if scale.depth > 1.0 and open_:
+        words.append("Distances of the baffles from the wall grow with the depth.")
+    if names := dict.fromkeys(
+        one.chamber.section.name for one in sight.fills if one.chamber.section is not None
+    ):
+        words.append(f"Section from {', '.join(names)}.")
     if sight.moved:
         words.append("Chambers drawn one behind the other; the scene does not say where they are.")
     motion = sight.record.motion

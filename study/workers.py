@@ -75,6 +75,21 @@ def _client(workers: int, scheduler: str | None) -> Iterator[Any]:
         yield client
 
 
+def require_scheduler(address: str) -> None:
+    """Raise unless a cluster with a worker answers.
+
+    Parameters
+    ----------
+    address : of a Dask scheduler
+
+    Raises
+    ------
+    InputError : no such scheduler, no workers
+    """
+    with _client(0, address):
+        pass
+
+
 @contextmanager
 def _connected(address: str) -> Iterator[Any]:
     """A client of a running cluster that has a worker."""

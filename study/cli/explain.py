@@ -19,7 +19,7 @@ def explain(
     scene: Annotated[Path, typer.Argument(help="Scene file (TOML).")],
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
-    """Numbers that decide how the machine behaves, and which liquid model answers, and why."""
+    """Key numbers of the machine; which liquid model answers, and why."""
     from study.explain import explain_scene
     from study.scene import load_scene
 
@@ -154,6 +154,7 @@ def _layer_rows(layer: LayerExplanation) -> list[tuple[str, str]]:
     if not isnan(layer.optimal_volume):
         covers = f"from {layer.optimal_volume * 1e6:.4g} ml at the dry rotor's last deflection"
     return [
+        *([("walls", layer.walls)] if layer.walls else []),
         ("fill", f"{n.fill:.4g} of the capacity"),
         ("layer at fast spin", f"{layer.depth * MM:.4g} mm deep, h0/R = {n.relative_depth:.4g}"),
         ("curvature", f"kappa = {n.curvature:.5g}"),

@@ -49,7 +49,7 @@ def layer(
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
-    """Force and centre of mass of a liquid layer under a circular whirl, in the plane."""
+    """Force and centre of mass of a liquid layer under a whirl. In the plane, the whirl being prescribed."""
     from dataclasses import asdict
 
     from fluid.fill import Fill
@@ -103,6 +103,17 @@ def layer(
         raise NotConverged([f"leblanc layer: {reason or 'no answer'}; {_HELP[model]}"])
 
 
+# Of a layer that starts from rest, one row for each whirl period.
+_PERIODS = {
+    "time": "time, s",
+    "force_ratio": "force ratio",
+    "mean_rotation": "mean rotation, rad/s",
+    "depth_max": "depth max, m",
+    "depth_min": "depth min, m",
+    "offset": "offset, m",
+    "pressure_ratio": "pressure ratio",
+}
+
 _HELP = {
     "statics": "less liquid or a smaller whirl may help",
     "linear": "friction takes the bound off: --model kdv or long_wave",
@@ -114,10 +125,16 @@ _HELP = {
 
 def _tell(shown: dict[str, Any]) -> None:
     """The answer in words, the numbers it rests on one to a line."""
+    periods = [name for name in _PERIODS if getattr(shown.get(name), "ndim", 0) == 1]
     for name, value in shown.items():
-        if name not in ("validity", "notes"):
+        if name not in ("validity", "notes", *periods):
             print(f"{name.replace('_', ' '):18}{value}")
     print()
+    if periods:
+        print("".join(f"{_PERIODS[name]:>22}" for name in periods))
+        for row in zip(*(shown[name] for name in periods), strict=True):
+            print("".join(f"{value:22.4g}" for value in row))
+        print()
     for number in shown["validity"]:
         print(f"{number['name'].replace('_', ' '):18}{number['value']:<10.4g}{number['meaning']}")
     for note in shown["notes"]:

@@ -27,7 +27,7 @@ def map(
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
-    """Growth rate and whirl speed of self-excited whirl, edges of the unstable bands, figure, report."""
+    """Growth of self-excited whirl over speed and volume. Edges of the unstable bands, figure, report."""
     from study.friction import parse_friction
     from study.scene import load_scene
     from study.units import VOLUME, parse_option

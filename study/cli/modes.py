@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -12,6 +12,7 @@ from study.cli.output import out_dir, print_json, say
 if TYPE_CHECKING:
     from meshes.baffles import Baffles
     from study.modes import ModesRecord
+    from study.modes_sections import SectionSource
 
 
 def modes(
@@ -25,8 +26,15 @@ def modes(
         str, typer.Option(help="Distance of their inner edges from the axis; 0: through the surface.")
     ] = "0",
     baffle_wall_gap: Annotated[str, typer.Option(help="Distance of their outer edges from the wall.")] = "0",
-    mesh: Annotated[Path | None, typer.Option(help="Mesh file with the section of the chamber.")] = None,
-    mesh_unit: Annotated[str, typer.Option(help="Length of that file's unit.")] = "1 m",
+    mesh: Annotated[
+        Path | None, typer.Option(help="Section of the chamber: a mesh file, or an outline as DXF or STEP.")
+    ] = None,
+    mesh_unit: Annotated[
+        str | None, typer.Option(help="Length of that file's unit [default: its own, of a mesh 1 m].")
+    ] = None,
+    mesh_size: Annotated[
+        str | None, typer.Option(help="Cells at the walls of an outline [default: 1/100 of its extent].")
+    ] = None,
     liquid: Annotated[str, typer.Option(help="Name of the liquid, for the damping.")] = "water",
     segments: Annotated[int, typer.Option(help="Cells around the liquid, at least.")] = 96,
     layers: Annotated[int, typer.Option(help="Cells across the liquid, at least.")] = 6,
@@ -34,7 +42,10 @@ def modes(
     out: Annotated[Path | None, typer.Option(help="Folder for the figure of the shapes.")] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
-    """Natural frequencies of the liquid relative to the drum, positive with the spin."""
+    """Frequencies, damping and shapes of the liquid's waves.
+
+    Frequencies are relative to the drum, positive with the spin.
+    """
     from dataclasses import asdict
 
     from fluid.liquid import known_liquid
@@ -56,11 +67,10 @@ def modes(
         parse_option(speed, ANGULAR_SPEED, "--speed"),
         count,
         Resolution(segments, layers, order),
-        mesh,
-        parse_option(mesh_unit, LENGTH, "--mesh-unit"),
+        _source(mesh, mesh_unit, mesh_size),
     )
     if json:
-        print_json(_listed(asdict(answer)))
+        print_json(asdict(answer))
     else:
         print(f"{record.title}; free surface at {answer.surface_radius * 1e3:.6g} mm; {liquid}")
         print("\n".join(table_lines(answer)))
@@ -91,11 +101,22 @@ def _baffles(count: int, tip_radius: str, wall_gap: str) -> Baffles | None:
     return Baffles(count, tip, gap)
 
 
-def _listed(answer: dict[str, Any]) -> dict[str, Any]:
-    """What scripts read; a list of nothing where no error is estimated."""
-    if answer["error_estimate"] is None:
-        answer["error_estimate"] = [None] * len(answer["frequency"])
-    return answer
+def _source(mesh: Path | None, unit: str | None, size: str | None) -> SectionSource | None:
+    """File of the options, None without one."""
+    from meshes.border import InputError
+    from study.modes_sections import SectionSource
+    from study.units import LENGTH, parse_option
+
+    if mesh is None:
+        for name, value in (("--mesh-unit", unit), ("--mesh-size", size)):
+            if value is not None:
+                raise InputError(name, value, "left out without --mesh")
+        return None
+    return SectionSource(
+        mesh,
+        None if unit is None else parse_option(unit, LENGTH, "--mesh-unit"),
+        None if size is None else parse_option(size, LENGTH, "--mesh-size"),
+    )
 
 
 def _draw(record: ModesRecord, folder: Path) -> None:

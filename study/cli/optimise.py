@@ -47,7 +47,7 @@ def optimise(
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
-    """Best volume(s) for an objective, within constraints: figures, data file, report."""
+    """Best volume(s) for an objective, within constraints. Figures, data file, report."""
     from study.scene import load_scene
 
     machine = load_scene(scene)

@@ -69,9 +69,14 @@ def out_dir(scene_name: str, out: Path | None) -> Path:
     OSError : it cannot be made or written; carries the path
     """
     folder = Path("out") / safe_name(scene_name) if out is None else out
-    folder.mkdir(parents=True, exist_ok=True)
-    with _naming(folder), tempfile.TemporaryFile(dir=folder):
-        pass  # better now than after the work
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with _naming(folder), tempfile.TemporaryFile(dir=folder):
+            pass  # better now than after the work
+    except PermissionError as error:
+        if out is None:
+            error.strerror = f"{error.strerror}; --out DIR chooses another folder"
+        raise
     return folder
 
 

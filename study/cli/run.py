@@ -20,7 +20,7 @@ def run(
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
-    """Answer of the machine at each speed: figures, data file, report."""
+    """Answer of the machine at each speed. Figures, data file, report."""
     from study.scene import load_scene
 
     machine = load_scene(scene)

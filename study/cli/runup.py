@@ -32,7 +32,7 @@ def runup(
     ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
-    """Through resonance in time, up and down: figures, data file, energy balance, report."""
+    """Through the resonance in time, up and down. Figures, data file, energy balance, report."""
     from study.scene import load_scene
 
     machine = load_scene(scene)

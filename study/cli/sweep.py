@@ -39,7 +39,7 @@ def sweep(
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
-    """Answers of many scenes that differ in a few values; go on with it by the same command."""
+    """Answers of many scenes that differ in a few values. The same command goes on after a stop."""
     from study.sampling import sampling_note
     from study.sweep_file import load_sweep
 
@@ -130,7 +130,7 @@ def _lines(store: Store, plan: Sweep, found: Summary) -> list[str]:
     """Statistics and sensitivities in words."""
     lines = [f"{'':24}{'mean':>12}{'deviation':>12}{'5 %':>12}{'50 %':>12}{'95 %':>12}  unit"]
     for name, one in found.single.items():
-        unit = store.attributes(name)["units"]
+        unit = store.attributes(name)["units"].replace("s-1", "1/s")
         numbers = [one.mean[0], one.deviation[0], *one.quantiles[0, [0, 2, 4]]]
         lines.append(f"{name.replace('_', ' '):24}" + "".join(f"{x:12.4g}" for x in numbers) + f"  {unit}")
     lines += _share_lines(plan, found)

@@ -20,7 +20,7 @@ def trade(
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
-    """Error, time and memory of every model and resolution, the best choices among them, a figure."""
+    """Accuracy against cost of every model and resolution. The best choices among them, a figure."""
     from study.scene import load_scene
 
     machine = load_scene(scene)

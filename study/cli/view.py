@@ -50,7 +50,7 @@ def view(
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
-    """Three-dimensional picture of a machine at a speed; a film; a page."""
+    """Three-dimensional picture, film or browser page."""
     from study.scene import load_scene
     from study.units import ANGULAR_SPEED, parse_option
 

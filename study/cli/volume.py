@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+import math
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from study.cli.output import print_json
+
+if TYPE_CHECKING:
+    from meshes.chamber import Chamber
 
 
 def volume(
@@ -19,7 +23,7 @@ def volume(
     inner_radius: Annotated[str, typer.Option(help="Inner wall radius.")] = "0",
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
-    """Volume that just covers the wall at a deflection, and the surface of a given volume."""
+    """Volume that just covers the wall at a deflection. Also the surface of a given volume."""
     from dataclasses import asdict
 
     from meshes.border import require_not_negative
@@ -46,10 +50,29 @@ def volume(
     if json:
         print_json(answer)
     else:
+        print(_asked(chamber, e, spin))
         for name, value in answer.items():
-            print(f"{name.replace('_', ' '):24}{_words(name, value)}")
+            print(f"{_LABELS.get(name, name.replace('_', ' ')):26}{_words(name, value)}")
     if not answer.get("converged", True):
         raise NotConverged(["leblanc volume: no surface found that holds the volume asked for"])
+
+
+_LABELS = {
+    "optimal_volume_fem": "by finite elements",
+    "fem_error": "relative difference",
+    "printed_eq18": "as printed, DR18 eq. 18",
+    "corrected_eq18": "the same, corrected",
+    "unbalance_volume_fem": "by finite elements",
+}
+
+
+def _asked(chamber: Chamber, eccentricity: float, speed: float) -> str:
+    """What was understood, in engineers' units."""
+    inner = f", inner radius {chamber.inner_radius * 1e3:.6g} mm" if chamber.inner_radius > 0.0 else ""
+    return (
+        f"Chamber of radius {chamber.radius * 1e3:.6g} mm{inner}, height {chamber.height * 1e3:.6g} mm; "
+        f"deflection {eccentricity * 1e3:.6g} mm at {speed * 30.0 / math.pi:.6g} rpm"
+    )
 
 
 def _words(name: str, value: object) -> str:

@@ -9,11 +9,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshes.baffles import Baffles
 from meshes.chamber_section import ChamberSection
 from meshes.liquid_section import free_sides
 from study.record import Array, ChamberRecord
+
+Ends = NDArray[np.complex128]
 
 RAYS = 721
 BISECTIONS = 60  # from the radius down to rounding
@@ -53,7 +56,7 @@ def bodies(chamber: ChamberRecord, centre: complex, depth: float) -> list[Array]
         low, high = 0.0, float(wall.max()) + abs(centre)
         for _ in range(BISECTIONS):
             level = 0.5 * (low + high)
-            inner = np.minimum(_surface(level, centre, angle), wall)
+            inner = np.clip(_surface(level, centre, angle), chamber.inner_radius, wall)
             enough = np.trapezoid(wall**2 - inner**2, angle) > wanted
             low, high = (level, high) if enough else (low, level)
         around = np.concatenate([wall * np.exp(1j * angle), (inner * np.exp(1j * angle))[::-1]]) + centre
@@ -92,16 +95,19 @@ def _wall(chamber: ChamberRecord, angle: Array) -> Array:
     """Distance of the outermost wall in each direction, m."""
     if chamber.section is None:
         return np.full(angle.shape, chamber.radius)
-    points = np.concatenate(wall_line(chamber.section))
-    turn, away = np.arctan2(points[:, 1], points[:, 0]), np.hypot(*points.T)
-    # Of several walls in one direction the outer one: the larger in each of many narrow sectors.
-    edges = np.linspace(-math.pi, math.pi, 361)
-    sector = np.clip(np.searchsorted(edges, turn, side="right") - 1, 0, 359)
-    largest = np.zeros(360)
-    np.maximum.at(largest, sector, away)
-    outer = away > 0.5 * largest[sector]
-    order = np.argsort(turn[outer])
-    return np.asarray(np.interp(angle, turn[outer][order], away[outer][order], period=2.0 * math.pi))
+    lines = np.stack(wall_line(chamber.section))
+    nodes = lines[..., 0] + 1j * lines[..., 1]
+    return _outermost(nodes[:, :-1].ravel(), nodes[:, 1:].ravel(), angle)
+
+
+def _outermost(start: Ends, stop: Ends, angle: Array) -> Array:
+    """Distance along each ray of the outermost of many straight sides, given by their ends x + i y, m."""
+    turn = np.exp(-1j * angle)[:, None]
+    one, other = start * turn, stop * turn
+    meets = (one.imag * other.imag <= 0.0) & (one.imag != other.imag)
+    share = np.divide(one.imag, one.imag - other.imag, where=meets, out=np.zeros(meets.shape))
+    away = np.where(meets, one.real + share * (other.real - one.real), 0.0)
+    return np.asarray(away.max(axis=1))
 
 
 def _surface(level: float, centre: complex, angle: Array) -> Array:

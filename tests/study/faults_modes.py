@@ -35,5 +35,6 @@ FAULTS: tuple[Fault, ...] = (
         "surface_radius_of(section, volume)",
         check_file,
     ),
+    Fault("study.modes_sections", "[liquid, halved(liquid)]", "[liquid, liquid]", check_file),
     Fault("study.modes", "k += same", "k += 1", oracle.check_closed_sectors),
 )

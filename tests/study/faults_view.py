@@ -2,12 +2,30 @@
 
 from __future__ import annotations
 
+import tempfile
+from pathlib import Path
+
 from tests.faults import Fault
 from tests.study import test_view_picture as picture
 from tests.study import test_view_scale as scale
 from tests.study import test_view_shapes as shapes
+from tests.study import test_view_uneven as uneven
+
+
+def section_picture() -> None:
+    """In a folder of its own."""
+    with tempfile.TemporaryDirectory() as folder:
+        uneven.check_picture_of_a_section(Path(folder))
+
+
+def section_modes() -> None:
+    """In a folder of its own."""
+    with tempfile.TemporaryDirectory() as folder:
+        uneven.check_modes_of_a_section(Path(folder))
+
 
 _SURFACES, _SCALE, _MARKS, _MODES = (f"study.view_{name}" for name in ("surfaces", "scale", "marks", "modes"))
+_BODIES, _WALLS, _SCENE = (f"study.view_{name}" for name in ("bodies", "walls", "scene"))
 
 FAULTS: tuple[Fault, ...] = (
     Fault(_SURFACES, "farthest**2 - (float(", "farthest**2 + (float(", shapes.check_volume),
@@ -114,5 +132,75 @@ FAULTS: tuple[Fault, ...] = (
     ),
     Fault(_MODES, "np.exp(-1j * phase)", "np.exp(1j * phase)", picture.check_mode),
     Fault(_MODES, "size**2 + 2.0 * size * moved", "size**2 - 2.0 * size * moved", picture.check_mode),
+    Fault(
+        _BODIES, "speed**2 / (2.0 * gravity)", "speed**2 / gravity", uneven.check_surfaces_are_about_the_axis
+    ),
+    Fault(
+        _BODIES,
+        "    axis = (-deflection.real, -deflection.imag)",
+        "    axis = (deflection.real, -deflection.imag)",
+        uneven.check_radius_of_each_compartment,
+    ),
+    Fault(
+        _BODIES,
+        "axis=(-deflection.real, -deflection.imag)",
+        "axis=(-deflection.real, deflection.imag)",
+        uneven.check_surfaces_are_about_the_axis,
+    ),
+    Fault(
+        _BODIES,
+        "share = volume / len(meshes)",
+        "share = 0.9 * volume / len(meshes)",
+        uneven.check_each_compartment_keeps_its_volume,
+    ),
+    Fault(
+        _BODIES,
+        "return LiquidBodies(deflection,",
+        "return LiquidBodies(0j * deflection,",
+        uneven.check_picture_of_compartments,
+    ),
+    Fault(_BODIES, "np.abs(wall + deflection)", "np.abs(wall - deflection)", uneven.check_dry_walls),
+    Fault(_WALLS, "4 * t * (1 - t)", "2 * t * (1 - t)", uneven.check_outline),
+    Fault(_WALLS, "4 - 8 * t", "8 * t - 4", uneven.check_outline),
+    Fault(_WALLS, "out = -1j * along", "out = 1j * along", uneven.check_outline),
+    Fault(
+        _WALLS, "np.bincount(number)[number] == 2", "np.bincount(number)[number] == 3", uneven.check_outline
+    ),
+    Fault(
+        _WALLS,
+        "np.maximum(np.abs(ends[:, :1]), chamber.inner_radius)",
+        "np.abs(ends[:, :1])",
+        uneven.check_picture_of_compartments,
+    ),
+    Fault(_WALLS, "skin * sides.outwards", "0.0 * sides.outwards", section_picture),
+    Fault(
+        _SCENE,
+        "liquid.centre + body.points[:, 0] + 1j",
+        "body.points[:, 0] + 1j",
+        uneven.check_picture_of_compartments,
+    ),
+    Fault(
+        _SCENE,
+        "found |= (np.abs(share.imag)",
+        "found &= (np.abs(share.imag)",
+        uneven.check_picture_of_compartments,
+    ),
+    Fault(
+        _SCALE,
+        "inner = fill.surface_radius + fill.depth - layer",
+        "inner = fill.surface_radius - layer",
+        uneven.check_a_deeper_layer,
+    ),
+    Fault(
+        _SCALE, "depth * fill.depth if fill.uneven", "3.0 * fill.depth if fill.uneven", uneven.check_dry_walls
+    ),
+    Fault(_MODES, "np.sqrt(1.0 + 2.0 * moved / away)", "(1.0 + 2.0 * moved / away)", section_modes),
+    Fault(
+        _MODES,
+        "share[wall], share[surface] = 0.0, 1.0",
+        "share[wall], share[surface] = 1.0, 1.0",
+        section_modes,
+    ),
+    Fault(_MODES, "np.exp(-1j * phase)", "np.exp(2j * phase)", section_modes),
     Fault("study.view_exciter", "sign * size", "0.5 * sign * size", picture.check_table),
 )

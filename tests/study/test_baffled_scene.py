@@ -24,6 +24,7 @@ from study.scene import Scene, load_scene, scene_from_table
 from study.scene_file import read_toml
 from study.stability import map_scene
 from study.trade import trade_scene
+from tests.study.test_modes import circle_drawing
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 BASE: dict[str, Any] = {
@@ -217,6 +218,11 @@ liquid = "water"
     [
         ({"section": "none.msh"}, "chambers.0.section"),
         ({"section": 3}, "must be the path of a mesh file of the section"),
+        ({"section_size": "2 mm"}, "section_size left out for a mesh file, which has its cells"),
+        (
+            {"section": "none.dxf"},
+            "must be the path of a mesh file of the section, .msh, .vtu or .xdmf, or of",
+        ),
         ({"radius": 0.1}, "chambers.0.radius = 0.1: must be left out where chambers.0.section is given"),
         ({"baffles": {"count": 3}}, "chambers.0.baffles"),
         ({"volume": 1.0}, "chambers.0.volume = 1.0: must be at most what the chamber holds"),
@@ -226,6 +232,22 @@ def test_wrong_sections_are_named(tmp_path: Path, change: dict[str, Any], told: 
     with pytest.raises(SceneFaults, match=r".") as caught:
         scene_from_table(drawn(tmp_path, **change))
     assert told in str(caught.value)
+
+
+def test_a_section_from_a_drawing(tmp_path: Path) -> None:
+    circle_drawing(tmp_path / "circle.dxf")
+    chamber = {"section": str(tmp_path / "circle.dxf"), "height": 0.02, "volume": 2e-4, "liquid": "water"}
+    machine = scene_from_table(BASE | {"chambers": [chamber]})
+    shape = machine.chambers[0].chamber.section
+    assert shape is not None and shape.cell_size == pytest.approx(3e-3, rel=1e-3)
+    # Parabolas of 3 mm on a circle of 150 mm.
+    assert shape.farthest == pytest.approx(0.15, rel=1e-6)
+    finer = scene_from_table(
+        BASE | {"chambers": [chamber | {"section_size": "2 mm", "section_unit": "2 mm"}]}
+    )
+    other = finer.chambers[0].chamber.section
+    assert other is not None and other.cell_size == 2e-3 and other.farthest == pytest.approx(0.3, rel=1e-6)
+    assert set(run_scene(machine).response.model) == {"fem"}
 
 
 def test_a_chamber_has_a_wall() -> None:

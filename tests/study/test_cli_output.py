@@ -89,6 +89,18 @@ def test_a_folder_that_cannot_be_is_named(tmp_path: Path, capsys: Capture) -> No
         assert capsys.readouterr().err.startswith(f"{folder}: ")
 
 
+def test_where_nothing_may_be_written_another_folder_is_offered(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture
+) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise PermissionError(13, "Permission denied", "out")
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(Path, "mkdir", refuse)
+    assert exit_code(lambda: output.out_dir("x", None)) == 2
+    assert capsys.readouterr().err == "out: Permission denied; --out DIR chooses another folder\n"
+
+
 def test_a_folder_that_may_not_be_written_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(**_: object) -> None:
         raise PermissionError(13, "Permission denied", str(tmp_path / "tmpx8s7d6"))

@@ -14,6 +14,14 @@ from tests.study.test_faulty_scenes import CHAMBER, GOOD, shell
 
 FILES = {
     "not TOML": (b"name = Rig", "valid TOML", "(at line 1, column 8)"),
+    "a comma for a point": (
+        b"name = 'x'\ngravity = 9,81  # m/s^2",
+        "line 2",
+        ": gravity = 9,81; the decimal sign",
+    ),
+    "a bare unit": (b"gravity = 981 cm/s^2", "line 1", "stands in quotes, as"),
+    "a bare word": (b"name = Rig", ": name = Rig; a text stands in quotes"),
+    "a study": (b"scene = 'rig.toml'\n[vary]", "a scene; this is a study", "leblanc sweep"),
     "an open bracket": (b'name = "x"\n[rotor\nmass = 1', "valid TOML", "line 2"),
     "a key twice": (b"name = 'a'\nname = 'b'", "valid TOML", "line 2"),
     "a table twice": (b"[rotor]\n[rotor]", "valid TOML", "line 2"),

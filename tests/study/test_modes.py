@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import math
+import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,13 +15,13 @@ from fluid.liquid import known_liquid
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.exchange import write_section
-from meshes.section import disc
+from meshes.section import Section, disc
 from solvers.sloshing_damping import mode_damping
 from solvers.sloshing_system import condense
 from study.baffle_table import RADIUS, SPIN, SURFACE, baffle_row, markdown
 from study.cli import main
 from study.modes import answer_modes, table_lines
-from study.modes_sections import Resolution
+from study.modes_sections import Resolution, SectionSource
 from tests.solvers.sloshing_oracles import ring_decay, sector_frequencies
 
 R, A, H = 0.15, 0.135, 0.05
@@ -62,12 +64,73 @@ def check_file(folder: Path) -> None:
     """A disc from a file, in millimetres, has the ring's waves."""
     path = folder / "disc.msh"
     write_section(disc(150.0, 96, order=2), path)
-    answer, _ = answer_modes(Chamber(R, H), VOLUME, WATER, 40.0, 4, Resolution(96, 4), mesh=path, scale=1e-3)
-    plain, _ = answer_modes(Chamber(R, H), VOLUME, WATER, 40.0, 4)
-    assert np.allclose(answer.frequency, plain.frequency, rtol=5e-5)
-    assert answer.error_estimate is None and answer.exact == (None,) * 4
-    other, _ = answer_modes(Chamber(0.2, H), VOLUME, WATER, 40.0, 2, Resolution(32, 2), path, 1e-3)
+    source = SectionSource(path, 1e-3)
+    plain, _ = answer_modes(Chamber(R, H), VOLUME, WATER, 40.0, 8)
+    exact = np.array(plain.exact, dtype=float)
+    for order in (1, 2):
+        answer, _ = answer_modes(
+            Chamber(R, H), VOLUME, WATER, 40.0, 8, Resolution(64, 4, order=order), source
+        )
+        error = np.abs(answer.frequency / exact - 1.0)
+        # The file's own wall, parabolas of 96 sides, is off by 1e-8; above that the extrapolation holds.
+        assert np.all(error < {1: 2e-3, 2: 5e-6}[order])
+        known = error > 5e-8
+        assert known.any() and np.all(np.abs(answer.error_estimate / error - 1.0)[known] < 0.5)
+        assert answer.exact == (None,) * 8
+    other, _ = answer_modes(Chamber(0.2, H), VOLUME, WATER, 40.0, 2, Resolution(32, 2), source)
     assert any("not --radius" in note for note in other.notes)
+
+
+def circle_drawing(path: Path) -> None:
+    """A circle of 150 mm in millimetres."""
+    document = ezdxf().new(units=4)
+    document.modelspace().add_circle((0, 0), 150.0)
+    document.saveas(path)
+
+
+def ezdxf() -> Any:
+    """The library of drawings; skips where it or Gmsh is missing."""
+    try:
+        import gmsh  # noqa: F401
+    except (ImportError, OSError) as missing:  # the wheel needs libraries of the system
+        pytest.skip(f"gmsh cannot be loaded: {missing}")
+    return pytest.importorskip("ezdxf")
+
+
+def test_outline(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A drawn circle has the ring's waves, in the drawing's own unit."""
+    circle_drawing(tmp_path / "circle.dxf")
+    shown = []
+    for more in ([], ["--mesh-size", "10 mm"]):
+        assert main([*CALL, "--count", "4", "--mesh", str(tmp_path / "circle.dxf"), *more, "--json"]) == 0
+        shown.append(json.loads(capsys.readouterr().out))
+    plain, _ = answer_modes(Chamber(R, H), VOLUME, WATER, 40.0, 4)
+    for one in shown:
+        assert np.allclose(one["frequency"], plain.frequency, rtol=5e-5)
+        assert max(one["error_estimate"]) < 1e-4
+    assert shown[0]["unknowns"] != shown[1]["unknowns"]
+
+
+def test_no_library_for_outlines(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "x.dxf").write_text("")
+    monkeypatch.setitem(sys.modules, "ezdxf", None)
+    assert main([*CALL, "--mesh", str(tmp_path / "x.dxf")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "extra `cad`" in line
+
+
+def test_a_poor_mesh_is_named(tmp_path: Path) -> None:
+    coarse = disc(0.15, 24, order=1)
+    points = coarse.points.copy()
+    inside = np.flatnonzero(np.hypot(*points.T) < 0.149)
+    points[inside] *= 0.12
+    write_section(Section(points, coarse.triangles), tmp_path / "poor.msh")
+    source = SectionSource(tmp_path / "poor.msh")
+    answer, _ = answer_modes(Chamber(R, H), VOLUME, WATER, 40.0, 2, Resolution(32, 2), source)
+    assert any(note.startswith("mesh: ") for note in answer.notes)
+    assert any("straight sides" in note for note in answer.notes)
 
 
 def test_ring() -> None:
@@ -120,6 +183,11 @@ def test_figure_and_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
         (["--mesh", "/nowhere/at/all.msh"], "path"),
         (["--mesh", "x.msh", "--baffles", "2"], "--baffles"),
         (["--mesh", "x.msh", "--mesh-unit", "0"], "--mesh-unit"),
+        (["--mesh", "x.dxf", "--mesh-size", "0"], "--mesh-size"),
+        (["--mesh", "x.msh", "--mesh-size", "1 mm"], "--mesh-size"),
+        (["--mesh-size", "1 mm"], "--mesh-size"),
+        (["--mesh-unit", "1 mm"], "--mesh-unit"),
+        (["--mesh", "x.dxf"], "path"),
     ],
 )
 def test_wrong_input(more: list[str], word: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -76,7 +76,10 @@ OTHER_WAY = {
     "rotor.balls.pendulum_inertia": "rotor.balls.kind",
 }
 # Checked in a test of their own.
-OTHERS = {"assumed", "model.friction.quadratic", "chambers.*.section", "chambers.*.section_unit"}
+OTHERS = {
+    "assumed", "model.friction.quadratic", "chambers.*.section", "chambers.*.section_unit",
+    "chambers.*.section_size",
+}  # fmt: skip
 # What stands above the inputs, is their mark, or is told by the cell of another path.
 ELSEWHERE = {"name", "source", "assumed"}
 TOLD_BY = {"rotor.kind": "rotor.axis", "runup.motor.speeds": "runup.motor.torques"}
@@ -172,10 +175,12 @@ def test_a_section_of_its_own_is_named_and_measured() -> None:
     shape = chamber_section("square <1>.msh", mesh)
     chamber = Chamber(shape.farthest, 0.02, section=shape)
     fills = (replace(scene.chambers[0], chamber=chamber),)
-    for path, marked in (("chambers.0.section", 2), ("chambers.0.section_unit", 2), ("chambers.0.height", 0)):
+    for name, marked in (("section", 2), ("section_unit", 2), ("section_size", 1), ("height", 0)):
+        path = f"chambers.0.{name}"
         inputs = scene_inputs(replace(scene, chambers=fills, assumed=(path,)))
         (row,) = [row for one in inputs.tables if "section" in one.head for row in one.rows]
-        assert [cell.text for cell in row] == ["1", "square <1>.msh", "64", printed(math.sqrt(32.0) * 10.0)]
+        far = printed(math.sqrt(32.0) * 10.0)
+        assert [cell.text for cell in row] == ["1", "square <1>.msh", "64", far, "as in the file"]
         assert sum(cell.assumed for cell in row) >= marked and any(cell.assumed for cell in inputs.cells)
 
 

@@ -350,6 +350,9 @@ def test_another_study_does_not_go_on_with_the_store(tmp_path: Path, capsys: Cap
     (line,) = capsys.readouterr().err.splitlines()
     assert "which have changed since; --fresh starts anew" in line
     assert tree(tmp_path / "out" / STORE) == before
+    assert main([*command, "--fresh", "--scheduler", "nowhere"]) == 2
+    assert "--scheduler" in capsys.readouterr().err
+    assert tree(tmp_path / "out" / STORE) == before  # not thrown away for a cluster that is not there
     assert main([*command, "--fresh"]) == 0
     assert read_store(tmp_path / "out" / STORE).attributes()["seed"] == "12"
 

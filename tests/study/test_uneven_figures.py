@@ -9,7 +9,7 @@ import pytest
 
 from meshes.baffles import Baffles
 from meshes.chamber_section import chamber_section
-from meshes.section import Section, disc
+from meshes.section import Section, annulus, disc
 from study.figures.section import exaggeration
 from study.figures.uneven import bodies, is_uneven, plates, wall_line
 from study.record import ChamberRecord
@@ -60,6 +60,17 @@ def test_the_surface_of_a_section_about_the_axis() -> None:
     assert record.least_depth < section.farthest - record.mean_surface_radius
     factors = exaggeration((record,), (1e-4,))
     assert factors.deflection * 1e-4 <= 0.9 * factors.depth * record.least_depth * (1.0 + 1e-12)
+
+
+@pytest.mark.parametrize("inner", [0.3 * RADIUS, 0.7 * RADIUS])
+def test_the_liquid_lies_on_the_outer_of_two_walls(inner: float) -> None:
+    section = chamber_section("ring", annulus(RADIUS, inner, 96))
+    record = ChamberRecord(RADIUS, 0.0, HEIGHT, VOLUME, "water", REST, section=section)
+    (one,) = bodies(record, 0.0j, RADIUS - REST)
+    wall = np.hypot(*np.split(one, 2)[0].T)
+    # Straight sides between 96 nodes on the circle; their middles lie R (1 - cos(pi/96)) inside it.
+    assert wall.max() == pytest.approx(RADIUS, rel=1e-12)
+    assert wall.min() >= RADIUS * math.cos(math.pi / 96) * (1.0 - 1e-12)
 
 
 def test_plates_grow_with_the_layer() -> None:

@@ -36,6 +36,10 @@ FACTORS: dict[Dimension, dict[str, float]] = {
         "rad/s": 1.0,
         "1/s": 1.0,
         "rpm": TURN / 60,
+        "RPM": TURN / 60,
+        "r/min": TURN / 60,
+        "rev/min": TURN / 60,
+        "U/min": TURN / 60,
         "turn/min": TURN / 60,
         "Hz": TURN,
         "hertz": TURN,
@@ -122,6 +126,10 @@ def test_decimal_units_round_once(text: str, dimension: Dimension, value: float)
         ("1 rad", units.NUMBER),
         ("0.5 Hz", units.RATE),  # a rotation, not a rate of decay
         ("0.5 rpm", units.RATE),
+        ("100 1/min", units.ANGULAR_SPEED),  # turns on a nameplate, radians by the rule of 1/s
+        ("100 min^-1", units.ANGULAR_SPEED),
+        ("100 1/min^2", units.ANGULAR_ACCELERATION),
+        ("100 U/min", units.RATE),
         ("100 Bq", units.ANGULAR_SPEED),  # a count is no angle
         ("100 cps", units.ANGULAR_SPEED),
         ("100 Hz^2", units.ANGULAR_ACCELERATION),
@@ -146,6 +154,12 @@ def test_what_is_no_such_quantity_is_refused(value: object, dimension: Dimension
 def test_a_wrong_unit_is_named() -> None:
     with pytest.raises(InputError, match="there is no unit rmp"):
         parse("1000 rmp", units.ANGULAR_SPEED)
+    with pytest.raises(InputError, match="there is no unit Kg, but kg"):
+        parse("4 Kg", units.MASS)
+    with pytest.raises(InputError, match="the decimal sign is a point"):
+        parse("4,5 kg", units.MASS)
+    with pytest.raises(InputError, match="1/min may mean turns or radians"):
+        parse("1000 1/min", units.ANGULAR_SPEED)
     with pytest.raises(InputError, match="N/m measures something else"):
         parse("4 N/m", units.MASS)
     with pytest.raises(InputError, match="has no unit"):

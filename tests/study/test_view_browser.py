@@ -16,7 +16,6 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -26,7 +25,7 @@ from meshes.border import InputError
 from study import cli
 from study.cli import main
 from study.view_picture import prepare_off_screen
-from tests.study.browser import FLAGS, Browser, _tab, found
+from tests.study.browser import Browser, browser, found
 
 ROOT = Path(cli.__file__).parents[2]
 RUNUP = str(ROOT / "examples" / "runup.toml")
@@ -58,45 +57,6 @@ def served(*options: str) -> Iterator[tuple[str, subprocess.Popen[str]]]:
         if process.poll() is None:
             process.kill()
         process.communicate()
-
-
-# Puts the ends of the pipes where the browser looks for them, whatever numbers they have.
-LAUNCH = """if True:
-    import fcntl, os, sys
-    ends = [fcntl.fcntl(int(one), fcntl.F_DUPFD, 10) for one in sys.argv[1:3]]
-    os.dup2(ends[0], 3)
-    os.dup2(ends[1], 4)
-    os.execv(sys.argv[3], sys.argv[3:])
-"""
-
-
-@contextmanager
-def chromium(path: str) -> Iterator[Browser]:
-    """A tab of the browser at a path, gone at the end."""
-    ours_read, theirs_write = os.pipe()
-    theirs_read, ours_write = os.pipe()
-    with TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-        ends = [str(theirs_read), str(theirs_write)]
-        command = [path, *FLAGS, f"--user-data-dir={profile}", "--remote-debugging-pipe"]
-        process = subprocess.Popen(
-            [sys.executable, "-c", LAUNCH, *ends, *command],
-            pass_fds=(theirs_read, theirs_write),
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-        )
-        os.close(theirs_read)
-        os.close(theirs_write)
-        try:
-            yield _tab(Browser(ours_write, ours_read))
-        finally:
-            os.close(ours_write)
-            os.close(ours_read)
-            process.terminate()
-            try:
-                process.wait(PATIENCE)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
 
 
 def wait_for(what: Callable[[], Any], words: str) -> Any:
@@ -154,7 +114,7 @@ def test_the_slider_moves_the_liquid() -> None:
         prepare_off_screen()
     except InputError as error:
         pytest.skip(str(error))
-    with served("--speed", "90 rad/s") as (address, _), chromium(path) as tab:
+    with served("--speed", "90 rad/s") as (address, _), browser(path) as tab:
         tab.open(address)
         said = "(document.querySelector('#value') || {}).textContent || ''"
         wait_for(lambda: "(90 rad/s)" in tab.value(said), "the speed asked for is shown")
@@ -202,7 +162,7 @@ def test_a_page_without_a_server(tmp_path: Path) -> None:
         pytest.skip(str(error))
     page = tmp_path / "page.html"
     assert main(["view", RUNUP, "--speed", "24 rad/s", "--screenshot", str(page)]) == 0
-    with chromium(path) as tab:
+    with browser(path) as tab:
         tab.open(page.as_uri())
 
         def drawn() -> bool:

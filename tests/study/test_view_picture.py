@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,7 +14,7 @@ from meshes.border import InputError
 from study.run import run_scene
 from study.scene import Scene, Speeds, load_scene
 from study.view import View, view_scene, write_picture
-from study.view_answer import look_at, require_circles
+from study.view_answer import look_at
 from study.view_exciter import exciter_picture
 from study.view_film import Film, sweep_film, write_film
 from study.view_modes import drawn_lift, mode_film, mode_picture, shape_of, solve_mode
@@ -256,13 +255,6 @@ def test_scale_bar() -> None:
 
 def test_mode() -> None:
     check_mode()
-
-
-def test_a_chamber_of_another_section_is_refused() -> None:
-    machine = scene("runup")
-    other = SimpleNamespace(chamber=SimpleNamespace(section=SimpleNamespace(name="square")))
-    with pytest.raises(InputError, match="section"):
-        require_circles(replace(machine, chambers=(other,)))  # type: ignore[arg-type]
 
 
 def test_a_dry_wall_is_said_and_drawn() -> None:

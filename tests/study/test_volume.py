@@ -31,6 +31,15 @@ def test_optimal_volume(capsys: pytest.CaptureFixture[str]) -> None:
     assert answer["corrected_eq18"] == pytest.approx(56.7e-6, rel=1e-3)
 
 
+def test_what_was_understood_is_said_first(capsys: pytest.CaptureFixture[str]) -> None:
+    assert (
+        main([*CHAMBER, "--inner-radius", "150 mm", "--eccentricity", "1 mm", "--speed", "9.5493 rpm"]) == 0
+    )
+    assert capsys.readouterr().out.startswith(
+        "Chamber of radius 200 mm, inner radius 150 mm, height 50 mm; deflection 1 mm at 9.5493 rpm\n"
+    )
+
+
 def test_units_are_read(capsys: pytest.CaptureFixture[str]) -> None:
     plain = ask(capsys, "--eccentricity", "0.003", "--speed", "90", "--volume", "1e-4")
     with_units = ask(
