@@ -26,6 +26,8 @@ HARMONICS = 32  # crests round the drum that are looked for
 _ALIKE = 1e-7
 # Imbalance of a mode's energies that rounding may leave, on meshes with very small cells.
 _RESIDUAL = 1e-7
+# Crests that differ by less than this part of their height are equally high: symmetry makes many so.
+_TIE = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +134,7 @@ def sloshing_modes(
     frequency = sense * sigma * spin
     on_nodes = system.on_nodes(eta)
     nodes, xi = surface_displacement(system.section, on_nodes)
-    at_crest = xi[np.arange(len(xi)), np.abs(xi).argmax(axis=1)]
+    at_crest = xi[np.arange(len(xi)), first_largest(xi)]
     eta, on_nodes, xi = (one / at_crest[:, None] for one in (eta, on_nodes, xi))
     shares = harmonics(system.section, on_nodes, HARMONICS)
     return SloshingModes(
@@ -150,6 +152,21 @@ def sloshing_modes(
         converged=bool(np.all(residual < _RESIDUAL)),
         circulations=system.circulations,
     )
+
+
+def first_largest(values: Complex) -> Indices:
+    """Place of the first of the largest values of each row, of which rounding alone makes one the largest.
+
+    Parameters
+    ----------
+    values : shape (k, n)
+
+    Returns
+    -------
+    shape (k,)
+    """
+    size = np.abs(values)
+    return np.asarray((size >= (1.0 - _TIE) * size.max(axis=1, keepdims=True)).argmax(axis=1))
 
 
 def _groups(frequency: Array) -> Indices:

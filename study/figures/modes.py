@@ -85,11 +85,13 @@ def _placed(section: LiquidSection, points: Array, stretch: float, inward: Array
 
 def _draw(axes: Axes, record: ModesRecord, k: int, stretch: float) -> None:
     """Stream lines, free surface and walls of one mode."""
+    from solvers.sloshing import first_largest
+
     section, modes = record.section, record.modes
     outer = float(np.hypot(*section.points.T).max())
     points = _placed(section, section.points, stretch)
     psi = modes.psi[k]
-    phase = np.exp(-1j * np.angle(psi[np.abs(psi).argmax()]))
+    phase = np.exp(-1j * np.angle(psi[first_largest(psi[None])[0]]))
     cuts = section.cells[:, CUTS[section.cells.shape[1]]].reshape(-1, 3)
     share = (psi * phase).real / np.abs(psi).max()
     axes.tricontourf(*points.T, cuts, share, levels=LEVELS, cmap="PuOr", vmin=-1.3, vmax=1.3)
