@@ -73,9 +73,11 @@ class Fill:
     def added_mass(self) -> float:
         """Mass that the liquid adds in a small whirl with the spin, kg [theory: sections, eq. 8].
 
-        In a section of another shape it is that of the liquid and of the air inside the surface.
+        In a section of another shape that of the liquid and of the air inside its surface, if it has one.
         """
         if self.chamber.section is not None:
+            if not self.uneven:
+                return self.mass
             air = math.pi * self.chamber.height * self.surface_radius**2
             return self.liquid.density * (self.volume + air)
         lost = compartment_share(self.compartments) * self.surface_radius**2
@@ -86,7 +88,9 @@ class Fill:
         """Mean free-surface radius a of the uniform layer at fast spin, m."""
         section, area = self.chamber.section, self.volume / self.chamber.height
         if section is not None:
-            return level(section, area)[0] if 0.0 < area < section.area * FULL else self.chamber.radius
+            if 0.0 < area < section.area * FULL:
+                return level(section, area)[0]
+            return self.chamber.radius if area == 0.0 else 0.0
         squared = self.chamber.radius**2 - self.volume / (math.pi * self.chamber.height)
         return math.sqrt(max(squared, self.chamber.inner_radius**2))
 
@@ -129,12 +133,14 @@ class Fills:
     density : of its liquid, kg/m^3, shape (n,)
     volume : V, m^3, shape (n,)
     added_mass : in a small whirl with the spin, kg, shape (n,); 0 without liquid
+    depth : of the layer, m, shape (n,); in a section of another shape the least
     """
 
     chamber: Chambers
     density: Array
     volume: Array
     added_mass: Array
+    depth: Array
 
     @classmethod
     def of(cls, fills: Sequence[Fill]) -> Fills:
@@ -144,6 +150,7 @@ class Fills:
             np.array([one.liquid.density for one in fills]),
             np.array([one.volume for one in fills]),
             np.array([one.added_mass if one.volume > 0.0 else 0.0 for one in fills]),
+            np.array([one.depth for one in fills]),
         )
 
     @classmethod
@@ -164,21 +171,15 @@ class Fills:
             np.concatenate([part.density for part in parts]),
             np.concatenate([part.volume for part in parts]),
             np.concatenate([part.added_mass for part in parts]),
+            np.concatenate([part.depth for part in parts]),
         )
 
     def at(self, which: NDArray[np.intp]) -> Fills:
         """Those at some indices, in their order, shape (m,)."""
-        return Fills(self.chamber.at(which), self.density[which], self.volume[which], self.added_mass[which])
+        arrays = (self.density, self.volume, self.added_mass, self.depth)
+        return Fills(self.chamber.at(which), *(one[which] for one in arrays))
 
     @property
     def mass(self) -> Array:
         """Mass of the liquid m_l, kg, shape (n,)."""
         return self.density * self.volume
-
-    @property
-    def depth(self) -> Array:
-        """Mean layer depth h0 = R - a, m, shape (n,), without cancellation for thin layers."""
-        film = self.volume / (math.pi * self.chamber.height)
-        squared = np.square(self.chamber.radius) - film
-        surface = np.sqrt(np.maximum(squared, np.square(self.chamber.inner_radius)))
-        return np.asarray(film / (self.chamber.radius + surface))

@@ -165,6 +165,7 @@ def backward_mass(fill: Fill) -> float:
     if fill.uneven:
         layer = section_layer(fill, (NONE, 0.0))
         assert layer is not None
-        return fill.full_mass * float(layer.liquid.force_ratio([-2.0])[0])
+        whole = layer.density * layer.liquid.enclosed_area
+        return whole * float(layer.liquid.force_ratio([-2.0])[0])
     curvature = (fill.chamber.radius / fill.surface_radius) ** 2
     return fill.full_mass * float(force_ratio(curvature, -1.0)) if curvature > 1.0 else 0.0

@@ -26,8 +26,8 @@ FAULTS: tuple[Fault, ...] = (
     ),
     Fault(
         "fluid.fill",
-        "film / (self.chamber.radius + surface)",
-        "film / (2.0 * self.chamber.radius)",
+        "return film / (self.chamber.radius + self.surface_radius)",
+        "return film / (2.0 * self.chamber.radius)",
         oracle.check_arrays_of_fills,
     ),
     Fault(

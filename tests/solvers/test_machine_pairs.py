@@ -97,6 +97,10 @@ def check_arrays_of_fills() -> None:
     arrays = Fills.of(fills)
     for name in ("mass", "depth"):
         np.testing.assert_allclose(getattr(arrays, name), [getattr(f, name) for f in fills], rtol=1e-14)
+    # The depth is that of the ring which has the volume: h0 (2 R - h0) pi h_c.
+    walls, depth = arrays.chamber, arrays.depth
+    held = np.pi * walls.height * depth * (2.0 * walls.radius - depth)
+    np.testing.assert_allclose(held, arrays.volume, rtol=1e-12)
     full = [fill.full_mass if fill.volume > 0.0 else 0.0 for fill in fills]
     np.testing.assert_allclose(arrays.added_mass, full, rtol=1e-14)
     back = arrays.at(np.array([3, 1]))

@@ -23,6 +23,7 @@ from meshes.ring import ring
 from meshes.section import Section, disc
 from solvers.coupled_terms import backward_mass
 from solvers.free_surface import solve_surface
+from solvers.liquid_models import synchronous_model
 from solvers.reduced_liquid import reduce_liquid
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.section_layer import clear_ring, section_layer, section_layers, wall_drag
@@ -205,6 +206,13 @@ def check_section_added_mass() -> None:
     found = layer.density * layer.liquid.enclosed_area * layer.liquid.force_ratio([0.0])[0]
     # 64 sides on the surface and more: (2 pi/64)^4 with a small constant.
     assert fill.added_mass == pytest.approx(found, rel=1e-6)
+    # Backwards the same: the ratio belongs to the section, whose circle round it is 6 % larger.
+    newton = layer.liquid.force_ratio([-2.0])[0] * layer.density * layer.liquid.enclosed_area
+    assert backward_mass(fill) == pytest.approx(newton, rel=1e-12)
+    assert backward_mass(fill) == pytest.approx(backward_mass(CLEAR), rel=0.05)
+    for volume in (0.0, fill.chamber.capacity):
+        still = replace(fill, volume=volume)
+        assert still.added_mass == pytest.approx(still.mass)  # nothing, or a solid
     e = 1e-3
     surface = solve_surface(section.mesh, HEIGHT, math.inf, VOLUME, axis=(-e, 0.0))
     assert fill.added_mass * e == pytest.approx(WATER.density * surface.moments.x, rel=1e-6)
@@ -212,6 +220,21 @@ def check_section_added_mass() -> None:
 
 def test_added_mass_of_another_section() -> None:
     check_section_added_mass()
+
+
+def check_least_depth() -> None:
+    """The model holds until the deflection is the depth at the nearest wall, not the one in the lobes."""
+    fill = lobed()
+    # The nearest wall is 0.97 R away.
+    assert fill.depth == pytest.approx(0.97 * WALL - fill.surface_radius, rel=1e-4)
+    e = fill.depth * np.array([0.99, 1.01])
+    answer = synchronous_model("fem").synchronous(Fills.same(fill, 2), np.full(2, 40.0), e, np.zeros(2))
+    assert answer.in_range.tolist() == [True, False]
+    assert answer.dry_patch.tolist() == [False, True]
+
+
+def test_a_section_is_dry_first_where_it_is_thinnest() -> None:
+    check_least_depth()
 
 
 def test_a_drawn_circle_whirls_like_a_ring() -> None:
