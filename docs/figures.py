@@ -56,7 +56,7 @@ class Recipe:
         """
         first, *rest = self.program
         if first == "leblanc":
-            start = ["-c", "from study.cli import main; import sys; sys.exit(main(sys.argv[1:]))"]
+            start = ["-c", "from leblanc.cli import main; import sys; sys.exit(main(sys.argv[1:]))"]
         else:
             start = [first] if first.endswith(".py") else ["-m", first]
         return [sys.executable, *start, *rest, "--out", str(out)]

@@ -17,13 +17,13 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 from meshes.baffles import Baffles  # noqa: E402
+from meshes.bodies.paraboloid import paraboloid_body  # noqa: E402
+from meshes.bodies.wave import wave_body  # noqa: E402
 from meshes.grids import boundary_grid, grid, wall_grid  # noqa: E402
-from meshes.paraboloid_body import paraboloid_body  # noqa: E402
-from meshes.ring import ring  # noqa: E402
+from meshes.refine.waterline_cut import liquid_outside  # noqa: E402
+from meshes.rings.sectors import compartment  # noqa: E402
+from meshes.rings.triangles import ring  # noqa: E402
 from meshes.section import Section, annulus, disc  # noqa: E402
-from meshes.sector import compartment  # noqa: E402
-from meshes.waterline_cut import liquid_outside  # noqa: E402
-from meshes.wave_body import wave_body  # noqa: E402
 
 WATER, METAL, RIM = "#a6cee3", "#8c8c8c", "#b2182b"
 

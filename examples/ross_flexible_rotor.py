@@ -20,13 +20,13 @@ from numpy.typing import NDArray
 from fluid.fill import Fill
 from fluid.friction import LINEAR
 from fluid.liquid import known_liquid
+from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
+from leblanc.results.record import RPM
 from meshes.chamber import Chamber
-from solvers.response import synchronous_response
-from solvers.ross_element import liquid_layer
+from solvers.ross import liquid_layer
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.whirl import asynchronous_growth
-from study.figures.page import Figure, Frame, lay_out, number, save, style
-from study.record import RPM
+from solvers.synchronous.planar import synchronous_response
+from solvers.whirl.growth import asynchronous_growth
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fluid.kdv import KdvCoefficients
-from meshes.border import InputError, require_positive
+from meshes.errors import InputError, require_positive
 
 Array = NDArray[np.float64]
 

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.liquid import Liquid
-from meshes.border import InputError, require_not_negative
 from meshes.chamber import Chamber, Chambers
 from meshes.chamber_section import layer_depth, level
+from meshes.errors import InputError, require_not_negative
 
 Array = NDArray[np.float64]
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fluid.waves import free_wave_frequencies
-from meshes.border import InputError, require_positive
+from meshes.errors import InputError, require_positive
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

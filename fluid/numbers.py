@@ -1,7 +1,8 @@
-"""Dimensionless numbers of a liquid layer in a spinning chamber."""
+"""Dimensionless numbers of a layer whose drum whirls."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fluid.fill import Fill
 from fluid.paraboloid import steepness
+from fluid.waves import free_wave_speeds
 
 Array = NDArray[np.float64]
 
@@ -62,4 +64,65 @@ def layer_numbers(fill: Fill, speed: ArrayLike, gravity: float, axial_gravity: f
         steepness=steepness(spin, axial_gravity, radius, fill.chamber.height),
         reynolds=spin * radius**2 / viscosity if viscosity > 0.0 else np.full(spin.shape, np.inf),
         skin=np.sqrt(viscosity / spin) / fill.depth if fill.depth > 0.0 else np.full(spin.shape, np.inf),
+    )
+
+
+@dataclass(frozen=True)
+class WhirlNumbers:
+    """What decides which model of the layer holds under a whirl.
+
+    Parameters
+    ----------
+    relative_depth : mean depth over radius, h0/R
+    deflection : whirl amplitude over mean depth, w0/h0
+    detuning : distance of the whirl from the nearer free wave over the distance of the two
+    froude : whirl speed seen from the drum over the nearer free wave's
+    centrifuge : centrifugal acceleration at the free surface over gravity across the axis, Omega^2 a/g
+    reynolds : Omega R^2/nu
+    wall_layer : laminar layer of the oscillation at the wall over the mean depth, sqrt(2 nu/|s|)/h0; 0 for a
+        synchronous whirl, which moves nothing
+    """
+
+    relative_depth: float
+    deflection: float
+    detuning: float
+    froude: float
+    centrifuge: float
+    reynolds: float
+    wall_layer: float
+
+
+def whirl_numbers(
+    fill: Fill, spin: float, whirl_speed: float, amplitude: float, gravity: float
+) -> WhirlNumbers:
+    """Numbers of one layer under one whirl [theory: waves, eq. 7] [theory: long_wave, eq. 10].
+
+    Parameters
+    ----------
+    fill : chamber and liquid, with some liquid and a free surface
+    spin : spin speed Omega, rad/s, above 0
+    whirl_speed : omega_w in space, rad/s
+    amplitude : w0, m
+    gravity : across the axis, m/s^2
+
+    Returns
+    -------
+    WhirlNumbers; a number whose denominator is 0 is infinite
+    """
+    radius, surface, depth = fill.chamber.radius, fill.surface_radius, fill.depth
+    viscosity, slip = fill.liquid.viscosity, whirl_speed - spin
+    pair = [
+        float(speed)
+        for speed in free_wave_speeds(1, math.log(radius / surface) if surface else math.inf, spin)
+    ]
+    nearer = min(pair, key=lambda speed: abs(slip - speed))
+    skin = math.sqrt(2.0 * viscosity / abs(slip)) / depth if slip else 0.0
+    return WhirlNumbers(
+        relative_depth=depth / radius,
+        deflection=amplitude / depth,
+        detuning=abs(slip - nearer) / abs(pair[0] - pair[1]),
+        froude=abs(slip / nearer),
+        centrifuge=spin**2 * surface / gravity if gravity else math.inf,
+        reynolds=spin * radius**2 / viscosity if viscosity else math.inf,
+        wall_layer=skin,
     )

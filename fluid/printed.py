@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import math
 
-from fluid.lens import lens_moments
-from meshes.border import InputError, require_not_negative, require_positive
+from fluid.moments import lens_moments
 from meshes.chamber import Chamber
+from meshes.errors import InputError, require_not_negative, require_positive
 
 
 def surface_constant_as_printed(chamber: Chamber, volume: float, speed: float, gravity: float) -> float:

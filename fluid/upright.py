@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshes.border import InputError, require_positive
 from meshes.chamber import Chamber
+from meshes.errors import InputError, require_positive
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from meshes.border import InputError, require_not_negative
+from meshes.errors import InputError, require_not_negative
 
 Array = NDArray[np.float64]
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshes.baffles import Baffles
-from meshes.border import InputError, require_not_negative, require_positive
 from meshes.chamber_section import ChamberSection
+from meshes.errors import InputError, require_not_negative, require_positive
 
 Array = NDArray[np.float64]
 

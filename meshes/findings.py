@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
-from meshes.body import Body, body_jacobians
-from meshes.border import InputError
+from meshes.bodies.body import Body, body_jacobians
+from meshes.errors import InputError
 from meshes.liquid_section import LiquidSection
 from meshes.quality import SIDES, cell_areas, jacobians, vertex_angles
 from meshes.section import Section

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshes.body import WALL_PARTS, Body
-from meshes.border import InputError
+from meshes.bodies.body import WALL_PARTS, Body
+from meshes.errors import InputError
 from meshes.liquid_section import LiquidSection
 from meshes.section import Section
 
@@ -80,7 +80,7 @@ def boundary_grid(
     Returns
     -------
     The grid, with the nodes of the whole mesh. Walls carry the cell data `part`: the number of the piece of
-    wall of a section, or of the part of a body's walls in `meshes.body.WALL_PARTS`.
+    wall of a section, or of the part of a body's walls in `meshes.bodies.body.WALL_PARTS`.
 
     Raises
     ------
@@ -102,7 +102,7 @@ def wall_grid(body: Body, part: str) -> UnstructuredGrid:
     Parameters
     ----------
     body : the body
-    part : of `meshes.body.WALL_PARTS`
+    part : of `meshes.bodies.body.WALL_PARTS`
 
     Returns
     -------

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from meshes.border import InputError, require_positive
+from meshes.errors import InputError, require_positive
 from meshes.quality import SIDES as SIDES
 from meshes.quality import jacobians
 

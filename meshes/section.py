@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshes.border import InputError, require_not_negative, require_positive
+from meshes.errors import InputError, require_not_negative, require_positive
 from meshes.quality import EDGES, jacobians, triangle_areas
 
 Array = NDArray[np.float64]

@@ -100,7 +100,7 @@ def test_every_picture_has_a_recipe_and_a_place_in_the_gallery() -> None:
 def test_programs_that_draw_are_there() -> None:
     from typer.main import get_command
 
-    from study.cli import app
+    from leblanc.cli import app
 
     commands = get_command(app).commands  # type: ignore[attr-defined]
     for recipe in _module("figures").RECIPES:
@@ -136,7 +136,7 @@ def test_pictures_that_differ_are_told_apart(tmp_path: Path) -> None:
 def test_every_command_is_written_about() -> None:
     from typer.main import get_command
 
-    from study.cli import app
+    from leblanc.cli import app
 
     text = "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
     commands = get_command(app).commands  # type: ignore[attr-defined]
@@ -179,7 +179,7 @@ def test_pages_of_models_have_their_parts() -> None:
 
 
 def test_ranges_that_the_pages_show_are_those_of_the_code() -> None:
-    from study.validity import RANGES
+    from leblanc.studies.validity import RANGES
 
     shown = set()
     for page in PAGES:
@@ -296,7 +296,7 @@ class TestExamples:
     """What the page on contributing shows."""
 
     def test_a_frozen_liquid_is_dead_weight(self) -> None:
-        from solvers.liquid_models import SYNCHRONOUS_MODELS
+        from solvers.synchronous.models import SYNCHRONOUS_MODELS
 
         try:
             frozen, heavier = _module("frozen_liquid", "docs/examples").answers()
@@ -321,8 +321,8 @@ class TestExamples:
         assert np.allclose(unbalance_response(rotor.system(), speed), force / plane, rtol=1e-12)
 
     def test_the_smallest_scene_runs(self) -> None:
-        from study.run import run_scene
-        from study.scene import load_scene
+        from leblanc.scene.scene import load_scene
+        from leblanc.studies.run import run_scene
 
         record = run_scene(load_scene(DOCS / "examples" / "smallest_scene.toml"))
         answer = record.response
@@ -360,9 +360,9 @@ def test_kept_measurements_are_those_that_the_page_tables(tmp_path: Path) -> Non
 
 
 def test_kept_comparisons_are_read_as_they_were_written() -> None:
-    from study.trade_results import trade_json
     from validation.kept_figures import PICTURED, kept_trade
     from validation.trade import kept
+    from validation.trade.results import trade_json
 
     for name in PICTURED:
         again, before = trade_json(kept_trade(name)), kept(name)

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parent.parent
-PACKAGES = ("meshes", "fluid", "solvers", "study", "validation")
+PACKAGES = ("meshes", "fluid", "solvers", "leblanc", "validation")
 HEAVY = (
     "numpy", "scipy", "pydantic", "pint", "matplotlib", "xarray", "skfem", "meshio", "pde", "pyvista",
     "numba", "rich", "jinja2", "sympy", "ross",
@@ -32,13 +32,13 @@ def _loaded(code: str) -> set[str]:
 
 
 def test_help_loads_nothing_heavy() -> None:
-    loaded = _loaded("from study.cli import main\nassert main(['--help']) == 0")
+    loaded = _loaded("from leblanc.cli import main\nassert main(['--help']) == 0")
     assert not loaded & set(HEAVY)
 
 
 def test_the_main_job_compiles_nothing_and_loads_no_mesh() -> None:
     loaded = _loaded(
-        "from study.scene import load_scene\nfrom study.run import run_scene\n"
+        "from leblanc.scene.scene import load_scene\nfrom leblanc.studies.run import run_scene\n"
         "run_scene(load_scene('examples/horizontal_rig.toml'))"
     )
     assert not loaded & {"numba", "pde", "skfem", "meshio", "pyvista", "matplotlib", "sympy"}
@@ -46,7 +46,7 @@ def test_the_main_job_compiles_nothing_and_loads_no_mesh() -> None:
 
 def test_one_family_of_waves_compiles_nothing() -> None:
     loaded = _loaded(
-        "from study.cli import main\n"
+        "from leblanc.cli import main\n"
         "whirl = '--whirl-speed 30.6 --whirl-amplitude 0.05mm --friction linear:1'.split()\n"
         "layer = '--radius 0.15 --volume 1.3e-4 --height 0.01 --speed 40'.split()\n"
         "assert main(['layer', *layer, *whirl, '--model', 'kdv', '--json']) == 0"

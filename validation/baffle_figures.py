@@ -15,11 +15,11 @@ import numpy as np
 
 from fluid.fill import Fill
 from fluid.friction import NONE, STOKES
+from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
 from meshes.baffles import Baffles
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.whirl import asynchronous_growth
-from solvers.whirl_edges import unstable_bands
-from study.figures.page import Figure, Frame, lay_out, number, save, style
+from solvers.whirl.edges import unstable_bands
+from solvers.whirl.growth import asynchronous_growth
 from validation.whirl import NATURAL, layered_rotor
 
 _FRAME = Frame(left=0.72, top=0.15, between=0.0, below=0.42)

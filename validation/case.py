@@ -6,7 +6,7 @@ import math
 from dataclasses import asdict, dataclass
 from typing import Literal, get_args
 
-from meshes.border import InputError
+from meshes.errors import InputError
 
 Verdict = Literal["agrees", "erratum", "trend", "differs"]
 Value = float | str | None

@@ -24,7 +24,7 @@ def validate(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of a table.")] = False,
 ) -> None:
     """Published cases beside what the package computes."""
-    from study.cli.output import print_json
+    from leblanc.cli.output import print_json
 
     found = all_cases(case)
     if json:
@@ -49,7 +49,7 @@ def all_cases(group: str | None = None) -> list[Case]:
     ------
     InputError : no such group
     """
-    from meshes.border import InputError
+    from meshes.errors import InputError
 
     if group is not None and group not in GROUPS:
         raise InputError("case", group, "one of " + ", ".join(GROUPS))

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from solvers.rotor.dual_frequency import Start, critical_speed, integrate
-from solvers.rotor.exciter import Dimensionless, Exciter, platform_motion
-from solvers.rotor.stuck import characteristic_speeds, stuck_speeds
-from solvers.rotor.yatsun_regression import printed_critical_speed
+from solvers.rotor.exciter.machine import Dimensionless, Exciter, platform_motion
+from solvers.rotor.exciter.motion import Start, critical_speed, integrate, printed_critical_speed
+from solvers.rotor.exciter.stuck import characteristic_speeds, stuck_speeds
 from validation.case import Case, compare
 
 # The typical experiment [YF17, section 5.3].

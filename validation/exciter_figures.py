@@ -12,13 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.rotor.dual_frequency import Start, critical_speeds
-from solvers.rotor.exciter import Dimensionless, Exciter
-from solvers.rotor.stuck import characteristic_speeds
-from solvers.rotor.yatsun_regression import RANGES, printed_critical_speed
-from study.exciter import answer_exciter
-from study.figures.exciter import exciter_figure
-from study.figures.page import Figure, Frame, lay_out, number, save, style
+from leblanc.figures.exciter import exciter_figure
+from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
+from leblanc.studies.exciter import answer_exciter
+from solvers.rotor.exciter.machine import Dimensionless, Exciter
+from solvers.rotor.exciter.motion import RANGES, Start, critical_speeds, printed_critical_speed
+from solvers.rotor.exciter.stuck import characteristic_speeds
 
 Array = NDArray[np.float64]
 

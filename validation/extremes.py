@@ -13,12 +13,11 @@ import numpy as np
 
 from fluid.fill import Fill
 from fluid.liquid import Liquid
+from leblanc.friction import Friction
+from leblanc.studies.layer import answer_layer, long_wave_notes, long_wave_validity
 from meshes.chamber import Chamber
-from solvers.layer import friction_law, simulate
-from solvers.prescribed import Numerics, Whirl
-from study.friction import Friction
-from study.layer import answer_layer
-from study.layer_waves import long_wave_notes, long_wave_validity
+from solvers.layer.prescribed import Numerics, Whirl
+from solvers.layer.settle import friction_law, simulate
 
 _RADIUS, _HEIGHT = 0.15, 0.01
 

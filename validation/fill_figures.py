@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from study.figures.page import Figure, Frame, lay_out, number, style
+from leblanc.figures.page import Figure, Frame, lay_out, number, style
 from validation.fill_sweep import model_curves
 from validation.scenes import data
 

@@ -10,11 +10,11 @@ from functools import cache
 
 import numpy as np
 
-from study.fill_answers import FilledMachine
-from study.friction import Friction
-from study.objectives import RunupPeak
-from study.record import RPM, Array
-from study.scene import Model, Rotor, Runup, Scene, Speeds
+from leblanc.friction import Friction
+from leblanc.results.record import RPM, Array
+from leblanc.scene.scene import Model, Rotor, Runup, Scene, Speeds
+from leblanc.studies.optimise.answers import FilledMachine
+from leblanc.studies.optimise.objectives import RunupPeak
 from validation.case import Case, Verdict
 from validation.scenes import data
 

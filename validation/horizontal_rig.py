@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.waves import gravity_displacement
-from solvers.response import synchronous_response
 from solvers.rotor.vector_model import deflection_lag
+from solvers.synchronous.planar import synchronous_response
 from validation.case import Case
 from validation.scenes import data, horizontal_rig, horizontal_rotor
 

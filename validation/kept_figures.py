@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from study.trade import TradeRecord
+    from validation.trade.trade import TradeRecord
 
 # Scenes whose comparison is drawn.
 PICTURED = ("runup", "horizontal_rig")
@@ -26,9 +26,9 @@ def kept_trade(name: str) -> TradeRecord:
     ----------
     name : stem of the scene's file
     """
-    from study.trade import TradeRecord
-    from study.trade_judge import Comparison, Row
     from validation.trade import kept
+    from validation.trade.judge import Comparison, Row
+    from validation.trade.trade import TradeRecord
 
     found = kept(name)
     comparisons = []
@@ -79,9 +79,9 @@ def draw(out: Path) -> list[Path]:
     ----------
     out : folder, made if it is missing
     """
-    from study.figures.trade import save, trade_figure
     from validation.benchmarks.keep import kept_results
     from validation.benchmarks.plots import accuracy_figure, growth_figure
+    from validation.trade.figure import save, trade_figure
 
     files = []
     for name in PICTURED:

@@ -17,8 +17,8 @@ from fluid.fill import Fill
 from fluid.liquid import Liquid
 from fluid.waves import force_ratio
 from meshes.chamber import Chamber
-from solvers.layer import friction_law, settle, simulate
-from solvers.prescribed import LayerHistory, Numerics, Whirl
+from solvers.layer.prescribed import LayerHistory, Numerics, Whirl
+from solvers.layer.settle import friction_law, settle, simulate
 from validation.case import Case, Verdict
 from validation.scenes import data
 

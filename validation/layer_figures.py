@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from fluid.waves import force_ratio
-from solvers.layer import settle
-from solvers.prescribed import Numerics, Whirl
-from study.figures.page import Figure, Frame, lay_out, number, style
+from leblanc.figures.page import Figure, Frame, lay_out, number, style
+from solvers.layer.prescribed import Numerics, Whirl
+from solvers.layer.settle import settle
 from validation.layer import bore_histories, bore_reference, plane_layer
 from validation.scenes import data
 

@@ -14,17 +14,16 @@ from numpy.typing import NDArray
 from fluid.fill import Fill, Fills
 from fluid.liquid import KNOWN_LIQUIDS
 from meshes.chamber import Chamber
-from solvers.drive import Ramp
-from solvers.gravity_error import law_error
-from solvers.layer import friction_law, settle
-from solvers.liquid_models import synchronous_model
-from solvers.machine_pairs import PlanarMachine, pair_machines
-from solvers.model_error import LinearError, planar_enclosure
-from solvers.prescribed import Numerics, Whirl
-from solvers.response import Response, machine_responses
+from solvers.layer.prescribed import Numerics, Whirl
+from solvers.layer.settle import friction_law, settle
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.runup import RunupHistory, RunupNumerics, run_up
-from solvers.runup_error import linear_run_error
+from solvers.runup.drive import Ramp
+from solvers.runup.error import linear_run_error
+from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
+from solvers.synchronous.errors import LinearError, law_error, planar_enclosure
+from solvers.synchronous.models import synchronous_model
+from solvers.synchronous.pairs import PlanarMachine, pair_machines
+from solvers.synchronous.planar import Response, machine_responses
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, get_args
 from validation.case import Case, Value, Verdict
 
 if TYPE_CHECKING:
-    from study.figures.page import Figure
-    from study.scene import Scene
+    from leblanc.figures.page import Figure
+    from leblanc.scene.scene import Scene
 
 _DPI, _WIDE = 160, 110  # dots of a file and of the screen to an inch
 _PLAIN = 10.0  # relative differences below are told in per cent, larger ones as factors
@@ -120,7 +120,7 @@ def picture(figure: Figure | Path) -> Picture:
     ----------
     figure : of the page's size, or a file
     """
-    from study.figures.page import WIDTH, style
+    from leblanc.figures.page import WIDTH, style
 
     width = round(WIDTH * _WIDE)
     if isinstance(figure, Path):
@@ -149,7 +149,7 @@ def example(name: str) -> Scene:
     ----------
     name : stem of the file
     """
-    from study.scene import load_scene
+    from leblanc.scene.scene import load_scene
 
     return load_scene(Path(__file__).parents[1] / "examples" / f"{name}.toml")
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from leblanc.studies.volume import answer_volume
 from meshes.chamber import Chamber
-from solvers.hydrostatics import optimal_volume
-from solvers.liquid_models import Statics
-from study.volume import answer_volume
+from solvers.statics.hydrostatics import optimal_volume
+from solvers.synchronous.models import Statics
 from validation.case import Case, compare
 
 _GRAVITY = 9.81

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from study.figures.page import Figure, Frame, lay_out, number, style
-from study.record import RPM
+from leblanc.figures.page import Figure, Frame, lay_out, number, style
+from leblanc.results.record import RPM
 from validation.runup_lag import steady
 from validation.scenes import data
 

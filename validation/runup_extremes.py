@@ -14,9 +14,9 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
-from solvers.drive import Ramp
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.runup import RunupHistory, RunupNumerics, run_up
+from solvers.runup.drive import Ramp
+from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
 
 _MASS, _NATURAL, _CHAMBER = 30.0, 25.0, Chamber(0.25, 0.04)
 _RAMP = Ramp(15.0, 60.0, 15.0, 4.0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from study.record import MM
+from leblanc.results.record import MM
 from validation.case import Case, compare
 from validation.runup_trends import GIVEN, LITRE, run
 

@@ -18,11 +18,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.drive import Ramp
-from solvers.response import synchronous_response
-from solvers.runup import RunupNumerics, run_up
-from study.record import Array
-from study.runup import turn_mean
+from leblanc.results.record import Array
+from leblanc.studies.runup import turn_mean
+from solvers.runup.drive import Ramp
+from solvers.runup.runup import RunupNumerics, run_up
+from solvers.synchronous.planar import synchronous_response
 from validation.scenes import data, horizontal_rig, horizontal_rotor
 
 Complex = NDArray[np.complex128]
@@ -156,7 +156,7 @@ def draw(lags: Sequence[Lag], damping_ratio: float, directory: Path) -> Path:
     damping_ratio : of the steady response drawn with them
     directory : where the figure goes
     """
-    from study.figures.page import Figure, Frame, lay_out, number, save, style
+    from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
 
     with style():
         figure = Figure()
@@ -182,7 +182,7 @@ def draw(lags: Sequence[Lag], damping_ratio: float, directory: Path) -> Path:
 
 def _draw_angles(axes: Any, lags: Sequence[Lag], damping_ratio: float) -> None:
     """Angle of the liquid over speed: measured, steady, and at each rate."""
-    from study.figures.curves import gapped
+    from leblanc.figures.curves import gapped
 
     measured = data("dr18_fig24.json")
     speed = np.linspace(LOOKED[0], BEYOND[1], 400)

@@ -18,14 +18,14 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.friction import LINEAR
 from fluid.liquid import known_liquid
+from leblanc.results.record import MM, RPM, Array
 from meshes.chamber import Chamber
-from solvers.drive import Ramp
-from solvers.hydrostatics import optimal_volume
-from solvers.response import synchronous_response
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.runup import RunupNumerics, run_up
-from solvers.whirl_edges import unstable_bands
-from study.record import MM, RPM, Array
+from solvers.runup.drive import Ramp
+from solvers.runup.runup import RunupNumerics, run_up
+from solvers.statics.hydrostatics import optimal_volume
+from solvers.synchronous.planar import synchronous_response
+from solvers.whirl.edges import unstable_bands
 
 _MASS, _NATURAL, _UNBALANCE, _GRAVITY = 30.0, 25.0, 0.1, 9.81
 ROTOR = Jeffcott(_MASS, _MASS * _NATURAL**2, 2.0 * 0.06 * _MASS * _NATURAL, _UNBALANCE)
@@ -185,7 +185,7 @@ def draw(points: Sequence[Point], dry: Point, directory: Path) -> Path:
     dry : the run-up without liquid
     directory : where the figure goes
     """
-    from study.figures.page import Figure, Frame, lay_out, number, save, style
+    from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
 
     volumes = list(dict.fromkeys(one.volume for one in points))
     litres = np.array(volumes) * LITRE

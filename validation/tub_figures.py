@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
 from solvers.rotor.tub import Tub
-from study.figures.page import Figure, Frame, lay_out, number, save, style
 from validation.suspended_tub import FARTHEST, amplitude, suspended_tub
 
 _RPM = math.pi / 30.0

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.rotor.ball_balancers import BallRace, simulate
+from solvers.rotor.balls.balancers import BallRace, simulate
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.two_plane_balance import (
     RigidRotor,

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from solvers.rotor.ball_balancers import simulate
+from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
+from leblanc.results.record import MM
+from solvers.rotor.balls.balancers import simulate
 from solvers.rotor.two_plane import TwoPlane
 from solvers.rotor.two_plane_balance import dynamic_balancing, of_two_planes
-from study.figures.page import Figure, Frame, lay_out, number, save, style
-from study.record import MM
 from validation.two_plane import BALLS, LONG, RACES, SHORT, bare_deflection
 
 _FRAME = Frame(left=0.74, top=0.3, between=0.42, below=0.45)

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from fluid.fill import Fill
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
-from solvers.drive import Ramp
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.two_plane_balance import dynamic_balancing, of_two_planes
 from solvers.rotor.vibration import unbalance_response
-from solvers.runup import RunupNumerics, run_up
+from solvers.runup.drive import Ramp
+from solvers.runup.runup import RunupNumerics, run_up
 from validation.case import Case
 
 Array = NDArray[np.float64]

@@ -7,10 +7,10 @@ import math
 import numpy as np
 
 from fluid.printed import liquid_angle_as_printed
-from meshes.border import InputError
-from solvers.hydrostatics import equilibrium
-from solvers.response import synchronous_response
+from meshes.errors import InputError
 from solvers.rotor.vector_model import balance_residual, deflection_lag, unbalance_left
+from solvers.statics.hydrostatics import equilibrium
+from solvers.synchronous.planar import synchronous_response
 from validation.case import Case
 from validation.scenes import horizontal_rig, horizontal_rotor
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from solvers.response import critical_speed, synchronous_response
+from solvers.synchronous.planar import critical_speed, synchronous_response
 from validation.case import Case
 from validation.scenes import data, vertical_rig, vertical_rotor
 

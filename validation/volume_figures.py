@@ -8,12 +8,12 @@ import numpy as np
 
 from fluid.fill import Fill, Fills
 from fluid.liquid import known_liquid
+from leblanc.figures.page import Figure, Frame, lay_out, number, style
+from leblanc.results.record import MM
+from leblanc.studies.volume import answer_volume
 from meshes.chamber import Chamber
-from solvers.hydrostatics import equilibrium, optimal_volume
-from solvers.liquid_models import Statics
-from study.figures.page import Figure, Frame, lay_out, number, style
-from study.record import MM
-from study.volume import answer_volume
+from solvers.statics.hydrostatics import equilibrium, optimal_volume
+from solvers.synchronous.models import Statics
 
 CHAMBER, GRAVITY = Chamber(0.2, 0.05), 9.81
 SPEEDS = (20.0, 90.0)  # rad/s

@@ -10,10 +10,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from solvers.runup import RunupHistory
-from study.record import MM, RPM
-from study.runup import runup_scene
-from study.scene import Scene, load_scene
+from leblanc.results.record import MM, RPM
+from leblanc.scene.scene import Scene, load_scene
+from leblanc.studies.runup import runup_scene
+from solvers.runup.runup import RunupHistory
 
 SCENE = Path(__file__).parents[1] / "examples" / "weak_motor.toml"
 
@@ -40,7 +40,7 @@ def draw(wet: RunupHistory, dry: RunupHistory, scene: Scene, directory: Path) ->
     scene : whose machine it is
     directory : where the figure goes
     """
-    from study.figures.page import Figure, Frame, lay_out, number, save, style
+    from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
 
     looks: list[tuple[RunupHistory, dict[str, Any]]] = [
         (wet, {"color": "#0072B2", "linewidth": 1.8, "label": "with liquid"}),

@@ -16,10 +16,10 @@ from fluid.friction import LINEAR, NONE, STOKES
 from fluid.liquid import known_liquid
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.runup import RunupNumerics
-from solvers.whirl import asynchronous_growth
-from solvers.whirl_check import whirl_in_time
-from solvers.whirl_edges import unstable_bands
+from solvers.runup.runup import RunupNumerics
+from solvers.whirl.edges import unstable_bands
+from solvers.whirl.growth import asynchronous_growth
+from solvers.whirl.in_time import whirl_in_time
 from validation.case import Case, compare
 
 Array = NDArray[np.float64]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from fluid.friction import LINEAR, NONE, STOKES
-from study.figures.page import Figure, Frame, lay_out, number, style
+from leblanc.figures.page import Figure, Frame, lay_out, number, style
 from validation.case import Case
 from validation.whirl import NATURAL, RANGE, growth_over_speed
 

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-PACKAGES = ("meshes", "fluid", "solvers", "study", "validation")
+PACKAGES = ("meshes", "fluid", "solvers", "leblanc", "validation")
 # Programs, and notebooks in text form, which are pages of their own.
 _LEFT_OUT = {"__main__", "notebooks"}
 _DIRECTIVE: dict[type, str] = {ast.FunctionDef: "autofunction", ast.ClassDef: "autoclass"}

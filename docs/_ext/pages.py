@@ -67,20 +67,20 @@ def _commands() -> dict[str, Any]:
     """The commands themselves, by name."""
     import typer.main
 
-    from study.cli import app
+    from leblanc.cli import app
 
     commands: dict[str, Any] = vars(typer.main.get_command(app))["commands"]
     return commands
 
 
 class Ranges(SphinxDirective):
-    """The numbers that bound a model, as `study.validity` has them."""
+    """The numbers that bound a model, as `leblanc.studies.validity` has them."""
 
     required_arguments = 1
 
     def run(self) -> list[nodes.Node]:
         """A table, or a sentence where there is no bound."""
-        from study.validity import MEANING, RANGES
+        from leblanc.studies.validity import MEANING, RANGES
 
         bounds = RANGES.get(self.arguments[0], {})
         if not bounds:

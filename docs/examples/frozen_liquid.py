@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from fluid.fill import Fill, Fills
 from fluid.liquid import known_liquid
 from meshes.chamber import Chamber
-from solvers.liquid_models import SYNCHRONOUS_MODELS, SynchronousAnswer
-from solvers.response import Response, synchronous_response
 from solvers.rotor.jeffcott import Jeffcott
+from solvers.synchronous.models import SYNCHRONOUS_MODELS, SynchronousAnswer
+from solvers.synchronous.planar import Response, synchronous_response
 
 Array = NDArray[np.float64]
 
@@ -24,7 +24,7 @@ class Frozen:
     name = "frozen"
 
     def synchronous(self, fills: Fills, speed: Array, deflection: Array, gravity: Array) -> SynchronousAnswer:
-        """See `solvers.liquid_models.LiquidModel`."""
+        """See `solvers.synchronous.models.LiquidModel`."""
         mass = fills.density * fills.volume
         everywhere = np.ones(deflection.shape, dtype=bool)
         return SynchronousAnswer(

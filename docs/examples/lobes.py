@@ -11,9 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
-from meshes.exchange import write_section
+from leblanc.cli import main
+from meshes.files.exchange import write_section
 from meshes.section import Section, annulus
-from study.cli import main
 
 WALL, SHAFT = 0.18, 0.07  # m
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshes.border import require_not_negative, require_positive
+from meshes.errors import require_not_negative, require_positive
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.vibration import modes, unbalance_response
 

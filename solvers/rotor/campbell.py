@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshes.border import InputError
-from solvers.bracket import bracketed_root
+from meshes.errors import InputError
+from solvers.roots import bracketed_root
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.vibration import modes, whirl_direction
 

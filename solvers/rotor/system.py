@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from meshes.border import InputError
+from meshes.errors import InputError
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshes.border import InputError
+from meshes.errors import InputError
 
 Array = NDArray[np.float64]
 

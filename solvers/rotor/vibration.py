@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshes.border import InputError
+from meshes.errors import InputError
 from solvers.rotor.system import RotorSystem
 
 Array = NDArray[np.float64]

@@ -10,13 +10,13 @@ def _lens() -> None:
 
 
 FAULTS: tuple[Fault, ...] = (
-    Fault("fluid.lens", "return r**2 * area, r**4", "return r**2 * area / 2.0, r**4", _lens),
-    Fault("fluid.lens", "first = (2.0 / 3.0)", "first = (1.0 / 3.0)", _lens),
-    Fault("fluid.lens", "- 2.0 * e * first + polar", "+ 2.0 * e * first + polar", _lens),
-    Fault("fluid.lens", "0.0, e * area)", "0.0, 0.5 * e * area)", _lens),
-    Fault("fluid.lens", "across - radius * cos * first", "across + radius * cos * first", _lens),
+    Fault("fluid.moments", "return r**2 * area, r**4", "return r**2 * area / 2.0, r**4", _lens),
+    Fault("fluid.moments", "first = (2.0 / 3.0)", "first = (1.0 / 3.0)", _lens),
+    Fault("fluid.moments", "- 2.0 * e * first + polar", "+ 2.0 * e * first + polar", _lens),
+    Fault("fluid.moments", "0.0, e * area)", "0.0, 0.5 * e * area)", _lens),
+    Fault("fluid.moments", "across - radius * cos * first", "across + radius * cos * first", _lens),
     Fault(
-        "fluid.lens",
+        "fluid.moments",
         "0.5 * np.pi * whole**4",
         "0.25 * np.pi * whole**4",
         test_lens.test_disc_inside_the_chamber,

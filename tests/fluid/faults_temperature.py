@@ -5,7 +5,7 @@ from __future__ import annotations
 from tests.faults import Fault
 from tests.fluid import test_temperature as oracle
 
-_MODULE = "fluid.temperature"
+_MODULE = "fluid.liquid"
 
 FAULTS: tuple[Fault, ...] = (
     Fault(_MODULE, "-7.9870401e-3", "7.9870401e-3", oracle.check_water),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tests.faults import Fault
 from tests.fluid import test_whirl_numbers as oracle
 
-MODULE = "fluid.whirl_numbers"
+MODULE = "fluid.numbers"
 
 FAULTS: tuple[Fault, ...] = (
     Fault(MODULE, "whirl_speed - spin", "whirl_speed + spin", oracle.check_numbers),

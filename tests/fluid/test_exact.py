@@ -14,7 +14,7 @@ from numpy.polynomial import chebyshev
 
 from fluid.exact import burgers_sawtooth, burgers_shock, cnoidal_wave, solitary_wave
 from fluid.kdv import KdvCoefficients, coefficients
-from meshes.border import InputError
+from meshes.errors import InputError
 
 PROGRADE = coefficients(0.15, 0.135, 40.0, 1)
 RETROGRADE = coefficients(0.15, 0.135, 40.0, -1)

@@ -21,7 +21,7 @@ from fluid.kdv import (
     validity,
     wave_frequency,
 )
-from meshes.border import InputError
+from meshes.errors import InputError
 
 CASES = [(0.15, 0.135, 40.0), (0.2, 0.199, 90.0), (1.0, 0.3, 3.0)]
 FAMILIES = (1, -1)

@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fluid.lens import Lens, lens_moments
-from meshes.border import InputError
+from fluid.moments import Lens, lens_moments
+from meshes.errors import InputError
 
 EPS = np.finfo(float).eps
 

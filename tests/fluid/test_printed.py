@@ -6,7 +6,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy import integrate
 
-from fluid.lens import lens_moments
+from fluid.moments import lens_moments
 from fluid.printed import (
     dry_radius_as_printed,
     dry_volume_as_printed,
@@ -18,8 +18,8 @@ from fluid.printed import (
     optimal_volume_disc_corrected,
     surface_constant_as_printed,
 )
-from meshes.border import InputError
 from meshes.chamber import Chamber
+from meshes.errors import InputError
 
 G = 9.81
 EPS = np.finfo(float).eps

@@ -9,16 +9,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fluid.liquid import KNOWN_LIQUIDS, Liquid, known_liquid
-from fluid.temperature import (
+from fluid.liquid import (
     CELSIUS,
+    KNOWN_LIQUIDS,
     LAWS,
     REFERENCE,
+    Liquid,
     expansion,
     glycerol_density,
     glycerol_viscosity,
     glycol_density,
     glycol_viscosity,
+    known_liquid,
     liquid_at,
     oil_density,
     oil_viscosity,
@@ -27,7 +29,7 @@ from fluid.temperature import (
     water_density,
     water_viscosity,
 )
-from meshes.border import InputError
+from meshes.errors import InputError
 
 
 def check_water() -> None:

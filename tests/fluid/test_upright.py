@@ -10,8 +10,8 @@ import pytest
 from scipy import optimize
 
 from fluid.upright import free_surface_term, upright_margin
-from meshes.border import InputError
 from meshes.chamber import Chamber
+from meshes.errors import InputError
 
 G = 9.81
 RHO = 998.0

@@ -14,7 +14,7 @@ from fluid.waves import (
     gravity_offset,
     offset_ratio,
 )
-from meshes.border import InputError
+from meshes.errors import InputError
 
 POINTS = 24
 

@@ -8,7 +8,7 @@ import pytest
 
 from fluid.fill import Fill
 from fluid.liquid import Liquid
-from fluid.whirl_numbers import whirl_numbers
+from fluid.numbers import whirl_numbers
 from meshes.chamber import Chamber
 
 R, A, H, SPIN = 0.15, 0.135, 0.01, 40.0

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import cache, wraps
 from pathlib import Path
 
-from meshes.border import InputError
+from meshes.errors import InputError
 from tests.faults import Fault
 from tests.meshes.test_body import check_faces, check_paraboloid, check_tetrahedron, check_upright, check_wave
 from tests.meshes.test_exchange import check_groups, check_turned_cells
@@ -77,101 +77,117 @@ FAULTS: tuple[Fault, ...] = (
     ),
     Fault("meshes.baffles", "2.0 * math.pi / self.count", "math.pi / self.count", refused(check_angles)),
     Fault("meshes.baffles", "radius - self.wall_gap", "radius + self.wall_gap", refused(check_baffle_length)),
-    Fault("meshes.slits", "turned = [1, 0, 2]", "turned = [0, 1, 2]", check_slits),
+    Fault("meshes.rings.slits", "turned = [1, 0, 2]", "turned = [0, 1, 2]", check_slits),
     Fault(
-        "meshes.grading",
+        "meshes.rings.triangles",
         "shorter = slope / (growth - 1.0)",
         "shorter = (growth - 1.0) / slope",
         check_grading,
     ),
     Fault(
-        "meshes.grading",
+        "meshes.rings.triangles",
         "0.5 * (length + (end - start) / slope)",
         "0.5 * (length + (start - end) / slope)",
         check_grading,
     ),
     Fault(
-        "meshes.ring",
+        "meshes.rings.triangles",
         "0.5 * (values[1:] + values[:-1])",
         "0.6 * values[1:] + 0.4 * values[:-1]",
         refused(check_ring_area),
     ),
-    Fault("meshes.ring", "np.sin(angle)], axis=-1)", "np.cos(angle)], axis=-1)", refused(check_ring_area)),
     Fault(
-        "meshes.sector",
+        "meshes.rings.triangles",
+        "np.sin(angle)], axis=-1)",
+        "np.cos(angle)], axis=-1)",
+        refused(check_ring_area),
+    ),
+    Fault(
+        "meshes.rings.sectors",
         "middle = 0.5 * (r[one] + r[other])",
         "middle = 0.49 * (r[one] + r[other])",
         refused(check_sector_area),
     ),
     Fault(
-        "meshes.bisection",
+        "meshes.refine.bisection",
         "0.375 * low + 0.75 * middle - 0.125 * high",
         "0.375 * low + 0.625 * middle",
         refused(check_bisection),
     ),
     Fault(
-        "meshes.bisection",
+        "meshes.refine.bisection",
         "0.5 * (points[bc] + points[ca]) - 0.125",
         "0.5 * (points[bc] + points[ca]) - 0.25",
         refused(check_bisection),
     ),
-    Fault("meshes.bisection", "marked[base[more]] = True", "break", refused(check_bisection)),
+    Fault("meshes.refine.bisection", "marked[base[more]] = True", "break", refused(check_bisection)),
     Fault(
-        "meshes.circle_cut",
+        "meshes.refine.circle_cut",
         "signs * np.sign(signs.sum(axis=1))[:, None] < 0.0",
         "signs * np.sign(signs.sum(axis=1))[:, None] > 0.0",
         refused(check_both_sides),
     ),
     Fault(
-        "meshes.circle_cut",
+        "meshes.refine.circle_cut",
         "bent[middle] = circle.project(0.5",
         "bent[middle] = (0.5",
         refused(check_both_sides),
     ),
     Fault(
-        "meshes.circle_cut",
+        "meshes.refine.circle_cut",
         "tip_out = signs[np.arange(n), apex] > 0.0",
         "tip_out = signs[np.arange(n), apex] < 0.0",
         refused(check_both_sides),
     ),
     Fault(
-        "meshes.circle_cut",
+        "meshes.refine.circle_cut",
         "points[..., 1] - self.y) - self.radius",
         "points[..., 1] + self.y) - self.radius",
         refused(check_both_sides),
     ),
-    Fault("meshes.waterline_cut", "square = radius * radius", "square = radius", check_area_outside),
+    Fault("meshes.refine.waterline_cut", "square = radius * radius", "square = radius", check_area_outside),
     Fault(
-        "meshes.waterline_cut",
+        "meshes.refine.waterline_cut",
         "farthest - depth) - liquid_area",
         "farthest - depth) - 1.01 * liquid_area",
         check_inverse,
     ),
-    Fault("meshes.waterline_cut", "0.5 * (growth - 1.0)", "0.5 * (growth + 1.0)", refused(check_sizes)),
-    Fault("meshes.body", "start = np.where(empty[column[:, c]], high, low)", "start = low", check_paraboloid),
-    Fault("meshes.body", "(top & open_top[:, None])", "(top & ~open_top[:, None])", check_faces),
-    Fault("meshes.body", "np.sum(x * flux)) / 3.0", "np.sum(x * flux)) / 2.0", check_tetrahedron),
-    Fault("meshes.body", "first = 0.5 * np.sum(x * x * flux", "first = np.sum(x * x * flux", check_wave),
-    Fault("meshes.body", "volume * middle", "middle", check_tetrahedron),
-    Fault("meshes.body", "np.diag(4.0 * share - 1.0)", "np.diag(4.0 * share)", check_tetrahedron),
     Fault(
-        "meshes.paraboloid_body",
+        "meshes.refine.waterline_cut", "0.5 * (growth - 1.0)", "0.5 * (growth + 1.0)", refused(check_sizes)
+    ),
+    Fault(
+        "meshes.bodies.body",
+        "start = np.where(empty[column[:, c]], high, low)",
+        "start = low",
+        check_paraboloid,
+    ),
+    Fault("meshes.bodies.body", "(top & open_top[:, None])", "(top & ~open_top[:, None])", check_faces),
+    Fault("meshes.bodies.body", "np.sum(x * flux)) / 3.0", "np.sum(x * flux)) / 2.0", check_tetrahedron),
+    Fault(
+        "meshes.bodies.body", "first = 0.5 * np.sum(x * x * flux", "first = np.sum(x * x * flux", check_wave
+    ),
+    Fault("meshes.bodies.body", "volume * middle", "middle", check_tetrahedron),
+    Fault("meshes.bodies.body", "np.diag(4.0 * share - 1.0)", "np.diag(4.0 * share)", check_tetrahedron),
+    Fault(
+        "meshes.bodies.paraboloid",
         "(-constant / beta, height / beta)",
         "(constant / beta, height / beta)",
         refused(check_paraboloid),
     ),
-    Fault("meshes.paraboloid_body", "floor + 0.5 * ramp", "floor + ramp", check_upright),
+    Fault("meshes.bodies.paraboloid", "floor + 0.5 * ramp", "floor + ramp", check_upright),
     Fault(
-        "meshes.paraboloid_body",
+        "meshes.bodies.paraboloid",
         "(square - floor) / ramp, 0.0",
         "(floor - square) / ramp, 0.0",
         refused(check_paraboloid),
     ),
-    Fault("meshes.wave_body", "radius - (1.0 - share) * thickness", "radius - share * thickness", check_wave),
-    Fault("meshes.wave_body", "np.stack([r * np.cos(theta)", "np.stack([r * np.sin(theta)", check_wave),
-    Fault("meshes.named_walls", "origin[cells] = section.triangles", "pass", check_files),
     Fault(
-        "meshes.file_contents",
+        "meshes.bodies.wave", "radius - (1.0 - share) * thickness", "radius - share * thickness", check_wave
+    ),
+    Fault("meshes.bodies.wave", "np.stack([r * np.cos(theta)", "np.stack([r * np.sin(theta)", check_wave),
+    Fault("meshes.files.exchange", "origin[cells] = section.triangles", "pass", check_files),
+    Fault(
+        "meshes.files.exchange",
         "turned = np.take(cells, _REVERSED[cells.shape[1]], axis=1)",
         "turned = cells[:, ::-1]",
         refused(check_turned),

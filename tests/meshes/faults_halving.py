@@ -5,7 +5,7 @@ from __future__ import annotations
 from tests.faults import Fault
 from tests.meshes import test_halving as oracle
 
-_MODULE = "meshes.halving"
+_MODULE = "meshes.refine.bisection"
 
 FAULTS: tuple[Fault, ...] = (
     Fault(_MODULE, "0.375 * low + 0.75", "0.5 * low + 0.625", oracle.check_walls_keep_their_shape),

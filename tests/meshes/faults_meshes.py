@@ -27,23 +27,33 @@ FAULTS: tuple[Fault, ...] = (
         "middles[curved] = np.sqrt(ra * rb * np.sum(along**2, axis=1)[:, None] / 4.0) * along",
         check_quadratic_wall,
     ),
-    Fault("meshes.waterline", "3.0 * np.sum(c1 * c2, axis=0)", "2.0 * np.sum(c1 * c2, axis=0)", check_hole),
     Fault(
-        "meshes.waterline", "curve[1] + 2.0 * t * curve[2]", "curve[1] + t * curve[2]", check_whole_section
+        "meshes.refine.waterline",
+        "3.0 * np.sum(c1 * c2, axis=0)",
+        "2.0 * np.sum(c1 * c2, axis=0)",
+        check_hole,
     ),
-    Fault("meshes.waterline", "(x * dy - y * dx)", "(y * dx - x * dy)", check_whole_section),
-    Fault("meshes.waterline", "* _RAY[1] * fraction\n", "* _RAY[1]\n", check_whole_section),
     Fault(
-        "meshes.waterline",
+        "meshes.refine.waterline",
+        "curve[1] + 2.0 * t * curve[2]",
+        "curve[1] + t * curve[2]",
+        check_whole_section,
+    ),
+    Fault("meshes.refine.waterline", "(x * dy - y * dx)", "(y * dx - x * dy)", check_whole_section),
+    Fault("meshes.refine.waterline", "* _RAY[1] * fraction\n", "* _RAY[1]\n", check_whole_section),
+    Fault(
+        "meshes.refine.waterline",
         "_square(curve, middle) < level",
         "_square(curve, middle) < 0.9 * level",
         check_half_plane,
     ),
     Fault(
-        "meshes.waterline",
+        "meshes.refine.waterline",
         "np.sqrt(np.minimum(origin, square)",
         "(np.minimum(origin, square)",
         check_half_plane,
     ),
-    Fault("meshes.waterline", "(xa * yb - ya * xb, xa * xb", "(xa * yb + ya * xb, xa * xb", check_range),
+    Fault(
+        "meshes.refine.waterline", "(xa * yb - ya * xb, xa * xb", "(xa * yb + ya * xb, xa * xb", check_range
+    ),
 )

@@ -7,21 +7,26 @@ from tests.meshes import test_polar as oracle
 
 FAULTS: tuple[Fault, ...] = (
     Fault(
-        "meshes.polar",
+        "meshes.rings.quadrilaterals",
         "turns = baffles.first_angle",
         "turns = -baffles.first_angle",
         oracle.check_geometry,
     ),
     Fault(
-        "meshes.polar",
+        "meshes.rings.quadrilaterals",
         "radii[0], radii[-1] = surface_radius, radius",
         "radii[-1] = 1.01 * radius",
         oracle.check_geometry,
     ),
-    Fault("meshes.polar", "np.power(t, rise) if fall", "np.power(t, fall) if fall", oracle.check_grading),
-    Fault("meshes.polar", "(4.0 * near / gap)", "(near / depth)", oracle.check_grading),
     Fault(
-        "meshes.polar",
+        "meshes.rings.quadrilaterals",
+        "np.power(t, rise) if fall",
+        "np.power(t, fall) if fall",
+        oracle.check_grading,
+    ),
+    Fault("meshes.rings.quadrilaterals", "(4.0 * near / gap)", "(near / depth)", oracle.check_grading),
+    Fault(
+        "meshes.rings.quadrilaterals",
         "start + length * _between(count * times",
         "start + length * _between(count",
         oracle.check_grading,

@@ -11,13 +11,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mpf
 
-from meshes.body import WALL_PARTS, Body, body_integrals, body_jacobians
-from meshes.border import InputError
-from meshes.paraboloid_body import paraboloid_body
+from meshes.bodies.body import WALL_PARTS, Body, body_integrals, body_jacobians
+from meshes.bodies.paraboloid import paraboloid_body
+from meshes.bodies.wave import wave_body
+from meshes.errors import InputError
+from meshes.rings.sectors import sector
 from meshes.section import annulus, disc
-from meshes.sector import sector
-from meshes.wave_body import wave_body
-from solvers.free_surface import integrate_surface, solve_surface
+from solvers.statics.free_surface import integrate_surface, solve_surface
 from tests.oracles import LiquidReference, liquid_reference
 
 R, H = 0.2, 0.05

@@ -9,7 +9,6 @@ import pytest
 
 from fluid.fill import Fill
 from fluid.liquid import known_liquid
-from meshes.border import InputError
 from meshes.chamber import Chamber
 from meshes.chamber_section import (
     chamber_section,
@@ -19,6 +18,7 @@ from meshes.chamber_section import (
     rest_offset,
     surface_is_whole,
 )
+from meshes.errors import InputError
 from meshes.section import Section, annulus, disc
 
 RADIUS, HEIGHT = 0.15, 0.05

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from meshes.baffles import Baffles
-from meshes.border import InputError
-from meshes.exchange import (
+from meshes.bodies.wave import wave_body
+from meshes.errors import InputError
+from meshes.files.exchange import (
     SUFFIXES,
     read_liquid_section,
     read_section,
@@ -19,9 +20,8 @@ from meshes.exchange import (
 )
 from meshes.liquid_section import free_sides, liquid_section
 from meshes.quality import cell_areas
-from meshes.ring import ring
+from meshes.rings.triangles import ring
 from meshes.section import Section, annulus, disc, section_area
-from meshes.wave_body import wave_body
 from tests.meshes.test_liquid_section import INNER, ring_of
 
 # A unit square of two triangles, as Gmsh writes it: corner points, boundary lines, the centre of an arc that

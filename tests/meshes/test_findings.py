@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from meshes.baffles import Baffles
-from meshes.body import Body
-from meshes.border import InputError
+from meshes.bodies.body import Body
+from meshes.bodies.paraboloid import paraboloid_body
+from meshes.errors import InputError
 from meshes.findings import mesh_findings, points_across, points_per_wave, wave_error, wave_findings
-from meshes.paraboloid_body import paraboloid_body
-from meshes.ring import ring
+from meshes.rings.triangles import ring
 from meshes.section import Section, disc
 
 

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 from meshes.baffles import Baffles
-from meshes.body import body_integrals
-from meshes.border import InputError
+from meshes.bodies.body import body_integrals
+from meshes.bodies.paraboloid import paraboloid_body
+from meshes.bodies.wave import wave_body
+from meshes.errors import InputError
 from meshes.grids import boundary_grid, grid, wall_grid
 from meshes.liquid_section import liquid_section
-from meshes.paraboloid_body import paraboloid_body
 from meshes.quality import cell_areas
-from meshes.ring import ring
+from meshes.rings.triangles import ring
 from meshes.section import disc, section_area
-from meshes.wave_body import wave_body
 from tests.meshes.test_liquid_section import INNER, ring_of
 
 pyvista = pytest.importorskip("pyvista")

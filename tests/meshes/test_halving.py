@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from meshes.baffles import Baffles
-from meshes.border import InputError
-from meshes.halving import halved, straightened
-from meshes.polar import ring
+from meshes.errors import InputError
 from meshes.quality import cell_areas
+from meshes.refine.bisection import halved, straightened
+from meshes.refine.waterline_cut import liquid_outside
+from meshes.rings.quadrilaterals import ring
+from meshes.rings.sectors import compartment
 from meshes.section import Section, annulus, disc
-from meshes.sector import compartment
-from meshes.waterline_cut import liquid_outside
 
 
 def area(points: np.ndarray, cells: np.ndarray) -> float:

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from meshes.baffles import Baffles
-from meshes.border import InputError
+from meshes.errors import InputError
 from meshes.liquid_section import LiquidSection, free_sides, liquid_section
-from meshes.ring import ring
+from meshes.rings.triangles import ring
 from meshes.section import disc
 
 INNER, OUTER, AROUND = 0.6, 1.0, 12

@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from meshes.border import InputError
-from meshes.drawing import read_drawing
+from meshes.errors import InputError
+from meshes.files.drawing import read_drawing
+from meshes.files.outline import outline_section
 from meshes.liquid_section import free_sides
-from meshes.outline import outline_section
 from meshes.quality import assess
+from meshes.refine.waterline_cut import liquid_outside
 from meshes.section import Section, section_area
-from meshes.waterline_cut import liquid_outside
 
 ezdxf = pytest.importorskip("ezdxf")
 try:

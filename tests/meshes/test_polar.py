@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from meshes.baffles import Baffles
 from meshes.liquid_section import SIDES
-from meshes.polar import ring
+from meshes.rings.quadrilaterals import ring
 
 R, A = 0.2, 0.17
 

@@ -10,14 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from meshes.baffles import Baffles
-from meshes.border import InputError
-from meshes.grading import graded
+from meshes.errors import InputError
 from meshes.liquid_section import LiquidSection
 from meshes.quality import cell_areas, jacobians
-from meshes.ring import ring
+from meshes.rings.sectors import compartment, sector
+from meshes.rings.slits import open_slits
+from meshes.rings.triangles import graded, ring
 from meshes.section import section_area
-from meshes.sector import compartment, sector
-from meshes.slits import open_slits
 
 
 def grid_area(mesh: LiquidSection, radius: float) -> float:

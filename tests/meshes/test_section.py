@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from meshes.border import InputError
+from meshes.errors import InputError
 from meshes.quality import EDGES, assess
 from meshes.section import Section, annulus, disc, section_area
 

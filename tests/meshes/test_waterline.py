@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from meshes.quality import EDGES
+from meshes.refine.waterline import beyond, distance_range, monotone_arcs
 from meshes.section import Section, disc, section_area
-from meshes.waterline import beyond, distance_range, monotone_arcs
 
 AXES = [(0.0, 0.0), (0.013, -0.007), (-0.2, 0.0), (0.1, 0.1), (-0.5, 0.3)]
 

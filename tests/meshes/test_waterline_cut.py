@@ -9,15 +9,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from meshes.bisection import bisect, edge_numbers, quadratic_triangles, refine
-from meshes.border import InputError
-from meshes.circle_cut import Circle, follow_circle
+from meshes.errors import InputError
 from meshes.liquid_section import LiquidSection, free_sides
 from meshes.quality import assess, cell_areas, jacobians, vertex_angles
+from meshes.refine.bisection import bisect, edge_numbers, quadratic_triangles, refine
+from meshes.refine.circle_cut import Circle, follow_circle
+from meshes.refine.waterline_cut import area_outside, liquid_outside, surface_radius_of
+from meshes.rings.sectors import sector
+from meshes.rings.slits import open_slits
 from meshes.section import Section, annulus, disc, section_area
-from meshes.sector import sector
-from meshes.slits import open_slits
-from meshes.waterline_cut import area_outside, liquid_outside, surface_radius_of
 
 
 def square(half: float, cells: int = 8) -> Section:

@@ -6,9 +6,9 @@ from tests.faults import Fault
 from tests.solvers import test_ball_balancers as oracle
 
 _MOTION, _RUN, _STEPS = (
-    "solvers.rotor.ball_motion",
-    "solvers.rotor.ball_balancers",
-    "solvers.rotor.ball_steps",
+    "solvers.rotor.balls.motion",
+    "solvers.rotor.balls.balancers",
+    "solvers.rotor.balls.steps",
 )
 
 FAULTS: tuple[Fault, ...] = (

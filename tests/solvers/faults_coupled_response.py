@@ -5,7 +5,11 @@ from __future__ import annotations
 from tests.faults import Fault
 from tests.solvers import test_coupled_response as oracle
 
-TERMS, BRANCHES, RESPONSE = "solvers.coupled_terms", "solvers.coupled_branches", "solvers.coupled_response"
+TERMS, BRANCHES, RESPONSE = (
+    "solvers.synchronous.coupled",
+    "solvers.synchronous.coupled",
+    "solvers.synchronous.coupled",
+)
 
 FAULTS: tuple[Fault, ...] = (
     Fault(

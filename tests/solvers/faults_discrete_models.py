@@ -5,7 +5,7 @@ from __future__ import annotations
 from tests.faults import Fault
 from tests.solvers import test_discrete_models as oracle
 
-_MODULE = "solvers.discrete_models"
+_MODULE = "solvers.synchronous.discrete"
 
 FAULTS: tuple[Fault, ...] = (
     Fault(

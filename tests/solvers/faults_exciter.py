@@ -7,8 +7,12 @@ from tests.solvers import test_dual_frequency as motion
 from tests.solvers import test_exciter as oracle
 from tests.solvers import test_stuck as roots
 
-_EXCITER, _STUCK, _MOTION = "solvers.rotor.exciter", "solvers.rotor.stuck", "solvers.rotor.dual_frequency"
-_STEPS, _PRINTED = "solvers.rotor.exciter_steps", "solvers.rotor.yatsun_regression"
+_EXCITER, _STUCK, _MOTION = (
+    "solvers.rotor.exciter.machine",
+    "solvers.rotor.exciter.stuck",
+    "solvers.rotor.exciter.motion",
+)
+_STEPS, _PRINTED = "solvers.rotor.exciter.steps", "solvers.rotor.exciter.motion"
 
 FAULTS: tuple[Fault, ...] = (
     Fault(_EXCITER, "return 1.0 + own_inertia / (mass", "return own_inertia / (mass", oracle.check_rolling),

@@ -7,7 +7,7 @@ from tests.solvers.test_free_surface import check_crescent, check_optimal_volume
 from tests.solvers.test_free_surface_limits import check_clear_surface, check_flat_surface
 from tests.solvers.test_free_surface_sections import check_turned
 
-MODULE = "solvers.free_surface"
+MODULE = "solvers.statics.free_surface"
 
 FAULTS: tuple[Fault, ...] = (
     Fault(MODULE, "lid = floor + plan.ramp", "lid = floor + 2.0 * plan.ramp", check_optimal_volumes),

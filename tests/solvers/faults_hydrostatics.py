@@ -15,9 +15,9 @@ def _optimal() -> None:
     oracle.test_optimal_volume_values(0.2, 0.05, 90.0, (54.43957239, 178.3088703, 603.5171603))
 
 
-ARC = "solvers.wall_arc"
-STATICS = "solvers.hydrostatics"
-INTEGRALS = "solvers.chamber_integrals"
+ARC = "solvers.statics.wall"
+STATICS = "solvers.statics.hydrostatics"
+INTEGRALS = "solvers.statics.integrals"
 
 FAULTS: tuple[Fault, ...] = (
     Fault(ARC, "np.arctan2(sin, e + cos)", "np.arctan2(sin, e - cos)", _whole),

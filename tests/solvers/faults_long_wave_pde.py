@@ -5,11 +5,11 @@ from tests.solvers import test_long_wave_pde as oracle
 
 
 def _terms(right: str, wrong: str, check=oracle.check_manufactured) -> Fault:  # type: ignore[no-untyped-def]
-    return Fault("solvers.long_wave_terms", right, wrong, check)
+    return Fault("solvers.pypde.terms", right, wrong, check)
 
 
 def _readings(right: str, wrong: str, check) -> Fault:  # type: ignore[no-untyped-def]
-    return Fault("solvers.long_wave_readings", right, wrong, check)
+    return Fault("solvers.pypde.readings", right, wrong, check)
 
 
 FAULTS: tuple[Fault, ...] = (

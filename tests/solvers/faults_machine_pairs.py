@@ -6,7 +6,11 @@ from tests.faults import Fault
 from tests.solvers import test_branches, test_hydrostatics, test_response
 from tests.solvers import test_machine_pairs as oracle
 
-PAIRS, RESPONSE, BRANCHES = "solvers.machine_pairs", "solvers.response", "solvers.branches"
+PAIRS, RESPONSE, BRANCHES = (
+    "solvers.synchronous.pairs",
+    "solvers.synchronous.planar",
+    "solvers.synchronous.branches",
+)
 
 FAULTS: tuple[Fault, ...] = (
     Fault(PAIRS, "elastic + 1j * self.damping", "elastic - 1j * self.damping", oracle.check_sums),
@@ -37,16 +41,16 @@ FAULTS: tuple[Fault, ...] = (
         test_hydrostatics.check_many_chambers,
     ),
     Fault(
-        "solvers.chamber_integrals",
+        "solvers.statics.integrals",
         "np.asarray(chamber.inner_radius) / chamber.radius, 1e-60",
         "np.max(chamber.inner_radius) / chamber.radius, 1e-60",
         test_hydrostatics.check_many_chambers,
     ),
     Fault(BRANCHES, "for slope in (a - rise, a)", "for slope in (a,)", test_response.check_all_branches),
     Fault(BRANCHES, "+ np.square(c) * low", "+ np.square(c) * high * 4.0", test_branches.check_one_way),
-    Fault("solvers.whirl", "support[own[place]].T", "support[place].T", oracle.check_growth),
+    Fault("solvers.whirl.growth", "support[own[place]].T", "support[place].T", oracle.check_growth),
     Fault(
-        "solvers.whirl",
+        "solvers.whirl.growth",
         "mass = np.array([tables[i][0] for i in own])[place]",
         "mass = np.array([tables[0][0] for i in own])[place]",
         oracle.check_growth,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tests.faults import Fault
 from tests.solvers import test_ross_element as oracle
 
-_MODULE = "solvers.ross_element"
+_MODULE = "solvers.ross"
 _PEER = "validation.benchmarks.peer_ross"
 
 FAULTS: tuple[Fault, ...] = (

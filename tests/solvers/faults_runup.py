@@ -9,7 +9,7 @@ from tests.solvers import test_runup as oracle
 RUN, SET, READ, FILL = (
     f"solvers.{name}" for name in ("runup", "coupled_machine", "coupled_reading", "coupled_fill")
 )
-DRIVE, LINEAR = "solvers.drive", "solvers.linear_machine"
+DRIVE, LINEAR = "solvers.runup.drive", "solvers.runup.linear"
 FAULTS: tuple[Fault, ...] = (
     Fault(
         DRIVE, "self.start + self.rate * rise", "self.start + 0.9 * self.rate * rise", oracle.check_capture

@@ -5,8 +5,8 @@ from __future__ import annotations
 from tests.faults import Fault
 from tests.solvers import test_sections as oracle
 
-FILL, REDUCED, LAYER = "fluid.fill", "solvers.reduced_liquid", "solvers.section_layer"
-DRUM, STANDING = "solvers.section_whirl", "solvers.section_standing"
+FILL, REDUCED, LAYER = "fluid.fill", "solvers.sloshing.reduced", "solvers.sloshing.reduced"
+DRUM, STANDING = "solvers.whirl.sections", "solvers.whirl.sections"
 
 FAULTS: tuple[Fault, ...] = (
     Fault(
@@ -31,7 +31,7 @@ FAULTS: tuple[Fault, ...] = (
         oracle.check_all_compartments,
     ),
     Fault(
-        "solvers.coupled_terms",
+        "solvers.synchronous.coupled",
         "whole = layer.density * layer.liquid.enclosed_area",
         "whole = fill.full_mass * 1.0",
         oracle.check_section_added_mass,

@@ -26,15 +26,15 @@ def _time_alone() -> None:
 
 
 def _wave_terms(right: str, wrong: str, oracle) -> Fault:  # type: ignore[no-untyped-def]
-    return Fault("solvers.wave_terms", right, wrong, oracle)
+    return Fault("solvers.waves.terms", right, wrong, oracle)
 
 
 def _weights(right: str, wrong: str, oracle=test_stepper.assert_phases) -> Fault:  # type: ignore[no-untyped-def]
-    return Fault("solvers.exponential", right, wrong, oracle)
+    return Fault("solvers.waves.exponential", right, wrong, oracle)
 
 
 def _stepper(right: str, wrong: str, oracle=test_stepper.assert_phases) -> Fault:  # type: ignore[no-untyped-def]
-    return Fault("solvers.stepper", right, wrong, oracle)
+    return Fault("solvers.waves.stepper", right, wrong, oracle)
 
 
 _OMEGA = "wave_frequency(n, terms.c, terms.whitham)"

@@ -5,8 +5,8 @@ from __future__ import annotations
 from tests.faults import Fault
 from tests.solvers import test_whirl as oracle
 
-ROOTS, SYSTEM, LAMINAR = "solvers.whirl_roots", "solvers.whirl_system", "solvers.whirl_laminar"
-EDGES, WHIRL = "solvers.whirl_edges", "solvers.whirl"
+ROOTS, SYSTEM, LAMINAR = "solvers.whirl.planar", "solvers.whirl.system", "solvers.whirl.laminar"
+EDGES, WHIRL = "solvers.whirl.edges", "solvers.whirl.growth"
 
 FAULTS: tuple[Fault, ...] = (
     # One plane: the polynomial.

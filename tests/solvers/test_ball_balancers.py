@@ -12,9 +12,10 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from meshes.border import InputError
-from solvers.rotor import ball_motion, ball_steps
-from solvers.rotor.ball_balancers import (
+from meshes.errors import InputError
+from solvers.rotor.balls import motion as ball_motion
+from solvers.rotor.balls import steps as ball_steps
+from solvers.rotor.balls.balancers import (
     BalancedRun,
     BallRace,
     balanced_places,

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from meshes.border import InputError
+from meshes.errors import InputError
 from solvers.rotor.bearing import cage_slip, cage_speed
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from solvers.bracket import bracketed_root
+from solvers.roots import bracketed_root
 
 
 def test_roots_of_many_functions() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from solvers.branches import find_branches
+from solvers.synchronous.branches import find_branches
 
 
 def saturating(level: float, width: float):  # type: ignore[no-untyped-def]

@@ -6,13 +6,11 @@ import numpy as np
 import pytest
 
 from fluid.kdv import coefficients
-from meshes.border import InputError
-from solvers.continuation import Branch, follow
-from solvers.periodic import family_problem, solve
-from solvers.wave_modes import System, WaveProblem, split
-from solvers.wave_newton import SteadyWave, newton
-from solvers.wave_response import Response, _segment, respond
-from solvers.wave_stability import growth, growth_rates
+from meshes.errors import InputError
+from solvers.waves.continuation import Branch, Response, _segment, follow, growth, growth_rates, respond
+from solvers.waves.modes import System, WaveProblem, split
+from solvers.waves.newton import SteadyWave, newton
+from solvers.waves.periodic import family_problem, solve
 from tests.solvers.test_periodic import FAMILIES, PROGRADE, RETROGRADE, cnoidal, free_problem
 
 # A curve that folds twice: one resonance, its answers one, three, one.

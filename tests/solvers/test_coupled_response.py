@@ -12,18 +12,23 @@ from hypothesis import strategies as st
 from fluid.fill import Fill
 from fluid.liquid import Liquid
 from fluid.waves import offset_ratio
-from meshes.border import InputError
 from meshes.chamber import Chamber
-from solvers.coupled_branches import one_plane, several_planes
-from solvers.coupled_response import coupled_response, wet_critical_speeds
-from solvers.coupled_terms import backward_mass, balance
-from solvers.hydrostatics import equilibrium
-from solvers.liquid_models import synchronous_model
-from solvers.response import critical_speed, synchronous_response
+from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.vibration import critical_speeds, orbit, unbalance_response
+from solvers.statics.hydrostatics import equilibrium
+from solvers.synchronous.coupled import (
+    backward_mass,
+    balance,
+    coupled_response,
+    one_plane,
+    several_planes,
+    wet_critical_speeds,
+)
+from solvers.synchronous.models import synchronous_model
+from solvers.synchronous.planar import critical_speed, synchronous_response
 from tests.solvers.rotor_cases import tub, two_plane
 from tests.solvers.test_response import WATER, fills, folded, rig
 

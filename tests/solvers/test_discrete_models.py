@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 
 from fluid.fill import Fill, Fills
 from fluid.liquid import known_liquid
-from meshes.border import InputError
 from meshes.chamber import Chamber
-from solvers.discrete_models import Fem, LongWave, offered
-from solvers.layer import settle
-from solvers.liquid_models import SYNCHRONOUS_MODELS, LiquidModel, Statics, SynchronousAnswer
-from solvers.prescribed import Numerics, Whirl
-from solvers.response import synchronous_response
+from meshes.errors import InputError
+from solvers.layer.prescribed import Numerics, Whirl
+from solvers.layer.settle import settle
 from solvers.rotor.jeffcott import Jeffcott
+from solvers.synchronous.discrete import Fem, LongWave, offered
+from solvers.synchronous.models import SYNCHRONOUS_MODELS, LiquidModel, Statics, SynchronousAnswer
+from solvers.synchronous.planar import synchronous_response
 
 Array = NDArray[np.float64]
 

@@ -7,17 +7,12 @@ import pytest
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from meshes.border import InputError
-from solvers.rotor import exciter, exciter_steps
-from solvers.rotor.dual_frequency import (
-    Start,
-    critical_speed,
-    critical_speeds,
-    initial_state,
-    integrate,
-)
-from solvers.rotor.exciter import Dimensionless, platform_motion
-from solvers.rotor.stuck import characteristic_speeds, stuck_speeds
+from meshes.errors import InputError
+from solvers.rotor.exciter import machine as exciter
+from solvers.rotor.exciter import steps as exciter_steps
+from solvers.rotor.exciter.machine import Dimensionless, platform_motion
+from solvers.rotor.exciter.motion import Start, critical_speed, critical_speeds, initial_state, integrate
+from solvers.rotor.exciter.stuck import characteristic_speeds, stuck_speeds
 
 Array = NDArray[np.float64]
 

@@ -10,9 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from meshes.border import InputError
-from solvers.rotor import ball_motion, exciter
-from solvers.rotor.exciter import Dimensionless, Exciter, platform_motion, rolling_inertia
+from meshes.errors import InputError
+from solvers.rotor.balls import motion as ball_motion
+from solvers.rotor.exciter import machine as exciter
+from solvers.rotor.exciter.machine import Dimensionless, Exciter, platform_motion, rolling_inertia
 
 Array = NDArray[np.float64]
 

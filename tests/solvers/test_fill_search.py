@@ -9,9 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from meshes.border import InputError
-from solvers.fill_judged import Array, Judge, Judgement, SearchPlan, best_of
-from solvers.fill_search import search
+from meshes.errors import InputError
+from solvers.search import Array, Judge, Judgement, SearchPlan, best_of, search
 
 
 def free(function: Callable[[Array], Array]) -> Judge:

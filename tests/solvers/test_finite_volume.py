@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from fluid import long_wave as lw
-from solvers.face_flux import DRY
-from solvers.finite_volume import GHOSTS, WORK, rates, solve_ring
-from solvers.forced_layer import advance, scratch
+from solvers.layer.face_flux import DRY
+from solvers.layer.finite_volume import GHOSTS, WORK, rates, solve_ring
+from solvers.layer.step import advance, scratch
 
 SPIN = 1.0
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from fluid.moments import Moments
 from meshes.section import disc, section_area
-from solvers.free_surface import integrate_surface, optimal_volume_fem, solve_surface
+from solvers.statics.free_surface import integrate_surface, optimal_volume_fem, solve_surface
 
 Array = NDArray[np.float64]
 

@@ -6,9 +6,9 @@ import math
 
 import pytest
 
-from meshes.border import InputError
+from meshes.errors import InputError
 from meshes.section import disc, section_area
-from solvers.free_surface import default_disc, integrate_surface, optimal_volume_fem, solve_surface
+from solvers.statics.free_surface import default_disc, integrate_surface, optimal_volume_fem, solve_surface
 from tests.solvers.test_free_surface import HEIGHT, RADIUS, agree, beta_of, values
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from fluid.moments import Moments
 from meshes.quality import triangle_areas
 from meshes.section import Section, annulus, disc, section_area
-from solvers.free_surface import integrate_surface, solve_surface
+from solvers.statics.free_surface import integrate_surface, solve_surface
 from tests.solvers.test_free_surface import (
     HEIGHT,
     NAMES,

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from mpmath import mp, mpf
 
 from fluid.paraboloid import clear_surface_constant
-from meshes.border import InputError
 from meshes.chamber import Chamber, Chambers
-from solvers.hydrostatics import equilibrium, optimal_volume
+from meshes.errors import InputError
+from solvers.statics.hydrostatics import equilibrium, optimal_volume
 from tests.oracles import LiquidReference, liquid_reference
 
 GRAVITY = 9.81

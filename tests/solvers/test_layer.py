@@ -10,11 +10,11 @@ import pytest
 from fluid.fill import Fill
 from fluid.liquid import Liquid
 from fluid.waves import force_ratio
-from meshes.border import InputError
 from meshes.chamber import Chamber
-from solvers.hydrostatics import equilibrium
-from solvers.layer import friction_law, settle, simulate
-from solvers.prescribed import Numerics, Whirl
+from meshes.errors import InputError
+from solvers.layer.prescribed import Numerics, Whirl
+from solvers.layer.settle import friction_law, settle, simulate
+from solvers.statics.hydrostatics import equilibrium
 
 SPIN, R, H = 40.0, 0.15, 0.01
 WATER = Liquid("water", 1000.0, 1e-6)

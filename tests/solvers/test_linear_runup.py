@@ -11,15 +11,15 @@ import pytest
 from fluid.fill import Fill
 from fluid.friction import LINEAR
 from fluid.liquid import Liquid
-from meshes.border import InputError
 from meshes.chamber import Chamber
-from solvers.drive import Motor, Ramp
-from solvers.linear_machine import couple_linear, read_linear, switch_linear
-from solvers.machine import DRIVE, FRICTION, GRAVITY, SUPPORT, UNBALANCE
-from solvers.response import synchronous_response
+from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.runup import RunupHistory, RunupNumerics, run_up
-from solvers.whirl import asynchronous_growth
+from solvers.runup.drive import Motor, Ramp
+from solvers.runup.linear import couple_linear, read_linear, switch_linear
+from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
+from solvers.runup.state import DRIVE, FRICTION, GRAVITY, SUPPORT, UNBALANCE
+from solvers.synchronous.planar import synchronous_response
+from solvers.whirl.growth import asynchronous_growth
 
 WATER = Liquid("water", 1000.0, 1e-6)
 MASS, NATURAL = 30.0, 25.0

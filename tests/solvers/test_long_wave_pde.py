@@ -29,12 +29,12 @@ from pde.solvers.base import ConvergenceError
 from fluid.fill import Fill
 from fluid.friction import LINEAR, NONE
 from fluid.liquid import Liquid
-from meshes.border import InputError
 from meshes.chamber import Chamber
-from solvers.layer import friction_law, simulate
-from solvers.long_wave_pde import AnnularLongWavePDE, FiniteVolumeSolver
-from solvers.prescribed import Numerics, Whirl
-from solvers.wave_pde import circle
+from meshes.errors import InputError
+from solvers.layer.prescribed import Numerics, Whirl
+from solvers.layer.settle import friction_law, simulate
+from solvers.pypde.long_wave import AnnularLongWavePDE, FiniteVolumeSolver
+from solvers.pypde.one_family import circle
 
 SPIN, R, H = 40.0, 0.15, 0.01
 OIL = Liquid("oil", 900.0, 1e-3)

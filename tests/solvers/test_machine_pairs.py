@@ -10,12 +10,12 @@ from fluid.fill import Fill, Fills
 from fluid.friction import LINEAR, NONE, STOKES
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
-from solvers.hydrostatics import equilibrium
-from solvers.liquid_models import SYNCHRONOUS_MODELS
-from solvers.machine_pairs import PlanarMachine, pair_machines
-from solvers.response import machine_responses, synchronous_response
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.whirl import asynchronous_growth, machines_growth
+from solvers.statics.hydrostatics import equilibrium
+from solvers.synchronous.models import SYNCHRONOUS_MODELS
+from solvers.synchronous.pairs import PlanarMachine, pair_machines
+from solvers.synchronous.planar import machine_responses, synchronous_response
+from solvers.whirl.growth import asynchronous_growth, machines_growth
 
 WATER, OIL = Liquid("water", 1000.0, 1e-6), Liquid("oil", 870.0, 6.9e-5)
 GRAVITY = np.array([0.0, 9.81, 9.81, 0.0, 9.81])

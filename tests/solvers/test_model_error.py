@@ -12,21 +12,20 @@ from hypothesis import strategies as st
 
 from fluid.fill import Fill, Fills
 from fluid.liquid import KNOWN_LIQUIDS
+from leblanc.scene.machine import dry_rotor
+from leblanc.scene.scene import load_scene
+from leblanc.studies.choose import across_gravity, axial_gravity
 from meshes.chamber import Chamber
-from solvers.coupled_error import coupled_error
-from solvers.coupled_response import coupled_response
-from solvers.gravity_error import law_error, planar_gravity_error
-from solvers.law_defect import defect_bound, upright_surfaces
-from solvers.liquid_models import Statics, synchronous_model
-from solvers.machine_pairs import PlanarMachine, pair_machines
-from solvers.model_error import ROUNDING, Enclosure, planar_enclosure
-from solvers.response import machine_responses
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.runup_error import MOST_LAG, MOST_WAVE, linear_run_error
-from study.fidelity import across_gravity, axial_gravity
-from study.machine import dry_rotor
-from study.scene import load_scene
-from tests.study.test_runup import history_of
+from solvers.runup.error import MOST_LAG, MOST_WAVE, linear_run_error
+from solvers.statics.law_defect import defect_bound, upright_surfaces
+from solvers.synchronous.coupled import coupled_response
+from solvers.synchronous.coupled_errors import coupled_error
+from solvers.synchronous.errors import ROUNDING, Enclosure, law_error, planar_enclosure, planar_gravity_error
+from solvers.synchronous.models import Statics, synchronous_model
+from solvers.synchronous.pairs import PlanarMachine, pair_machines
+from solvers.synchronous.planar import machine_responses
+from tests.leblanc.test_runup import history_of
 from validation.model_error import (
     gravity_sample,
     linear_sample,

@@ -19,10 +19,10 @@ from fluid.friction import LINEAR
 from fluid.liquid import Liquid
 from fluid.long_wave import PADE
 from meshes.chamber import Chamber
-from solvers.layer import settle
-from solvers.periodic import family_problem, solve
-from solvers.prescribed import Numerics, Whirl
-from solvers.wave_modes import WaveProblem
+from solvers.layer.prescribed import Numerics, Whirl
+from solvers.layer.settle import settle
+from solvers.waves.modes import WaveProblem
+from solvers.waves.periodic import family_problem, solve
 
 RADIUS, HEIGHT, SPIN = 0.15, 0.01, 40.0
 # delta and gamma over sqrt(alpha q): a wave of three and more modes, and only one of it.

@@ -13,11 +13,11 @@ from scipy.special import ellipe, ellipj, ellipk
 from threadpoolctl import ThreadpoolController, threadpool_info
 
 from fluid.kdv import KdvCoefficients, coefficients, wave_frequency
-from meshes.border import InputError
-from solvers.periodic import _starts, family_problem, solve
-from solvers.wave_modes import System, WaveProblem, joined, one_thread, split
-from solvers.wave_newton import SteadyWave
-from solvers.wave_stability import growth
+from meshes.errors import InputError
+from solvers.waves.continuation import growth
+from solvers.waves.modes import System, WaveProblem, joined, one_thread, split
+from solvers.waves.newton import SteadyWave
+from solvers.waves.periodic import _starts, family_problem, solve
 
 PROGRADE = coefficients(0.15, 0.135, 40.0, 1)
 RETROGRADE = coefficients(0.15, 0.135, 40.0, -1)

@@ -13,12 +13,12 @@ from scipy.interpolate import CubicSpline
 
 from fluid.fill import Fill
 from fluid.liquid import Liquid
-from meshes.border import InputError
 from meshes.chamber import Chamber
-from solvers.hydrostatics import equilibrium
-from solvers.response import Response, critical_speed, synchronous_response
+from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vector_model import balance_residual, deflection_lag
+from solvers.statics.hydrostatics import equilibrium
+from solvers.synchronous.planar import Response, critical_speed, synchronous_response
 
 WATER = Liquid("water", 1000.0, 1e-6)
 

@@ -18,10 +18,9 @@ from fluid.fill import Fill
 from fluid.friction import LINEAR, NONE, STOKES, damping_rate
 from fluid.liquid import Liquid
 from fluid.waves import force_ratio
-from meshes.border import InputError
 from meshes.chamber import Chamber
-from solvers.response import synchronous_response
-from solvers.ross_element import (
+from meshes.errors import InputError
+from solvers.ross import (
     Coefficients,
     Friction,
     dynamic_stiffness,
@@ -31,7 +30,8 @@ from solvers.ross_element import (
     liquid_link,
 )
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.whirl import asynchronous_growth
+from solvers.synchronous.planar import synchronous_response
+from solvers.whirl.growth import asynchronous_growth
 from validation.benchmarks import peer_ross
 
 CHAMBER = Chamber(radius=0.15, height=0.01)

@@ -11,16 +11,15 @@ from scipy.integrate import solve_ivp
 
 from fluid.fill import Fill
 from fluid.liquid import Liquid
-from meshes.border import InputError
 from meshes.chamber import Chamber
-from solvers.coupled_machine import couple, fall, switch
-from solvers.coupled_reading import reading
-from solvers.drive import Motor, Ramp
-from solvers.machine import DRIVE, FRICTION, GRAVITY, SUPPORT, UNBALANCE
-from solvers.response import synchronous_response
+from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.runup import RunupHistory, RunupNumerics, run_up
-from solvers.whirl_check import whirl_in_time
+from solvers.runup.drive import Motor, Ramp
+from solvers.runup.long_wave import couple, fall, reading, switch
+from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
+from solvers.runup.state import DRIVE, FRICTION, GRAVITY, SUPPORT, UNBALANCE
+from solvers.synchronous.planar import synchronous_response
+from solvers.whirl.in_time import whirl_in_time
 
 WATER = Liquid("water", 1000.0, 1e-6)
 # The machine of the run-ups: 30 kg, 25 rad/s, damping ratio 0.06, one chamber of 0.25 m.

@@ -16,21 +16,19 @@ from fluid.friction import LINEAR, NONE, STOKES
 from fluid.liquid import known_liquid
 from fluid.waves import force_ratio
 from meshes.baffles import Baffles
-from meshes.border import InputError
 from meshes.chamber import Chamber
 from meshes.chamber_section import chamber_section
-from meshes.ring import ring
+from meshes.errors import InputError
+from meshes.rings.triangles import ring
 from meshes.section import Section, disc
-from solvers.coupled_terms import backward_mass
-from solvers.free_surface import solve_surface
-from solvers.liquid_models import synchronous_model
-from solvers.reduced_liquid import reduce_liquid
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.section_layer import clear_ring, section_layer, section_layers, wall_drag
-from solvers.section_standing import circle_layer, standing_modes
-from solvers.section_whirl import drum_matrices, drum_modes
-from solvers.sloshing_system import LiquidSystem, condense
-from solvers.whirl import asynchronous_growth, system_modes
+from solvers.sloshing.reduced import clear_ring, reduce_liquid, section_layer, section_layers, wall_drag
+from solvers.sloshing.system import LiquidSystem, condense
+from solvers.statics.free_surface import solve_surface
+from solvers.synchronous.coupled import backward_mass
+from solvers.synchronous.models import synchronous_model
+from solvers.whirl.growth import asynchronous_growth, system_modes
+from solvers.whirl.sections import circle_layer, drum_matrices, drum_modes, standing_modes
 from tests.solvers.rotor_cases import tub, two_plane
 
 WALL, SURFACE, HEIGHT = 0.15, 0.135, 0.05

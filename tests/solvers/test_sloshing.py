@@ -10,19 +10,14 @@ import pytest
 
 from fluid.waves import force_ratio, free_wave_frequencies
 from meshes.baffles import Baffles
-from meshes.border import InputError
+from meshes.errors import InputError
 from meshes.liquid_section import LiquidSection, liquid_section
-from meshes.polar import ring
-from meshes.ring import ring as triangles
-from solvers.sloshing import HARMONICS, sloshing_modes, spectrum
-from solvers.sloshing_assembly import gradients, stiffness, wall_points
-from solvers.sloshing_forced import (
-    displacement_field,
-    forced_response,
-    newton_force,
-    pressure_force,
-)
-from solvers.sloshing_system import LiquidSystem, condense, surface_forms
+from meshes.rings.quadrilaterals import ring
+from meshes.rings.triangles import ring as triangles
+from solvers.sloshing.assembly import gradients, stiffness, wall_points
+from solvers.sloshing.forced import displacement_field, forced_response, newton_force, pressure_force
+from solvers.sloshing.modes import HARMONICS, sloshing_modes, spectrum
+from solvers.sloshing.system import LiquidSystem, condense, surface_forms
 from tests.solvers.sloshing_oracles import sector_frequencies, sectors_force
 
 R, A, SPIN = 0.15, 0.135, 40.0

@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from fluid.friction import stokes_coefficient
 from fluid.wall_layer import edge_weight, layer_thickness, plate_drags
 from meshes.baffles import Baffles
-from meshes.border import InputError
-from meshes.polar import ring
-from solvers.sloshing import sloshing_modes
-from solvers.sloshing_damping import baffle_edges, mode_damping, wall_loss
-from solvers.sloshing_system import condense
+from meshes.errors import InputError
+from meshes.rings.quadrilaterals import ring
+from solvers.sloshing.damping import baffle_edges, mode_damping, wall_loss
+from solvers.sloshing.modes import sloshing_modes
+from solvers.sloshing.system import condense
 from tests.solvers.sloshing_oracles import ring_decay
 
 R, A, SPIN, HEIGHT, WATER = 0.15, 0.135, 40.0, 0.05, 1e-6

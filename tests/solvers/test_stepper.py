@@ -11,9 +11,9 @@ import pytest
 
 from fluid.exact import cnoidal_wave
 from fluid.kdv import coefficients
-from meshes.border import InputError
-from solvers.exponential import METHODS, find_method, phi_functions, step_weights
-from solvers.stepper import Control, Split, advance_adaptive, advance_fixed, squared, to_spectrum
+from meshes.errors import InputError
+from solvers.waves.exponential import METHODS, find_method, phi_functions, step_weights
+from solvers.waves.stepper import Control, Split, advance_adaptive, advance_fixed, squared, to_spectrum
 
 # u_t + 6 u u_x + u_xxx = 0, written out here, and its periodic solitary wave.
 PLAIN = replace(coefficients(0.15, 0.135, 40.0, 1), linear_speed=0.0, steepening=6.0, dispersion=1.0)

@@ -9,16 +9,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from meshes.border import InputError
-from solvers.rotor.exciter import Dimensionless
-from solvers.rotor.stuck import (
+from meshes.errors import InputError
+from solvers.rotor.exciter.machine import Dimensionless
+from solvers.rotor.exciter.motion import printed_critical_speed
+from solvers.rotor.exciter.stuck import (
     approximate_speeds,
     characteristic_speeds,
     lag_number,
     shaft_speed,
     stuck_speeds,
 )
-from solvers.rotor.yatsun_regression import printed_critical_speed
 
 MACHINE = Dimensionless(0.01, 0.4, 0.25, 0.03)
 
@@ -57,7 +57,7 @@ def check_balance() -> None:
     b (n - Q) = mean of v'' cos(phi) with its sign, A = 1: the mean of a product of two harmonics, exact by
     the rectangle rule.
     """
-    from solvers.rotor.exciter import platform_motion
+    from solvers.rotor.exciter.machine import platform_motion
 
     n = 3.0
     for q in stuck_speeds(n, MACHINE):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eig
 
-from meshes.border import InputError
+from meshes.errors import InputError
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.tub import Mount, Tub, displacement
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane

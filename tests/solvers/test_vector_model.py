@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fluid.printed import liquid_angle_as_printed
-from meshes.border import InputError
+from meshes.errors import InputError
 from solvers.rotor.vector_model import (
     balance_angles,
     balance_residual,

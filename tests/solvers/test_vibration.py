@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from meshes.border import InputError
+from meshes.errors import InputError
 from solvers.rotor.campbell import campbell
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem

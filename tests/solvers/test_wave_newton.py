@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from solvers.periodic import family_problem, solve
-from solvers.wave_modes import DENSE_MODES, DampingSystem, System, WaveProblem, joined, split
-from solvers.wave_newton import ALONE, _step, factorise, newton, scaled_unknowns
+from solvers.waves.modes import DENSE_MODES, DampingSystem, System, WaveProblem, joined, split
+from solvers.waves.newton import ALONE, _step, factorise, newton, scaled_unknowns
+from solvers.waves.periodic import family_problem, solve
 from tests.solvers.test_periodic import PROGRADE, RETROGRADE, free_problem
 
 DAMPED = family_problem(PROGRADE, 0.3, whitham=True, decay=0.2, diffusion=0.05)

@@ -6,10 +6,10 @@ import math
 import numpy as np
 import pytest
 
-from solvers.periodic import solve
-from solvers.wave_modes import DampingSystem, System, WaveProblem, resized
-from solvers.wave_newton import newton, scaled_unknowns
-from solvers.wave_path import Pace, PathPoint, _predicted, landing, march, segment
+from solvers.waves.modes import DampingSystem, System, WaveProblem, resized
+from solvers.waves.newton import newton, scaled_unknowns
+from solvers.waves.path import Pace, PathPoint, _predicted, landing, march, segment
+from solvers.waves.periodic import solve
 
 PACE = Pace(longest=0.5, shortest=1e-5, tolerance=1e-9, tail=1e-7, most_modes=255, most_steps=200)
 # In the scales of the problem: dispersion a tenth of the steepening, decay a fifth, the whirl at lambda0.

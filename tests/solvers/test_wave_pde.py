@@ -17,10 +17,10 @@ from pde.solvers import registered_solvers
 from pde.solvers.base import ConvergenceError
 
 from fluid.kdv import KdvCoefficients, wave_frequency
-from meshes.border import InputError
-from solvers.stepper import advance_fixed, squared, to_spectrum
-from solvers.wave_pde import ExponentialSolver, KdvBurgersPDE, circle
-from solvers.wave_terms import WaveTerms, wave_split
+from meshes.errors import InputError
+from solvers.pypde.one_family import ExponentialSolver, KdvBurgersPDE, circle
+from solvers.waves.stepper import advance_fixed, squared, to_spectrum
+from solvers.waves.terms import WaveTerms, wave_split
 from tests.solvers.test_wave_terms import FAMILIES, PROGRADE, RETROGRADE, field, hump, relative, solved
 
 
@@ -204,7 +204,7 @@ def test_nothing_is_compiled() -> None:
 import sys
 from fluid.exact import cnoidal_wave
 from fluid.kdv import coefficients
-from solvers.wave_pde import KdvBurgersPDE, circle
+from solvers.pypde.one_family import KdvBurgersPDE, circle
 from pde import MemoryStorage, ScalarField
 c = coefficients(0.15, 0.135, 40.0, 1)
 grid = circle(32)

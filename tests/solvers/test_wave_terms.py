@@ -13,9 +13,9 @@ from pde import PDE, CartesianGrid, ScalarField
 from fluid.exact import TravellingWave, burgers_sawtooth, cnoidal_wave, solitary_wave
 from fluid.kdv import KdvCoefficients, coefficients
 from fluid.waves import free_wave_frequencies
-from solvers.stepper import Control, advance_adaptive, advance_fixed, to_spectrum
-from solvers.wave_pde import KdvBurgersPDE, circle
-from solvers.wave_terms import WaveTerms, wave_split
+from solvers.pypde.one_family import KdvBurgersPDE, circle
+from solvers.waves.stepper import Control, advance_adaptive, advance_fixed, to_spectrum
+from solvers.waves.terms import WaveTerms, wave_split
 
 PROGRADE = coefficients(0.15, 0.135, 40.0, 1)
 RETROGRADE = coefficients(0.15, 0.135, 40.0, -1)

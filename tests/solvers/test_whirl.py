@@ -17,23 +17,17 @@ from fluid.fill import Fill
 from fluid.friction import LINEAR, NONE, QUADRATIC, STOKES
 from fluid.liquid import Liquid
 from fluid.whirl import Layer, plane_layer, stokes_rate
-from meshes.border import InputError
 from meshes.chamber import Chamber
-from solvers import whirl_edges
-from solvers.response import synchronous_response
+from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
-from solvers.whirl import (
-    asynchronous_growth,
-    growth_at,
-    growth_map,
-    planar_layers,
-    system_modes,
-)
-from solvers.whirl_edges import undamped_edges, unstable_bands
-from solvers.whirl_laminar import _eliminate, _layer_waves
-from solvers.whirl_roots import PlanarProblem, planar_modes
-from solvers.whirl_system import coupled_matrices
+from solvers.synchronous.planar import synchronous_response
+from solvers.whirl import edges as whirl_edges
+from solvers.whirl.edges import undamped_edges, unstable_bands
+from solvers.whirl.growth import asynchronous_growth, growth_at, growth_map, planar_layers, system_modes
+from solvers.whirl.laminar import _eliminate, _layer_waves
+from solvers.whirl.planar import PlanarProblem, planar_modes
+from solvers.whirl.system import coupled_matrices
 
 WATER = Liquid("water", 1000.0, 1e-6)
 RADIUS, HEIGHT, NATURAL = 0.1, 0.02, 100.0

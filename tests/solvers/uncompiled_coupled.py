@@ -10,10 +10,14 @@ import pytest
 from fluid.fill import Fill
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
-from solvers import coupled_layer, coupled_parts, finite_volume
-from solvers.coupled_machine import Coupled, couple
-from solvers.layer_loads import ring
-from solvers.machine import (
+from solvers.layer import finite_volume
+from solvers.layer.loads import ring
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.system import RotorSystem
+from solvers.runup import kernel as coupled_layer
+from solvers.runup import kernel as coupled_parts
+from solvers.runup.long_wave import Coupled, couple
+from solvers.runup.state import (
     BORES,
     DRIVE,
     ENERGY,
@@ -33,8 +37,6 @@ from solvers.machine import (
     TORQUE,
     UNBALANCE,
 )
-from solvers.rotor.jeffcott import Jeffcott
-from solvers.rotor.system import RotorSystem
 from tests.faults import Fault, seeded
 
 SPIN, TURNED = 2.0, 0.4
@@ -140,7 +142,7 @@ def check_layer_gains() -> None:
 def check_calm() -> None:
     """Films that run away are held back, layers are not touched."""
     area, q = np.array([1e-6, 1e-6, 0.1]), np.array([1.0, 1e-7, 5.0])
-    from solvers.layer_step import FASTEST, calm
+    from solvers.layer.step import FASTEST, calm
 
     calm(area, q, SPIN)
     assert q[0] / 1e-6 + SPIN * 1e-6 == pytest.approx(FASTEST * SPIN)
@@ -326,8 +328,8 @@ def check_small_parts() -> None:
     np.testing.assert_allclose(out, 3.0 * 0.25 * np.array([whole[0, 0], whole[0, 1], whole[1, 1]]))
 
 
-LAYER, STEP, PARTS = "solvers.coupled_layer", "solvers.coupled_step", "solvers.coupled_parts"
-STAGES, SET, OF_FILL = "solvers.layer_step", "solvers.coupled_machine", "solvers.coupled_fill"
+LAYER, STEP, PARTS = "solvers.runup.kernel", "solvers.runup.kernel", "solvers.runup.kernel"
+STAGES, SET, OF_FILL = "solvers.layer.step", "solvers.runup.long_wave", "solvers.runup.chamber"
 FAULTS = (
     Fault(
         LAYER,

@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 from fluid import long_wave as lw
-from solvers import face_flux, finite_volume, forced_layer, layer_loads
+from solvers.layer import face_flux, finite_volume
+from solvers.layer import loads as layer_loads
+from solvers.layer import step as forced_layer
 from tests.faults import Fault, seeded
 
 SPIN, PULL, TURNED = 1.0, 0.1, 0.4
@@ -290,8 +292,8 @@ def check_drive() -> None:
         np.testing.assert_allclose(face, (force * np.exp(-1j * (middles(5) - np.pi / 5))).real, atol=1e-15)
 
 
-FACES, VOLUMES = "solvers.face_flux", "solvers.finite_volume"
-STEPS, LOADS, STAGES = "solvers.forced_layer", "solvers.layer_loads", "solvers.layer_step"
+FACES, VOLUMES = "solvers.layer.face_flux", "solvers.layer.finite_volume"
+STEPS, LOADS, STAGES = "solvers.layer.step", "solvers.layer.loads", "solvers.layer.step"
 FAULTS = (
     Fault(FACES, "16.0 * z * total", "8.0 * z * total", check_logarithm),
     Fault(FACES, "+ 1.0 / 13.0", "+ 1.0 / 12.0", check_logarithm),

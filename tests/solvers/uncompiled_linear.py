@@ -11,10 +11,10 @@ from fluid.fill import Fill
 from fluid.friction import LINEAR
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
-from solvers.linear_machine import LinearCoupled, couple_linear
-from solvers.machine import DRIVE, FRICTION, GRAVITY, MOTOR, SUPPORT, UNBALANCE
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.whirl import asynchronous_growth
+from solvers.runup.linear import LinearCoupled, couple_linear
+from solvers.runup.state import DRIVE, FRICTION, GRAVITY, MOTOR, SUPPORT, UNBALANCE
+from solvers.whirl.growth import asynchronous_growth
 from tests.faults import Fault, seeded
 
 FILL = Fill(Chamber(0.25, 0.04), Liquid("water", 1000.0, 1e-6), 2e-3)
@@ -120,7 +120,7 @@ def check_inertia() -> None:
     assert layer[1] == pytest.approx((0.25 / inner) ** 2, rel=1e-12)
 
 
-STEP, SET = "solvers.linear_step", "solvers.linear_machine"
+STEP, SET = "solvers.runup.linear_kernel", "solvers.runup.linear"
 FAULTS = (
     Fault(STEP, "mass * (b[0, i] * b[0, k] + b[1, i] * b[1, k])", "mass * b[0, i] * b[0, k]", check_growth),
     Fault(STEP, "4.0 * kappa * whole * sign", "2.0 * kappa * whole * sign", check_growth),

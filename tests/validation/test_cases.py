@@ -7,10 +7,10 @@ import math
 
 import pytest
 
-from meshes.border import InputError
-from study.cli import main
-from study.run import jeffcott
-from study.scene import load_scene
+from leblanc.cli import main
+from leblanc.scene.scene import load_scene
+from leblanc.studies.run import jeffcott
+from meshes.errors import InputError
 from validation.command import GROUPS, all_cases
 from validation.scenes import horizontal_rig, horizontal_rotor, vertical_rig, vertical_rotor
 

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from meshes.border import InputError
+from meshes.errors import InputError
 from validation import errata
 from validation.case import Case, compare
 from validation.errata_tub import tub_matrices

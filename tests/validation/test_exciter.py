@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from solvers.rotor.yatsun_regression import RANGES
+from solvers.rotor.exciter.motion import RANGES
 from validation import exciter, two_plane, two_plane_figures
 from validation.exciter_figures import Comparison, compare, sample, table
 

@@ -13,7 +13,7 @@ import pytest
 from validation.run_notebooks import texts
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = {"meshes", "fluid", "solvers", "study", "validation"}
+PACKAGES = {"meshes", "fluid", "solvers", "leblanc", "validation"}
 SECTIONS = ("## Who measured or printed what", "## Assumed", "## What does not agree", "## Asserted")
 NOTEBOOKS = texts()
 

@@ -9,12 +9,10 @@ from unittest import mock
 import numpy as np
 import pytest
 
-from solvers.hydrostatics import equilibrium
-from solvers.response import synchronous_response
-from study.fidelity import axial_gravity
-from study.machine import jeffcott
-from study.trade_answers import Case as TradeCase
-from study.trade_cases import Question, response_question
+from leblanc.scene.machine import jeffcott
+from leblanc.studies.choose import axial_gravity
+from solvers.statics.hydrostatics import equilibrium
+from solvers.synchronous.planar import synchronous_response
 from validation import (
     errata,
     fill_optimum,
@@ -31,6 +29,8 @@ from validation.notebook_page import case_table, example, from_markdown, picture
 from validation.runup_trends import GIVEN, Point
 from validation.scenes import data
 from validation.trade import again, kept, names
+from validation.trade.answers import Case as TradeCase
+from validation.trade.cases import Question, response_question
 
 CASES = [
     compare("group/one", "X20", "mass, kg", 1.02, 1.0, tolerance=0.1),

@@ -8,12 +8,12 @@ from typing import Any
 
 import pytest
 
-from study.scene import load_scene
-from study.trade import error_table
-from study.trade_cases import response_question, runup_question
-from study.trade_judge import Row, dominates
+from leblanc.scene.scene import load_scene
 from validation.trade import fingerprint, kept, names
 from validation.trade.__main__ import table
+from validation.trade.cases import response_question, runup_question
+from validation.trade.judge import Row, dominates
+from validation.trade.trade import error_table
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from leblanc.scene.machine import dry_rotor
+from leblanc.scene.scene import load_scene
 from solvers.rotor.tub import Tub
 from solvers.rotor.vibration import critical_speeds, unbalance_response
-from study.machine import dry_rotor
-from study.scene import load_scene
 from validation.suspended_tub import FARTHEST, amplitude, direction, suspended_tub
 from validation.tub import cases
 from validation.tub_figures import draw, main, plots

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from study.scene import load_scene
+from leblanc.scene.scene import load_scene
 from validation.weak_motor import SCENE, with_and_without
 
 

@@ -14,11 +14,11 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.layer import simulate
-from solvers.periodic import solve
-from solvers.prescribed import Numerics, Whirl
-from solvers.wave_response import respond
-from study.layer import answer_layer
+from leblanc.studies.layer import answer_layer
+from solvers.layer.prescribed import Numerics, Whirl
+from solvers.layer.settle import simulate
+from solvers.waves.continuation import respond
+from solvers.waves.periodic import solve
 from validation.benchmarks.layers import AMPLITUDE, SPEED
 from validation.benchmarks.problems import SPIN, fill, response_speeds, steady_problem
 
@@ -131,7 +131,7 @@ def right_hand_side(cells: int) -> float:
     ----------
     cells : of the layer, not uniform and moving
     """
-    from solvers.finite_volume import GHOSTS, WORK, rates
+    from solvers.layer.finite_volume import GHOSTS, WORK, rates
 
     step = 2.0 * np.pi / cells
     middle = step * (np.arange(cells) + 0.5)

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fluid.friction import LINEAR
-from solvers.layer import simulate
-from solvers.prescribed import Numerics, Whirl
+from solvers.layer.prescribed import Numerics, Whirl
+from solvers.layer.settle import simulate
 from validation.benchmarks.ours import CODE
 from validation.benchmarks.problems import SPIN, Array, fill
 from validation.benchmarks.timing import Answer, Contestant, Go

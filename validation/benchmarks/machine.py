@@ -16,11 +16,11 @@ from fluid.fill import Fill
 from fluid.friction import LINEAR, NONE, STOKES
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
-from solvers.drive import Ramp
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import unbalance_response
-from solvers.runup import RunupHistory, RunupNumerics, run_up
-from solvers.whirl import growth_map
+from solvers.runup.drive import Ramp
+from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
+from solvers.whirl.growth import growth_map
 from validation.benchmarks.timing import Answer, Contestant, Go, Sample, measure, one_core
 from validation.suspended_tub import suspended_tub
 

@@ -9,9 +9,9 @@ import time
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from study.optimise import optimise_scene
-from study.optimise_table import Aim
-from study.scene import Scene, load_scene
+from leblanc.scene.optimise import Aim
+from leblanc.scene.scene import Scene, load_scene
+from leblanc.studies.optimise.optimise import optimise_scene
 
 _EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 SCENES = ("runup", "centrifuge", "washing_machine", "horizontal_rig", "vertical_rig")

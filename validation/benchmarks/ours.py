@@ -7,9 +7,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from solvers.periodic import solve
-from solvers.stepper import Control, advance_adaptive, advance_fixed, to_spectrum
-from solvers.wave_terms import WaveTerms, wave_split
+from solvers.waves.periodic import solve
+from solvers.waves.stepper import Control, advance_adaptive, advance_fixed, to_spectrum
+from solvers.waves.terms import WaveTerms, wave_split
 from validation.benchmarks.problems import (
     METHOD,
     Array,

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from solvers.exponential import phi_functions
+from solvers.waves.exponential import phi_functions
 from validation.benchmarks.problems import Array, SteadyProblem, TravellingProblem, spectrum
 from validation.benchmarks.timing import Contestant, Go
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from study.figures.page import Figure, Frame, lay_out, save, style
+from leblanc.figures.page import Figure, Frame, lay_out, save, style
 from validation.benchmarks.growth import Growth
 from validation.benchmarks.table import Section, front
 

@@ -16,12 +16,12 @@ from fluid.friction import damping_rate
 from fluid.kdv import KdvCoefficients
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
-from solvers.layer import friction_law
-from solvers.periodic import family_problem, solve
-from solvers.prescribed import Whirl
-from solvers.stepper import Advance, Control, Split, advance_adaptive
-from solvers.wave_modes import WaveProblem
-from solvers.wave_terms import WaveTerms, wave_split
+from solvers.layer.prescribed import Whirl
+from solvers.layer.settle import friction_law
+from solvers.waves.modes import WaveProblem
+from solvers.waves.periodic import family_problem, solve
+from solvers.waves.stepper import Advance, Control, Split, advance_adaptive
+from solvers.waves.terms import WaveTerms, wave_split
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

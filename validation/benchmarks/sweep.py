@@ -14,9 +14,9 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from study.scene_file import read_toml
-from study.sweep import run_sweep
-from study.sweep_file import Sweep, load_sweep
+from leblanc.scene.load import read_toml
+from leblanc.studies.sweep.study import Sweep, load_sweep
+from leblanc.studies.sweep.sweep import run_sweep
 
 _EXAMPLES = Path(__file__).parents[2] / "examples"
 _STUDY = """

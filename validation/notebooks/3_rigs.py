@@ -41,8 +41,8 @@
 # %%
 import math
 
-from study.figures import amplitude_figure, liquid_figure
-from study.run import run_scene
+from leblanc.figures import amplitude_figure, liquid_figure
+from leblanc.studies.run import run_scene
 from validation import horizontal_rig, runup_lag, vector_model, vertical_rig
 from validation.notebook_page import Table, case_table, example, picture, verdicts
 from validation.rig_figures import angle_figure

@@ -36,8 +36,8 @@
 #   linear one, or that of a laminar layer on the wall.
 
 # %%
-from study.figures.stability_map import map_figure
-from study.stability import map_scene
+from leblanc.figures.stability_map import map_figure
+from leblanc.studies.whirl_map import map_scene
 from validation import whirl
 from validation.notebook_page import case_table, example, picture, verdicts
 from validation.whirl_figures import growth_figure, in_time

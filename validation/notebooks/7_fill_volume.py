@@ -38,8 +38,8 @@
 #   `examples/washing_machine.toml`.
 
 # %%
-from study.figures.optimise import objective_figure
-from study.optimise import optimise_scene
+from leblanc.figures.optimise import objective_figure
+from leblanc.studies.optimise.optimise import optimise_scene
 from validation import fill_optimum, fill_sweep, runup_given
 from validation.fill_figures import sweep_figure
 from validation.notebook_page import case_table, example, picture, verdicts

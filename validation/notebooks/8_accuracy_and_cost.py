@@ -34,10 +34,10 @@
 #   differ; ratios less so.
 
 # %%
-from study.figures.trade import trade_figure
 from validation.notebook_page import case_table, from_markdown, picture, verdicts
 from validation.trade import again, names
 from validation.trade.__main__ import table
+from validation.trade.figure import trade_figure
 
 # %% [markdown]
 # ## All scenes

@@ -57,9 +57,9 @@ def keep(path: Path, out: Path | None = None) -> None:
     path : of the scene
     out : folder for its figure, if it is one of the two that are drawn
     """
-    from study.scene import load_scene
-    from study.trade import trade_scene
-    from study.trade_results import trade_json
+    from leblanc.scene.scene import load_scene
+    from validation.trade.results import trade_json
+    from validation.trade.trade import trade_scene
 
     begin = time.perf_counter()
     record = trade_scene(load_scene(path))
@@ -73,7 +73,7 @@ def keep(path: Path, out: Path | None = None) -> None:
     (_HERE / f"{path.stem}.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
     print(f"{path.stem}: {time.perf_counter() - begin:.0f} s", file=sys.stderr, flush=True)
     if out is not None and path.stem in _PICTURED:
-        from study.figures.trade import save, trade_figure
+        from validation.trade.figure import save, trade_figure
 
         save(trade_figure(record), out, f"trade_{path.stem}", "Accuracy against cost").svg.unlink()
 

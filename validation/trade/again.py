@@ -6,12 +6,12 @@ import math
 from pathlib import Path
 from typing import Any
 
-from study.scene import load_scene
-from study.trade import TradeRecord, error_table
-from study.trade_cases import Question, questions
-from study.trade_judge import Comparison, Row
+from leblanc.scene.scene import load_scene
 from validation.case import Case, compare
 from validation.trade import kept, names
+from validation.trade.cases import Question, questions
+from validation.trade.judge import Comparison, Row
+from validation.trade.trade import TradeRecord, error_table
 
 _EXAMPLES = Path(__file__).parents[2] / "examples"
 # Errors are made again on two scenes, up to so many cells.

@@ -1,0 +1,134 @@
+"""The command line: `leblanc COMMAND ...`.
+
+Commands parse and print, nothing else. Their modules import what is heavy inside the function, so that
+`leblanc --help` answers at once.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Sequence
+from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, version
+from typing import Annotated
+
+import typer
+from typer.main import get_command
+
+from leblanc.cli import explain, layer, map, modes, new, optimise, run, runup, sweep, view, volume
+from leblanc.cli.output import say
+from leblanc.scene.faults import NotConverged, SceneFaults, one_line
+from meshes.errors import InputError
+
+DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED, INTERRUPTED = 0, 1, 2, 3, 130
+
+# Modules with one command each, a function of the module's name, in the order of the help.
+COMMANDS = (new, explain, run, volume, layer, modes, map, runup, optimise, sweep, view)
+
+# What typer raises for a wrong command line; its home moved between versions.
+_UsageError: type[Exception] = typer.BadParameter.__mro__[1]
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command.
+
+    Parameters
+    ----------
+    arguments : what stands behind `leblanc`; those of this process if None
+
+    Returns
+    -------
+    exit code: 0 done, 1 nobody reads the output, 2 wrong input, 3 a solver did not converge, 130 interrupted
+    """
+    given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
+    return exit_code(lambda: get_command(app).main(given, prog_name="leblanc", standalone_mode=False))
+
+
+def exit_code(action: Callable[[], object]) -> int:
+    """Do it, say on stderr what went wrong, one line each, and return the exit code."""
+    try:
+        code = action()
+        sys.stdout.flush()
+    except (SceneFaults, NotConverged) as error:
+        say(str(error))
+        return NOT_CONVERGED if isinstance(error, NotConverged) else WRONG_INPUT
+    except InputError as error:
+        say(one_line(f"leblanc: {error}"))
+        return WRONG_INPUT
+    except _UsageError as error:
+        say(_usage(error))
+        return WRONG_INPUT
+    except BrokenPipeError:  # whoever read the output has enough of it
+        _drop_stdout()
+        return UNREAD
+    except OSError as error:
+        say(one_line(f"{error.filename or 'leblanc'}: {error.strerror or error}"))
+        _drop_stdout()
+        return WRONG_INPUT
+    except KeyboardInterrupt:
+        code = INTERRUPTED
+    if code == INTERRUPTED:
+        say("leblanc: interrupted")
+    return code if isinstance(code, int) else DONE
+
+
+def _usage(error: BaseException) -> str:
+    """One line for a wrong command line."""
+    context = getattr(error, "ctx", None)
+    message = " ".join(str(getattr(error, "format_message", error.__str__)()).split())
+    return one_line(f"leblanc: {message} See: {context.command_path if context else 'leblanc'} --help")
+
+
+def _drop_stdout() -> None:
+    """Let the interpreter's last flush of a broken stdout go nowhere."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        try:
+            print(version("leblanc"))
+        except PackageNotFoundError:
+            print("not installed")
+        raise typer.Exit
+
+
+def _application() -> typer.Typer:
+    """All commands: those of this package and those that installed packages announce."""
+    application = typer.Typer(
+        name="leblanc", add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False
+    )
+
+    @application.callback()
+    def leblanc(
+        version: Annotated[
+            bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+        ] = False,
+    ) -> None:
+        """Passive liquid balancers: from the free surface to the machine."""
+
+    for module in COMMANDS:
+        name = module.__name__.rpartition(".")[2]
+        application.command(name)(getattr(module, name))
+    for entry in sorted(entry_points(group="leblanc.commands")):
+        _announced(application, entry)
+    return application
+
+
+def _announced(application: typer.Typer, entry: EntryPoint) -> None:
+    """Add a command of another package; one that does not load says so when it is called."""
+    try:
+        application.command(entry.name)(entry.load())
+    except (ImportError, AttributeError) as error:
+        reason = f"{entry.value} cannot be loaded: {error}"
+        anything = {"allow_extra_args": True, "ignore_unknown_options": True}
+
+        @application.command(entry.name, help="Not available.", context_settings=anything)
+        def unavailable() -> None:
+            raise InputError("command", entry.name, f"one that is installed; {reason}")
+
+
+app = _application()

@@ -1,0 +1,197 @@
+"""`leblanc layer`: the liquid's answer to one prescribed whirl."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from leblanc.cli.output import out_dir, print_json, say
+
+if TYPE_CHECKING:
+    from leblanc.results.layer import LayerAnswer
+    from solvers.layer.prescribed import LayerHistory
+
+
+def layer(
+    radius: Annotated[str, typer.Option(help="Wall radius, m or with a unit.")],
+    volume: Annotated[str, typer.Option(help="Volume of the liquid.")],
+    height: Annotated[str, typer.Option(help="Height of the chamber along the axis.")],
+    speed: Annotated[str, typer.Option(help="Spin speed, rad/s or with a unit.")],
+    whirl_speed: Annotated[str, typer.Option(help="Whirl speed in space.")],
+    whirl_amplitude: Annotated[str, typer.Option(help="Radius of the whirl.")],
+    model: Annotated[str, typer.Option(help="statics, linear, long_wave, kdv or fem.")] = "linear",
+    cells: Annotated[
+        int | None, typer.Option(help="Cells round the wall [default: long_wave 256, fem 96].")
+    ] = None,
+    baffles: Annotated[int, typer.Option(help="Number of radial baffles (fem).")] = 0,
+    baffle_tip_radius: Annotated[
+        str, typer.Option(help="Distance of their inner edges from the axis; 0: through the surface.")
+    ] = "0",
+    baffle_wall_gap: Annotated[str, typer.Option(help="Distance of their outer edges from the wall.")] = "0",
+    dispersion: Annotated[
+        bool, typer.Option("--dispersion", help="Exact linear dispersion (long_wave, kdv).")
+    ] = False,
+    friction: Annotated[str, typer.Option(help="none, stokes, linear:RATE or quadratic:NUMBER.")] = "none",
+    gravity: Annotated[str, typer.Option(help="Gravity across the axis.")] = "0",
+    liquid: Annotated[str, typer.Option(help="Name of the liquid.")] = "water",
+    duration: Annotated[
+        str | None, typer.Option(help="Start from rest and answer period by period (long_wave).")
+    ] = None,
+    ramp: Annotated[str, typer.Option(help="Time over which the whirl grows, with --duration.")] = "0",
+    profile: Annotated[bool, typer.Option("--profile", help="Add the depth around the wall.")] = False,
+    out: Annotated[Path | None, typer.Option(help="Folder for the figure of the wave.")] = None,
+    animate: Annotated[
+        Path | None,
+        typer.Option(help="GIF or MP4 of the wave in the drum frame: long_wave from rest, others steady."),
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
+) -> None:
+    """Force and centre of mass of a liquid layer under a whirl. In the plane, the whirl being prescribed."""
+    from dataclasses import asdict
+
+    from fluid.fill import Fill
+    from fluid.liquid import known_liquid
+    from leblanc.friction import parse_friction
+    from leblanc.scene.faults import NotConverged
+    from leblanc.studies.layer import answer_layer, layer_history
+    from leblanc.units import ACCELERATION, ANGULAR_SPEED, LENGTH, TIME, VOLUME, parse_option
+    from meshes.baffles import Baffles
+    from meshes.chamber import Chamber
+    from solvers.layer.prescribed import Numerics
+
+    tip = parse_option(baffle_tip_radius, LENGTH, "--baffle-tip-radius")
+    gap = parse_option(baffle_wall_gap, LENGTH, "--baffle-wall-gap")
+    chamber = Chamber(
+        parse_option(radius, LENGTH, "--radius"),
+        parse_option(height, LENGTH, "--height"),
+        baffles=Baffles(baffles, tip, gap) if baffles else None,
+    )
+    asked: dict[str, Any] = {
+        "fill": Fill(chamber, known_liquid(liquid), parse_option(volume, VOLUME, "--volume")),
+        "speed": parse_option(speed, ANGULAR_SPEED, "--speed"),
+        "whirl_speed": parse_option(whirl_speed, ANGULAR_SPEED, "--whirl-speed"),
+        "whirl_amplitude": parse_option(whirl_amplitude, LENGTH, "--whirl-amplitude"),
+        "model": model,
+        "friction": parse_friction(friction, "--friction"),
+        "gravity": parse_option(gravity, ACCELERATION, "--gravity"),
+        "numerics": Numerics((96 if model == "fem" else 256) if cells is None else cells, dispersion),
+    }
+    grown = parse_option(ramp, TIME, "--ramp")
+    if duration is not None:
+        history = layer_history(**asked, duration=parse_option(duration, TIME, "--duration"), ramp=grown)
+        shown, converged = _history(asked, history, profile), history.converged
+    else:
+        answer = answer_layer(**asked)
+        shown, converged = asdict(answer), answer.converged
+        if not profile:
+            del shown["theta"], shown["depth"]
+        if out is not None:
+            _draw(asked, answer, out_dir("layer", out))
+    if animate is not None:
+        length = None if duration is None else parse_option(duration, TIME, "--duration")
+        _film(asked, length, grown, animate)
+    if json:
+        print_json(shown)
+    else:
+        _tell(shown)
+    if not converged:
+        reason = "; ".join(shown["notes"][:1])
+        raise NotConverged([f"leblanc layer: {reason or 'no answer'}; {_HELP[model]}"])
+
+
+# Of a layer that starts from rest, one row for each whirl period.
+_PERIODS = {
+    "time": "time, s",
+    "force_ratio": "force ratio",
+    "mean_rotation": "mean rotation, rad/s",
+    "depth_max": "depth max, m",
+    "depth_min": "depth min, m",
+    "offset": "offset, m",
+    "pressure_ratio": "pressure ratio",
+}
+
+_HELP = {
+    "statics": "less liquid or a smaller whirl may help",
+    "linear": "friction takes the bound off: --model kdv or long_wave",
+    "fem": "a whirl speed off the free waves may help",
+    "kdv": "friction may help, or --model long_wave",
+    "long_wave": "friction or --duration may help",
+}
+
+
+def _tell(shown: dict[str, Any]) -> None:
+    """The answer in words, the numbers it rests on one to a line."""
+    periods = [name for name in _PERIODS if getattr(shown.get(name), "ndim", 0) == 1]
+    for name, value in shown.items():
+        if name not in ("validity", "notes", *periods):
+            print(f"{name.replace('_', ' '):18}{value}")
+    print()
+    if periods:
+        print("".join(f"{_PERIODS[name]:>22}" for name in periods))
+        for row in zip(*(shown[name] for name in periods), strict=True):
+            print("".join(f"{value:22.4g}" for value in row))
+        print()
+    for number in shown["validity"]:
+        print(f"{number['name'].replace('_', ' '):18}{number['value']:<10.4g}{number['meaning']}")
+    for note in shown["notes"]:
+        print(f"note: {note}")
+
+
+def _history(asked: dict[str, Any], history: LayerHistory, profile: bool) -> dict[str, Any]:
+    """What the whirl periods give, as scripts expect it, and whether the model holds."""
+    from dataclasses import asdict
+
+    from leblanc.studies.layer import long_wave_notes, long_wave_validity
+    from solvers.layer.prescribed import Whirl
+
+    whirl = Whirl(asked["speed"], asked["whirl_speed"], asked["whirl_amplitude"], 0.0, asked["gravity"])
+    validity = long_wave_validity(asked["fill"], whirl, history)
+    notes = long_wave_notes(asked["fill"], history, validity)
+    names = ["time", "force_ratio", "mean_rotation", "depth_max", "depth_min", "offset", "pressure_ratio"]
+    names += ["mass_error", "converged"] + (["theta", "depth"] if profile else [])
+    rows = {name: getattr(history, name) for name in names}
+    return rows | {
+        "in_range": not notes,
+        "validity": tuple(map(asdict, validity)),
+        "notes": notes,
+    }
+
+
+def _draw(asked: dict[str, Any], answer: LayerAnswer, folder: Path) -> None:
+    """The wave as it stands in the frame of the deflection."""
+    from leblanc.figures import save, wave_figure
+    from leblanc.studies.layer import wave_record
+
+    files = save(wave_figure(wave_record(answer=answer, **asked)), folder, "wave", "Wave on the annulus")
+    say(f"wrote {files.png}")
+
+
+def _film(asked: dict[str, Any], duration: float | None, ramp: float, path: Path) -> None:
+    """The wave in the drum frame: long_wave from rest, six whirl periods unless told; others two, steady."""
+    from dataclasses import replace
+
+    from rich.progress import Progress
+
+    from leblanc.figures import animate
+    from leblanc.results.layer import NO_FRICTION
+    from leblanc.studies.layer import answer_layer, steady_film, wave_film, wave_record
+    from solvers.layer.prescribed import Whirl
+
+    whirl = Whirl(asked["speed"], asked["whirl_speed"], asked["whirl_amplitude"])
+    if asked["model"] == "long_wave":
+        history = wave_film(**asked, duration=duration or 6.0 * whirl.period, ramp=ramp)
+        answer = answer_layer(**(asked | {"model": "linear", "friction": NO_FRICTION}))
+        answer = replace(answer, theta=history.theta, depth=history.depth[-1], notes=())
+    else:
+        answer = answer_layer(**asked)
+        history = steady_film(answer, whirl, 2.0 * whirl.period)
+    last = wave_record(answer=answer, **asked)
+    with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
+        task = bar.add_task("drawing", total=None)
+        frames = animate(
+            last, history, path, lambda done, total: bar.update(task, completed=done, total=total)
+        )
+    say(f"wrote {path}, {frames} frames")

@@ -1,0 +1,82 @@
+"""`leblanc map`: growth of self-excited whirl over speed and liquid volume."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from leblanc.cli.output import out_dir, print_json, say
+
+
+def map(
+    scene: Annotated[Path, typer.Argument(help="Scene file (TOML).")],
+    volumes: Annotated[int, typer.Option(help="How many volumes.")] = 101,
+    speeds: Annotated[int, typer.Option(help="How many speeds, over the scene's range.")] = 201,
+    max_volume: Annotated[
+        str | None, typer.Option(help="Most liquid in all chambers together [default: what fits].")
+    ] = None,
+    friction: Annotated[
+        str | None,
+        typer.Option(help="none, stokes, linear:RATE or quadratic:NUMBER [default: the scene's]."),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the files [default: out/<scene name>].")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
+) -> None:
+    """Growth of self-excited whirl over speed and volume. Edges of the unstable bands, figure, report."""
+    from leblanc.friction import parse_friction
+    from leblanc.scene.scene import load_scene
+    from leblanc.units import VOLUME, parse_option
+
+    machine = load_scene(scene)
+    law = None if friction is None else parse_friction(friction, "--friction")
+    most = None if max_volume is None else parse_option(max_volume, VOLUME, "--max-volume")
+
+    from rich.progress import Progress
+
+    from leblanc.studies.whirl_map import map_scene
+
+    with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
+        task = bar.add_task("volumes", total=None)
+        record = map_scene(
+            *(machine, volumes, speeds, most, law),
+            progress=lambda done, total: bar.update(task, completed=done, total=total),
+        )
+    folder = out_dir(machine.name, out)
+
+    from leblanc.figures.stability_map import map_figure, save
+    from leblanc.report.page import about, command_line
+    from leblanc.report.whirl_map import write_map_report
+    from leblanc.results.whirl_map import map_json, write_map
+    from leblanc.studies.whirl_map import SPEEDS, VOLUMES
+
+    write_map(record, folder / "map.nc")
+    files = save(map_figure(record), folder, "map", "Self-excited whirl over speed and volume")
+    command = command_line(
+        "map",
+        scene,
+        ("--volumes", volumes, VOLUMES),
+        ("--speeds", speeds, SPEEDS),
+        ("--max-volume", max_volume, None),
+        ("--friction", friction, None),
+    )
+    what = about(machine, command, "map.nc", unused=("runup", "optimise"))
+    write_map_report(record, what, files, folder / "map.html")
+    if json:
+        print_json(map_json(record))
+    else:
+        print(f"liquid friction: {record.friction}; support: {record.damping}")
+        for note in record.notes:
+            print(note)
+        print(f"Read {folder / 'map.html'}; the data are in {folder / 'map.nc'}")
+
+    lost = int((record.growth != record.growth).sum())
+    if lost:
+        from leblanc.scene.faults import NotConverged
+
+        raise NotConverged([f"{scene}: modes not found at {lost} of {record.growth.size} points"])
+    say(f"{record.name}: {record.volume.size} volumes by {record.speed.size} speeds done")

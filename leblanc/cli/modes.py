@@ -1,0 +1,125 @@
+"""`leblanc modes`: natural frequencies, damping and shapes of the liquid in a chamber of any section."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from leblanc.cli.output import out_dir, print_json, say
+
+if TYPE_CHECKING:
+    from leblanc.studies.modes import ModesRecord, SectionSource
+    from meshes.baffles import Baffles
+
+
+def modes(
+    radius: Annotated[str, typer.Option(help="Wall radius, m or with a unit.")],
+    volume: Annotated[str, typer.Option(help="Volume of the liquid.")],
+    height: Annotated[str, typer.Option(help="Height of the chamber along the axis.")],
+    speed: Annotated[str, typer.Option(help="Spin speed, rad/s or with a unit.")],
+    count: Annotated[int, typer.Option(help="How many modes, the slowest first.")] = 12,
+    baffles: Annotated[int, typer.Option(help="Number of radial baffles.")] = 0,
+    baffle_tip_radius: Annotated[
+        str, typer.Option(help="Distance of their inner edges from the axis; 0: through the surface.")
+    ] = "0",
+    baffle_wall_gap: Annotated[str, typer.Option(help="Distance of their outer edges from the wall.")] = "0",
+    mesh: Annotated[
+        Path | None, typer.Option(help="Section of the chamber: a mesh file, or an outline as DXF or STEP.")
+    ] = None,
+    mesh_unit: Annotated[
+        str | None, typer.Option(help="Length of that file's unit [default: its own, of a mesh 1 m].")
+    ] = None,
+    mesh_size: Annotated[
+        str | None, typer.Option(help="Cells at the walls of an outline [default: 1/100 of its extent].")
+    ] = None,
+    liquid: Annotated[str, typer.Option(help="Name of the liquid, for the damping.")] = "water",
+    segments: Annotated[int, typer.Option(help="Cells around the liquid, at least.")] = 96,
+    layers: Annotated[int, typer.Option(help="Cells across the liquid, at least.")] = 6,
+    order: Annotated[int, typer.Option(help="1: linear elements, 2: quadratic ones.")] = 2,
+    out: Annotated[Path | None, typer.Option(help="Folder for the figure of the shapes.")] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
+) -> None:
+    """Frequencies, damping and shapes of the liquid's waves.
+
+    Frequencies are relative to the drum, positive with the spin.
+    """
+    from dataclasses import asdict
+
+    from fluid.liquid import known_liquid
+    from leblanc.scene.faults import NotConverged
+    from leblanc.studies.modes import Resolution, answer_modes, table_lines
+    from leblanc.units import ANGULAR_SPEED, LENGTH, VOLUME, parse_option
+    from meshes.chamber import Chamber
+
+    chamber = Chamber(
+        parse_option(radius, LENGTH, "--radius"),
+        parse_option(height, LENGTH, "--height"),
+        baffles=_baffles(baffles, baffle_tip_radius, baffle_wall_gap),
+    )
+    answer, record = answer_modes(
+        chamber,
+        parse_option(volume, VOLUME, "--volume"),
+        known_liquid(liquid),
+        parse_option(speed, ANGULAR_SPEED, "--speed"),
+        count,
+        Resolution(segments, layers, order),
+        _source(mesh, mesh_unit, mesh_size),
+    )
+    if json:
+        print_json(asdict(answer))
+    else:
+        print(f"{record.title}; free surface at {answer.surface_radius * 1e3:.6g} mm; {liquid}")
+        print("\n".join(table_lines(answer)))
+        print(f"force ratio of a synchronous whirl {answer.synchronous_force_ratio:.6g}")
+        for note in answer.notes:
+            print(f"note: {note}")
+    if out is not None:
+        _draw(record, out_dir("modes", out))
+    if not answer.converged:
+        reason = "the eigenproblem was not solved to rounding; a coarser mesh may help"
+        raise NotConverged([f"leblanc modes: {reason}"])
+
+
+def _baffles(count: int, tip_radius: str, wall_gap: str) -> Baffles | None:
+    """Baffles of the options, None without any."""
+    from leblanc.units import LENGTH, parse_option
+    from meshes.baffles import Baffles
+    from meshes.errors import InputError
+
+    tip = parse_option(tip_radius, LENGTH, "--baffle-tip-radius")
+    gap = parse_option(wall_gap, LENGTH, "--baffle-wall-gap")
+    if not 0 <= count <= 64:
+        raise InputError("--baffles", count, "from 0 to 64")
+    if count == 0:
+        if tip != 0.0 or gap != 0.0:
+            raise InputError("--baffles", count, "1 or more where their edges are given")
+        return None
+    return Baffles(count, tip, gap)
+
+
+def _source(mesh: Path | None, unit: str | None, size: str | None) -> SectionSource | None:
+    """File of the options, None without one."""
+    from leblanc.studies.modes import SectionSource
+    from leblanc.units import LENGTH, parse_option
+    from meshes.errors import InputError
+
+    if mesh is None:
+        for name, value in (("--mesh-unit", unit), ("--mesh-size", size)):
+            if value is not None:
+                raise InputError(name, value, "left out without --mesh")
+        return None
+    return SectionSource(
+        mesh,
+        None if unit is None else parse_option(unit, LENGTH, "--mesh-unit"),
+        None if size is None else parse_option(size, LENGTH, "--mesh-size"),
+    )
+
+
+def _draw(record: ModesRecord, folder: Path) -> None:
+    """The shapes of the slowest modes."""
+    from leblanc.figures.modes import modes_figure, save
+
+    files = save(modes_figure(record), folder, "modes", "Shapes of the liquid's modes")
+    say(f"wrote {files.png}")

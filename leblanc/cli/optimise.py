@@ -1,0 +1,145 @@
+"""`leblanc optimise`: the best volume of liquid for each chamber."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from leblanc.cli.output import out_dir, print_json, say
+
+if TYPE_CHECKING:
+    from leblanc.scene.optimise import Aim
+    from leblanc.scene.scene import Scene
+    from leblanc.studies.optimise.optimise import OptimumRecord
+
+
+def optimise(
+    scene: Annotated[Path, typer.Argument(help="Scene file (TOML), with or without a table [optimise].")],
+    objective: Annotated[
+        str | None,
+        typer.Option(
+            help="working_speed, peak, mean, least_mass or robust [default: the scene's, or working_speed]."
+        ),
+    ] = None,
+    deflection: Annotated[
+        str | None, typer.Option(help="Given deflection: the least liquid that covers the walls at it.")
+    ] = None,
+    limit: Annotated[
+        str | None, typer.Option(help="Vibration limit of the objective least_mass [default: the scene's].")
+    ] = None,
+    steady: Annotated[
+        bool, typer.Option("--steady", help="Peak of the steady response even if the scene has a run-up.")
+    ] = False,
+    seed: Annotated[int | None, typer.Option(help="Of the random sample of the objective robust.")] = None,
+    emulator: Annotated[
+        Path | None,
+        typer.Option(help="Store of a sweep over the volumes: the search asks an emulator of it."),
+    ] = None,
+    no_front: Annotated[
+        bool, typer.Option("--no-front", help="Leave out what must be given up for what.")
+    ] = False,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the files [default: out/<scene name>].")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
+) -> None:
+    """Best volume(s) for an objective, within constraints. Figures, data file, report."""
+    from leblanc.scene.scene import load_scene
+
+    machine = load_scene(scene)
+    aim = _aim(machine, objective, deflection, limit, steady, seed)
+    folder = out_dir(machine.name, out)
+    record = _run(machine, aim, not no_front, emulator)
+
+    from leblanc.figures.optimise import write_figures
+    from leblanc.report.optimise import write_optimise_report
+    from leblanc.report.page import about, command_line
+    from leblanc.results.optimum import optimum_json, write_optimum
+
+    write_optimum(record, folder / "optimum.nc")
+    files = write_figures(record, folder)
+    command = command_line(
+        "optimise",
+        scene,
+        ("--objective", objective, None),
+        ("--deflection", deflection, None),
+        ("--limit", limit, None),
+        ("--steady", steady, False),
+        ("--seed", seed, None),
+        ("--emulator", emulator, None),
+        ("--no-front", no_front, False),
+    )
+    in_time = aim.objective == "peak" and not aim.steady
+    what = about(machine, command, "optimum.nc", aim, () if in_time else ("runup",))
+    write_optimise_report(record, what, files, folder / "optimise.html")
+    if json:
+        print_json(optimum_json(record))
+    else:
+        from leblanc.text.optimum import describe_optimum
+
+        print("\n".join(describe_optimum(record)))
+        print(f"Read {folder / 'optimise.html'}; the data are in {folder / 'optimum.nc'}")
+    say(f"{record.scene.name}: {record.evaluations} sets of volumes judged")
+
+
+def _aim(
+    machine: Scene,
+    objective: str | None,
+    deflection: str | None,
+    limit: str | None,
+    steady: bool,
+    seed: int | None,
+) -> Aim:
+    """The scene's aim with what the options say in its place."""
+    from leblanc.scene.optimise import OBJECTIVES, Aim
+    from meshes.errors import InputError
+
+    aim = machine.optimise or Aim()
+    if objective is not None:
+        if objective not in OBJECTIVES:
+            raise InputError("--objective", objective, "one of " + ", ".join(OBJECTIVES))
+        aim = replace(aim, objective=objective)
+    if deflection is not None:
+        aim = replace(aim, deflection=_length(deflection, "--deflection"))
+    if limit is not None:
+        aim = replace(aim, vibration_limit=_length(limit, "--limit"))
+    if seed is not None:
+        if seed < 0:
+            raise InputError("--seed", seed, "a whole number, 0 or above")
+        aim = replace(aim, seed=seed)
+    return replace(aim, steady=aim.steady or steady)
+
+
+def _length(text: str, option: str) -> float:
+    """A length above 0 in metres."""
+    from leblanc.units import LENGTH, parse_option
+    from meshes.errors import InputError
+
+    value = parse_option(text, LENGTH, option)
+    if not 1e-12 <= value <= 1e3:
+        raise InputError(option, text, "from 1e-12 to 1000 m")
+    return value
+
+
+def _run(machine: Scene, aim: Aim, front: bool, store: Path | None) -> OptimumRecord:
+    """The search itself, with a count on a terminal."""
+    from rich.progress import Progress, SpinnerColumn, TextColumn
+
+    from leblanc.studies.optimise.emulated import emulated_vibration
+    from leblanc.studies.optimise.optimise import optimise_scene
+
+    emulator = None if store is None else emulated_vibration(store, machine, aim)
+    columns = SpinnerColumn(), TextColumn("{task.completed} sets of volumes judged")
+    with Progress(*columns, transient=True, disable=not sys.stderr.isatty()) as bar:
+        task = bar.add_task("judging", total=None)
+        return optimise_scene(
+            machine,
+            aim=aim,
+            front=front,
+            progress=lambda count: bar.update(task, completed=count),
+            emulator=emulator,
+        )

@@ -1,0 +1,156 @@
+"""`leblanc sweep`: a grid or a sample of scenes, resumable, on one machine or a cluster."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from leblanc.cli.output import out_dir, print_json, say
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from leblanc.studies.sweep.emulator import Emulator
+    from leblanc.studies.sweep.store import Store
+    from leblanc.studies.sweep.study import Sweep
+    from leblanc.studies.sweep.summary import Summary
+
+_SHOWN = 10  # kinds of reasons
+
+
+def sweep(
+    study: Annotated[Path, typer.Argument(help="Study file (TOML).")],
+    workers: Annotated[
+        int | None, typer.Option(min=0, help="Local processes, 0 for none but this [default: the cores].")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Address of a Dask scheduler, in place of local processes.")
+    ] = None,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Start anew, without what is in the store.")] = False,
+    netcdf: Annotated[bool, typer.Option("--netcdf", help="Write a netCDF copy of the store.")] = False,
+    emulate: Annotated[
+        bool, typer.Option("--emulate", help="Fit emulators to the outputs and tell their errors.")
+    ] = False,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the files [default: out/<study name>].")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
+) -> None:
+    """Answers of many scenes that differ in a few values. The same command goes on after a stop."""
+    from leblanc.studies.sweep.sampling import sampling_note
+    from leblanc.studies.sweep.study import load_sweep
+
+    plan = load_sweep(study)
+    folder = out_dir(plan.name, out)
+    note = sampling_note(plan)
+    if note is not None:
+        say(f"{plan.name}: {note}")
+
+    from leblanc.studies.sweep.summary import summarise, sweep_json
+
+    store = _run(plan, folder, workers, scheduler, fresh)
+    found = summarise(store, plan)
+    if netcdf:
+        from leblanc.studies.sweep.store import write_copy
+
+        write_copy(store, folder / "sweep.nc")
+    emulators = None
+    if emulate:
+        from leblanc.studies.sweep.emulator import emulated_outputs
+
+        emulators = emulated_outputs(store, plan.seed)
+    if json:
+        print_json(sweep_json(store, plan, found) | _emulator_json(emulators))
+    else:
+        print("\n".join([*_lines(store, plan, found), *_emulator_lines(emulators)]))
+    _finish(plan, found)
+
+
+def _emulator_json(emulators: dict[str, Emulator | str] | None) -> dict[str, Any]:
+    """Cross-validated errors by output, or why there is none."""
+    if emulators is None:
+        return {}
+    return {
+        "emulators": {
+            name: {"reason": one} if isinstance(one, str) else {"settled": one.settled, "error": one.error}
+            for name, one in emulators.items()
+        }
+    }
+
+
+def _emulator_lines(emulators: dict[str, Emulator | str] | None) -> list[str]:
+    """The same in words."""
+    lines = []
+    for name, one in (emulators or {}).items():
+        label = f"emulator of {name.replace('_', ' ')}"
+        if isinstance(one, str):
+            lines.append(f"{label}: none; {one}")
+            continue
+        error, of = one.error, "" if one.positive else " of the spread"
+        lines.append(
+            f"{label}: off by {error.root_mean_square:.2g}{of} on unseen samples (root mean square; "
+            f"largest {error.largest:.2g}, by the mean alone {error.spread:.2g}), "
+            f"{error.within_two:.0%} within twice what it claims"
+        )
+    return lines
+
+
+def _run(plan: Sweep, folder: Path, workers: int | None, scheduler: str | None, fresh: bool) -> Store:
+    """Do what is missing, with a bar on a terminal."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    from leblanc.studies.sweep.sweep import run_sweep
+
+    columns = (TextColumn("samples"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    console, quiet = Console(stderr=True), not sys.stderr.isatty()
+    with Progress(*columns, console=console, transient=True, disable=quiet) as bar:
+        task = bar.add_task("samples", total=None)
+        show: Callable[[int, int], None] = lambda done, total: bar.update(task, completed=done, total=total)  # noqa: E731
+        return run_sweep(plan, folder, workers, scheduler, fresh, show)
+
+
+def _finish(plan: Sweep, found: Summary) -> None:
+    """Say on stderr how it went; with no sample done at all that is a failure."""
+    from leblanc.scene.faults import NotConverged, SceneFault, SceneFaults
+
+    for reason, count in found.reasons[:_SHOWN]:
+        say(f"{plan.name}: {count} of {found.samples} samples: {reason}")
+    if found.not_converged == found.samples:
+        raise NotConverged([f"{plan.name}: no sample converged at every speed"])
+    if found.failed == found.samples:
+        raise SceneFaults([SceneFault(plan.name, "vary", None, "such that some sample is a scene")])
+    say(f"{plan.name}: {found.done} of {found.samples} samples done")
+
+
+def _lines(store: Store, plan: Sweep, found: Summary) -> list[str]:
+    """Statistics and sensitivities in words."""
+    lines = [f"{'':24}{'mean':>12}{'deviation':>12}{'5 %':>12}{'50 %':>12}{'95 %':>12}  unit"]
+    for name, one in found.single.items():
+        unit = store.attributes(name)["units"].replace("s-1", "1/s")
+        numbers = [one.mean[0], one.deviation[0], *one.quantiles[0, [0, 2, 4]]]
+        lines.append(f"{name.replace('_', ' '):24}" + "".join(f"{x:12.4g}" for x in numbers) + f"  {unit}")
+    lines += _share_lines(plan, found)
+    lines.append(f"The data are in {store.path}")
+    return lines
+
+
+def _share_lines(plan: Sweep, found: Summary) -> list[str]:
+    """Shares of the variance, a line for each field."""
+    lines = []
+    for name in ("peak_amplitude", "last_amplitude", "peak_growth"):
+        one = found.sensitivities[name]
+        if one is None or (name == "peak_amplitude" and plan.scene.speeds.count == 1):
+            continue
+        lines.append(f"share of the variance of {name.replace('_', ' ')} ({one.method}):")
+        for j, field in enumerate(plan.fields):
+            line = f"  {field.path:30} first {one.first[j]:7.3f}"
+            if one.first_interval is not None:
+                line += f" +- {one.first_interval[j]:.3f}"
+            if one.total is not None and one.total_interval is not None:
+                line += f"   total {one.total[j]:7.3f} +- {one.total_interval[j]:.3f}"
+            lines.append(line)
+    return lines

@@ -1,0 +1,286 @@
+"""Curves over speed made ready for drawing: sorted, thinned, branches linked, angles unwrapped."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from leblanc.results.record import MM, RPM, Array, StudyRecord, phase
+
+Flags = NDArray[np.bool_]
+Indices = NDArray[np.intp]
+Span = tuple[float, float]
+
+COLUMNS = 1500  # more than a printed page resolves
+
+
+@dataclass(frozen=True)
+class Curves:
+    """One study in the units of its figures, by rising speed; p points, b branches.
+
+    Parameters
+    ----------
+    rpm : spin speed, shape (p,)
+    limits : of the speed axis, rpm
+    amplitude, amplitude_dry, offset : mm, shape (p,)
+    angle, phase, phase_dry : degrees in (-270, 90], nan where nothing has a direction, shape (p,)
+    stable : of the branch reported, shape (p,)
+    branches : amplitudes of all branches, mm, shape (p, b)
+    branch_stable : shape (p, b)
+    chain : number of the continuous curve that each branch belongs to, -1 where there is none, shape (p, b)
+    reported : chain of the branch reported, -1 if it is none of them, shape (p,)
+    dry_patch, out_of_range, not_converged : spans of speed, rpm
+    """
+
+    rpm: Array
+    limits: Span
+    amplitude: Array
+    amplitude_dry: Array
+    offset: Array
+    angle: Array
+    phase: Array
+    phase_dry: Array
+    stable: Flags
+    branches: Array
+    branch_stable: Flags
+    chain: Indices
+    reported: Indices
+    dry_patch: list[Span]
+    out_of_range: list[Span]
+    not_converged: list[Span]
+
+
+def lag_degrees(angle: Array, size: Array) -> Array:
+    """Angle in degrees, in the turn from -270 to 90 that keeps a lag of 0 to 180 degrees in one piece.
+
+    Parameters
+    ----------
+    angle : rad, shape (n,)
+    size : length of the arrow whose angle it is, shape (n,)
+
+    Returns
+    -------
+    Degrees in (-270, 90], nan where the arrow has no length, shape (n,).
+    """
+    degrees = 90.0 - np.mod(90.0 - np.degrees(angle), 360.0)
+    return np.where(size > 0.0, degrees, np.nan)
+
+
+def thin(curves: Array, columns: int) -> Indices:
+    """Points that keep the look of all curves: ends, peaks and troughs of each column of the drawing.
+
+    Parameters
+    ----------
+    curves : values over the points, nan allowed, shape (n, k)
+    columns : into which the points are sorted, equal in number of points
+
+    Returns
+    -------
+    Indices of the points to draw, rising; all of them if there are few.
+    """
+    count = curves.shape[0]
+    if count <= 4 * columns:
+        return np.arange(count)
+    starts = np.linspace(0, count, columns + 1).astype(np.intp)
+    width = int(np.diff(starts).max())
+    # Short columns repeat their last point, which changes neither extreme.
+    points = np.minimum(starts[:-1, None] + np.arange(width), starts[1:, None] - 1)
+    keep = [starts[:-1], starts[1:] - 1]
+    for values in curves.T:
+        block, known = values[points], ~np.isnan(values[points])
+        highest = np.argmax(np.where(known, block, -np.inf), axis=1)
+        lowest = np.argmin(np.where(known, block, np.inf), axis=1)
+        keep += [points[np.arange(columns), highest], points[np.arange(columns), lowest]]
+    return np.unique(np.concatenate(keep))
+
+
+def spans(x: Array, mask: Flags, limits: Span) -> list[Span]:
+    """Intervals in which a condition holds, reaching half-way to the next point where it does not.
+
+    Parameters
+    ----------
+    x : rising, shape (n,)
+    mask : the condition, shape (n,)
+    limits : outermost ends; gaps narrower than 1/1000 of them are closed
+    """
+    edges = np.concatenate(([limits[0]], 0.5 * (x[1:] + x[:-1]), [limits[1]]))
+    change = np.flatnonzero(np.diff(np.concatenate(([False], mask, [False]))))
+    left, right = edges[change[::2]], edges[change[1::2]]
+    wide = left[1:] - right[:-1] > 1e-3 * (limits[1] - limits[0])
+    left, right = (
+        left[np.concatenate(([True], wide))[: left.size]],
+        right[np.append(wide, True)[: right.size]],
+    )
+    return list(zip(left.tolist(), right.tolist(), strict=True))
+
+
+def link(branches: NDArray[np.complex128]) -> Indices:
+    """Number the continuous curves that a table of branches is made of.
+
+    Branches are listed by rising amplitude, so a branch changes its column where a fold begins or ends. The
+    branches of two neighbouring speeds are matched in order; where their numbers differ, those are left
+    over whose absence makes the matched ones move least.
+
+    Parameters
+    ----------
+    branches : complex deflections by rising amplitude, nan where there are fewer, shape (n, b)
+
+    Returns
+    -------
+    Number of the curve, -1 where there is no branch, shape (n, b).
+    """
+    chain = np.full(branches.shape, -1, dtype=np.intp)
+    present = ~np.isnan(branches)
+    changes = np.flatnonzero(np.any(present[1:] != present[:-1], axis=1)) + 1
+    known = 0
+    for start, stop in pairwise([0, *changes.tolist(), len(branches)]):
+        now = np.flatnonzero(present[start])
+        if start > 0:
+            before = np.flatnonzero(present[start - 1])
+            old, new = _matched(branches[start - 1, before], branches[start, now])
+            chain[start, now[new]] = chain[start - 1, before[old]]
+        fresh = now[chain[start, now] < 0]
+        chain[start, fresh] = known + np.arange(fresh.size)
+        known += fresh.size
+        chain[start:stop] = chain[start]
+    return chain
+
+
+def _matched(before: NDArray[np.complex128], now: NDArray[np.complex128]) -> tuple[Indices, Indices]:
+    """Places in two ordered lists that belong together: all of the shorter one, moved as little as can be."""
+    if len(before) > len(now):
+        new, old = _matched(now, before)
+        return old, new
+    steps, rows = np.abs(before[:, None] - now[None, :]), np.arange(len(before))
+    choices = combinations(range(len(now)), len(before))
+    best = min(choices, key=lambda columns: float(steps[rows, list(columns)].sum()))
+    return rows, np.array(best, dtype=np.intp)
+
+
+def _bounded(deflection: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """Deflections with nan in place of the infinite ones, which no axis can hold."""
+    return np.where(np.isfinite(deflection), deflection, complex(np.nan, np.nan))
+
+
+def _reported(
+    branches: NDArray[np.complex128], deflection: NDArray[np.complex128], chain: Indices
+) -> Indices:
+    """Curve on which the deflection reported lies, -1 where it lies on none, shape (p,)."""
+    distance = np.abs(branches - deflection[:, None])
+    on_it = distance <= 1e-6 * np.abs(deflection)[:, None]
+    number: Indices = np.max(np.where(on_it, chain, -1), axis=1, initial=-1)
+    return number
+
+
+def prepare(record: StudyRecord) -> Curves:
+    """Curves of a study, ready for drawing.
+
+    Parameters
+    ----------
+    record : the study, of any number of speeds in any order
+    """
+    r = record.response
+    order = np.argsort(r.speed, kind="stable")
+    rpm = r.speed[order] * RPM
+    margin = 0.0 if rpm[0] < rpm[-1] else max(0.05 * float(rpm[0]), 1.0)
+    limits = (float(rpm[0]) - margin, float(rpm[-1]) + margin)
+    deflection, branches = _bounded(r.deflection), _bounded(r.branch_deflection)
+    size, size_dry = np.abs(deflection), np.abs(_bounded(r.deflection_dry))
+    amplitude, amplitude_dry, each = (
+        np.where(np.isfinite(x), x, np.nan)
+        for x in (record.amplitude, record.amplitude_dry, record.branch_amplitude)
+    )
+    lines = [amplitude * MM, amplitude_dry * MM, r.liquid_offset * MM]
+    lines.append(lag_degrees(r.liquid_angle, r.liquid_offset))
+    lines.append(lag_degrees(phase(deflection), size))
+    lines.append(lag_degrees(phase(r.deflection_dry), size_dry))
+    table = np.column_stack([*lines, each * MM])[order]
+    drawn = thin(table, COLUMNS)
+    kept = order[drawn]
+    chain = link(branches[kept])
+    amplitude, amplitude_dry, offset, angle, lag, lag_dry = table[drawn, : len(lines)].T
+    return Curves(
+        rpm=rpm[drawn],
+        limits=limits,
+        amplitude=amplitude,
+        amplitude_dry=amplitude_dry,
+        offset=offset,
+        angle=angle,
+        phase=lag,
+        phase_dry=lag_dry,
+        stable=r.stable[kept],
+        branches=table[drawn, len(lines) :],
+        branch_stable=r.branch_stable[kept],
+        chain=chain,
+        reported=_reported(branches[kept], deflection[kept], chain),
+        dry_patch=spans(rpm, r.dry_patch[order], limits),
+        out_of_range=spans(rpm, ~r.in_range[order], limits),
+        not_converged=spans(rpm, ~r.converged[order], limits),
+    )
+
+
+def gapped(x: Array, y: Array, breaks: Flags) -> tuple[Array, Array]:
+    """Line with a gap after each point where it breaks.
+
+    Parameters
+    ----------
+    x, y : the line, shape (p,)
+    breaks : whether the step to the next point is a jump, shape (p - 1,)
+    """
+    after = np.flatnonzero(breaks) + 1
+    return np.insert(x, after, np.nan), np.insert(y, after, np.nan)
+
+
+def joined(lines: list[tuple[Array, Array]]) -> tuple[Array, Array]:
+    """Several lines as one, with gaps between them."""
+    gap = np.array([np.nan])
+    parts = [(np.append(x, gap), np.append(y, gap)) for x, y in lines] or [(gap, gap)]
+    return np.concatenate([x for x, _ in parts]), np.concatenate([y for _, y in parts])
+
+
+def widened(mask: Flags) -> Flags:
+    """The mask and its neighbours, shape (p,)."""
+    wide = mask.copy()
+    wide[1:] |= mask[:-1]
+    wide[:-1] |= mask[1:]
+    return wide
+
+
+def lonely(y: Array) -> Flags:
+    """Points without a neighbour to draw a line to, shape (p,)."""
+    known = ~np.isnan(y)
+    alone = known.copy()
+    alone[1:] &= ~known[:-1]
+    alone[:-1] &= ~known[1:]
+    return alone
+
+
+def _fold_tips(curves: Curves, row: int, beyond: int) -> list[tuple[Array, Array]]:
+    """Short lines at one speed between each two branches that are not there any more beyond it."""
+    gone = np.setdiff1d(curves.chain[row], curves.chain[beyond])
+    if not np.any(curves.chain[beyond] >= 0):  # nothing was found there: no fold
+        return []
+    ends = np.sort(curves.branches[row, np.isin(curves.chain[row], gone[gone >= 0])])
+    return [(np.repeat(curves.rpm[row], 2), pair) for pair in ends[: ends.size // 2 * 2].reshape(-1, 2)]
+
+
+def other_branches(curves: Curves) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+    """Amplitudes of all branches.
+
+    Returns
+    -------
+    Two lines with gaps, rpm and mm: the stable branches; the unstable ones with the tips of the folds.
+    """
+    stable, unstable = [], []
+    for number in range(int(curves.chain.max(initial=-1)) + 1):
+        point, column = np.nonzero(curves.chain == number)
+        x, y, calm = curves.rpm[point], curves.branches[point, column], curves.branch_stable[point, column]
+        stable.append((x, np.where(calm, y, np.nan)))
+        unstable.append((x, np.where(widened(~calm), y, np.nan)))
+    changes = np.flatnonzero(np.any(curves.chain[1:] != curves.chain[:-1], axis=1))
+    for row in changes.tolist():
+        unstable += _fold_tips(curves, row, row + 1) + _fold_tips(curves, row + 1, row)
+    return joined(stable), joined(unstable)

@@ -1,0 +1,289 @@
+"""What an optimum was chosen from: the objective over the volumes, and the front of what can be had."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from leblanc.figures.page import RIGHT, WIDTH, Figure, FigureFiles, Frame, lay_out, number, save, style
+from leblanc.results.record import MM, RPM, Array, one_line
+
+if TYPE_CHECKING:
+    from leblanc.studies.optimise.optimise import OptimumRecord
+
+Axes = Any  # matplotlib's, which no module that only draws imports
+
+ML, GRAM = 1e6, 1e3  # millilitres in one cubic metre, grams in one kilogram
+FRAME = Frame(left=0.72, top=0.14, between=0.55, below=0.42)
+HEIGHT, BAR, ROOM = 2.7, 0.13, 0.85  # inches: of a panel, width of a colour bar, room for it
+LINES = 9  # of the caption
+LINE, DRY, BEST, FULL = "#0072B2", "#D55E00", "#009E73", "0.15"
+BARE = {"color": DRY, "linewidth": 1.0, "linestyle": (0, (1, 1.5)), "zorder": 1.5}
+FAR = 3.0  # times the baseline or the best, beyond which points are left out of the picture
+SIZES = (12.0, 130.0)  # of the marks of the front, points squared
+MOST_SLICES = 3
+LEAST = 1e-4  # of what a chamber holds, below which a map is no longer logarithmic
+
+
+def write_figures(record: OptimumRecord, directory: Path) -> tuple[FigureFiles, ...]:
+    """Draw what there is to draw and write each figure as PNG and SVG.
+
+    Parameters
+    ----------
+    record : the optimum
+    directory : where the files go; made if it is missing
+    """
+    files = []
+    if record.points.shape[0] > 2:
+        title = "Objective over the volumes"
+        files.append(save(objective_figure(record), directory, "objective", title))
+    if record.front is not None and record.front.mass.size > 1:
+        title = "Vibration, liquid and stability"
+        files.append(save(front_figure(record), directory, "front", title))
+    return tuple(files)
+
+
+def objective_figure(record: OptimumRecord) -> Figure:
+    """Vibration over the volume of one chamber; a map for two; sections through the best point for more."""
+    count = record.volume.size
+    with style():
+        figure = Figure()
+        if count == 2:
+            axes = figure.add_axes((0, 0, 1, 1))
+            _draw_map(figure, axes, record)
+            lay_out(figure, [[axes]], [HEIGHT], FRAME, _caption(record, _MAP), LINES)
+            _make_room(figure, axes)
+            return figure
+        shown = min(count, MOST_SLICES)
+        panels = [figure.add_axes((0, 0, 1, 1), label=str(k)) for k in range(shown)]
+        for k, axes in enumerate(panels):
+            _draw_section(axes, record, k)
+        height = HEIGHT if shown == 1 else 1.5
+        text = _CURVE if count == 1 else _SECTIONS
+        rows = [[axes] for axes in panels]
+        lay_out(figure, rows, [height] * shown, FRAME, _caption(record, text), LINES)
+    return figure
+
+
+_CURVE = "Every volume that was tried. "
+_SECTIONS = "The volumes that were tried, over each chamber's own; the others differ from point to point. "
+_MAP = "Every pair of volumes that was tried. "
+
+
+def front_figure(record: OptimumRecord) -> Figure:
+    """Vibration over the mass of liquid; the size of a mark tells the stability margin."""
+    with style():
+        figure = Figure()
+        axes = figure.add_axes((0, 0, 1, 1))
+        _draw_front(axes, record)
+        text = (
+            "Of these points none is better than another in vibration, mass of liquid and stability margin "
+            "at once. The margin is the decay of the small whirl that dies out slowest at the operating "
+            "speeds; circles: all die out, the larger the faster; crosses: one grows, the larger the faster. "
+        )
+        lay_out(figure, [[axes]], [HEIGHT], FRAME, _caption(record, text, False), LINES)
+    return figure
+
+
+def _known(record: OptimumRecord) -> tuple[Array, Array, Array]:
+    """Volumes, vibrations and excesses of the points that are finite and sure, or by the emulator."""
+    found = record.judged
+    good = np.isfinite(found.details["vibration"])
+    if record.emulated is None:
+        good &= found.details["sure"] == 1.0
+    points, vibration, excess = record.points[good], found.details["vibration"][good], found.excess[good]
+    if record.sweep is not None and record.volume.size == 1:
+        points = np.concatenate((points, record.sweep.volume))
+        vibration = np.concatenate((vibration, record.sweep.vibration))
+        excess = np.concatenate((excess, np.full(record.sweep.mass.shape, np.nan)))
+    return points, vibration, excess
+
+
+def _draw_section(axes: Axes, record: OptimumRecord, k: int) -> None:
+    """Vibration over the volume of one chamber."""
+    points, vibration, excess = _known(record)
+    alone = record.volume.size == 1
+    volume = points[:, k] * ML
+    least = float(volume[volume > 0.0].min(initial=math.inf))
+    order = np.argsort(volume, kind="stable")
+    volume, vibration, excess = volume[order], vibration[order] * MM, excess[order]
+    allowed = excess <= 0.0
+    if alone:
+        axes.plot(volume, vibration, color=LINE, linewidth=1.0, zorder=2)
+    for chosen, mark, label in (
+        (allowed, {"marker": "o", "markerfacecolor": "white"}, "tried"),
+        (excess > 0.0, {"marker": "x"}, "tried, a constraint exceeded"),
+    ):
+        if chosen.any():
+            look = {"color": LINE, "linestyle": "none", "markersize": 3.0, "zorder": 2.5}
+            axes.plot(volume[chosen], vibration[chosen], label=label, **look, **mark)
+    _marks(axes, record, k)
+    top = FAR * max(record.vibration_baseline, record.vibration) * MM
+    low = min(float(vibration.min(initial=math.inf)), record.vibration * MM)
+    high = min(float(vibration.max(initial=0.0)), top)
+    room = 0.06 * max(high - low, 1e-3 * high)
+    axes.set_ylim(low - room, high + room)
+    if math.isfinite(least):
+        axes.set_xscale("symlog", linthresh=least, linscale=0.3)
+        axes.set_xlim(-0.15 * least, 1.15 * record.scene.chambers[k].chamber.capacity * ML)
+        ticks = [0.0, *10.0 ** np.arange(math.ceil(math.log10(least)), 12)]
+        axes.set_xticks([one for one in ticks if one <= axes.get_xlim()[1]])
+    axes.minorticks_off()
+    axes.xaxis.set_major_formatter(number)
+    axes.yaxis.set_major_formatter(number)
+    axes.set_xlabel("Liquid (ml)" if alone else f"Liquid in chamber {k + 1} (ml)")
+    axes.set_ylabel("Vibration (mm)")
+
+
+def _marks(axes: Axes, record: OptimumRecord, k: int) -> None:
+    """The best point, the baseline and the closed forms of one chamber."""
+    baseline = record.vibration_baseline * MM
+    axes.axhline(baseline, **BARE, label="without liquid")
+    best = record.volume[k] * ML
+    star = {"color": BEST, "marker": "*", "markersize": 11.0, "linestyle": "none", "zorder": 4}
+    axes.plot([best], [record.vibration * MM], label="best", markeredgecolor="black", **star)
+    if k < len(record.covering):
+        form = record.covering[k]
+        dashes = {"color": FULL, "linewidth": 0.9, "zorder": 1.6}
+        axes.axvline(
+            form.optimal_volume * ML, linestyle=(0, (6, 2)), label="closed form: wall just covered", **dashes
+        )
+        if math.isfinite(form.full_volume):
+            label = "closed form: wet up to the lid"
+            axes.axvline(form.full_volume * ML, linestyle=(0, (1, 1)), label=label, **dashes)
+
+
+def _draw_map(figure: Figure, axes: Axes, record: OptimumRecord) -> None:
+    """Vibration over the volumes of two chambers as colours and lines, and the points it is drawn from."""
+    points, vibration, excess = _known(record)
+    points, first = np.unique(points, axis=0, return_index=True)
+    value, excess = vibration[first] * MM, excess[first]
+    capacity = np.array([fill.chamber.capacity for fill in record.scene.chambers])
+    least = LEAST * capacity
+    worst = max(record.vibration_baseline, record.vibration) * MM
+    low = float(value.min())
+    top = 1.03 * worst if worst > 1.03 * low else FAR * low
+    drawn = _contours(axes, points, np.minimum(value, top), np.log1p(points / least), (low, top))
+    for chosen, mark, label in (
+        (excess <= 0.0, ".", "tried"),
+        (excess > 0.0, "x", "tried, a constraint exceeded"),
+    ):
+        if chosen.any():
+            look = {"color": "black", "markersize": 2.0, "linestyle": "none", "zorder": 2.5}
+            axes.plot(*(points[chosen].T * ML), marker=mark, label=label, **look)
+    star = {"color": BEST, "marker": "*", "markersize": 12.0, "linestyle": "none", "zorder": 4}
+    axes.plot(*(record.volume[:, None] * ML), label="best", markeredgecolor="white", **star)
+    for form, line in zip(record.covering, (axes.axvline, axes.axhline), strict=False):
+        dashes = {"color": "white", "linewidth": 1.1, "linestyle": (0, (6, 2)), "zorder": 1.6}
+        line(form.optimal_volume * ML, **dashes)
+    if record.covering:
+        look = {"color": "0.6", "linewidth": 1.1, "linestyle": (0, (6, 2))}
+        axes.plot([], [], label="closed form: wall just covered (white)", **look)
+    for k, scale in enumerate(("x", "y")):
+        _symlog(axes, scale, least[k] * ML, capacity[k] * ML)
+    axes.grid(visible=False)
+    axes.set_xlabel("Liquid in chamber 1 (ml)")
+    axes.set_ylabel("Liquid in chamber 2 (ml)")
+    if drawn is not None:
+        bar = figure.add_axes((0, 0, 1, 1), label="bar")
+        figure.colorbar(drawn, cax=bar, label="Vibration (mm)", format=_three)
+
+
+def _three(value: float, _at: float | None = None) -> str:
+    return number(_short(value))
+
+
+def _contours(axes: Axes, points: Array, value: Array, place: Array, span: tuple[float, float]) -> Any:
+    """Filled contours with labelled lines on triangles between the points; None where there are too few."""
+    from scipy.spatial import Delaunay
+
+    if points.shape[0] < 8 or np.any(np.ptp(points, axis=0) == 0.0) or not np.isfinite(place).all():
+        return None
+    triangles = Delaunay(place).simplices
+    levels = np.linspace(*span, 13)
+    drawn = axes.tricontourf(*(points.T * ML), triangles, value, levels=levels, cmap="cividis", extend="max")
+    lines = axes.tricontour(
+        *(points.T * ML), triangles, value, levels=levels[2::4], colors="white", linewidths=0.7
+    )
+    axes.clabel(lines, fmt=_three, fontsize=6.5)
+    return drawn
+
+
+def _symlog(axes: Axes, scale: str, least: float, capacity: float) -> None:
+    """Logarithmic volumes with 0 among them."""
+    getattr(axes, f"set_{scale}scale")("symlog", linthresh=least, linscale=0.3)
+    getattr(axes, f"set_{scale}lim")(0.0, capacity)
+    ticks = [0.0, *10.0 ** np.arange(math.ceil(math.log10(least)), 12)]
+    getattr(axes, f"set_{scale}ticks")([one for one in ticks if one <= capacity])
+    axes.minorticks_off()
+    getattr(axes, f"{scale}axis").set_major_formatter(number)
+
+
+def _make_room(figure: Figure, axes: Axes) -> None:
+    """Place of the colour bar on the right."""
+    box = axes.get_position()
+    width = box.width - (ROOM - RIGHT) / WIDTH
+    axes.set_position((box.x0, box.y0, width, box.height))
+    for bar in figure.axes:
+        if bar is not axes:
+            bar.set_position((box.x0 + width + 0.1 / WIDTH, box.y0, BAR / WIDTH, box.height))
+
+
+def _draw_front(axes: Axes, record: OptimumRecord) -> None:
+    """The front, the point chosen, and the machine without liquid."""
+    front = record.front
+    assert front is not None
+    mass, vibration = front.mass * GRAM, front.vibration * MM
+    widest = float(np.abs(front.margin).max(initial=0.0))
+    share = np.abs(front.margin) / widest if widest > 0.0 else np.zeros_like(front.margin)
+    size = SIZES[0] + (SIZES[1] - SIZES[0]) * share
+    calm = front.margin >= 0.0
+    axes.plot(mass, vibration, color="0.75", linewidth=0.8, zorder=1)
+    top = f"margin {number(_short(float(front.margin.max())))} 1/s at most"
+    if calm.any():
+        look = {"facecolor": "white", "edgecolor": LINE, "linewidths": 1.0, "zorder": 2}
+        axes.scatter(mass[calm], vibration[calm], s=size[calm], label=f"no whirl grows; {top}", **look)
+    if not calm.all():
+        worst = f"a whirl grows, by {number(_short(float(-front.margin.min())))} 1/s at most"
+        axes.scatter(
+            mass[~calm], vibration[~calm], s=size[~calm], marker="x", color=DRY, label=worst, linewidths=1.0
+        )
+    axes.axhline(record.vibration_baseline * MM, **BARE, label="without liquid")
+    star = {"color": BEST, "marker": "*", "markersize": 12.0, "linestyle": "none", "zorder": 4}
+    best = [record.mass * GRAM], [record.vibration * MM]
+    axes.plot(*best, label=f"chosen: {record.objective}", markeredgecolor="black", **star)
+    wet = mass[mass > 0.0]
+    if wet.size and wet.max() > 30.0 * wet.min():
+        least = float(wet.min())
+        axes.set_xscale("symlog", linthresh=least, linscale=0.3)
+        axes.set_xlim(-0.5 * least, 1.3 * float(wet.max()))
+        ticks = [0.0, *10.0 ** np.arange(math.ceil(math.log10(least)), 12)]
+        axes.set_xticks([one for one in ticks if one <= 1.3 * wet.max()])
+        axes.minorticks_off()
+    axes.xaxis.set_major_formatter(number)
+    axes.yaxis.set_major_formatter(number)
+    axes.set_xlabel("Liquid (g)")
+    axes.set_ylabel("Vibration (mm)")
+
+
+def _short(value: float) -> float:
+    return float(f"{value:.3g}")
+
+
+def _caption(record: OptimumRecord, text: str, forms: bool = True) -> str:
+    """What is shown, the scene, what was asked for."""
+    scene = record.scene
+    assumed = ", ".join(one_line(one) for one in scene.assumed) or "nothing"
+    notes = " ".join(one_line(note) for note in record.notes)
+    vibration = record.meaning if record.unit == "m" else "the amplitude that is limited"
+    what = record.constraints["vibration"].text if "vibration" in record.constraints else vibration
+    at = f"Closed forms at the deflection of the best point at {record.working_speed * RPM:.4g} rpm. "
+    words = (
+        f"{text}Vibration: {what}. Objective: {record.objective}. {at if forms and record.covering else ''}"
+        f"{notes} Scene: {one_line(scene.name)}. Friction of the liquid: {scene.model.friction.law}. "
+        f"Assumed: {assumed}."
+    )
+    return " ".join(words.split())

@@ -1,0 +1,210 @@
+"""Lines over speed, drawn on axes that are handed in."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from leblanc.figures.curves import Curves, Flags, gapped, joined, lonely, other_branches, widened
+from leblanc.results.record import RPM, Array, StudyRecord
+
+Axes = Any  # matplotlib's, which no module that only draws imports
+
+WET, DRY, SHADE = "#0072B2", "#D55E00", "0.90"  # after Okabe and Ito: safe for the colour blind
+UNSTABLE = (0, (3.5, 1.5))
+STRIP = 0.055  # height of the dry-patch strip over that of the axes
+FLAT = 100.0  # a peak so many times the usual value flattens all the rest on a linear axis
+MARKS = 14  # along a line
+OUT_OF_RANGE = "model out of range"
+
+
+def draw_amplitude(axes: Axes, curves: Curves, record: StudyRecord) -> None:
+    """Deflection amplitude with and without liquid, all branches."""
+    reported(axes, curves, curves.amplitude, "with liquid")
+    without(axes, curves, curves.amplitude_dry)
+    if np.any(np.count_nonzero(curves.chain >= 0, axis=1) > 1):
+        thin = {"color": WET, "linewidth": 0.8, "zorder": 1.9}
+        stable, unstable = other_branches(curves)
+        axes.plot(*stable, **thin, label="other branches, stable")
+        axes.plot(*unstable, **thin, linestyle=UNSTABLE, label="other branches, unstable")
+    value_axis(axes, curves, [curves.amplitude, curves.amplitude_dry, curves.branches.ravel()])
+    background(axes, curves, record, [curves.amplitude, curves.amplitude_dry])
+    axes.set_ylabel("Amplitude (mm)")
+
+
+def draw_offset(axes: Axes, curves: Curves, record: StudyRecord) -> None:
+    """Distance of the liquid's centre of mass from the rotation axis."""
+    reported(axes, curves, curves.offset, "liquid's centre of mass")
+    value_axis(axes, curves, [curves.offset])
+    background(axes, curves, record, [curves.offset])
+    axes.set_ylabel("Liquid offset (mm)")
+
+
+def draw_angle(axes: Axes, curves: Curves, record: StudyRecord) -> None:
+    """Angle of the liquid's centre of mass from the unbalance."""
+    reported(axes, curves, curves.angle, "liquid's centre of mass")
+    angle_axis(axes, curves, [curves.angle])
+    background(axes, curves, record, [curves.angle])
+    axes.set_ylabel("Liquid angle (deg)")
+
+
+def draw_phase(axes: Axes, curves: Curves, record: StudyRecord) -> None:
+    """Angle from the unbalance to the deflection, with and without liquid."""
+    reported(axes, curves, curves.phase, "with liquid")
+    without(axes, curves, curves.phase_dry)
+    angle_axis(axes, curves, [curves.phase, curves.phase_dry])
+    background(axes, curves, record, [curves.phase, curves.phase_dry])
+    axes.set_ylabel("Phase of the deflection (deg)")
+
+
+def reported(axes: Axes, curves: Curves, y: Array, label: str) -> None:
+    """The branch reported: heavy, dashed where unstable, jumps between branches dotted."""
+    jumps = np.diff(curves.reported) != 0
+    jumps &= (curves.reported[1:] >= 0) & (curves.reported[:-1] >= 0)
+    breaks = jumps | _turns(y)
+    unstable = ~curves.stable & ~np.isnan(y)
+    x_solid, solid = gapped(curves.rpm, np.where(curves.stable, y, np.nan), breaks)
+    dots = np.flatnonzero(lonely(solid)).tolist()
+    axes.plot(x_solid, solid, color=WET, label=label, marker="o" if dots else None, markevery=dots or None)
+    if unstable.any():
+        x, dashed = gapped(curves.rpm, np.where(widened(unstable), y, np.nan), breaks)
+        dots = np.flatnonzero(lonely(dashed)).tolist()
+        axes.plot(
+            *(x, dashed),
+            color=WET,
+            linestyle=UNSTABLE,
+            marker="s" if dots else None,
+            markevery=dots or None,
+            label=f"{label}, unstable",
+        )
+    steps = [(curves.rpm[i : i + 2], y[i : i + 2]) for i in np.flatnonzero(jumps & ~_turns(y)).tolist()]
+    if steps:
+        axes.plot(*joined(steps), color=WET, linewidth=0.9, linestyle=":", label="jump between branches")
+
+
+def without(axes: Axes, curves: Curves, y: Array) -> None:
+    """The same rotor without liquid: light, with open marks."""
+    x, line = gapped(curves.rpm, y, _turns(y))
+    known = np.flatnonzero(~np.isnan(line))
+    even = np.linspace(*curves.limits, MARKS)[1:-1]
+    marks = set(known[np.clip(np.searchsorted(x[known], even), 0, known.size - 1)] if known.size else [])
+    marks |= set(np.flatnonzero(lonely(line)))
+    axes.plot(
+        *(x, line),
+        color=DRY,
+        linewidth=1.0,
+        marker="o",
+        markerfacecolor="white",
+        markevery=sorted(map(int, marks)) or None,
+        label="without liquid",
+    )
+
+
+def _turns(degrees: Array) -> Flags:
+    """Steps of more than half a turn: the angle leaves the picture and comes back on its other side."""
+    step = np.diff(degrees)
+    return np.abs(np.where(np.isnan(step), 0.0, step)) > 180.0
+
+
+def background(axes: Axes, curves: Curves, record: StudyRecord, lines: list[Array]) -> None:
+    """Ranges of speed and marked speeds, behind the lines."""
+    low, high = curves.limits
+    axes.set_xlim(low, high)
+    for i, (left, right) in enumerate(curves.out_of_range):
+        label = "_" if i else OUT_OF_RANGE
+        axes.axvspan(left, right, color=SHADE, linewidth=0, zorder=0, label=label)
+        if right - left > 0.04 * (high - low):
+            _name_range(axes, curves, lines, (left, right))
+    bars = {"transform": axes.get_xaxis_transform(), "color": "0.35", "linewidth": 5, "zorder": 1}
+    for marked, height, dashes, label in (
+        (curves.dry_patch, 0.5 * STRIP, (0, (0.2, 0.3)), "dry patch on the wall"),
+        (curves.not_converged, 1.0 - 0.5 * STRIP, (0, (1, 0.6)), "not converged"),
+    ):
+        if marked:
+            x, y = joined([(np.array(span), np.full(2, height)) for span in marked])
+            axes.plot(x, y, linestyle=dashes, label=label, **bars)
+    for speed, style, color, label in (
+        (record.critical_speed_wet, (0, (6, 1.5, 1, 1.5, 1, 1.5)), WET, "critical speed with liquid,"),
+        (record.critical_speed_dry, (0, (6, 1.5, 1, 1.5)), DRY, "critical speed without liquid,"),
+        (record.capture_speed, (0, (8, 3)), "0.3", "liquid captured from"),
+    ):
+        if speed is not None and low <= speed * RPM <= high:
+            text = f"{label} {speed * RPM:.4g} rpm"
+            axes.axvline(speed * RPM, color=color, linewidth=0.9, linestyle=style, label=text, zorder=1)
+
+
+def _name_range(axes: Axes, curves: Curves, lines: list[Array], span: tuple[float, float]) -> None:
+    """Name a shaded range inside it, in the place that is farthest from the lines."""
+    low, high = curves.limits
+    left, right = ((edge - low) / (high - low) for edge in span)
+    wide = right - left > 0.25
+    half_width, half_height = (0.11, 0.02) if wide else (0.02, 0.3)
+    columns = np.linspace(left + 0.13, right - 0.13, 3) if wide else [0.5 * (left + right)]
+    x = (curves.rpm - low) / (high - low)
+    heights = np.concatenate([_height(axes, line) for line in lines])
+    rows = (0.96 - STRIP * bool(curves.not_converged), STRIP + 0.04)
+
+    def clearance(place: tuple[float, float]) -> float:
+        middle = place[1] + (-half_height if place[1] > 0.5 else half_height)
+        near = heights[np.tile(np.abs(x - place[0]) < half_width, len(lines))]
+        apart = np.abs(near[~np.isnan(near)] - middle) - half_height
+        return float(apart.min(initial=0.2))
+
+    column, row = max(((column, row) for row in rows for column in columns), key=clearance)
+    axes.text(
+        *(column, row, OUT_OF_RANGE),
+        transform=axes.transAxes,
+        rotation="horizontal" if wide else "vertical",
+        horizontalalignment="center",
+        verticalalignment="top" if row > 0.5 else "bottom",
+        fontsize=7,
+        color="0.3",
+        bbox={"facecolor": SHADE, "edgecolor": "none", "pad": 1.0},
+        zorder=1.5,
+    )
+
+
+def _height(axes: Axes, y: Array) -> Array:
+    """Place of values on their axis, 0 at the bottom and 1 at the top."""
+    low, high = axes.get_ylim()
+    if axes.get_yscale() == "linear":
+        height: Array = (y - low) / (high - low)
+    else:
+        height = np.log(np.maximum(y, low) / low) / np.log(high / low)
+    return height
+
+
+def value_axis(axes: Axes, curves: Curves, lines: list[Array]) -> None:
+    """Limits that hold all lines, from zero up; logarithmic where a linear axis would show a peak alone."""
+    known = [line[line > 0.0] for line in lines]
+    known = [line for line in known if line.size]
+    if not known:
+        axes.set_ylim(-0.1, 1.0)  # a line of zeros stays clear of the frame
+        if not any(np.any(line == 0.0) for line in lines):
+            _say_empty(axes)
+        return
+    top = max(float(line.max()) for line in known)
+    usual = min(float(np.median(line)) for line in known)
+    room = STRIP + 0.02 if curves.dry_patch else 0.0
+    if top > FLAT * usual:
+        low = max(min(float(line.min()) for line in known), 1e-3 * usual) / 1.5
+        axes.set_yscale("log", nonpositive="mask")
+        axes.set_ylim(low * (low / top) ** room, 2.0 * top)
+    else:
+        axes.set_ylim(-1.08 * top * room, 1.08 * top)
+
+
+def angle_axis(axes: Axes, curves: Curves, lines: list[Array]) -> None:
+    """Limits from 10 to -190 degrees, wider if a line needs it."""
+    every = np.concatenate(lines)
+    every = every[~np.isnan(every)]
+    low, high = min(-180.0, every.min(initial=0.0)) - 10.0, max(0.0, every.max(initial=-180.0)) + 10.0
+    if not every.size:
+        _say_empty(axes)
+    axes.set_ylim(low - (STRIP + 0.02) * (high - low) * bool(curves.dry_patch), high)
+
+
+def _say_empty(axes: Axes) -> None:
+    box = {"facecolor": "white", "edgecolor": "none"}
+    axes.text(0.5, 0.5, "no values", transform=axes.transAxes, horizontalalignment="center", bbox=box)

@@ -1,0 +1,221 @@
+"""The page that figures stand on: style, places of axes, legend and caption, files."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure as Figure  # handed on to who draws elsewhere
+from matplotlib.font_manager import findfont, get_font
+
+from leblanc.results.netcdf import replacing
+from meshes.errors import InputError
+
+# Lengths in inches.
+WIDTH, RIGHT = 6.3, 0.25
+LEGEND_ROW, CAPTION_ROW, MARGIN = 0.145, 0.125, 0.06
+CAPTION_SIZE, MOST_LINES = 7.0, 4  # points; lines of the caption
+LEGEND_CHARACTERS = 100  # in one row
+FILM_DPI = 100
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Room around and between the rows of axes, inches."""
+
+    left: float
+    top: float
+    between: float
+    below: float
+
+
+@dataclass(frozen=True)
+class FigureFiles:
+    """One figure on disk.
+
+    Parameters
+    ----------
+    name : stem of its files
+    title : what it shows
+    png, svg : its files
+    """
+
+    name: str
+    title: str
+    png: Path
+    svg: Path
+
+
+@contextmanager
+def style() -> Iterator[None]:
+    """The house style on top of matplotlib's own defaults, whatever the user's settings are."""
+    sheet = resources.files("leblanc.figures") / "leblanc.mplstyle"
+    with resources.as_file(sheet) as path, matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(matplotlib.rc_params_from_file(path, use_default_template=False))
+        yield
+
+
+def save(figure: Figure, directory: Path, name: str, title: str) -> FigureFiles:
+    """Write one figure as PNG and SVG, without the time of writing.
+
+    Parameters
+    ----------
+    figure : to write
+    directory : where its files go; made if it is missing
+    name, title : stem of the files, what the figure shows
+    """
+    files = FigureFiles(name, title, directory / f"{name}.png", directory / f"{name}.svg")
+    FigureCanvasAgg(figure)
+    with style():
+        with replacing(files.png) as path:
+            metadata = {"Software": None, "Title": title}
+            # The usual level 6 takes a tenth of all drawing for a few per cent of the size.
+            figure.savefig(path, format="png", metadata=metadata, pil_kwargs={"compress_level": 3})
+        with replacing(files.svg) as path:
+            figure.savefig(path, format="svg", metadata={"Date": None, "Creator": "leblanc", "Title": title})
+    return files
+
+
+def number(value: float, _position: int | None = None) -> str:
+    """Tick label without an offset or a common factor elsewhere on the axis."""
+    return f"{value:.10g}".replace("-", "\N{MINUS SIGN}")
+
+
+def lay_out(
+    figure: Figure,
+    rows: list[list[Axes]],
+    heights: list[float],
+    frame: Frame,
+    caption: str,
+    most_lines: int = MOST_LINES,
+) -> None:
+    """Size of the figure, places of its axes, and below them the legend and the caption.
+
+    Parameters
+    ----------
+    figure : all of whose axes are drawn
+    rows, heights : axes that stand beside one another, and how high each row is, inches
+    frame : room around them
+    caption, most_lines : in one piece; what does not fit so many lines is cut
+    """
+    entries: dict[str, Any] = {}
+    for axes in [axes for row in rows for axes in row]:
+        handles, labels = axes.get_legend_handles_labels()
+        entries = dict(zip(labels, handles, strict=True)) | entries
+    lines = _wrapped(caption, WIDTH - 2.0 * RIGHT, most_lines)
+    text = CAPTION_ROW * len(lines) + 2.0 * MARGIN
+    columns = max(1, min(4, LEGEND_CHARACTERS // (max(map(len, entries), default=0) + 8)))
+    legend = LEGEND_ROW * -(-len(entries) // columns) + MARGIN
+    total = frame.top + sum(heights) + frame.between * (len(rows) - 1) + frame.below + legend + text
+    figure.set_size_inches(WIDTH, total)
+    above = frame.top
+    for row, height in zip(rows, heights, strict=True):
+        width = (WIDTH - frame.left - RIGHT) / len(row)
+        for i, axes in enumerate(row):
+            left, bottom = frame.left + i * width, total - above - height
+            axes.set_position((left / WIDTH, bottom / total, width / WIDTH, height / total))
+        above += height + frame.between
+    place = {"loc": "lower center", "bbox_to_anchor": (0.5, text / total), "borderaxespad": 0.0}
+    figure.legend(entries.values(), entries.keys(), ncols=columns, borderpad=0.0, **place)
+    for i, line in enumerate(reversed(lines)):
+        height = MARGIN + CAPTION_ROW * (i + 0.25)
+        figure.text(RIGHT / WIDTH, height / total, line, fontsize=CAPTION_SIZE, color="0.25")
+
+
+@cache
+def _advance(character: str) -> float:
+    """Width of a character of the caption, inches; 0 if the font does not have it."""
+    font = get_font(findfont("DejaVu Sans"))
+    font.set_size(CAPTION_SIZE, 72)
+    known = font.get_char_index(ord(character)) > 0
+    return float(font.load_char(ord(character)).linearHoriAdvance) / 65536.0 / 72.0 if known else 0.0
+
+
+def _wrapped(text: str, width: float, most: int) -> list[str]:
+    """Lines that fit the figure; characters that the font lacks become boxes, what is too long is cut."""
+    text = "".join(c if _advance(c) > 0.0 else "\N{WHITE SQUARE}" for c in text)
+    lines, used = [""], 0.0
+    for word in text.split(" "):
+        length = sum(map(_advance, word))
+        if used > 0.0 and used + length > width:
+            lines.append("")
+            used = 0.0
+        for character in word + " ":
+            if used + _advance(character) > width and character != " ":
+                lines.append("")
+                used = 0.0
+            lines[-1] += character
+            used += _advance(character)
+    lines = [line.rstrip() for line in lines]
+    return lines if len(lines) <= most else [*lines[: most - 1], lines[most - 1][:-3] + "..."]
+
+
+def require_film(path: Path) -> str:
+    """Ending of a film's path.
+
+    Raises
+    ------
+    InputError : it is neither .gif nor .mp4
+    """
+    kind = path.suffix.lower()
+    if kind not in (".gif", ".mp4"):
+        raise InputError("--animate", str(path), "a file that ends in .gif or .mp4")
+    return kind
+
+
+def write_film(
+    make: Callable[[], tuple[Figure, Callable[[int], None]]],
+    frames: Sequence[int],
+    rate: int,
+    path: Path,
+    drawn: Callable[[int, int], None] | None = None,
+) -> int:
+    """Write a film, whole or not at all.
+
+    Parameters
+    ----------
+    make : the figure, and what sets it to a frame
+    frames : numbers of the frames in their order
+    rate : of frames, 1/s
+    path : a .gif, or an .mp4 if there is an ffmpeg
+    drawn : called after each frame with the number of frames drawn and of all
+
+    Returns
+    -------
+    Number of frames.
+
+    Raises
+    ------
+    InputError : another kind of file, an .mp4 without an ffmpeg
+    """
+    from matplotlib.animation import FFMpegWriter, PillowWriter
+
+    kind = require_film(path)
+    if kind == ".mp4" and not FFMpegWriter.isAvailable():
+        raise InputError("--animate", str(path), "a .gif, since no ffmpeg was found to write an .mp4")
+    player = matplotlib.rcParams["animation.ffmpeg_path"]
+    with style(), replacing(path) as part, TemporaryDirectory() as folder:
+        matplotlib.rcParams["animation.ffmpeg_path"] = player
+        writer = (PillowWriter if kind == ".gif" else FFMpegWriter)(fps=rate)
+        figure, show = make()
+        # The writers tell the format by the ending.
+        whole = Path(folder) / f"film{kind}"
+        with writer.saving(figure, str(whole), FILM_DPI):
+            for count, frame in enumerate(frames, start=1):
+                show(frame)
+                writer.grab_frame()
+                if drawn is not None:
+                    drawn(count, len(frames))
+        shutil.copyfile(whole, part)
+    return len(frames)

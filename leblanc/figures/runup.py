@@ -1,0 +1,299 @@
+"""The figures of a run-up: amplitude over speed, everything over time, where the energy went."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from leblanc.figures.curves import gapped, joined, lag_degrees, link, spans, widened
+from leblanc.figures.over_speed import DRY, SHADE, UNSTABLE, WET
+from leblanc.figures.page import WIDTH, Figure, FigureFiles, Frame, lay_out, number, save, style
+from leblanc.friction import friction_words
+from leblanc.results.record import MM, RPM, Array, one_line
+from leblanc.studies.runup import Flags, RunupRecord
+from leblanc.text.runup import model_words, switches
+
+Axes = Any  # matplotlib's, which no module that only draws imports
+Line = tuple[Array, Array]
+
+SPEED_FRAME = Frame(left=0.72, top=0.46, between=0.12, below=0.42)
+TIME_FRAME = Frame(left=0.72, top=0.12, between=0.1, below=0.4)
+ENERGY_FRAME = Frame(left=1.75, top=0.12, between=0.0, below=0.42)
+ASIDE = 0.45  # inches, for a second axis on the right
+LINES = 7  # of a caption
+UP, BACK = WET, DRY
+STEADY, WHIRL = "0.45", "#F0E442"
+BACK_DASHES = (0, (4.0, 1.2, 1.0, 1.2))
+ARROWS = 3  # along each way
+_RATES = (lambda rpm: rpm / RPM, lambda rate: rate * RPM)  # from rpm to rad/s and back
+LAYERS = ((WET, "-"), (DRY, (0, (3.5, 1.5))), ("#009E73", (0, (1, 1.2))))  # colour and line of a chamber
+
+
+def write_figures(record: RunupRecord, directory: Path) -> tuple[FigureFiles, ...]:
+    """Draw all figures of a run-up and write each as PNG and SVG.
+
+    Parameters
+    ----------
+    record : the run-up
+    directory : where the files go; made if it is missing
+    """
+    return tuple(
+        save(draw(record), directory, name, title)
+        for name, title, draw in (
+            ("runup_speed", "Amplitude over speed on the run-up", speed_figure),
+            ("runup_time", "Run-up over time", time_figure),
+            ("runup_energy", "Where the energy of the run-up went", energy_figure),
+        )
+    )
+
+
+def speed_figure(record: RunupRecord) -> Figure:
+    """Amplitude over speed, up and back told apart, with the steady branches behind."""
+    h = record.history
+    speed, amplitude = h.speed * RPM, h.amplitude * MM
+    low, high = float(speed.min()), float(speed.max())
+    room = 0.02 * (high - low) if high > low else 1.0
+    with style():
+        figure = Figure()
+        axes: Axes = figure.add_axes((0, 0, 1, 1))
+        _shade(axes, record, (low, high))
+        _steady(axes, record)
+        turn = record.turning
+        top = 1.15 * float(amplitude.max()) or 1.0
+        scale = ((high - low) or 1.0, top)
+        name = "run-up" if turn + 1 < speed.size else "run-up and hold"
+        ways: list[tuple[str, slice, dict[str, Any]]] = [
+            (name, slice(0, turn + 1), {"color": UP, "linewidth": 1.5}),
+            ("run-down", slice(turn, None), {"color": BACK, "linewidth": 1.3, "linestyle": BACK_DASHES}),
+        ]
+        for label, part, look in ways:
+            x, y = speed[part], amplitude[part]
+            if x.size > 1:
+                axes.plot(x, y, label=label, **look)
+                _arrows(axes, x, y, scale, look["color"])
+        axes.set_xlim(low - room, high + room)
+        axes.set_ylim(0.0, top)
+        axes.set_xlabel("Speed (rpm)")
+        axes.set_ylabel("Amplitude (mm)")
+        above = axes.secondary_xaxis("top", functions=_RATES)
+        above.set_xlabel("Speed (rad/s)")
+        for axis in (axes.xaxis, axes.yaxis, above.xaxis):
+            axis.set_major_formatter(number)
+        text = "Deflection of the first chamber's axis while the speed changes; arrows point on in time."
+        lay_out(figure, [[axes]], [2.9], SPEED_FRAME, caption(record, text), LINES)
+    return figure
+
+
+def _shade(axes: Axes, record: RunupRecord, limits: tuple[float, float]) -> None:
+    """Speeds at which the model is out of range, and those of self-excited whirl."""
+    speed = record.history.speed * RPM
+    order = np.argsort(speed, kind="stable")
+    for i, (left, right) in enumerate(spans(speed[order], ~record.in_range[order], limits)):
+        label = "_" if i else "model out of range"
+        axes.axvspan(left, right, color=SHADE, linewidth=0, zorder=0, label=label)
+    for i, (left, right) in enumerate(record.bands):
+        label = "_" if i else "self-excited whirl (linear theory)"
+        look = {"facecolor": WHIRL, "alpha": 0.35, "hatch": "///", "edgecolor": "0.55", "linewidth": 0.0}
+        axes.axvspan(left * RPM, right * RPM, zorder=0.5, label=label, **look)
+
+
+def _steady(axes: Axes, record: RunupRecord) -> None:
+    """Branches of the steady response, thin; the rotor without liquid as well."""
+    answer = record.steady
+    if answer is None:
+        return
+    stable, unstable = steady_lines(answer.speed * RPM, answer.branch_deflection, answer.branch_stable)
+    thin = {"color": STEADY, "linewidth": 1.0}
+    axes.plot(*stable, **thin, label="steady response")
+    if not np.isnan(unstable[1]).all():
+        axes.plot(*unstable, **thin, linestyle=UNSTABLE, label="steady response, unstable")
+    dry = np.abs(np.where(np.isfinite(answer.deflection_dry), answer.deflection_dry, np.nan)) * MM
+    dotted = {"color": "0.25", "linewidth": 1.0, "linestyle": (0, (1, 1.5))}
+    axes.plot(answer.speed * RPM, dry, **dotted, label="steady, without liquid")
+
+
+def steady_lines(rpm: Array, branches: Any, calm: Flags) -> tuple[Line, Line]:
+    """Amplitudes of the stable and of the unstable branches as two lines with gaps, rpm and mm.
+
+    Parameters
+    ----------
+    rpm : rising, shape (n,)
+    branches, calm : complex deflections, m, nan where there are fewer, and whether stable, shape (n, b)
+    """
+    bounded = np.where(np.isfinite(branches), branches, complex(math.nan, math.nan))
+    chain, size = link(bounded), np.abs(bounded) * MM
+    stable, unstable = [], []
+    for one in range(int(chain.max(initial=-1)) + 1):
+        point, column = np.nonzero(chain == one)
+        x, y, good = rpm[point], size[point, column], calm[point, column]
+        stable.append((x, np.where(good, y, np.nan)))
+        unstable.append((x, np.where(widened(~good), y, np.nan)))
+    return joined(stable), joined(unstable)
+
+
+def _arrows(axes: Axes, x: Array, y: Array, scale: tuple[float, float], color: str) -> None:
+    """Heads along a line, evenly spaced over its length on the page."""
+    length = np.concatenate(([0.0], np.cumsum(np.hypot(np.diff(x) / scale[0], np.diff(y) / scale[1]))))
+    if length[-1] <= 0.02:
+        return
+    for share in (np.arange(ARROWS) + 0.5) / ARROWS:
+        head = min(int(np.searchsorted(length, share * length[-1])), x.size - 1)
+        tail = max(int(np.searchsorted(length, share * length[-1] - 0.01)) - 1, 0)
+        look = {"arrowstyle": "-|>", "color": color, "linewidth": 0.0, "mutation_scale": 11.0}
+        look |= {"shrinkA": 0.0, "shrinkB": 0.0}
+        axes.annotate("", (x[head], y[head]), xytext=(x[tail], y[tail]), arrowprops=look, zorder=4)
+
+
+def time_figure(record: RunupRecord) -> Figure:
+    """Speed, amplitude, place of the liquid and depths over time; capture and release marked."""
+    panels = [(0.8, _draw_speed), (1.1, _draw_amplitude)]
+    if record.history.layer_mass.sum() > 0.0:
+        panels += [(0.95, _draw_offset), (0.95, _draw_angle), (1.1, _draw_depths)]
+    time = record.history.time
+    first, last = float(time[0]), float(time[-1])
+    margin = 0.01 * (last - first) if last > first else 0.5
+    with style():
+        figure = Figure()
+        rows: list[list[Axes]] = [[figure.add_axes((0, 0, 1, 1), label=str(i))] for i in range(len(panels))]
+        for (axes,), (_, draw) in zip(rows, panels, strict=True):
+            draw(axes, record)
+            _mark_time(axes, record)
+            axes.set_xlim(first - margin, last + margin)
+            axes.xaxis.set_major_formatter(number)
+            for scale in (axes, *axes.child_axes):
+                scale.yaxis.set_major_formatter(number)
+            axes.tick_params(labelbottom=axes is rows[-1][0])
+        rows[-1][0].set_xlabel("Time (s)")
+        text = "The run-up over time; angles in the drum frame from the drum's zero mark"
+        text += ", the unbalance." if record.kind == "jeffcott" else "."
+        if record.gravity > 0.0:
+            text += " Place of the liquid: means over whole turns, in which gravity's share drops out."
+        lay_out(figure, rows, [height for height, _ in panels], TIME_FRAME, caption(record, text), LINES)
+        for (axes,) in rows:
+            box = axes.get_position()
+            axes.set_position((box.x0, box.y0, box.width - ASIDE / WIDTH, box.height))
+    return figure
+
+
+def _mark_time(axes: Axes, record: RunupRecord) -> None:
+    """Times out of range, capture and release."""
+    time = record.history.time
+    limits = (float(time[0]), float(time[-1]))
+    for i, (left, right) in enumerate(spans(time, ~record.in_range, limits)):
+        label = "_" if i else "model out of range"
+        axes.axvspan(left, right, color=SHADE, linewidth=0, zorder=0, label=label)
+    for k, _, caught in switches(record.history):
+        label, dashes = ("liquid captured", (0, (8, 3))) if caught else ("liquid falls back", (0, (2, 2)))
+        axes.axvline(time[k], color="0.3", linewidth=0.9, linestyle=dashes, label=label, zorder=1)
+
+
+def _draw_speed(axes: Axes, record: RunupRecord) -> None:
+    axes.plot(record.history.time, record.history.speed * RPM, color="0.15", linewidth=1.2)
+    axes.set_ylim(0.0, 1.1 * float(record.history.speed.max()) * RPM)
+    axes.set_ylabel("Speed (rpm)")
+    beside = axes.secondary_yaxis("right", functions=_RATES)
+    beside.set_ylabel("(rad/s)")
+
+
+def _draw_amplitude(axes: Axes, record: RunupRecord) -> None:
+    amplitude = record.history.amplitude * MM
+    axes.plot(record.history.time, amplitude, color=UP, linewidth=1.2)
+    axes.set_ylim(0.0, 1.12 * float(amplitude.max()) or 1.0)
+    axes.set_ylabel("Amplitude (mm)")
+
+
+def _place(record: RunupRecord) -> Any:
+    """Liquid's centre of mass as it is drawn."""
+    return record.mean_position if record.gravity > 0.0 else record.history.liquid_position
+
+
+def _draw_offset(axes: Axes, record: RunupRecord) -> None:
+    offset = np.abs(_place(record)) * MM
+    axes.plot(record.history.time, offset, color=UP, linewidth=1.2)
+    axes.set_ylim(0.0, 1.12 * float(offset.max()) or 1.0)
+    axes.set_ylabel("Liquid offset\n(mm)")
+
+
+def _draw_angle(axes: Axes, record: RunupRecord) -> None:
+    place = _place(record)
+    angle = lag_degrees(np.angle(place), np.where(record.in_range, np.abs(place), 0.0))
+    step = np.diff(angle)
+    turns = np.abs(np.where(np.isnan(step), 0.0, step)) > 180.0
+    axes.plot(*gapped(record.history.time, angle, turns), color=UP, linewidth=1.2)
+    known = angle[~np.isnan(angle)]
+    low, high = min(-180.0, known.min(initial=0.0)) - 10.0, max(0.0, known.max(initial=-180.0)) + 10.0
+    axes.set_ylim(low, high)
+    axes.set_yticks([tick for tick in (-270.0, -180.0, -90.0, 0.0, 90.0) if low <= tick <= high])
+    axes.set_ylabel("Liquid angle\n(deg)")
+
+
+def _draw_depths(axes: Axes, record: RunupRecord) -> None:
+    """Largest and least depth of the first layers; filled between."""
+    h, top = record.history, 0.0
+    for j, (color, dashes) in enumerate(LAYERS[: len(record.chambers)]):
+        crest, trough = h.depth_max[:, j] * MM, h.depth_min[:, j] * MM
+        axes.fill_between(h.time, trough, crest, color=color, alpha=0.18, linewidth=0)
+        label = f"depth, chamber {j + 1}" if len(record.chambers) > 1 else "largest and least depth"
+        for y, name in ((crest, label), (trough, "_")):
+            axes.plot(h.time, y, color=color, linewidth=0.9, linestyle=dashes, label=name)
+        top = max(top, float(np.nan_to_num(crest).max()))
+    axes.set_ylim(0.0, 1.12 * top or 1.0)
+    axes.set_ylabel("Depth (mm)")
+
+
+def energy_figure(record: RunupRecord) -> Figure:
+    """Work done and where it went, as bars."""
+    audit = record.history.audit
+    terms = [
+        ("work of the unbalance", audit.unbalance, True),
+        ("work of the drive on the liquid", audit.drive, True),
+        ("work of gravity", audit.gravity, True),
+        ("brought in by capture", audit.captured, True),
+        ("heat in the supports", audit.support, False),
+        ("heat by wall friction", audit.friction, False),
+        ("loss in bores", audit.bores, False),
+        ("missed by the flow's profile", audit.profile, False),
+        ("left in rotor and liquid", audit.change, False),
+        ("not accounted for", audit.remainder, False),
+    ]
+    with style():
+        figure = Figure()
+        axes: Axes = figure.add_axes((0, 0, 1, 1))
+        for row, (_, value, gained) in enumerate(terms):
+            look = {"color": UP, "label": "brought in"} if gained else {"color": BACK, "label": "used"}
+            hatch = None if gained else "//"
+            axes.barh(row, value, height=0.62, hatch=hatch, edgecolor="white", linewidth=0.5, **look)
+        largest = max(abs(value) for _, value, _ in terms) or 1.0
+        least = min(0.0, *(value for _, value, _ in terms))
+        for row, (_, value, _) in enumerate(terms):
+            axes.text(max(value, 0.0) + 0.01 * largest, row, f" {_joule(value)} J", va="center", fontsize=7)
+        axes.axvline(0.0, color="0.15", linewidth=0.8)
+        axes.set_xlim(1.1 * least - 0.01 * largest, 1.2 * largest)
+        axes.set_ylim(len(terms) - 0.4, -0.6)
+        axes.set_yticks(range(len(terms)), [name for name, _, _ in terms])
+        axes.grid(visible=False, axis="y")
+        axes.set_xlabel("Energy (J)")
+        axes.xaxis.set_major_formatter(number)
+        text = f"Energy over the whole run; not accounted for: {audit.closure:.2%} of the work."
+        lay_out(figure, [[axes]], [2.3], ENERGY_FRAME, caption(record, text), LINES)
+    return figure
+
+
+def _joule(value: float) -> str:
+    return f"{value:.3g}".replace("-", "\N{MINUS SIGN}")
+
+
+def caption(record: RunupRecord, text: str) -> str:
+    """What a figure shows, the scene, model, friction, resolution, error and what is assumed."""
+    h, numerics = record.history, record.numerics
+    error = "not estimated" if math.isnan(h.error_estimate) else f"{h.error_estimate:.1%} of the largest"
+    assumed = ", ".join(map(one_line, record.assumed)) or "nothing"
+    stopped = "" if h.converged else f" Stopped: {one_line(h.reason)}."
+    return (
+        f"{text}{stopped} Scene: {one_line(record.name)}, {record.axis} axis. Liquid model: "
+        f"{model_words(record.model, numerics)}; liquid friction: "
+        f"{friction_words(record.friction)}. Error of the amplitude: {error}. Assumed: {assumed}."
+    )

@@ -1,0 +1,177 @@
+"""The page of a report: one HTML file that needs nothing else, and what all reports have in common."""
+
+from __future__ import annotations
+
+import platform
+import shlex
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib import metadata, resources
+from pathlib import Path
+from typing import Any
+
+from leblanc.report.inputs import Inputs, scene_inputs
+from leblanc.report.parts import Table, table
+from leblanc.results.netcdf import replacing
+from leblanc.results.record import one_line
+from leblanc.scene.optimise import Aim
+from leblanc.scene.scene import Scene
+from leblanc.text.models import ModelSpan, described, error_words, speeds_words
+
+# What the numbers, the files and the figures come from.
+PACKAGES = (
+    "leblanc", "numpy", "scipy", "numba", "py-pde", "scikit-fem", "xarray", "h5netcdf", "matplotlib",
+)  # fmt: skip
+AUTHORS = "The leblanc developers"
+TITLE = "leblanc: passive liquid balancers and rotors partly filled with liquid"
+
+
+@dataclass(frozen=True)
+class About:
+    """What a report is about and how to make it again.
+
+    Parameters
+    ----------
+    name, source, digest : of the scene
+    inputs : what it says
+    elsewhere : assumed values that are not among the inputs
+    command : that writes the report; empty if it was no command
+    data : file of the numbers beside the report; empty if there is none
+    """
+
+    name: str
+    source: str
+    digest: str
+    inputs: Inputs
+    elsewhere: tuple[str, ...] = ()
+    command: str = ""
+    data: str = ""
+
+
+def about(
+    scene: Scene, command: str = "", data: str = "", aim: Aim | None = None, unused: tuple[str, ...] = ()
+) -> About:
+    """What a report of a scene is about.
+
+    Parameters
+    ----------
+    scene : the machine
+    command, data : as in `About`
+    aim : of an optimisation, in place of the scene's
+    unused : tables of the scene that the report's numbers do not depend on
+    """
+    inputs = scene_inputs(scene, aim, unused)
+    paths = [cell.path for cell in inputs.cells if cell.assumed]
+    elsewhere = tuple(
+        one
+        for one in scene.assumed
+        if not any(own == one or own.startswith(f"{one}.") or one.startswith(f"{own}.") for own in paths)
+    )
+    return About(scene.name, scene.source, scene.digest, inputs, elsewhere, command, data)
+
+
+def command_line(name: str, scene: Path, *options: tuple[str, object, object]) -> str:
+    """The command that makes the same report again, wherever its files go.
+
+    Parameters
+    ----------
+    name : of the command
+    scene : the file, as it was given
+    options : name, value and default of each; those at their default are left out, a flag stands alone
+    """
+    words = ["leblanc", name, str(scene)]
+    for option, value, default in options:
+        if value != default:
+            words += [option] if value is True else [option, str(value)]
+    return " ".join(map(shlex.quote, words))
+
+
+def versions() -> dict[str, str]:
+    """Versions of Python and of what the numbers, files and figures come from."""
+    found = {"Python": platform.python_version()}
+    for package in PACKAGES:
+        try:
+            found[package] = metadata.version(package)
+        except metadata.PackageNotFoundError:  # run from a source tree that was never installed
+            found[package] = "not installed"
+    return found
+
+
+def citation() -> str:
+    """How to cite the program, as its citation file says."""
+    return f"{AUTHORS}. {TITLE}. Version {versions()['leblanc']}."
+
+
+def why(spans: Sequence[ModelSpan]) -> Table:
+    """Which liquid model answers at which speeds, how well, and why.
+
+    Parameters
+    ----------
+    spans : ranges of speed
+    """
+    rows = [
+        (
+            speeds_words(span),
+            span.model + ("" if span.in_range else " (out of range)"),
+            error_words(span),
+            f"{span.reason[:1].upper()}{span.reason[1:]}.",
+        )
+        for span in spans
+    ]
+    return table("", ("Speeds (rpm)", "Model", "Estimated error", "Why"), rows, words=True)
+
+
+def models(names: Sequence[str]) -> list[tuple[str, str]]:
+    """Each liquid model that was used, and what it does and takes for granted."""
+    return described(names)
+
+
+def notes(given: Sequence[str], elsewhere: Sequence[str] = ()) -> list[str]:
+    """Notes of a record without those that the page says in another place.
+
+    Parameters
+    ----------
+    given : of the record
+    elsewhere : of these
+    """
+    left_out = set(map(one_line, elsewhere))
+    return [line for line in map(one_line, given) if line and line not in left_out]
+
+
+def write_page(body: str, what: About, parts: Mapping[str, Any], path: Path) -> None:
+    """Write a report.
+
+    Parameters
+    ----------
+    body : name of its template
+    what : it is about
+    parts : of the template, besides those of all reports
+    path : the file to write or replace
+    """
+    from jinja2 import Environment, FunctionLoader, StrictUndefined
+
+    page = Environment(
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        loader=FunctionLoader(_template),
+    )
+    common = {
+        "name": one_line(what.name),
+        "source": one_line(what.source),
+        "inputs": what.inputs,
+        "elsewhere": ", ".join(map(one_line, what.elsewhere)),
+        "command": one_line(what.command),
+        "data": what.data,
+        "digest": what.digest,
+        "versions": versions(),
+        "citation": citation(),
+    }
+    text = page.get_template(f"{body}.html.j2").render(common, **parts)
+    with replacing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+def _template(name: str) -> str:
+    return resources.files("leblanc.report").joinpath("templates", name).read_text(encoding="utf-8")

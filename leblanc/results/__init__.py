@@ -1,0 +1,1 @@
+"""What the studies found, and how it is written for other programs: netCDF and JSON."""

@@ -1,0 +1,144 @@
+"""Fields of a scene by their paths: the rule of each, and a scene's content with other values there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Annotated, Any, get_args, get_origin
+
+from leblanc.scene.faults import field_path
+from leblanc.scene.rotors import ALTERNATIVES
+from leblanc.scene.rules import Entries, Refused, Several
+from leblanc.scene.tables import TABLES
+
+Keys = tuple[str | int, ...]
+
+# What the response at the scene's speeds depends on; all samples of a sweep have as many speeds.
+_ROOTS = ("gravity", "rotor", "chambers", "speeds", "model")
+_FIXED = (("rotor", "kind"), ("speeds", "count"))
+
+
+def keys_of(path: str) -> Keys:
+    """Keys along a path such as "chambers.0.volume", numbers of entries as such."""
+    return tuple(int(key) if key.isdecimal() and len(key) < 7 else key for key in path.split("."))
+
+
+def rule_at(table: Mapping[str, Any], path: str) -> Any:
+    """Rule of one value of a scene.
+
+    Parameters
+    ----------
+    table : content of a scene file, free of faults
+    path : of the value, as in "chambers.0.volume"
+
+    Returns
+    -------
+    the rule: a callable with `allowed`, see leblanc.scene.rules
+
+    Raises
+    ------
+    Refused : there is no single value there that a study may vary; says what there is
+    """
+    keys = keys_of(path)
+    tables = TABLES[table["rotor"]["kind"]]
+    pattern = tuple("*" if isinstance(key, int) else key for key in keys)
+    if keys[0] not in _ROOTS or pattern in _FIXED:
+        fixed = ", ".join(".".join(one) for one in _FIXED)
+        raise Refused(f"the path of a field under {', '.join(_ROOTS)}, other than {fixed}")
+    depth = max(n for n in range(len(keys)) if pattern[:n] in tables)
+    fields = tables[pattern[:depth]].model_fields
+    if pattern[depth] not in fields:
+        place = field_path(keys[:depth]) or "the scene"
+        raise Refused(f"the path of a field; {place} has: {', '.join(fields)}")
+    _must_stand(table, keys[:-1], tables)
+    rule = _rule_of(fields[pattern[depth]], keys[depth + 1 :], field_path(keys[: depth + 1]))
+    if keys[depth + 1 :]:
+        _must_stand(table, keys, tables)
+    _must_be_alone(table, keys)
+    return rule
+
+
+def _must_stand(table: Mapping[str, Any], keys: Keys, tables: Mapping[tuple[str, ...], Any]) -> None:
+    """What leads to the value stands in the scene; a table of which every key has a default may not."""
+    found: Any = table
+    for n, key in enumerate(keys):
+        stands = (
+            isinstance(found, list) and key < len(found)
+            if isinstance(key, int)
+            else isinstance(found, Mapping) and key in found
+        )
+        place = field_path(keys[: n + 1])
+        if not stands and keys[: n + 1] == ("model",):
+            return
+        if not stands:
+            raise Refused(f"the path of a field; the scene has no {place}")
+        found = found[key]
+        pattern = tuple("*" if isinstance(one, int) else one for one in keys[: n + 1])
+        if pattern in tables and not isinstance(found, Mapping):
+            raise Refused(f"the path of a field; {place} is no table in the scene")
+
+
+def _rule_of(field: Any, rest: Keys, place: str) -> Any:
+    """Rule of a field, or of one entry of it."""
+    rules = [one.func for one in field.metadata if hasattr(one, "func")]
+    if not rules or len(rest) > 1:
+        raise Refused(
+            f"the path of a single value; {place} is not one" if not rest else "the path of a field"
+        )
+    (rule,) = rules[:1]
+    if not rest:
+        if isinstance(rule, Entries):
+            raise Refused(f"the path of one value, such as {place}.0")
+        return rule
+    if isinstance(rest[0], int) and isinstance(rule, Several):
+        return rule.each
+    entry = _entry_rule(field.annotation)
+    if isinstance(rest[0], int) and isinstance(rule, Entries) and entry is not None:
+        return entry
+    raise Refused(f"the path of a field; {place} has no {rest[0]}")
+
+
+def _entry_rule(annotation: Any) -> Any:
+    """Rule of the entries of a list, from its type; None if they are tables."""
+    if get_origin(annotation) is not tuple:
+        inside = [found for one in get_args(annotation) if (found := _entry_rule(one)) is not None]
+        return inside[0] if inside else None
+    entry = get_args(annotation)[0]
+    if get_origin(entry) is not Annotated:
+        return None
+    return next((one.func for one in get_args(entry)[1:] if hasattr(one, "func")), None)
+
+
+def _must_be_alone(table: Mapping[str, Any], keys: Keys) -> None:
+    """The scene does not give what the value would be an alternative to."""
+    for place, pair in ALTERNATIVES.get(table["rotor"]["kind"], ()):
+        if keys[:-1] == place and keys[-1] in pair:
+            (other,) = set(pair) - {keys[-1]}
+            found: Any = table
+            for key in place:
+                found = found[key]
+            if other in found:
+                raise Refused(f"left out: the scene gives {'.'.join((*place, other))} in its place")
+
+
+def with_values(table: Mapping[str, Any], changes: Iterable[tuple[Keys, Any]]) -> dict[str, Any]:
+    """The content of a scene with other values; only what leads to them is copied.
+
+    A single speed has one value: its start and stop move together.
+
+    Parameters
+    ----------
+    table : content of a scene file
+    changes : keys along the path of each value, and the value
+    """
+    changed, pairs = dict(table), list(changes)
+    ends = [(keys, value) for keys, value in pairs if keys in (("speeds", "start"), ("speeds", "stop"))]
+    if len(ends) == 1 and table["speeds"]["count"] == 1:
+        pairs += [(("speeds", end), ends[0][1]) for end in ("start", "stop")]
+    for keys, value in pairs:
+        node: Any = changed
+        for key in keys[:-1]:
+            below = node[key] if isinstance(key, int) else node.get(key, {})
+            node[key] = list(below) if isinstance(below, list) else dict(below)
+            node = node[key]
+        node[keys[-1]] = value
+    return changed

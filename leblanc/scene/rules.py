@@ -1,0 +1,198 @@
+"""Rules for single values of a scene: each takes what the file says and returns it checked, in SI units."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict
+
+from leblanc import units
+from leblanc.units import Dimension, parse
+
+
+class Refused(ValueError):  # noqa: N818 - it says what became of the value
+    """A value that breaks a rule.
+
+    Parameters
+    ----------
+    allowed : what the value must be, in words that follow "must be"
+    """
+
+    def __init__(self, allowed: str) -> None:
+        super().__init__(allowed)
+        self.allowed = allowed
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number with a unit, within bounds.
+
+    The bounds are far outside anything that is built; they keep squares and products finite.
+
+    Parameters
+    ----------
+    dimension : what it measures
+    low, high : bounds in SI units, both allowed
+    or_zero : zero is allowed as well
+    """
+
+    dimension: Dimension
+    low: float
+    high: float
+    or_zero: bool = False
+
+    @property
+    def allowed(self) -> str:
+        """The rule in words."""
+        zero = "0, or " if self.or_zero and self.low > 0.0 else ""
+        unit = f" {self.dimension.unit}" if self.dimension.unit else ""
+        return f"{self.dimension.allowed}, {zero}from {self.low:g} to {self.high:g}{unit}"
+
+    def __call__(self, value: object) -> float:
+        """Value in SI units."""
+        number = parse(value, self.dimension) + 0.0  # a negative zero becomes zero
+        if self.low <= number <= self.high or (self.or_zero and number == 0.0):
+            return number
+        raise Refused(self.allowed)
+
+
+@dataclass(frozen=True)
+class Several:
+    """One quantity, or three of them, along x, y, z."""
+
+    each: Quantity
+
+    @property
+    def allowed(self) -> str:
+        """The rule in words."""
+        return f"{self.each.allowed}; or a list of three, along x, y, z"
+
+    def __call__(self, value: object) -> float | tuple[float, ...]:
+        """Value or values in SI units."""
+        if not isinstance(value, list):
+            return self.each(value)
+        if len(value) != 3:
+            raise Refused(self.allowed)
+        return tuple(map(self.each, value))
+
+
+@dataclass(frozen=True)
+class Whole:
+    """A whole number within bounds."""
+
+    low: int
+    high: int
+
+    @property
+    def allowed(self) -> str:
+        """The rule in words."""
+        return f"a whole number from {self.low} to {self.high}"
+
+    def __call__(self, value: object) -> int:
+        """The number."""
+        if isinstance(value, int) and not isinstance(value, bool) and self.low <= value <= self.high:
+            return value
+        raise Refused(self.allowed)
+
+
+@dataclass(frozen=True)
+class OneOf:
+    """One of a few words."""
+
+    words: tuple[str, ...]
+
+    @property
+    def allowed(self) -> str:
+        """The rule in words."""
+        return "one of: " + ", ".join(self.words)
+
+    def __call__(self, value: object) -> str:
+        """The word."""
+        if isinstance(value, str) and value in self.words:
+            return value
+        raise Refused(self.allowed)
+
+
+@dataclass(frozen=True)
+class Text:
+    """A text of bounded length without control characters; blanks and line breaks in a row count as one."""
+
+    longest: int
+    may_be_empty: bool = False
+
+    @property
+    def allowed(self) -> str:
+        """The rule in words."""
+        empty = "" if self.may_be_empty else ", not empty"
+        return f"a text in quotes of at most {self.longest} printable characters{empty}"
+
+    def __call__(self, value: object) -> str:
+        """The text on one line."""
+        if not isinstance(value, str):
+            raise Refused(self.allowed)
+        text = " ".join(value.split())
+        if not text.isprintable() or len(text) > self.longest or not (text or self.may_be_empty):
+            raise Refused(self.allowed)
+        return text
+
+
+@dataclass(frozen=True)
+class Flag:
+    """True or false."""
+
+    allowed: str = "true or false"
+
+    def __call__(self, value: object) -> bool:
+        """The flag."""
+        if isinstance(value, bool):
+            return value
+        raise Refused(self.allowed)
+
+
+@dataclass(frozen=True)
+class Entries:
+    """A list of bounded length."""
+
+    low: int
+    high: int
+    what: str
+
+    @property
+    def allowed(self) -> str:
+        """The rule in words."""
+        size = f"{self.low}" if self.low == self.high else f"{self.low} to {self.high}"
+        return f"a list of {size} {self.what}"
+
+    def __call__(self, value: object) -> list[object]:
+        """The list."""
+        if isinstance(value, list) and self.low <= len(value) <= self.high:
+            return value
+        raise Refused(self.allowed)
+
+
+class Table(BaseModel):
+    """A table whose keys are all known and whose values do not change."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+# Rules of values that some tables may leave out.
+LENGTH = BeforeValidator(Quantity(units.LENGTH, 1e-6, 1e3))
+POSITION = BeforeValidator(Quantity(units.LENGTH, -1e3, 1e3))
+SPEED = BeforeValidator(Quantity(units.ANGULAR_SPEED, 1e-6, 1e6))
+DAMPING = BeforeValidator(Quantity(units.DAMPING, 0.0, 1e15))
+STIFFNESS = BeforeValidator(Quantity(units.STIFFNESS, 1e-9, 1e15))
+
+Length = Annotated[float, LENGTH]
+Position = Annotated[float, POSITION]
+Place = Annotated[
+    tuple[Position, Position, Position], BeforeValidator(Entries(3, 3, "lengths, along x, y, z"))
+]
+Speed = Annotated[float, SPEED]
+Mass = Annotated[float, BeforeValidator(Quantity(units.MASS, 1e-9, 1e9))]
+Inertia = Annotated[float, BeforeValidator(Quantity(units.INERTIA, 1e-12, 1e12))]
+Unbalance = Annotated[float, BeforeValidator(Quantity(units.UNBALANCE, 0.0, 1e9))]
+Damping = Annotated[float, DAMPING]
+Stiffness = Annotated[float, STIFFNESS]
+Axis = Annotated[Literal["horizontal", "vertical"], BeforeValidator(OneOf(("horizontal", "vertical")))]

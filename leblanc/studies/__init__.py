@@ -1,0 +1,1 @@
+"""A scene in, a result out: one module for each study."""

@@ -1,0 +1,148 @@
+"""Outputs of `run` of many scenes at once: planar machines all together, other rotors one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from leblanc.results.record import phase
+from leblanc.scene.machine import jeffcott
+from leblanc.scene.scene import Rotor, Scene
+from leblanc.studies.choose import axial_gravity, choose_all
+from leblanc.studies.run import run_scene
+from leblanc.studies.whirl_map import solver_friction
+from meshes.errors import InputError
+from solvers.synchronous.planar import machine_responses
+from solvers.whirl.growth import machines_growth
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Index = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Answers:
+    """Outputs of `run` of n scenes at s speeds each, SI; all shapes (n, s).
+
+    Parameters
+    ----------
+    speed : spin speed, rad/s
+    amplitude, amplitude_dry : of the axis with and without liquid, m
+    phase : angle from the unbalance to the deflection, rad, negative where it lags
+    liquid_offset : distance of the liquid's centre of mass from the rotation axis, m
+    liquid_angle : angle from the unbalance to it, rad
+    growth, whirl_speed : of the whirl that grows most by itself, 1/s and rad/s
+    dry_patch, stable, in_range, converged : as in `solvers.synchronous.planar.Response`; stable
+        against whirls as well
+    model : of the liquid, by name
+    error_estimate : of the model taken, relative, of amplitude and liquid the larger one; nan where unknown
+    """
+
+    speed: Array
+    amplitude: Array
+    amplitude_dry: Array
+    phase: Array
+    liquid_offset: Array
+    liquid_angle: Array
+    growth: Array
+    whirl_speed: Array
+    dry_patch: Flags
+    stable: Flags
+    in_range: Flags
+    converged: Flags
+    model: NDArray[np.str_]
+    error_estimate: Array
+
+
+def answer_scenes(scenes: Sequence[Scene]) -> Answers:
+    """Outputs of `run` of several scenes, equal to those of each one alone to rounding.
+
+    Parameters
+    ----------
+    scenes : at least one, all with the same number of speeds
+
+    Returns
+    -------
+    Answers, in the order of the scenes
+
+    Raises
+    ------
+    InputError : no scene, different numbers of speeds, an exciter, a model that does not answer this
+
+    Examples
+    --------
+    >>> from leblanc.scene.scene import load_scene
+    >>> answers = answer_scenes([load_scene("examples/horizontal_rig.toml")] * 3)
+    >>> answers.amplitude.shape
+    (3, 201)
+    """
+    counts = {scene.speeds.count for scene in scenes}
+    if len(counts) != 1:
+        raise InputError("scenes", sorted(counts), "at least one, all with one number of speeds")
+    planar = [k for k, scene in enumerate(scenes) if isinstance(scene.rotor, Rotor)]
+    others = [k for k, scene in enumerate(scenes) if not isinstance(scene.rotor, Rotor)]
+    parts = [_planar([scenes[k] for k in planar])] if planar else []
+    parts += [_single(scenes[k]) for k in others]
+    order = np.argsort(np.array([*planar, *others], dtype=np.intp))
+    return Answers(
+        **{
+            field.name: np.concatenate([getattr(part, field.name) for part in parts])[order]
+            for field in fields(Answers)
+        }
+    )
+
+
+def _planar(scenes: Sequence[Scene]) -> Answers:
+    """Answers of planar rotors, over all pairs of a scene and a speed at once."""
+    shape = len(scenes), scenes[0].speeds.count
+    machines = [(jeffcott(scene), scene.chambers) for scene in scenes]
+    gravity = np.array([axial_gravity(scene) for scene in scenes])
+    choices = choose_all(scenes)
+    speed = np.stack([scene.speed_array() for scene in scenes]).ravel()
+    owner = np.repeat(np.arange(len(scenes)), shape[1])
+    frictions = [solver_friction(scene.model.friction) for scene in scenes]
+    growth, whirl_speed = machines_growth(machines, frictions, owner, speed)
+    model = np.concatenate([choice.models for choice in choices])
+    found: dict[str, Any] = {
+        "speed": speed,
+        "growth": growth,
+        "whirl_speed": whirl_speed,
+        "model": model,
+        "error_estimate": np.concatenate([choice.error for choice in choices]),
+    }
+    for name in np.unique(model).tolist():
+        rows = np.flatnonzero(model == name)
+        one = machine_responses(machines, owner[rows], speed[rows], gravity, name)
+        values = {
+            "amplitude": np.abs(one.deflection),
+            "amplitude_dry": np.abs(one.deflection_dry),
+            "phase": phase(one.deflection),
+        }
+        copied = ("liquid_offset", "liquid_angle", "dry_patch", "stable", "in_range", "converged")
+        for key, value in (values | {key: getattr(one, key) for key in copied}).items():
+            found.setdefault(key, np.empty(speed.shape, value.dtype))[rows] = value
+    found["stable"] = found["stable"] & ~(growth > 0.0)
+    found["in_range"] = found["in_range"] & np.stack([choice.in_range for choice in choices]).ravel()
+    return Answers(**{name: values.reshape(shape) for name, values in found.items()})
+
+
+def _single(scene: Scene) -> Answers:
+    """Answers of one scene as `run` gives them."""
+    record = run_scene(scene)
+    one, whirl = record.response, record.whirl
+    nothing = np.full(one.speed.shape, np.nan)
+    found: dict[str, Any] = {
+        "amplitude": record.amplitude,
+        "amplitude_dry": record.amplitude_dry,
+        "phase": phase(one.deflection),
+        "growth": nothing if whirl is None else whirl.growth,
+        "whirl_speed": nothing if whirl is None else whirl.whirl_speed,
+        "error_estimate": nothing if record.error_estimate is None else record.error_estimate,
+    }
+    rest = [field.name for field in fields(Answers) if field.name not in found]
+    found |= {name: getattr(one, name) for name in rest}
+    return Answers(**{name: value[None] for name, value in found.items()})

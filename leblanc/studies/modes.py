@@ -1,0 +1,397 @@
+"""Natural frequencies, damping and shapes of the liquid in a chamber of any section."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fluid.fill import Fill
+from fluid.liquid import Liquid
+from fluid.waves import free_wave_frequencies
+from leblanc.scene.tables import is_outline, section_of_any_file
+from meshes.baffles import Baffles
+from meshes.chamber import Chamber
+from meshes.errors import InputError, require_positive
+from meshes.findings import wave_findings
+from meshes.liquid_section import LiquidSection
+from solvers.sloshing.damping import ModeDamping, mode_damping
+from solvers.sloshing.forced import forced_response
+from solvers.sloshing.modes import SloshingModes, sloshing_modes, spectrum
+from solvers.sloshing.system import LiquidSystem, condense
+
+# A radius of the section that differs by more from the one given.
+_OTHER = 1e-3
+_MOST_SEGMENTS = 1200  # the cost goes with the cube
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """Mesh of the liquid.
+
+    Parameters
+    ----------
+    segments, layers : cells around and across, at least
+    order : 1 for linear elements, 2 for quadratic ones
+
+    Raises
+    ------
+    InputError : a number out of its range
+    """
+
+    segments: int = 96
+    layers: int = 6
+    order: int = 2
+
+    def __post_init__(self) -> None:
+        if not 16 <= self.segments <= _MOST_SEGMENTS:
+            raise InputError("--segments", self.segments, f"from 16 to {_MOST_SEGMENTS}")
+        if not 1 <= self.layers <= 200:
+            raise InputError("--layers", self.layers, "from 1 to 200")
+        if self.order not in (1, 2):
+            raise InputError("--order", self.order, "1 (linear elements) or 2 (quadratic ones)")
+
+
+@dataclass(frozen=True)
+class SectionSource:
+    """File with the section of a chamber; its origin is the geometric axis.
+
+    Parameters
+    ----------
+    path : a mesh, or an outline
+    unit : length of the file's unit, m; None for the one that it names, of a mesh for 1 m
+    size : of the cells at walls of an outline, m; None for a hundredth of its largest extent
+    """
+
+    path: Path
+    unit: float | None = None
+    size: float | None = None
+
+
+def ring_sections(
+    radius: float, surface_radius: float, baffles: Baffles | None, fineness: Resolution
+) -> list[LiquidSection]:
+    """The liquid in a round chamber on a mesh and, before it, on one with cells twice as large.
+
+    Parameters
+    ----------
+    radius, surface_radius : R and a, m
+    baffles : None without any
+    fineness : of the finer mesh
+    """
+    from meshes.rings.quadrilaterals import ring
+
+    # In a deep layer waves with many crests keep to the surface.
+    grading = 2.0 if radius > 1.6 * surface_radius else 1.0
+    around, across = max(8, -(-fineness.segments // 2)), -(-fineness.layers // 2)
+    return [
+        ring(
+            radius, surface_radius, around, across,
+            order=fineness.order, baffles=baffles, times=times, towards_surface=grading,
+        )
+        for times in (1, 2)
+    ]  # fmt: skip
+
+
+def round_sections(
+    chamber: Chamber, volume: float, liquid: Liquid, fineness: Resolution
+) -> tuple[list[LiquidSection], list[str], str]:
+    """Coarser and finer mesh of the liquid in a round chamber, notes, and the chamber in words.
+
+    Parameters
+    ----------
+    chamber : with its baffles
+    volume : of the liquid, m^3
+    liquid : what it is
+    fineness : of the finer mesh
+
+    Raises
+    ------
+    InputError : more liquid than the chamber holds, or too little for a layer
+    """
+    fill = Fill(chamber, liquid, volume)
+    a, radius = fill.surface_radius, chamber.radius
+    if a <= 0.01 * radius or a <= chamber.inner_radius or fill.depth < 1e-6 * radius:
+        raise InputError("--volume", volume, "less than what fills the chamber, and enough to cover its wall")
+    notes, baffles = [], chamber.baffles
+    span = baffles.wetted_span(radius, a) if baffles is not None else None
+    if baffles is not None and span is None:
+        notes.append("the baffles stand clear of the liquid")
+    title = f"Round chamber, R = {radius * 1e3:.4g} mm"
+    if baffles is not None and span is not None:
+        inner, outer = span
+        ends = "through the surface" if inner == a else f"to {inner * 1e3:.4g} mm from the axis"
+        start = "the wall" if outer == radius else f"{(radius - outer) * 1e3:.3g} mm off the wall"
+        title += f", {baffles.count} baffles from {start} {ends}"
+    return ring_sections(radius, a, baffles if span else None, fineness), notes, title
+
+
+def section_of_file(
+    chamber: Chamber, volume: float, fineness: Resolution, source: SectionSource
+) -> tuple[list[LiquidSection], list[str], str]:
+    """Coarser and finer mesh of the liquid in a chamber from a file, notes, and the section in words.
+
+    Parameters
+    ----------
+    chamber : its height counts; its radius is compared
+    volume : of the liquid, m^3
+    fineness : longest side at the surface, as cells around
+    source : the file
+
+    Raises
+    ------
+    InputError : baffles besides those of the file, a file that cannot be used, more liquid than it holds
+    """
+    from meshes.findings import mesh_findings
+    from meshes.refine.bisection import halved, straightened
+    from meshes.refine.waterline_cut import liquid_outside, surface_radius_of
+
+    if source.unit is not None:
+        require_positive("--mesh-unit", source.unit)
+    if source.size is not None:
+        require_positive("--mesh-size", source.size)
+    if chamber.baffles is not None:
+        raise InputError("--baffles", chamber.baffles.count, "left out with --mesh, which has its own walls")
+    section = section_of_any_file(source.path, source.unit, source.size, ("--mesh-unit", "--mesh-size"))
+    a = surface_radius_of(section, volume / chamber.height)
+    notes = [f"mesh: {one}" for one in mesh_findings(section)]
+    if section.order == 1 and not is_outline(source.path):
+        notes.append("straight sides: the error is that on these walls, whatever curves they stand for")
+    farthest = float(np.hypot(*section.points.T).max())
+    if abs(farthest / chamber.radius - 1.0) > _OTHER:
+        notes.append(
+            f"the section reaches to {farthest * 1e3:.5g} mm from the axis: that counts, not --radius"
+        )
+    size = 4.0 * math.pi * a / fineness.segments
+    liquid = liquid_outside(section, a, order=2, surface_size=size, wall_size=2.0 * size)
+    sections = [liquid, halved(liquid)]
+    if fineness.order == 1:
+        sections = [straightened(one) for one in sections]
+    return sections, notes, f"Section of {source.path.name}"
+
+
+Array = NDArray[np.float64]
+
+# Errors above this, relative, are worth a note.
+_ROUGH = 1e-3
+# A layer thin beside its boundary layers is damped by more than the first order of their thickness.
+_VISCOUS = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class ModesAnswer:
+    """Slowest modes of the liquid, by rising size of the frequency, seen from the drum.
+
+    Parameters
+    ----------
+    frequency : sigma, prograde positive, rad/s, shape (k,)
+    exact : of the ring without baffles, rad/s; None where no closed form is known
+    damping : decay rate of the amplitude in laminar layers, 1/s, shape (k,)
+    damping_ratio : over the size of the frequency, shape (k,)
+    plain_damping : without the Coriolis force in the layers on floor and lid, 1/s, shape (k,)
+    damping_spread : change of the damping for half or twice the layers' thickness at edges, relative, shape
+    (k,)
+    crests : round the drum, of the largest share, shape (k,)
+    travelling : 0 for a standing oscillation to 1 for a wave that runs one way, shape (k,)
+    multiplicity : modes with that frequency, shape (k,)
+    error_estimate : of the frequency, relative, from a mesh twice as coarse
+    synchronous_force_ratio : force of the liquid in a synchronous whirl over that of all that the wall
+        encloses, the mean over its directions
+    surface_radius : a, m
+    circulations : steady flows, without a frequency
+    unknowns : of the mesh, and
+    surface_unknowns : of the eigenproblem
+    converged : the eigenproblem is solved to rounding
+    wall_time : s
+    notes : what to know about these values, in words
+    """
+
+    frequency: Array
+    exact: tuple[float | None, ...]
+    damping: Array
+    damping_ratio: Array
+    plain_damping: Array
+    damping_spread: Array
+    crests: NDArray[np.int64]
+    travelling: Array
+    multiplicity: NDArray[np.int64]
+    error_estimate: Array
+    synchronous_force_ratio: float
+    surface_radius: float
+    circulations: int
+    unknowns: int
+    surface_unknowns: int
+    converged: bool
+    wall_time: float
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class ModesRecord:
+    """What the figure of the shapes shows.
+
+    Parameters
+    ----------
+    section : the liquid at rest
+    modes : its modes
+    title : the chamber in words
+    spin : Omega, rad/s
+    """
+
+    section: LiquidSection
+    modes: SloshingModes
+    title: str
+    spin: float
+
+
+def answer_modes(
+    chamber: Chamber,
+    volume: float,
+    liquid: Liquid,
+    speed: float,
+    count: int = 12,
+    resolution: Resolution | None = None,
+    source: SectionSource | None = None,
+) -> tuple[ModesAnswer, ModesRecord]:
+    """Modes of the liquid in one chamber.
+
+    Parameters
+    ----------
+    chamber : a round one, with baffles or without; with `source` its height and, for comparison, its radius
+    volume : of the liquid, m^3
+    liquid : for its viscosity
+    speed : spin, rad/s
+    count : how many modes
+    resolution : of the mesh; with `source` the longest side at the surface, as cells around
+    source : file with the section of the chamber
+
+    Returns
+    -------
+    The modes, and what is drawn of them.
+
+    Raises
+    ------
+    InputError : a value out of its range
+    """
+    begin = time.perf_counter()
+    require_positive("--speed", speed)
+    require_positive("--volume", volume)
+    if not 1 <= count <= 500:
+        raise InputError("--count", count, "from 1 to 500")
+    fineness = resolution or Resolution()
+    if source is None:
+        sections, notes, title = round_sections(chamber, volume, liquid, fineness)
+    else:
+        sections, notes, title = section_of_file(chamber, volume, fineness, source)
+    system = condense(sections[-1])
+    known = spectrum(system)
+    modes = sloshing_modes(system, speed, count, known)
+    damping = mode_damping(system, modes, liquid.viscosity, chamber.height)
+    size = np.abs(modes.frequency)
+    estimate = _error(condense(sections[0]), size / speed, fineness.order)
+    notes += (
+        [f"mesh: {one}" for one in wave_findings(sections[-1], int(modes.crests.max()))] if source else []
+    )
+    notes += _found(damping, _depth(sections[-1]), estimate)
+    clear = source is None and _is_ring(sections[-1], chamber.radius)
+    answer = ModesAnswer(
+        frequency=modes.frequency,
+        exact=_exact(modes, chamber.radius, system.section.surface_radius) if clear else (None,) * len(size),
+        damping=damping.rate,
+        damping_ratio=damping.rate / size,
+        plain_damping=damping.plain_rate,
+        damping_spread=damping.edge_spread,
+        crests=modes.crests,
+        travelling=modes.travelling,
+        multiplicity=modes.multiplicity,
+        error_estimate=estimate,
+        synchronous_force_ratio=float(forced_response(system, speed, speed, known).force_ratio.real),
+        surface_radius=system.section.surface_radius,
+        circulations=modes.circulations,
+        unknowns=system.unknowns,
+        surface_unknowns=len(system.inertia),
+        converged=modes.converged,
+        wall_time=time.perf_counter() - begin,
+        notes=tuple(notes),
+    )
+    return answer, ModesRecord(sections[-1], modes, title, speed)
+
+
+def _is_ring(section: LiquidSection, radius: float) -> bool:
+    """Whether all walls lie on the circle of that radius."""
+    away = np.hypot(*section.points[section.wall].transpose(2, 0, 1)) - radius
+    return bool(np.all(np.abs(away) < 1e-9 * radius))
+
+
+def _depth(section: LiquidSection) -> float:
+    """Largest depth of the liquid, m."""
+    return float(np.hypot(*section.points[section.wall[:, 0]].T).max()) - section.surface_radius
+
+
+def _error(coarse: LiquidSystem, size: Array, order: int) -> Array:
+    """Relative error of the finer frequencies by Richardson's extrapolation, order 2 p."""
+    other = spectrum(coarse).frequency[: len(size)]
+    other = np.append(other, np.full(len(size) - len(other), np.nan))
+    found: Array = np.abs(other / size - 1.0) / (4.0**order - 1.0)
+    return found
+
+
+def _found(damping: ModeDamping, depth: float, estimate: Array) -> list[str]:
+    """What to know about errors and damping."""
+    notes = []
+    worst = float(np.max(np.nan_to_num(estimate, nan=1.0)))
+    if worst > _ROUGH:
+        notes.append(
+            f"the mesh is coarse for the fastest of these modes (error about {worst:.1g}): more --segments"
+        )
+    if np.any(damping.thickness > _VISCOUS * depth):
+        notes.append("boundary layers are not thin beside the liquid: the damping is their first order alone")
+    if np.any(damping.edge_spread > 0.0):
+        notes.append("laminar damping at edges of baffles: separation adds to it, more at large amplitude")
+    return notes
+
+
+def _exact(modes: SloshingModes, radius: float, surface_radius: float) -> tuple[float, ...]:
+    """Free waves of the ring with as many crests, running the same way [theory: waves, eq. 7]."""
+    depth = math.log(radius / surface_radius)
+    both = free_wave_frequencies(modes.crests, depth, modes.spin)
+    return tuple(np.where(modes.frequency > 0.0, *both).tolist())
+
+
+def table_lines(answer: ModesAnswer) -> list[str]:
+    """The modes in words, equal ones on one line.
+
+    Parameters
+    ----------
+    answer : of `answer_modes`
+    """
+    lines = [
+        f"{'rad/s':>12}{'times':>7}{'crests':>8}  {'runs':<9}{'exact':>12}{'error':>9}"
+        f"{'decay 1/s':>11}{'ratio':>9}"
+    ]
+    k = 0
+    while k < len(answer.frequency):
+        sigma, same = answer.frequency[k], int(answer.multiplicity[k])
+        exact, error = answer.exact[k], answer.error_estimate
+        cells: Sequence[str] = (
+            f"{sigma:12.6g}", f"{same if same > 1 else '':>7}", f"{answer.crests[k]:8d}",
+            f"  {_runs(sigma, float(answer.travelling[k])):<9}",
+            f"{'' if exact is None else f'{exact:.6g}':>12}",
+            f"{error[k]:>9.1g}",
+            f"{answer.damping[k]:11.4g}", f"{answer.damping_ratio[k]:9.2g}",
+        )  # fmt: skip
+        lines.append("".join(cells))
+        k += same
+    return lines
+
+
+def _runs(frequency: float, travelling: float) -> str:
+    """Which way the crests run."""
+    if abs(travelling) < 0.5:
+        return "stands"
+    return "with" if frequency > 0.0 else "against"

@@ -1,0 +1,198 @@
+"""The volumes that just cover a chamber's wall: the closed forms beside every optimum, and their search."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fluid.fill import Fill
+from leblanc.results.record import MM, RPM
+from leblanc.scene.scene import Scene
+from leblanc.studies.choose import axial_gravity
+from leblanc.studies.optimise.constraints import Verdict
+from meshes.chamber import Chamber
+from solvers.search import Found, Judgement, SearchPlan, search
+from solvers.statics.hydrostatics import equilibrium, optimal_volume
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Covering:
+    """Volumes of one chamber that cover its wall at a deflection and a speed.
+
+    Parameters
+    ----------
+    deflection : e, m
+    speed : rad/s
+    optimal_volume : the least that leaves no part of the wall dry over its whole height, m^3 [theory:
+        statics, eq. 8]
+    full_volume : the least that wets the whole wall up to the lid, beyond which more liquid adds nothing,
+        m^3; infinite where the chamber does not hold it [theory: optimum, eq. 1]
+    share : liquid's unbalance with the optimal volume over the largest possible one at this deflection
+    """
+
+    deflection: float
+    speed: float
+    optimal_volume: float
+    full_volume: float
+    share: float
+
+
+def covering(chamber: Chamber, deflection: float, speed: float, gravity: float) -> Covering:
+    """The volumes that cover a wall, in closed form.
+
+    Parameters
+    ----------
+    chamber : where the liquid is
+    deflection : e, m
+    speed : rad/s
+    gravity : along the axis, m/s^2
+
+    Raises
+    ------
+    InputError : a value out of its range
+    """
+    touching = float(optimal_volume(chamber, deflection, speed, gravity))
+    full = full_volume(chamber, deflection, speed, gravity)
+    held = min(touching, chamber.capacity)
+    most = chamber.capacity if math.isinf(full) else full
+    of_touching, of_most = (
+        float(equilibrium(chamber, volume, deflection, speed, gravity).unbalance()[0])
+        for volume in (held, most)
+    )
+    share = of_touching / of_most if of_most > 0.0 else 1.0
+    return Covering(deflection, speed, touching, full, share)
+
+
+def full_volume(chamber: Chamber, deflection: float, speed: float, gravity: float) -> float:
+    """Least volume that wets the whole wall up to the lid [theory: optimum, eq. 1].
+
+    Parameters
+    ----------
+    chamber, deflection, speed, gravity : as for `covering`
+
+    Returns
+    -------
+    m^3; infinite where the surface would cut the floor's edge or an inner wall, or leave the chamber
+    """
+    near = chamber.radius - deflection
+    # The surface falls by the chamber's height over h/beta in the square of its radius.
+    fall = 2.0 * gravity * chamber.height / speed**2
+    if near <= 0.0 or near**2 < fall:
+        return math.inf
+    if chamber.inner_radius > 0.0 and math.sqrt(near**2 - fall) < chamber.inner_radius + deflection:
+        return math.inf
+    ring = deflection * (chamber.radius + near)
+    return math.pi * chamber.height * (ring + 0.5 * fall)
+
+
+def covering_by_search(
+    fill: Fill, deflection: float, speed: float, gravity: float, plan: SearchPlan | None = None
+) -> Found:
+    """The least volume that leaves no part of the wall dry over its whole height, found by the search.
+
+    Parameters
+    ----------
+    fill : chamber and liquid; its volume does not matter
+    deflection, speed, gravity : as for `covering`
+    plan : of the search
+
+    Returns
+    -------
+    Found; its only coordinate is the volume, m^3, the one that comes nearest where none will do
+    """
+    chamber = fill.chamber
+
+    def judge(volumes: Array) -> Judgement:
+        held = volumes[:, 0]
+        state = equilibrium(chamber, held, deflection, speed, gravity)
+        # Height of the surface at the near wall, over a measure of the heights at both, whatever the speed.
+        fallen = 2.0 * state.wetted_height - state.nearest_depth
+        over = np.divide(-state.nearest_depth, fallen, out=np.ones_like(fallen), where=fallen > 0.0)
+        return Judgement(held.copy(), over)
+
+    low, high = np.zeros(1), np.array([chamber.capacity])
+    return search(judge, low, high, np.array([fill.liquid.density]), plan=plan or SearchPlan(edge=1e-11))
+
+
+def largest_unbalance_by_search(
+    fill: Fill, deflection: float, speed: float, gravity: float, plan: SearchPlan | None = None
+) -> Found:
+    """The least volume with the largest unbalance of the liquid at a deflection, found by the search.
+
+    Parameters
+    ----------
+    fill, deflection, speed, gravity, plan : as for `covering_by_search`
+
+    Returns
+    -------
+    Found; its only coordinate is the volume, m^3
+    """
+    chamber = fill.chamber
+    most = math.pi * chamber.radius**2 * chamber.height * deflection
+
+    def judge(volumes: Array) -> Judgement:
+        state = equilibrium(chamber, volumes[:, 0], deflection, speed, gravity)
+        return Judgement(-state.unbalance()[0] / most, np.full(volumes.shape[0], -1.0))
+
+    low, high = np.zeros(1), np.array([chamber.capacity])
+    tight = plan or SearchPlan(hair=1e-13, edge=1e-11)
+    return search(judge, low, high, np.array([fill.liquid.density]), plan=tight)
+
+
+def cover_walls(
+    scene: Scene, deflection: float, speed: float
+) -> tuple[list[float], tuple[Covering, ...], int, tuple[str, ...]]:
+    """For each chamber the least volume that leaves no part of its wall dry over its whole height.
+
+    Parameters
+    ----------
+    scene : the machine
+    deflection : e, m
+    speed : rad/s
+
+    Returns
+    -------
+    volumes found by the search, m^3, the closed forms, how many were judged, and what to say of them
+    """
+    gravity = axial_gravity(scene)
+    found = [covering_by_search(fill, deflection, speed, gravity) for fill in scene.chambers]
+    volumes, count = [float(one.point[0]) for one in found], sum(one.points.shape[0] for one in found)
+    forms = tuple(covering(fill.chamber, deflection, speed, gravity) for fill in scene.chambers)
+    gap = max(
+        abs(volume / form.optimal_volume - 1.0) if form.optimal_volume > 0.0 else abs(volume)
+        for volume, form in zip(volumes, forms, strict=True)
+    )
+    note = (
+        f"The deflection is given, {deflection * MM:.4g} mm at {speed * RPM:.4g} rpm: the volumes are the "
+        "least that leave no part of a wall dry over its whole height; search and closed form differ by "
+        f"{gap:.1e}."
+    )
+    return volumes, forms, count, (note,)
+
+
+def liquid_unbalance(fill: Fill, deflection: float, speed: float, gravity: float) -> float:
+    """First moment of a chamber's liquid about the rotation axis, kg m."""
+    state = equilibrium(fill.chamber, fill.volume, deflection, speed, gravity)
+    return fill.liquid.density * float(state.unbalance()[0])
+
+
+def dry_verdict(scene: Scene, volumes: list[float], deflection: float, speed: float) -> Verdict:
+    """Whether any wall is dry over its whole height."""
+    gravity = axial_gravity(scene)
+    dry = 0.0
+    for fill, volume in zip(scene.chambers, volumes, strict=True):
+        # A hair above the volume that just covers it.
+        held = min(volume * (1.0 + 1e-9), fill.chamber.capacity)
+        dry = max(dry, float(equilibrium(fill.chamber, held, deflection, speed, gravity).dry_patch))
+    return Verdict(0.0, dry, dry == 0.0, "1", "wall dry somewhere at the deflection given (1) or nowhere (0)")
+
+
+def one_point(volumes: list[float], value: float, mass: float) -> Judgement:
+    """Judgement of the answer alone."""
+    one = np.ones(1)
+    return Judgement(value * one, -one, {"vibration": value * one, "mass": mass * one, "sure": one.copy()})

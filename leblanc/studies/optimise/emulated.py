@@ -1,0 +1,126 @@
+"""A vibration over the volumes as an emulator of a sweep gives it, for searches that ask very often."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from leblanc.results.record import MM
+from leblanc.scene.optimise import Aim
+from leblanc.scene.scene import Scene
+from leblanc.studies.sweep.emulator import CrossValidation, Emulator, emulate_store, varied_fields
+from leblanc.studies.sweep.store import read_store
+from meshes.errors import InputError
+
+Array = NDArray[np.float64]
+
+_VOLUME = re.compile(r"chambers\.(\d+)\.volume")
+
+
+@dataclass(frozen=True)
+class EmulatedAnswer:
+    """What an emulator says of the best volumes.
+
+    Parameters
+    ----------
+    value, deviation : vibration and its standard deviation, m
+    error : of the emulator on unseen samples
+    """
+
+    value: float
+    deviation: float
+    error: CrossValidation
+
+    def words(self) -> str:
+        """How far the search could be led astray."""
+        return (
+            f"The search asked an emulator of {self.error.samples} samples, off by "
+            f"{self.error.root_mean_square:.2g} on unseen ones (root mean square; largest "
+            f"{self.error.largest:.2g}); the best volumes it found were judged by the solvers. By the "
+            f"emulator alone: {self.value * MM:.4g} mm, give or take {2.0 * self.deviation * MM:.2g} mm."
+        )
+
+
+class EmulatedVibration:
+    """Vibration of a machine by an emulator over the volumes of some of its chambers; never sure.
+
+    Parameters
+    ----------
+    emulator : of the vibration
+    chambers : whose volumes it takes, in its order
+    """
+
+    def __init__(self, emulator: Emulator, chambers: tuple[int, ...]) -> None:
+        self.emulator, self.chambers = emulator, chambers
+
+    def exact(self, volumes: Array, bound: float = math.inf) -> Array:
+        """See `leblanc.studies.optimise.objectives.Vibration`; as exact as the emulator is."""
+        return self.emulator.output(volumes[:, self.chambers])
+
+    def least(self, volumes: Array, bound: float = math.inf) -> tuple[Array, NDArray[np.bool_]]:
+        """See `leblanc.studies.optimise.objectives.Vibration`."""
+        return self.exact(volumes), np.zeros(volumes.shape[0], dtype=bool)
+
+    def answer(self, volume: Array) -> EmulatedAnswer:
+        """What it says of one set of volumes, shape (c,)."""
+        value, deviation = self.emulator.predict(volume[None, self.chambers])
+        return EmulatedAnswer(float(value[0]), float(deviation[0]), self.emulator.error)
+
+    def inside(self, low: Array, high: Array, own: Array) -> tuple[Array, Array]:
+        """Bounds of the volumes cut to what the emulator knows; other chambers keep their own volume.
+
+        Parameters
+        ----------
+        low, high, own : bounds and volumes of the scene, m^3, shape (c,)
+
+        Raises
+        ------
+        InputError : a chamber is left without any volume
+        """
+        least, most = own.copy(), own.copy()
+        for k, chamber in enumerate(self.chambers):
+            least[chamber] = max(low[chamber], self.emulator.low[k])
+            most[chamber] = min(high[chamber], self.emulator.high[k])
+            if not least[chamber] <= most[chamber]:
+                span = f"{self.emulator.low[k]:g} to {self.emulator.high[k]:g} m^3"
+                allowed = f"such that they meet the samples of the sweep, {span}"
+                raise InputError(f"optimise.volumes.{chamber}", (low[chamber], high[chamber]), allowed)
+        return least, most
+
+
+def emulated_vibration(store: Path, scene: Scene, aim: Aim, seed: int = 0) -> EmulatedVibration:
+    """Emulator of the vibration that an optimisation is after, from a sweep over the volumes.
+
+    Parameters
+    ----------
+    store : of a sweep of this very scene, in which volumes vary and nothing else
+    scene, aim : the machine and what is asked for
+    seed : see `leblanc.studies.sweep.emulator.emulate`
+
+    Raises
+    ------
+    InputError : the store does not fit the scene or the objective
+    """
+    found = read_store(store)
+    if found.attributes()["scene_digest"] != scene.digest:
+        raise InputError("--emulator", str(store), "the store of a sweep of this very scene")
+    matches = [_VOLUME.fullmatch(name) for name in varied_fields(found)]
+    chambers = tuple(int(match[1]) for match in matches if match is not None)
+    if len(chambers) != len(matches):
+        raise InputError("--emulator", str(store), "a sweep that varies volumes and nothing else")
+    return EmulatedVibration(emulate_store(found, _output(scene, aim), seed), chambers)
+
+
+def _output(scene: Scene, aim: Aim) -> str:
+    """Output of a sweep that is the vibration asked for."""
+    if aim.objective == "working_speed" and aim.working_speed in (None, scene.speeds.stop):
+        return "last_amplitude"
+    if aim.objective == "peak" and (aim.steady or scene.runup is None):
+        return "peak_amplitude"
+    allowed = "working_speed at the last speed, or peak of the steady response, with an emulator"
+    raise InputError("--objective", aim.objective, allowed)

@@ -1,0 +1,145 @@
+"""The search for a scene's volumes: its box, where it starts, how much it tries."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from leblanc.scene.machine import jeffcott
+from leblanc.scene.optimise import Aim
+from leblanc.scene.scene import Rotor, Scene
+from leblanc.studies.choose import axial_gravity
+from leblanc.studies.optimise.closed_form import covering
+from leblanc.studies.optimise.judge import Goal
+from leblanc.studies.optimise.objectives import PeakOver, RunupPeak
+from meshes.errors import InputError
+from solvers.search import Found, Judgement, SearchPlan, search
+
+Array = NDArray[np.float64]
+
+# Where an answer costs tens of milliseconds and more.
+_SPARING = SearchPlan(
+    levels=(16, 6, 4), finest=2e-3, valleys=2, sweeps=3, settled=1e-2, hair=1e-3, edge=3e-2, sections=4
+)
+# Where it takes some speeds to know a value.
+_FEW = SearchPlan(
+    levels=(14, 9, 5), crossed=False, finest=1e-3, sweeps=6, settled=5e-4, hair=2e-5, edge=1e-3, sections=10
+)
+_AGAIN = 3  # searches at most, if a peak turns out to have been hidden between the speeds looked at
+_CLOSER = 6  # of the best that a cheaper judge found are judged again
+
+
+def bounds_of(scene: Scene, aim: Aim) -> tuple[Array, Array]:
+    """Least and most volume of each chamber, m^3, shape (c,) each.
+
+    Raises
+    ------
+    InputError : not one pair for each chamber, more than a chamber holds
+    """
+    capacity = np.array([fill.chamber.capacity for fill in scene.chambers])
+    if not aim.volumes:
+        return np.zeros_like(capacity), capacity
+    if len(aim.volumes) != capacity.size:
+        text = f"a list of {capacity.size} pairs of volumes, one for each chamber"
+        raise InputError("optimise.volumes", len(aim.volumes), text)
+    low, high = np.array(aim.volumes).T
+    for k, (most, room) in enumerate(zip(low, capacity, strict=True)):
+        if most > room:
+            raise InputError(
+                f"optimise.volumes.{k}", float(most), f"at most what the chamber holds, {room:g} m^3"
+            )
+    return low, np.minimum(high, capacity)
+
+
+def best_volumes(
+    scene: Scene, goal: Goal, low: Array, high: Array, progress: Callable[[int], None] | None
+) -> Found:
+    """Best volumes for a goal."""
+    count = 0
+
+    def judge(volumes: Array) -> Judgement:
+        nonlocal count
+        count += volumes.shape[0]
+        if progress is not None:
+            progress(count)
+        return goal.judge(volumes)
+
+    plan = _SPARING if goal.costly else _FEW if isinstance(goal.judge.vibration, PeakOver) else SearchPlan()
+    starts, alike = _starts(scene, goal, low.size), _alike(scene, low, high)
+    for _ in range(_AGAIN):
+        found = search(judge, low, high, goal.judge.density, starts, alike, plan)
+        if found.excess <= 0.0 and not goal.judge.by_mass:
+            value = float(goal.judge.vibration.exact(found.point[None])[0])
+            if value > found.objective * (1.0 + plan.hair):
+                continue  # what was hidden is known by now
+        break
+    return found
+
+
+def _starts(scene: Scene, goal: Goal, count: int) -> Array:
+    """Volumes that just cover the walls at deflections the machine may have: there the law bends."""
+    gravity, rows = axial_gravity(scene), []
+    for speed in goal.speeds:
+        for deflection in _likely_deflections(scene, speed)[
+            : 5 if count == 1 and len(goal.speeds) == 1 else 2
+        ]:
+            row = []
+            for fill in scene.chambers:
+                e = min(deflection, 0.9 * fill.chamber.radius)
+                form = covering(fill.chamber, e, speed, gravity)
+                row.append(form.optimal_volume if math.isinf(form.full_volume) else form.full_volume)
+            rows.append(row)
+    return np.array(rows[: 12 if count == 1 else 3]).reshape(-1, len(scene.chambers))
+
+
+def _likely_deflections(scene: Scene, speed: float) -> list[float]:
+    """Of the planar rotor with all walls wet, and without liquid, m [theory: rotor, eq. 3]."""
+    if not isinstance(scene.rotor, Rotor):
+        return []
+    rotor = jeffcott(scene)
+    force, stiffness = rotor.unbalance * speed**2, complex(rotor.dynamic_stiffness(np.array(speed)))
+    added = sum(fill.added_mass for fill in scene.chambers) * speed**2
+    sizes = [abs(stiffness - added), abs(stiffness)]
+    wet, dry = (force / size if size > 0.0 else math.inf for size in sizes)
+    return [e for e in (wet, dry, 2.0 * wet, 0.5 * wet, math.sqrt(wet * dry)) if 0.0 < e < math.inf]
+
+
+def _alike(scene: Scene, low: Array, high: Array) -> list[list[int]]:
+    """Groups of chambers that may be exchanged without a change."""
+    groups: dict[tuple[object, ...], list[int]] = {}
+    for k, fill in enumerate(scene.chambers):
+        chamber = replace(fill.chamber, plane=0.0) if isinstance(scene.rotor, Rotor) else fill.chamber
+        groups.setdefault((chamber, fill.liquid, float(low[k]), float(high[k])), []).append(k)
+    return [group for group in groups.values() if len(group) > 1]
+
+
+def on_all_cells(scene: Scene, goal: Goal, found: Found) -> tuple[Found, Goal]:
+    """The best run-ups on few cells run again on all of the scene's, and the best of these."""
+    coarse = goal.judge.vibration
+    if not isinstance(coarse, RunupPeak) or goal.judge.by_mass or scene.runup is None:
+        return found, goal
+    if coarse.numerics.cells >= scene.runup.cells:
+        return found, goal
+    fine = replace(goal, judge=replace(goal.judge, vibration=RunupPeak(scene), best=math.inf))
+    return judged_again(fine, found), fine
+
+
+def judged_again(fine: Goal, found: Found) -> Found:
+    """The best of what a search with a cheaper judge found, by the goal's own judge.
+
+    Parameters
+    ----------
+    fine : the goal
+    found : by the search
+    """
+    allowed = np.maximum(found.judged.excess, 0.0) <= max(found.excess, 0.0)
+    order = np.flatnonzero(allowed)[np.argsort(found.judged.objective[allowed], kind="stable")]
+    tried = np.unique(np.concatenate((found.point[None], found.points[order[:_CLOSER]])), axis=0)
+    again = fine.judge(tried)
+    best = int(np.argmin(np.where(again.excess <= max(found.excess, 0.0), again.objective, math.inf)))
+    objective, excess = float(again.objective[best]), float(again.excess[best])
+    return replace(found, point=tried[best], objective=objective, excess=excess)

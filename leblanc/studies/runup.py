@@ -1,0 +1,443 @@
+"""A scene's run-up: rotor and liquid taken through the speeds in time, and where the models hold."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fluid.fill import Fill
+from fluid.waves import capture_speed
+from fluid.whirl import covering_speed, is_full
+from leblanc.friction import Friction
+from leblanc.results.record import Array, ChamberRecord, phase
+from leblanc.scene.machine import dry_rotor, jeffcott, require_clear
+from leblanc.scene.scene import Rotor, Runup, Scene
+from leblanc.studies.choose import across_gravity as across_gravity  # of a run-up, asked for with it
+from leblanc.studies.choose import axial_gravity
+from leblanc.studies.validity import RANGES
+from leblanc.studies.whirl_map import solver_friction
+from leblanc.text.models import percent
+from leblanc.text.runup import Bands, describe_inputs, describe_run
+from meshes.errors import InputError
+from solvers.runup.drive import Drive, Motor, Ramp
+from solvers.runup.error import MOST_LAG, MOST_WAVE, LinearRunError, largest_wave, linear_run_error
+from solvers.runup.runup import MODELS, RunupHistory, RunupNumerics, run_up
+from solvers.synchronous.planar import Response, synchronous_response
+
+Flags = NDArray[np.bool_]
+
+
+def liquid_model(scene: Scene) -> str:
+    """Most exact liquid model that a scene's run-up may take: the one it asks for, or long waves.
+
+    Raises
+    ------
+    InputError : the scene asks for a model that does not go through time
+    """
+    asked = scene.model.liquid
+    if asked not in ("auto", *MODELS):
+        raise InputError("model.liquid", asked, "auto, " + " or ".join(MODELS) + " for a run-up")
+    return "long_wave" if asked == "auto" else asked
+
+
+def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tuple[Flags, tuple[str, ...]]:
+    """Where the layer is a fair picture of the liquid, and in words why it is none elsewhere.
+
+    A layer must turn fast enough itself, whatever the drum does, must not be deep beside its radius
+    [theory: long_wave, eq. 4], and must leave the inner wall clear.
+
+    Parameters
+    ----------
+    scene : the machine
+    history : its run-up, k times
+    model : of its layers; what the scene asks for, or long waves, if None
+
+    Returns
+    -------
+    Truth values, shape (k,), and one sentence for each reason
+    """
+    good = np.ones(history.time.shape, dtype=bool)
+    words: list[str] = []
+    deepest, highest = RANGES["long_wave"]["relative_depth"][1], RANGES["linear"]["wave_amplitude"][1]
+    linear = (model or liquid_model(scene)) == "linear"
+    for k, fill in enumerate(scene.chambers):
+        if fill.volume == 0.0 or is_full(fill):
+            continue
+        wall, label = fill.chamber, f"chamber {k + 1}"
+        own = history.speed + history.mean_rotation[:, k]
+        held = history.captured[:, k] & (np.abs(own) > held_from(scene, fill))
+        reached = np.nan_to_num(history.depth_max[:, k]) >= wall.radius - wall.inner_radius
+        touches = reached & (wall.inner_radius > 0.0)
+        # The exact linear theory holds at any depth.
+        shallow = linear or fill.depth <= deepest * wall.radius
+        rise = np.nan_to_num(history.depth_max[:, k] - fill.depth)
+        small = ~(linear & (rise > highest * fill.depth))
+        reasons = (
+            (held, f"the liquid in {label} turns too slowly to stand round the wall against gravity"),
+            (~touches, f"the surface reaches the inner wall of {label}"),
+            (np.full(good.shape, shallow), f"the layer in {label} is deeper than {deepest:g} of its radius"),
+            (small, f"the wave in {label} is higher than {highest:g} of the depth, beyond linear theory"),
+        )
+        for holds, why in reasons:
+            good &= holds
+            if not holds.all():
+                words.append(f"Out of range for {1.0 - np.mean(holds):.0%} of the samples: {why}.")
+    return good, tuple(words)
+
+
+def held_from(scene: Scene, fill: Fill) -> float:
+    """Rotation of the liquid itself above which it stands round its wall in spite of gravity, rad/s.
+
+    Its centrifugal acceleration at the surface must exceed gravity [theory: waves, eq. 11]; if the axis
+    stands, the paraboloid must also cover the wall's height and leave an inner wall clear.
+    """
+    held = float(capture_speed(fill.surface_radius, scene.gravity))
+    return max(held, covering_speed(fill, axial_gravity(scene)))
+
+
+Progress = Callable[[float], None] | None
+
+
+@dataclass(frozen=True)
+class RunupChoice:
+    """A run-up and the liquid model it took.
+
+    Parameters
+    ----------
+    history : of rotor and liquid
+    model : "long_wave" or "linear"
+    error : estimated error of the amplitude over its largest, by the model and by its steps; nan where one of
+        them is not known
+    reason : why that model, in words
+    """
+
+    history: RunupHistory
+    model: str
+    error: float
+    reason: str
+
+
+def chosen_run(
+    scene: Scene, drive: Drive, gravity: float, numerics: RunupNumerics, progress: Progress = None
+) -> RunupChoice:
+    """Run a scene up with the cheapest liquid model whose estimated error is within its tolerance.
+
+    Linear layers take a twentieth of the time of long waves and are tried first. What they cannot have rules
+    them out before: a motor that feels the wave, friction that small waves do not feel, and a tolerance that
+    not even the smallest waves are known to meet.
+
+    Parameters
+    ----------
+    scene : the machine
+    drive, gravity, numerics, progress : as in `solvers.runup.runup.run_up`
+
+    Raises
+    ------
+    InputError : the scene asks for a model that does not go through time
+    """
+    model, tolerance = liquid_model(scene), scene.model.tolerance
+    system, law = dry_rotor(scene).system(), scene.model.friction
+    friction = (law.law, law.coefficient)
+
+    def run(name: str, resolved: RunupNumerics, told: Progress) -> RunupHistory:
+        return run_up(system, scene.chambers, drive, friction, gravity, resolved, told, name)
+
+    if scene.model.liquid == "long_wave":
+        history = run(model, numerics, progress)
+        return RunupChoice(history, model, history.error_estimate, "the scene asks for long waves.")
+    if scene.model.liquid == "linear":
+        history = run(model, numerics, progress)
+        found = linear_run_error(history, scene.chambers)
+        reason = f"the scene asks for linear layers; {_words(found)}."
+        return RunupChoice(history, model, found.estimate + history.error_estimate, reason)
+    ruled_out = _ruled_out(scene)
+    if not ruled_out:
+        first = run("linear", replace(numerics, companion=False), None)
+        found = linear_run_error(first, scene.chambers)
+        if found.estimate <= tolerance:
+            history = run("linear", numerics, progress) if numerics.companion else first
+            error = found.estimate + (0.0 if math.isnan(history.error_estimate) else history.error_estimate)
+            reason = f"linear layers, as {_words(found)}, within the tolerance of {percent(tolerance)}."
+            return RunupChoice(history, "linear", error, reason)
+        ruled_out = f"with linear layers {_words(found)}, and the tolerance is {percent(tolerance)}"
+    history = run(model, numerics, progress)
+    return RunupChoice(history, model, history.error_estimate, f"long waves: {ruled_out}.")
+
+
+def runup_outlook(scene: Scene) -> str:
+    """Which liquid model the run-up of a scene will take, as far as that is known before, in words."""
+    asked, tolerance = scene.model.liquid, scene.model.tolerance
+    if scene.runup is None:
+        return ""
+    if asked not in ("auto", *MODELS):
+        return f"none: {asked} does not go through time; ask for auto, long_wave or linear"
+    if asked != "auto":
+        return f"{asked}, as the scene asks"
+    ruled_out, wave = _ruled_out(scene), largest_wave(tolerance)
+    if ruled_out:
+        return f"long waves: {ruled_out}"
+    return (
+        f"linear layers first, for a twentieth of the time of long waves; they stay if the surface rises by \
+less than {percent(wave)} of the depth and the liquid hardly lags, otherwise long waves follow"
+    )
+
+
+def _ruled_out(scene: Scene) -> str:
+    """Why linear layers are not tried, or nothing."""
+    if scene.runup is not None and scene.runup.motor is not None:
+        return "a motor feels the torque of the waves, which linear layers leave out"
+    if scene.model.friction.law == "quadratic":
+        return "linear layers do not feel quadratic friction"
+    if largest_wave(scene.model.tolerance) == 0.0:
+        return f"linear layers are not known to be within {percent(scene.model.tolerance)}"
+    return ""
+
+
+def _words(found: LinearRunError) -> str:
+    """What a linear run says of itself."""
+    size = (
+        f"waves reach {percent(found.wave)} of the depth and the liquid lags by up to {percent(found.lag)} \
+of the spin"
+    )
+    if found.touches:
+        return f"{size}, and a surface touches an inner wall, beyond any estimate"
+    if math.isfinite(found.estimate):
+        return f"{size}, an estimated error of {percent(found.estimate)} against long waves"
+    return (
+        f"{size}, beyond the {percent(MOST_WAVE)} and {percent(MOST_LAG)} up to which an error is estimated"
+    )
+
+
+Complex = NDArray[np.complex128]
+
+STEADY_SPEEDS = 401  # of the steady response drawn behind the run-up
+BAND_SPEEDS = 201  # at which self-excited whirl is looked for
+_FEWEST = 8  # samples in a mean over turns
+
+
+@dataclass(frozen=True)
+class RunupRecord:
+    """A run-up of a scene; k times, l chambers.
+
+    Parameters
+    ----------
+    name, source, assumed, digest : of the scene
+    inputs : label, value with its unit, field path
+    kind, axis : of the rotor; "horizontal" or "vertical"
+    friction : law and coefficient
+    gravity : across the axis, m/s^2
+    model : of the liquid, "long_wave" or "linear"
+    numerics : resolution
+    history : of rotor and liquid
+    turning : index of the last time before the speed falls again; the last one of all if it never does
+    in_range : the layer is a fair picture of the liquid at that time, shape (k,)
+    steady : synchronous response at the speeds passed, of a Jeffcott rotor; None for others
+    bands : of speed in which some whirl grows by itself, rad/s, an end of the range counting as an edge
+    chambers, planes : one for each chamber; its position along the axis, m
+    notes : limits of validity and findings, in words
+    model_reason : why that liquid model, in words
+    model_error : estimated error of the amplitude over its largest, by the model and by its steps; nan where
+        one of them is not known
+    """
+
+    name: str
+    source: str
+    assumed: tuple[str, ...]
+    digest: str
+    inputs: tuple[tuple[str, str, str], ...]
+    kind: str
+    axis: str
+    friction: Friction
+    gravity: float
+    model: str
+    numerics: RunupNumerics
+    history: RunupHistory
+    turning: int
+    in_range: Flags
+    steady: Response | None
+    bands: Bands
+    chambers: tuple[ChamberRecord, ...]
+    planes: tuple[float, ...]
+    notes: tuple[str, ...]
+    model_reason: str = ""
+    model_error: float = math.nan
+
+    @property
+    def deflection(self) -> Complex:
+        """Of the first chamber's axis, in the drum frame, m, shape (k,)."""
+        return np.asarray(self.history.deflection[:, 0] * np.exp(-1j * self.history.angle))
+
+    @property
+    def phase(self) -> Array:
+        """Angle of that deflection from the drum's zero mark, where a Jeffcott rotor has its unbalance."""
+        return phase(self.deflection)
+
+    @property
+    def mean_position(self) -> Complex:
+        """Liquid's centre of mass in the drum frame as a mean over whole turns, m, shape (k,)."""
+        return turn_mean(self.history.liquid_position, self.history.angle)
+
+    def peak(self, back: bool = False) -> int:
+        """Index of the largest amplitude on the way up, or on the way back."""
+        amplitude = self.history.amplitude
+        if back and self.turning + 1 < amplitude.size:
+            return self.turning + 1 + int(np.argmax(amplitude[self.turning + 1 :]))
+        return int(np.argmax(amplitude[: self.turning + 1]))
+
+
+def runup_scene(
+    scene: Scene,
+    cells: int | None = None,
+    samples: int | None = None,
+    check: bool = True,
+    progress: Callable[[float], None] | None = None,
+) -> RunupRecord:
+    """Run the machine of a scene through its speeds [theory: coupling].
+
+    Parameters
+    ----------
+    scene : with a table `runup`
+    cells, samples : in place of the scene's
+    check : run once more with half the cells to estimate the error
+    progress : called with the share of the work that is done
+
+    Returns
+    -------
+    RunupRecord; with what was reached if the run did not come to its end
+
+    Raises
+    ------
+    InputError : no run-up in the scene, a rotor without linear equations of motion, a value out of its range
+    """
+    require_clear(scene, "a run-up, whose waves run in a clear ring; model.friction may stand for baffles")
+    plan = planned(scene)
+    numerics = numerics_of(plan, cells, samples, check)
+    law, gravity = scene.model.friction, across_gravity(scene)
+    taken = chosen_run(scene, drive_of(plan), gravity, numerics, progress)
+    history = taken.history
+    steady, bands = steady_response(scene, history.speed), whirl_bands(scene, history.speed)
+    in_range, faults = judged(scene, history, taken.model)
+    fastest = np.flatnonzero(history.speed == history.speed.max())
+    return RunupRecord(
+        name=scene.name,
+        source=scene.source,
+        assumed=scene.assumed,
+        digest=scene.digest,
+        inputs=describe_inputs(scene, plan, numerics),
+        kind=scene.rotor.kind,
+        axis=scene.rotor.axis,
+        friction=law,
+        gravity=gravity,
+        model=taken.model,
+        model_reason=taken.reason,
+        model_error=taken.error,
+        numerics=numerics,
+        history=history,
+        turning=int(fastest[-1]) if plan.back else history.time.size - 1,
+        in_range=in_range,
+        steady=steady,
+        bands=bands,
+        chambers=tuple(_chamber(fill) for fill in scene.chambers),
+        planes=tuple(fill.chamber.plane for fill in scene.chambers),
+        notes=(f"Liquid model: {taken.reason}", *describe_run(scene, history, steady, bands), *faults),
+    )
+
+
+def planned(scene: Scene) -> Runup:
+    """The run-up that a scene asks for.
+
+    Raises
+    ------
+    InputError : it asks for none
+    """
+    if scene.runup is None:
+        allowed = (
+            "a table [runup] in the scene with start, stop, duration, and rate or motor; "
+            "what `leblanc new` writes has one, commented out"
+        )
+        raise InputError("runup", "missing", allowed)
+    return scene.runup
+
+
+def drive_of(plan: Runup) -> Drive:
+    """Ramp or motor of a run-up."""
+    if plan.motor is not None:
+        motor = plan.motor
+        return Motor(plan.start, motor.inertia, motor.speeds, motor.torques, plan.duration)
+    if plan.rate is None:
+        raise InputError("runup.rate", None, "given where there is no motor")
+    return Ramp(plan.start, plan.stop, plan.rate, plan.duration, plan.back)
+
+
+def numerics_of(
+    plan: Runup, cells: int | None = None, samples: int | None = None, check: bool = True
+) -> RunupNumerics:
+    """Resolution of a run-up, of the scene where nothing else is asked for."""
+    return RunupNumerics(
+        cells=plan.cells if cells is None else cells,
+        samples=plan.samples if samples is None else samples,
+        dispersion=plan.dispersion,
+        companion=check,
+    )
+
+
+def steady_response(scene: Scene, speed: Array) -> Response | None:
+    """Synchronous response over the speeds that were passed; None unless the rotor is a Jeffcott rotor."""
+    passed = _passed(speed, STEADY_SPEEDS)
+    if not isinstance(scene.rotor, Rotor) or passed.size == 0:
+        return None
+    return synchronous_response(jeffcott(scene), scene.chambers, passed, axial_gravity(scene))
+
+
+def whirl_bands(scene: Scene, speed: Array) -> Bands:
+    """Bands of the speeds that were passed in which some whirl grows by itself, rad/s."""
+    from solvers.whirl.edges import unstable_bands
+
+    passed = _passed(speed, BAND_SPEEDS)
+    if not scene.chambers or passed.size == 0:
+        return ()
+    system, friction = dry_rotor(scene).system(), solver_friction(scene.model.friction)
+    return unstable_bands(system, [scene.chambers], passed, friction)[0]
+
+
+def _passed(speed: Array, count: int) -> Array:
+    """Speeds evenly over those of a run with the spin, which a motor may have turned round; none if still."""
+    low, high = max(float(speed.min()), 1e-3 * float(speed.max())), float(speed.max())
+    return np.linspace(low, high, count) if 0.0 < low < high else np.empty(0)
+
+
+def turn_mean(values: Complex, angle: Array) -> Complex:
+    """Mean over the turns of the rotor around each time: what stands still in space drops out of it.
+
+    The mean is taken over one turn, or over as many whole turns as hold eight samples.
+
+    Parameters
+    ----------
+    values : in the drum frame, shape (k,)
+    angle : of rotation, rising, rad, shape (k,)
+
+    Returns
+    -------
+    Means, shape (k,); near the ends over the turns that there are
+    """
+    if angle.size < 3:
+        return values.copy()
+    steps = np.diff(angle)
+    total = np.concatenate(([0.0], np.cumsum(0.5 * (values[1:] + values[:-1]) * steps)))
+    half = math.pi * np.maximum(1.0, np.ceil(_FEWEST * np.gradient(angle) / (2.0 * math.pi)))
+    half = np.minimum(half, 0.5 * (angle[-1] - angle[0]))
+    middle = np.clip(angle, angle[0] + half, angle[-1] - half)
+
+    def until(edge: Array) -> Complex:
+        return np.asarray(np.interp(edge, angle, total.real) + 1j * np.interp(edge, angle, total.imag))
+
+    return np.asarray((until(middle + half) - until(middle - half)) / (2.0 * half))
+
+
+def _chamber(fill: Fill) -> ChamberRecord:
+    one, name = fill.chamber, fill.liquid.name
+    return ChamberRecord(one.radius, one.inner_radius, one.height, fill.volume, name, fill.surface_radius)

@@ -1,0 +1,1 @@
+"""Sweeps over scenes: what varies, samples, workers, the store, what was found."""

@@ -1,0 +1,107 @@
+"""Scenes of a sweep from sampled values: only what varies is checked anew."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from pydantic import ValidationError
+
+from fluid.fill import Fill
+from leblanc.scene.faults import SceneFaults, one_line
+from leblanc.scene.paths import Keys, with_values
+from leblanc.scene.rotors import ROTORS, rotor_from_table
+from leblanc.scene.rules import Quantity, Table
+from leblanc.scene.scene import Scene, scene_from_table
+from leblanc.scene.tables import TABLES, ChamberTable
+
+_WORDS_ONLY = ("source", "assumed", "runup")  # no answer of a sweep depends on them
+
+_Tables = Mapping[tuple[str, ...], type[Table]]
+
+Maker = Callable[[Sequence[Any]], Scene]
+
+
+def scene_maker(table: Mapping[str, Any], paths: Sequence[Keys]) -> Maker:
+    """What makes one scene after the other from the same table with other values.
+
+    Each is the scene that the whole table with those values gives, at a fraction of the cost.
+
+    Parameters
+    ----------
+    table : content of a scene file, free of faults
+    paths : keys along the path of each value
+
+    Returns
+    -------
+    Function of the values at those paths. It raises SceneFaults where the whole table would.
+    """
+    base = {key: value for key, value in table.items() if key not in _WORDS_ONLY}
+    scene = scene_from_table(base)
+    base = _in_si(base, (), TABLES[scene.rotor.kind])
+    rotor_table = ROTORS[scene.rotor.kind][("rotor",)]
+    touched = {keys[:2] if keys[0] == "chambers" else keys[:1] for keys in paths}
+    chambers = sorted(int(keys[1]) for keys in touched if keys[0] == "chambers")
+    in_parts = all(keys[0] in ("rotor", "chambers") for keys in paths)
+
+    def make(values: Sequence[Any]) -> Scene:
+        changed = with_values(base, zip(paths, values, strict=True))
+        if not in_parts:
+            return scene_from_table(changed)
+        try:
+            fills = list(scene.chambers)
+            for k in chambers:
+                fills[k] = _fill(changed["chambers"][k])
+            rotor = scene.rotor
+            if ("rotor",) in touched:
+                rotor = rotor_from_table(rotor_table.model_validate(changed["rotor"]))
+        except ValidationError:
+            return scene_from_table(changed)  # says what is wrong in words
+        return replace(scene, rotor=rotor, chambers=tuple(fills))
+
+    return make
+
+
+def _in_si(table: Mapping[str, Any], place: tuple[str, ...], tables: _Tables) -> dict[str, Any]:
+    """The table with quantities as plain numbers, which are not parsed again for each sample."""
+    plain = dict(table)
+    for key, value in table.items():
+        below = (*place, key)
+        if isinstance(value, list) and (*below, "*") in tables:
+            plain[key] = [_in_si(one, (*below, "*"), tables) for one in value]
+        elif isinstance(value, dict) and below in tables:
+            plain[key] = _in_si(value, below, tables)
+        elif isinstance(value, str):
+            rules = [getattr(one, "func", None) for one in tables[place].model_fields[key].metadata]
+            plain[key] = next((rule(value) for rule in rules if isinstance(rule, Quantity)), value)
+    return plain
+
+
+def _fill(table: Mapping[str, Any]) -> Fill:
+    one = ChamberTable.model_validate(table)
+    return Fill(one.chamber(), one.liquid, one.volume)
+
+
+def make_scenes(make: Maker, rows: Iterable[Sequence[Any]]) -> tuple[list[Scene | None], list[str]]:
+    """Scenes of some samples, None for one that breaks a rule, and the reason why.
+
+    Parameters
+    ----------
+    make : from `scene_maker`
+    rows : values of each sample
+    """
+    scenes: list[Scene | None] = []
+    reasons: list[str] = []
+    for row in rows:
+        try:
+            scenes.append(make(row))
+            reasons.append("")
+        except SceneFaults as error:
+            scenes.append(None)
+            reasons.append("; ".join(_without_file(str(fault), fault.file) for fault in error.faults))
+    return scenes, reasons
+
+
+def _without_file(line: str, file: str) -> str:
+    return line.removeprefix(f"{one_line(file)}: ")

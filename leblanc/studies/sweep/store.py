@@ -1,0 +1,320 @@
+"""The store of a sweep: one dataset in Zarr's third format, filled block by block. The only door to zarr.
+
+A block's chunks are written and brought to the disk before its part of `status`, which marks it as finished:
+whatever is killed in between, `status` never promises what is not there. Each file is written whole under
+another name and then takes its own. Nothing in the store depends on when, where or by whom it was written.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from collections.abc import Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from leblanc.results.netcdf import dataset, variable, write_dataset
+from leblanc.results.record import one_line, versions
+from leblanc.scene.faults import shown
+from leblanc.studies.sweep.outputs import FLAG, NUMBER, OUTPUTS, PENDING, STATUS, TEXT, Output
+from leblanc.studies.sweep.study import Sweep, VariedField
+from meshes.errors import InputError
+
+STORE = "sweep.zarr"
+
+_FEW, _MANY = 64, 4096  # samples of a block
+_BLOCKS = 50  # of a sweep, as long as they are neither too small nor too large
+_ANSWERS = 16_384  # samples times speeds of a block at most
+_UNFINISHED = "*.partial"  # what zarr calls a file before it is whole
+
+
+@dataclass(frozen=True)
+class Store:
+    """A store on disk, open for reading and writing.
+
+    Parameters
+    ----------
+    path : its folder
+    group : of zarr
+    arrays : of the group by name
+    samples : in all
+    block : samples of a block, which are those of a chunk
+    """
+
+    path: Path
+    group: Any
+    arrays: Mapping[str, Any]
+    samples: int
+    block: int
+
+    def bounds(self, number: int) -> tuple[int, int]:
+        """First sample of a block and the one behind its last."""
+        return number * self.block, min((number + 1) * self.block, self.samples)
+
+    def attributes(self, name: str | None = None) -> dict[str, Any]:
+        """Attributes of a variable, or of the whole."""
+        return dict((self.group if name is None else self.arrays[name]).attrs)
+
+    def read(self, name: str, rows: slice = slice(None), columns: slice | None = None) -> NDArray[Any]:
+        """Values of a variable, or some rows or columns of them; texts as Python's own."""
+        found = np.asarray(self.arrays[name][rows if columns is None else (rows, columns)])
+        return found if found.dtype.kind in "fi" else found.astype(object)
+
+    def dims(self, name: str) -> tuple[str, ...]:
+        """Names of a variable's dimensions."""
+        return tuple(self.arrays[name].metadata.dimension_names)
+
+
+def block_size(samples: int, speeds: int) -> int:
+    """Samples of a block: of the sweep alone, so that the same sweep has the same chunks everywhere.
+
+    Parameters
+    ----------
+    samples, speeds : of the sweep
+    """
+    wanted = min(max(samples // _BLOCKS, _FEW), _MANY)
+    return max(1, min(wanted, _ANSWERS // speeds, samples))
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Keep other processes from writing a store; the lock ends with this process, however it ends.
+
+    Parameters
+    ----------
+    folder : that holds the store
+
+    Raises
+    ------
+    InputError : another process has it
+    """
+    import fcntl
+
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / ".sweep.lock").open("a") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            raise InputError("--out", str(folder), "a folder in which no other sweep runs") from error
+        yield
+
+
+def open_store(folder: Path, sweep: Sweep, fresh: bool = False) -> Store:
+    """The store of a sweep, made if there is none; what a killed run left half written is removed.
+
+    Parameters
+    ----------
+    folder : that holds the store; the caller has locked it
+    sweep : what is to be stored
+    fresh : throw away a store that is there
+
+    Raises
+    ------
+    InputError : there is a store of another sweep or of other versions of the packages
+    """
+    path, part = folder / STORE, folder / f".{STORE}.part"
+    shutil.rmtree(part, ignore_errors=True)
+    if fresh and path.exists():
+        path.rename(part)  # at once; what is left of it after a kill goes with the next start
+        shutil.rmtree(part)
+    if not path.exists():
+        _create(part, sweep)
+        part.rename(path)
+        _to_disk(folder)
+    for left in path.rglob(_UNFINISHED):
+        left.unlink()
+    group = _open(path, "r+")
+    _same(path, dict(group.attrs), _attributes(sweep))
+    return _store(path, group)
+
+
+def read_store(path: Path) -> Store:
+    """A store for reading.
+
+    Parameters
+    ----------
+    path : its folder
+
+    Raises
+    ------
+    InputError : there is none
+    """
+    return _store(path, _open(path, "r"))
+
+
+def _store(path: Path, group: Any) -> Store:
+    import zarr
+
+    with zarr.config.set({"array.write_empty_chunks": True}):  # a missing chunk is always a missing answer
+        arrays = dict(sorted(group.arrays()))
+    status = arrays["status"]
+    return Store(path, group, arrays, int(status.shape[0]), int(status.chunks[0]))
+
+
+def _open(path: Path, mode: str) -> Any:
+    import zarr
+
+    try:
+        return zarr.open_group(path, mode=mode, zarr_format=3)
+    except (FileNotFoundError, KeyError, ValueError) as error:
+        raise InputError("store", str(path), "the store of a sweep") from error
+
+
+def _create(path: Path, sweep: Sweep) -> None:
+    """A store without any answer."""
+    import zarr
+
+    samples, speeds = sweep.samples, sweep.scene.speeds.count
+    block = block_size(samples, speeds)
+    group = zarr.create_group(path, zarr_format=3, attributes=_attributes(sweep))
+
+    def array(name: str, kind: str, over_speed: bool, fill: object, attributes: Mapping[str, Any]) -> None:
+        group.create_array(
+            name,
+            shape=(samples, speeds) if over_speed else (samples,),
+            chunks=(block, speeds) if over_speed else (block,),
+            dtype=kind,
+            fill_value=fill,
+            dimension_names=("sample", "speed") if over_speed else ("sample",),
+            attributes=attributes,
+        )
+
+    for one in OUTPUTS:
+        fill = {NUMBER: np.nan, FLAG: -1, TEXT: ""}[one.kind]
+        array(one.name, one.kind, one.over_speed, fill, _output_attributes(one))
+    for field in sweep.fields:
+        kind, empty = (TEXT, "") if field.words else (NUMBER, np.nan)
+        said = {"units": field.unit, "long_name": field.path, "description": "varied field of the scene"}
+        array(field.path, kind, False, empty, said)
+    states = {"flag_values": list(range(len(STATUS))), "flag_meanings": " ".join(STATUS)}
+    array("status", FLAG, False, PENDING, {"units": "1", "long_name": "state of the sample"} | states)
+    array("reason", TEXT, False, "", {"units": "1", "long_name": "why the sample is not done"})
+
+
+def _output_attributes(one: Output) -> dict[str, Any]:
+    said: dict[str, Any] = {"units": one.units, "long_name": one.long_name}
+    if one.text:
+        said["description"] = one.text
+    if one.meanings:
+        said |= {
+            "flag_values": list(range(-1, len(one.meanings) - 1)),
+            "flag_meanings": " ".join(one.meanings),
+        }
+    return said
+
+
+def _attributes(sweep: Sweep) -> dict[str, Any]:
+    """What the store says of itself; two runs of one sweep say the same."""
+    return {
+        "Conventions": "CF-1.11",
+        "title": one_line(sweep.scene.name),
+        "source": one_line(sweep.scene.source) or "not stated",
+        "assumed": "; ".join(map(one_line, sweep.scene.assumed)) or "nothing",
+        "scene_digest": sweep.scene.digest,
+        "digest": sweep.digest,
+        "method": sweep.method,
+        "points": sweep.points,
+        "seed": str(sweep.seed),
+        "vary": "\n".join(f"{one.path}: {one.distribution}" for one in sweep.fields),
+        "history": "written by leblanc sweep",
+        **{f"version_{package}": version for package, version in _versions().items()},
+    }
+
+
+def _versions() -> dict[str, str]:
+    """Versions of what makes the numbers and of what writes them."""
+    from importlib import metadata
+
+    return versions() | {"zarr": metadata.version("zarr")}
+
+
+def _same(path: Path, found: Mapping[str, Any], own: Mapping[str, Any]) -> None:
+    """Refuse to go on with what another sweep, or other code, has begun."""
+    if found.get("digest") != own["digest"]:
+        allowed = "the store of this study and scene, which have changed since; --fresh starts anew"
+        raise InputError("store", str(path), allowed)
+    for key in own:
+        if key.startswith("version_") and found.get(key) != own[key]:
+            package = key.removeprefix("version_")
+            allowed = f"written with {package} {own[key]}, not {found.get(key)}; --fresh starts anew"
+            raise InputError("store", str(path), allowed)
+
+
+def write_block(
+    store: Store, number: int, variables: Mapping[str, NDArray[Any]], status: NDArray[np.int8]
+) -> None:
+    """Write a finished block, its status last.
+
+    Parameters
+    ----------
+    store : to write to
+    number : of the block
+    variables : all others by name, one row for each sample
+    status : of each sample
+    """
+    start, stop = store.bounds(number)
+    for name, values in variables.items():
+        store.arrays[name][start:stop] = values
+    # Files that are asked for together go to the disk together.
+    with ThreadPoolExecutor(len(variables)) as pool:
+        paths = [store.path / name / "c" / str(number) for name in variables]
+        list(pool.map(_to_disk, (path / "0" if path.is_dir() else path for path in paths)))
+    store.arrays["status"][start:stop] = status
+    _to_disk(store.path / "status" / "c" / str(number))
+
+
+def _to_disk(path: Path) -> None:
+    """Wait until a file or a folder is on the disk."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def field_values(field: VariedField, drawn: NDArray[np.float64]) -> NDArray[Any]:
+    """Sampled values of a field as the store holds them: SI numbers, or words.
+
+    Parameters
+    ----------
+    field : the varied field
+    drawn : sampled numbers, shape (n,)
+    """
+    values = [field.value(one) for one in drawn]
+    if not field.words:
+        return np.array(values, dtype=np.float64)
+    return np.array([one if isinstance(one, str) else _table(one) for one in values], dtype=object)
+
+
+def _table(value: object) -> str:
+    return json.dumps(value, sort_keys=True) if isinstance(value, dict) else shown(value)
+
+
+_SINGLE = ("units", "long_name")
+
+
+def write_copy(store: Store, path: Path) -> None:
+    """Write the whole store as netCDF 4; it passes through the memory as a whole.
+
+    Parameters
+    ----------
+    store : to be copied
+    path : the file to write or replace
+    """
+    found = {}
+    for name in store.arrays:
+        values, said = store.read(name), store.attributes(name)
+        one = variable(store.dims(name), values, *(str(said.pop(key)) for key in _SINGLE))
+        if "flag_values" in said:
+            said["flag_values"] = np.array(said["flag_values"], dtype=np.int8)
+        one.attrs.update(said)
+        found[name] = one
+    speed = found.pop("speed")
+    write_dataset(dataset(found, coords={"speed": speed}, attrs=store.attributes()), path)

@@ -1,0 +1,304 @@
+"""A sweep: a scene, what varies in it and how it is sampled, read from a study file."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, ValidationError
+
+from leblanc.scene.faults import SceneFault, SceneFaults, field_path, shown
+from leblanc.scene.load import read_scene, read_toml
+from leblanc.scene.paths import Keys, keys_of, rule_at
+from leblanc.scene.rules import OneOf, Quantity, Refused, Table, Text, Whole
+from leblanc.scene.scene import Exciter, Scene, scene_from_table
+from leblanc.studies.sweep.distributions import (
+    KINDS,
+    REFUSALS,
+    Choice,
+    Distribution,
+    Levels,
+    read_distribution,
+)
+
+METHODS = ("grid", "latin_hypercube", "sobol", "random", "saltelli")
+MAX_SAMPLES = 10_000_000
+MAX_VARIED = 1000  # fields
+MAX_SEED = 2**63 - 1  # the largest whole number of TOML
+
+_EXAMPLE = '"rotor.mass" = { uniform = ["3 kg", "12 kg"] }'
+
+
+class Varying:
+    """[vary]: fields of the scene by their paths, each with one distribution."""
+
+    allowed = f"a table of 1 to {MAX_VARIED} fields of the scene by their paths, such as {_EXAMPLE}"
+
+    def __call__(self, value: object) -> dict[str, Any]:
+        """The fields, each with what the file says about it."""
+        if isinstance(value, dict) and 1 <= len(value) <= MAX_VARIED:
+            return value
+        raise Refused(self.allowed)
+
+
+class StudyTable(Table):
+    """The whole file."""
+
+    scene: Annotated[str, BeforeValidator(Text(4000))]
+    method: Annotated[str, BeforeValidator(OneOf(METHODS))]
+    samples: Annotated[int | None, BeforeValidator(Whole(1, MAX_SAMPLES))] = None
+    seed: Annotated[int, BeforeValidator(Whole(0, MAX_SEED))] = 0
+    vary: Annotated[dict[str, Any], BeforeValidator(Varying())]
+
+
+def check_study(table: Mapping[str, Any], file: str) -> StudyTable:
+    """Every value of a study but the varied fields, which need the scene, checked.
+
+    Parameters
+    ----------
+    table : content of a study file
+    file : its name, for the messages
+
+    Raises
+    ------
+    SceneFaults : with all that is wrong
+    """
+    if "rotor" in table and "vary" not in table:
+        text = "a study with the keys scene, method and [vary]; this is a scene, which `leblanc run` answers"
+        raise SceneFaults([SceneFault(file, "", None, text)])
+    faults: list[SceneFault] = []
+    checked = None
+    try:
+        checked = StudyTable.model_validate(table)
+    except ValidationError as error:
+        faults.extend(_broken_rules(error, file))
+    faults.extend(_samples(table, file))
+    if checked is None or faults:
+        raise SceneFaults(faults)
+    return checked
+
+
+def _broken_rules(error: ValidationError, file: str) -> Iterator[SceneFault]:
+    """One fault for each broken rule."""
+    for item in error.errors(include_url=False):
+        cause = item.get("ctx", {}).get("error")
+        value = None if item["type"] == "missing" else shown(item["input"])
+        if item["type"] == "extra_forbidden":
+            allowed = "left out or spelled as one of: " + ", ".join(StudyTable.model_fields)
+        elif isinstance(cause, Refused):
+            allowed = cause.allowed
+        else:
+            allowed = f"given: {_rule(str(item['loc'][0]))}"
+        yield SceneFault(file, field_path(item["loc"]), value, allowed)
+
+
+def _samples(table: Mapping[str, Any], file: str) -> Iterator[SceneFault]:
+    """The number of samples, which a grid has by its levels."""
+    method = table.get("method")
+    if method == "grid" and "samples" in table:
+        yield SceneFault(file, "samples", shown(table["samples"]), "left out where method is grid")
+    elif method in METHODS and method != "grid" and "samples" not in table:
+        yield SceneFault(file, "samples", None, f"given: {_rule('samples')}")
+
+
+def _rule(name: str) -> str:
+    """The rule of a field in words."""
+    for rule in StudyTable.model_fields[name].metadata:
+        if isinstance(rule, BeforeValidator):
+            return str(getattr(rule.func, "allowed", ""))
+    return ""
+
+
+_MOST_PERMUTED = 50_000_000  # numbers of a Latin hypercube, which is made as a whole
+
+
+@dataclass(frozen=True)
+class VariedField:
+    """A field of the scene and the values it takes.
+
+    Parameters
+    ----------
+    path : of the field, as in "chambers.0.volume"
+    unit : SI unit of its values; "1" where they have none
+    distribution : of the values
+    """
+
+    path: str
+    unit: str
+    distribution: Distribution
+
+    @property
+    def keys(self) -> Keys:
+        """Keys along the path."""
+        return keys_of(self.path)
+
+    @property
+    def words(self) -> bool:
+        """The values are words, and samples hold their numbers."""
+        return isinstance(self.distribution, Choice) and self.distribution.words
+
+    def value(self, drawn: float) -> Any:
+        """What the scene gets for a sampled number."""
+        if isinstance(self.distribution, Choice):
+            return self.distribution.options[int(drawn)]
+        return float(drawn)
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Many scenes that differ in a few values.
+
+    Parameters
+    ----------
+    name : of the study file, without its ending
+    scene_path : of the scene they are made from
+    table : content of that file
+    scene : that scene
+    method : of sampling
+    points : of the design: samples, but for a "saltelli" design, which has some for each point
+    seed : of the samples
+    fields : what varies
+    """
+
+    name: str
+    scene_path: str
+    table: Mapping[str, Any]
+    scene: Scene
+    method: str
+    points: int
+    seed: int
+    fields: tuple[VariedField, ...]
+
+    @property
+    def samples(self) -> int:
+        """How many scenes there are."""
+        return self.points * samples_for_each_point(self.method, len(self.fields))
+
+    @property
+    def digest(self) -> str:
+        """Fingerprint of all that the results depend on but the code (SHA-256)."""
+        content = {
+            "scene": self.scene.digest,
+            "method": self.method,
+            "points": self.points,
+            "seed": self.seed,
+            "fields": [
+                [one.path, type(one.distribution).__name__, asdict(one.distribution)] for one in self.fields
+            ],
+        }
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def samples_for_each_point(method: str, fields: int) -> int:
+    """Samples for each point of a design: with both sets and each field exchanged in "saltelli", else one."""
+    return fields + 2 if method == "saltelli" else 1
+
+
+def load_sweep(path: str | PathLike[str]) -> Sweep:
+    """Sweep from a study file.
+
+    Parameters
+    ----------
+    path : the file; the path of its scene counts from there
+
+    Raises
+    ------
+    SceneFaults : with all that is wrong
+    """
+    file = str(path)
+    table = check_study(read_toml(path), file)
+    scene_path = Path(path).parent / table.scene
+    scene_table = read_scene(scene_path)
+    scene = scene_from_table(scene_table, str(scene_path))
+    if isinstance(scene.rotor, Exciter):
+        allowed = "a scene whose rotor answers at its speeds: jeffcott, two_plane or tub"
+        raise SceneFaults([SceneFault(file, "scene", shown(table.scene), allowed)])
+    fields = _fields(table.vary, scene_table, table.method, file)
+    points = table.samples
+    if points is None:
+        points = math.prod(_levels(one.distribution) for one in fields)
+    sweep = Sweep(
+        name=Path(path).stem,
+        scene_path=table.scene,
+        table=scene_table,
+        scene=scene,
+        method=table.method,
+        points=points,
+        seed=table.seed,
+        fields=fields,
+    )
+    _check_size(sweep, file)
+    return sweep
+
+
+def _levels(distribution: Distribution) -> int:
+    """How many values a field of a grid takes."""
+    assert isinstance(distribution, Choice | Levels)  # no other stands in a grid
+    return int(distribution.levels().size)
+
+
+def _fields(
+    vary: Mapping[str, Any], scene: Mapping[str, Any], method: str, file: str
+) -> tuple[VariedField, ...]:
+    """The varied fields, or all faults of them."""
+    faults: list[SceneFault] = []
+    fields = []
+    for path, given in vary.items():
+        where: tuple[str, ...] = ("vary", path)
+        value: object = None
+        try:
+            rule = rule_at(scene, path)
+            kind = _kind(given, method)
+            where, value = (*where, kind), given[kind]
+            distribution = read_distribution(kind, value, rule)
+        except REFUSALS as error:
+            said = None if value is None else shown(value)
+            if value is None and not isinstance(given, Mapping):
+                said = shown(given)
+            faults.append(SceneFault(file, field_path(where), said, error.allowed))
+            continue
+        unit = rule.dimension.unit if isinstance(rule, Quantity) else ""
+        fields.append(VariedField(path, unit or "1", distribution))
+    faults = faults or _nested(vary, file)
+    if faults:
+        raise SceneFaults(faults)
+    return tuple(fields)
+
+
+def _kind(given: object, method: str) -> str:
+    """Which distribution a field has."""
+    names = [one for one in KINDS if (one in ("linspace", "choice")) or method != "grid"]
+    if method != "grid":
+        names.remove("linspace")
+    if not isinstance(given, Mapping) or len(given) != 1 or next(iter(given)) not in names:
+        raise Refused(f"a table of exactly one of {', '.join(names)} where method is {method}")
+    return str(next(iter(given)))
+
+
+def _nested(vary: Mapping[str, Any], file: str) -> list[SceneFault]:
+    """Fields that are part of another varied field."""
+    keys = {path: keys_of(path) for path in vary}
+    return [
+        SceneFault(file, field_path(("vary", path)), None, f"left out where {other} varies as a whole")
+        for path, own in keys.items()
+        for other, above in keys.items()
+        if len(above) < len(own) and own[: len(above)] == above
+    ]
+
+
+def _check_size(sweep: Sweep, file: str) -> None:
+    """Neither more samples than can be numbered nor a design that would not fit the memory."""
+    field = "vary" if sweep.method == "grid" else "samples"
+    allowed = ""
+    if sweep.samples > MAX_SAMPLES:
+        allowed = f"at most {MAX_SAMPLES} scenes in all"
+    elif sweep.method == "latin_hypercube" and sweep.points * len(sweep.fields) > _MOST_PERMUTED:
+        allowed = f"at most {_MOST_PERMUTED // len(sweep.fields)} with {len(sweep.fields)} varied fields"
+    if allowed:
+        raise SceneFaults([SceneFault(file, field, str(sweep.samples), allowed)])

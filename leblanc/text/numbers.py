@@ -1,0 +1,49 @@
+"""Numbers and ranges of speed as they are printed."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from leblanc.results.record import RPM
+
+MOST_RANGES = 4  # listed one by one
+NOT_FOUND, MINUS = "not found", "\N{MINUS SIGN}"
+
+
+def number(value: float) -> str:
+    """Value to four digits for print, without zeros at the end."""
+    if not math.isfinite(value):
+        return NOT_FOUND if math.isnan(value) else "infinite"
+    if value == 0.0:
+        return "0"
+    exponent = math.floor(math.log10(abs(value)))
+    if not -4 <= exponent < 6:
+        return f"{value:.3e}".replace("-", MINUS)
+    text = f"{value:.{max(0, 3 - exponent)}f}"
+    return (text.rstrip("0").rstrip(".") if "." in text else text).replace("-", MINUS)
+
+
+def ranges(speed: NDArray[np.float64], mask: NDArray[np.bool_]) -> str:
+    """Speeds at which a condition holds, in words.
+
+    Parameters
+    ----------
+    speed : rad/s, in any order, shape (n,)
+    mask : the condition, shape (n,)
+    """
+    if not mask.any():
+        return "none"
+    if mask.all():
+        return "all speeds"
+    order = np.argsort(speed, kind="stable")
+    rpm, holds = speed[order] * RPM, mask[order]
+    change = np.flatnonzero(np.diff(np.concatenate(([False], holds, [False]))))
+    first, last = rpm[change[::2]], rpm[change[1::2] - 1]
+    if first.size > MOST_RANGES:
+        return f"{first.size} ranges between {number(first[0])} and {number(last[-1])} rpm"
+    pairs = zip(first.tolist(), last.tolist(), strict=True)
+    parts = [number(a) if a == b else f"{number(a)} to {number(b)}" for a, b in pairs]
+    return "; ".join(parts) + " rpm"

@@ -1,0 +1,214 @@
+"""Quantities with units at the border: text or plain number in, SI number out. The only door to pint.
+
+A cycle is an angle here: "1 Hz" and "60 rpm" are both 2 pi rad/s. (pint alone takes a hertz for 1/s, which
+would make a speed in hertz 2 pi too small.) "1/s" is read as rad/s where an angular speed is wanted, as the
+literature writes it, while "1/min" is refused there: nameplates mean turns by it. A rate in 1/s that is no
+rotation takes neither hertz nor rpm.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+from dataclasses import dataclass
+from numbers import Real
+from typing import Any
+
+from meshes.errors import InputError
+
+_LONGEST = 64  # characters; no quantity needs more, and pint evaluates what it is given
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """A kind of quantity.
+
+    Parameters
+    ----------
+    name : in words, as in "must be a length"
+    unit : its SI unit, that of plain numbers; empty for a pure number
+    example : how a user may write one
+    also : other units taken as equal to the SI unit, but not their multiples
+    """
+
+    name: str
+    unit: str
+    example: str
+    also: tuple[str, ...] = ()
+
+    @property
+    def allowed(self) -> str:
+        """What may be written, in words."""
+        article = "an" if self.name[0] in "aeiou" else "a"
+        if not self.unit:
+            return f"{article} {self.name} such as {self.example}"
+        return f'{article} {self.name} such as "{self.example}" (a plain number is in {self.unit})'
+
+
+NUMBER = Dimension("pure number", "", "0.1")
+LENGTH = Dimension("length", "m", "65 mm")
+VOLUME = Dimension("volume", "m^3", "10 ml")
+MASS = Dimension("mass", "kg", "4 kg")
+DENSITY = Dimension("density", "kg/m^3", "998 kg/m^3")
+VISCOSITY = Dimension("kinematic viscosity", "m^2/s", "1.0 mm^2/s")
+STIFFNESS = Dimension("stiffness", "N/m", "4.4e4 N/m")
+DAMPING = Dimension("damping coefficient", "N*s/m", "84 N*s/m")
+UNBALANCE = Dimension("unbalance", "kg*m", "0.6 kg*mm")
+INERTIA = Dimension("moment of inertia", "kg*m^2", "0.5 kg*m^2")
+TORQUE = Dimension("torque", "N*m", "20 N*m")
+ANGLE = Dimension("angle", "rad", "30 deg")
+TIME = Dimension("time", "s", "14 s")
+RATE = Dimension("rate", "1/s", "0.5 1/s")
+ACCELERATION = Dimension("acceleration", "m/s^2", "9.81 m/s^2")
+TEMPERATURE = Dimension("temperature", "K", "20 degC")
+ANGULAR_SPEED = Dimension("angular speed", "rad/s", "1000 rpm", also=("1/s",))
+ANGULAR_ACCELERATION = Dimension("angular acceleration", "rad/s^2", "8 rad/s^2", also=("1/s^2",))
+
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?"
+_POWER = r"(?:\s*(?:\^|\*\*)\s*[+-]?[1-9])?"
+_FACTOR = rf"[A-Za-zµμ°%]++{_POWER}"
+_JOIN = r"(?:\s*[*/]\s*|\s+)"
+_GROUP = rf"\(\s*{_FACTOR}(?:{_JOIN}{_FACTOR})*\s*\){_POWER}"
+_UNIT = rf"(?:1?\s*/\s*)?(?:{_FACTOR}|{_GROUP})(?:{_JOIN}(?:{_FACTOR}|{_GROUP}))*"
+_QUANTITY = re.compile(rf"\s*({_NUMBER})\s*({_UNIT})?\s*", re.ASCII)
+_SPELLINGS = str.maketrans({"·": "*", "⋅": "*", "²": "^2", "³": "^3"})
+_DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d")
+_TURNS_A_MINUTE = re.compile(r"(?:RPM|Rpm|(?:rev|r|U)\s*/\s*min)")  # as nameplates have it
+_HERTZ = re.compile(r"(?<![A-Za-z])([A-Za-z]*?)(?:Hz|hertz)(?![A-Za-z])")
+
+
+def parse(value: object, dimension: Dimension, field: str = "value") -> float:
+    """Value of a quantity in SI units.
+
+    Parameters
+    ----------
+    value : a plain number, taken as SI, or a text of a number and a unit
+    dimension : what it must be
+    field : name of the value, for the message
+
+    Returns
+    -------
+    the value in `dimension.unit`; finite
+
+    Raises
+    ------
+    InputError : not a number, not finite, an unknown unit, a unit of something else
+
+    Examples
+    --------
+    >>> parse("65 mm", LENGTH), parse(0.065, LENGTH), parse("60 rpm", ANGULAR_SPEED) / math.pi
+    (0.065, 0.065, 2.0)
+    """
+    if isinstance(value, str):
+        number = _from_text(value, dimension, field)
+    elif isinstance(value, Real) and not isinstance(value, bool):
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+    else:
+        raise InputError(field, type(value).__name__, dimension.allowed)
+    if not math.isfinite(number):
+        given = value if isinstance(value, str) else number
+        raise InputError(field, given, f"{dimension.allowed}, and finite")
+    return number
+
+
+def parse_option(text: str, dimension: Dimension, field: str) -> float:
+    """Value of a quantity typed on the command line, where a plain number comes as text too.
+
+    Raises
+    ------
+    InputError : as `parse`
+    """
+    try:
+        number = float(text)
+    except ValueError:
+        return parse(text, dimension, field)
+    return parse(number, dimension, field)
+
+
+def _from_text(text: str, dimension: Dimension, field: str) -> float:
+    """Number and unit to SI."""
+    match = _QUANTITY.fullmatch(text.translate(_SPELLINGS)) if len(text) <= _LONGEST else None
+    if match is None:
+        hint = "; the decimal sign is a point" if _DECIMAL_COMMA.match(text) else ""
+        raise InputError(field, text[:_LONGEST], dimension.allowed + hint)
+    number, unit = float(match[1]), match[2] or ""
+    if not unit and dimension.unit:
+        raise InputError(field, text, f"{dimension.allowed}; this text has no unit")
+    if dimension is TEMPERATURE:
+        return _kelvin(number, unit, text, field)
+    factor = _factor("1" + unit if unit.startswith("/") else unit, dimension)
+    if isinstance(factor, str):
+        raise InputError(field, text, f"{dimension.allowed}; {factor}")
+    return _scaled(number, factor)
+
+
+def _kelvin(number: float, unit: str, text: str, field: str) -> float:
+    """Temperature on the absolute scale; degrees count from an offset, which a factor cannot say."""
+    import pint
+
+    try:
+        return float(_registry().Quantity(number, _registry().parse_units(unit)).to("kelvin").magnitude)
+    except (pint.PintError, ArithmeticError) as error:
+        raise InputError(field, text, TEMPERATURE.allowed) from error
+
+
+def _scaled(number: float, factor: float) -> float:
+    """Product with a conversion factor, rounded once where the factor is a whole number or one over it."""
+    if factor >= 1.0:
+        whole = round(factor)
+        return number * (whole if math.isclose(whole, factor, rel_tol=1e-12) else factor)
+    parts = round(1.0 / factor)
+    return number / parts if math.isclose(parts * factor, 1.0, rel_tol=1e-12) else number * factor
+
+
+@functools.lru_cache(maxsize=1024)
+def _factor(unit: str, dimension: Dimension) -> float | str:
+    """SI value of one unit, or what is wrong with it."""
+    if not unit:
+        return 1.0
+    import pint
+
+    try:
+        factor, base = _base("rpm" if _TURNS_A_MINUTE.fullmatch(unit) else unit)
+    except pint.UndefinedUnitError as error:
+        names = error.unit_names
+        return _no_unit([names] if isinstance(names, str) else list(names))
+    except (pint.PintError, ArithmeticError):
+        return f"{unit} cannot be used as a unit"
+    if factor is None or not 1e-30 < factor < 1e30:
+        return f"{unit} cannot be used as a unit"
+    if base == _base(dimension.unit)[1]:
+        return float(factor)
+    if base not in [_base(name)[1] for name in dimension.also]:
+        return f"{unit} measures something else"
+    if not math.isclose(factor, 1.0, rel_tol=1e-12):
+        return f"{unit} may mean turns or radians"
+    return 1.0
+
+
+def _no_unit(names: list[str]) -> str:
+    """Names that are no units, and what may have been meant."""
+    said = f"there is no unit {' or '.join(names)}"
+    small = names[0].lower()
+    return f"{said}, but {small}" if small != names[0] and small in _registry() else said
+
+
+def _base(unit: str) -> tuple[float | None, Any]:
+    """Factor to SI base units, None for a scale that is not a factor, and those units, angles among them."""
+    registry = _registry()
+    parsed = registry.parse_units(_HERTZ.sub(r"(\1turn/s)", unit).replace("%", "percent"))
+    one, two = (registry.Quantity(size, parsed).to_base_units() for size in (1.0, 2.0))
+    is_factor = math.isclose(two.magnitude, 2.0 * one.magnitude, rel_tol=1e-12)
+    return one.magnitude if is_factor else None, one.units
+
+
+@functools.cache
+def _registry() -> Any:
+    """The unit definitions; they take a third of a second to read, so only a text with a unit reads them."""
+    import pint
+
+    return pint.UnitRegistry()

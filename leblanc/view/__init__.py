@@ -1,0 +1,1 @@
+"""Three-dimensional pictures, films and pages of a machine."""

@@ -1,0 +1,176 @@
+"""Liquid of chambers that baffles cut into compartments or whose section is no circle, as closed bodies.
+
+Every compartment keeps its volume. Its free surface is z = beta r^2 + C about the axis at rest, with a C of
+its own; without gravity along the axis it is the circle at a distance of its own.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fluid.fill import Fill
+from meshes.bodies.body import Body, body_integrals
+from meshes.bodies.paraboloid import paraboloid_body
+from meshes.chamber_section import liquid_of
+from meshes.rings.sectors import compartment
+from meshes.section import Section, section_area
+
+if TYPE_CHECKING:  # scikit-fem is loaded where such a chamber is drawn
+    from solvers.statics.free_surface import SurfaceSolution
+
+Array = NDArray[np.float64]
+
+AROUND = 180  # sides around the farthest wall, at least
+_RIGHT_ANGLE = 24  # sides on a quarter of a compartment's wall
+
+
+@dataclass(frozen=True)
+class LiquidBodies:
+    """Bodies of liquid that cannot mix, in one chamber.
+
+    Parameters
+    ----------
+    centre : of the chamber, m from the axis at rest
+    bodies : in coordinates of the chamber
+    """
+
+    centre: complex
+    bodies: tuple[Body, ...]
+
+    def volume(self) -> float:
+        """Of all of them, m^3."""
+        return sum(body_integrals(body).volume for body in self.bodies)
+
+
+def is_cut(fill: Fill) -> bool:
+    """The liquid is no single body between circular walls.
+
+    Parameters
+    ----------
+    fill : the chamber with its liquid
+    """
+    return fill.chamber.section is not None or fill.compartments > 1
+
+
+@lru_cache(maxsize=32)
+def sections_of(fill: Fill) -> tuple[Section, ...]:
+    """Section of each body of liquid, from wall to wall.
+
+    Parameters
+    ----------
+    fill : a chamber for which `is_cut` holds
+    """
+    chamber = fill.chamber
+    if chamber.section is not None:
+        return (chamber.section.mesh,)
+    assert chamber.baffles is not None
+    count = fill.compartments
+    sides = max(4, math.ceil(4 * _RIGHT_ANGLE / count))
+    return tuple(
+        compartment(chamber.baffles, k, chamber.radius, chamber.inner_radius, sides) for k in range(count)
+    )
+
+
+def steepness(speed: float, gravity: float) -> float:
+    """beta = Omega^2/(2 g), 1/m; infinite without gravity along the axis [theory: statics, eq. 1].
+
+    Parameters
+    ----------
+    speed : spin, rad/s
+    gravity : along the axis, m/s^2
+    """
+    return math.inf if gravity == 0.0 else speed**2 / (2.0 * gravity)
+
+
+@lru_cache(maxsize=256)
+def surfaces(
+    fill: Fill, volume: float, deflection: complex, speed: float, gravity: float
+) -> tuple[SurfaceSolution, ...]:
+    """Free surface of each body of liquid, equal shares of the volume.
+
+    Parameters
+    ----------
+    fill : a chamber for which `is_cut` holds
+    volume : of all liquid as drawn, m^3
+    deflection : of the chamber's centre from the axis at rest, m
+    speed : spin, rad/s
+    gravity : along the axis, m/s^2
+    """
+    return _surfaces(fill, volume, deflection, speed, gravity)
+
+
+def _surfaces(
+    fill: Fill, volume: float, deflection: complex, speed: float, gravity: float
+) -> tuple[SurfaceSolution, ...]:
+    from solvers.statics.free_surface import solve_surface
+
+    meshes, height = sections_of(fill), fill.chamber.height
+    axis = (-deflection.real, -deflection.imag)
+    beta = steepness(speed, gravity)
+    share = volume / len(meshes)
+    return tuple(
+        solve_surface(mesh, height, beta, min(share, section_area(mesh) * height), axis) for mesh in meshes
+    )
+
+
+def bodies_at_rest(
+    fill: Fill, volume: float, deflection: complex, speed: float, gravity: float
+) -> LiquidBodies:
+    """Liquid that turns with its chamber about the axis at rest [theory: statics, eq. 1].
+
+    Parameters
+    ----------
+    fill, volume, deflection, speed, gravity : as for `surfaces`
+    """
+    beta, bodies = steepness(speed, gravity), []
+    found = surfaces(fill, volume, deflection, speed, gravity)
+    for mesh, surface in zip(sections_of(fill), found, strict=True):
+        bodies.append(
+            paraboloid_body(
+                mesh,
+                fill.chamber.height,
+                beta,
+                0.0 if math.isinf(beta) else surface.surface_constant,
+                dry_radius=surface.dry_radius,
+                axis=(-deflection.real, -deflection.imag),
+                size=2.0 * math.pi * fill.chamber.radius / AROUND,
+                layers=1,
+                order=1,
+            )
+        )
+    return LiquidBodies(deflection, tuple(bodies))
+
+
+def wall_is_dry(fill: Fill, volume: float, deflection: complex, speed: float, gravity: float) -> bool:
+    """Somewhere a wall that the liquid at rest covers has none over its whole height.
+
+    Parameters
+    ----------
+    fill, volume, deflection, speed, gravity : as for `surfaces`
+    """
+    found = surfaces(fill, volume, deflection, speed, gravity)
+    for wall, surface in zip(_walls(fill), found, strict=True):
+        if float(np.abs(wall + deflection).min()) < surface.dry_radius:
+            return True
+    return False
+
+
+@lru_cache(maxsize=32)
+def _walls(fill: Fill) -> tuple[NDArray[np.complex128], ...]:
+    """Points of the wall that each body covers at rest, from the chamber's centre, m."""
+    chamber = fill.chamber
+    if chamber.section is not None:
+        if not fill.uneven:
+            return (np.array([complex(chamber.radius)]),)
+        liquid = liquid_of(chamber.section, fill.surface_radius)
+        points = liquid.points[np.unique(liquid.wall)]
+        return (points[:, 0] + 1j * points[:, 1],)
+    assert chamber.baffles is not None
+    turn = np.linspace(0.0, 2.0 * math.pi / fill.compartments, 2 * AROUND)
+    return tuple(chamber.radius * np.exp(1j * (start + turn)) for start in chamber.baffles.angles)

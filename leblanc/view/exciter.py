@@ -1,0 +1,161 @@
+"""Picture of a vibrating table: platform, springs, track with its balls, unbalance of the shaft."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from leblanc.figures.section import rounded_down
+from leblanc.results.record import MM, RPM, Array, one_line
+from leblanc.scene.scene import Exciter, Scene
+from leblanc.studies.exciter import machine_of
+from leblanc.view.parts import NO_CELLS, Indices, Label, Picture, Piece, bar_length, circle, line
+from meshes.errors import InputError
+from solvers.rotor.exciter.machine import platform_motion
+from solvers.rotor.exciter.stuck import stuck_speeds
+
+# Lengths over the radius of the track, chosen for the picture: a scene does not give them.
+HALF, THICK, BELOW, SPRING, BALL, SPOT = 1.9, 0.18, 1.5, 1.2, 0.22, 0.09
+SWING, MOST = 0.35, 100.0  # vibration as drawn, and the largest factor
+
+
+def exciter_picture(scene: Scene, speed: float | None = None) -> tuple[Picture, dict[str, object]]:
+    """A table with balls at the moment when balls and unbalance both point along the vibration.
+
+    Parameters
+    ----------
+    scene : of kind "exciter"
+    speed : of the shaft, rad/s; the last of its speeds if None
+
+    Returns
+    -------
+    The picture and its numbers, SI
+
+    Raises
+    ------
+    InputError : another rotor, a speed that is not above 0
+    """
+    rotor = scene.rotor
+    if not isinstance(rotor, Exciter):
+        raise InputError("rotor.kind", rotor.kind, "exciter for this")
+    spin = scene.speeds.stop if speed is None else speed
+    if not (math.isfinite(spin) and spin > 0.0):
+        raise InputError("--speed", spin, "a finite number above 0")
+    machine = machine_of(rotor)
+    numbers, unit = machine.dimensionless(), machine.natural_frequency
+    stuck = float(stuck_speeds(np.array([spin / unit]), numbers)[0, 0])
+    slow, fast = (abs(one) * machine.length for one in platform_motion(numbers, spin / unit, stuck))
+    largest, track = slow + fast, rotor.balls.track_radius
+    factor = float(f"{rounded_down(min(MOST, SWING * track / largest)):.6g}") if largest > 0.0 else 1.0
+    pieces = _table(track) + _rotor(track, rotor.balls.count)
+    swing, names = _swing(track, factor * largest)
+    bar, name = _bar(track)
+    caption = [
+        f"Vibration drawn {factor:g} times larger; radius of the track to scale.",
+        "Platform, springs and size of the balls are not in the scene and only sketched.",
+        "Balls and unbalance turn at different speeds; drawn is a moment when they line up.",
+    ]
+    state = [
+        f"balls stuck together at {stuck * unit * RPM:.4g} rpm: platform {slow * MM:.3g} mm",
+        f"unbalance of the shaft: platform {fast * MM:.3g} mm",
+    ]
+    labels = [
+        Label("unbalance", (0.0, -0.62 * track * MM, 0.55 * track * MM)),
+        Label(f"{rotor.balls.count} {rotor.balls.kind}s", (0.0, 0.75 * track * MM, 1.1 * track * MM)),
+        *names,
+        name,
+    ]
+    frame = np.concatenate([one.points for one in (*pieces, *swing, bar)])
+    picture = Picture(
+        (*pieces, *swing, bar),
+        tuple(labels),
+        f"{one_line(scene.name)}: shaft at {spin * RPM:.4g} rpm ({spin:.4g} rad/s)",
+        "\n".join(state),
+        " ".join(caption),
+        lying=True,
+        long=False,
+        frame=frame,
+    )
+    found: dict[str, object] = {
+        "speed": spin,
+        "stuck_speed": stuck * unit,
+        "slow": slow,
+        "fast": fast,
+        "deflection_factor": factor,
+    }
+    return picture, found
+
+
+def _box(low: tuple[float, float, float], high: tuple[float, float, float]) -> tuple[Array, Indices]:
+    corners = np.array(
+        [[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
+    )
+    faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    return corners * MM, np.array(faces, dtype=np.int64)
+
+
+def _table(track: float) -> list[Piece]:
+    """Platform under the track, four springs, the floor."""
+    half, top = HALF * track, -1.3 * track
+    under = top - THICK * track
+    points, faces = _box((-half, -half, under), (half, half, top))
+    # Faces apart, so that edges stay sharp.
+    plate = [Piece("platform", points[face], np.arange(4, dtype=np.int64)[None], "floor") for face in faces]
+    floor = under - SPRING * track
+    ground = (
+        np.array([[-half, -half, floor], [half, -half, floor], [half, half, floor], [-half, half, floor]])
+        * MM
+    )
+    springs = []
+    turn = np.linspace(0.0, 10.0 * math.pi, 201)
+    for x in (-0.8 * half, 0.8 * half):
+        for y in (-0.8 * half, 0.8 * half):
+            coil = np.stack(
+                [
+                    x + 0.12 * track * np.cos(turn),
+                    y + 0.12 * track * np.sin(turn),
+                    np.linspace(floor, under, turn.size),
+                ],
+                axis=-1,
+            )
+            springs.append(Piece("spring", coil * MM, line(turn.size), "arm"))
+    return [*plate, Piece("ground", ground, np.arange(4, dtype=np.int64)[None], "lid"), *springs]
+
+
+def _rotor(track: float, count: int) -> list[Piece]:
+    """Track, balls about its top, unbalance on the shaft, the shaft."""
+    pieces = []
+    for radius in ((1.0 - BALL) * track, (1.0 + BALL) * track):
+        ring = circle(0j, radius)
+        for x in (-BALL * track, BALL * track):
+            points = np.stack([np.full(ring.size, x), ring.real, ring.imag], axis=-1) * MM
+            pieces.append(Piece("track", points, line(ring.size), "rim"))
+    # Side by side about the direction of the vibration.
+    apart = 2.0 * math.asin(min(1.0, BALL))
+    angle = 0.5 * math.pi + apart * (np.arange(count) - 0.5 * (count - 1))
+    balls = np.stack([np.zeros(count), track * np.cos(angle), track * np.sin(angle)], axis=-1) * MM
+    pieces.append(Piece("balls", balls, NO_CELLS, "ball", 0.95 * BALL * track * MM))
+    arm = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.55 * track]]) * MM
+    pieces.append(Piece("arm", arm, line(2), "arm"))
+    pieces.append(Piece("unbalance", arm[1:], NO_CELLS, "unbalance", SPOT * track * MM))
+    shaft = np.array([[-0.9 * track, 0.0, 0.0], [0.9 * track, 0.0, 0.0]]) * MM
+    return [*pieces, Piece("shaft", shaft, line(2), "axis at rest")]
+
+
+def _swing(track: float, size: float) -> tuple[list[Piece], list[Label]]:
+    """Arrow of the vibration, up and down from the middle of the platform's edge."""
+    y, middle = 1.15 * HALF * track, -1.3 * track
+    x = HALF * track
+    ends = [np.array([[x, y, middle], [x, y, middle + sign * size]]) * MM for sign in (1.0, -1.0)]
+    name = Label("vibration", (x * MM, y * MM, (middle + size + 0.15 * track) * MM))
+    return [Piece("vibration", one, line(2), "spin") for one in ends], [name]
+
+
+def _bar(track: float) -> tuple[Piece, Label]:
+    """Scale bar beside the platform."""
+    length = bar_length(track)
+    y, z = -HALF * track, -(1.3 + THICK + SPRING + 0.25) * track
+    points = np.array([[HALF * track, y, z], [HALF * track, y + length, z]]) * MM
+    name = Label(f"{length * MM:g} mm", (HALF * track * MM, (y + length + 0.35 * track) * MM, z * MM))
+    return Piece("scale bar", points, line(2), "bar"), name

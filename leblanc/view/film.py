@@ -1,0 +1,237 @@
+"""Films: a machine swept through its speeds or run up in time, written as GIF, MP4 or a folder of PNG."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from leblanc.results.netcdf import replacing
+from leblanc.results.record import MM, RPM, one_line
+from leblanc.studies.shapes import Sight
+from leblanc.view.parts import Instant, Picture, Stage
+from leblanc.view.picture import Pixels, fill, pixels, plotter, write_png
+from leblanc.view.scale import SHOWN, THIN, Scale
+from leblanc.view.scene import compose
+from leblanc.view.still import stage_of, still
+from leblanc.view.surfaces import LiquidShape, body_of_layer, body_of_pool
+from meshes.errors import InputError
+
+if TYPE_CHECKING:
+    from leblanc.studies.runup import RunupRecord
+    from leblanc.studies.runup_film import Reel
+
+FRAMES, MOST_FRAMES, RATE = 60, 600, 15  # frames a second; a GIF counts in hundredths of a second
+FILM_SIZE = (800, 600)  # pixels; video codecs want even numbers
+COLOURS = 128  # of a GIF
+VISIBLE = 0.04  # a largest deflection smaller than this over the radius is drawn larger
+
+
+@dataclass(frozen=True)
+class Film:
+    """Pictures one after the other, all seen by the camera of the first.
+
+    Parameters
+    ----------
+    count : how many
+    picture : draws one of them
+    """
+
+    count: int
+    picture: Callable[[int], Picture]
+
+
+def sweep_film(sight: Sight, scale: Scale, frames: int = FRAMES) -> Film:
+    """Steady states over the speeds of a machine, evenly chosen.
+
+    Parameters
+    ----------
+    sight : its answers
+    scale : common to all frames
+    frames : how many at most
+
+    Raises
+    ------
+    InputError : too few frames or too many
+    """
+    require_frames(frames)
+    last = sight.speed.size - 1
+    chosen = np.unique(np.linspace(0, last, min(frames, last + 1)).round().astype(int))
+    stage = stage_of(sight, scale)
+    return Film(chosen.size, lambda k: still(sight, int(chosen[k]), scale, stage))
+
+
+def require_frames(frames: int) -> None:
+    """A number of frames that a film can have.
+
+    Raises
+    ------
+    InputError : too few or too many
+    """
+    if not 2 <= frames <= MOST_FRAMES:
+        raise InputError("--frames", frames, f"from 2 to {MOST_FRAMES}")
+
+
+def runup_film(stage: Stage, record: RunupRecord, reel: Reel) -> Film:
+    """A run-up in time, with the layers as they are at each moment.
+
+    Parameters
+    ----------
+    stage : what stands still
+    record, reel : the run-up and its frames
+    """
+    return Film(reel.time.size, lambda k: compose(stage, _instant(stage, record, reel, k)))
+
+
+def runup_scale(stage_radius: float, record: RunupRecord, reel: Reel) -> Scale:
+    """One factor for deflections and depths, so that a surface round the axis at rest stays so as drawn.
+
+    Parameters
+    ----------
+    stage_radius : of the widest chamber, m
+    record, reel : the run-up and its frames
+    """
+    from leblanc.figures.runup_film import exaggeration
+
+    largest = float(np.abs(reel.deflection).max())
+    thin = any(c.radius - c.mean_surface_radius < THIN * c.radius for c in record.chambers if c.volume > 0.0)
+    if not thin and largest >= VISIBLE * stage_radius:
+        return Scale()
+    both = max(1.0, min(exaggeration(record, reel), SHOWN * stage_radius / largest if largest > 0.0 else 1.0))
+    both = float(f"{both:.2g}")
+    return Scale(both, both)
+
+
+def _instant(stage: Stage, record: RunupRecord, reel: Reel, k: int) -> Instant:
+    """One frame of a run-up."""
+    found = tuple(complex(one) for one in reel.deflection[k])
+    spread = [j for j in range(len(found)) if record.planes[j] != record.planes[0]]
+    lean = (found[spread[0]] - found[0]) / (record.planes[spread[0]] - record.planes[0]) if spread else 0j
+    state = [
+        f"t = {reel.time[k]:.2f} s, amplitude {reel.amplitude[k] * MM:.3g} mm",
+        f"liquid model {record.model}",
+    ]
+    caption = [stage.scale.in_words(), "Seen from the drum.", "The surface stands upright along the axis."]
+    if stage.lying:
+        caption.append("Liquid that gravity holds at the bottom is drawn as a pool.")
+    return Instant(
+        deflection=found,
+        lean=lean,
+        bodies=tuple(_liquid(stage, reel, k, j) for j in range(len(found))),
+        title=f"{one_line(record.name)}: run-up, {reel.speed[k] * RPM:.0f} rpm ({reel.speed[k]:.1f} rad/s)",
+        state="\n".join(state),
+        caption=" ".join(caption),
+        down=float(reel.pool[k]) if stage.lying else None,
+    )
+
+
+def _liquid(stage: Stage, reel: Reel, k: int, j: int) -> LiquidShape | None:
+    fill = stage.fills[j]
+    if fill.volume == 0.0:
+        return None
+    moved, depth = complex(stage.scale.deflection * reel.deflection[k, j]), reel.depth[k, j]
+    if np.isnan(depth).any():
+        return body_of_pool(fill.chamber, fill.volume, moved, float(reel.pool[k]))
+    return body_of_layer(fill.chamber, moved, reel.theta, stage.scale.depth * depth)
+
+
+def write_film(film: Film, path: Path, drawn: Callable[[int, int], None] | None = None) -> int:
+    """Write a film whole or not at all, the same each time.
+
+    Parameters
+    ----------
+    film : its pictures
+    path : a .gif, an .mp4 if there is an ffmpeg, or a folder for one PNG each
+    drawn : called after each frame with the number of frames drawn and of all
+
+    Returns
+    -------
+    Number of frames.
+
+    Raises
+    ------
+    InputError : another kind of file, an .mp4 without an ffmpeg, nothing to draw with
+    """
+    kind = require_film(path)
+    shown: list[Pixels] = []
+    plot = plotter(film.picture(0), FILM_SIZE)
+    try:
+        for k in range(film.count):
+            if k > 0:
+                fill(plot, film.picture(k))
+            shown.append(pixels(plot))
+            if drawn is not None:
+                drawn(k + 1, film.count)
+    finally:
+        plot.close()
+    if kind == ".gif":
+        _write_gif(shown, path)
+    elif kind == ".mp4":
+        _write_mp4(shown, path)
+    else:
+        for k, one in enumerate(shown, start=1):
+            write_png(one, path / f"frame_{k:04d}.png")
+    return film.count
+
+
+def require_film(path: Path) -> str:
+    """Ending of a film's path, empty for a folder.
+
+    Raises
+    ------
+    InputError : another ending; an .mp4 without an ffmpeg
+    """
+    kind = path.suffix.lower()
+    if kind not in (".gif", ".mp4", ""):
+        raise InputError(
+            "--animate", str(path), "a file that ends in .gif or .mp4, or a folder for PNG files"
+        )
+    if kind == ".mp4" and shutil.which("ffmpeg") is None:
+        raise InputError("--animate", str(path), "a .gif, since no ffmpeg was found to write an .mp4")
+    if kind == "" and path.exists() and not path.is_dir():
+        raise InputError("--animate", str(path), "a folder, or a new name; this is a file")
+    return kind
+
+
+def _write_gif(shown: Sequence[Pixels], path: Path) -> None:
+    """All frames in the colours of the middle one, so that what stands still is stored once."""
+    from PIL import Image
+
+    spread = Image.Quantize.MAXCOVERAGE  # small things keep their colour
+    palette = Image.fromarray(shown[len(shown) // 2]).quantize(
+        COLOURS, method=spread, dither=Image.Dither.NONE
+    )
+    frames = [Image.fromarray(one).quantize(palette=palette, dither=Image.Dither.NONE) for one in shown]
+    with replacing(path) as part:
+        frames[0].save(
+            part,
+            format="gif",
+            save_all=True,
+            append_images=frames[1:],
+            duration=round(100 / RATE) * 10,
+            loop=0,
+            optimize=False,
+        )
+
+
+def _write_mp4(shown: Sequence[Pixels], path: Path) -> None:
+    high, wide = shown[0].shape[:2]
+    raw = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{wide}x{high}", "-r", str(RATE), "-i", "-"]
+    coded = ["-pix_fmt", "yuv420p", "-fflags", "+bitexact", "-flags:v", "+bitexact"]
+    with replacing(path) as part, TemporaryDirectory() as folder:
+        whole = Path(folder) / "film.mp4"
+        command = ["ffmpeg", "-y", "-loglevel", "error", *raw, *coded, str(whole)]
+        done = subprocess.run(
+            command, input=b"".join(one.tobytes() for one in shown), capture_output=True, check=False
+        )
+        if done.returncode != 0:
+            said = done.stderr.decode(errors="replace").strip().splitlines()
+            reason = said[-1] if said else "ffmpeg failed"
+            raise InputError("--animate", str(path), f"a .gif, since ffmpeg cannot write this: {reason}")
+        shutil.copyfile(whole, part)

@@ -1,0 +1,1 @@
+"""Meshes and outlines from files and to files; each file library has its one door here."""

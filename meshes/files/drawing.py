@@ -1,0 +1,210 @@
+"""Outlines from DXF drawings: lines, arcs and splines, exact as drawn. The only door to ezdxf."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from meshes.errors import InputError
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+# Ends of curves nearer than this part of the drawing meet.
+_MEET = 1e-6
+
+
+def meet(points: Array) -> tuple[Indices, Array]:
+    """Number the places where ends of curves meet.
+
+    Parameters
+    ----------
+    points : ends of curves, shape (N, 2)
+
+    Returns
+    -------
+    Number of the place of each end, shape (N,), and the places, shape (P, 2).
+    """
+    reach = _MEET * float(np.ptp(points, axis=0).max())
+    first = np.array([min(near) for near in cKDTree(points).query_ball_point(points, reach)])
+    places, number = np.unique(first, return_inverse=True)
+    return number.astype(np.int64), points[places]
+
+
+def closed_loops(path: str | Path, ends: Indices, places: Array) -> list[list[int]]:
+    """Put curves that meet end to end in order.
+
+    Parameters
+    ----------
+    path : of the drawing, for words
+    ends : places of the two ends of each curve, shape (K, 2)
+    places : where they are, shape (P, 2)
+
+    Returns
+    -------
+    Numbers of the curves of each outline, in order.
+
+    Raises
+    ------
+    InputError : an outline that is open or branches, and where
+    """
+    degree = np.bincount(ends.ravel(), minlength=len(places))
+    if np.any(degree != 2):
+        worst = int(np.argmax(degree != 2))
+        x, y = places[worst]
+        state = "open" if degree[worst] == 1 else "branching"
+        raise InputError("path", str(path), f"a drawing of closed outlines; one is {state} at ({x:g}, {y:g})")
+    at: list[list[int]] = [[] for _ in places]
+    for k, (one, other) in enumerate(ends):
+        at[one].append(k)
+        at[other].append(k)
+    left, loops = set(range(len(ends))), []
+    while left:
+        loop = [min(left)]
+        left.remove(loop[0])
+        place = ends[loop[0], 1]
+        while following := [k for k in at[place] if k in left]:
+            loop.append(following[0])
+            left.remove(loop[-1])
+            one, other = ends[loop[-1]]
+            place = other if place == one else one
+        loops.append(loop)
+    return loops
+
+
+def extent(curves: list[Curve]) -> float:
+    """Diagonal of the rectangle that some curves span."""
+    return float(np.hypot(*np.ptp(np.concatenate([curve.points for curve in curves]), axis=0)))
+
+
+_READ = ("LINE", "ARC", "CIRCLE", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "SPLINE", "INSERT")
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """One curve of a drawing.
+
+    Parameters
+    ----------
+    layer : where it was drawn
+    points : in the plane, shape (K, 2), in the drawing's unit: the two ends of a line; the start, a point
+        between and the end of a circular arc; the control points of a spline, which starts and ends on the
+        outer two
+    degree : of a spline; 1 for a line, 0 for an arc
+    knots, weights : of a spline; weights are empty if it is not rational
+    """
+
+    layer: str
+    points: Array
+    degree: int
+    knots: tuple[float, ...] = ()
+    weights: tuple[float, ...] = ()
+
+
+def read_drawing(path: str | Path) -> tuple[list[Curve], float | None]:
+    """Curves in the model space of a DXF drawing.
+
+    Parameters
+    ----------
+    path : a `.dxf` file; text, dimensions, hatches and the like are passed over, blocks are opened
+
+    Returns
+    -------
+    The curves, and the length of the drawing's unit in metres, None if it does not say.
+
+    Raises
+    ------
+    InputError : not a drawing that can be read, curves outside one plane z = constant, splines that do not
+        end on their control points, no curve at all
+    """
+    try:
+        import ezdxf
+        from ezdxf import units
+    except ImportError as missing:
+        allowed = f"a mesh file; drawings need the extra `cad` ({missing})"
+        raise InputError("path", str(path), allowed) from missing
+
+    try:
+        document = ezdxf.readfile(path)
+    except (OSError, ezdxf.DXFError, UnicodeError, ValueError) as fault:
+        raise InputError("path", str(path), f"a DXF drawing that can be read ({fault})") from fault
+    entities = list(_opened(document.modelspace()))
+    pieces = [(entity, points) for entity in entities for points in _pieces(path, entity)]
+    if not pieces:
+        kinds = ", ".join(sorted({entity.dxftype() for entity in document.modelspace()})) or "nothing"
+        raise InputError("path", str(path), f"a drawing with {', '.join(_READ[:-1])}; it holds {kinds}")
+    curves, heights = [], []
+    for entity, (points, degree, knots, weights) in pieces:
+        at = np.array([(p.x, p.y, p.z) for p in points], dtype=np.float64)
+        heights.append(at[:, 2])
+        curves.append(Curve(str(entity.dxf.layer), at[:, :2], degree, tuple(knots), tuple(weights)))
+    extent = max(float(np.ptp(np.concatenate([c.points for c in curves]), axis=0).max()), 1e-300)
+    if np.ptp(np.concatenate(heights)) > 1e-9 * extent:
+        raise InputError("path", str(path), "a drawing in a plane z = constant")
+    unit = int(document.units)
+    return curves, None if unit == 0 else float(units.conversion_factor(unit, units.M))
+
+
+def _opened(entities: Any) -> Iterator[Any]:
+    """Curves among some entities, with blocks and polylines taken apart."""
+    for entity in entities:
+        kind = entity.dxftype()
+        if kind in ("INSERT", "LWPOLYLINE", "POLYLINE"):
+            yield from _opened(entity.virtual_entities())
+        elif kind in _READ:
+            yield entity
+
+
+def _pieces(path: str | Path, entity: Any) -> Iterator[tuple[Any, int, Any, Any]]:
+    """Points, degree, knots and weights of an entity; closed curves fall into two or three pieces."""
+    kind = entity.dxftype()
+    if kind == "LINE":
+        if entity.dxf.start.distance(entity.dxf.end) > 0.0:
+            yield (entity.dxf.start, entity.dxf.end), 1, (), ()
+    elif kind == "ARC":
+        start, end = entity.dxf.start_angle, entity.dxf.end_angle
+        turn = (end - start) % 360.0 or 360.0
+        yield from _arcs(entity, start, turn, 1 if turn < 300.0 else 3)
+    elif kind == "CIRCLE":
+        yield from _arcs(entity, 0.0, 360.0, 3)
+    else:
+        for spline in _splines(entity):
+            if not spline.is_clamped:
+                raise InputError("path", str(path), "a drawing whose splines end on their control points")
+            yield spline.control_points, spline.degree, spline.knots(), spline.weights()
+
+
+def _arcs(entity: Any, start: float, turn: float, parts: int) -> Iterator[tuple[Any, int, Any, Any]]:
+    for k in range(parts):
+        angles = [start + turn * (k + share) / parts for share in (0.0, 0.5, 1.0)]
+        yield tuple(entity.vertices(angles)), 0, (), ()
+
+
+def _splines(entity: Any) -> Iterator[Any]:
+    """A spline, or an ellipse as rational splines, which are exact; two halves if it is closed."""
+    from ezdxf.math import BSpline, ConstructionEllipse
+
+    if entity.dxftype() == "ELLIPSE":
+        start, end = entity.dxf.start_param, entity.dxf.end_param
+        turn = (end - start) % (2.0 * np.pi) or 2.0 * np.pi
+        tool = entity.construction_tool()
+        for half in (0.0, 0.5):
+            ends = start + half * turn, start + (half + 0.5) * turn
+            yield BSpline.from_ellipse(
+                ConstructionEllipse(tool.center, tool.major_axis, tool.extrusion, tool.ratio, *ends)
+            )
+        return
+    spline = entity.construction_tool()
+    extent = np.ptp([(p.x, p.y) for p in spline.control_points], axis=0).max()
+    if spline.is_clamped and spline.control_points[0].distance(spline.control_points[-1]) < 1e-9 * extent:
+        knots = np.unique(spline.knots())
+        middle = len(knots) // 2
+        yield from spline.split(0.5 * float(knots[middle - 1] + knots[middle]))  # between two knots
+    else:
+        yield spline

@@ -1,0 +1,316 @@
+"""Sections from drawn outlines: DXF, STEP, IGES and BREP files meshed by Gmsh. The only door to Gmsh."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import math
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshes.errors import InputError, require_positive
+from meshes.files.drawing import Curve, closed_loops, extent, meet, read_drawing
+from meshes.quality import cell_areas
+from meshes.rings.slits import open_slits
+from meshes.section import Section
+
+
+@contextlib.contextmanager
+def silenced() -> Iterator[None]:
+    """Send what the whole process prints on its standard output into the void.
+
+    Libraries such as OpenCASCADE write there without asking, below Python's own streams. For the time being
+    other threads are silent as well.
+    """
+    try:
+        kept = os.dup(1)
+    except OSError:  # there is no standard output
+        yield
+        return
+    _flush()
+    void = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(void, 1)
+        yield
+    finally:
+        _flush()
+        os.dup2(kept, 1)
+        os.close(void)
+        os.close(kept)
+
+
+def _flush() -> None:
+    """Empty the buffers of Python and of the C library, so that each text goes where it belongs."""
+    with contextlib.suppress(AttributeError, ValueError):  # a stream that is missing or closed
+        sys.stdout.flush()
+    with contextlib.suppress(OSError, TypeError, AttributeError):  # where the C library has no common name
+        ctypes.CDLL(None).fflush(None)
+
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+SUFFIXES = (".dxf", ".step", ".stp", ".iges", ".igs", ".brep")
+
+# Gmsh's number of a triangle and of a line by order.
+_TRIANGLE, _LINE = {1: 2, 2: 9}, {1: 1, 2: 8}
+
+
+def outline_section(
+    path: str | Path,
+    wall_size: float | None = None,
+    *,
+    inside_size: float = math.inf,
+    growth: float = 1.3,
+    order: int = 2,
+    scale: float | None = None,
+    height: float | None = None,
+    slits: Sequence[str] = (),
+) -> Section:
+    """Section from an outline drawn elsewhere, its geometric axis at the drawing's origin.
+
+    The largest closed outline is the outer wall, those within it are inner walls and obstacles. The same file
+    and sizes give the same mesh.
+
+    Parameters
+    ----------
+    path : a `.dxf` drawing; or a `.step`, `.iges` or `.brep` model with a plane face, or with a solid
+    wall_size : size of the triangles at walls, m; a hundredth of the largest extent if not given
+    inside_size : size of the largest triangles, m
+    growth : size of a triangle over that of its neighbour nearer to the wall, above 1, 3 at most
+    order : 1 for straight edges; 2 for quadratic ones, whose nodes on walls lie on the outline
+    scale : length of the file's unit, m; needed where the file does not name it
+    height : z at which a solid is cut, in the file's unit; STEP and IGES models are in millimetres
+    slits : layers of a DXF drawing whose lines are baffles without thickness
+
+    Returns
+    -------
+    The section, in metres.
+
+    Raises
+    ------
+    InputError : a value out of its range, a file that cannot be read, an outline that is open or crossed
+    ImportError : Gmsh or ezdxf is not installed: `pip install leblanc[cad]`
+    """
+    file = _check(path, wall_size, inside_size, growth, order)
+    drawn = file.suffix.lower() == ".dxf"
+    curves, unit = read_drawing(file) if drawn else ([], _model_unit(file))
+    if not drawn and unit is not None and scale is not None:
+        raise InputError("scale", scale, "left out: the file names its unit")
+    metre = scale if scale is not None else unit
+    if metre is None:
+        raise InputError("scale", scale, "given: the file does not name its unit")
+    require_positive("scale", metre)
+    with _gmsh(path) as gmsh:
+        if drawn:
+            cracks = _build(path, gmsh, curves, slits)
+        else:
+            cracks = []
+            _import(path, gmsh, file, height)
+        at_wall = _default_size(gmsh) if wall_size is None else wall_size / metre
+        sizes = (at_wall, max(at_wall, inside_size / metre), math.log(growth))
+        points, triangles, ends = _mesh(gmsh, sizes, order, cracks)
+    try:
+        points, triangles = open_slits(metre * points, triangles, ends)
+        return Section(points, triangles)
+    except InputError as fault:
+        raise InputError("path", str(path), f"an outline that wall_size resolves; {fault}") from fault
+
+
+def _default_size(gmsh: Any) -> float:
+    """A hundredth of the largest extent of the model, in its unit."""
+    x0, y0, _, x1, y1, _ = gmsh.model.getBoundingBox(-1, -1)
+    return 0.01 * float(max(x1 - x0, y1 - y0))
+
+
+def _check(path: str | Path, wall_size: float | None, inside_size: float, growth: float, order: int) -> Path:
+    file = Path(path)
+    if file.suffix.lower() not in SUFFIXES:
+        raise InputError("path", str(path), "an outline, " + " or ".join(SUFFIXES))
+    if not file.is_file():
+        raise InputError("path", str(path), "an existing file")
+    if wall_size is not None:
+        require_positive("wall_size", wall_size)
+    if not inside_size >= (wall_size or 0.0):
+        raise InputError("inside_size", inside_size, f"wall_size ({wall_size or 0.0:g} m) or above")
+    if not 1.0 < growth <= 3.0:
+        raise InputError("growth", growth, "above 1, 3 at most")
+    if order not in (1, 2):
+        raise InputError("order", order, "1 (straight edges) or 2 (quadratic edges)")
+    return file
+
+
+def _model_unit(file: Path) -> float | None:
+    """OpenCASCADE turns what has a unit into millimetres."""
+    return None if file.suffix.lower() == ".brep" else 1e-3
+
+
+@contextlib.contextmanager
+def _gmsh(path: str | Path) -> Iterator[Any]:
+    """Give Gmsh a model of its own, quiet and repeatable, and leave it as it was found."""
+    try:
+        import gmsh
+    except (ImportError, OSError) as missing:  # the wheel needs libraries of the system
+        allowed = f"a mesh file; outlines need the extra `cad` and its system packages ({missing})"
+        raise InputError("path", str(path), allowed) from missing
+
+    started = not gmsh.isInitialized()
+    before = "" if started else str(gmsh.model.getCurrent())
+    if started:
+        # No handler of signals, which only the main thread may set; no file of the user's settings.
+        gmsh.initialize(readConfigFiles=False, interruptible=False)
+    options = {
+        "General.Terminal": 0.0,
+        "General.NumThreads": 1.0,
+        "Mesh.Algorithm": 6.0,
+        "Mesh.MeshSizeExtendFromBoundary": 0.0,
+        "Mesh.MeshSizeFromPoints": 0.0,
+        "Mesh.MeshSizeFromCurvature": 0.0,
+        "Mesh.MeshSizeMin": 0.0,
+        "Mesh.MeshSizeMax": 1e22,
+        "Mesh.MeshSizeFactor": 1.0,
+        "Mesh.HighOrderOptimize": 0.0,
+        "Mesh.RandomSeed": 1.0,
+    }
+    found = {name: gmsh.option.getNumber(name) for name in options}
+    unit = gmsh.option.getString("Geometry.OCCTargetUnit")
+    try:
+        for name, value in options.items():
+            gmsh.option.setNumber(name, value)
+        gmsh.option.setString("Geometry.OCCTargetUnit", "MM")
+        gmsh.model.add("leblanc outline")
+        yield gmsh
+    except InputError:
+        raise
+    except Exception as fault:  # Gmsh raises plain exceptions for whatever it stumbles over
+        reason = " ".join(str(fault).split()) or "no reason given"
+        raise InputError("path", str(path), f"an outline that Gmsh can mesh ({reason})") from fault
+    finally:
+        if started:
+            gmsh.finalize()
+        else:
+            gmsh.model.remove()
+            gmsh.model.setCurrent(before)
+            gmsh.option.setString("Geometry.OCCTargetUnit", unit)
+            for name, value in found.items():
+                gmsh.option.setNumber(name, value)
+
+
+def _build(path: str | Path, gmsh: Any, curves: list[Curve], slits: Sequence[str]) -> list[int]:
+    """Make the drawing's surface; the numbers of the curves in it that are slits."""
+    layers = {curve.layer for curve in curves}
+    for name in slits:
+        if name not in layers:
+            raise InputError("slits", name, f"a layer of the drawing: {', '.join(sorted(layers))}")
+    walls = [curve for curve in curves if curve.layer not in slits]
+    baffles = [curve for curve in curves if curve.layer in slits]
+    if not walls:
+        raise InputError("slits", tuple(slits), "layers that leave curves for the walls")
+    points = np.array([p for curve in walls for p in (curve.points[0], curve.points[-1])])
+    number, places = meet(points)
+    loops = closed_loops(path, number.reshape(-1, 2), places)
+    tags = [gmsh.model.occ.addPoint(x, y, 0.0) for x, y in places]
+    made = [_add(gmsh, curve, tags[number[2 * k]], tags[number[2 * k + 1]]) for k, curve in enumerate(walls)]
+    outlines = sorted(loops, key=lambda loop: -extent([walls[k] for k in loop]))
+    wires = [gmsh.model.occ.addCurveLoop([made[k] for k in loop]) for loop in outlines]
+    surface = gmsh.model.occ.addPlaneSurface(wires)
+    if not baffles:
+        gmsh.model.occ.synchronize()
+        return []
+    ends = [[gmsh.model.occ.addPoint(*curve.points[k], 0.0) for k in (0, -1)] for curve in baffles]
+    lines = [_add(gmsh, curve, *pair) for curve, pair in zip(baffles, ends, strict=True)]
+    _, parts = gmsh.model.occ.fragment([(2, surface)], [(1, line) for line in lines])
+    gmsh.model.occ.synchronize()
+    # Parts of baffles outside the section bound nothing and are not meshed with it.
+    return [tag for pieces in parts[1:] for dimension, tag in pieces if dimension == 1]
+
+
+def _add(gmsh: Any, curve: Curve, start: int, end: int) -> int:
+    """Add a curve between two points of Gmsh's model."""
+    between = [gmsh.model.occ.addPoint(x, y, 0.0) for x, y in curve.points[1:-1]]
+    if curve.degree == 0:
+        return int(gmsh.model.occ.addCircleArc(start, between[0], end, center=False))
+    if curve.degree == 1 and not between:
+        return int(gmsh.model.occ.addLine(start, end))
+    knots, times = np.unique(np.round(curve.knots, 12), return_counts=True)
+    return int(
+        gmsh.model.occ.addBSpline(
+            [start, *between, end],
+            degree=curve.degree,
+            weights=list(curve.weights),
+            knots=list(knots),
+            multiplicities=list(times),
+        )
+    )
+
+
+def _import(path: str | Path, gmsh: Any, file: Path, height: float | None) -> None:
+    """Bring a model's plane face in, or cut its solids at a height."""
+    with silenced():  # OpenCASCADE reports on IGES files whatever Gmsh is told
+        shapes = gmsh.model.occ.importShapes(str(file), highestDimOnly=True)
+    gmsh.model.occ.synchronize()
+    solid = any(dimension == 3 for dimension, _ in shapes)
+    if solid:
+        if height is None:
+            raise InputError("height", height, "given: the file holds a solid, which is cut there")
+        x0, y0, _, x1, y1, _ = gmsh.model.getBoundingBox(-1, -1)
+        pad = 0.1 * max(x1 - x0, y1 - y0)
+        cut = gmsh.model.occ.addRectangle(x0 - pad, y0 - pad, height, x1 - x0 + 2 * pad, y1 - y0 + 2 * pad)
+        gmsh.model.occ.intersect([(2, cut)], [s for s in shapes if s[0] == 3])
+        gmsh.model.occ.synchronize()
+    faces = gmsh.model.getEntities(2)
+    boxes = np.array([gmsh.model.getBoundingBox(*face) for face in faces]).reshape(-1, 6)
+    thick = np.ptp(boxes[:, [2, 5]]) if len(boxes) else 0.0
+    if not len(faces) or thick > 1e-5 * np.ptp(boxes[:, [0, 3]]):
+        raise InputError(
+            "height" if solid else "path",
+            height if solid else str(path),
+            "where the solid is" if solid else "a model with a face in a plane z = constant, or with a solid",
+        )
+
+
+def _mesh(
+    gmsh: Any, sizes: tuple[float, float, float], order: int, cracks: list[int]
+) -> tuple[Array, Indices, Indices]:
+    """Mesh the model's faces; points, triangles, and ends of the lines on cracks."""
+    at_wall, inside, slope = sizes
+    boundary = gmsh.model.getBoundary(gmsh.model.getEntities(2), combined=True, oriented=False)
+    near = sorted({tag for _, tag in boundary} | set(cracks))
+    field = gmsh.model.mesh.field
+    distance, size = field.add("Distance"), field.add("MathEval")
+    field.setNumbers(distance, "CurvesList", near)
+    field.setNumber(distance, "Sampling", 200)
+    field.setString(size, "F", f"Min({min(inside, 1e20):.17g}, {at_wall:.17g} + {slope:.17g} * F{distance})")
+    field.setAsBackgroundMesh(size)
+    gmsh.model.mesh.generate(2)
+    gmsh.model.mesh.setOrder(order)
+    tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    points = np.asarray(coordinates).reshape(-1, 3)[:, :2]
+    number = np.full(int(tags.max()) + 1, -1, dtype=np.int64)
+    number[tags.astype(np.int64)] = np.arange(len(tags))
+    _, nodes = gmsh.model.mesh.getElementsByType(_TRIANGLE[order])
+    cells = number[nodes.astype(np.int64)].reshape(-1, 3 * order)
+    lines = [gmsh.model.mesh.getElementsByType(_LINE[order], tag)[1] for tag in cracks]
+    ends = (
+        np.concatenate([np.empty(0, dtype=np.int64), *lines]).astype(np.int64).reshape(-1, order + 1)[:, :2]
+    )
+    return _turned(points, cells, number[ends])
+
+
+def _turned(points: Array, cells: Indices, ends: Indices) -> tuple[Array, Indices, Indices]:
+    """Counter-clockwise triangles, and the points that they use."""
+    used, inverse = np.unique(cells, return_inverse=True)
+    new = np.full(len(points), -1, dtype=np.int64)
+    new[used] = np.arange(len(used))
+    cells = inverse.astype(np.int64).reshape(len(cells), -1)
+    points = points[used]
+    clockwise = cell_areas(points, cells[:, :3]) < 0.0
+    turned = np.take(cells, [0, 2, 1, 5, 4, 3][: cells.shape[1]], axis=1)
+    ends = new[ends]
+    return points, np.where(clockwise[:, None], turned, cells), ends[np.all(ends >= 0, axis=1)]

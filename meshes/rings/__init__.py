@@ -1,0 +1,1 @@
+"""Meshes of the ring of liquid between free surface and wall, and of compartments."""

@@ -1,0 +1,230 @@
+"""Triangles of the liquid ring between the free surface and a circular wall, with or without baffles."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshes.baffles import Baffles
+from meshes.errors import InputError, require_positive
+from meshes.liquid_section import LiquidSection, liquid_section
+from meshes.rings.slits import open_slits
+
+Array = NDArray[np.float64]
+
+
+def graded(
+    length: float, largest: float, start: float, end: float, growth: float = 1.5, least: int = 1
+) -> Array:
+    """Divide a line into steps that grow from both ends.
+
+    The step at a point is the least of `largest` and what has grown from either end. The steps are stretched
+    or shrunk alike, so that a whole number of them fills the line.
+
+    Parameters
+    ----------
+    length : of the line, above 0
+    largest : the longest step
+    start, end : steps at the ends, at most; above `largest` they have no effect
+    growth : ratio of neighbouring steps, at most, above 1
+    least : smallest number of steps
+
+    Returns
+    -------
+    Positions from 0 to `length`, rising, shape (steps + 1,).
+    """
+    slope = math.log(growth)
+    # A step that starts where steps are `start` long, and grows on its way, ends that much shorter.
+    shorter = slope / (growth - 1.0)
+    start, end = min(start * shorter, largest), min(end * shorter, largest)
+    # The step is start + slope x, then `largest` if there is room, then end + slope (length - x).
+    rise, fall = (largest - start) / slope, length - (largest - end) / slope
+    if rise > fall:
+        rise = fall = 0.5 * (length + (end - start) / slope)
+        rise = fall = min(max(rise, 0.0), length)
+    rising = math.log1p(slope * rise / start) / slope
+    level = (fall - rise) / largest
+    falling = math.log1p(slope * (length - fall) / end) / slope
+    total = rising + level + falling
+    steps = max(least, math.ceil(total * (1.0 - 1e-9)))
+    at = total * np.arange(steps + 1) / steps
+    x = rise + (at - rising) * largest
+    x = np.where(at < rising, start * np.expm1(slope * np.minimum(at, rising)) / slope, x)
+    back = np.minimum(total - at, falling)
+    x = np.where(total - at < falling, length - end * np.expm1(slope * back) / slope, x)
+    x[0], x[-1] = 0.0, length
+    return np.asarray(x)
+
+
+Indices = NDArray[np.int64]
+
+_MOST_NODES = 2_000_000
+
+
+def ring(
+    radius: float,
+    surface_radius: float,
+    segments: int = 96,
+    *,
+    order: int = 2,
+    layers: int = 4,
+    baffles: Baffles | None = None,
+    wall_depth: float = math.inf,
+    surface_depth: float = math.inf,
+    tip_size: float | None = None,
+    growth: float = 1.5,
+) -> LiquidSection:
+    """Liquid at rest between the circle r = a and the wall r = R.
+
+    The cells lie along circles and rays, so that a layer may be much thinner than the cells are wide.
+
+    Parameters
+    ----------
+    radius : wall radius R, m
+    surface_radius : radius a of the free surface, m
+    segments : cells around, 8 or more, at least; more where they are graded towards baffles
+    order : 1 for straight sides; 2 for quadratic ones, whose nodes on wall and surface lie on their circles
+    layers : cells across the liquid, at least
+    baffles : radial baffles, each a slit
+    wall_depth, surface_depth : depth of the cells at the wall and at the free surface, m, at most
+    tip_size : size of the cells at the edges of baffles, m, at most; without it 1/20 of the liquid's depth
+    growth : size of a cell over that of its neighbour nearer to where it is small, above 1, 3 at most
+
+    Returns
+    -------
+    The mesh.
+
+    Raises
+    ------
+    InputError : a value out of its range, above two million nodes
+    """
+    _check(radius, surface_radius, segments, order, layers, growth)
+    for name, value in (("wall_depth", wall_depth), ("surface_depth", surface_depth)):
+        if not value > 0.0:
+            raise InputError(name, value, "above 0")
+    span = baffles.wetted_span(radius, surface_radius) if baffles else None
+    depth = radius - surface_radius
+    tip = depth / 20.0 if tip_size is None else tip_size
+    require_positive("tip_size", tip)
+    # Between a tip and the wall, or the surface, there is room for two cells.
+    inner, outer = span or (surface_radius, radius)
+    at_inner, at_outer = (
+        min(tip, 0.5 * gap) if gap > 0.0 else math.inf for gap in (inner - surface_radius, radius - outer)
+    )
+    deepest = min(depth / layers, 2.0 * math.pi * radius / segments)
+    radii = _radii(
+        radius, surface_radius, span, deepest, (surface_depth, at_inner, at_outer, wall_depth), growth
+    )
+    angles = _angles(segments, baffles if span else None, min(at_inner, at_outer) / radius, growth)
+    if len(radii) * len(angles) * order**2 > _MOST_NODES:
+        raise InputError("segments", segments, "fewer, or coarser grading: above two million nodes")
+    points, cells = _grid(radii, angles, order)
+    if span is not None and baffles is not None:
+        points, cells = open_slits(points, cells, _baffle_sides(radii, angles, span, baffles, order))
+    return liquid_section(points, cells, surface_radius)
+
+
+def _radii(
+    radius: float,
+    surface_radius: float,
+    span: tuple[float, float] | None,
+    deepest: float,
+    sizes: tuple[float, float, float, float],
+    growth: float,
+) -> Array:
+    """Radii of the circles of nodes: the surface, the tips of the baffles and the wall are among them."""
+    at_surface, at_inner, at_outer, at_wall = sizes
+    inner, outer = span or (surface_radius, radius)
+    marks = [(surface_radius, at_surface)]
+    marks += [(inner, at_inner)] if inner > surface_radius else []
+    marks += [(outer, at_outer)] if outer < radius else []
+    marks += [(radius, at_wall)]
+    parts = [np.array([surface_radius])]
+    for (start, first), (stop, last) in pairwise(marks):
+        steps = graded(stop - start, deepest, first, last, growth, least=2)
+        parts.append(np.append(start + steps[1:-1], stop))
+    return np.concatenate(parts)
+
+
+def _angles(segments: int, baffles: Baffles | None, tip: float, growth: float) -> Array:
+    """Angles of the rays of nodes, the first repeated a turn later; baffles lie on rays."""
+    width = 2.0 * math.pi / segments
+    if baffles is None:
+        return np.linspace(0.0, 2.0 * math.pi, segments + 1)
+    between = graded(2.0 * math.pi / baffles.count, width, tip, tip, growth, least=4)
+    turns = baffles.angles[:, None] + between[:-1]
+    return np.append(turns.ravel(), baffles.first_angle + 2.0 * math.pi)
+
+
+def _grid(radii: Array, angles: Array, order: int) -> tuple[Array, Indices]:
+    """Nodes and triangles of a polar grid; sides run along the curves halfway between its lines."""
+    if order == 2:
+        radii, angles = _halved(radii), _halved(angles)
+    r, angle = np.meshgrid(radii, angles[:-1], indexing="ij")
+    points = np.stack([r * np.cos(angle), r * np.sin(angle)], axis=-1).reshape(-1, 2)
+    return points, polar_triangles(len(radii) - 1, len(angles) - 1, order)
+
+
+def polar_triangles(outwards: int, around: int, order: int) -> Indices:
+    """Triangles of a grid of nodes that closes around: two to each cell.
+
+    Parameters
+    ----------
+    outwards : rows of nodes less one, from the inside outwards
+    around : nodes in a row, numbered counter-clockwise, row by row
+    order : 1, or 2 where every other row and every other node of a row lies between vertices
+
+    Returns
+    -------
+    Node numbers, shape (M, 3 or 6).
+    """
+    i, j = np.meshgrid(np.arange(0, outwards, order), np.arange(0, around, order), indexing="ij")
+
+    def node(out: int, on: int) -> Indices:
+        """Number of the node of each cell so many steps outwards and onwards."""
+        return np.asarray((i + out) * around + (j + on) % around, dtype=np.int64).ravel()
+
+    n = order
+    first, second = [node(0, 0), node(n, 0), node(n, n)], [node(0, 0), node(n, n), node(0, n)]
+    if order == 2:
+        first += [node(1, 0), node(2, 1), node(1, 1)]
+        second += [node(1, 1), node(1, 2), node(0, 1)]
+    return np.stack([np.stack(first, 1), np.stack(second, 1)], 1).reshape(-1, 3 * order)
+
+
+def _baffle_sides(
+    radii: Array, angles: Array, span: tuple[float, float], baffles: Baffles, order: int
+) -> Indices:
+    """Sides of the grid on the baffles, shape (K, 2)."""
+    around = order * (len(angles) - 1)
+    first, last = np.searchsorted(radii, span)
+    ray = order * np.arange(baffles.count) * ((len(angles) - 1) // baffles.count)
+    start = order * np.arange(first, last)[:, None] * around + ray
+    return np.stack([start.ravel(), start.ravel() + order * around], axis=1).astype(np.int64)
+
+
+def _halved(values: Array) -> Array:
+    """Values with those halfway between."""
+    finer = np.empty(2 * len(values) - 1)
+    finer[::2], finer[1::2] = values, 0.5 * (values[1:] + values[:-1])
+    return finer
+
+
+def _check(
+    radius: float, surface_radius: float, segments: int, order: int, layers: int, growth: float
+) -> None:
+    require_positive("radius", radius)
+    require_positive("surface_radius", surface_radius)
+    if surface_radius >= radius * (1.0 - 1e-8):
+        raise InputError("surface_radius", surface_radius, f"below radius ({radius:g} m)")
+    if segments < 8 or segments != int(segments):
+        raise InputError("segments", segments, "a whole number, 8 or more")
+    if order not in (1, 2):
+        raise InputError("order", order, "1 (straight sides) or 2 (quadratic sides)")
+    if layers < 1 or layers != int(layers):
+        raise InputError("layers", layers, "a whole number, 1 or more")
+    if not 1.0 < growth <= 3.0:
+        raise InputError("growth", growth, "above 1, 3 at most")

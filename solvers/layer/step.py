@@ -1,0 +1,234 @@
+"""A finite-volume layer driven by a prescribed whirl: time steps, friction, and the loads on the drum.
+
+Steps are those of `solvers.layer.step`. Lengths over R, times in the unit of the spin given. Compiled by
+numba with its cache on disk.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from fluid import friction, long_wave
+from solvers.layer.face_flux import COMPILED, DRY, NEAREST, faded_velocity, log_of_surface
+from solvers.layer.finite_volume import FULL, GHOSTS, WORK, ring_rates
+
+_jit: Any = njit(**COMPILED)
+
+# Films thinner than this (area over R^2) are held back, at this multiple of the spin.
+FILM, FASTEST = 1e-5, 4.0
+
+surface_radius = _jit(long_wave.free_surface_radius)
+_damping = _jit(friction.damping_rate)
+
+
+@_jit
+def copy(source, target):
+    """Copy an array element by element: compiled code here may not ask for memory, as slices would."""
+    to, of = target.reshape(-1), source.reshape(-1)
+    for i in range(of.size):
+        to[i] = of[i]
+
+
+@_jit
+def wall_friction(area, q, spin, law, coefficient, lid, dt):
+    """Friction alone over a time dt: an exact decay of the velocity, cell by cell."""
+    if law == 0:
+        return
+    for i in range(area.size):
+        a = area[i]
+        if a <= DRY:
+            q[i] = -spin * a * a
+            continue
+        moved = q[i] + spin * a * a
+        depth = 1.0 - surface_radius(a)
+        rate = _damping(law, coefficient, lid, depth, a, moved / a)
+        # Quadratic friction: du/dt = -c |u| u has the hyperbola as its solution, the others the exponential.
+        kept = 1.0 / (1.0 + rate * dt) if law == 3 else np.exp(-rate * dt)
+        q[i] = moved * kept - spin * a * a
+
+
+@_jit
+def calm(area, q, spin):
+    """Hold films back that run away: they carry no momentum worth speaking of and would rule the time step.
+
+    No front runs ahead at twice the speed of the drum; films below FILM may go twice as fast as that.
+    """
+    for i in range(area.size):
+        a = area[i]
+        if a < FILM:
+            most = FASTEST * abs(spin) * a
+            moved = min(max(q[i] + spin * a * a, -most), most)
+            q[i] = moved - spin * a * a
+
+
+@_jit
+def predict(area, q, rate_a, rate_q, dt, next_a, next_q):
+    """Euler step; tells whether the surface stays off the axis and every number is one."""
+    sound = True
+    for i in range(area.size):
+        next_a[i] = max(area[i] + dt * rate_a[i], 0.0)
+        next_q[i] = q[i] + dt * rate_q[i]
+        # Written so that nan is not sound either.
+        sound = sound and area[i] < FULL and next_a[i] < FULL and abs(next_q[i]) < np.inf
+    return sound
+
+
+@_jit
+def correct(area, q, rate_a, rate_q, dt, next_a, next_q):
+    """Second stage of Heun's method."""
+    for i in range(area.size):
+        area[i] = 0.5 * (area[i] + max(next_a[i] + dt * rate_a[i], 0.0))
+        q[i] = 0.5 * (q[i] + next_q[i] + dt * rate_q[i])
+
+
+_wall = _jit(long_wave.wall_pressure)
+
+RAN_OUT, AT_AXIS = -1, -2
+# Courant number beyond which a step is taken again.
+_LARGEST = 1.0
+
+
+def scratch(cells: int) -> NDArray[np.float64]:
+    """Scratch that `advance` wants for a ring of so many cells."""
+    return np.zeros((WORK + 7, cells + 2 * GHOSTS))
+
+
+@_jit
+def _whirl(time, drive, angles, pull_cell, pull_face):
+    """Body force in the drum frame: minus the axis' acceleration, and gravity across the axis.
+
+    The amplitude grows as tau - sin(2 pi tau)/(2 pi), tau = time/ramp; its rate of change is left out of the
+    acceleration [theory: long_wave, eq. 8]. Fills its radial part at cells and faces; returns its parts.
+    """
+    amplitude, slip, ramp, whirl, weight, spin = drive
+    grown = 1.0
+    if time < ramp:
+        grown = time / ramp - np.sin(2.0 * np.pi * time / ramp) / (2.0 * np.pi)
+    push = amplitude * whirl * whirl * grown
+    x = push * np.cos(slip * time) - weight * np.sin(spin * time)
+    y = push * np.sin(slip * time) - weight * np.cos(spin * time)
+    for i in range(pull_cell.size):
+        pull_cell[i] = x * angles[0, i] + y * angles[1, i]
+        pull_face[i] = x * angles[2, i] + y * angles[3, i]
+    return x, y
+
+
+@_jit
+def _cell_loads(area, q, spin, pull, pressure, lever, turning):
+    """Pressure on the wall, first moment and mass flux of each cell."""
+    for i in range(area.size):
+        r = np.maximum(surface_radius(area[i]), NEAREST)
+        u, log = faded_velocity(area[i], q[i], spin), log_of_surface(area[i], r)
+        pressure[i] = _wall(u, log, area[i], r, spin, pull[i])
+        lever[i] = (1.0 - r) * (1.0 + r + r * r) / 3.0
+        turning[i] = u * log
+
+
+@_jit
+def _tally(area, q, spin, pull, angles, work, cosine, sine, share, sums):
+    """Add a time's share of the loads to the sums of `advance`.
+
+    Forces and offsets are turned into the frame of the deflection, at an angle of this cosine and sine.
+    """
+    n = area.size
+    pressure, lever, turning = work[0, :n], work[1, :n], work[2, :n]
+    _cell_loads(area, q, spin, pull, pressure, lever, turning)
+    force_x, force_y, moment_x, moment_y = 0.0, 0.0, 0.0, 0.0
+    total, turned, least, largest = 0.0, 0.0, area[0], area[0]
+    for i in range(n):
+        force_x += pressure[i] * angles[0, i]
+        force_y += pressure[i] * angles[1, i]
+        moment_x += lever[i] * angles[0, i]
+        moment_y += lever[i] * angles[1, i]
+        total += area[i]
+        turned += turning[i]
+        least, largest = min(least, area[i]), max(largest, area[i])
+    part, step = share / total, share * 2.0 * np.pi / n
+    sums[0] += (force_x * cosine + force_y * sine) * step
+    sums[1] += (force_y * cosine - force_x * sine) * step
+    sums[2] += (moment_x * cosine + moment_y * sine) * part
+    sums[3] += (moment_y * cosine - moment_x * sine) * part
+    sums[4] += turned * part
+    sums[5] += (1.0 - surface_radius(least)) * share
+    sums[6] += (1.0 - surface_radius(largest)) * share
+
+
+@_jit
+def advance(area, q, start, stop, drive, rub, angles, courant, most, spare, sums):
+    """Advance a layer under a prescribed whirl and integrate its loads over time.
+
+    Parameters
+    ----------
+    area, q : state, changed in place, shape (n,)
+    start, stop : times
+    drive : amplitude, slip (whirl seen from the drum), ramp time, whirl speed, weight, spin
+    rub : friction law, coefficient, lid, square of the layer's L for dispersion (0 without it)
+    angles : cosine and sine at the cells' middles and at their left faces, shape (4, n)
+    courant : Courant number
+    most : most steps
+    spare : as from `scratch`, whose rows are reused
+    sums : results, shape (9,), integrals over the time: force by the pressure on the wall over rho h_c R^3
+        (two parts), offset (two), turning, least and largest depth, body force (two); two parts are along the
+        deflection and 90 deg ahead of it [theory: long_wave, eq. 7]
+
+    Returns
+    -------
+    steps tried, or RAN_OUT where they did, or AT_AXIS where the surface came to the axis
+    """
+    n = area.size
+    step = 2.0 * np.pi / n
+    slip, spin = drive[1], drive[5]
+    law, coefficient, lid, spread = int(rub[0]), rub[1], rub[2], rub[3]
+    pull_cell, pull_face = spare[WORK, :n], spare[WORK + 1, :n]
+    rate_a, rate_q = spare[WORK + 2, :n], spare[WORK + 3, :n]
+    next_a, next_q, begin_q = spare[WORK + 4, :n], spare[WORK + 5, :n], spare[WORK + 6, :n]
+    for k in range(sums.size):
+        sums[k] = 0.0
+    time, steps, dt, fastest = start, 0, 0.0, 0.0
+    # 0: only the largest speed is asked for; 1 and 2: the two stages of Heun's method.
+    stage = 0
+    while time < stop:
+        _whirl(time + dt if stage == 2 else time, drive, angles, pull_cell, pull_face)
+        if stage == 1:
+            # The speed may have grown since it was taken: a tenth is kept in hand.
+            dt = min(courant * step / (1.1 * fastest), stop - time)
+            for i in range(n):
+                begin_q[i] = q[i]
+            wall_friction(area, q, spin, law, coefficient, lid, 0.5 * dt)
+        if stage < 2:
+            for i in range(n):
+                next_a[i], next_q[i] = area[i], q[i]
+        limit = dt if stage > 0 else 0.0
+        fastest = ring_rates(
+            next_a, next_q, spin, 0.0, pull_cell, pull_face, step, limit, spread, spare, rate_a, rate_q
+        )
+        if steps >= most:
+            return RAN_OUT
+        if not fastest < np.inf:
+            return AT_AXIS
+        if stage > 0 and dt * fastest > _LARGEST * step:
+            # A film has run faster than the step allows: once more, shorter.
+            for i in range(n):
+                q[i] = begin_q[i]
+            stage = 1
+            steps += 1
+            continue
+        if stage == 1:
+            if not predict(area, q, rate_a, rate_q, dt, next_a, next_q):
+                return AT_AXIS
+        elif stage == 2:
+            x, y = _whirl(time, drive, angles, pull_cell, pull_face)
+            cosine, sine = np.cos(slip * time), np.sin(slip * time)
+            _tally(area, begin_q, spin, pull_cell, angles, spare, cosine, sine, dt, sums)
+            sums[7] += (x * cosine + y * sine) * dt
+            sums[8] += (y * cosine - x * sine) * dt
+            correct(area, q, rate_a, rate_q, dt, next_a, next_q)
+            wall_friction(area, q, spin, law, coefficient, lid, 0.5 * dt)
+            time += dt
+            steps += 1
+        stage = 2 if stage == 1 else 1
+    return steps

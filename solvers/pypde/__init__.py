@@ -1,0 +1,1 @@
+"""The waves as py-pde equations, and their steppers as py-pde solvers."""

@@ -1,0 +1,296 @@
+"""The annular long waves as a py-pde equation, and their finite-volume stepper as a py-pde solver.
+
+The right-hand side is the compiled one of `solvers.layer.finite_volume` behind py-pde's numpy backend: every
+py-pde solver, tracker and storage works on it. Importing this module registers the solver "finite_volume".
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from pde.backends.base import BackendBase
+from pde.fields.collection import FieldCollection
+from pde.fields.scalar import ScalarField
+from pde.grids.base import GridBase
+from pde.grids.cartesian import CartesianGrid
+from pde.pdes.base import PDEBase
+from pde.solvers.base import ConvergenceError, SolverBase
+
+from fluid.fill import Fill
+from fluid.friction import NONE
+from meshes.errors import InputError
+from solvers.layer.prescribed import Whirl
+from solvers.pypde import readings
+from solvers.pypde import terms as layer
+from solvers.pypde.terms import LongWaveTerms
+
+Array = NDArray[np.float64]
+
+_LOST = "the surface came to the axis, or a film outran the steps,"
+
+
+class AnnularLongWavePDE(PDEBase):  # type: ignore[no-untyped-call]
+    """Nonlinear long waves on the wall of a whirling drum [theory: long_wave, eq. 1 and 4].
+
+    The state is a collection of two scalar fields on a grid as from `solvers.pypde.one_family.circle`, in the
+    drum frame: "area", the liquid area per radian A in m^2, and "momentum", the relative angular momentum
+    q = R u A - Omega A^2 in m^4/s. In SI units both are small numbers: tolerances of py-pde's and scipy's
+    steppers, which are absolute, want to be of some 1e-6 of them.
+
+    Parameters
+    ----------
+    fill, whirl, friction, dispersion, spin_rate : as in `solvers.pypde.terms.LongWaveTerms`
+
+    Raises
+    ------
+    InputError : an unknown law, a negative coefficient, a rate that is not finite
+    """
+
+    def __init__(
+        self,
+        fill: Fill,
+        whirl: Whirl,
+        *,
+        friction: tuple[int, float] = (NONE, 0.0),
+        dispersion: bool = False,
+        spin_rate: float = 0.0,
+    ) -> None:
+        super().__init__()
+        self.terms = LongWaveTerms(fill, whirl, friction, dispersion, spin_rate)
+        self.explicit_time_dependence = spin_rate != 0.0 or whirl.amplitude != 0.0 or whirl.gravity != 0.0
+
+    def start(
+        self, grid: GridBase, depth: ArrayLike | None = None, velocity: ArrayLike = 0.0, time: float = 0.0
+    ) -> Any:
+        """State from depth and velocity.
+
+        Parameters
+        ----------
+        grid : as from `circle`, n cells
+        depth : R - r_s of each cell, m, shape (n,) or one number; None: the fill, uniform
+        velocity : u along the wall, relative to the drum, m/s, shape (n,) or one number
+        time : at which the drum has the spin that the momentum is relative to, s
+
+        Returns
+        -------
+        Collection of "area" and "momentum"
+
+        Raises
+        ------
+        InputError : another grid, a depth below 0 or to the axis, a velocity that is not finite
+        """
+        n, fill = _cells(grid), self.terms.fill
+        h = np.broadcast_to(np.asarray(fill.depth if depth is None else depth, dtype=float), (n,))
+        u = np.broadcast_to(np.asarray(velocity, dtype=float), (n,))
+        if not (np.isfinite(h).all() and h.min() >= 0.0):
+            raise InputError("depth", float(h.min()), "finite numbers, 0 or above")
+        if not np.isfinite(u).all():
+            raise InputError("velocity", velocity, "finite numbers")
+        area = readings.area_at(self.terms, np.minimum(h, fill.chamber.radius))
+        momentum = readings.momentum_at(self.terms, area, u, time)
+        layer.require_layer(self.terms, area, momentum)
+        return _collection(grid, area, momentum)
+
+    def surface_radius(self, state: Any) -> Array:
+        """Free-surface radius r_s of each cell, m, shape (n,); beyond the wall in cells below zero."""
+        return readings.surface_radius(self.terms, _parts(state)[0])
+
+    def depth(self, state: Any) -> Array:
+        """Depth R - r_s of each cell, m, shape (n,)."""
+        return readings.depth(self.terms, _parts(state)[0])
+
+    def velocity(self, state: Any, t: float) -> Array:
+        """Velocity u along the wall relative to the drum, m/s, shape (n,); 0 where dry."""
+        return readings.velocity(self.terms, *_parts(state), t)
+
+    def offset(self, state: Any) -> complex:
+        """Liquid's centre of mass from the drum's axis, m, in the drum frame, real along theta = 0."""
+        return readings.liquid_offset(self.terms, _parts(state)[0])
+
+    def force(self, state: Any, t: float) -> complex:
+        """Force on the drum by the pressure on its wall, N, in the drum frame [theory: long_wave, eq. 7]."""
+        return readings.pressure_force(self.terms, *_parts(state), t)
+
+    def angular_momentum(self, state: Any, t: float) -> float:
+        """Angular momentum of the liquid in space about the drum's axis, kg m^2/s."""
+        return readings.angular_momentum(self.terms, *_parts(state), t)
+
+    def evolution_rate(self, state: Any, t: float = 0.0) -> Any:
+        """Right-hand side of the equation, for py-pde's own solvers.
+
+        Wall friction is a source in it, stiff in thin films for all laws but the linear one. Their steps must
+        resolve the waves, dt < dtheta/|lambda| [theory: long_wave, eq. 3], and beside a dry patch may leave
+        cells a little below zero, which count as dry.
+
+        Parameters
+        ----------
+        state : collection of "area" and "momentum"
+        t : time, s
+
+        Returns
+        -------
+        Collection of dA/dt, m^2/s, and dq/dt, m^4/s^2; nan where the surface has come to the axis
+
+        Raises
+        ------
+        InputError : other fields, another grid
+        """
+        area, momentum = _parts(state)
+        return _collection(state.grid, *layer.layer_rates(self.terms, area, momentum, t))
+
+    def make_post_step_hook(self, state: Any, backend: str | BackendBase[Any] = "numpy") -> tuple[Any, Any]:
+        """Check after each step of py-pde's own solvers that there is a layer still.
+
+        Parameters
+        ----------
+        state, backend : as py-pde passes them
+
+        Returns
+        -------
+        Function that raises ConvergenceError where there is none; no data for it
+        """
+
+        # By these names: some of py-pde's solvers pass them as keywords.
+        def check(state_data: Any, t: float, post_step_data: Any) -> tuple[Any, Any]:
+            if not layer.is_layer(self.terms, state_data[0], state_data[1]):
+                raise ConvergenceError(f"{_LOST} at t = {t:g} s")
+            return state_data, post_step_data
+
+        return check, None
+
+    def solve(
+        self,
+        state: Any,
+        t_range: Any,
+        dt: float | None = None,
+        tracker: Any = "auto",
+        *,
+        solver: Any = "finite_volume",
+        **options: Any,
+    ) -> Any:
+        """Solve as py-pde does, by the solver "finite_volume" unless another is named.
+
+        py-pde's own default is left aside since its tolerance, 1e-4 m^2, is no smaller than a thin layer.
+
+        Parameters
+        ----------
+        state, t_range, dt, tracker, solver, options : as for `pde.PDEBase.solve`
+
+        Returns
+        -------
+        The final state
+        """
+        return super().solve(state, t_range, dt, tracker, solver=solver, **options)
+
+    def determine_backend(
+        self, state: Any, backend: str | BackendBase[Any] = "auto", *, use_mpi: bool = False
+    ) -> BackendBase[Any]:
+        """The backend for a solver: numpy unless another is asked for.
+
+        Parameters
+        ----------
+        state, backend, use_mpi : as py-pde passes them
+        """
+        return super().determine_backend(state, "numpy" if backend == "auto" else backend, use_mpi=use_mpi)
+
+
+class FiniteVolumeSolver(SolverBase):  # type: ignore[no-untyped-call]
+    """The compiled finite volumes with their own time steps, by the name "finite_volume".
+
+    Heun's method with steps by the Courant number, cut to land on the times of trackers; friction in exact
+    half steps; no cell falls below zero, no liquid is lost [theory: long_wave, eq. 11]. The spin must be
+    constant. Hooks after each step are not called.
+
+    Parameters
+    ----------
+    pde : the equation
+    backend : numpy, whatever is asked
+    courant : Courant number, above 0, at most 0.9
+
+    Raises
+    ------
+    InputError : an equation that is no `AnnularLongWavePDE`, a spin that changes, another Courant number
+    """
+
+    name = "finite_volume"
+    _use_post_step_hook = False
+
+    def __init__(
+        self,
+        pde: AnnularLongWavePDE,
+        *,
+        backend: str | BackendBase[Any] = "auto",
+        courant: float = 0.8,
+    ) -> None:
+        super().__init__(pde, backend="numpy" if backend == "auto" else backend)
+        if getattr(type(pde), "evolution_rate", None) is not AnnularLongWavePDE.evolution_rate:
+            raise InputError("pde", type(pde).__name__, "an AnnularLongWavePDE, its right-hand side as it is")
+        if not 0.0 < courant <= 0.9:
+            raise InputError("courant", courant, "above 0, at most 0.9")
+        layer.require_constant_spin(pde.terms)
+        self.terms, self.courant = pde.terms, courant
+
+    def make_stepper(self, state: Any, dt: float | None = None) -> Any:
+        """Function that advances a state from one time to another.
+
+        Parameters
+        ----------
+        state : an example
+        dt : None; the Courant number sets the steps
+
+        Returns
+        -------
+        Function of state, start and end; returns the end
+
+        Raises
+        ------
+        InputError : other fields, another grid, a `dt`
+        """
+        if dt is not None:
+            raise InputError("dt", dt, "left out: `courant` sets the steps")
+        _parts(state)
+        self._select_backend(state)
+        self.info |= {"dt": None, "dt_adaptive": True, "stochastic": False, "steps": 0}
+        self.info |= {"courant": self.courant, "status": "finished"}
+
+        def advance(state: Any, start: float, stop: float) -> float:
+            area, momentum, steps = layer.march(self.terms, *_parts(state), start, stop, self.courant)
+            if steps < 0:
+                self.info["status"] = "lost"
+                raise ConvergenceError(f"{_LOST} between t = {start:g} s and {stop:g} s")
+            state.data[0], state.data[1] = area, momentum
+            self.info["steps"] += steps
+            return stop
+
+        return advance
+
+
+def _cells(grid: GridBase) -> int:
+    """Number of cells of a grid as from `circle`."""
+    if not (
+        isinstance(grid, CartesianGrid)
+        and grid.num_axes == 1
+        and grid.periodic == [True]
+        and grid.axes_bounds == ((0.0, 2.0 * math.pi),)
+        and grid.shape[0] >= 8
+    ):
+        raise InputError("grid", grid, "one periodic axis from 0 to 2 pi, as from `circle`")
+    return int(grid.shape[0])
+
+
+def _parts(state: Any) -> tuple[Array, Array]:
+    """A and q of a state."""
+    fields = isinstance(state, FieldCollection) and all(isinstance(f, ScalarField) for f in state)
+    if not (fields and len(state) == 2 and state.data.dtype == np.float64):
+        raise InputError("state", type(state).__name__, 'two real scalar fields, "area" and "momentum"')
+    _cells(state.grid)
+    return state.data[0], state.data[1]
+
+
+def _collection(grid: GridBase, area: Array, momentum: Array) -> Any:
+    return FieldCollection(
+        [ScalarField(grid, area, label="area"), ScalarField(grid, momentum, label="momentum")]
+    )

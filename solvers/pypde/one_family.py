@@ -1,0 +1,253 @@
+"""Waves of one family as a py-pde equation, and the exponential steppers as a py-pde solver.
+
+The right-hand side is spectral on a circle of evenly spaced cells and written in numpy: every py-pde
+solver, tracker and storage works on it and nothing is compiled. Importing this module registers the solver
+"exponential".
+"""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from typing import Any
+
+import numpy as np
+from pde.backends.base import BackendBase
+from pde.fields.scalar import ScalarField
+from pde.grids.base import GridBase
+from pde.grids.cartesian import CartesianGrid
+from pde.pdes.base import PDEBase
+from pde.solvers.base import ConvergenceError, SolverBase
+
+from fluid.kdv import KdvCoefficients
+from meshes.errors import InputError, require_positive
+from solvers.waves.exponential import find_method
+from solvers.waves.stepper import Advance, Control, Split, advance_adaptive, advance_fixed, to_spectrum
+from solvers.waves.terms import WaveTerms, wave_split
+
+
+def circle(points: int) -> CartesianGrid:
+    """The grid the waves live on: evenly spaced cells all round the drum.
+
+    Parameters
+    ----------
+    points : number of cells, 8 or more; an even number with small factors is fastest
+
+    Returns
+    -------
+    Periodic py-pde grid over 0 ... 2 pi; the coordinate is theta at the cells' centres
+
+    Raises
+    ------
+    InputError : fewer than 8 points
+    """
+    if points < 8:
+        raise InputError("points", points, "8 or more")
+    return CartesianGrid([(0.0, 2.0 * math.pi)], points, periodic=True)
+
+
+class SplitPDE(PDEBase):  # type: ignore[no-untyped-call]
+    """A py-pde equation that names its stiff linear part, for the solver "exponential"."""
+
+    @abstractmethod
+    def split(self, grid: GridBase) -> Split:
+        """The equation as exponential steppers take it.
+
+        Parameters
+        ----------
+        grid : of the field
+
+        Returns
+        -------
+        Linear symbol of each mode, and the rest
+        """
+
+
+class KdvBurgersPDE(SplitPDE):  # type: ignore[no-untyped-call]
+    """Weakly nonlinear waves of one family, forced by a whirl and damped [theory: kdv, eq. 1].
+
+    The field is eta, the liquid area per radian above its mean, m^2.
+
+    Parameters
+    ----------
+    c : speed, steepening, dispersion of the family
+    whitham, viscosity, damping, forcing, whirl_speed : as in `solvers.waves.terms.WaveTerms`
+
+    Raises
+    ------
+    InputError : a value that is not finite, a negative viscosity or damping
+    """
+
+    def __init__(
+        self,
+        c: KdvCoefficients,
+        *,
+        whitham: bool = False,
+        viscosity: float = 0.0,
+        damping: float = 0.0,
+        forcing: float = 0.0,
+        whirl_speed: float = 0.0,
+    ) -> None:
+        super().__init__()
+        self.terms = WaveTerms(c, whitham, viscosity, damping, forcing, whirl_speed)
+        self.explicit_time_dependence = self.terms.forcing != 0.0 and self.terms.whirl_speed != 0.0
+
+    def split(self, grid: GridBase) -> Split:
+        """The equation as exponential steppers take it.
+
+        Parameters
+        ----------
+        grid : as from `circle`
+
+        Returns
+        -------
+        As from `solvers.waves.terms.wave_split`
+
+        Raises
+        ------
+        InputError : another grid
+        """
+        points, first = _circle_points(grid)
+        return wave_split(self.terms, points, first)
+
+    def evolution_rate(self, state: Any, t: float = 0.0) -> Any:
+        """Right-hand side of the equation, for py-pde's own solvers.
+
+        Parameters
+        ----------
+        state : eta on a grid as from `circle`
+        t : time, s
+
+        Returns
+        -------
+        d eta/dt, m^2/s
+
+        Raises
+        ------
+        InputError : another grid
+        """
+        split = self.split(state.grid)
+        spectrum = to_spectrum(state.data)
+        rate = split.symbol * spectrum + split.nonlinear(spectrum, t)
+        return ScalarField(state.grid, np.fft.irfft(rate, n=state.data.size))
+
+    def determine_backend(
+        self, state: Any, backend: str | BackendBase[Any] = "auto", *, use_mpi: bool = False
+    ) -> BackendBase[Any]:
+        """The backend for a solver: numpy unless another is asked for, so that nothing is compiled.
+
+        Parameters
+        ----------
+        state, backend, use_mpi : as py-pde passes them
+
+        Returns
+        -------
+        The backend
+        """
+        return super().determine_backend(state, "numpy" if backend == "auto" else backend, use_mpi=use_mpi)
+
+
+class ExponentialSolver(SolverBase):  # type: ignore[no-untyped-call]
+    """Exponential steppers for every py-pde equation that is a `SplitPDE`, by the name "exponential".
+
+    Without `dt` the steps follow the tolerance; with it they are as long as `dt` or, to land on the times of
+    trackers, shorter. Trackers see the field at exactly their times. Hooks after each step are not called.
+
+    Parameters
+    ----------
+    pde : the equation
+    backend : numpy, whatever is asked
+    method : "etdrk4", "krogstad" or "ifrk4"
+    tolerance : error of a step over the field, both root mean squares
+    frame : angular speed of the frame in which the rest of the split is followed, rad/s; None: the equation's
+
+    Raises
+    ------
+    InputError : an equation that is no `SplitPDE`, an unknown method, a tolerance that is not positive
+    """
+
+    name = "exponential"
+    _use_post_step_hook = False
+
+    def __init__(
+        self,
+        pde: SplitPDE,
+        *,
+        backend: str | BackendBase[Any] = "auto",
+        method: str = "krogstad",
+        tolerance: float = 1e-6,
+        frame: float | None = None,
+    ) -> None:
+        super().__init__(pde, backend="numpy" if backend == "auto" else backend)
+        self.equation = pde
+        if not isinstance(pde, SplitPDE):
+            raise InputError("pde", type(pde).__name__, "a SplitPDE")
+        find_method(method)
+        require_positive("tolerance", tolerance)
+        self.method, self.tolerance, self.frame = method, tolerance, frame
+
+    def make_stepper(self, state: Any, dt: float | None = None) -> Any:
+        """Function that advances a state from one time to another.
+
+        Parameters
+        ----------
+        state : an example
+        dt : length of the steps, s; None: adaptive
+
+        Returns
+        -------
+        Function of state, start and end; returns the end
+
+        Raises
+        ------
+        InputError : another grid than `circle` gives, a `dt` that is not positive
+        """
+        if dt is not None:
+            require_positive("dt", dt)
+        split = self.equation.split(state.grid)
+        if self.frame is not None:
+            split = Split(split.symbol, split.nonlinear, self.frame)
+        self._select_backend(state)
+        self.info |= {"dt": dt, "dt_adaptive": dt is None, "stochastic": False, "method": self.method}
+        self.info |= {"steps": 0, "rejected": 0, "smallest_step": math.inf, "largest_error": 0.0}
+        self.info["status"] = "finished"
+        points, trial = state.data.size, None
+
+        def advance(state: Any, start: float, stop: float) -> float:
+            nonlocal trial
+            if stop - start <= 4.0 * np.finfo(float).eps * max(abs(start), abs(stop)):
+                return stop
+            spectrum, span = to_spectrum(state.data), (start, stop)
+            if dt is None:
+                control = Control(self.tolerance, trial)
+                done = advance_adaptive(split, spectrum, span, control, self.method)
+                trial = done.next_step
+            else:
+                steps = max(1, math.ceil((stop - start) / dt * (1.0 - 1e-12)))
+                done = advance_fixed(split, spectrum, span, steps, self.method)
+            state.data[...] = np.fft.irfft(done.spectrum, n=points)
+            self._note(done)
+            return done.time
+
+        return advance
+
+    def _note(self, done: Advance) -> None:
+        self.info["steps"] += done.steps
+        self.info["rejected"] += done.rejected
+        self.info["smallest_step"] = min(self.info["smallest_step"], done.smallest_step)
+        self.info["largest_error"] = max(self.info["largest_error"], done.largest_error)
+        self.info["status"] = done.status
+        if done.status != "finished":
+            raise ConvergenceError(f"{done.status} at t = {done.time:g} s after {self.info['steps']} steps")
+
+
+def _circle_points(grid: GridBase) -> tuple[int, float]:
+    """Number of points and angle of the first, of a grid that goes round once."""
+    if not (
+        isinstance(grid, CartesianGrid)
+        and grid.num_axes == 1
+        and grid.periodic == [True]
+        and math.isclose(grid.volume, 2.0 * math.pi)
+    ):
+        raise InputError("grid", grid, "one periodic axis of length 2 pi, as from `circle`")
+    return int(grid.shape[0]), float(grid.axes_coords[0][0])

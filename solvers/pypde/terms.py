@@ -1,0 +1,224 @@
+"""Annular long waves in SI units, by the compiled finite volumes: rates of change, time steps, readings.
+
+A layer is the liquid area per radian A, m^2, and the relative angular momentum per radian and density
+q = R u A - Omega A^2, m^4/s, both shape (n,), on n equal cells round the drum, the first from theta = 0. The
+spin may change at a constant rate; Omega is always the current one [theory: long_wave, eq. 4].
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fluid import friction, long_wave
+from fluid.fill import Fill
+from meshes.errors import InputError, require_not_negative
+from solvers.layer.face_flux import DRY, THIN
+from solvers.layer.finite_volume import FULL, GHOSTS, WORK, rates
+from solvers.layer.loads import ring
+from solvers.layer.prescribed import Whirl
+from solvers.layer.step import advance, scratch
+
+Array = NDArray[np.float64]
+
+_STEPS = 20_000_000  # from one time to the next
+
+
+@dataclass(frozen=True)
+class LongWaveTerms:
+    """What acts on a layer [theory: long_wave, eq. 4].
+
+    Parameters
+    ----------
+    fill : chamber and liquid; the volume is that of the uniform layer
+    whirl : of the drum's axis, at a constant speed in space, and gravity; its spin is that at time 0
+    friction : law of `fluid.friction` and coefficient, as from `solvers.layer.settle.friction_law`
+    dispersion : add the finite depth's dispersion [theory: long_wave, eq. 12]
+    spin_rate : rate of change of the spin, rad/s^2
+
+    Raises
+    ------
+    InputError : an unknown law, a negative coefficient, a rate that is not finite
+    """
+
+    fill: Fill
+    whirl: Whirl
+    friction: tuple[int, float] = (friction.NONE, 0.0)
+    dispersion: bool = False
+    spin_rate: float = 0.0
+
+    def __post_init__(self) -> None:
+        law, coefficient = self.friction
+        if law not in (friction.NONE, friction.LINEAR, friction.STOKES, friction.QUADRATIC):
+            raise InputError("friction", law, "a law of `fluid.friction`")
+        require_not_negative("friction coefficient", coefficient)
+        if not math.isfinite(self.spin_rate):
+            raise InputError("spin_rate", self.spin_rate, "a finite number")
+
+    def spin(self, time: float) -> float:
+        """Omega at a time, rad/s.
+
+        Raises
+        ------
+        InputError : a time at which the drum does not spin forward
+        """
+        spin = self.whirl.spin + self.spin_rate * time
+        if spin <= 0.0:
+            raise InputError("time", time, "one at which the drum spins forward")
+        return spin
+
+
+def body_force(terms: LongWaveTerms, time: float) -> complex:
+    """Minus the acceleration of the drum's axis, and gravity [theory: long_wave, eq. 8].
+
+    Parameters
+    ----------
+    terms : the whirl
+    time : s
+
+    Returns
+    -------
+    f in the drum frame, m/s^2, real along theta = 0
+    """
+    whirl, grown = terms.whirl, 1.0
+    # The drum has turned by the time and the mean spin so far.
+    turned = (whirl.spin + 0.5 * terms.spin_rate * time) * time
+    if whirl.ramp > 0.0 and time < whirl.ramp:
+        part = 2.0 * math.pi * time / whirl.ramp
+        grown = (part - math.sin(part)) / (2.0 * math.pi)
+    seen = cmath.exp(1j * (whirl.speed * time - turned))
+    return whirl.speed**2 * whirl.amplitude * grown * seen - 1j * whirl.gravity * cmath.exp(-1j * turned)
+
+
+def layer_rates(terms: LongWaveTerms, area: Array, momentum: Array, time: float) -> tuple[Array, Array]:
+    """Rates of change of a layer [theory: long_wave, eq. 1 and 4], discretised as in eq. 11 there.
+
+    A cell below zero, where a time step has taken more than there was, counts as dry. Where the surface has
+    come to the axis there are no rates: all are nan, which steppers that adapt their steps take as too long a
+    step.
+
+    Parameters
+    ----------
+    terms : what acts
+    area, momentum : A and q, shape (n,)
+    time : s
+
+    Returns
+    -------
+    dA/dt, m^2/s, and dq/dt, m^4/s^2, shape (n,)
+    """
+    radius, n, spin = terms.fill.chamber.radius, area.size, terms.spin(time)
+    a, q = scaled(terms, area, momentum)
+    d_area, d_q = np.full(n, math.nan), np.full(n, math.nan)
+    if is_layer(terms, area, momentum):
+        cell, face = radial_force(terms, n, time)
+        work, step = np.zeros((WORK, n + 2 * GHOSTS)), 2.0 * math.pi / n
+        rates(a, q, spin, terms.spin_rate, cell, face, step, 0.0, _spread(terms, a), work, d_area, d_q)
+        d_q -= _shear(terms, a, q, spin)
+    return d_area * radius**2, d_q * radius**4
+
+
+def march(
+    terms: LongWaveTerms, area: Array, momentum: Array, start: float, stop: float, courant: float
+) -> tuple[Array, Array, int]:
+    """Advance a layer by Heun steps in which no cell falls below zero, at a constant spin.
+
+    Parameters
+    ----------
+    terms : what acts; `spin_rate` must be 0
+    area, momentum : A and q at the start, shape (n,)
+    start, stop : times, s
+    courant : Courant number
+
+    Returns
+    -------
+    A and q at the stop, and the number of steps; -1 where the surface came to the axis on the way or
+    there were more than 20 million steps
+
+    Raises
+    ------
+    InputError : a spin that changes, a time before 0, a cell below zero or full
+    """
+    require_constant_spin(terms)
+    require_layer(terms, area, momentum)
+    require_not_negative("time", start)
+    if area.min() < 0.0:
+        raise InputError("area", float(area.min()), "0 or above in each cell")
+    whirl, radius, n = terms.whirl, terms.fill.chamber.radius, area.size
+    a, q = scaled(terms, area, momentum)
+    law, coefficient = terms.friction
+    drive = (
+        whirl.amplitude / radius,
+        whirl.slip,
+        whirl.ramp,
+        whirl.speed,
+        whirl.gravity / radius,
+        whirl.spin,
+    )
+    rub = (float(law), coefficient, _lid(terms), _spread(terms, a))
+    steps = advance(a, q, start, stop, drive, rub, ring(n), courant, _STEPS, scratch(n), np.empty(9))
+    return a * radius**2, q * radius**4, int(steps)
+
+
+def require_constant_spin(terms: LongWaveTerms) -> None:
+    """Raise `InputError` unless the spin stays as it is."""
+    if terms.spin_rate != 0.0:
+        raise InputError(
+            "spin_rate", terms.spin_rate, '0 for "finite_volume"; py-pde\'s own solvers take any'
+        )
+
+
+def is_layer(terms: LongWaveTerms, area: Array, momentum: Array) -> bool:
+    """Whether A and q, shape (n,), are finite and the surface is clear of the axis."""
+    most = FULL * terms.fill.chamber.radius**2
+    return bool(np.isfinite(momentum).all() and np.isfinite(area).all() and area.max() < most)
+
+
+def require_layer(terms: LongWaveTerms, area: Array, momentum: Array) -> None:
+    """Raise `InputError` unless A and q, shape (n,), are finite and the surface is clear of the axis."""
+    if not is_layer(terms, area, momentum):
+        most = FULL * terms.fill.chamber.radius**2
+        raise InputError("area", float(area.max()), f"below {most:g} m^2, and finite with its momentum")
+
+
+def radial_force(terms: LongWaveTerms, cells: int, time: float) -> tuple[Array, Array]:
+    """f_r over R, 1/s^2, at the middles of the cells and at their left faces, shape (n,)."""
+    force = body_force(terms, time) / terms.fill.chamber.radius
+    table = ring(cells)
+    return force.real * table[0] + force.imag * table[1], force.real * table[2] + force.imag * table[3]
+
+
+def scaled(terms: LongWaveTerms, area: Array, momentum: Array) -> tuple[Array, Array]:
+    """A and q, shape (n,), in lengths over R; what is below zero counts as dry."""
+    radius = terms.fill.chamber.radius
+    return np.maximum(area / radius**2, 0.0), momentum / radius**4
+
+
+def faded_velocity(a: Array, q: Array, spin: float) -> Array:
+    """u as the finite volumes take it, gone in the thinnest films; lengths over R, shape (n,)."""
+    square = np.square(a)
+    found = 2.0 * (q + spin * square) * a / (square + np.maximum(square, THIN**2))
+    return np.where(a > DRY, found, 0.0)
+
+
+def _spread(terms: LongWaveTerms, a: Array) -> float:
+    """Square of the mean layer's L for the dispersive term, 0 without it."""
+    return float(long_wave.layer_log(a.mean())) ** 2 if terms.dispersion else 0.0
+
+
+def _lid(terms: LongWaveTerms) -> float:
+    return 2.0 * terms.fill.chamber.radius / terms.fill.chamber.height
+
+
+def _shear(terms: LongWaveTerms, a: Array, q: Array, spin: float) -> Array:
+    """tau/rho of the wall friction, lengths over R [theory: long_wave, eq. 9]."""
+    law, coefficient = terms.friction
+    shear, wet = np.zeros_like(a), a > DRY
+    u, held = faded_velocity(a, q, spin)[wet], a[wet]
+    depth = 2.0 * held / (1.0 + long_wave.free_surface_radius(held))
+    shear[wet] = friction.damping_rate(law, coefficient, _lid(terms), depth, held, u) * held * u
+    return shear

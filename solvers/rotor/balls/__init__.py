@@ -1,0 +1,1 @@
+"""Ball balancers: balanced states and motion in time."""

@@ -1,0 +1,276 @@
+"""Ball balancers on any rotor: balanced states, and the motion of rotor and balls together in time."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from meshes.errors import InputError, require_not_negative, require_positive
+from solvers.rotor.balls.motion import energy
+from solvers.rotor.system import RotorSystem
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+MOST_STEPS = 100_000_000  # about ten minutes
+
+
+@dataclass(frozen=True)
+class BallRace:
+    """A circular race around the rotor's axis with balls that roll in it.
+
+    Parameters
+    ----------
+    position : along the axis, m
+    radius : R of the balls' centres, m
+    masses : m of each ball, kg
+    drag : of the race on one ball over its speed in it, N s/m
+    rolling : kappa, inertia of a ball on its way over that of its sliding mass, 7/5 for a ball that rolls
+
+    Raises
+    ------
+    InputError : a radius or mass that is not positive, no ball, a negative drag, kappa below 1
+    """
+
+    position: float
+    radius: float
+    masses: tuple[float, ...]
+    drag: float
+    rolling: float = 7.0 / 5.0
+
+    def __post_init__(self) -> None:
+        if not math.isfinite(self.position):
+            raise InputError("position", self.position, "a finite number")
+        require_positive("radius", self.radius)
+        require_not_negative("drag", self.drag)
+        if not self.masses:
+            raise InputError("masses", self.masses, "those of one ball or more")
+        for mass in self.masses:
+            require_positive("masses", mass)
+        if not (math.isfinite(self.rolling) and self.rolling >= 1.0):
+            raise InputError("rolling", self.rolling, "1 or above")
+
+
+@dataclass(frozen=True)
+class BalancedRun:
+    """Motion of a rotor with ball balancers at constant spin; s samples, n coordinates, N balls in all.
+
+    Parameters
+    ----------
+    time : s, shape (s,)
+    coordinates : q, m or rad, shape (s, n)
+    ball_angle : of each ball in the standing frame, race by race, rad, shape (s, N)
+    ball_speed : rad/s, shape (s, N)
+    energy_error : gap of the energy audit over the largest of its parts [theory: balls, eq. 20]
+    converged : every number is finite and the audit closes to a thousandth
+    speed : Omega, rad/s
+    """
+
+    time: Array
+    coordinates: Array
+    ball_angle: Array
+    ball_speed: Array
+    energy_error: float
+    converged: bool
+    speed: float
+
+    def deflection(self, system: RotorSystem, position: float) -> Complex:
+        """Complex deflection of the axis at a position in the frame that turns with the rotor, m, shape (s,).
+
+        Parameters
+        ----------
+        system : the rotor
+        position : along the axis, m
+        """
+        first, second = system.at(position) @ self.coordinates.T
+        return np.asarray((first + 1j * second) * np.exp(-1j * self.speed * self.time))
+
+    @property
+    def ball_place(self) -> Array:
+        """Angles of the balls in the rotor, from the origin of its unbalance's angle, rad, shape (s, N)."""
+        return np.asarray(self.ball_angle - self.speed * self.time[:, None])
+
+
+def balanced_places(unbalance: complex, moment: float, count: int) -> Array | None:
+    """Places in which equal balls balance an unbalance in their own plane [theory: balls, eq. 21].
+
+    Pairs symmetrical about the direction opposite to the unbalance; of an odd number one stays in it.
+
+    Parameters
+    ----------
+    unbalance : U0 e^{i angle}, kg m
+    moment : m R of one ball, kg m
+    count : N, 1 or more
+
+    Returns
+    -------
+    Angles in the rotor, rad, shape (N,); None where the balls cannot balance it
+
+    Raises
+    ------
+    InputError : a moment that is not positive, no ball
+    """
+    require_positive("moment", moment)
+    if count < 1:
+        raise InputError("count", count, "1 or more")
+    needed = abs(unbalance) / moment
+    odd = count % 2
+    pairs = count - odd
+    # N = 1 leaves no angle to choose.
+    cosine = (needed - odd) / pairs if pairs else (1.0 if needed == 1.0 else math.inf)
+    if abs(cosine) > 1.0:
+        return None
+    away = math.acos(cosine)
+    spots = [0.0] * odd + [away, -away] * (pairs // 2)
+    opposite = cmath.phase(unbalance) + math.pi if unbalance else 0.0
+    return np.array(spots) + opposite
+
+
+def residual_unbalance(unbalance: complex, moment: float, places: ArrayLike) -> complex:
+    """Unbalance of rotor and balls together, kg m [theory: balls, eq. 21].
+
+    Parameters
+    ----------
+    unbalance : of the rotor, U0 e^{i angle}, kg m
+    moment : m R of one ball, kg m
+    places : of the balls in the rotor, rad, shape (N,)
+    """
+    return complex(unbalance + moment * np.exp(1j * np.asarray(places, dtype=float)).sum())
+
+
+def unbalance_in_planes(
+    unbalances: Sequence[tuple[float, complex]], first: float, second: float
+) -> tuple[complex, complex]:
+    """Two unbalances with the same static and couple parts as any number of them [theory: balls, eq. 21].
+
+    Parameters
+    ----------
+    unbalances : position along the axis, m, and U e^{i angle}, kg m, of each
+    first, second : positions of the two planes, m
+
+    Returns
+    -------
+    In the first and in the second plane, kg m: what balls there must oppose
+
+    Raises
+    ------
+    InputError : both planes in one place
+    """
+    if first == second:
+        raise InputError("second", second, "another plane than the first")
+    static = sum((size for _, size in unbalances), 0j)
+    couple = sum((position * size for position, size in unbalances), 0j)
+    there = (couple - first * static) / (second - first)
+    return static - there, there
+
+
+def simulate(
+    system: RotorSystem,
+    races: Sequence[BallRace],
+    speed: float,
+    duration: float,
+    *,
+    places: ArrayLike | None = None,
+    gravity: float = 0.0,
+    samples: int = 400,
+    steps: int = 48,
+) -> BalancedRun:
+    """Integrate rotor and balls at constant spin [theory: balls, eq. 16-18].
+
+    Parameters
+    ----------
+    system : the rotor
+    races : one or more
+    speed : Omega, rad/s, above 0
+    duration : s
+    places : start of the balls in the rotor, race by race, rad, shape (N,); by default evenly around each
+        race. They start at rest in the rotor, and the rotor without deflection
+    gravity : across the axis, against the second direction, m/s^2
+    samples : of the result, the start among them
+    steps : of the fourth-order method in a turn of the rotor, or in 2 pi of its fastest own motion if that is
+        faster
+
+    Raises
+    ------
+    InputError : a value out of its range, or so long a time of so stiff a rotor that it would take too many
+        steps
+    """
+    from solvers.rotor.balls.steps import advance
+
+    require_positive("speed", speed)
+    require_positive("duration", duration)
+    require_not_negative("gravity", gravity)
+    if not races or samples < 2 or steps < 8:
+        raise InputError("races, samples, steps", (len(races), samples, steps), "at least 1, 2 and 8")
+    axes, balls = _balls(system, races)
+    n, count = len(system.coordinates), balls.shape[0]
+    state = _initial(n, races, speed, places, count)
+    in_sample = math.ceil(duration / (samples - 1) * _fastest(system, balls, speed) * steps / (2.0 * math.pi))
+    if in_sample * (samples - 1) > MOST_STEPS:
+        raise InputError("duration", duration, f"one of at most {MOST_STEPS:g} steps; the rotor is stiff")
+    step = duration / ((samples - 1) * in_sample)
+    record = np.zeros((samples, state.size))
+    turning = np.stack((system.unbalance.real, system.unbalance.imag))
+    damping = system.damping + speed * system.gyroscopic
+    numbers = np.array([speed, gravity])
+    matrices = (system.mass, damping, system.stiffness, turning, axes, balls)
+    advance(state, *matrices, numbers, step, in_sample, record)
+    error = _audit(record, system, axes, balls, gravity)
+    return BalancedRun(
+        time=np.linspace(0.0, duration, samples),
+        coordinates=record[:, :n],
+        ball_angle=record[:, 2 * n : 2 * n + count],
+        ball_speed=record[:, 2 * n + count : 2 * (n + count)],
+        energy_error=error,
+        converged=error <= 1e-3,
+        speed=speed,
+    )
+
+
+def _fastest(system: RotorSystem, balls: Array, speed: float) -> float:
+    """Largest of the spin, the rotor's own frequencies and rates of decay, and the balls' decay, rad/s."""
+    n = len(system.coordinates)
+    forces = np.hstack((system.stiffness, system.damping + speed * system.gyroscopic))
+    matrix = np.zeros((2 * n, 2 * n))
+    matrix[:n, n:] = np.eye(n)
+    matrix[n:] = -np.linalg.solve(system.mass, forces)
+    return float(max(speed, np.abs(np.linalg.eigvals(matrix)).max(), (balls[:, 2] / balls[:, 0]).max()))
+
+
+def _audit(record: Array, system: RotorSystem, axes: Array, balls: Array, gravity: float) -> float:
+    """Largest gap between the work done and the change of energy, over what was turned over till the end."""
+    if not np.isfinite(record).all():
+        return math.inf
+    held = np.array([energy(one, system.mass, system.stiffness, axes, balls, gravity) for one in record])
+    gap, scale = float(np.max(np.abs(held - held[0] - record[:, -2]))), float(record[-1, -1])
+    return gap / scale if scale > 0.0 else gap
+
+
+def _balls(system: RotorSystem, races: Sequence[BallRace]) -> tuple[Array, Array]:
+    """Axis displacement in each ball's plane, and mass, radius, drag, rolling inertia of each ball."""
+    axes = [system.at(race.position) for race in races for _ in race.masses]
+    rows = [(mass, race.radius, race.drag, race.rolling) for race in races for mass in race.masses]
+    return np.array(axes), np.array(rows)
+
+
+def _initial(
+    n: int,
+    races: Sequence[BallRace],
+    speed: float,
+    places: ArrayLike | None,
+    count: int,
+) -> Array:
+    """State at time 0."""
+    state = np.zeros(2 * (n + count) + 2)
+    even = [2.0 * math.pi * k / len(race.masses) for race in races for k in range(len(race.masses))]
+    start = np.array(even) if places is None else np.asarray(places, dtype=float)
+    if start.shape != (count,) or not np.isfinite(start).all():
+        raise InputError("places", start.tolist(), f"finite angles of {count} balls")
+    state[2 * n : 2 * n + count] = start
+    state[2 * n + count : -2] = speed
+    return state

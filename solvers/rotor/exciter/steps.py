@@ -1,0 +1,115 @@
+"""Time steps of the dual-frequency exciter, compiled by numba with its cache on disk."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from solvers.rotor.exciter import machine as exciter
+
+Array = NDArray[np.float64]
+
+_jit: Any = njit(cache=True, error_model="numpy", nogil=True)
+_rates: Any = _jit(exciter.rates)
+
+
+def _step(time: float, state: Array, numbers: Array, step: float, slopes: Array, trial: Array) -> None:
+    """One step of the classical Runge-Kutta method, of fourth order."""
+    weights = (1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0)
+    for stage in range(4):
+        share = 0.0 if stage == 0 else (1.0 if stage == 3 else 0.5)
+        for i in range(state.size):
+            trial[i] = state[i] + (share * step * slopes[stage - 1, i] if stage > 0 else 0.0)
+        _rates(time + share * step, trial, numbers, slopes[stage])
+    for i in range(state.size):
+        for stage in range(4):
+            state[i] += step * weights[stage] * slopes[stage, i]
+
+
+_compiled_step: Any = _jit(_step)
+
+
+def _spread(state: Array, balls: int) -> float:
+    """Largest angle between the first ball and another, the short way round."""
+    widest = 0.0
+    for j in range(1, balls):
+        apart = (state[2 + j] - state[2] + np.pi) % (2.0 * np.pi) - np.pi
+        widest = max(widest, abs(apart))
+    return widest
+
+
+_compiled_spread: Any = _jit(_spread)
+
+
+def _mean_angle(state: Array, balls: int) -> float:
+    """Angle of the sum of the balls' unit vectors."""
+    x, y = 0.0, 0.0
+    for j in range(balls):
+        x += np.cos(state[2 + j])
+        y += np.sin(state[2 + j])
+    return float(np.arctan2(y, x))
+
+
+_compiled_mean_angle: Any = _jit(_mean_angle)
+
+
+def _advance(
+    state: Array,
+    numbers: Array,
+    step: float,
+    steps: int,
+    most: float,
+    means: Array,
+    first: int,
+    sums: Array,
+) -> int:
+    """Integrate block by block until the end, or until a ball is faster than `most` in the mean of a block.
+
+    Parameters
+    ----------
+    state : start and end, shape (2 + 2 N,)
+    numbers : see `exciter.rates`
+    step : time step, in units of 1/(natural frequency)
+    steps : in a block
+    most : mean speed of a ball beyond which it will not come back
+    means : result: mean speed of each ball and the largest spread, shape (blocks, N + 1)
+    first : block with which the last part begins
+    sums : result: over that part, projections of the platform's position on sine and cosine of the balls'
+        mean angle and of the shaft's, shape (4,), 0 at the start
+
+    Returns
+    -------
+    Blocks done.
+    """
+    blocks, balls = means.shape[0], means.shape[1] - 1
+    slopes, trial, before = np.empty((4, state.size)), np.empty(state.size), np.empty(balls)
+    for block in range(blocks):
+        before[:] = state[2 : 2 + balls]
+        means[block, balls] = 0.0
+        for i in range(steps):
+            time = (block * steps + i) * step
+            if block >= first:
+                # A Hann window: what leaks from one frequency to the other falls with the cube of its length.
+                slow, fast = _compiled_mean_angle(state, balls), numbers[6] * time
+                share = (i + 0.5 + (block - first) * steps) / ((blocks - first) * steps)
+                weight = 2.0 * (1.0 - np.cos(2.0 * np.pi * share)) / ((blocks - first) * steps)
+                sums[0] += weight * state[0] * np.sin(slow)
+                sums[1] += weight * state[0] * np.cos(slow)
+                sums[2] += weight * state[0] * np.sin(fast)
+                sums[3] += weight * state[0] * np.cos(fast)
+            _compiled_step(time, state, numbers, step, slopes, trial)
+            means[block, balls] = max(means[block, balls], _compiled_spread(state, balls))
+        fastest = 0.0
+        for j in range(balls):
+            means[block, j] = (state[2 + j] - before[j]) / (steps * step)
+            fastest = max(fastest, means[block, j])
+        # Written so that nan stops as well.
+        if not fastest <= most:
+            return int(block + 1)
+    return int(blocks)
+
+
+advance: Any = _jit(_advance)

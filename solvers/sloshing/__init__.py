@@ -1,0 +1,1 @@
+"""Sloshing in a drum of any section by finite elements: modes, damping, forced answer."""

@@ -1,0 +1,320 @@
+"""What a whirling rotor knows of the liquid in a chamber of any section: few motions and their friction."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import cholesky, solve_triangular
+
+from fluid.fill import Fill
+from fluid.friction import STOKES
+from fluid.wall_layer import layer_thickness
+from fluid.whirl import is_full, plane_layer
+from meshes.baffles import Baffles
+from meshes.chamber import Chamber
+from meshes.chamber_section import ChamberSection, liquid_of
+from solvers.rotor.jeffcott import Jeffcott
+
+if TYPE_CHECKING:
+    from meshes.liquid_section import LiquidSection
+    from solvers.sloshing.system import LiquidSystem
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+# Frequencies over the spin whose answers are kept, off the real axis where no wave resonates; with them go
+# rest and the limit of very fast whirl.
+KEPT = (0.2 + 0.08j, 0.45 + 0.12j, 0.75 + 0.15j, 1.1 + 0.2j, 1.6 + 0.4j)
+_DISTINCT = 1e-10  # of a new answer that must stand across the others
+
+
+@dataclass(frozen=True, eq=False)
+class ReducedLiquid:
+    """K eta'' + 2 Omega C eta' + Omega^2 B eta = -P^T f and Q = -rho P eta, in m motions.
+
+    Parameters
+    ----------
+    inertia : K, the unit matrix, shape (m, m)
+    gyration : C, antisymmetric, shape (m, m)
+    surface : B, symmetric, positive definite, shape (m, m)
+    moment : P, shape (2, m), m
+    motions : what they are in the condensed unknowns, shape (n, m)
+    liquid_area, enclosed_area : as in `LiquidSystem`, m^2
+    """
+
+    inertia: Array
+    gyration: Array
+    surface: Array
+    moment: Array
+    motions: Array
+    liquid_area: float
+    enclosed_area: float
+
+    def compliance(self, slip_ratio: ArrayLike) -> Complex:
+        """First moment of the displaced liquid for a uniform force [theory: sections, eq. 2].
+
+        Parameters
+        ----------
+        slip_ratio : s/Omega of a force f e^{i s t} in the drum's frame, shape (k,)
+
+        Returns
+        -------
+        Q Omega^2/(rho h f) over the two directions, shape (k, 2, 2), m^2
+        """
+        s = np.asarray(slip_ratio, dtype=complex)[:, None, None]
+        matrix = -np.square(s) * self.inertia + 2j * s * self.gyration + self.surface
+        drive = np.broadcast_to(self.moment.T, (len(s), *self.moment.T.shape))
+        return np.asarray(self.moment @ np.linalg.solve(matrix, drive))
+
+    def force_ratio(self, slip_ratio: ArrayLike) -> Array:
+        """Force on a drum that whirls in a circle over that of a full one, as far as it turns with the whirl.
+
+        Parameters
+        ----------
+        slip_ratio : s/Omega, of the whirl as seen from the drum, shape (k,)
+
+        Returns
+        -------
+        G, shape (k,) [theory: sections, eq. 2]
+        """
+        s, found = np.asarray(slip_ratio, dtype=float), self.compliance(slip_ratio)
+        along, across = found[:, 0, 0] + found[:, 1, 1], found[:, 0, 1] - found[:, 1, 0]
+        moved = 0.5 * (along - 1j * across).real
+        return np.asarray((self.liquid_area + np.square(1.0 + s) * moved) / self.enclosed_area)
+
+
+def reduce_liquid(system: LiquidSystem) -> ReducedLiquid:
+    """Keep the motions that answer a uniform force [theory: sections, eq. 1].
+
+    Parameters
+    ----------
+    system : the condensed liquid
+    """
+    root = cholesky(system.inertia, lower=True)
+
+    def scaled(matrix: Array) -> Array:
+        half = solve_triangular(root, matrix, lower=True)
+        return np.asarray(solve_triangular(root, half.T, lower=True).T)
+
+    gyration, surface = scaled(system.gyration), scaled(system.surface)
+    drive = solve_triangular(root, system.moment.T, lower=True)
+    answers = [drive, np.linalg.solve(surface, drive)]
+    unit = np.eye(len(drive))
+    for s in KEPT:
+        answer = np.linalg.solve(-s * s * unit + 2j * s * gyration + surface, drive)
+        answers += [answer.real, answer.imag]
+    basis = spanned(np.hstack(answers))
+    motions = solve_triangular(root.T, basis, lower=False)
+    turn, spread = (basis.T @ one @ basis for one in (gyration, surface))
+    return ReducedLiquid(
+        inertia=np.eye(basis.shape[1]),
+        gyration=0.5 * (turn - turn.T),
+        surface=0.5 * (spread + spread.T),
+        moment=drive.T @ basis,
+        motions=np.asarray(motions),
+        liquid_area=system.liquid_area,
+        enclosed_area=system.enclosed_area,
+    )
+
+
+def spanned(vectors: Any, distinct: float = _DISTINCT) -> Any:
+    """Orthonormal columns that span others, but for what rounding and near repetition add.
+
+    Parameters
+    ----------
+    vectors : real or complex, shape (n, k)
+    distinct : part of a vector that must stand across the others
+
+    Returns
+    -------
+    Shape (n, m), m at most k.
+    """
+    kept: list[Any] = []
+    for vector in vectors.T:
+        one = vector / np.linalg.norm(vector)
+        for _ in range(2):  # twice is enough
+            for other in kept:
+                one = one - other * np.vdot(other, one)
+        size = float(np.linalg.norm(one))
+        if size > distinct:
+            kept.append(one / size)
+    return np.stack(kept, axis=1)
+
+
+Friction = tuple[int, float]
+
+# Slip at which the thickness of the layer at edges is taken, rad/s: twice as thick a layer changes the drag
+# by some per cent.
+_SLIP = 10.0
+
+
+@dataclass(frozen=True, eq=False)
+class SectionLayer:
+    """Liquid of one or several equal chambers in one plane.
+
+    Parameters
+    ----------
+    density : rho h of all of them together, kg/m^2
+    liquid : its motions
+    rate : k of linear friction, 1/s
+    laminar : S of laminar friction, D = sqrt(lambda) S, shape (m, m), s^(-1/2) [theory: sections, eq. 5]
+    """
+
+    density: float
+    liquid: ReducedLiquid
+    rate: float
+    laminar: Array
+
+
+def section_layer(fill: Fill, friction: Friction) -> SectionLayer | None:
+    """Layer of a fill under a law of friction; None without liquid or without a free surface.
+
+    A clear ring is known in closed form; with baffles in the liquid it is computed by finite elements.
+
+    Parameters
+    ----------
+    fill : chamber and liquid
+    friction : law of `fluid.friction` and its coefficient; the quadratic law does not act on small whirls
+    """
+    if fill.volume == 0.0 or is_full(fill):
+        return None
+    chamber, law = fill.chamber, friction[0]
+    density = fill.liquid.density * chamber.height
+    plain = plane_layer(_clear(fill), friction)
+    assert plain is not None
+    if not fill.uneven:
+        liquid = clear_ring(chamber.radius, fill.surface_radius)
+        return SectionLayer(density, liquid, plain.rate, plain.stokes * liquid.inertia)
+    # Of a fluid layer of that thickness at the edges of baffles.
+    cut = float(layer_thickness(fill.liquid.viscosity, _SLIP)) if law == STOKES else 0.0
+    liquid, drag = _of_section(fill, cut) if chamber.baffles is None else _of_baffles(fill, cut)
+    laminar = np.zeros_like(drag)
+    if law == STOKES:
+        # Walls and baffles; then floor and lid, which drag on all of the liquid.
+        plates = 2.0 / chamber.height * liquid.inertia
+        laminar = math.sqrt(fill.liquid.viscosity) * (drag + plates)
+    return SectionLayer(density, liquid, plain.rate, laminar)
+
+
+def _clear(fill: Fill) -> Fill:
+    """Clear ring of the same liquid about the same free surface; friction without walls is taken from it."""
+    radius = math.hypot(fill.surface_radius, math.sqrt(fill.volume / (math.pi * fill.chamber.height)))
+    return Fill(Chamber(radius, fill.chamber.height), fill.liquid, fill.volume)
+
+
+def _of_section(fill: Fill, cut: float) -> tuple[ReducedLiquid, Array]:
+    """Motions and wall drag of a fill whose chamber has a section of its own."""
+    section = fill.chamber.section
+    assert section is not None
+    return _any_section(section, fill.surface_radius, cut)
+
+
+def _of_baffles(fill: Fill, cut: float) -> tuple[ReducedLiquid, Array]:
+    """Motions and wall drag of a ring with baffles, from one of unit radius with the first at angle 0."""
+    radius, baffles = fill.chamber.radius, fill.chamber.baffles
+    assert baffles is not None
+    unit = Baffles(baffles.count, baffles.tip_radius / radius, baffles.wall_gap / radius)
+    reduced, drag = _baffled_ring(fill.surface_radius / radius, unit, cut / radius)
+    liquid = replace(
+        reduced,
+        moment=reduced.moment * radius,
+        liquid_area=reduced.liquid_area * radius**2,
+        enclosed_area=reduced.enclosed_area * radius**2,
+    )
+    return liquid, drag / radius
+
+
+def section_layers(
+    rotor: Jeffcott, fills: Sequence[Fill], friction: Friction
+) -> tuple[Jeffcott, list[SectionLayer]]:
+    """A planar rotor with all liquid that has no free surface, and its layers, equal ones as one.
+
+    Against one another equal layers slosh as if the rotor were not there; such motion does not grow.
+
+    Parameters
+    ----------
+    rotor : without liquid
+    fills : its chambers with their liquid
+    friction : as for `section_layer`
+    """
+    mass, found = rotor.mass, dict[tuple[object, ...], list[Fill]]()
+    for fill in fills:
+        if is_full(fill):
+            mass += fill.mass
+        else:
+            found.setdefault((replace(fill.chamber, plane=0.0), fill.liquid, fill.volume), []).append(fill)
+    layers = []
+    for same in found.values():
+        one = section_layer(same[0], friction)
+        if one is not None:
+            layers.append(replace(one, density=len(same) * one.density))
+    return replace(rotor, mass=mass), layers
+
+
+def clear_ring(radius: float, surface_radius: float) -> ReducedLiquid:
+    """The two motions of a ring without baffles that a whirl drives [theory: sections, eq. 4].
+
+    Parameters
+    ----------
+    radius, surface_radius : R and a, m
+    """
+    tangent = math.tanh(math.log(radius / surface_radius))
+    turn = np.array([[0.0, 1.0], [-1.0, 0.0]])
+    return ReducedLiquid(
+        inertia=np.eye(2),
+        gyration=tangent * turn,
+        surface=tangent * np.eye(2),
+        moment=-surface_radius * math.sqrt(math.pi * tangent) * turn,
+        motions=np.zeros((0, 2)),
+        liquid_area=math.pi * (radius - surface_radius) * (radius + surface_radius),
+        enclosed_area=math.pi * radius**2,
+    )
+
+
+@lru_cache(maxsize=256)
+def _baffled_ring(surface_radius: float, baffles: Baffles, cut: float) -> tuple[ReducedLiquid, Array]:
+    """Of a ring of unit radius; the slowest waves to 4e-5 of their frequencies."""
+    from meshes.rings.quadrilaterals import ring
+
+    return _reduced(ring(1.0, surface_radius, 64, 4, baffles=baffles), cut)
+
+
+@lru_cache(maxsize=256)
+def _any_section(section: ChamberSection, surface_radius: float, cut: float) -> tuple[ReducedLiquid, Array]:
+    """Of a section of its own."""
+    return _reduced(liquid_of(section, surface_radius), cut)
+
+
+def _reduced(mesh: LiquidSection, cut: float) -> tuple[ReducedLiquid, Array]:
+    """Motions that a whirl drives, and their drag on the walls."""
+    from solvers.sloshing.system import condense
+
+    system = condense(mesh)
+    reduced = reduce_liquid(system)
+    return reduced, wall_drag(mesh, np.asarray(system.on_nodes(reduced.motions.T).real), cut)
+
+
+def wall_drag(section: LiquidSection, motions: Array, cut: float = 0.0) -> Array:
+    """Integral of the product of tangential displacements along walls and baffles, both sides of each.
+
+    Parameters
+    ----------
+    section : the liquid at rest
+    motions : stream functions on the nodes, shape (m, N), m^2
+    cut : thickness of the layer that does not see the edges of baffles, m [theory: sloshing, eq. 23]
+
+    Returns
+    -------
+    Shape (m, m), 1/m for motions without unit.
+    """
+    from solvers.sloshing.damping import wall_weights
+
+    slope, weights = wall_weights(section, np.array(cut))
+    along = np.asarray(slope @ motions.T)
+    return np.asarray(along.T @ (weights[:, None] * along))

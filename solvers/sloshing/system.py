@@ -1,0 +1,285 @@
+"""Liquid in a spinning drum condensed to its free surface: the matrices of its motion.
+
+The liquid's motion in the drum's frame is a displacement with the stream function eta, u = curl eta',
+harmonic at every time. With the finite elements' values of eta on the free surface and on walls that pierce
+it,
+
+    K eta'' + 2 Omega C eta' + Omega^2 B eta = - P^T f,    Q = -rho P eta,
+
+for a uniform body force f; Q is the first moment of the displaced liquid, per length of the axis. Nothing
+depends on the spin but what is written: one condensation serves every speed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import qr
+from scipy.sparse import coo_array, csc_array, csr_array
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import splu
+
+from meshes.liquid_section import LiquidSection
+from solvers.sloshing.assembly import stiffness
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Indices = NDArray[np.int64]
+
+_CHUNK = 128  # columns solved for at once
+
+
+@dataclass(frozen=True, eq=False)
+class LiquidSystem:
+    """Liquid of a section condensed to its free surface; made by `condense`.
+
+    Parameters
+    ----------
+    section : the liquid at rest
+    inertia : K, symmetric, positive definite, shape (n, n), a pure number
+    gyration : C, antisymmetric, shape (n, n), a pure number
+    surface : B, symmetric, positive definite, shape (n, n), a pure number
+    moment : P, shape (2, n), m
+    liquid_area, enclosed_area : of the liquid, and with the dry middle, m^2
+    circulations : flows around closed free surfaces and free-standing walls that the condensation leaves out:
+        they are steady, and no force of the drum starts them
+    unknowns : stream function values that the mesh has, walls left out
+    interior : what gives the values on all nodes, see `on_nodes`
+    """
+
+    section: LiquidSection
+    inertia: Array
+    gyration: Array
+    surface: Array
+    moment: Array
+    liquid_area: float
+    enclosed_area: float
+    circulations: int
+    unknowns: int
+    interior: Interior
+
+    def on_nodes(self, amplitudes: Array | Complex) -> Complex:
+        """Stream function on the nodes of the mesh.
+
+        Parameters
+        ----------
+        amplitudes : of the condensed unknowns, shape (k, n)
+
+        Returns
+        -------
+        shape (k, N), in their units
+        """
+        real, imag = (
+            self.interior.expand(np.atleast_2d(part)) for part in (amplitudes.real, amplitudes.imag)
+        )
+        return np.asarray(real + 1j * imag)
+
+
+@dataclass(frozen=True, eq=False)
+class Interior:
+    """Harmonic continuation from the condensed unknowns to the nodes.
+
+    Parameters
+    ----------
+    basis : columns span what the condensed unknowns mean on the surface, shape (surface unknowns, n)
+    factors : of the stiffness inside
+    coupling : stiffness between inside and surface
+    unknown : of each node, -1 where psi = 0, shape (N,)
+    place : of the unknowns in the vector of inside, then surface, shape (unknowns,)
+    """
+
+    basis: Array
+    factors: Any
+    coupling: csr_array
+    unknown: Indices
+    place: Indices
+
+    def expand(self, amplitudes: Array) -> Array:
+        """Values on all nodes of real amplitudes, shape (k, n) to (k, N)."""
+        at_surface = self.basis @ amplitudes.T
+        inside = at_surface[:0] if self.factors is None else -self.factors.solve(self.coupling @ at_surface)
+        values = np.concatenate([inside, at_surface, np.zeros((1, len(amplitudes)))])
+        place = np.append(self.place, len(values) - 1)  # the last one for unknown -1
+        return np.asarray(values[place[self.unknown]].T)
+
+
+def condense(section: LiquidSection) -> LiquidSystem:
+    """Matrices of the liquid's motion on the free surface [theory: sloshing, eq. 9].
+
+    Parameters
+    ----------
+    section : the liquid at rest
+
+    Returns
+    -------
+    The system; its size is that of the nodes on the free surface, and its cost the cube of that.
+    """
+    unknown, count = _unknowns(section)
+    reduce = _selection(unknown, count)
+    k, c, b = (reduce.T @ one @ reduce for one in (stiffness(section), *surface_forms(section)))
+    on_surface = np.zeros(count, dtype=bool)
+    touched = unknown[section.surface.ravel()]
+    on_surface[touched[touched >= 0]] = True
+    inside, outside = np.flatnonzero(~on_surface), np.flatnonzero(on_surface)
+    place = np.empty(count, dtype=np.int64)
+    place[np.concatenate([inside, outside])] = np.arange(count)
+    factors, coupling, schur = _schur(csr_array(k), inside, outside)
+    basis, circulations = _without_circulation(section, unknown, outside, schur)
+    moment = _moment(section) @ reduce
+    submerged = np.count_nonzero(~section.fixed_piece) - np.count_nonzero(_piercing(section))
+    inertia, gyration, surface = (
+        basis.T @ one @ basis
+        for one in (schur, *(m[outside][:, outside].toarray() for m in map(csr_array, (c, b))))
+    )
+    return LiquidSystem(
+        section=section,
+        inertia=0.5 * (inertia + inertia.T),
+        gyration=0.5 * (gyration - gyration.T),
+        surface=0.5 * (surface + surface.T),
+        moment=np.asarray(moment[:, outside] @ basis),
+        liquid_area=_area(section.points, np.concatenate([section.surface, section.wall])),
+        enclosed_area=_enclosed_area(section),
+        circulations=circulations + int(submerged),
+        unknowns=count,
+        interior=Interior(basis, factors, coupling, unknown, place),
+    )
+
+
+def surface_forms(section: LiquidSection) -> tuple[csr_array, csr_array]:
+    """C = oint psi_theta v dtheta and B = oint psi_theta v_theta dtheta on the free surface.
+
+    [theory: sloshing, eq. 6]; the angle is positive with the spin, and it varies along a side as through its
+    nodes.
+
+    Parameters
+    ----------
+    section : the liquid at rest
+
+    Returns
+    -------
+    Matrices over the nodes, rows for v, shape (N, N), pure numbers.
+    """
+    sides = section.surface
+    x, y = section.points[sides[:, 0]].T
+    u, v = section.points[sides[:, 1]].T
+    turn = np.arctan2(x * v - y * u, x * u + y * v)  # below 0
+    if section.order == 1:
+        first = np.array([[-1.0, 1.0], [-1.0, 1.0]]) / 2.0
+        second = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    else:
+        first = np.array([[-3.0, -1.0, 4.0], [1.0, 3.0, -4.0], [-4.0, 4.0, 0.0]]) / 6.0
+        second = np.array([[7.0, 1.0, -8.0], [1.0, 7.0, -8.0], [-8.0, -8.0, 16.0]]) / 3.0
+    # The sides run against the angle.
+    gyration = np.broadcast_to(-first, (len(sides), *first.shape))
+    tension = second / np.abs(turn)[:, None, None]
+    shape, width = (len(section.points),) * 2, sides.shape[1]
+    rows = np.repeat(sides, width, axis=1).ravel()
+    columns = np.tile(sides, (1, width)).ravel()
+    c, b = (csr_array(coo_array((m.ravel(), (rows, columns)), shape=shape)) for m in (gyration, tension))
+    return c, b
+
+
+def _moment(section: LiquidSection) -> Array:
+    """P = oint (x, y) v_theta dtheta, from the gyration matrix and the nodes' positions, shape (2, N)."""
+    gyration, _ = surface_forms(section)
+    return np.asarray((gyration.T @ section.points).T)
+
+
+def _unknowns(section: LiquidSection) -> tuple[Indices, int]:
+    """Unknown of each node, -1 on fixed walls; one for each free-standing piece, and their number."""
+    unknown = np.full(len(section.points), -1, dtype=np.int64)
+    free = np.zeros(len(section.points), dtype=bool)
+    free[section.cells] = True
+    free[section.wall] = False
+    own = np.flatnonzero(free)
+    unknown[own] = np.arange(len(own))
+    count = len(own)
+    for piece in np.flatnonzero(~section.fixed_piece):
+        unknown[section.wall[section.wall_piece == piece]] = count
+        count += 1
+    return unknown, count
+
+
+def _selection(unknown: Indices, count: int) -> csr_array:
+    """Values on nodes from unknowns, shape (N, count)."""
+    row = np.flatnonzero(unknown >= 0)
+    entries = (np.ones(len(row)), (row, unknown[row]))
+    return csr_array(coo_array(entries, shape=(len(unknown), count)))
+
+
+def _schur(k: csr_array, inside: Indices, outside: Indices) -> tuple[Any, csr_array, Array]:
+    """Factors of the inside, its coupling, and the stiffness that the surface feels."""
+    coupling = csr_array(k[inside][:, outside])
+    whole = k[outside][:, outside].toarray()
+    if len(inside) == 0:
+        return None, coupling, whole
+    factors = splu(
+        csc_array(k[inside][:, inside]),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
+    for start in range(0, len(outside), _CHUNK):
+        part = slice(start, start + _CHUNK)
+        whole[:, part] -= coupling.T @ factors.solve(coupling[:, part].toarray())
+    return factors, coupling, 0.5 * (whole + whole.T)
+
+
+def _without_circulation(
+    section: LiquidSection, unknown: Indices, outside: Indices, schur: Array
+) -> tuple[Array, int]:
+    """Surface values with no circulation round closed parts of the free surface, and how many such parts.
+
+    A part is closed if no side of it leads to a fixed wall. Where psi is one constant on all of it, the
+    surface stays a circle and the flow is a steady vortex.
+    """
+    ends = unknown[section.surface[:, :2]]
+    count = int(unknown.max()) + 1
+    ends = np.where(ends < 0, count, ends)  # one node for all fixed walls
+    links = coo_array((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), shape=(count + 1, count + 1))
+    label = connected_components(links, directed=False)[1]
+    closed = np.setdiff1d(label[ends[:, 0]], label[[count]])
+    # A node between the ends of a curved side belongs to the part of its side.
+    part = label.copy()
+    if section.order == 2:
+        middle = unknown[section.surface[:, 2]]
+        part[middle] = label[ends[:, 0]]
+    if len(closed) == 0:
+        return np.eye(len(outside)), 0
+    constants = (part[outside][:, None] == closed).astype(float)
+    basis = qr(schur @ constants)[0][:, len(closed) :]
+    return np.asarray(basis), len(closed)
+
+
+def _piercing(section: LiquidSection) -> NDArray[np.bool_]:
+    """Which free-standing pieces reach the free surface, shape (pieces,)."""
+    touches = np.isin(section.wall, section.surface).any(axis=1)
+    found = np.zeros(len(section.fixed_piece), dtype=bool)
+    found[section.wall_piece[touches]] = True
+    return found & ~section.fixed_piece
+
+
+def _area(points: Array, sides: Indices) -> float:
+    """Area with those sides around it, on the left, m^2."""
+    start, end = points[sides[:, 0]], points[sides[:, 1]]
+    twice = _cross(start, end)
+    if sides.shape[1] == 3:
+        bend = points[sides[:, 2]] - 0.5 * (start + end)
+        twice = twice + (4.0 / 3.0) * _cross(bend, end - start)
+    return 0.5 * float(twice.sum())
+
+
+def _enclosed_area(section: LiquidSection) -> float:
+    """Area of the liquid and of the dry middle; where a wall is dry it is taken to be straight, m^2."""
+    liquid = _area(section.points, np.concatenate([section.surface, section.wall]))
+    start, end = section.points[section.surface[:, 0]], section.points[section.surface[:, 1]]
+    order = np.argsort(-np.arctan2(end[:, 1], end[:, 0]), kind="stable")
+    across = 0.5 * float(_cross(end[order], start[np.roll(order, -1)]).sum())
+    return liquid - _area(section.points, section.surface) - across
+
+
+def _cross(one: Array, other: Array) -> Array:
+    return np.asarray(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])

@@ -1,0 +1,1 @@
+"""The liquid at rest in a whirling, spinning chamber: quadrature along the wall, finite elements."""

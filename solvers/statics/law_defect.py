@@ -1,0 +1,188 @@
+"""How far the liquid's law is below the straight line of its added mass: closed forms, nothing is solved for.
+
+The linear law says that the liquid's unbalance is the full mass times the deflection. It is exact while the
+wall is wet to the lid all round and the inner wall is dry; beyond, what is missing is the first moment of the
+air that has moved [theory: model_error]. Lengths across the axis are in units of the chamber's radius R,
+along it of its height h.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fluid.fill import Fills
+from fluid.moments import lens_moments
+from fluid.paraboloid import steepness
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+# Above this steepness the surface is taken as a cylinder: the heights' sum is off by its power -3/2, as the
+# exact sum is by rounding.
+_CYLINDER = 1e6
+_STEPS = 2  # of Newton's method from the upright surface
+
+
+@dataclass(frozen=True)
+class Surfaces:
+    """The upright surfaces of n chambers, in the chambers' own units, shape (n,).
+
+    Parameters
+    ----------
+    radius : R, m
+    unit : of unbalances, rho R^3 h, kg m
+    filled : V/(pi R^2 h)
+    inner : (R_i/R)^2
+    steep : B = beta R^2/h
+    floor : squared radius of the surface where its paraboloid cuts the floor's plane, may be below 0
+    straight : deflection up to which the unbalance is the full mass times the deflection, over R
+    """
+
+    radius: Array
+    unit: Array
+    filled: Array
+    inner: Array
+    steep: Array
+    floor: Array
+    straight: Array
+
+    def at(self, which: Index) -> Surfaces:
+        """Those at some indices, shape (m,)."""
+        return Surfaces(*(getattr(self, name)[which] for name in self.__dataclass_fields__))
+
+
+def upright_surfaces(fills: Fills, speed: Array, gravity: Array) -> Surfaces:
+    """Surfaces about the chambers' own axis, and how far the axis may move before the law bends.
+
+    [theory: model_error, eq. 3 and 4]
+
+    Parameters
+    ----------
+    fills : shape (n,)
+    speed : spin speed Omega, rad/s, shape (n,)
+    gravity : along the axis, m/s^2, shape (n,)
+    """
+    chamber = fills.chamber
+    radius, height = chamber.radius, chamber.height
+    inner = np.square(chamber.inner_radius / radius)
+    filled = np.minimum(fills.volume / (np.pi * np.square(radius) * height), 1.0 - inner)
+    steep = steepness(speed, gravity, radius, height)
+    # A surface at rest has no steepness; one of a millionth is as flat and divides.
+    steep = np.maximum(steep, 1e-6)
+    air, ring = 1.0 - inner - filled, 1.0 / steep
+    whole, bare = filled >= 0.5 * ring, air >= 0.5 * ring
+    lid_clear, floor_clear = 2.0 * air * ring <= (1.0 - inner) ** 2, 2.0 * filled * ring <= (1.0 - inner) ** 2
+    floor = np.select(
+        [whole & bare, ~bare & lid_clear, ~whole & floor_clear],
+        [
+            1.0 - filled - 0.5 * ring,
+            inner - ring + np.sqrt(2.0 * air * ring),
+            1.0 - np.sqrt(2.0 * filled * ring),
+        ],
+        1.0 - ring + air * ring / (1.0 - inner) - 0.5 * (1.0 - inner),
+    )
+    lid = np.sqrt(np.clip(floor + ring, 0.0, 1.0))
+    # The nearest wall under the lid; without cancellation for thin layers.
+    outwards = np.where(bare, filled - 0.5 * ring, 1.0 - np.square(lid)) / (1.0 + lid)
+    cut = np.sqrt(np.maximum(floor, 0.0)) + np.sqrt(inner)
+    inwards = np.where(
+        inner > 0.0, np.divide(air - 0.5 * ring, cut, out=np.zeros_like(cut), where=cut > 0.0), np.inf
+    )
+    straight = np.where((whole & bare) | (~bare & lid_clear), np.minimum(outwards, inwards), 0.0)
+    unit = fills.density * radius**3 * height
+    return Surfaces(radius, unit, filled, inner, steep, floor, np.maximum(straight, 0.0))
+
+
+def defect_bound(surfaces: Surfaces, deflection: Array) -> Array:
+    """Upper bound of full mass times deflection less the liquid's unbalance.
+
+    Never below what is missing, 0 as long as nothing is, and next to it where little is
+    [theory: model_error, eq. 7 and 8].
+
+    Parameters
+    ----------
+    surfaces : shape (n,)
+    deflection : e, m, shape (n,)
+
+    Returns
+    -------
+    kg m, shape (n,); infinite where the deflection is
+    """
+    eps = deflection / surfaces.radius
+    # The slope of the unbalance is between the liquid's mass and the full one.
+    steepest = np.pi * (1.0 - surfaces.filled) * np.maximum(eps - surfaces.straight, 0.0)
+    rows = np.flatnonzero((steepest > 0.0) & np.isfinite(eps))
+    bound = steepest.copy()
+    if rows.size:
+        bound[rows] = np.minimum(bound[rows], _moved_moment(surfaces.at(rows), eps[rows]))
+    return np.asarray(surfaces.unit * bound)
+
+
+def _moved_moment(one: Surfaces, eps: Array) -> Array:
+    """First moment of the moved air over rho R^3 h, bounded from above; shape (n,)."""
+    target = np.pi * (1.0 - one.inner - one.filled)
+    # What the sums below leave to rounding, or to taking the surface as a cylinder.
+    slack = np.where(one.steep > _CYLINDER, 0.1 * one.steep**-1.5 / np.sqrt(eps), 1e-15 * one.steep)
+    floor = one.floor.copy()
+    best = np.full(eps.shape, np.inf)
+    for step in range(_STEPS + 1):
+        volume, moment = _air(one, floor, eps)
+        missing = target - volume
+        # No air lies farther out along the deflection than the chamber does.
+        best = np.minimum(best, moment + np.abs(missing) * (1.0 + eps) + slack)
+        if step < _STEPS:
+            plan = _plan(one, floor, eps)
+            floor = floor + np.divide(missing, plan, out=np.zeros_like(plan), where=plan > 0.0)
+    return np.asarray(np.maximum(best, 0.0))
+
+
+def _air(one: Surfaces, floor: Array, eps: Array) -> tuple[Array, Array]:
+    """Volume of the air over R^2 h, and the moment that it takes from the full chamber, over R^3 h."""
+    inner = np.sqrt(one.inner)
+    volume, moment = _under(one, floor, eps, np.ones_like(eps))
+    rows = np.flatnonzero(inner > 0.0)
+    if rows.size:
+        wall = inner[rows]
+        held, pushed = _under(one.at(rows), floor[rows], eps[rows], wall)
+        volume[rows] -= held
+        moment[rows] += np.pi * np.square(wall) * eps[rows] - pushed
+    return volume, moment
+
+
+def _under(one: Surfaces, floor: Array, eps: Array, wall: Array) -> tuple[Array, Array]:
+    """Volume and first moment of the air inside a cylinder of radius `wall` [theory: statics, eq. 7]."""
+    ring = 1.0 / one.steep
+    flat = one.steep > _CYLINDER
+    high = np.maximum(floor + np.where(flat, 0.5 * ring, ring), 0.0)
+    top = lens_moments(np.sqrt(high) / wall, 1.0, eps / wall)
+    area, x = np.square(wall) * top.area, wall**3 * top.x
+    volume, moment = area.copy(), x.copy()
+    rows = np.flatnonzero(~flat)
+    if rows.size:
+        q, low = wall[rows], np.maximum(floor[rows], 0.0)
+        bottom = lens_moments(np.sqrt(low) / q, 1.0, eps[rows] / q)
+        b, s = one.steep[rows], high[rows]
+        polar = q**4 * (top.polar[rows] - bottom.polar)
+        x_polar = q**5 * (top.x_polar[rows] - bottom.x_polar)
+        volume[rows] = b * (s * area[rows] - low * q**2 * bottom.area - polar)
+        moment[rows] = b * (s * x[rows] - low * q**3 * bottom.x - x_polar)
+    return volume, moment
+
+
+def _plan(one: Surfaces, floor: Array, eps: Array) -> Array:
+    """About B times the area of the surface's plan: how the air grows with the floor's squared radius."""
+    low, high = np.maximum(floor, 0.0), np.maximum(floor + 1.0 / one.steep, 0.0)
+    angles = [_inside(s, 1.0, eps) - _inside(s, one.inner, eps) for s in (low, 0.5 * (low + high), high)]
+    share = np.minimum(one.steep * (high - low), 1.0)
+    return np.asarray(share * (angles[0] + 4.0 * angles[1] + angles[2]) / 6.0)
+
+
+def _inside(squared: Array, wall: Array | float, eps: Array) -> Array:
+    """Half the angle of a circle about the rotation axis inside a cylinder of a squared radius."""
+    reach = squared + np.square(eps) - wall
+    twice = 2.0 * np.sqrt(squared) * eps
+    cosine = np.divide(reach, twice, out=np.sign(reach), where=twice > 0.0)
+    return np.asarray(np.arccos(np.clip(cosine, -1.0, 1.0)))

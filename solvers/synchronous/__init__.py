@@ -1,0 +1,1 @@
+"""The synchronous answer of a rotor with liquid: liquid models, every branch, estimated errors."""

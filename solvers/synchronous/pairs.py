@@ -1,0 +1,202 @@
+"""Planar machines with liquid at spin speeds, as arrays over pairs of a machine and a speed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fluid.fill import Fill, Fills
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.synchronous.models import LiquidModel
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Flags = NDArray[np.bool_]
+# A rotor with the fills of its chambers.
+PlanarMachine = tuple[Jeffcott, Sequence[Fill]]
+
+
+@dataclass(frozen=True)
+class LiquidState:
+    """All chambers of a machine together, shape (m,).
+
+    Parameters
+    ----------
+    unbalance : first moment of the liquid about the rotation axis, kg m
+    slope : its derivative with respect to the deflection, kg
+    dry_patch, in_range, converged : of any, all and all chambers with liquid
+    """
+
+    unbalance: Array
+    slope: Array
+    dry_patch: Flags
+    in_range: Flags
+    converged: Flags
+
+
+@dataclass(frozen=True)
+class Slot:
+    """One chamber of each pair that has one with liquid.
+
+    Parameters
+    ----------
+    fills : of those pairs, shape (k,)
+    place : index into `fills` of each pair, -1 where it has no such chamber, shape (n,)
+    limit : deflection up to which the chamber adds its full mass, m; infinite where there is none, shape (n,)
+    """
+
+    fills: Fills
+    place: Index
+    limit: Array
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """n pairs of a machine and a speed.
+
+    Parameters
+    ----------
+    mass, stiffness, damping, unbalance : M, K, C, U0 of the rotor, SI, shape (n,)
+    speed : spin speed Omega, rad/s, shape (n,)
+    gravity : along the axis, m/s^2, shape (n,)
+    model : of the liquid
+    slots : one for each chamber of the machine that has most
+    liquid_mass, added_mass, reach : sums over the chambers of the liquid's mass, of the mass that it adds in
+        a small whirl, and of liquid mass times radius, shape (n,)
+    """
+
+    mass: Array
+    stiffness: Array
+    damping: Array
+    unbalance: Array
+    speed: Array
+    gravity: Array
+    model: LiquidModel
+    slots: tuple[Slot, ...]
+    liquid_mass: Array
+    added_mass: Array
+    reach: Array
+
+    @property
+    def dynamic_stiffness(self) -> NDArray[np.complex128]:
+        """K - M Omega^2 + i C Omega of the dry rotors in the drum frame, N/m, shape (n,)."""
+        elastic = self.stiffness - self.mass * np.square(self.speed)
+        return np.asarray(elastic + 1j * self.damping * self.speed, dtype=complex)
+
+    @property
+    def limit(self) -> Array:
+        """Deflection up to which every chamber adds its full mass, m, shape (n,)."""
+        limits = [slot.limit for slot in self.slots]
+        return np.min(limits, axis=0) if limits else np.full(self.speed.shape, np.inf)
+
+    def liquid(self, deflection: Array, which: Index) -> LiquidState:
+        """The liquid of some pairs at deflections, shape (m,)."""
+        size, found = deflection.size, self.chambers(which)
+        dry = np.zeros(size, dtype=bool)
+        in_range, converged = np.ones((2, size), dtype=bool)
+        if found is None:
+            return LiquidState(np.zeros(size), np.zeros(size), dry, in_range, converged)
+        rows, fills, _ = found
+        own = which[rows]
+        one = self.model.synchronous(fills, self.speed[own], deflection[rows], self.gravity[own])
+        np.logical_or.at(dry, rows, one.dry_patch)
+        np.logical_and.at(in_range, rows, one.in_range)
+        np.logical_and.at(converged, rows, one.converged)
+        unbalance, slope = (_summed(rows, x, size) for x in (one.unbalance, one.slope))
+        return LiquidState(unbalance, slope, dry, in_range, converged)
+
+    def pull(self, deflection: Array, which: Index) -> Array:
+        """The liquid's pull beyond its mass at the chamber's centre, N; never falls with deflection, (m,).
+
+        Up to its limit a chamber's law is known; beyond it the model is asked.
+        """
+        found = self.chambers(which)
+        if found is None:
+            return np.zeros(deflection.shape)
+        rows, fills, limit = found
+        e = deflection[rows]
+        moment = fills.added_mass * e
+        bent = np.flatnonzero(e > limit)
+        if bent.size:
+            k = which[rows[bent]]
+            law = self.model.synchronous(fills.at(bent), self.speed[k], e[bent], self.gravity[k])
+            moment[bent] = law.unbalance
+        total = _summed(rows, np.maximum(moment - fills.mass * e, 0.0), deflection.size)
+        return np.asarray(np.square(self.speed[which]) * total)
+
+    def chambers(self, which: Index) -> tuple[Index, Fills, Array] | None:
+        """All chambers of some pairs at once: whose they are, and their limits; None if there are none.
+
+        A model that is asked once for many states takes little longer than for a few.
+        """
+        places = [slot.place[which] for slot in self.slots]
+        rows = [np.flatnonzero(place >= 0) for place in places]
+        if not any(one.size for one in rows):
+            return None
+        parts = zip(self.slots, places, rows, strict=True)
+        fills = Fills.joined([slot.fills.at(place[one]) for slot, place, one in parts])
+        limits = [slot.limit[which[one]] for slot, one in zip(self.slots, rows, strict=True)]
+        return np.concatenate(rows), fills, np.concatenate(limits)
+
+
+def _summed(rows: Index, values: Array, size: int) -> Array:
+    """Sums of the values of each row, shape (size,)."""
+    return np.asarray(np.bincount(rows, values, minlength=size), dtype=np.float64)
+
+
+def pair_machines(
+    machines: Sequence[PlanarMachine], owner: Index, speed: Array, gravity: Array, model: LiquidModel
+) -> Pairs:
+    """Arrays over pairs of a machine and a speed.
+
+    Parameters
+    ----------
+    machines : rotors with their fills; empty fills are left out
+    owner : index of each pair's machine, shape (n,)
+    speed : Omega, rad/s, shape (n,)
+    gravity : along the axis of each machine, m/s^2, shape (machines,)
+    model : of the liquid
+    """
+    rotors = np.array([(r.mass, r.stiffness, r.damping, r.unbalance) for r, _ in machines]).reshape(-1, 4)
+    wet = [[fill for fill in fills if fill.volume > 0.0] for _, fills in machines]
+    own_gravity = gravity[owner]
+    slots, sums = [], np.zeros((3, owner.size))
+    for k in range(max(map(len, wet), default=0)):
+        having = np.array([i for i, fills in enumerate(wet) if len(fills) > k], dtype=np.intp)
+        fills = Fills.of([wet[i][k] for i in having])
+        index = np.full(len(machines), -1, dtype=np.intp)
+        index[having] = np.arange(having.size)
+        place = index[owner]
+        rows = np.flatnonzero(place >= 0)
+        here = fills.at(place[rows])
+        sums[:, rows] += here.mass, here.added_mass, here.mass * here.chamber.radius
+        slots.append(Slot(fills, place, np.full(owner.shape, np.inf)))
+    mass, stiffness, damping, unbalance = np.ascontiguousarray(rotors[owner].T)
+    pairs = Pairs(
+        *(mass, stiffness, damping, unbalance, speed, own_gravity, model, tuple(slots)),
+        liquid_mass=sums[0],
+        added_mass=sums[1],
+        reach=sums[2],
+    )
+    return replace(pairs, slots=_with_limits(pairs))
+
+
+def _with_limits(pairs: Pairs) -> tuple[Slot, ...]:
+    """The slots with the limits of all chambers, which the model is asked for at once."""
+    everyone = np.arange(pairs.speed.size)
+    found = pairs.chambers(everyone)
+    if found is None:
+        return pairs.slots
+    rows, fills, _ = found
+    limits = pairs.model.linear_limit(fills, pairs.speed[rows], pairs.gravity[rows])
+    slots, first = [], 0
+    for slot in pairs.slots:
+        limit, there = slot.limit.copy(), slot.place >= 0
+        count = int(np.count_nonzero(there))
+        limit[there] = limits[first : first + count]
+        first += count
+        slots.append(replace(slot, limit=limit))
+    return tuple(slots)

@@ -1,0 +1,276 @@
+"""All steady waves at a row of whirl speeds that one continuation connects."""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import eigvals
+
+from meshes.errors import InputError
+from solvers.waves.modes import DENSE_MODES, System, WaveProblem, one_thread, split
+from solvers.waves.newton import TAIL, TOLERANCE, SteadyWave, as_wave, newton, refined, scaled_unknowns
+from solvers.waves.path import Pace, Path, march, segment
+from solvers.waves.periodic import solve
+
+Array = NDArray[np.float64]
+
+MOST_CURVE_POINTS = 2 * (DENSE_MODES + 1)
+_LONGEST, _SHORTEST = 0.5, 1e-7
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A curve of steady waves over the whirl speed, through its folds.
+
+    Parameters
+    ----------
+    waves : points in order along the curve
+    tangents : unit tangents of the curve there, scaled [Re v, Im v, p]
+    complete : the far end of the range was reached
+    reason : why not, in words; empty if complete
+    """
+
+    waves: tuple[SteadyWave, ...]
+    tangents: tuple[Array, ...] = field(repr=False)
+    complete: bool
+    reason: str
+
+    @property
+    def speeds(self) -> Array:
+        """Whirl speeds s of the points, rad/s, shape (k,)."""
+        return np.array([wave.speed for wave in self.waves])
+
+    @property
+    def folds(self) -> tuple[int, ...]:
+        """Indices of the points at which the speed turns back."""
+        onward = np.sign(np.diff(self.speeds))
+        return tuple(int(k) for k in np.flatnonzero(onward[1:] * onward[:-1] < 0.0) + 1)
+
+    @property
+    def heights(self) -> Array:
+        """Root mean squares of the waves, m^2, shape (k,)."""
+        return np.array([wave.rms for wave in self.waves])
+
+
+def follow(
+    problem: WaveProblem,
+    start: float,
+    stop: float,
+    points: int = 128,
+    most_steps: int = 4000,
+    longest: float = _LONGEST,
+) -> Branch:
+    """Follow the curve of steady waves from one whirl speed to another, through its folds.
+
+    Parameters
+    ----------
+    problem : equations
+    start, stop : whirl speeds, rad/s; the wave at `start` is the one of `solvers.waves.periodic.solve`
+    points : to begin with; doubled up to `MOST_CURVE_POINTS` where the spectrum needs it
+    most_steps : limit of the points on the curve
+    longest : longest step, in units of the scaled wave and speed
+
+    Returns
+    -------
+    Branch; `complete` is False where it came back to the start, left what the modes resolve or ran out of
+    steps
+
+    Raises
+    ------
+    InputError : speeds that are not finite or are equal, too few points, a free wave
+    """
+    if not (math.isfinite(start) and math.isfinite(stop)) or start == stop:
+        raise InputError("stop", stop, f"a finite speed other than start ({start!r})")
+    if problem.forcing == 0.0:
+        raise InputError("forcing", problem.forcing, "other than 0")
+    first = solve(problem, start, points=points, most_points=MOST_CURVE_POINTS)
+    if not first.converged:
+        return Branch((first,), (np.zeros(0),), False, f"no answer at the start: {first.reason}")
+    pace = Pace(longest, _SHORTEST, TOLERANCE, TAIL, DENSE_MODES, most_steps)
+    with one_thread():
+        here = np.append(scaled_unknowns(first), start / problem.speed_scale)
+        path = march(functools.partial(System, problem), here, stop / problem.speed_scale, pace)
+        if not path.points:
+            return Branch((first,), (np.zeros(0),), False, path.reason)
+        return _branch(problem, path, first, stop)
+
+
+def _branch(problem: WaveProblem, path: Path, begin: SteadyWave, stop: float) -> Branch:
+    """Waves of the points; the last one is solved at the end of the range itself."""
+    waves = [begin]
+    for system, point in zip(path.systems[1:], path.points[1:], strict=True):
+        waves.append(as_wave(system, point.here[:-1], float(point.here[-1]), point.error, point.corrections))
+    reason = path.reason
+    if not reason:
+        waves[-1] = newton(path.systems[-1], path.points[-1].here[:-1], stop / path.systems[-1].scale)
+        reason = waves[-1].reason
+    return Branch(tuple(waves), tuple(point.ahead for point in path.points), not reason, reason)
+
+
+Complex = NDArray[np.complex128]
+
+
+def growth_rates(wave: SteadyWave) -> Complex:
+    """Growth rates of small disturbances of a steady wave, seen in the whirl's frame.
+
+    Eigenvalues of the linearised operator on disturbances that carry no liquid to or from the layer
+    [theory: kdv, eq. 21]. A free wave may be shifted at no cost; that direction is taken out.
+
+    Parameters
+    ----------
+    wave : a converged wave of at most `DENSE_MODES` modes
+
+    Returns
+    -------
+    Eigenvalues, 1/s, largest real part first; unstable if that is above 0; shape (2 M,) or, for a free wave,
+    (2 M - 1,)
+
+    Raises
+    ------
+    InputError : a wave that is not converged or has too many modes
+    """
+    if not wave.converged:
+        raise InputError("wave", wave.reason, "converged")
+    if wave.modes.size > DENSE_MODES:
+        raise InputError("wave", wave.modes.size, f"of at most {DENSE_MODES} modes")
+    problem, m = wave.problem, wave.modes.size
+    with one_thread():
+        system = System(problem, m)
+        jacobian = system.jacobian(scaled_unknowns(wave), wave.speed / system.scale, m)
+        n = system.n[:, None]
+        # d v_n/dt = -i n times the derivative of the equation of mode n.
+        operator = np.vstack((n * jacobian[m:], -n * jacobian[:m]))
+        if problem.forcing == 0.0 and wave.rms > 0.0:
+            shift = split(1j * system.n * wave.modes)
+            basis = np.linalg.qr(shift[:, None], mode="complete")[0][:, 1:]
+            operator = basis.T @ operator @ basis
+        values = eigvals(operator, check_finite=False) * system.scale
+    return np.asarray(values[np.argsort(-values.real)])
+
+
+def growth(wave: SteadyWave) -> float:
+    """Largest growth rate of small disturbances, 1/s; arguments and errors as in `growth_rates`."""
+    return float(growth_rates(wave)[0].real)
+
+
+_SAME = 1e-6
+_EDGE = 1e-9
+# Coefficients of the scaled speed along a segment that are only rounding.
+_FLAT = 1e-14
+
+
+@dataclass(frozen=True)
+class Response:
+    """All steady waves found at each of a row of whirl speeds.
+
+    Parameters
+    ----------
+    speeds : s, rad/s, shape (k,)
+    waves : for each speed its answers, smallest first
+    growth : for each speed the growth rates of those, 1/s; empty unless asked for
+    branches : the curves followed: from the lowest speed and, where that one does not reach the other end by
+        itself, from the highest
+    complete : a curve reached from one end to the other, and each of its passages was solved
+    reason : why not, in words; empty if complete
+    """
+
+    speeds: Array
+    waves: tuple[tuple[SteadyWave, ...], ...]
+    growth: tuple[tuple[float, ...], ...]
+    branches: tuple[Branch, ...]
+    complete: bool
+    reason: str
+
+
+def respond(
+    problem: WaveProblem, speeds: ArrayLike, points: int = 128, margin: float = 0.0, stability: bool = False
+) -> Response:
+    """All steady waves at a row of whirl speeds, connected to those below and above the row.
+
+    Parameters
+    ----------
+    problem : equations
+    speeds : whirl speeds s, rad/s, increasing, shape (k,), two or more
+    points : to begin with
+    margin : how far outside the row the curves begin, rad/s; far from resonance the answer there is unique
+    stability : also the growth rate of each answer
+
+    Returns
+    -------
+    Response
+
+    Raises
+    ------
+    InputError : speeds that do not increase, a negative margin
+    """
+    row = np.asarray(speeds, dtype=float)
+    if row.ndim != 1 or row.size < 2 or not bool(np.all(np.diff(row) > 0.0)):
+        raise InputError("speeds", speeds, "two or more, increasing")
+    if not (math.isfinite(margin) and margin >= 0.0):
+        raise InputError("margin", margin, "a finite number, 0 or above")
+    ends = (row[0] - margin, row[-1] + margin)
+    branches = [follow(problem, *ends, points=points)]
+    if not branches[0].complete:
+        branches.append(follow(problem, ends[1], ends[0], points=points))
+    with one_thread():
+        answers, missed = _passages(branches, row)
+        rates = tuple(tuple(growth(w) for w in found) for found in answers) if stability else ()
+    reason = "; ".join(branch.reason for branch in branches if branch.reason)
+    if missed:
+        reason = "; ".join(filter(None, (reason, f"{missed} passages were not solved")))
+    # A curve that leads from one end to the other passes every speed an odd number of times.
+    odd = all(len(found) % 2 for found in answers)
+    if branches[0].complete and not odd:
+        reason = "; ".join(filter(None, (reason, "two answers too close to a fold to be told apart")))
+    return Response(row, answers, rates, tuple(branches), not reason, reason)
+
+
+def _passages(branches: list[Branch], row: Array) -> tuple[tuple[tuple[SteadyWave, ...], ...], int]:
+    """Waves where the curves pass each speed, each passage solved to the end; and how many failed."""
+    found: list[list[SteadyWave]] = [[] for _ in row]
+    missed = 0
+    for branch in branches:
+        for k, left in enumerate(branch.waves[:-1]):
+            modes = max(left.modes.size, branch.waves[k + 1].modes.size)
+            system = System(left.problem, modes)
+            curve = _segment(branch, k)
+            for at, guess in _crossings(curve, row / system.scale):
+                wave = refined(newton(system, guess, row[at] / system.scale), MOST_CURVE_POINTS)
+                missed += not wave.converged
+                if wave.converged and not any(_alike(wave, other) for other in found[at]):
+                    found[at].append(wave)
+    return tuple(tuple(sorted(waves, key=lambda w: w.rms)) for waves in found), missed
+
+
+def _segment(branch: Branch, k: int) -> Array:
+    """Cubic between points k and k + 1."""
+    scale = branch.waves[k].problem.speed_scale
+    ends = [np.append(scaled_unknowns(w), w.speed / scale) for w in branch.waves[k : k + 2]]
+    return segment(*ends, *branch.tangents[k : k + 2])[0]
+
+
+def _crossings(curve: Array, row: Array) -> list[tuple[int, Array]]:
+    """Where a segment passes the (scaled) speeds of the row: index and unknowns."""
+    p = np.polynomial.Polynomial(curve[:, -1]).trim(_FLAT)
+    turns = p.deriv().roots()
+    inner = turns.real[(turns.imag == 0.0) & (turns.real > 0.0) & (turns.real < 1.0)]
+    marks: Array = np.asarray(p(np.concatenate(([0.0], inner, [1.0]))), dtype=np.float64)
+    low, high = float(marks.min()), float(marks.max())
+    within = range(int(np.searchsorted(row, low)), int(np.searchsorted(row, high, "right")))
+    powers = np.arange(4)
+    return [
+        (at, u.real**powers @ curve[:, :-1])
+        for at in within
+        for u in (p - row[at]).roots()
+        if abs(u.imag) < _EDGE and -_EDGE <= u.real <= 1.0 + _EDGE
+    ]
+
+
+def _alike(one: SteadyWave, other: SteadyWave) -> bool:
+    common = min(one.modes.size, other.modes.size)
+    gap = np.linalg.norm(one.modes[:common] - other.modes[:common])
+    return bool(gap <= _SAME * np.linalg.norm(one.modes))

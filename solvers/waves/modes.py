@@ -1,0 +1,212 @@
+"""The equations of a steady periodic wave for its Fourier modes, and their derivative.
+
+Galerkin modes 1..M of a wave with mean 0, as many as 2 M + 2 points carry; the square is taken on more than
+3 M points, so nothing aliases. The exact derivative is there as a matrix, of the first modes or of all, and
+as what it does to a change, by FFT. `one_thread` holds the BLAS to one thread (threadpoolctl): more of them
+slow matrices of this size down.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft
+from threadpoolctl import ThreadpoolController
+
+from meshes.errors import InputError, require_not_negative
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+DENSE_MODES = 511
+_NO_MEAN = np.zeros(1, dtype=complex)
+
+
+@dataclass(frozen=True)
+class WaveProblem:
+    """Steady waves eta(xi), xi = theta - s t, of mean 0 [theory: kdv, eq. 18].
+
+    Parameters
+    ----------
+    frequency : omega(n) of free waves of vanishing height, rad/s, odd; takes n = 1, 2, ... as an array
+    steepening : alpha, rad/(s m^2), not 0
+    forcing : q, m^2/s; 0 for a free wave
+    decay : gamma, 1/s, 0 or above
+    diffusion : nu_b, rad^2/s, 0 or above
+    """
+
+    frequency: Callable[[Array], Array]
+    steepening: float
+    forcing: float
+    decay: float = 0.0
+    diffusion: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not math.isfinite(self.steepening) or self.steepening == 0.0:
+            raise InputError("steepening", self.steepening, "a finite number other than 0")
+        if not math.isfinite(self.forcing):
+            raise InputError("forcing", self.forcing, "a finite number")
+        require_not_negative("decay", self.decay)
+        require_not_negative("diffusion", self.diffusion)
+
+    @functools.cached_property
+    def speed_scale(self) -> float:
+        """Speed by which the wave's own height or its dispersion shifts it, rad/s."""
+        first, second = self.frequency(np.array([1.0, 2.0]))
+        scale = max(math.sqrt(abs(self.steepening * self.forcing)), abs(first - 0.5 * second))
+        return float(scale) or 1.0
+
+
+class System:
+    """The scaled equations of M modes: v = alpha eta/scale, p = s/scale, real unknowns [Re v, Im v].
+
+    Mode n, divided by i n: (omega_n/n - p) v_n + (v^2)_n/2 - i (nu n + gamma/n) v_n - q/2 [n = 1] = 0
+    [theory: kdv, eq. 19].
+    """
+
+    def __init__(self, problem: WaveProblem, modes: int) -> None:
+        self.problem, self.modes = problem, modes
+        self.scale = problem.speed_scale
+        n = np.arange(1.0, modes + 1.0)
+        damping = (problem.diffusion * n + problem.decay / n) / self.scale
+        self.n = n
+        self.diagonal = problem.frequency(n) / n / self.scale - 1j * damping
+        self.half_forcing = 0.5 * problem.forcing * problem.steepening / self.scale**2
+        self.points = int(fft.next_fast_len(3 * modes + 1, real=True))
+        weight = 1.0 / (1.0 + np.abs(self.diagonal - self.diagonal[0].real))
+        self.weight = np.concatenate((weight, weight))
+
+    def coefficient(self, p: float) -> Complex:
+        """Coefficient of each mode in its own equation, shape (M,)."""
+        return np.asarray(self.diagonal - p)
+
+    def by_parameter(self, y: Array, p: float) -> Array:
+        """Derivative of the equations with respect to p, shape (2 M,)."""
+        return -y
+
+    def linear(self, p: float) -> Array:
+        """Wave of the linear equation; near resonance no higher than what nonlinearity lets stand."""
+        v = np.zeros(self.modes, dtype=complex)
+        gap = self.coefficient(p)[0]
+        v[0] = self.half_forcing / gap if gap != 0.0 else 1.0
+        v[0] /= max(1.0, abs(v[0]))
+        return split(v)
+
+    def residual(self, y: Array, p: float) -> Array:
+        """What is left of the equations, shape (2 M,)."""
+        v = joined(y)
+        square = fft.rfft(np.square(values(v, self.points)), norm="forward")
+        r = self.coefficient(p) * v + 0.5 * square[1 : self.modes + 1]
+        r[0] -= self.half_forcing
+        return split(r)
+
+    def error(self, r: Array, y: Array) -> float:
+        """Residual of each mode over its coefficient, relative to the wave."""
+        return self.size(r) / (length(y) or 1.0)
+
+    def size(self, r: Array) -> float:
+        """Residual with each mode over its coefficient."""
+        return length(r * self.weight)
+
+    def act(self, heights: Array, p: float, x: Array) -> Array:
+        """The derivative at the wave of these heights times a change x, shape (2 M,)."""
+        dv = joined(x)
+        product = fft.rfft(heights * values(dv, self.points), norm="forward")
+        return split(self.coefficient(p) * dv + product[1 : self.modes + 1])
+
+    def jacobian(self, y: Array, p: float, modes: int, border: int = 0) -> Array:
+        """Exact derivative with respect to the first modes, in columns; with room for a border.
+
+        Shape (2 modes + border, 2 modes + border); the border is not set.
+        """
+        v = joined(y)
+        wave = np.zeros(3 * modes, dtype=complex)  # wave numbers -(modes - 1) ... 2 modes
+        kept = min(2 * modes, self.modes)
+        wave[modes : modes + kept] = v[:kept]
+        wave[: modes - 1] = np.conj(v[: modes - 1][::-1])
+        (tr, hr), (ti, hi) = _difference_and_sum(wave.real), _difference_and_sum(wave.imag)
+        # Rows of the transpose: Toeplitz and Hankel parts are symmetric, but for the sign of the diagonal's.
+        m, full = modes, 2 * modes
+        matrix = np.empty((full + border, full + border))
+        np.add(tr, hr, out=matrix[:m, :m])
+        np.subtract(hi, ti, out=matrix[:m, m:full])
+        np.add(hi, ti, out=matrix[m:full, :m])
+        np.subtract(tr, hr, out=matrix[m:full, m:full])
+        d, k = self.coefficient(p)[:m], np.arange(m)
+        matrix[k, k] += d.real
+        matrix[m + k, m + k] += d.real
+        matrix[k, m + k] += d.imag
+        matrix[m + k, k] -= d.imag
+        return matrix.T
+
+
+class DampingSystem(System):
+    """The same at a fixed speed: an extra diffusion, in the problem's scale, takes the place of p."""
+
+    def __init__(self, problem: WaveProblem, modes: int, speed: float) -> None:
+        super().__init__(problem, modes)
+        self.speed = speed
+        self._still = self.diagonal - speed / self.scale
+
+    def coefficient(self, p: float) -> Complex:
+        """Coefficient of each mode in its own equation, shape (M,)."""
+        return np.asarray(self._still - (1j * p) * self.n)
+
+    def by_parameter(self, y: Array, p: float) -> Array:
+        """Derivative of the equations with respect to p, shape (2 M,)."""
+        m = self.modes
+        return np.concatenate((self.n * y[m:], -self.n * y[:m]))
+
+
+def one_thread() -> AbstractContextManager[object]:
+    """Context in which the BLAS runs on one thread."""
+    return cast("AbstractContextManager[object]", _controller().limit(limits=1, user_api="blas"))
+
+
+@functools.cache
+def _controller() -> ThreadpoolController:
+    return ThreadpoolController()
+
+
+def length(x: Array) -> float:
+    """Root of the sum of squares."""
+    return math.sqrt(float(x @ x))
+
+
+def split(v: Complex) -> Array:
+    """Real unknowns of complex modes."""
+    return np.concatenate((v.real, v.imag))
+
+
+def joined(y: Array) -> Complex:
+    """Complex modes of real unknowns."""
+    m = y.size // 2
+    return np.asarray(y[:m] + 1j * y[m:])
+
+
+def resized(y: Array, modes: int) -> Array:
+    """Unknowns with modes cut off or set to 0."""
+    v, old = np.zeros(modes, dtype=complex), joined(y)
+    kept = min(modes, old.size)
+    v[:kept] = old[:kept]
+    return split(v)
+
+
+def values(v: Complex, points: int) -> Array:
+    """Values at equal steps of a real field without mean."""
+    return np.asarray(np.fft.irfft(np.concatenate((_NO_MEAN, v)), points, norm="forward"))
+
+
+def _difference_and_sum(wave: Array) -> tuple[Array, Array]:
+    """Entries of wave number n - m and n + m, n and m from 1, as views; `wave` starts at -(M - 1)."""
+    wave = np.ascontiguousarray(wave)
+    m, item = wave.size // 3, wave.itemsize
+    difference: Array = np.ndarray((m, m), float, wave, (m - 1) * item, (item, -item))
+    return difference, np.ndarray((m, m), float, wave, (m + 1) * item, (item, item))

@@ -1,0 +1,297 @@
+"""Exponential steppers for v_t = L v + N(v, t) on a circle: a stiff linear part costs no steps.
+
+The field is real and periodic over 2 pi. Everything works on the coefficients of its real Fourier transform,
+where L is one number for each mode. A stepper sees that symbol and a function N and knows no equation.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshes.errors import InputError, require_positive
+from solvers.waves.exponential import Weights, find_method, step_weights
+
+Array = NDArray[np.float64]
+Spectrum = NDArray[np.complex128]
+Status = Literal["finished", "step too small", "too many steps", "diverged"]
+
+# Greatest mean departure of a cubic from its parabola, 1/32 of its third divided difference, over b4 = 1/6.
+_BEND = 6.0 / 32.0
+# The error of a step goes with this power of its length.
+_POWER = 4
+# Step lengths are powers of this, so that weights are used again.
+_RUNG = math.pow(2.0, 0.25)
+_SAFETY, _SHRINK, _GROW = 0.8, 0.2, 5.0
+
+
+@dataclass(frozen=True, eq=False)
+class Split:
+    """An equation split into a linear part, which is solved exactly, and the rest.
+
+    Parameters
+    ----------
+    symbol : L of each mode 0 ... points // 2, 1/s, shape (points // 2 + 1,)
+    nonlinear : N, takes the field's spectrum and the time in s, returns the spectrum of N, both of that shape
+    frame : angular speed of the frame in which N is followed, rad/s; any value is right, one in which the
+        field changes slowly allows longer steps
+    """
+
+    symbol: Spectrum
+    nonlinear: Callable[[Spectrum, float], Spectrum]
+    frame: float = 0.0
+
+
+class _Past(NamedTuple):
+    """N at the start of the step before, brought to its end, and the length of that step."""
+
+    rest: Spectrum
+    step: float
+
+
+@dataclass(frozen=True)
+class Control:
+    """How an adaptive run chooses its steps.
+
+    Parameters
+    ----------
+    tolerance : error of one step over the field, both root mean squares, above 0
+    first : length of the first step, s, as a former run left it; None: found from N
+    shortest : steps below this fraction of the time span end the run
+    most : steps, accepted or not, after which the run ends
+    """
+
+    tolerance: float = 1e-6
+    first: float | None = None
+    shortest: float = 1e-12
+    most: int = 1_000_000
+
+    def __post_init__(self) -> None:
+        require_positive("tolerance", self.tolerance)
+        if self.first is not None:
+            require_positive("first", self.first)
+
+
+@dataclass(frozen=True, eq=False)
+class Advance:
+    """Where a run ended and what it took.
+
+    Parameters
+    ----------
+    spectrum : of the field at `time`, shape (modes,); the last good one
+    time : s
+    status : "finished", or why it stopped before; "diverged" if the error of a step reached the field itself
+    steps, rejected : steps taken, and tried in vain
+    smallest_step : shortest step taken, s; infinite if none was
+    next_step : step length the control would try next, s
+    largest_error : of a step taken, estimated, over the field, both root mean squares
+    """
+
+    spectrum: Spectrum
+    time: float
+    status: Status
+    steps: int
+    rejected: int
+    smallest_step: float
+    next_step: float
+    largest_error: float
+
+
+def to_spectrum(values: Array) -> Spectrum:
+    """Fourier coefficients of a real field on evenly spaced points.
+
+    Parameters
+    ----------
+    values : shape (points,)
+
+    Returns
+    -------
+    Shape (points // 2 + 1,), scaled as numpy.fft.rfft; without the mode of half the points, whose derivative
+    the points cannot show
+    """
+    spectrum = np.fft.rfft(values)
+    if values.size % 2 == 0:
+        spectrum[-1] = 0.0
+    return np.asarray(spectrum)
+
+
+def squared(spectrum: Spectrum, points: int) -> Spectrum:
+    """Spectrum of the square of a real field, free of aliases [theory: steppers, eq. 8].
+
+    Parameters
+    ----------
+    spectrum : of the field, shape (points // 2 + 1,)
+    points : of the field's grid
+
+    Returns
+    -------
+    Of the same shape, as if squared on infinitely many points
+    """
+    fine = 3 * points // 2
+    square = np.fft.rfft(np.square(np.fft.irfft(spectrum, n=fine)))[: spectrum.size] * (fine / points)
+    if points % 2 == 0:
+        square[-1] = 0.0
+    return np.asarray(square)
+
+
+def _step(
+    split: Split, w: Weights, v: Spectrum, n1: Spectrum, t: float, h: float, past: _Past | None
+) -> tuple[Spectrum, Spectrum, float]:
+    """Field and N at the end of a step, and its error over the field [theory: steppers, eq. 3, 10]."""
+    middle, carried = w.half * v, w.full * v
+    n2 = split.nonlinear(middle + w.a21 * n1, t + 0.5 * h)
+    n3 = split.nonlinear(middle + w.a31 * n1 + w.a32 * n2, t + 0.5 * h)
+    n4 = split.nonlinear(carried + w.a41 * n1 + w.a43 * n3, t + h)
+    end = carried + w.b1 * n1 + w.b2 * (n2 + n3) + w.b4 * n4
+    n5 = split.nonlinear(end, t + h)
+    # The stages in the middle err by opposite amounts.
+    whole, middle = w.far * n1, 0.5 * w.near * (n2 + n3)
+    bend = 2.0 * whole - 4.0 * middle + 2.0 * n5
+    if past is not None:
+        r = past.step / h
+        before = w.far * past.rest / (r * (r + 0.5) * (r + 1.0))
+        bend = 2.0 / r * whole - 4.0 / (r + 0.5) * middle + 2.0 / (r + 1.0) * n5 - before
+    return end, n5, _relative(w.b4 * (n5 - n4 + _BEND * bend), v, end)
+
+
+def advance_fixed(
+    split: Split, spectrum: Spectrum, span: tuple[float, float], steps: int, method: str
+) -> Advance:
+    """Advance a field by equal steps.
+
+    Parameters
+    ----------
+    split : the equation
+    spectrum : of the field at the start, shape (modes,)
+    span : start and end, s, the end after the start
+    steps : how many, 1 or more
+    method : a name in `METHODS`
+
+    Returns
+    -------
+    The field at the end and how the run went
+
+    Raises
+    ------
+    InputError : a span that does not run forward, no steps, an unknown method
+    """
+    start, stop = _checked_span(span)
+    if steps < 1:
+        raise InputError("steps", steps, "1 or more")
+    h = (stop - start) / steps
+    weights = step_weights(split.symbol, split.frame, find_method(method), h)
+    v, t, largest = spectrum, start, 0.0
+    past = _nothing_past(spectrum)
+    with np.errstate(over="ignore", invalid="ignore"):
+        n = split.nonlinear(v, t)
+        for i in range(steps):
+            end, n_end, error = _step(split, weights, v, n, t, h, past)
+            if error > 1.0:
+                return Advance(v, t, "diverged", i, 1, h if i else math.inf, h, largest)
+            past = _Past(weights.far * n, h)
+            v, n, t, largest = end, n_end, start + (i + 1) * h, max(largest, error)
+    return Advance(v, stop, "finished", steps, 0, h, h, largest)
+
+
+def advance_adaptive(
+    split: Split, spectrum: Spectrum, span: tuple[float, float], control: Control, method: str
+) -> Advance:
+    """Advance a field by steps as long as the tolerance allows; the last one ends at the end of the span.
+
+    The better of the two embedded results is kept; a proportional-integral control sets the next step
+    [theory: steppers, eq. 10-11].
+
+    Parameters
+    ----------
+    split, spectrum, span, method : as in `advance_fixed`
+    control : tolerance and limits
+
+    Returns
+    -------
+    The field at the end, or where the run had to stop, and how the run went
+
+    Raises
+    ------
+    InputError : a span that does not run forward, an unknown method
+    """
+    start, stop = _checked_span(span)
+    scheme = find_method(method)
+    weights = lru_cache(maxsize=32)(lambda h: step_weights(split.symbol, split.frame, scheme, h))
+    # A step that a former run found good needs no guard; else the first is held back by what bends N.
+    past = _nothing_past(spectrum) if control.first else None
+    v, t, steps, rejected, smallest, before, largest = spectrum, start, 0, 0, math.inf, 1.0, 0.0
+    shortest = max(control.shortest * (stop - start), 4.0 * math.ulp(max(abs(start), abs(stop))))
+    with np.errstate(over="ignore", invalid="ignore"):
+        n = split.nonlinear(v, t)
+        trial = control.first or _first_step(v, n, stop - start)
+        while t < stop:
+            if steps + rejected >= control.most:
+                return Advance(v, t, "too many steps", steps, rejected, smallest, trial, largest)
+            rung, left = _on_rung(trial), stop - t
+            # No sliver is left for the last step.
+            h = left if rung >= left else min(rung, 0.5 * left)
+            w = weights(h)
+            end, n_end, error = _step(split, w, v, n, t, h, past)
+            error /= control.tolerance
+            if error > 1.0:
+                rejected += 1
+                trial = h * max(_SHRINK, _SAFETY * error ** (-1.0 / _POWER))
+                if trial < shortest:
+                    return Advance(v, t, "step too small", steps, rejected, smallest, trial, largest)
+                continue
+            past = _Past(w.far * n, h)
+            v, n, t = end, n_end, stop if h >= left else t + h
+            steps, smallest = steps + 1, min(smallest, h)
+            growth = _growth(error, before)
+            # A step cut short to land may not hold the next one back.
+            trial = max(trial, h * growth) if h < rung else min(trial * growth, h * _GROW)
+            before, largest = max(error, 1e-4), max(largest, error * control.tolerance)
+    return Advance(v, t, "finished", steps, rejected, smallest, trial, largest)
+
+
+def _growth(error: float, before: float) -> float:
+    """Factor on the step after an accepted one [theory: steppers, eq. 11]."""
+    wanted = _SAFETY * math.pow(max(error, 1e-8), -0.7 / _POWER) * math.pow(before, 0.4 / _POWER)
+    return min(_GROW, max(_SHRINK, wanted))
+
+
+def _nothing_past(spectrum: Spectrum) -> _Past:
+    """A past so far away that it says nothing."""
+    return _Past(np.zeros_like(spectrum), math.inf)
+
+
+def _relative(difference: Spectrum, v: Spectrum, end: Spectrum) -> float:
+    """Root mean square of an error over that of the field; infinite where either is not finite."""
+    error, size = _norm(difference), max(_norm(v), _norm(end))
+    if not (math.isfinite(error) and math.isfinite(size)):
+        return math.inf
+    return error / size if size > 0.0 else 0.0
+
+
+def _norm(spectrum: Spectrum) -> float:
+    """Root of the sum of squares over all modes, each but the mean standing for its conjugate too."""
+    power = np.square(spectrum.real) + np.square(spectrum.imag)
+    return math.sqrt(2.0 * float(power.sum()) - float(power[0]))
+
+
+def _first_step(v: Spectrum, n: Spectrum, span: float) -> float:
+    """A hundredth of the time in which N alone would renew the field, at most a tenth of the span."""
+    size, rate = _norm(v), _norm(n)
+    return min(0.1 * span, 0.01 * size / rate) if size > 0.0 and rate > 0.0 else 1e-3 * span
+
+
+def _on_rung(h: float) -> float:
+    return math.exp(math.log(_RUNG) * math.floor(math.log(h, _RUNG) + 1e-9))
+
+
+def _checked_span(span: tuple[float, float]) -> tuple[float, float]:
+    start, stop = span
+    if not (math.isfinite(start) and math.isfinite(stop) and stop > start):
+        raise InputError("span", span, "two finite times, the second later")
+    return start, stop

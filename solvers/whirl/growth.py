@@ -1,0 +1,294 @@
+"""Self-excited whirl: growth and whirl speed of the mode that grows most, for any rotor and any fills."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fluid.fill import Fill
+from fluid.friction import NONE
+from fluid.whirl import Layer, is_full, plane_layer
+from meshes.errors import InputError
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.system import RotorSystem
+from solvers.sloshing.reduced import section_layer, section_layers
+from solvers.synchronous.pairs import PlanarMachine
+from solvers.whirl.laminar import laminar_modes
+from solvers.whirl.planar import PlanarProblem, planar_modes
+from solvers.whirl.sections import drum_modes, standing_modes
+from solvers.whirl.system import SystemModes, circles_of, coupled_matrices, linear_modes
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Index = NDArray[np.intp]
+Friction = tuple[int, float]
+
+MOST_LAYERS = 50
+_ALIKE = 1e-9  # relative; layers that differ by less are one
+
+
+def asynchronous_growth(
+    system: RotorSystem, fills: Sequence[Fill], speed: ArrayLike, friction: Friction = (NONE, 0.0)
+) -> tuple[Array, Array]:
+    """Growth of the fastest growing whirl of a rotor with liquid in its chambers [theory: whirl, eq. 7].
+
+    Parameters
+    ----------
+    system : the dry rotor
+    fills : its chambers with their liquid, any number
+    speed : spin speeds Omega, rad/s, shape (n,), above 0
+    friction : law of `fluid.friction` and coefficient; the laminar law takes each liquid's viscosity, the
+        quadratic one does not act on an infinitesimal whirl
+
+    Returns
+    -------
+    growth : 1/s, shape (n,): the whirl is unstable where it is above 0; what rounding cannot tell from 0 is
+        0, and nan stands where the modes were not found
+    whirl_speed : of that mode in the standing frame, rad/s, positive with the spin, shape (n,)
+
+    Raises
+    ------
+    InputError : a speed that is not positive and finite, too many different layers
+
+    Examples
+    --------
+    >>> from fluid.liquid import known_liquid
+    >>> from meshes.chamber import Chamber
+    >>> fill = Fill(Chamber(0.1, 0.02), known_liquid("water"), 1.2e-4)
+    >>> rotor = Jeffcott(mass=6.0, stiffness=6.0e4, damping=0.0, unbalance=0.0)
+    >>> growth, _ = asynchronous_growth(rotor.system(), [fill], [80.0, 130.0])
+    >>> print(f"{growth[0]:.1f} {growth[1]:.1f}")
+    0.0 6.7
+    """
+    growth, whirl_speed = growth_map(system, [fills], speed, friction)
+    return growth[0], whirl_speed[0]
+
+
+def growth_map(
+    system: RotorSystem, rows: Sequence[Sequence[Fill]], speed: ArrayLike, friction: Friction = (NONE, 0.0)
+) -> tuple[Array, Array]:
+    """Growth over speed for each of several sets of fills.
+
+    Parameters
+    ----------
+    system, speed, friction : as for `asynchronous_growth`
+    rows : the fills of the rotor's chambers, each row the same chambers
+
+    Returns
+    -------
+    growth, 1/s, and whirl_speed, rad/s, as from `asynchronous_growth`, shape (rows, n)
+    """
+    spin = np.array(speed, dtype=float).reshape(-1)
+    row = np.repeat(np.arange(len(rows)), spin.size)
+    growth, whirl_speed = growth_at(system, rows, row, np.tile(spin, len(rows)), friction)
+    shape = (len(rows), spin.size)
+    return growth.reshape(shape), whirl_speed.reshape(shape)
+
+
+def growth_at(
+    system: RotorSystem,
+    rows: Sequence[Sequence[Fill]],
+    row: Index,
+    speed: Array,
+    friction: Friction = (NONE, 0.0),
+) -> tuple[Array, Array]:
+    """Growth at points (row, speed), as `growth_map`.
+
+    Parameters
+    ----------
+    system, rows, friction : as for `growth_map`
+    row, speed : of each point, shape (n,)
+
+    Returns
+    -------
+    growth and whirl_speed, shape (n,)
+    """
+    if not np.all(np.isfinite(speed) & (speed > 0.0)):
+        raise InputError("speed", speed.tolist(), "finite numbers above 0")
+    rotor = planar(system)
+    if rotor is not None:
+        return machines_growth([(rotor, fills) for fills in rows], [friction] * len(rows), row, speed)
+    growth, whirl_speed = np.full((2, speed.size), np.nan)
+    for k in np.unique(row).tolist():
+        here = np.flatnonzero(row == k)
+        modes = system_modes(system, rows[k], speed[here], friction)
+        growth[here], whirl_speed[here] = _fastest(modes, speed[here])
+    return growth, whirl_speed
+
+
+def system_modes(
+    system: RotorSystem, fills: Sequence[Fill], speed: Array, friction: Friction = (NONE, 0.0)
+) -> SystemModes:
+    """All whirl modes of any rotor with its fills [theory: whirl, eq. 7].
+
+    Parameters
+    ----------
+    system, fills, friction : as for `asynchronous_growth`
+    speed : rad/s, shape (n,)
+    """
+    heavy = system
+    for fill in fills:
+        if is_full(fill):
+            at = system.at(fill.chamber.plane)
+            heavy = replace(heavy, mass=heavy.mass + fill.mass * at.T @ at)
+    if any(fill.uneven for fill in fills):
+        cut = [(fill.chamber.plane, section_layer(fill, friction)) for fill in fills]
+        return standing_modes(heavy, [(plane, one) for plane, one in cut if one is not None], speed)
+    found = [(fill.chamber.plane, plane_layer(fill, friction)) for fill in fills]
+    layers = [(plane, one) for plane, one in found if one is not None]
+    _require_few(len(layers))
+    if any(one.stokes > 0.0 for _, one in layers):
+        return laminar_modes(heavy, layers, speed)
+    return linear_modes(coupled_matrices(heavy, layers, speed), circles_of(heavy, layers))
+
+
+def _fastest(modes: SystemModes, spin: Array) -> tuple[Array, Array]:
+    """Growth and whirl speed from eigenvalues; nan where a mode was lost that could matter."""
+    root, known = modes.root, modes.found
+    best = np.where(known, root.real, -np.inf).max(axis=1, keepdims=True)
+    # A mode that was lost does not matter if it decays faster than one that was found.
+    lost = np.any(~known & (root.real > best), axis=1)
+    omega = modes.sense * root.imag - 1j * root.real
+    omega = np.where(known, omega, complex(np.nan, np.nan))
+    growth, whirl_speed = dominant(omega.T, modes.rounding.T, spin)
+    return np.where(lost, np.nan, growth), np.where(lost, np.nan, whirl_speed)
+
+
+def dominant(omega: Complex, rounding: Array, spin: Array) -> tuple[Array, Array]:
+    """Growth and whirl speed of the mode that grows most.
+
+    Of modes that are equally neutral it is the one nearest to the spin, as the waves are that can grow.
+
+    Parameters
+    ----------
+    omega : in the standing frame, rad/s, nan where there is no mode, shape (m, n)
+    rounding : of each, rad/s, shape (m, n)
+    spin : Omega, rad/s, shape (n,)
+
+    Returns
+    -------
+    growth, 1/s, 0 where rounding cannot tell it from 0, and whirl speed, rad/s, shape (n,)
+    """
+    missing = np.isnan(omega)
+    rate = np.where(missing, -np.inf, -omega.imag)
+    rate = np.where(np.abs(rate) <= rounding, 0.0, rate)
+    most = rate.max(axis=0)
+    away = np.where((rate == most) & ~missing, np.abs(spin - omega.real), np.inf)
+    which = np.argmin(away, axis=0)
+    return most, np.take_along_axis(omega.real, which[None], axis=0)[0]
+
+
+def planar(system: RotorSystem) -> Jeffcott | None:
+    """The Jeffcott rotor whose equations these are; None if they are not a Jeffcott rotor's."""
+    if len(system.coordinates) != 2 or np.any(system.gyroscopic) or np.any(system.lean):
+        return None
+    one = np.eye(2)
+    for matrix in (system.mass, system.damping, system.stiffness):
+        if not np.array_equal(matrix, matrix[0, 0] * one):
+            return None
+    if not np.array_equal(system.centre, one):
+        return None
+    mass, damping, stiffness = (float(m[0, 0]) for m in (system.mass, system.damping, system.stiffness))
+    if stiffness <= 0.0 or damping < 0.0:
+        return None
+    return Jeffcott(mass, stiffness, damping, 0.0)
+
+
+def machines_growth(
+    machines: Sequence[PlanarMachine], frictions: Sequence[Friction], owner: Index, speed: Array
+) -> tuple[Array, Array]:
+    """Growth of many planar machines at once [theory: whirl, eq. 8].
+
+    Parameters
+    ----------
+    machines : rotors, each with its chambers and their liquid
+    frictions : of each machine's liquid, as for `asynchronous_growth`
+    owner : which machine each point has, shape (n,)
+    speed : of each point, rad/s, shape (n,), above 0
+
+    Returns
+    -------
+    growth and whirl_speed as from `asynchronous_growth`, shape (n,)
+    """
+    growth, whirl_speed = np.full((2, speed.size), np.nan)
+    uneven = np.array([any(fill.uneven for fill in fills) for _, fills in machines], dtype=bool)
+    for i in np.flatnonzero(uneven).tolist():
+        here = np.flatnonzero(owner == i)
+        growth[here], whirl_speed[here] = _uneven_growth(machines[i], frictions[i], speed[here])
+    tables = [
+        planar_layers(rotor.mass, fills, friction)
+        for (rotor, fills), friction in zip(machines, frictions, strict=True)
+    ]
+    support = np.array([(rotor.stiffness, rotor.damping) for rotor, _ in machines]).reshape(-1, 2)
+    # The number of modes depends on that of the layers and on whether their drag depends on the mode.
+    kinds = [(len(layers), any(one.stokes > 0.0 for one in layers)) for _, layers in tables]
+    for kind in sorted(set(kinds)):
+        _require_few(kind[0])
+        own = np.array([i for i, one in enumerate(kinds) if one == kind and not uneven[i]], dtype=np.intp)
+        index = np.full(len(machines), -1, dtype=np.intp)
+        index[own] = np.arange(own.size)
+        here = np.flatnonzero(index[owner] >= 0)
+        if here.size == 0:
+            continue
+        place = index[owner[here]]
+        mass = np.array([tables[i][0] for i in own])[place]
+        layers = np.array(
+            [[(x.mass, x.layer_tanh, x.rate, x.stokes) for x in tables[i][1]] for i in own]
+        ).reshape(own.size, kind[0], 4)[place]
+        stiffness, damping = support[own[place]].T
+        columns = (layers[:, :, k].T for k in range(4))
+        problem = PlanarProblem(mass, stiffness, damping, speed[here], *columns)
+        modes = planar_modes(problem)
+        found = dominant(modes.slip + problem.spin, modes.rounding, problem.spin)
+        for table, values in zip((growth, whirl_speed), found, strict=True):
+            table[here] = np.where(modes.converged, values, np.nan)
+    return growth, whirl_speed
+
+
+def _uneven_growth(machine: PlanarMachine, friction: Friction, speed: Array) -> tuple[Array, Array]:
+    """Growth of one machine whose chambers have baffles in the liquid [theory: sections, eq. 3]."""
+    rotor, fills = machine
+    heavy, layers = section_layers(rotor, fills, friction)
+    modes = drum_modes(heavy, layers, speed)
+    growth, slip = _fastest(modes, np.zeros(speed.shape))
+    return growth, slip + speed
+
+
+def planar_layers(mass: float, fills: Sequence[Fill], friction: Friction) -> tuple[float, list[Layer]]:
+    """Mass of a rotor with all liquid that has no free surface, and its layers, equal ones as one.
+
+    In one plane the liquid of equal chambers acts together. Against one another they slosh as if the rotor
+    were not there: a layer without mass stands for that.
+    """
+    layers: list[Layer] = []
+    apart: list[Layer] = []
+    for fill in fills:
+        one = plane_layer(fill, friction)
+        if is_full(fill):
+            mass += fill.mass
+        if one is None:
+            continue
+        same = [k for k, other in enumerate(layers) if _alike(one, other)]
+        if not same:
+            layers.append(one)
+            continue
+        k = same[0]
+        if not any(_alike(one, other) for other in apart):
+            apart.append(replace(one, mass=0.0))
+        layers[k] = replace(layers[k], mass=layers[k].mass + one.mass)
+    return mass, layers + apart
+
+
+def _alike(one: Layer, other: Layer) -> bool:
+    return all(
+        abs(getattr(one, name) - getattr(other, name)) <= _ALIKE * abs(getattr(one, name))
+        for name in ("layer_tanh", "rate", "stokes")
+    )
+
+
+def _require_few(count: int) -> None:
+    if count > MOST_LAYERS:
+        raise InputError("chambers", count, f"at most {MOST_LAYERS} whose layers differ")

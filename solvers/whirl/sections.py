@@ -1,0 +1,407 @@
+"""Self-excited whirl of any rotor whose chambers have baffles, in the standing frame.
+
+A rotor that stands on unlike springs has constant coefficients in the standing frame only, the liquid there
+only if it answers alike in all directions: with three baffles or more. Its motions then come in circles, one
+complex coordinate each.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import block_diag
+
+from meshes.errors import InputError
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.system import RotorSystem
+from solvers.sloshing.reduced import KEPT, ReducedLiquid, SectionLayer, spanned
+from solvers.whirl.system import CoupledMatrices, SystemModes, linear_modes
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])  # a quarter turn with the spin
+SLOW = 0.3  # frequency of slow waves over the spin
+_FOLLOWED = 6  # modes at a speed whose laminar friction is computed at their own frequency
+_STEPS = 30
+_HAIR = 3e-14 * (1.0 + 1.0j)
+_SETTLED = 1e-12  # relative step at which a mode is found
+_RESOLVED = 1e-11  # of the frequencies, below which growth is rounding
+
+
+@dataclass(frozen=True, eq=False)
+class DrumMatrices:
+    """M z'' + (C + sqrt(lambda) S) z' + K z = 0 at n speeds [theory: sections, eq. 3].
+
+    Parameters
+    ----------
+    mass : symmetric, positive definite, shape (N, N)
+    damping, stiffness : shape (n, N, N)
+    laminar : S, symmetric, shape (N, N)
+    """
+
+    mass: Array
+    damping: Array
+    stiffness: Array
+    laminar: Array
+
+
+def drum_matrices(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) -> DrumMatrices:
+    """Rotor and liquid as one linear system in the frame of the drum [theory: sections, eq. 3].
+
+    Parameters
+    ----------
+    rotor : its mass includes that of liquid without a free surface
+    layers : of its chambers
+    speed : Omega, rad/s, shape (n,)
+    """
+    heavy = rotor.mass + sum(one.density * one.liquid.liquid_area for one in layers)
+    pull = -np.hstack([np.zeros((2, 0)), *(one.density * one.liquid.moment for one in layers)])
+
+    def parts(name: str) -> Array:
+        return np.asarray(block_diag(*(one.density * getattr(one.liquid, name) for one in layers)))
+
+    inertia, gyration, surface = parts("inertia"), parts("gyration"), parts("surface")
+    rate = block_diag(*(one.density * one.rate * one.liquid.inertia for one in layers))
+    laminar = block_diag(np.zeros((2, 2)), *(one.density * one.laminar for one in layers))
+    spin = speed[:, None, None]
+    mass = np.block([[heavy * np.eye(2), pull], [pull.T, inertia]])
+    twist = np.block([[heavy * _TURN, _TURN @ pull], [pull.T @ _TURN, gyration]])
+    steady = block_diag(rotor.damping * np.eye(2), rate)
+    spread = np.block([[-heavy * np.eye(2), -pull], [-pull.T, surface]])
+    support = np.zeros_like(mass)
+    support[:2, :2] = rotor.stiffness * np.eye(2)
+    turned = np.zeros_like(mass)
+    turned[:2, :2] = rotor.damping * _TURN
+    return DrumMatrices(
+        mass=mass,
+        damping=2.0 * spin * twist + steady,
+        stiffness=np.square(spin) * spread + spin * turned + support,
+        laminar=laminar,
+    )
+
+
+def drum_modes(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) -> SystemModes:
+    """Whirl modes in the drum's frame: all of them without laminar friction, with it those that grow most.
+
+    Parameters
+    ----------
+    rotor, layers, speed : as for `drum_matrices`
+
+    Returns
+    -------
+    Modes; `sense` tells which way they go round as seen from the drum.
+    """
+    system = drum_matrices(rotor, layers, speed)
+    circles = _circles(layers)
+    if not np.any(system.laminar):
+        return linear_modes(CoupledMatrices(system.mass, system.damping, system.stiffness), circles)
+    first = system.damping + np.sqrt(0.5 * SLOW * speed)[:, None, None] * system.laminar
+    started = roots(CoupledMatrices(system.mass, first, system.stiffness))
+    damping, stiffness = system.damping[:, None], system.stiffness[:, None]
+
+    def terms(root: Complex) -> tuple[Complex, Complex]:
+        at = root[..., None, None]
+        # Of both roots the one whose layer dies out away from the wall.
+        drag = np.sqrt(at) * system.laminar
+        matrix = at * (at * system.mass + damping + drag) + stiffness
+        return matrix, 2.0 * at * system.mass + damping + 1.5 * drag
+
+    return most_growing(MostGrowing(started, np.abs(started.imag), circles, terms), speed)
+
+
+def roots(matrices: CoupledMatrices) -> Complex:
+    """All lambda of M z'' + C z' + K z = 0, shape (n, 2 N)."""
+    size = len(matrices.mass)
+    state = np.zeros((len(matrices.damping), 2 * size, 2 * size))
+    state[:, :size, size:] = np.eye(size)
+    state[:, size:, :size] = -np.linalg.solve(matrices.mass, matrices.stiffness)
+    state[:, size:, size:] = -np.linalg.solve(matrices.mass, matrices.damping)
+    return np.asarray(np.linalg.eigvals(state), dtype=complex)
+
+
+@dataclass(frozen=True, eq=False)
+class MostGrowing:
+    """What the search for the modes that grow most starts from.
+
+    Parameters
+    ----------
+    started : lambda with friction at the frequency of slow waves, `SLOW` of the spin, shape (n, m)
+    slip : frequency of each over the drum, rad/s, 0 or above, shape (n, m)
+    circles : displacements that tell the sense of a whirl, in pairs across the axis, shape (2 c, N)
+    terms : T(lambda) and its derivative at points of shape (n, f), shape (n, f, N, N)
+    """
+
+    started: Complex
+    slip: Array
+    circles: Array
+    terms: Callable[[Complex], tuple[Complex, Complex]]
+
+
+def most_growing(search: MostGrowing, speed: Array) -> SystemModes:
+    """The modes that grow most, each with laminar friction of its own frequency [theory: sections, eq. 6].
+
+    Parameters
+    ----------
+    search : where to start from
+    speed : Omega, rad/s, shape (n,)
+    """
+    root = search.started
+    # Fast modes have more friction than that of slow waves, in proportion to the root of their frequency.
+    more = np.sqrt(np.maximum(search.slip / (SLOW * speed[:, None]), 1.0))
+    rate = np.where(root.real < 0.0, root.real * more, root.real)
+    oscillating = np.where(root.imag > 1e-9 * speed[:, None], rate, -np.inf)
+    most = np.argsort(-oscillating, axis=1)[:, :_FOLLOWED]
+    root, shape, found = _followed(
+        search.terms, np.take_along_axis(root, most, axis=1), len(search.circles.T)
+    )
+    along, against = _sizes(search.circles, shape)
+    scale = np.abs(root) + speed[:, None]
+    return SystemModes(root, np.where(along >= against, 1.0, -1.0), _RESOLVED * scale, found)
+
+
+def _circles(layers: Sequence[SectionLayer]) -> Array:
+    """Displacement of the axis and of each layer's centre, in pairs across the axis."""
+    shifts = [one.liquid.moment / one.liquid.liquid_area for one in layers]
+    return np.asarray(block_diag(np.eye(2), *shifts))
+
+
+def _sizes(circles: Array, shape: Complex) -> tuple[Array, Array]:
+    """Squared sizes of the circles along and against the spin of modes, shape (n, f) from (n, f, N)."""
+    moved = shape @ circles.T
+    x, y = moved[..., ::2], moved[..., 1::2]
+    along, against = (np.square(np.abs(x + turn * y)).sum(axis=-1) for turn in (1j, -1j))
+    return along, against
+
+
+def _followed(
+    terms: Callable[[Complex], tuple[Complex, Complex]], start: Complex, size: int
+) -> tuple[Complex, Complex, NDArray[np.bool_]]:
+    """Newton's method on each mode with its own laminar friction.
+
+    Parameters
+    ----------
+    terms : of `MostGrowing`
+    start : first values of f modes at each of n speeds, above the real axis, shape (n, f)
+    size : N of the matrices
+
+    Returns
+    -------
+    Modes, shape (n, f); their shapes, (n, f, N); whether they settled, (n, f)
+    """
+    root = start.astype(complex)
+    shape = np.broadcast_to(np.ones(size, dtype=complex) + 0.1j * np.arange(size), (*root.shape, size)).copy()
+    found = np.zeros(root.shape, dtype=bool)
+    for _ in range(_STEPS):
+        # A mode met to rounding makes the matrix singular to rounding, which is wanted; a hair away it is
+        # never exactly so.
+        near = root * (1.0 + _HAIR)
+        matrix, slope = terms(near)
+        solved = np.linalg.solve(matrix, slope @ shape[..., None])[..., 0]
+        anchor = np.argmax(np.abs(solved), axis=-1)[..., None]
+        largest = np.take_along_axis(solved, anchor, -1)
+        step = (np.take_along_axis(shape, anchor, -1) / largest)[..., 0]
+        root = np.where(found, root, near - step)
+        shape = solved / largest
+        found = found | (np.abs(step) <= _SETTLED * np.abs(root))
+        if found.all():
+            break
+    return root, shape, found
+
+
+Placed = tuple[float, SectionLayer]
+
+_ALIKE = 1e-3  # of the answer, that may go in the other sense: what an uneven mesh makes of even walls
+_DISTINCT = 1e-7  # of an answer that must stand across the others
+_QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])  # multiplies by i
+
+
+@dataclass(frozen=True, eq=False)
+class CircleLayer:
+    """Layer that answers alike in all directions, in m complex coordinates q.
+
+    q'' + 2 Omega C q' + Omega^2 B q = p* a and Q = -rho h p q, both in the drum's frame, all x + i y
+    [theory: sections, eq. 9].
+
+    Parameters
+    ----------
+    density : rho h, kg/m^2
+    liquid_area : m^2
+    gyration, surface, laminar : C, B and S, shape (m, m)
+    moment : p, shape (m,), m
+    rate : k of linear friction, 1/s
+    """
+
+    density: float
+    liquid_area: float
+    gyration: Complex
+    surface: Complex
+    laminar: Complex
+    moment: Complex
+    rate: float
+
+
+def circle_layer(layer: SectionLayer) -> CircleLayer:
+    """The motions of a layer that a circular whirl drives [theory: sections, eq. 9].
+
+    Parameters
+    ----------
+    layer : with motions in two directions
+
+    Raises
+    ------
+    InputError : it does not answer alike in all directions
+    """
+    liquid = layer.liquid
+    drive = (liquid.moment[0] - 1j * liquid.moment[1])[:, None]
+    answers = [drive, np.linalg.solve(liquid.surface, drive)]
+    for point in KEPT:
+        for s in (point, -point.conjugate()):
+            matrix = -s * s * liquid.inertia + 2j * s * liquid.gyration + liquid.surface
+            answers.append(np.linalg.solve(matrix, drive))
+    basis = spanned(np.hstack(answers), _DISTINCT)
+    # What rounding, or an uneven mesh, makes of motions in the other sense stays out.
+    x, y = liquid.moment @ basis
+    basis = basis[:, np.abs(y + 1j * x) <= _ALIKE * np.abs(x).max()]
+
+    def seen(matrix: Array) -> Complex:
+        return np.asarray(basis.conj().T @ matrix @ basis)
+
+    found = CircleLayer(
+        density=layer.density,
+        liquid_area=liquid.liquid_area,
+        gyration=seen(liquid.gyration),
+        surface=seen(liquid.surface),
+        laminar=seen(layer.laminar),
+        moment=np.sqrt(2.0) * (liquid.moment[0] @ basis),
+        rate=layer.rate,
+    )
+    _require_alike(liquid, found)
+    return found
+
+
+def _require_alike(liquid: ReducedLiquid, circle: CircleLayer) -> None:
+    """Refuse a liquid that does not answer alike in all directions."""
+    s = np.array([0.0, *KEPT])
+    matrix = liquid.compliance(s)
+    sum_xy, difference = matrix[:, 0, 0] + matrix[:, 1, 1], matrix[:, 0, 0] - matrix[:, 1, 1]
+    turned = 0.5 * (sum_xy - 1j * (matrix[:, 0, 1] - matrix[:, 1, 0]))
+    counter = 0.5 * (difference + 1j * (matrix[:, 0, 1] + matrix[:, 1, 0]))
+    one = np.eye(len(circle.moment))
+    at = s[:, None, None]
+    motion = -np.square(at) * one + 2j * at * circle.gyration + circle.surface
+    answer = np.linalg.solve(
+        motion, np.broadcast_to(circle.moment.conj()[:, None], (s.size, one.shape[0], 1))
+    )
+    off = np.abs((circle.moment @ answer)[..., 0] - turned) + np.abs(counter)
+    if (off > _ALIKE * np.abs(turned).max()).any():
+        allowed = "3 or more for a rotor that is not planar: fewer answer differently in two directions"
+        raise InputError("chambers.baffles.count", "1 or 2", allowed)
+
+
+@dataclass(frozen=True, eq=False)
+class StandingMatrices:
+    """M z'' + C z' + K z = 0 at n speeds, and laminar friction beside it.
+
+    Parameters
+    ----------
+    mass, damping, stiffness : shape (N, N), (n, N, N), (n, N, N)
+    laminar : S, shape (N, N)
+    quarter : multiplies the liquid's complex coordinates by i, shape (N, N)
+    """
+
+    mass: Array
+    damping: Array
+    stiffness: Array
+    laminar: Array
+    quarter: Array
+
+
+def standing_matrices(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> StandingMatrices:
+    """Rotor and liquid as one linear system in the standing frame [theory: sections, eq. 10].
+
+    Parameters
+    ----------
+    system : the dry rotor, with the mass of all liquid that has no free surface
+    layers : plane, m, and layer
+    speed : Omega, rad/s, shape (n,)
+    """
+    count, spin = len(system.coordinates), speed[:, None, None]
+    circles = [(plane, circle_layer(layer)) for plane, layer in layers]
+    size = count + 2 * sum(len(one.moment) for _, one in circles)
+    mass, laminar, quarter = np.zeros((3, size, size))
+    damping, stiffness = np.zeros((2, speed.size, size, size))
+    mass[:count, :count] = system.mass
+    damping[:, :count, :count] = system.damping + spin * system.gyroscopic
+    stiffness[:, :count, :count] = system.stiffness
+    first = count
+    for plane, one in circles:
+        m, at = len(one.moment), system.at(plane)
+        own = slice(first, first + 2 * m)
+        first += 2 * m
+        pull = -one.density * at.T @ _real(one.moment[None])
+        turn, unit = _real(1j * np.eye(m)), one.density * np.eye(2 * m)
+        mass[:count, :count] += one.density * one.liquid_area * at.T @ at
+        mass[:count, own], mass[own, :count], mass[own, own] = pull, pull.T, unit
+        # d/dt - i Omega takes the place of d/dt in what the liquid does in the drum.
+        twist, spread = one.density * _real(one.gyration), one.density * _real(one.surface)
+        damping[:, own, own] = 2.0 * spin * (twist - one.density * turn) + one.rate * unit
+        stiffness[:, own, own] = (
+            np.square(spin) * (spread - unit - 2.0 * turn @ twist) - one.rate * one.density * spin * turn
+        )
+        laminar[own, own], quarter[own, own] = one.density * _real(one.laminar), turn
+    return StandingMatrices(mass, damping, stiffness, laminar, quarter)
+
+
+def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> SystemModes:
+    """Whirl modes in the standing frame: all without laminar friction, with it those that grow most.
+
+    Parameters
+    ----------
+    system, layers, speed : as for `standing_matrices`
+    """
+    found = standing_matrices(system, layers, speed)
+    rows = np.zeros((2 * len(layers), len(found.mass)))
+    for k, (plane, _) in enumerate(layers):
+        rows[2 * k : 2 * k + 2, : len(system.coordinates)] = system.at(plane)
+    own = np.eye(len(found.mass))[len(system.coordinates) :]
+    circles = np.concatenate([rows, own])
+    if not np.any(found.laminar):
+        return linear_modes(CoupledMatrices(found.mass, found.damping, found.stiffness), circles)
+    drag = np.sqrt(0.5 * SLOW * speed)[:, None, None] * found.laminar
+    slipping = -speed[:, None, None] * found.quarter @ drag
+    started = roots(CoupledMatrices(found.mass, found.damping + drag, found.stiffness + slipping))
+    # Of the two circles of a mode the one with the spin, which slips less.
+    slip = np.abs(np.abs(started.imag) - speed[:, None])
+    spin = speed[:, None, None, None]
+
+    def terms(root: Complex) -> tuple[Complex, Complex]:
+        at = root[..., None, None]
+        # Either sense of circle slips by its own frequency over the drum.
+        power, slope = [], []
+        for way in (-1j, 1j):
+            slip = at + way * spin
+            one = np.sqrt(slip)
+            power.append(slip * one)
+            slope.append(1.5 * one)
+        mean, half = (
+            (0.5 * (one[0] + one[1]) for one in (power, slope)),
+            (-0.5j * (one[0] - one[1]) for one in (power, slope)),
+        )
+        turned = found.quarter @ found.laminar
+        shear, change = (u * found.laminar + v * turned for u, v in zip(mean, half, strict=True))
+        damping, stiffness = found.damping[:, None], found.stiffness[:, None]
+        matrix = at * (at * found.mass + damping) + stiffness + shear
+        return matrix, 2.0 * at * found.mass + damping + change
+
+    return most_growing(MostGrowing(started, slip, circles, terms), speed)
+
+
+def _real(matrix: Any) -> Array:
+    """A complex matrix over real and imaginary parts, shape (r, m) to (2 r, 2 m)."""
+    made = np.kron(matrix.real, np.eye(2)) + np.kron(matrix.imag, _QUARTER)
+    return np.asarray(made)

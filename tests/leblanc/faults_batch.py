@@ -1,0 +1,29 @@
+"""Seeded faults of many scenes at once."""
+
+from __future__ import annotations
+
+from tests.faults import Fault
+from tests.leblanc import test_batch as oracle
+
+BATCH, CHECK = "leblanc.studies.batch", oracle.check_each_is_what_run_gives
+
+FAULTS: tuple[Fault, ...] = (
+    Fault(
+        BATCH,
+        "gravity = np.array([axial_gravity(scene) for scene in scenes])",
+        "gravity = np.zeros(len(scenes))",
+        CHECK,
+    ),
+    Fault(BATCH, "~(growth > 0.0)", "(growth == growth)", CHECK),
+    Fault(
+        BATCH, '"amplitude_dry": np.abs(one.deflection_dry)', '"amplitude_dry": np.abs(one.deflection)', CHECK
+    ),
+    Fault(
+        BATCH,
+        '"phase": phase(one.deflection),\n        }',
+        '"phase": -phase(one.deflection),\n        }',
+        CHECK,
+    ),
+    Fault(BATCH, '"amplitude": record.amplitude', '"amplitude": abs(record.response.deflection)', CHECK),
+    Fault(BATCH, "for part in parts])[order]", "for part in parts])", CHECK),
+)

@@ -1,0 +1,210 @@
+"""The command line around the commands: exit codes, one line per fault, no traceback."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from importlib.metadata import EntryPoint
+from pathlib import Path
+from typing import Any
+
+import pytest
+import typer
+
+from leblanc import cli
+from leblanc.cli import exit_code, main
+from leblanc.scene.faults import NotConverged, SceneFault, SceneFaults
+from leblanc.scene.scene import load_scene
+from meshes.errors import InputError
+
+Capture = pytest.CaptureFixture[str]
+ROOT = Path(cli.__file__).parents[2]
+
+
+def leblanc(*arguments: str, **options: Any) -> subprocess.CompletedProcess[str]:
+    """The command in a process of its own."""
+    code = f"import sys; sys.path.insert(0, {str(ROOT)!r}); from leblanc.cli import main; sys.exit(main())"
+    command = [sys.executable, "-c", code, *arguments]
+    return subprocess.run(command, text=True, stderr=subprocess.PIPE, check=False, **options)
+
+
+# -- the command line itself ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("arguments", [[], ["--help"]])
+def test_help_lists_the_commands(arguments: list[str], capsys: Capture) -> None:
+    assert main(arguments) == 0
+    printed = capsys.readouterr().out
+    assert "Usage: leblanc" in printed
+    assert "new " in printed
+    assert "completion" not in printed
+
+
+def test_help_loads_nothing_heavy() -> None:
+    code = """if True:
+        import sys
+        from leblanc.cli import main
+        main(["--help"])
+        heavy = {"numpy", "scipy", "pydantic", "pint", "rich", "skfem", "pde", "xarray", "matplotlib"}
+        sys.exit(", ".join(heavy & set(sys.modules)) or 0)
+    """
+    check = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert check.returncode == 0, check.stderr
+
+
+def test_version(capsys: Capture) -> None:
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out.strip()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["nosuch"], "nosuch"),
+        (["--nosuch"], "--nosuch"),
+        (["new", "--nosuch"], "--nosuch"),
+        (["new", "a.toml", "b.toml"], "b.toml"),
+    ],
+)
+def test_a_wrong_command_line_is_one_clear_line(arguments: list[str], said: str, capsys: Capture) -> None:
+    assert main(arguments) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    (line,) = printed.err.splitlines()
+    assert line.startswith("leblanc: ")
+    assert said in line
+    assert "--help" in line
+
+
+# -- what a command may raise --------------------------------------------------------------------------------
+
+SCENE_FAULTS = SceneFaults(
+    [SceneFault("s.toml", "rotor.mass", "-1", "above 0"), SceneFault("s.toml", "name", None, "given")]
+)
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "lines"),
+    [
+        (
+            InputError("radius", -1.0, "a finite number above 0"),
+            2,
+            ["leblanc: radius = -1.0: must be a finite"],
+        ),
+        (SCENE_FAULTS, 2, ["s.toml: rotor.mass = -1: must be above 0", "s.toml: name: must be given"]),
+        (NotConverged(["90 rad/s: no branch", "95 rad/s: no branch"]), 3, ["90 rad/s: no", "95 rad/s: no"]),
+        (PermissionError(13, "Permission denied", "out/x"), 2, ["out/x: Permission denied"]),
+        (OSError(28, "No space left on device"), 2, ["leblanc: No space left on device"]),
+        (typer.BadParameter("must be one of a,\n\tb"), 2, ["leblanc: Invalid value: must be one of a, b"]),
+        (KeyboardInterrupt(), 130, ["leblanc: interrupted"]),
+        (BrokenPipeError(32, "Broken pipe"), 1, []),
+    ],
+    ids=lambda it: type(it).__name__ if isinstance(it, BaseException) else "",
+)
+def test_each_failure_has_its_exit_code(
+    error: BaseException, code: int, lines: list[str], capsys: Capture
+) -> None:
+    def fail() -> None:
+        raise error
+
+    assert exit_code(fail) == code
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    said = printed.err.splitlines()
+    assert len(said) == len(lines)
+    assert all(line.startswith(start) for line, start in zip(said, lines, strict=True))
+
+
+def test_a_command_keeps_its_exit_code_within_typer(monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
+    application = typer.Typer()
+
+    @application.callback()
+    def _all() -> None: ...
+
+    @application.command()
+    def fail(how: str) -> None:
+        raise {
+            "input": InputError("radius", -1.0, "above 0"),
+            "stuck": NotConverged(["90 rad/s"]),
+            "stop": KeyboardInterrupt(),
+            "exit": typer.Exit(3),
+        }[how]
+
+    monkeypatch.setattr(cli, "app", application)
+    codes = {how: main(["fail", how]) for how in ("input", "stuck", "stop", "exit")}
+    assert codes == {"input": 2, "stuck": 3, "stop": 130, "exit": 3}
+    assert "Traceback" not in capsys.readouterr().err
+
+
+def test_a_mistake_of_the_program_is_not_hidden() -> None:
+    with pytest.raises(ZeroDivisionError):
+        exit_code(lambda: 1 / 0)
+
+
+def test_a_command_of_another_package(monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
+    entries = [
+        EntryPoint("measure", "leblanc.cli.new:new", "leblanc.commands"),
+        EntryPoint("broken", "no_such_package.command:broken", "leblanc.commands"),
+    ]
+    monkeypatch.setattr(cli, "entry_points", lambda **_: entries)
+    monkeypatch.setattr(cli, "app", cli._application())
+    assert main(["--help"]) == 0
+    assert "measure" in capsys.readouterr().out
+    assert main(["broken", "anything", "--at-all"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "no_such_package" in line
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
+def test_a_full_disk_is_one_line() -> None:
+    with Path("/dev/full").open("w") as full:
+        done = leblanc("--version", stdout=full)
+    assert done.returncode == 2
+    assert done.stderr == "leblanc: No space left on device\n"
+
+
+def test_a_reader_that_left_is_no_error() -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    with os.fdopen(writing, "w") as pipe:
+        done = leblanc("--help", stdout=pipe)
+    assert (done.returncode, done.stderr) == (1, "")
+
+
+# -- new -----------------------------------------------------------------------------------------------------
+
+
+def test_new_writes_a_scene_that_loads(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["new"]) == 0
+    assert main(["new", "other.toml"]) == 0
+    assert capsys.readouterr().out == ""
+    assert load_scene("scene.toml") == load_scene("other.toml")
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["other.toml", "scene.toml"]
+    assert "#" in (tmp_path / "scene.toml").read_text(encoding="utf-8")
+
+
+def test_new_overwrites_only_by_force(tmp_path: Path, capsys: Capture) -> None:
+    file = tmp_path / "scene.toml"
+    file.write_text("mine", encoding="utf-8")
+    assert main(["new", str(file)]) == 2
+    assert file.read_text(encoding="utf-8") == "mine"
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"{file}: ")
+    assert "--force" in line
+    assert main(["new", str(file), "--force"]) == 0
+    assert load_scene(file)
+
+
+def test_new_names_what_it_cannot_write(tmp_path: Path, capsys: Capture) -> None:
+    file = tmp_path / "none" / "scene.toml"
+    assert main(["new", str(file)]) == 2
+    assert capsys.readouterr().err == f"{file}: No such file or directory\n"
+    assert main(["new", str(tmp_path), "--force"]) == 2
+    assert capsys.readouterr().err.startswith(f"{tmp_path}: ")
+    assert list(tmp_path.iterdir()) == []

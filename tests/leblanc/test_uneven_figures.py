@@ -1,0 +1,80 @@
+"""Outlines of chambers with baffles or a section of their own."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from leblanc.figures.section import exaggeration
+from leblanc.figures.uneven import bodies, is_uneven, plates, wall_line
+from leblanc.results.record import ChamberRecord
+from meshes.baffles import Baffles
+from meshes.chamber_section import chamber_section
+from meshes.section import Section, annulus, disc
+
+RADIUS, REST, HEIGHT = 0.1, 0.09, 0.02
+VOLUME = math.pi * (RADIUS**2 - REST**2) * HEIGHT
+CUT = ChamberRecord(RADIUS, 0.0, HEIGHT, VOLUME, "water", REST, baffles=Baffles(4))
+LOW = ChamberRecord(RADIUS, 0.0, HEIGHT, VOLUME, "water", REST, baffles=Baffles(4, 0.095))
+
+
+def area(points: np.ndarray) -> float:
+    x, y = points.T
+    return 0.5 * abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1)))
+
+
+@pytest.mark.parametrize("centre", [0.0 + 0.0j, 0.003 - 0.002j])
+def test_each_compartment_keeps_its_liquid(centre: complex) -> None:
+    found = bodies(CUT, centre, RADIUS - REST)
+    assert len(found) == 4
+    for one in found:
+        # A polygon of 720 sides in a quarter turn.
+        assert area(one) == pytest.approx(0.25 * VOLUME / HEIGHT, rel=1e-5)
+
+
+def test_liquid_that_can_pass_has_one_surface_about_the_axis() -> None:
+    centre = 0.003 - 0.002j
+    (one,) = bodies(LOW, centre, RADIUS - REST)
+    assert area(one) == pytest.approx(VOLUME / HEIGHT, rel=1e-4)
+    wall, surface = np.split(one, 2)
+    np.testing.assert_allclose(np.hypot(*(wall - (centre.real, centre.imag)).T), RADIUS, rtol=1e-12)
+    away = np.hypot(*surface.T)
+    np.testing.assert_allclose(away, away[0], rtol=1e-12)
+
+
+def test_the_surface_of_a_section_about_the_axis() -> None:
+    base = disc(RADIUS, 96, order=2)
+    angle = np.arctan2(base.points[:, 1], base.points[:, 0])
+    stretch = 1.0 + 0.02 * np.cos(6.0 * angle) * (np.hypot(*base.points.T) / RADIUS) ** 4
+    section = chamber_section("lobes", Section(base.points * stretch[:, None], base.triangles))
+    volume = 0.2 * section.area * HEIGHT
+    record = ChamberRecord(section.farthest, 0.0, HEIGHT, volume, "water", REST, section=section)
+    assert is_uneven(record)
+    (one,) = bodies(record, 0.001j, section.farthest - REST)
+    # The wall between its nodes is drawn straight.
+    assert area(one) == pytest.approx(section.area - math.pi * REST**2, rel=2e-3)
+    assert sum(len(line) for line in wall_line(section)) == 3 * 96
+    # The thinnest place decides how much may be drawn: 0.98 R less the surface.
+    assert record.least_depth < section.farthest - record.mean_surface_radius
+    factors = exaggeration((record,), (1e-4,))
+    assert factors.deflection * 1e-4 <= 0.9 * factors.depth * record.least_depth * (1.0 + 1e-12)
+
+
+@pytest.mark.parametrize("inner", [0.3 * RADIUS, 0.7 * RADIUS])
+def test_the_liquid_lies_on_the_outer_of_two_walls(inner: float) -> None:
+    section = chamber_section("ring", annulus(RADIUS, inner, 96))
+    record = ChamberRecord(RADIUS, 0.0, HEIGHT, VOLUME, "water", REST, section=section)
+    (one,) = bodies(record, 0.0j, RADIUS - REST)
+    wall = np.hypot(*np.split(one, 2)[0].T)
+    # Straight sides between 96 nodes on the circle; their middles lie R (1 - cos(pi/96)) inside it.
+    assert wall.max() == pytest.approx(RADIUS, rel=1e-12)
+    assert wall.min() >= RADIUS * math.cos(math.pi / 96) * (1.0 - 1e-12)
+
+
+def test_plates_grow_with_the_layer() -> None:
+    for inner, outer in plates(Baffles(3, 0.095, 0.001), RADIUS, 2.0):
+        assert abs(outer) == pytest.approx(RADIUS - 2.0 * 0.001)
+        assert abs(inner) == pytest.approx(RADIUS - 2.0 * 0.005)
+    assert not is_uneven(ChamberRecord(RADIUS, 0.0, HEIGHT, VOLUME, "water", REST))

@@ -1,0 +1,229 @@
+"""One answer of one model at one resolution to the question that a scene was cut to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from leblanc.scene.machine import dry_rotor, jeffcott
+from leblanc.scene.scene import Exciter, Rotor, Scene
+from leblanc.studies.choose import across_gravity, axial_gravity, choose
+from leblanc.studies.runup import RunupChoice, chosen_run, drive_of, judged, planned
+from meshes.errors import InputError
+from solvers.runup.runup import RunupNumerics
+from solvers.synchronous.models import LiquidModel
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+RESPONSE, RUNUP = "response", "runup"
+DISPERSION = "dispersion"
+
+
+@dataclass(frozen=True)
+class Case:
+    """One model at one resolution.
+
+    Parameters
+    ----------
+    question : "response" or "runup"
+    model : "auto" (the scene's default), "linear", "statics", "long_wave", "fem"; of an exciter "formulas" or
+        "integration"
+    resolution : cells round a wall, edges along a wall, steps in a turn; None where there is none
+    variant : "dispersion", "order 1" or "order 2", or empty
+    """
+
+    question: str
+    model: str
+    resolution: int | None = None
+    variant: str = ""
+
+    @property
+    def selectable(self) -> bool:
+        """A scene can ask for it: its response takes no grid, its run-up takes any."""
+        return self.resolution is None or self.question == RUNUP
+
+    @property
+    def label(self) -> str:
+        """In a few words."""
+        size = "" if self.resolution is None else f" {self.resolution}"
+        return f"{self.model}{size}{', ' + self.variant if self.variant else ''}"
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a case answers.
+
+    Parameters
+    ----------
+    values : amplitudes over speed or over time, m, shape (k,)
+    in_range : the model says of itself that it holds there
+    reason : why there is no answer, or empty
+    used : models that answered
+    """
+
+    values: Array
+    in_range: bool
+    reason: str
+    used: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class SceneAt(Scene):
+    """A scene at chosen speeds.
+
+    Parameters
+    ----------
+    chosen : in place of the evenly spaced ones, rising, rad/s
+    """
+
+    chosen: tuple[float, ...] = ()
+
+    def speed_array(self) -> Array:
+        """Spin speeds, rad/s, shape (k,)."""
+        return np.array(self.chosen)
+
+
+def at_speeds(scene: Scene, speed: Array) -> SceneAt:
+    """The scene at those speeds."""
+    content: dict[str, Any] = {one.name: getattr(scene, one.name) for one in fields(Scene)}
+    return SceneAt(**content, chosen=tuple(float(x) for x in speed))
+
+
+def steady(scene: Scene, models: NDArray[np.str_]) -> tuple[Array, Flags, Flags, tuple[str, ...]]:
+    """Amplitude, dry patch, in range and found at a scene's speeds, and the models used.
+
+    Parameters
+    ----------
+    scene : the machine, not an exciter
+    models : names known to the synchronous solvers, one for each speed
+    """
+    from solvers.synchronous.mixed import mixed_coupled, mixed_response
+
+    speed, gravity, fills = scene.speed_array(), axial_gravity(scene), scene.chambers
+    if isinstance(scene.rotor, Rotor):
+        found, back = mixed_response(jeffcott(scene), fills, speed, gravity, models), np.zeros(speed.size)
+    else:
+        coupled = mixed_coupled(dry_rotor(scene).system(), fills, speed, gravity, models)
+        found, back = coupled.response, np.abs(coupled.backward)
+    amplitude = np.abs(found.deflection) + back
+    good = found.in_range & found.converged
+    return amplitude, found.dry_patch, good, tuple(dict.fromkeys(found.model.tolist()))
+
+
+def chosen_models(scene: Scene, model: str) -> tuple[NDArray[np.str_], Flags]:
+    """Model at each speed and where the liquid rides with the drum, as the main job finds them.
+
+    A model that is named is taken as it is; its error is estimated all the same, as users get it.
+
+    Parameters
+    ----------
+    scene : the machine, not an exciter
+    model : "auto" or a name
+    """
+    choice = choose(replace(scene, model=replace(scene.model, liquid=model)))
+    return choice.models, choice.in_range
+
+
+def answer(scene: Scene, case: Case) -> Answer:
+    """Answer of a case to the question that a scene was cut to.
+
+    Parameters
+    ----------
+    scene : of a `Question`
+    case : one of its cases
+
+    Raises
+    ------
+    InputError : a case of no question
+    """
+    kind = "exciter" if isinstance(scene.rotor, Exciter) else case.question
+    if kind not in _ANSWERS:
+        raise InputError("question", case.question, "one of " + ", ".join(_ANSWERS))
+    return _ANSWERS[kind](scene, case)
+
+
+def _response(scene: Scene, case: Case) -> Answer:
+    from solvers.synchronous.discrete import Fem, LongWave, offered
+
+    size = case.resolution
+    models, held = chosen_models(scene, "statics" if size else case.model)
+    if size is None:
+        amplitude, _, good, used = steady(scene, models)
+    else:
+        model: LiquidModel = LongWave(size) if case.model == "long_wave" else Fem(size, int(case.variant[-1]))
+        with offered(model) as name:
+            amplitude, _, good, _ = steady(scene, np.full(models.size, name))
+        used = (case.model,)
+    good = good & held
+    bad = not np.isfinite(amplitude).all()
+    return Answer(amplitude, bool(good.all()), "no bounded answer" if bad else "", used)
+
+
+def _runup(scene: Scene, case: Case) -> Answer:
+    plan = planned(scene)
+    dispersion = plan.dispersion if case.resolution is None else case.variant == DISPERSION
+    taken = taken_run(scene, case.model, case.resolution or plan.cells, dispersion)
+    good = judged(scene, taken.history, taken.model)[0]
+    return Answer(taken.history.amplitude, bool(good.all()), taken.history.reason, (taken.model,))
+
+
+def taken_run(scene: Scene, model: str, cells: int, dispersion: bool) -> RunupChoice:
+    """A scene's run-up as the command for it makes it, but for the second run with half the cells.
+
+    Parameters
+    ----------
+    scene : the machine
+    model : "auto" or a name
+    cells, dispersion : in place of the scene's
+    """
+    plan = planned(scene)
+    numerics = RunupNumerics(cells, plan.samples, dispersion, companion=False)
+    asked = replace(scene, model=replace(scene.model, liquid=model))
+    return chosen_run(asked, drive_of(plan), across_gravity(scene), numerics)
+
+
+def _exciter(scene: Scene, case: Case) -> Answer:
+    from leblanc.studies.exciter import machine_of
+    from solvers.rotor.exciter.machine import platform_motion
+    from solvers.rotor.exciter.motion import integrate
+    from solvers.rotor.exciter.stuck import stuck_speeds
+
+    if not isinstance(scene.rotor, Exciter):
+        raise InputError("rotor.kind", scene.rotor.kind, "exciter for this")
+    machine = machine_of(scene.rotor)
+    numbers = machine.dimensionless()
+    ratio = scene.speed_array() / machine.natural_frequency
+    if case.resolution is None:
+        stuck = stuck_speeds(ratio, numbers)[:, 0]
+        both = [np.abs(platform_motion(numbers, n, q)) for n, q in zip(ratio, stuck, strict=True)]
+        return Answer(np.ravel(both) * machine.length, True, "", (case.model,))
+    runs = [integrate(numbers, float(n), machine.ball_count, steps=case.resolution) for n in ratio]
+    values = np.array([(run.slow, run.fast) for run in runs]).ravel() * machine.length
+    held = all(run.holds for run in runs)
+    return Answer(values, held, "" if np.isfinite(values).all() else "the balls break away", (case.model,))
+
+
+_ANSWERS: dict[str, Callable[[Scene, Case], Answer]] = {
+    RESPONSE: _response,
+    RUNUP: _runup,
+    "exciter": _exciter,
+}
+
+
+def taste(scene: Scene, case: Case) -> None:
+    """A small piece of a case, which imports and compiles all that the whole takes."""
+    if case.question == RUNUP:
+        plan = planned(scene)
+        bit = replace(scene, runup=replace(plan, duration=1e-3 * plan.duration, samples=2))
+        answer(bit, case)
+        if case.model == "auto":  # of which so small a piece takes one model alone
+            answer(bit, replace(case, model="long_wave"))
+    else:
+        speed = scene.speed_array()
+        small = case if case.model != "fem" else replace(case, resolution=8)
+        answer(at_speeds(scene, speed[:1]), small)

@@ -1,0 +1,218 @@
+"""What a scene's models and resolutions are compared on: the questions and their ladders."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from leblanc.scene.scene import Exciter, Runup, Scene
+from leblanc.studies.choose import across_gravity
+from leblanc.studies.runup import planned
+from solvers.runup.chamber import layer_capture
+from validation.trade.answers import (
+    DISPERSION,
+    RESPONSE,
+    RUNUP,
+    Case,
+    at_speeds,
+    chosen_models,
+    steady,
+    taken_run,
+)
+
+Array = NDArray[np.float64]
+
+SPEEDS = 9  # at which the response is compared
+SAMPLES = 1000  # of a run-up's history
+CELLS, QUICK_CELLS = (16, 32, 64, 128, 256, 512), (16, 32, 64)
+_MOST_CELLS = 4096
+MESHES: tuple[tuple[int, int], ...] = ((16, 1), (32, 1), (64, 1), (16, 2), (32, 2), (64, 2))
+QUICK_MESHES: tuple[tuple[int, int], ...] = ((16, 1), (16, 2))
+STEPS, QUICK_STEPS = (12, 16, 24, 32, 48, 96, 192), (12, 24, 48)
+_SCOUT = 16  # cells of the run that finds the largest vibration
+_BEFORE, _BEYOND, _MOTOR = 0.7, 1.2, 1.2  # of its speed, where a run-up begins and ends; of its time
+# Of the speed of capture, from where on gravity does not throw the liquid about; of the run-up's end, where
+# the start lies at most; the least end over the start.
+_HELD, _LATEST, _WIDEST = 2.0, 0.8, 1.6
+_EXCITED = (0.25, 0.9)  # of the exciter's critical speed, between which its speeds lie
+
+
+@dataclass(frozen=True)
+class Question:
+    """What every case answers.
+
+    Parameters
+    ----------
+    name : "response" or "runup"
+    scene : cut to the question
+    about : what is asked, and what was cut, in words
+    cases : in the order of the table; the first is the default
+    reference : the best of them
+    ladder : the reference and its coarser fellows, finest first, whose differences tell its own error; alone
+        if it is exact
+    """
+
+    name: str
+    scene: Scene
+    about: str
+    cases: tuple[Case, ...]
+    reference: Case
+    ladder: tuple[Case, ...]
+
+
+def questions(scene: Scene, quick: bool = False) -> tuple[Question, ...]:
+    """What can be compared on a scene: its response and, if it has one, its run-up.
+
+    Parameters
+    ----------
+    scene : the machine
+    quick : short ladders
+    """
+    if isinstance(scene.rotor, Exciter):
+        return (exciter_question(scene, quick),)
+    asked = [response_question(scene, quick)]
+    if scene.runup is not None:
+        asked.append(runup_question(scene, quick))
+    return tuple(asked)
+
+
+def response_question(scene: Scene, quick: bool = False) -> Question:
+    """The synchronous response at the speeds that tell most.
+
+    Best is the exact equilibrium of the liquid, which every other model here approaches.
+    """
+    cells, meshes = (QUICK_CELLS, QUICK_MESHES) if quick else (CELLS, MESHES)
+    best = Case(RESPONSE, "statics")
+    cases = (
+        Case(RESPONSE, "auto"),
+        Case(RESPONSE, "linear"),
+        best,
+        *(Case(RESPONSE, "long_wave", n) for n in cells),
+        *(Case(RESPONSE, "fem", n, f"order {order}") for n, order in meshes),
+    )
+    chosen = telling_speeds(scene)
+    about = (
+        f"synchronous response at {chosen.size} speeds from {chosen[0]:.4g} to {chosen[-1]:.4g} rad/s, the "
+        "steady peak and the last speed among them; error: largest relative one of the amplitude"
+    )
+    return Question(RESPONSE, at_speeds(scene, chosen), about, cases, best, (best,))
+
+
+def telling_speeds(scene: Scene, count: int = SPEEDS) -> Array:
+    """Steady peak, its flanks, ends and middle of the range with a dry patch, last speed; others in between.
+
+    Of the speeds at which the liquid rides with the drum, if there are such.
+
+    Parameters
+    ----------
+    scene : the machine
+    count : how many, at most
+
+    Returns
+    -------
+    rad/s, rising, shape (k,)
+    """
+    models, held = chosen_models(scene, "statics")
+    speed, amplitude, dry = scene.speed_array(), *steady(scene, models)[:2]
+    if held.any():
+        speed, amplitude, dry = speed[held], amplitude[held], dry[held]
+    if speed.size <= count:
+        return speed
+    top = int(np.argmax(amplitude))
+    chosen = [top, speed.size - 1]
+    chosen += [k for k in (_flank(amplitude, top, -1), _flank(amplitude, top, 1)) if k is not None]
+    patch = np.flatnonzero(dry)
+    if patch.size:
+        chosen += [int(patch[0]), int(patch[patch.size // 2]), int(patch[-1])]
+    picked = list(dict.fromkeys(chosen))[:count]
+    while len(picked) < count:
+        # The speed farthest from those that there are.
+        away = np.min(np.abs(np.arange(speed.size)[:, None] - np.array(picked)), axis=1)
+        picked.append(int(np.argmax(away)))
+    return np.asarray(speed[np.sort(picked)])
+
+
+def _flank(amplitude: Array, top: int, way: int) -> int | None:
+    """First speed beside the peak with less than 0.7 of it."""
+    side = amplitude[top::way]
+    below = np.flatnonzero(side < math.sqrt(0.5) * amplitude[top])
+    return top + way * int(below[0]) if below.size else None
+
+
+def runup_question(scene: Scene, quick: bool = False) -> Question:
+    """The passage of the largest vibration of a scene's run-up.
+
+    Best are the long waves on the finest cells, with dispersion if the scene asks for it.
+    """
+    plan, about = passage(scene)
+    cut = replace(scene, runup=plan)
+    cells = _doubled(QUICK_CELLS if quick else CELLS, 2 * plan.cells)
+    own = DISPERSION if plan.dispersion else ""
+    ladder = tuple(Case(RUNUP, "long_wave", n, own) for n in reversed(cells))
+    layers = [Case(RUNUP, "long_wave", n, variant) for variant in ("", DISPERSION) for n in cells]
+    cases = (Case(RUNUP, "auto"), Case(RUNUP, "linear"), *layers)
+    return Question(RUNUP, cut, about, cases, ladder[0], ladder[:3])
+
+
+def _doubled(cells: tuple[int, ...], wanted: int) -> tuple[int, ...]:
+    """The ladder with more rungs until the last one has as many cells as are wanted."""
+    while cells[-1] < min(wanted, _MOST_CELLS):
+        cells = (*cells, 2 * cells[-1])
+    return cells
+
+
+def passage(scene: Scene) -> tuple[Runup, str]:
+    """A scene's run-up cut to the passage of its largest vibration, and that in words.
+
+    A coarse run finds it. A ramp then runs from 0.7 to 1.2 of the speed there, within its own ends, and
+    neither holds nor comes back; a motor runs from its start to 1.2 of the time there. A ramp with gravity
+    across the axis starts at twice the speed of capture at least: near that a layer falls on one mesh and
+    stays up on the next, and no mesh is fine enough to tell.
+    """
+    plan = planned(scene)
+    whole = replace(scene, runup=replace(plan, back=False, samples=SAMPLES))
+    history = taken_run(whole, "long_wave", _SCOUT, plan.dispersion).history
+    top = int(np.argmax(history.amplitude))
+    speed, time = float(history.speed[top]), float(history.time[top])
+    if plan.rate is None:
+        length = min(plan.duration, _MOTOR * time)
+        start, stop = plan.start, plan.stop
+    else:
+        start = min(max(_BEFORE * speed, _HELD * _capture(scene)), _LATEST * plan.stop)
+        start = max(plan.start, start)
+        stop = min(plan.stop, max(_BEYOND * speed, _WIDEST * start))
+        length = (stop - start) / plan.rate
+    cut = replace(plan, start=start, stop=stop, duration=length, back=False, samples=SAMPLES)
+    about = (
+        f"run-up, cut to {length:.4g} s from {start:.4g} rad/s"
+        + (f" to {stop:.4g} rad/s" if plan.rate is not None else "")
+        + f" (its largest vibration is at {speed:.4g} rad/s); error: of the amplitude over time, root mean "
+        "square over that of the best"
+    )
+    return cut, about
+
+
+def _capture(scene: Scene) -> float:
+    """Speed above which every layer rides with the drum against gravity across the axis, rad/s."""
+    held = [layer_capture(fill, across_gravity(scene)) for fill in scene.chambers]
+    return max((speed for speed in held if math.isfinite(speed)), default=0.0)
+
+
+def exciter_question(scene: Scene, quick: bool = False) -> Question:
+    """Platform amplitudes of an exciter, by formulas and by time integration with ever finer steps."""
+    from leblanc.studies.exciter import run_exciter
+
+    found = run_exciter(scene)
+    top = found.critical if math.isfinite(found.critical) else float(found.speed[-1])
+    chosen = np.linspace(_EXCITED[0] * top, _EXCITED[1] * top, 5)
+    steps = QUICK_STEPS if quick else STEPS
+    ladder = tuple(Case(RESPONSE, "integration", n) for n in reversed(steps))
+    about = (
+        f"amplitudes of the platform with the balls and with the shaft at {chosen.size} shaft speeds from "
+        f"{chosen[0]:.4g} to {chosen[-1]:.4g} rad/s; error: largest relative one"
+    )
+    cases = (Case(RESPONSE, "formulas"), *reversed(ladder))
+    return Question(RESPONSE, at_speeds(scene, chosen), about, cases, ladder[0], ladder[:3])

@@ -1,0 +1,54 @@
+"""`leblanc trade`: accuracy against cost of every model and resolution on a scene."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from leblanc.cli.output import out_dir, print_json, say, writing
+
+
+def trade(
+    scene: Annotated[Path, typer.Argument(help="Scene file (TOML).")],
+    quick: Annotated[bool, typer.Option("--quick", help="Short ladders of resolutions.")] = False,
+    repeats: Annotated[int, typer.Option(min=2, help="How often short runs are timed.")] = 5,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the files [default: out/<scene name>].")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
+) -> None:
+    """Accuracy against cost of every model and resolution. The best choices among them, a figure."""
+    from leblanc.scene.scene import load_scene
+
+    machine = load_scene(scene)
+    folder = out_dir(machine.name, out)
+
+    from rich.progress import Progress
+
+    from validation.trade.trade import trade_scene
+
+    with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
+        task = bar.add_task("measuring", total=1.0)
+        record = trade_scene(
+            *(machine, quick, repeats),
+            progress=lambda what, done: bar.update(task, description=what, completed=done),
+        )
+
+    from validation.trade.figure import save, trade_figure
+    from validation.trade.results import trade_json, trade_lines
+
+    found = trade_json(record)
+    with writing(folder / "trade.json") as path:
+        from json import dumps
+
+        path.write_text(dumps(found, indent=1) + "\n", encoding="utf-8")
+    files = save(trade_figure(record), folder, "trade", "Accuracy against cost")
+    if json:
+        print_json(found)
+    else:
+        print("\n".join(trade_lines(record)))
+        print(f"Look at {files.png}; the numbers are in {folder / 'trade.json'}")
+    say(f"{record.name}: {sum(len(one.rows) for one in record.comparisons)} models and resolutions done")

@@ -1,0 +1,292 @@
+"""Errors, front and recommendation from what the cases of a question answered and took."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from validation.trade.answers import RESPONSE, Answer, Case
+from validation.trade.cases import Question
+
+_ROUNDING = 1e-12  # relative error of what is called exact
+# Least difference of times that counts, relative: the same computation under two names was within 2.5 %.
+_REPRODUCED = 0.03
+_LEAST_ORDER = 0.25  # of convergence; what converges slower is not extrapolated
+
+
+@dataclass(frozen=True)
+class Run:
+    """What one case answered and took.
+
+    Parameters
+    ----------
+    answer : to the question
+    times : CPU times, s
+    first : CPU time of the first piece with imports and compilation, s
+    memory : beyond that of a process with everything loaded, bytes
+    """
+
+    answer: Answer
+    times: tuple[float, ...]
+    first: float
+    memory: int
+
+
+@dataclass(frozen=True)
+class Row:
+    """One case beside the others.
+
+    Parameters
+    ----------
+    question, model, resolution, variant : of the case
+    used : models that answered
+    error, peak_error : relative to the best answer, of the whole and of the largest amplitude; nan without an
+        answer
+    resolved : the error is larger than the reference's own
+    time : least CPU time, s
+    spread : of the times, the middle one less the least over the least; that of the worst other row where
+        only one was taken
+    repeats : how many were timed
+    first, memory : see `Run`
+    in_range : the model says of itself that it holds there
+    selectable : a scene can ask for it
+    note : why there is no answer, or empty
+    on_front : no other row dominates it
+    default, recommended : what the scene's default gives; what is advised for its tolerance
+    """
+
+    question: str
+    model: str
+    resolution: int | None
+    variant: str
+    used: tuple[str, ...]
+    error: float
+    peak_error: float
+    resolved: bool
+    time: float
+    spread: float
+    repeats: int
+    first: float
+    memory: int
+    in_range: bool
+    selectable: bool
+    note: str
+    on_front: bool = False
+    default: bool = False
+    recommended: bool = False
+
+    @property
+    def label(self) -> str:
+        """In a few words."""
+        return Case(self.question, self.model, self.resolution, self.variant).label
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """The rows of one question.
+
+    Parameters
+    ----------
+    question, about : name; what is asked, in words
+    reference : label of the best case
+    reference_error : relative, its own
+    order : of its convergence, nan where it is exact or does not converge
+    rows : one for each case, the default first
+    dominated_by : labels of the rows that dominate the default
+    overhead : time of the default over that of the row that took the same model and resolution, less 1; nan
+        if there is none
+    """
+
+    question: str
+    about: str
+    reference: str
+    reference_error: float
+    order: float
+    rows: tuple[Row, ...]
+    dominated_by: tuple[str, ...]
+    overhead: float
+
+    @property
+    def default(self) -> Row:
+        """What the scene's default gives."""
+        return self.rows[0]
+
+    @property
+    def recommended(self) -> Row | None:
+        """What is advised; None if nothing has answered."""
+        return next((row for row in self.rows if row.recommended), None)
+
+
+def compare(question: Question, runs: Mapping[Case, Run], tolerance: float) -> Comparison:
+    """Errors, front, default and recommendation from what the cases answered and took.
+
+    Parameters
+    ----------
+    question : with its cases
+    runs : of each
+    tolerance : relative error that is asked for
+    """
+    best = runs[question.reference].answer
+    own, order = reference_error(question, [runs[case].answer for case in question.ladder])
+    spreads = {case: _spread(runs[case].times) for case in question.cases}
+    worst = max((x for x in spreads.values() if math.isfinite(x)), default=0.0)
+    rows = []
+    for case in question.cases:
+        run = runs[case]
+        error, peak = errors(question.name, run.answer, best)
+        spread = spreads[case]
+        rows.append(
+            Row(
+                question=question.name,
+                model=case.model,
+                resolution=case.resolution,
+                variant=case.variant,
+                used=run.answer.used,
+                error=error,
+                peak_error=peak,
+                resolved=bool(error > own),
+                time=min(run.times),
+                spread=spread if math.isfinite(spread) else worst,
+                repeats=len(run.times),
+                first=run.first,
+                memory=run.memory,
+                in_range=run.answer.in_range,
+                selectable=case.selectable,
+                note=run.answer.reason or _other_physics(question, case),
+            )
+        )
+    return _judged(question, rows, own, order, tolerance)
+
+
+def _judged(question: Question, rows: list[Row], own: float, order: float, tolerance: float) -> Comparison:
+    """The comparison with front, default and recommendation marked."""
+    advised = recommend(rows, own, tolerance)
+    marked = tuple(
+        replace(
+            row,
+            on_front=math.isfinite(row.error) and not any(dominates(other, row, own) for other in rows),
+            default=k == 0,
+            recommended=k == advised,
+        )
+        for k, row in enumerate(rows)
+    )
+    # The same model at the same resolution, asked for by name.
+    twins = [r for r in rows[1:] if r.used == rows[0].used and r.error == rows[0].error]
+    twin = min((r.time for r in twins), default=math.nan)
+    return Comparison(
+        question=question.name,
+        about=question.about,
+        reference=question.reference.label,
+        reference_error=own,
+        order=order,
+        rows=marked,
+        dominated_by=tuple(row.label for row in rows[1:] if dominates(row, rows[0], own)),
+        overhead=rows[0].time / twin - 1.0,
+    )
+
+
+def _spread(times: Sequence[float]) -> float:
+    """Middle time less the least over the least; nan of a single one."""
+    return float(np.median(times) / min(times) - 1.0) if len(times) > 1 else math.nan
+
+
+def _other_physics(question: Question, case: Case) -> str:
+    """Whether a case has a term of its equations more or less than the reference."""
+    apart = case.model == question.reference.model and case.variant != question.reference.variant
+    return "other physics: what is left is a difference of models" if apart else ""
+
+
+def errors(name: str, found: Answer, best: Answer) -> tuple[float, float]:
+    """Error of an answer and of its largest amplitude, relative to the best one's; nan without an answer.
+
+    Parameters
+    ----------
+    name : of the question; a response counts by its worst speed, a history by its root mean square
+    found, best : answers over the same speeds or times
+    """
+    if found.reason or best.reason or found.values.shape != best.values.shape:
+        return math.nan, math.nan
+    gap, size = np.abs(found.values - best.values), np.abs(best.values)
+    largest = float(size.max())
+    if largest == 0.0:
+        return float(gap.max() > 0.0), float(gap.max() > 0.0)
+    peak = abs(float(found.values.max()) / largest - 1.0)
+    if name == RESPONSE:
+        # Where nothing moves there is nothing to be wrong about but by as much as moves elsewhere.
+        return float(np.max(gap / np.where(size > 0.0, size, largest))), peak
+    return float(np.linalg.norm(gap) / np.linalg.norm(size)), peak
+
+
+def reference_error(question: Question, ladder: Sequence[Answer]) -> tuple[float, float]:
+    """Error of the best answer itself, by Richardson's extrapolation, and the order of its convergence.
+
+    With the differences d1 and d2 between three resolutions, each twice as fine as the last, the order is
+    p = log2(d1/d2) and the finest one's error d2/(2^p - 1). Where the order is hardly above zero the answers
+    do not converge, and the largest difference stands for the error.
+
+    Parameters
+    ----------
+    question : that they answer
+    ladder : answers, finest first; a single one is exact but for rounding
+    """
+    if len(ladder) < 3:
+        return _ROUNDING, math.nan
+    best = ladder[0]
+    fine = errors(question.name, ladder[1], best)[0]
+    coarse = errors(question.name, ladder[2], ladder[1])[0]
+    if not (math.isfinite(fine) and math.isfinite(coarse)):
+        return math.nan, math.nan
+    if fine <= _ROUNDING:
+        return max(fine, _ROUNDING), math.nan
+    order = math.log2(coarse / fine) if coarse > 0.0 else 0.0
+    if order < _LEAST_ORDER:
+        return max(coarse, fine), math.nan
+    return max(fine / (2.0**order - 1.0), _ROUNDING), order
+
+
+def dominates(one: Row, other: Row, own: float) -> bool:
+    """Whether a row is at least as accurate as another and cheaper by more than the times spread.
+
+    Errors closer than the reference's own one count as equal, and so do times within 3 % of each other.
+
+    Parameters
+    ----------
+    one, other : rows of one question
+    own : error of the reference
+    """
+    if not (math.isfinite(one.error) and math.isfinite(other.error)):
+        return math.isfinite(one.error) and not math.isfinite(other.error)
+    noise = _noise(one, other)
+    return one.error <= other.error + own and one.time + noise < other.time
+
+
+def _noise(one: Row, other: Row) -> float:
+    """Difference of two times that is no difference, s."""
+    return max(one.spread * one.time, other.spread * other.time, _REPRODUCED * min(one.time, other.time))
+
+
+def recommend(rows: Sequence[Row], own: float, tolerance: float) -> int:
+    """Index of the row that is advised: the cheapest within the tolerance, the default if it is as cheap.
+
+    Advised is what a scene can ask for, with the physics that it asks for. If none of that is within the
+    tolerance, the most accurate one, of equals the cheapest; -1 if nothing has answered.
+
+    Parameters
+    ----------
+    rows : of one question, the default first
+    own : error of the reference
+    tolerance : relative error that is asked for
+    """
+    known = [k for k, row in enumerate(rows) if row.selectable and not row.note and math.isfinite(row.error)]
+    within = [k for k in known if rows[k].error <= tolerance]
+    if not within:
+        least = min((rows[k].error for k in known), default=math.nan)
+        within = [k for k in known if rows[k].error <= least + own]
+    if not within:
+        return -1
+    best = min(within, key=lambda k: rows[k].time)
+    noise = _noise(rows[best], rows[0])
+    return 0 if 0 in within and rows[0].time <= rows[best].time + noise else best

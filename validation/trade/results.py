@@ -1,0 +1,149 @@
+"""What `trade` prints and writes: the JSON object, the table, the recommendation in words."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict
+from typing import Any
+
+from leblanc.results.record import one_line, versions
+from validation.trade.judge import Comparison, Row
+from validation.trade.trade import TradeRecord
+
+_KILO, _MEGA = 1e3, 1e6  # milliseconds in a second, bytes in a megabyte
+_PER_CENT = 100.0
+
+REMARK = (
+    "errors and peak errors belong to the scene; times are CPU seconds of one machine: their ratios to the "
+    "default's tell more than they do"
+)
+
+
+def trade_json(record: TradeRecord) -> dict[str, Any]:
+    """The record as an object for scripts: SI, null for what is not there.
+
+    Parameters
+    ----------
+    record : what was found
+    """
+    rows = [_row(row, one) for one in record.comparisons for row in one.rows]
+    return {
+        "name": record.name,
+        "digest": record.digest,
+        "assumed": list(record.assumed),
+        "tolerance": record.tolerance,
+        "remark": REMARK,
+        "versions": versions(),
+        "questions": [_question(one, record.tolerance) for one in record.comparisons],
+        "rows": rows,
+    }
+
+
+def _question(one: Comparison, tolerance: float) -> dict[str, Any]:
+    advised = one.recommended
+    return {
+        "question": one.question,
+        "about": one.about,
+        "reference": one.reference,
+        "reference_error": _number(one.reference_error),
+        "order": _number(one.order),
+        "default_dominated_by": list(one.dominated_by),
+        "default_overhead": _number(one.overhead),
+        "recommended": None if advised is None else advised.label,
+        "recommendation": recommendation(one, tolerance),
+    }
+
+
+def _row(row: Row, one: Comparison) -> dict[str, Any]:
+    values = {key: _number(x) if isinstance(x, float) else x for key, x in asdict(row).items()}
+    return values | {"used": list(row.used), "time_ratio": _number(row.time / one.default.time)}
+
+
+def _number(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def recommendation(one: Comparison, tolerance: float) -> str:
+    """What to take for a tolerance, and why, in words.
+
+    Parameters
+    ----------
+    one : the comparison
+    tolerance : relative error that is asked for
+    """
+    advised, default = one.recommended, one.default
+    if advised is None:
+        return f"{one.question}: nothing has answered"
+    what = f"take {advised.label}"
+    if advised.default:
+        what = f"keep the default, {advised.label} (here {', '.join(advised.used)})"
+    wrong = f"its error is {error_words(advised, one)}"
+    if advised.error > tolerance:
+        why = f"nothing is within {_share(tolerance)}; {wrong}, the least"
+    else:
+        why = f"{wrong}, within {_share(tolerance)}, and nothing as good is cheaper"
+    beside = ""
+    if not advised.default:
+        ratio = default.time / advised.time
+        pace = f"takes {ratio:.3g} times as long"
+        beside = f"; the default's error is {error_words(default, one)} and it {pace}"
+    warning = "" if advised.in_range else "; it says of itself that it is out of its range"
+    return f"{one.question}: {what}: {why}{beside}{warning}"
+
+
+def error_words(row: Row, one: Comparison) -> str:
+    """An error as a share, or that it cannot be told from the best answer's own.
+
+    Parameters
+    ----------
+    row : of the comparison
+    one : the comparison
+    """
+    if not math.isfinite(row.error):
+        return "unknown"
+    return _share(row.error) if row.resolved else f"below the best answer's own {_share(one.reference_error)}"
+
+
+def _share(value: float) -> str:
+    return f"{_PER_CENT * value:.2g} %"
+
+
+def trade_lines(record: TradeRecord) -> list[str]:
+    """The tables in words, one line each.
+
+    Parameters
+    ----------
+    record : what was found
+    """
+    lines = [one_line(record.name)]
+    for one in record.comparisons:
+        own = f"best: {one.reference}"
+        if one.reference_error > 1e-11:
+            own += f", whose own error is some {_share(one.reference_error)}"
+            own += f" (order {one.order:.2g})" if math.isfinite(one.order) else " (it does not converge)"
+        lines += ["", f"{one.question}: {one.about}; {own}"]
+        lines.append(f"{'model':27}{'error':>10}{'peak error':>12}{'CPU, ms':>11}{'spread':>8}{'MB':>8}")
+        lines += [_line(row) for row in one.rows]
+        lines.append(recommendation(one, record.tolerance))
+        if one.dominated_by:
+            lines.append(f"the default is beaten in both by: {'; '.join(one.dominated_by)}")
+    return lines
+
+
+def _line(row: Row) -> str:
+    """One row of a table; what stands out of the front, the default and the advised one marked."""
+    marks = [
+        word
+        for word, holds in (
+            ("front", row.on_front),
+            ("default", row.default),
+            ("recommended", row.recommended),
+            ("out of range", not row.in_range),
+        )
+        if holds
+    ]
+    error = f"{row.error:.2e}" if row.resolved else ("-" if math.isfinite(row.error) else "none")
+    peak = f"{row.peak_error:.2e}" if math.isfinite(row.peak_error) else "none"
+    numbers = f"{error:>10}{peak:>12}{row.time * _KILO:>11.4g}{row.spread:>8.0%}{row.memory / _MEGA:>8.2f}"
+    words = "  " + ", ".join(marks) + (f"; {row.note}" if row.note else "")
+    return f"{row.label:27}{numbers}{words if words.strip(' ;') else ''}"

@@ -1,0 +1,155 @@
+"""Accuracy against cost of every model and resolution on a scene, measured on this machine."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import pickle
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from leblanc.results.record import one_line
+from leblanc.scene.machine import require_clear
+from leblanc.scene.scene import Scene
+from validation.trade.answers import Answer, Case, answer, taste
+from validation.trade.cases import Question, questions
+from validation.trade.judge import Comparison, Run, compare, errors
+
+Progress = Callable[[str, float], object]
+
+REPEATS = 5
+# CPU seconds: beyond the first a run is timed in its own process and once more here, beyond the second only
+# there.
+_LONG, _LONGER = 0.3, 1.5
+_FEW = 1
+_SHORT = 0.02  # s; shorter runs are timed several at once
+
+
+@dataclass(frozen=True)
+class TradeRecord:
+    """What `trade` found.
+
+    Parameters
+    ----------
+    name, source, assumed, digest : of the scene
+    tolerance : relative error that it asks for
+    comparisons : one for each question
+    """
+
+    name: str
+    source: str
+    assumed: tuple[str, ...]
+    digest: str
+    tolerance: float
+    comparisons: tuple[Comparison, ...]
+
+
+def trade_scene(
+    scene: Scene, quick: bool = False, repeats: int = REPEATS, progress: Progress | None = None
+) -> TradeRecord:
+    """Measure every model and resolution on a scene.
+
+    Parameters
+    ----------
+    scene : the machine
+    quick : short ladders
+    repeats : how often what is short is timed
+    progress : is told what runs and the share that is done
+    """
+    require_clear(scene, "a comparison of models, most of which know circular walls alone")
+    tell = progress or (lambda _, __: None)
+    tolerance = scene.model.tolerance
+    found = []
+    asked = questions(scene, quick)
+    for k, question in enumerate(asked):
+
+        def said(text: str, share: float, k: int = k) -> None:
+            tell(text, (k + share) / len(asked))
+
+        runs = measure(question, repeats, said)
+        found.append(compare(question, runs, tolerance))
+    return TradeRecord(
+        one_line(scene.name), scene.source, scene.assumed, scene.digest, tolerance, tuple(found)
+    )
+
+
+def error_table(question: Question, cases: Iterable[Case]) -> dict[str, tuple[float, float]]:
+    """Errors alone, found in this process: by label, of the whole and of the largest amplitude.
+
+    Parameters
+    ----------
+    question : whose reference answers as well
+    cases : some of its own
+    """
+    best = answer(question.scene, question.reference)
+    return {case.label: errors(question.name, answer(question.scene, case), best) for case in cases}
+
+
+def measure(question: Question, repeats: int, progress: Progress) -> dict[Case, Run]:
+    """Run every case: once in a process of its own for its memory, then all in turn here for their time.
+
+    Parameters
+    ----------
+    question : with its cases
+    repeats : of each case that is not long
+    progress : is told what runs and the share that is done
+    """
+    runs: dict[Case, Run] = {}
+    for k, case in enumerate(question.cases):
+        progress(f"{question.name}: {case.label}", 0.7 * k / len(question.cases))
+        runs[case] = alone(question.scene, case)
+    short = [case for case in question.cases if runs[case].times[0] < _LONGER]
+    # What is short is timed among its likes alone; a long run is as warm in its own process.
+    times = {case: [t for t in runs[case].times if t >= _LONG] for case in short}
+    for case in short:
+        taste(question.scene, case)
+    for turn in range(repeats):
+        # To and fro, so that none always follows the same one.
+        for case in short[:: 1 if turn % 2 == 0 else -1]:
+            if turn >= _FEW and runs[case].times[0] >= _LONG:
+                continue
+            progress(f"{question.name}: {case.label}, again", 0.7 + 0.3 * turn / repeats)
+            times[case].append(_cpu_time(question.scene, case, runs[case].times[0]))
+    return {
+        case: replace(run, times=tuple(times[case])) if times.get(case) else run for case, run in runs.items()
+    }
+
+
+def alone(scene: Scene, case: Case) -> Run:
+    """One case in a process of its own.
+
+    Raises
+    ------
+    RuntimeError : that process failed
+    """
+    path = os.pathsep.join(entry or "." for entry in sys.path)
+    done = subprocess.run(
+        [sys.executable, "-m", "validation.trade.child"],
+        input=pickle.dumps((scene, case)),
+        capture_output=True,
+        env=os.environ | {"PYTHONPATH": path},
+        check=False,
+    )
+    if done.returncode != 0:
+        words = done.stderr.decode(errors="replace").strip().splitlines() or ["no message"]
+        raise RuntimeError(f"{case.label}: the process ended with {done.returncode}: {words[-1]}")
+    read = json.loads(done.stdout)
+    found = Answer(np.array(read["values"]), read["in_range"], read["reason"], tuple(read["used"]))
+    return Run(found, (read["time"],), read["first"], read["memory"])
+
+
+def _cpu_time(scene: Scene, case: Case, expected: float) -> float:
+    """CPU time of one run, short ones as the mean of several."""
+    count = max(1, min(50, math.ceil(_SHORT / max(expected, 1e-6))))
+    if expected < _LONG:
+        answer(scene, case)  # or what ran before, which fills the caches, would count
+    begin = time.process_time()
+    for _ in range(count):
+        answer(scene, case)
+    return (time.process_time() - begin) / count
