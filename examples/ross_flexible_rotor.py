@@ -15,21 +15,18 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.friction import LINEAR
 from fluid.liquid import known_liquid
 from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
-from leblanc.results.record import RPM
+from leblanc.units import RPM
+from meshes.arrays import Array, Complex
 from meshes.chamber import Chamber
 from solvers.ross import liquid_layer
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.synchronous.planar import synchronous_response
 from solvers.whirl.growth import asynchronous_growth
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 ELEMENTS, LENGTH, DRUM = 8, 1.0, 4  # of the shaft, m, and the node at mid-span where the drum sits
 LIQUID = ELEMENTS + 1  # the first node beyond the shaft's

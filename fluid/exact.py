@@ -11,12 +11,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fluid.kdv import KdvCoefficients
+from meshes.arrays import Array
 from meshes.errors import InputError, require_positive
-
-Array = NDArray[np.float64]
 
 # Up to this K the complement 1 - m is a number.
 _LARGEST_K = 340.0

@@ -10,11 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.liquid import Liquid
+from meshes.arrays import Array
 from meshes.chamber import Chamber, Chambers
 from meshes.chamber_section import layer_depth, level
 from meshes.errors import InputError, require_not_negative
-
-Array = NDArray[np.float64]
 
 FULL = 1.0 - 1e-9  # of the capacity; beyond it there is no free surface
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from meshes.arrays import Array
 
 NONE, LINEAR, STOKES, QUADRATIC = 0, 1, 2, 3
 # The laws by the names that users give them.

@@ -6,13 +6,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
 from fluid.paraboloid import steepness
 from fluid.waves import free_wave_speeds
-
-Array = NDArray[np.float64]
+from meshes.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ Surface z = beta r^2 + C, r from the rotation axis, z from the chamber floor [th
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from meshes.arrays import Array
 
 # Steepness beta R^2/h that stands for "no gravity along the axis": the surface is then a cylinder to far
 # below rounding, and every intermediate product still fits a double.

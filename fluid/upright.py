@@ -7,12 +7,11 @@ leaves the energy stationary; the rotation is stable where its second variation 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from meshes.arrays import Array
 from meshes.chamber import Chamber
 from meshes.errors import InputError, require_positive
-
-Array = NDArray[np.float64]
 
 # The integrand is a polynomial of third degree in r^2, for which two Gauss points are exact; it is positive,
 # so that nothing cancels.

@@ -7,11 +7,10 @@ of the drum. Layers are thin beside the liquid.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fluid.friction import stokes_coefficient
-
-Array = NDArray[np.float64]
+from meshes.arrays import Array
 
 
 def layer_thickness(viscosity: ArrayLike, frequency: ArrayLike) -> Array:

@@ -8,11 +8,10 @@ real: the layer moves along the deflection or against it.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from meshes.arrays import Array
 from meshes.errors import InputError
-
-Array = NDArray[np.float64]
 
 
 def free_wave_frequencies(mode: ArrayLike, layer_log: ArrayLike, spin: ArrayLike) -> tuple[Array, Array]:

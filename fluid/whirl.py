@@ -11,13 +11,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fluid.fill import FULL, Fill
 from fluid.friction import LINEAR, STOKES, damping_rate
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from meshes.arrays import Array, Complex
 
 
 @dataclass(frozen=True)

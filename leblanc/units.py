@@ -46,6 +46,12 @@ class Dimension:
         return f'{article} {self.name} such as "{self.example}" (a plain number is in {self.unit})'
 
 
+# Engineering units in one SI unit, for what is shown to people.
+RPM = 60.0 / (2.0 * math.pi)  # revolutions per minute in one rad/s
+MM = 1e3  # millimetres in one metre
+ML = 1e6  # millilitres in one cubic metre
+LITRE = 1e3  # litres in one cubic metre
+
 NUMBER = Dimension("pure number", "", "0.1")
 LENGTH = Dimension("length", "m", "65 mm")
 VOLUME = Dimension("volume", "m^3", "10 ml")

@@ -6,11 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative
-
-Array = NDArray[np.float64]
 
 # Tips nearer to the free surface or to the wall than this fraction of its radius are on it.
 _TOUCHES = 1e-9

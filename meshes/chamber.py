@@ -9,11 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from meshes.arrays import Array
 from meshes.baffles import Baffles
 from meshes.chamber_section import ChamberSection
 from meshes.errors import InputError, require_not_negative, require_positive
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

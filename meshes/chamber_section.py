@@ -9,13 +9,11 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 if TYPE_CHECKING:  # what cuts meshes is loaded where a section is given
     from meshes.liquid_section import LiquidSection
     from meshes.section import Section
 
-Array = NDArray[np.float64]
 
 # Relative change of the radius over which the length of the free surface is measured, and what of the circle
 # may be missing.

@@ -6,18 +6,15 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
+from meshes.arrays import Array, Indices
 from meshes.bodies.body import Body, body_jacobians
 from meshes.errors import InputError
 from meshes.liquid_section import LiquidSection
 from meshes.quality import SIDES, cell_areas, jacobians, vertex_angles
 from meshes.section import Section
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 # Angles beyond this spoil the gradients on a triangle, however small it is; thin cells do not.
 _WIDEST = math.radians(160.0)

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from meshes.arrays import Array, Indices
 from meshes.bodies.body import WALL_PARTS, Body
 from meshes.errors import InputError
 from meshes.liquid_section import LiquidSection
@@ -16,8 +17,6 @@ from meshes.section import Section
 if TYPE_CHECKING:
     from pyvista import UnstructuredGrid
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 # VTK's number of a cell, by the dimension of the cell and its nodes; their order is VTK's already.
 _VTK_TYPES = {

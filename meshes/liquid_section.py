@@ -9,12 +9,10 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from meshes.arrays import Array, Indices
 from meshes.errors import InputError, require_positive
 from meshes.quality import SIDES as SIDES
 from meshes.quality import jacobians
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 # Nodes of the surface lie on the circle to this fraction of its radius.
 _ON_CIRCLE = 1e-9

@@ -5,10 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
+from meshes.arrays import Array, Indices
 
 # Edges of a triangle: first vertex, second vertex, midside node of a quadratic triangle.
 EDGES = np.array([[0, 1, 3], [1, 2, 4], [2, 0, 5]])

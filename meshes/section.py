@@ -6,13 +6,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from meshes.arrays import Array, Indices
 from meshes.errors import InputError, require_not_negative, require_positive
 from meshes.quality import EDGES, jacobians, triangle_areas
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 _FULL_DEPTH = math.sqrt(3.0) / 2.0  # a ring of equilateral triangles is that deep, over their width
 

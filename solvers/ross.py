@@ -15,19 +15,18 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.interpolate import make_interp_spline
 
 from fluid.fill import Fill
 from fluid.friction import NONE
 from fluid.whirl import offset_with_friction, plane_layer, stokes_rate, wave_function
+from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative
 
 if TYPE_CHECKING:
     from ross import BearingElement, PointMass
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 Friction = tuple[int, float]
 
 NO_FRICTION: Friction = (NONE, 0.0)

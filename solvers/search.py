@@ -10,9 +10,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from meshes.arrays import Array
 from meshes.errors import InputError
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from leblanc.studies.modes import Resolution, ring_sections
 from meshes.baffles import Baffles
@@ -17,8 +16,6 @@ from solvers.sloshing.damping import mode_damping
 from solvers.sloshing.forced import forced_response
 from solvers.sloshing.modes import sloshing_modes, spectrum
 from solvers.sloshing.system import condense
-
-Array = NDArray[np.float64]
 
 RADIUS, SURFACE, SPIN, HEIGHT, WATER = 0.15, 0.135, 40.0, 0.05, 1.004e-6
 COUNTS, SHARES = (1, 2, 3, 4, 6, 8), (0.25, 0.5, 0.75, 1.0)

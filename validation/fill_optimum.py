@@ -9,12 +9,12 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from leblanc.results.record import MM
 from leblanc.scene.machine import jeffcott
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.studies.choose import axial_gravity
 from leblanc.studies.optimise.closed_form import covering
 from leblanc.studies.optimise.optimise import optimise_scene
+from leblanc.units import MM
 from validation.case import Case, compare
 
 _EXAMPLES = Path(__file__).parents[1] / "examples"

@@ -11,10 +11,11 @@ from functools import cache
 import numpy as np
 
 from leblanc.friction import Friction
-from leblanc.results.record import RPM, Array
 from leblanc.scene.scene import Model, Rotor, Runup, Scene, Speeds
 from leblanc.studies.optimise.answers import FilledMachine
 from leblanc.studies.optimise.objectives import RunupPeak
+from leblanc.units import RPM
+from meshes.arrays import Array
 from validation.case import Case, Verdict
 from validation.scenes import data
 

@@ -10,15 +10,13 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.waves import gravity_displacement
+from meshes.arrays import Array
 from solvers.rotor.vector_model import deflection_lag
 from solvers.synchronous.planar import synchronous_response
 from validation.case import Case
 from validation.scenes import data, horizontal_rig, horizontal_rotor
-
-Array = NDArray[np.float64]
 
 _RPM = 2.0 * math.pi / 60.0
 _READING = 15.0  # deg

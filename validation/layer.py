@@ -22,8 +22,6 @@ from solvers.layer.settle import friction_law, settle, simulate
 from validation.case import Case, Verdict
 from validation.scenes import data
 
-Complex = NDArray[np.complex128]
-
 _SOURCE = "interFoam, openfoam_layer.json"
 _HEIGHT = 0.01  # the flow is plane: any height will do
 # Force of the bore over the reference's modulus: the first three whirl periods, and the next three, where

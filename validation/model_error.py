@@ -9,10 +9,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill, Fills
 from fluid.liquid import KNOWN_LIQUIDS
+from meshes.arrays import Array
 from meshes.chamber import Chamber
 from solvers.layer.prescribed import Numerics, Whirl
 from solvers.layer.settle import friction_law, settle
@@ -24,9 +24,6 @@ from solvers.synchronous.errors import LinearError, law_error, planar_enclosure
 from solvers.synchronous.models import synchronous_model
 from solvers.synchronous.pairs import PlanarMachine, pair_machines
 from solvers.synchronous.planar import Response, machine_responses
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 WATER = KNOWN_LIQUIDS["water"]
 GRAVITY = 9.81

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from leblanc.figures.page import Figure, Frame, lay_out, number, style
-from leblanc.results.record import RPM
+from leblanc.units import RPM
 from validation.runup_lag import steady
 from validation.scenes import data
 

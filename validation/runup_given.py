@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from leblanc.results.record import MM
+from leblanc.units import MM
 from validation.case import Case, compare
 from validation.runup_trends import GIVEN, LITRE, run
 

@@ -16,16 +16,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from leblanc.results.record import Array
 from leblanc.studies.runup import turn_mean
+from meshes.arrays import Array, Complex
 from solvers.runup.drive import Ramp
 from solvers.runup.runup import RunupNumerics, run_up
 from solvers.synchronous.planar import synchronous_response
 from validation.scenes import data, horizontal_rig, horizontal_rotor
-
-Complex = NDArray[np.complex128]
 
 _RPM = 2.0 * math.pi / 60.0
 RATES = (40.0, 20.0, 10.0, 5.0, 2.5, 1.25)  # rad/s^2

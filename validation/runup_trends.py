@@ -18,7 +18,8 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.friction import LINEAR
 from fluid.liquid import known_liquid
-from leblanc.results.record import MM, RPM, Array
+from leblanc.units import MM, RPM
+from meshes.arrays import Array
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.drive import Ramp

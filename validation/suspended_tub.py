@@ -9,12 +9,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from meshes.arrays import Array
 from solvers.rotor.tub import Mount, Tub, Vector
 from solvers.rotor.vibration import unbalance_response
-
-Array = NDArray[np.float64]
 
 # Given in table 1.
 TUB_MASS, DRUM_MASS = 48.2, 12.5  # kg

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
-from leblanc.results.record import MM
+from leblanc.units import MM
 from solvers.rotor.balls.balancers import simulate
 from solvers.rotor.two_plane import TwoPlane
 from solvers.rotor.two_plane_balance import dynamic_balancing, of_two_planes

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.liquid import Liquid
+from meshes.arrays import Array
 from meshes.chamber import Chamber
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.two_plane_balance import dynamic_balancing, of_two_planes
@@ -16,8 +16,6 @@ from solvers.rotor.vibration import unbalance_response
 from solvers.runup.drive import Ramp
 from solvers.runup.runup import RunupNumerics, run_up
 from validation.case import Case
-
-Array = NDArray[np.float64]
 
 SUPPORTS = (Support(-0.3, 1e4, 200.0), Support(0.3, 1e4, 200.0))
 UNBALANCES = (PlaneUnbalance(-0.28, 6e-3, 0.0), PlaneUnbalance(0.28, 6e-3, 2.0))

@@ -9,8 +9,8 @@ import numpy as np
 from fluid.fill import Fill, Fills
 from fluid.liquid import known_liquid
 from leblanc.figures.page import Figure, Frame, lay_out, number, style
-from leblanc.results.record import MM
 from leblanc.studies.volume import answer_volume
+from leblanc.units import MM
 from meshes.chamber import Chamber
 from solvers.statics.hydrostatics import equilibrium, optimal_volume
 from solvers.synchronous.models import Statics

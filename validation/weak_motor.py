@@ -10,9 +10,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from leblanc.results.record import MM, RPM
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.studies.runup import runup_scene
+from leblanc.units import MM, RPM
 from solvers.runup.runup import RunupHistory
 
 SCENE = Path(__file__).parents[1] / "examples" / "weak_motor.toml"

@@ -9,11 +9,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.friction import LINEAR, NONE, STOKES
 from fluid.liquid import known_liquid
+from meshes.arrays import Array
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.runup import RunupNumerics
@@ -21,8 +21,6 @@ from solvers.whirl.edges import unstable_bands
 from solvers.whirl.growth import asynchronous_growth
 from solvers.whirl.in_time import whirl_in_time
 from validation.case import Case, compare
-
-Array = NDArray[np.float64]
 
 _SOURCE = "Wolf's problem, scan in steps of 5e-4"
 NATURAL = 100.0  # rad/s

@@ -6,16 +6,14 @@ Run it: `python docs/examples/frozen_liquid.py`.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill, Fills
 from fluid.liquid import known_liquid
+from meshes.arrays import Array
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.synchronous.models import SYNCHRONOUS_MODELS, SynchronousAnswer
 from solvers.synchronous.planar import Response, synchronous_response
-
-Array = NDArray[np.float64]
 
 
 class Frozen:

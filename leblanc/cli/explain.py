@@ -10,9 +10,9 @@ import typer
 from leblanc.cli.output import print_json
 
 if TYPE_CHECKING:
-    from fluid.numbers import Array
     from leblanc.studies.explain import Explanation, LayerExplanation
     from leblanc.text.models import ModelSpan
+    from meshes.arrays import Array
 
 
 def explain(
@@ -42,8 +42,8 @@ def explain(
 
 def _lines(answer: Explanation) -> list[str]:
     """The explanation in words."""
-    from leblanc.results.record import RPM
     from leblanc.text.models import percent
+    from leblanc.units import RPM
 
     dry, wet = answer.critical_speed_dry * RPM, answer.critical_speed_wet * RPM
     first, last = answer.speed_ratio
@@ -102,7 +102,7 @@ def _model_lines(answer: Explanation) -> list[str]:
 
 def _exciter_lines(found: dict[str, Any]) -> list[str]:
     """The explanation of a vibrating table in words."""
-    from leblanc.results.record import RPM
+    from leblanc.units import RPM
 
     def rpm(value: float | None) -> str:
         return "none" if value is None else f"{value * RPM:.5g} rpm"
@@ -131,7 +131,7 @@ def _exciter_lines(found: dict[str, Any]) -> list[str]:
 
 def _mode_rows(answer: Explanation) -> list[tuple[str, str]]:
     """One mode each: frequency and words."""
-    from leblanc.results.record import RPM
+    from leblanc.units import RPM
 
     return [
         (
@@ -146,7 +146,7 @@ def _layer_rows(layer: LayerExplanation) -> list[tuple[str, str]]:
     """One chamber: label and words."""
     from math import isnan
 
-    from leblanc.results.record import MM
+    from leblanc.units import MM
 
     n = layer.numbers
     cylinder = n.steepness[0] > 1e20

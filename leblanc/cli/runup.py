@@ -98,7 +98,7 @@ def _film(machine: Scene, record: RunupRecord, path: Path) -> None:
 
 def _tell(record: RunupRecord, folder: Path) -> None:
     """The run in words."""
-    from leblanc.results.record import MM, RPM
+    from leblanc.units import MM, RPM
 
     h = record.history
     rows = [("largest amplitude", record.peak()), ("at the end", h.time.size - 1)]

@@ -35,7 +35,8 @@ from leblanc.figures.page import FigureFiles as FigureFiles  # what a caller of 
 from leblanc.figures.page import save as save
 from leblanc.figures.page import style as style
 from leblanc.figures.wave import WaveHistory, WaveRecord
-from leblanc.results.record import MM, RPM, StudyRecord
+from leblanc.results.record import StudyRecord
+from leblanc.units import MM, RPM
 
 Draw = Callable[[Axes, Curves, StudyRecord], None]
 DrawTime = Callable[[Axes, WaveRecord, WaveHistory], None]

@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 
 from leblanc.figures.curves import gapped, joined
-from leblanc.results.record import RPM, Array, StudyRecord
+from leblanc.results.record import StudyRecord
+from leblanc.units import RPM
+from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 

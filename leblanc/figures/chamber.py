@@ -11,7 +11,9 @@ import numpy as np
 
 from leblanc.figures.section import Exaggeration, exaggeration, liquid_outline, side_by_side
 from leblanc.figures.uneven import bodies, is_uneven, plates, wall_line
-from leblanc.results.record import MM, RPM, Array, ChamberRecord, StudyRecord, peak, phase
+from leblanc.results.record import ChamberRecord, StudyRecord, peak, phase
+from leblanc.units import MM, RPM
+from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 

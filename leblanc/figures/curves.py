@@ -8,9 +8,10 @@ from itertools import combinations, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.record import MM, RPM, Array, StudyRecord, phase
+from leblanc.results.record import StudyRecord, phase
+from leblanc.units import MM, RPM
+from meshes.arrays import Array, Flags
 
-Flags = NDArray[np.bool_]
 Indices = NDArray[np.intp]
 Span = tuple[float, float]
 

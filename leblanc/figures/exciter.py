@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from leblanc.figures.page import Figure, FigureFiles, Frame, lay_out, number, save, style
-from leblanc.results.record import MM, RPM, one_line
+from leblanc.results.record import one_line
 from leblanc.studies.exciter import ExciterRecord
+from leblanc.units import MM, RPM
 
 FRAME = Frame(left=0.72, top=0.46, between=0.14, below=0.42)
 TITLE = "Stuck speeds of the balls and vibration of the platform"

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from leblanc.figures.page import Figure, Frame, lay_out, number, style
 from leblanc.figures.page import save as save  # a figure is drawn and written together
 from leblanc.figures.section import rounded_down
+from meshes.arrays import Array
 
 if TYPE_CHECKING:
     from leblanc.studies.modes import ModesRecord
     from meshes.liquid_section import LiquidSection
 
-Array = NDArray[np.float64]
 Axes = Any  # matplotlib's, which no module that only draws imports
 
 FRAME = Frame(left=0.25, top=0.42, between=0.5, below=0.02)

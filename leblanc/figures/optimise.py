@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from leblanc.figures.page import RIGHT, WIDTH, Figure, FigureFiles, Frame, lay_out, number, save, style
-from leblanc.results.record import MM, RPM, Array, one_line
+from leblanc.results.record import one_line
+from leblanc.units import MM, RPM
+from meshes.arrays import Array
 
 if TYPE_CHECKING:
     from leblanc.studies.optimise.optimise import OptimumRecord

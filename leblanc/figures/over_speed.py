@@ -6,8 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.curves import Curves, Flags, gapped, joined, lonely, other_branches, widened
-from leblanc.results.record import RPM, Array, StudyRecord
+from leblanc.figures.curves import Curves, gapped, joined, lonely, other_branches, widened
+from leblanc.results.record import StudyRecord
+from leblanc.units import RPM
+from meshes.arrays import Array, Flags
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 

@@ -13,9 +13,11 @@ from leblanc.figures import wave
 from leblanc.figures.page import FILM_DPI, RIGHT, WIDTH, Figure, Frame, lay_out, number, style, write_film
 from leblanc.figures.runup import caption
 from leblanc.figures.section import rounded_down
-from leblanc.results.record import MM, RPM, Array, ChamberRecord
+from leblanc.results.record import ChamberRecord
 from leblanc.studies.runup import RunupRecord
 from leblanc.studies.runup_film import Reel
+from leblanc.units import MM, RPM
+from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 Show = Callable[[int], None]

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from leblanc.results.record import Array, ChamberRecord
+from leblanc.results.record import ChamberRecord
+from meshes.arrays import Array
 
 RAYS = 361  # one degree apart, closed
 BISECTIONS = 60  # from the radius down to rounding

@@ -9,14 +9,15 @@ from numpy.typing import ArrayLike
 
 from leblanc.figures.page import RIGHT, WIDTH, Figure, Frame, lay_out, number, style
 from leblanc.figures.page import save as save  # a figure is drawn and written together
-from leblanc.results.record import RPM, Array, one_line
+from leblanc.results.record import one_line
+from leblanc.units import ML, RPM
+from meshes.arrays import Array
 
 if TYPE_CHECKING:
     from leblanc.studies.whirl_map import StabilityRecord
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 
-ML = 1e6  # millilitres in one cubic metre
 FRAME = Frame(left=0.72, top=0.46, between=0.18, below=0.42)
 PANEL, BAR, ROOM, GAP = (
     2.3,

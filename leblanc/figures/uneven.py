@@ -11,7 +11,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.record import Array, ChamberRecord
+from leblanc.results.record import ChamberRecord
+from meshes.arrays import Array
 from meshes.baffles import Baffles
 from meshes.chamber_section import ChamberSection
 from meshes.liquid_section import free_sides

@@ -13,10 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.figures.section import rounded_down
-from leblanc.results.record import Array
+from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative, require_positive
-
-Complex = NDArray[np.complex128]
 
 RAYS = 721  # half a degree apart, closed
 DRY = 1e-4  # a film thinner than this, over the mean depth, is drawn as a dry wall

@@ -11,7 +11,9 @@ import numpy as np
 from leblanc.figures import wave
 from leblanc.figures.over_speed import STRIP
 from leblanc.figures.wave import WaveRecord
-from leblanc.results.record import MM, RPM, Array, one_line
+from leblanc.results.record import one_line
+from leblanc.units import MM, RPM
+from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 

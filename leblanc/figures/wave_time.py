@@ -13,7 +13,8 @@ from leblanc.figures import wave, wave_axes
 from leblanc.figures.over_speed import STRIP
 from leblanc.figures.wave import WaveHistory, WaveRecord
 from leblanc.figures.wave_axes import DEFLECTION, DEGREE, DRY_BAR, LIQUID, MEAN_LINE, SURFACE, WALL
-from leblanc.results.record import MM, RPM, Array
+from leblanc.units import MM, RPM
+from meshes.arrays import Array
 
 Show = Callable[[int], None]
 Axes = Any  # matplotlib's, which no module that only draws imports

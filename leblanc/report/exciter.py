@@ -11,10 +11,10 @@ import numpy as np
 
 from leblanc.report.page import About, write_page
 from leblanc.report.parts import Cell, Table, picture, table
-from leblanc.results.record import MM, RPM
 from leblanc.studies.exciter import ExciterRecord
 from leblanc.text.models import BALLS
 from leblanc.text.numbers import NOT_FOUND, number, ranges
+from leblanc.units import MM, RPM
 
 if TYPE_CHECKING:
     from leblanc.figures.page import FigureFiles

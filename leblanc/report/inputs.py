@@ -10,12 +10,12 @@ from fluid.fill import Fill
 from fluid.liquid import KNOWN_LIQUIDS
 from leblanc.friction import friction_words
 from leblanc.report.parts import Cell, Table
-from leblanc.results.record import MM, RPM, one_line
+from leblanc.results.record import one_line
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.optimise import Aim
-from leblanc.scene.rows import ML
 from leblanc.scene.scene import Exciter, Rotor, Runup, Scene
 from leblanc.text.numbers import number
+from leblanc.units import ML, MM, RPM
 from meshes.baffles import Baffles
 from meshes.chamber_section import ChamberSection
 from solvers.rotor.jeffcott import Jeffcott

@@ -13,8 +13,7 @@ import numpy as np
 from leblanc.report.page import About, models, notes, why, write_page
 from leblanc.report.parts import Cell, Table, picture, table
 from leblanc.report.run import checks as response_checks
-from leblanc.results.record import MM, RPM, StudyRecord
-from leblanc.scene.rows import ML
+from leblanc.results.record import StudyRecord
 from leblanc.studies.choose import choose
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.optimise import OptimumRecord
@@ -22,6 +21,7 @@ from leblanc.studies.run import run_scene
 from leblanc.text.models import ModelSpan, model_spans
 from leblanc.text.numbers import number
 from leblanc.text.optimum import shown
+from leblanc.units import ML, MM, RPM
 from solvers.synchronous.models import SYNCHRONOUS_MODELS
 
 if TYPE_CHECKING:

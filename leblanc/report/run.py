@@ -13,11 +13,12 @@ import numpy as np
 from leblanc.report.layout import figure_width
 from leblanc.report.page import About, models, notes, why, write_page
 from leblanc.report.parts import Cell, Table, picture, table
-from leblanc.results.record import MM, RPM, StudyRecord, models_used, one_line, peak
+from leblanc.results.record import StudyRecord, models_used, one_line, peak
 from leblanc.scene.scene import Scene
 from leblanc.studies.choose import choose
 from leblanc.text.models import ModelSpan, fidelity_notes, model_spans
 from leblanc.text.numbers import NOT_FOUND, number, ranges
+from leblanc.units import MM, RPM
 
 if TYPE_CHECKING:
     from leblanc.figures.page import FigureFiles

@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 
 from leblanc.report.page import About, models, notes, write_page
 from leblanc.report.parts import Cell, Table, picture, table
-from leblanc.results.record import MM, RPM, one_line, peak
+from leblanc.results.record import one_line, peak
 from leblanc.studies.runup import RunupRecord
 from leblanc.text.models import percent
 from leblanc.text.numbers import MOST_RANGES, number
 from leblanc.text.runup import CLOSURE, ERROR, model_words, switches
+from leblanc.units import MM, RPM
 
 if TYPE_CHECKING:
     from leblanc.figures.page import FigureFiles

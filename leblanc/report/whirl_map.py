@@ -9,10 +9,9 @@ import numpy as np
 
 from leblanc.report.page import About, notes, write_page
 from leblanc.report.parts import Cell, Table, picture, table
-from leblanc.results.record import RPM
-from leblanc.scene.rows import ML
 from leblanc.text.models import WHIRL
 from leblanc.text.numbers import number
+from leblanc.units import ML, RPM
 
 if TYPE_CHECKING:
     from leblanc.figures.page import FigureFiles

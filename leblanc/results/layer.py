@@ -6,12 +6,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from leblanc.friction import Friction
 from leblanc.studies.validity import Number
-
-Array = NDArray[np.float64]
+from meshes.arrays import Array
 
 NO_FRICTION = Friction("none", 0.0)
 _POINTS = 360

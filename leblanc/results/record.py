@@ -9,16 +9,12 @@ from importlib import metadata
 import numpy as np
 from numpy.typing import NDArray
 
+from meshes.arrays import Array
 from meshes.baffles import Baffles
 from meshes.chamber_section import ChamberSection, layer_depth
 from meshes.errors import InputError
 from solvers.rotor.campbell import Campbell
 from solvers.synchronous.planar import Response
-
-Array = NDArray[np.float64]
-
-RPM = 60.0 / (2.0 * math.pi)  # revolutions per minute in one rad/s
-MM = 1e3  # millimetres in one metre
 
 
 @dataclass(frozen=True)

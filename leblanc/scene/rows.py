@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import math
 
-from leblanc.results.record import MM, RPM
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import Scene
+from leblanc.units import ML, MM, RPM
 from meshes.baffles import Baffles
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.tub import Mount, Tub
 from solvers.rotor.two_plane import TwoPlane
 
 Row = tuple[str, str, str]
-
-ML = 1e6  # millilitres in one cubic metre
 
 
 def input_rows(scene: Scene) -> tuple[Row, ...]:

@@ -15,13 +15,10 @@ from leblanc.scene.scene import Rotor, Scene
 from leblanc.studies.choose import axial_gravity, choose_all
 from leblanc.studies.run import run_scene
 from leblanc.studies.whirl_map import solver_friction
+from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.synchronous.planar import machine_responses
 from solvers.whirl.growth import machines_growth
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
-Index = NDArray[np.intp]
 
 
 @dataclass(frozen=True)

@@ -14,15 +14,13 @@ from fluid.waves import capture_speed
 from fluid.whirl import covering_speed
 from leblanc.scene.machine import dry_rotor, jeffcott
 from leblanc.scene.scene import Rotor, Scene
+from meshes.arrays import Array, Flags
 from meshes.chamber_section import rest_offset, surface_is_whole
 from meshes.errors import InputError
 from solvers.synchronous.coupled_errors import coupled_error
 from solvers.synchronous.errors import ROUNDING, LinearError, planar_enclosure, planar_gravity_error
 from solvers.synchronous.models import SYNCHRONOUS_MODELS, synchronous_model
 from solvers.synchronous.pairs import pair_machines
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 _NO_DEPTH = 1e-6  # over the surface's radius: a slit that reaches the surface leaves the circle whole
 _BALANCED = 1e-3  # of the surface's radius, that the liquid at rest may lie off the axis

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from leblanc.results.record import MM, RPM
+from leblanc.units import MM, RPM
+from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.rotor.exciter.machine import Dimensionless, Exciter, platform_motion, rolling_inertia
 from solvers.rotor.exciter.motion import RANGES, Start, critical_speed, integrate, printed_critical_speed
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from leblanc.scene.rotors import Exciter as ExciterOfScene
     from leblanc.scene.scene import Scene
 
-Array = NDArray[np.float64]
 
 CHECKS = 5  # time integrations beside the formulas
 

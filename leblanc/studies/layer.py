@@ -8,7 +8,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid import kdv, waves
 from fluid.fill import Fill
@@ -16,6 +15,7 @@ from fluid.friction import damping_rate
 from leblanc.friction import Friction
 from leblanc.results.layer import NO_FRICTION, LayerAnswer, angles, wave_amplitude
 from leblanc.studies.validity import Number, judge, strained
+from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.layer.prescribed import LayerHistory, Numerics, Whirl
 from solvers.layer.settle import film, friction_law, settle, simulate
@@ -24,8 +24,6 @@ from solvers.statics.hydrostatics import equilibrium
 if TYPE_CHECKING:
     from leblanc.figures.wave import WaveHistory, WaveRecord
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 MOST_CELLS = 600  # around; the matrices of the free surface are dense
 _ACROSS = 6

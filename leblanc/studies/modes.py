@@ -15,6 +15,7 @@ from fluid.fill import Fill
 from fluid.liquid import Liquid
 from fluid.waves import free_wave_frequencies
 from leblanc.scene.tables import is_outline, section_of_any_file
+from meshes.arrays import Array
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.errors import InputError, require_positive
@@ -174,8 +175,6 @@ def section_of_file(
         sections = [straightened(one) for one in sections]
     return sections, notes, f"Section of {source.path.name}"
 
-
-Array = NDArray[np.float64]
 
 # Errors above this, relative, are worth a note.
 _ROUGH = 1e-3

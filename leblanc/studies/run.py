@@ -8,14 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from leblanc.results.record import MM, RPM, ChamberRecord, ModeRecord, Motion, SelfExcited, StudyRecord
+from leblanc.results.record import ChamberRecord, ModeRecord, Motion, SelfExcited, StudyRecord
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.machine import jeffcott as jeffcott
-from leblanc.scene.rows import ML, input_rows
+from leblanc.scene.rows import input_rows
 from leblanc.scene.scene import Rotor, Scene, TubRotor
 from leblanc.studies.choose import Choice, axial_gravity, choose
 from leblanc.studies.whirl_map import small_whirl_friction, solver_friction
 from leblanc.text.models import fidelity_notes
+from leblanc.units import ML, MM, RPM
+from meshes.arrays import Complex
 from meshes.chamber_section import liquid_of
 from solvers.rotor.campbell import campbell
 from solvers.rotor.system import RotorSystem
@@ -79,8 +81,6 @@ def describe_whirl(found: SelfExcited) -> str:
         fastest = f", fastest at {found.growth[most]:.3g} 1/s, whirling at {ratio * RPM:.4g} rpm"
     return f"A whirl grows by itself from {listed}{fastest}: unstable there ({theory})."
 
-
-Complex = NDArray[np.complex128]
 
 _DIAGRAM = 121  # speeds of a Campbell diagram
 

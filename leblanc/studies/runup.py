@@ -7,13 +7,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
 from leblanc.friction import Friction
-from leblanc.results.record import Array, ChamberRecord, phase
+from leblanc.results.record import ChamberRecord, phase
 from leblanc.scene.machine import dry_rotor, jeffcott, require_clear
 from leblanc.scene.scene import Rotor, Runup, Scene
 from leblanc.studies.choose import across_gravity as across_gravity  # of a run-up, asked for with it
@@ -22,13 +21,12 @@ from leblanc.studies.validity import RANGES
 from leblanc.studies.whirl_map import solver_friction
 from leblanc.text.models import percent
 from leblanc.text.runup import Bands, describe_inputs, describe_run
+from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.runup.drive import Drive, Motor, Ramp
 from solvers.runup.error import MOST_LAG, MOST_WAVE, LinearRunError, largest_wave, linear_run_error
 from solvers.runup.runup import MODELS, RunupHistory, RunupNumerics, run_up
 from solvers.synchronous.planar import Response, synchronous_response
-
-Flags = NDArray[np.bool_]
 
 
 def liquid_model(scene: Scene) -> str:
@@ -211,8 +209,6 @@ of the spin"
         f"{size}, beyond the {percent(MOST_WAVE)} and {percent(MOST_LAG)} up to which an error is estimated"
     )
 
-
-Complex = NDArray[np.complex128]
 
 STEADY_SPEEDS = 401  # of the steady response drawn behind the run-up
 BAND_SPEEDS = 201  # at which self-excited whirl is looked for

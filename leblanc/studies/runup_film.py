@@ -6,18 +6,15 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-from leblanc.results.record import Array
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import Scene
 from leblanc.studies.runup import RunupRecord, drive_of, liquid_model, planned
+from meshes.arrays import Array, Complex
 from meshes.errors import InputError
 from solvers.runup.drive import Drive, Ramp, torque_curve
 from solvers.runup.long_wave import Coupled, couple, reading, switch
 from solvers.runup.runup import RunupNumerics
-
-Complex = NDArray[np.complex128]
 
 FRAMES = 180  # of a film
 MOST_FRAMES = 2000

@@ -6,19 +6,17 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from leblanc.results.record import Array, StudyRecord
+from leblanc.results.record import StudyRecord
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import Rotor, Scene, Speeds
 from leblanc.studies.choose import axial_gravity, choose
 from leblanc.studies.run import run_scene
+from meshes.arrays import Array, Complex
 from meshes.errors import InputError
 from solvers.rotor.vibration import orbit
 from solvers.synchronous.mixed import mixed_coupled
-
-Complex = NDArray[np.complex128]
 
 GAP = 0.25  # between chambers moved apart, over the wider one's radius
 

@@ -6,25 +6,21 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.friction import LAWS
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
 from leblanc.friction import Friction, friction_words
-from leblanc.results.record import RPM
 from leblanc.scene.machine import dry_rotor, jeffcott
 from leblanc.scene.scene import Rotor, Scene
 from leblanc.studies.validity import RANGES
+from leblanc.units import ML, RPM
+from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.whirl.edges import Bands, unstable_bands
 from solvers.whirl.growth import growth_map
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
-
-ML = 1e6  # millilitres in one cubic metre
 VOLUMES, SPEEDS = 101, 201
 FEWEST, MOST = 2, 4000  # volumes or speeds of a map
 _AT_ONCE = 20  # volumes between reports of progress

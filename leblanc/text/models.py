@@ -6,10 +6,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from leblanc.results.record import RPM
 from leblanc.studies.choose import Choice
+from leblanc.units import RPM
+from meshes.arrays import Array, Index
 
 # What the model does, and what it takes for granted.
 MODELS = {
@@ -70,9 +70,6 @@ def described(names: Iterable[str]) -> list[tuple[str, str]]:
     """
     return [(name, " ".join(MODELS.get(name, ()))) for name in dict.fromkeys(names)]
 
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 
 _EXACT = 1e-9  # an error that is nothing but rounding
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.record import RPM
+from leblanc.units import RPM
 
 MOST_RANGES = 4  # listed one by one
 NOT_FOUND, MINUS = "not found", "\N{MINUS SIGN}"

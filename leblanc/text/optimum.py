@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 
-from leblanc.results.record import MM, RPM
-from leblanc.scene.rows import ML
 from leblanc.studies.optimise.optimise import OptimumRecord
 from leblanc.text.numbers import number
+from leblanc.units import ML, MM, RPM
 
 
 def describe_optimum(record: OptimumRecord) -> list[str]:

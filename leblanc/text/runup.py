@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.friction import Friction, friction_words
-from leblanc.results.record import MM, RPM, peak
+from leblanc.results.record import peak
+from leblanc.units import ML, MM, RPM
 
 if TYPE_CHECKING:
     from leblanc.scene.scene import Runup, Scene
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
 
 Bands = tuple[tuple[float, float], ...]
 
-ML = 1e6  # millilitres in one cubic metre
 CLOSURE = 1e-3  # of the work: what the energy balance may leave
 ERROR = 0.02  # of the largest amplitude: an error estimate to speak of
 

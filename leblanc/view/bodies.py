@@ -24,7 +24,6 @@ from meshes.section import Section, section_area
 if TYPE_CHECKING:  # scikit-fem is loaded where such a chamber is drawn
     from solvers.statics.free_surface import SurfaceSolution
 
-Array = NDArray[np.float64]
 
 AROUND = 180  # sides around the farthest wall, at least
 _RIGHT_ANGLE = 24  # sides on a quarter of a compartment's wall

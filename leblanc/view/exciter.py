@@ -7,10 +7,12 @@ import math
 import numpy as np
 
 from leblanc.figures.section import rounded_down
-from leblanc.results.record import MM, RPM, Array, one_line
+from leblanc.results.record import one_line
 from leblanc.scene.scene import Exciter, Scene
 from leblanc.studies.exciter import machine_of
-from leblanc.view.parts import NO_CELLS, Indices, Label, Picture, Piece, bar_length, circle, line
+from leblanc.units import MM, RPM
+from leblanc.view.parts import NO_CELLS, Label, Picture, Piece, bar_length, circle, line
+from meshes.arrays import Array, Indices
 from meshes.errors import InputError
 from solvers.rotor.exciter.machine import platform_motion
 from solvers.rotor.exciter.stuck import stuck_speeds

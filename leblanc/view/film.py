@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from leblanc.results.netcdf import replacing
-from leblanc.results.record import MM, RPM, one_line
+from leblanc.results.record import one_line
 from leblanc.studies.shapes import Sight
+from leblanc.units import MM, RPM
 from leblanc.view.parts import Instant, Picture, Stage
 from leblanc.view.picture import Pixels, fill, pixels, plotter, write_png
 from leblanc.view.scale import SHOWN, THIN, Scale

@@ -6,19 +6,20 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from fluid.fill import Fill
-from leblanc.results.record import RPM, Array, one_line
+from leblanc.results.record import one_line
 from leblanc.scene.scene import Scene
 from leblanc.studies.choose import across_gravity
+from leblanc.units import RPM
 from leblanc.view.bodies import LiquidBodies
 from leblanc.view.film import Film
 from leblanc.view.parts import Instant, Picture, Stage
 from leblanc.view.scale import Scale, inner_room
 from leblanc.view.scene import compose
 from leblanc.view.surfaces import LiquidShape
+from meshes.arrays import Array, Complex
 from meshes.bodies.body import columns
 from meshes.chamber_section import surface_is_whole
 from meshes.errors import InputError
@@ -27,8 +28,6 @@ from meshes.refine.waterline_cut import liquid_outside
 from meshes.rings.quadrilaterals import ring
 from solvers.sloshing.modes import SloshingModes, sloshing_modes
 from solvers.sloshing.system import condense
-
-Complex = NDArray[np.complex128]
 
 MOST_MODES = 40
 AROUND, ACROSS = 120, 4  # elements around and across the layer

@@ -6,16 +6,13 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from leblanc.results.record import MM, Array
+from leblanc.units import MM
 from leblanc.view.bodies import LiquidBodies
 from leblanc.view.scale import Scale
 from leblanc.view.surfaces import LiquidShape
-
-Indices = NDArray[np.int64]
-Complex = NDArray[np.complex128]
+from meshes.arrays import Array, Complex, Indices
 
 ROUND = 181  # points of a circle
 

@@ -6,19 +6,16 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from leblanc.figures.section import rounded_down
-from leblanc.results.record import Array
 from leblanc.view.bodies import is_cut
+from meshes.arrays import Array, Complex
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from meshes.liquid_section import free_sides
 from meshes.refine.waterline_cut import area_outside
 from solvers.statics.hydrostatics import optimal_volume
-
-Complex = NDArray[np.complex128]
 
 SHOWN = 0.15  # deflection as drawn over the widest chamber's radius, if there is room
 SWING = 0.5  # the largest that a deflection drawn smaller than it is may be

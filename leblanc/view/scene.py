@@ -7,15 +7,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.record import Array
 from leblanc.view.bodies import LiquidBodies
 from leblanc.view.parts import (
     ABOVE,
     AWAY,
     BELOW,
     ROUND,
-    Complex,
-    Indices,
     Instant,
     Picture,
     Piece,
@@ -28,6 +25,7 @@ from leblanc.view.parts import (
 )
 from leblanc.view.surfaces import LiquidShape, strips
 from leblanc.view.walls import baffles, plates_of, section_walls, straight
+from meshes.arrays import Array, Complex, Indices
 from meshes.bodies.body import WALL_PARTS
 from meshes.chamber import Chamber
 

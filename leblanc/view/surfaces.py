@@ -14,13 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.figures.section import chord
-from leblanc.results.record import Array
+from meshes.arrays import Array, Indices
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.statics.hydrostatics import Equilibrium, equilibrium
-
-Complex = NDArray[np.complex128]
-Indices = NDArray[np.int64]
 
 RAYS = 240  # half-planes around a turn, besides those where a waterline meets a wall
 STEPS = 25  # points from one end of the free surface to the other

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.figures.uneven import plates
-from leblanc.view.parts import Complex, Indices, Piece, Stage, placed
+from leblanc.view.parts import Piece, Stage, placed
+from meshes.arrays import Complex, Indices
 from meshes.chamber import Chamber
 from meshes.chamber_section import ChamberSection
 from meshes.liquid_section import free_sides

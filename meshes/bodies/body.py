@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
+from meshes.arrays import Array, Indices
 
 # Most that the depth halfway along an edge may differ from the mean of its ends, over that mean.
 _BEND = 0.45

@@ -5,16 +5,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from meshes.arrays import Array, Indices
 from meshes.bodies.body import Body, columns
 from meshes.errors import InputError, require_not_negative, require_positive
 from meshes.refine.bisection import edge_numbers
 from meshes.refine.circle_cut import Circle, cut_along
 from meshes.section import Section
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 # Longest edge at a waterline, over its radius; waterlines smaller than this part of the section are left out.
 _COARSEST, _SMALLEST = 0.25, 1e-3

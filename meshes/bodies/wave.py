@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from meshes.arrays import Array, Indices
 from meshes.bodies.body import Body, columns
 from meshes.errors import InputError, require_positive
 from meshes.rings.triangles import polar_triangles
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 # Most that a quadratic edge leaves its chord by, over the smaller thickness at its ends.
 _BEND = 0.25

@@ -8,13 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from meshes.arrays import Array, Indices
 from meshes.errors import InputError
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 # Ends of curves nearer than this part of the drawing meet.
 _MEET = 1e-6

@@ -13,15 +13,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from meshes.arrays import Array, Indices
 from meshes.bodies.body import Body
 from meshes.errors import InputError, require_positive
 from meshes.liquid_section import LiquidSection, free_sides, liquid_section
 from meshes.quality import cell_areas
 from meshes.rings.slits import open_slits
 from meshes.section import Section
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 # Names of cells in files by their nodes: in the plane, along sides and in space.
 PLANE = {3: "triangle", 6: "triangle6", 4: "quad", 9: "quad9"}

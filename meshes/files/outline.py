@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from meshes.arrays import Array, Indices
 from meshes.errors import InputError, require_positive
 from meshes.files.drawing import Curve, closed_loops, extent, meet, read_drawing
 from meshes.quality import cell_areas
@@ -52,9 +52,6 @@ def _flush() -> None:
     with contextlib.suppress(OSError, TypeError, AttributeError):  # where the C library has no common name
         ctypes.CDLL(None).fflush(None)
 
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 SUFFIXES = (".dxf", ".step", ".stp", ".iges", ".igs", ".brep")
 

@@ -7,13 +7,11 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from meshes.arrays import Array, Indices
 from meshes.errors import InputError
 from meshes.liquid_section import LiquidSection, free_sides, liquid_section
 from meshes.quality import EDGES, cell_areas
 from meshes.section import Section
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 _MOST_NODES = 1_000_000
 

@@ -8,12 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from meshes.arrays import Array, Indices
 from meshes.quality import jacobians
 from meshes.refine.bisection import TURNED, bisect, edge_numbers, quadratic_triangles, refine
 from meshes.section import Section
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 # A vertex moves onto the circle from within this fraction of its shortest edge.
 _REACH = 0.3

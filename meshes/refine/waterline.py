@@ -17,11 +17,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from meshes.arrays import Array, Indices
 from meshes.quality import edge_polynomials
 from meshes.section import Section
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 # Points along an edge and along a ray. Rays meet polynomials of degree 7 at most, which 4 points integrate
 # exactly; along an edge the integrand has its nearest pole at the axis, see `beyond`.

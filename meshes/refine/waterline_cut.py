@@ -6,19 +6,16 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.spatial import cKDTree
 
+from meshes.arrays import Array
 from meshes.errors import InputError, require_positive
 from meshes.liquid_section import LiquidSection, liquid_section
 from meshes.refine.bisection import edge_numbers, quadratic_triangles
 from meshes.refine.circle_cut import Circle, cut_along
 from meshes.refine.waterline import beyond, distance_range, monotone_arcs
 from meshes.section import Section, section_area
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 # Longest edge at the circle, over its radius.
 _COARSEST = 0.25

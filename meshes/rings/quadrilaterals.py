@@ -11,15 +11,12 @@ import math
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from meshes.arrays import Array, Indices
 from meshes.baffles import Baffles
 from meshes.errors import InputError, require_positive
 from meshes.liquid_section import LiquidSection, liquid_section
 from meshes.rings.slits import open_slits
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 # Distances from the edge of a baffle grow as this power of the cell's number. The flow there goes as the root
 # of the distance, and elements of degree p keep their order with any power above 2 p.

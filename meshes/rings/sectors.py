@@ -5,15 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from meshes.arrays import Indices
 from meshes.baffles import Baffles
 from meshes.errors import InputError, require_not_negative, require_positive
 from meshes.quality import EDGES
 from meshes.section import Section
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 
 def compartment(

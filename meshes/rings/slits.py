@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from meshes.arrays import Array, Indices
 from meshes.errors import InputError
 from meshes.liquid_section import SIDES
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 
 def open_slits(points: Array, cells: Indices, slits: Indices) -> tuple[Array, Indices]:

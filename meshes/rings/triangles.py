@@ -6,14 +6,12 @@ import math
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from meshes.arrays import Array, Indices
 from meshes.baffles import Baffles
 from meshes.errors import InputError, require_positive
 from meshes.liquid_section import LiquidSection, liquid_section
 from meshes.rings.slits import open_slits
-
-Array = NDArray[np.float64]
 
 
 def graded(
@@ -58,8 +56,6 @@ def graded(
     x[0], x[-1] = 0.0, length
     return np.asarray(x)
 
-
-Indices = NDArray[np.int64]
 
 _MOST_NODES = 2_000_000
 

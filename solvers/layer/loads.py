@@ -10,10 +10,8 @@ import math
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from meshes.arrays import Array, Complex
 
 Drive = tuple[float, float, float, float, float, float]
 

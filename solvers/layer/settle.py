@@ -9,15 +9,13 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.friction import LAWS, NONE, STOKES, stokes_coefficient
+from meshes.arrays import Complex
 from meshes.errors import InputError, require_positive
 from solvers.layer.prescribed import LayerFilm, LayerHistory, Numerics, Whirl
-from solvers.layer.state import Complex, MovingLayer, depth, settle_statics, start
-
-Array = NDArray[np.float64]
+from solvers.layer.state import MovingLayer, depth, settle_statics, start
 
 _PERIODS = 400
 _TURNS = 20_000.0  # rad of spin

@@ -9,16 +9,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.friction import QUADRATIC
+from meshes.arrays import Array, Complex
 from meshes.errors import InputError
 from solvers.layer.loads import Drive, means, offset, ring
 from solvers.layer.prescribed import Numerics, Whirl
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 _COURANT = 0.8
 _STEPS = 20_000_000  # in one whirl period

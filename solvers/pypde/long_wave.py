@@ -10,7 +10,7 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from pde.backends.base import BackendBase
 from pde.fields.collection import FieldCollection
 from pde.fields.scalar import ScalarField
@@ -21,13 +21,12 @@ from pde.solvers.base import ConvergenceError, SolverBase
 
 from fluid.fill import Fill
 from fluid.friction import NONE
+from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.layer.prescribed import Whirl
 from solvers.pypde import readings
 from solvers.pypde import terms as layer
 from solvers.pypde.terms import LongWaveTerms
-
-Array = NDArray[np.float64]
 
 _LOST = "the surface came to the axis, or a film outran the steps,"
 

@@ -11,11 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid import long_wave
+from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.layer.loads import ring
 from solvers.pypde.terms import LongWaveTerms, faded_velocity, radial_force, require_layer, scaled
-
-Array = NDArray[np.float64]
 
 
 def area_at(terms: LongWaveTerms, depth: Array) -> Array:

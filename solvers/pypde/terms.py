@@ -12,18 +12,16 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid import friction, long_wave
 from fluid.fill import Fill
+from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative
 from solvers.layer.face_flux import DRY, THIN
 from solvers.layer.finite_volume import FULL, GHOSTS, WORK, rates
 from solvers.layer.loads import ring
 from solvers.layer.prescribed import Whirl
 from solvers.layer.step import advance, scratch
-
-Array = NDArray[np.float64]
 
 _STEPS = 20_000_000  # from one time to the next
 

@@ -7,13 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from meshes.arrays import Array, Index
 from meshes.errors import InputError
 from solvers.roots import bracketed_root
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.vibration import modes, whirl_direction
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from meshes.arrays import Array
 from meshes.errors import require_not_negative, require_positive
 from solvers.rotor.system import RotorSystem
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -7,12 +7,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.rotor.system import RotorSystem
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -9,11 +9,10 @@ the rotor's unbalance, positive with the spin.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from meshes.arrays import Array
 from meshes.errors import InputError
-
-Array = NDArray[np.float64]
 
 
 def deflection_lag(speed: ArrayLike, mass: ArrayLike, damping: ArrayLike, stiffness: ArrayLike) -> Array:

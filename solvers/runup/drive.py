@@ -6,11 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from meshes.arrays import Array
 from meshes.errors import InputError, require_positive
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.friction import LAWS, STOKES, damping_rate
+from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative
 from solvers.rotor.system import RotorSystem
 from solvers.runup.chamber import layer_capture, layer_properties, pool_offset
@@ -19,8 +19,6 @@ from solvers.runup.state import LAW, LID, RUBBING, TALLIES
 
 if TYPE_CHECKING:
     from solvers.runup.linear_kernel import LinearMachine
-
-Array = NDArray[np.float64]
 
 
 @dataclass

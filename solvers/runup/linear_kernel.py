@@ -11,13 +11,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from meshes.arrays import Array
 from solvers.layer.face_flux import COMPILED
 from solvers.runup.kernel import motor_torque, solve
 from solvers.runup.state import DRIVE, FRICTION, GRAVITY, MOTOR, STEPS, SUPPORT, UNBALANCE
 
 _jit: Any = njit(**COMPILED)
 
-Array = NDArray[np.float64]
 
 # Columns of a layer: mass, curvature, friction rate, power of the spin that it goes with, moment of inertia.
 MASS, CURVATURE, RATE, POWER, INERTIA = range(5)

@@ -12,13 +12,12 @@ from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.friction import LAWS
+from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative
 from solvers.layer.loads import ring
 from solvers.rotor.system import RotorSystem
 from solvers.runup.chamber import layer_capture, layer_properties, pool_offset
 from solvers.runup.state import ENERGY, GAINS, MASS, MEASURES, RADIUS, TALLIES, WEIGHT, Machine, Room, State
-
-Array = NDArray[np.float64]
 
 # A layer is let go at this share of the spin speed that captures it, lest it be caught and let go in turns.
 _RELEASE = 0.98

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill
+from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.rotor.system import RotorSystem
 from solvers.runup.drive import Drive, Ramp, torque_curve
@@ -29,10 +29,6 @@ from solvers.runup.state import (
     SUPPORT,
     UNBALANCE,
 )
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Flags = NDArray[np.bool_]
 
 _MOST = 200_000_000  # steps between two samples
 _THROWN = _AT_AXIS, _NOT_COUPLED = 2, 4

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from meshes.arrays import Array
 
 # Columns of a layer's properties: R, rho h_c, mass, friction law, its coefficient (linear: k, 1/s; Stokes:
 # over the root of the spin; quadratic: a number), 2 R/h_c or 0, square of L for dispersion or 0.

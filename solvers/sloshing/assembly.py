@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array, vstack
 from skfem import (
     BilinearForm,
@@ -22,10 +21,8 @@ from skfem import (
     MeshTri2,
 )
 
+from meshes.arrays import Array, Indices
 from meshes.liquid_section import SIDES, LiquidSection
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 _MESHES = {3: MeshTri1, 6: MeshTri2, 4: MeshQuad1, 9: MeshQuad2}
 _ELEMENTS = {3: ElementTriP1, 6: ElementTriP2, 4: ElementQuad1, 9: ElementQuad2}

@@ -5,19 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from fluid.friction import stokes_coefficient
 from fluid.wall_layer import decay_rate, edge_weight, layer_thickness, plate_drags
+from meshes.arrays import Array, Complex
 from meshes.errors import require_not_negative, require_positive
 from meshes.liquid_section import LiquidSection
 from solvers.sloshing.assembly import wall_points
 from solvers.sloshing.modes import SloshingModes
 from solvers.sloshing.system import LiquidSystem
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 # A wall that turns back on itself so sharply has an edge in the liquid.
 _BACK = -0.99

@@ -11,13 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_positive
 from solvers.sloshing.assembly import wall_points
 from solvers.sloshing.modes import Spectrum, spectrum, surface_displacement
 from solvers.sloshing.system import LiquidSystem
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 TURN = np.array([[0.0, -1.0], [1.0, 0.0]])  # a quarter turn with the spin
 FORWARD, BACKWARD = np.array([1.0, -1j]), np.array([1.0, 1j])  # amplitudes of circles with e^{i s t}

@@ -10,18 +10,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import cholesky, eigh, solve_triangular
 from scipy.sparse import coo_array, csc_array
 from scipy.sparse.linalg import splu
 
+from meshes.arrays import Array, Complex, Indices
 from meshes.errors import InputError, require_positive
 from meshes.liquid_section import LiquidSection
 from solvers.sloshing.system import LiquidSystem, surface_forms
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Indices = NDArray[np.int64]
 
 _GAUSS = np.polynomial.legendre.leggauss(8)
 

@@ -9,13 +9,14 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.linalg import cholesky, solve_triangular
 
 from fluid.fill import Fill
 from fluid.friction import STOKES
 from fluid.wall_layer import layer_thickness
 from fluid.whirl import is_full, plane_layer
+from meshes.arrays import Array, Complex
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.chamber_section import ChamberSection, liquid_of
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
     from meshes.liquid_section import LiquidSection
     from solvers.sloshing.system import LiquidSystem
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 # Frequencies over the spin whose answers are kept, off the real axis where no wave resonates; with them go
 # rest and the limit of very fast whirl.

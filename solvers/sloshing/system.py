@@ -22,12 +22,9 @@ from scipy.sparse import coo_array, csc_array, csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import splu
 
+from meshes.arrays import Array, Complex, Indices
 from meshes.liquid_section import LiquidSection
 from solvers.sloshing.assembly import stiffness
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Indices = NDArray[np.int64]
 
 _CHUNK = 128  # columns solved for at once
 

@@ -13,16 +13,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 from skfem import CellBasis, ElementTriP0, Functional, MeshTri1, MeshTri2
 
 from fluid.moments import Moments
+from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative, require_positive
 from meshes.refine.waterline import Arcs, beyond, distance_range, monotone_arcs
 from meshes.section import Section, annulus, section_area
 
-Array = NDArray[np.float64]
 Integrand = Callable[[Array, Array, Array], Array]
 
 # Ramps outside these multiples of the largest squared radius are a step, or flat, to rounding.

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fluid.moments import Moments
 from fluid.paraboloid import steepness
+from meshes.arrays import Array
 from meshes.chamber import Chambers
 from meshes.errors import InputError
 from solvers.statics.integrals import (
@@ -24,8 +25,6 @@ from solvers.statics.integrals import (
     volume_and_plan,
     volume_under,
 )
-
-Array = NDArray[np.float64]
 
 _ITERATIONS = 200
 _ROUNDING = 8.0 * np.finfo(float).eps

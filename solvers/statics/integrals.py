@@ -6,13 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fluid.moments import Moments
+from meshes.arrays import Array
 from meshes.chamber import Chamber, Chambers
 from solvers.statics import wall as wall_arc
 
-Array = NDArray[np.float64]
 AnyChamber = Chamber | Chambers  # one for all states, or one for each
 
 _CHUNK = 256

@@ -11,14 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fills
 from fluid.moments import lens_moments
 from fluid.paraboloid import steepness
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
+from meshes.arrays import Array, Index
 
 # Above this steepness the surface is taken as a cylinder: the heights' sum is off by its power -3/2, as the
 # exact sum is by rounding.

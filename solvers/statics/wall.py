@@ -11,12 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.moments import Moments
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
+from meshes.arrays import Array, Index
 
 # The wall is divided at v = pi - psi = pi/4. Far part: the nearest singularity (v = 0 when the rotation axis
 # touches the wall) is pi/4 beyond the end of a panel of half-length 3/8 pi: the error falls as 3**(-2 n).

@@ -15,10 +15,9 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from meshes.arrays import Array, Index
 from solvers.roots import bracketed_root
 
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 # Pull Y at deflections e, shape (m,), of the speeds given by their index, shape (m,).
 Law = Callable[[Array, Index], Array]
 

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from fluid.fill import Fill, Fills
 from fluid.friction import NONE
 from fluid.waves import force_ratio
+from meshes.arrays import Array, Complex, Flags, Index
 from meshes.errors import InputError
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.vibration import (
@@ -25,11 +26,6 @@ from solvers.sloshing.reduced import section_layer
 from solvers.synchronous.branches import find_branches
 from solvers.synchronous.models import LiquidModel, synchronous_model
 from solvers.synchronous.planar import Response
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Index = NDArray[np.intp]
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

@@ -5,18 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill, Fills
+from meshes.arrays import Array, Complex
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.vibration import solve_each
 from solvers.statics.law_defect import Surfaces, defect_bound, upright_surfaces
 from solvers.synchronous.coupled import Balance, balance
 from solvers.synchronous.errors import ROUNDING, LinearError, law_error
 from solvers.synchronous.models import synchronous_model
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 _ROUNDS = 8  # of the bound on the largest deflections
 

@@ -17,12 +17,11 @@ from numpy.typing import NDArray
 
 from fluid.fill import Fills
 from fluid.paraboloid import CYLINDER_STEEPNESS, steepness
+from meshes.arrays import Array
 from meshes.errors import InputError
 from meshes.section import Section, annulus
 from solvers.roots import bracketed_root
 from solvers.synchronous.models import SYNCHRONOUS_MODELS, LiquidModel, SynchronousAnswer
-
-Array = NDArray[np.float64]
 
 _CELLS_AT_ONCE = 1 << 17  # of all states together, so that they stay in the processor's cache
 _DEEPEST = 0.3  # mean depth over the radius up to which waves on the layer are long

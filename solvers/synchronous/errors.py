@@ -11,13 +11,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fills
+from meshes.arrays import Array, Flags, Index
 from solvers.statics.law_defect import Surfaces, defect_bound, upright_surfaces
 from solvers.synchronous.pairs import Pairs
-
-Array = NDArray[np.float64]
 
 # Found from long-wave layers held at a speed: most have less, the median a third of it.
 _SIZE = 0.15
@@ -79,9 +77,6 @@ def planar_gravity_error(pairs: Pairs, across: Array, most: Array) -> Array:
     np.multiply(pull, compliance, out=moved, where=(pull != 0.0) & (force > 0.0))
     return np.asarray(largest + moved)
 
-
-Flags = NDArray[np.bool_]
-Index = NDArray[np.intp]
 
 # What is left between an exact answer and the same from another order of sums.
 ROUNDING = 1e-12

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fluid.fill import Fill
+from meshes.arrays import Index
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.synchronous.coupled import CoupledResponse, coupled_response
 from solvers.synchronous.planar import Response, synchronous_response
 
-Index = NDArray[np.intp]
 Names = NDArray[np.str_]
 
 

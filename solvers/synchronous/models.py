@@ -10,12 +10,11 @@ from numpy.typing import NDArray
 
 from fluid.fill import Fills
 from fluid.paraboloid import CYLINDER_STEEPNESS, steepness
+from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.roots import bracketed_root
 from solvers.statics.hydrostatics import equilibrium
 from solvers.statics.integrals import volume_under
-
-Array = NDArray[np.float64]
 
 # The limit of the straight line is taken a hair low, so that the law is the line up to it and with it.
 _HAIR = 1e-9

@@ -9,12 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill, Fills
+from meshes.arrays import Array, Flags, Index
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.synchronous.models import LiquidModel
 
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Flags = NDArray[np.bool_]
 # A rotor with the fills of its chambers.
 PlanarMachine = tuple[Jeffcott, Sequence[Fill]]
 

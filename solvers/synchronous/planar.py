@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fluid.fill import Fill
+from meshes.arrays import Array, Index
 from meshes.errors import InputError
 from solvers.roots import bracketed_root
 from solvers.rotor.jeffcott import Jeffcott
@@ -17,8 +18,6 @@ from solvers.synchronous.branches import find_branches
 from solvers.synchronous.models import synchronous_model
 from solvers.synchronous.pairs import LiquidState, Pairs, PlanarMachine, pair_machines
 
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 _Value = TypeVar("_Value", bound=np.generic)
 
 

@@ -7,16 +7,15 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.linalg import eigvals
 
+from meshes.arrays import Array, Complex
 from meshes.errors import InputError
 from solvers.waves.modes import DENSE_MODES, System, WaveProblem, one_thread, split
 from solvers.waves.newton import TAIL, TOLERANCE, SteadyWave, as_wave, newton, refined, scaled_unknowns
 from solvers.waves.path import Pace, Path, march, segment
 from solvers.waves.periodic import solve
-
-Array = NDArray[np.float64]
 
 MOST_CURVE_POINTS = 2 * (DENSE_MODES + 1)
 _LONGEST, _SHORTEST = 0.5, 1e-7
@@ -109,9 +108,6 @@ def _branch(problem: WaveProblem, path: Path, begin: SteadyWave, stop: float) ->
         waves[-1] = newton(path.systems[-1], path.points[-1].here[:-1], stop / path.systems[-1].scale)
         reason = waves[-1].reason
     return Branch(tuple(waves), tuple(point.ahead for point in path.points), not reason, reason)
-
-
-Complex = NDArray[np.complex128]
 
 
 def growth_rates(wave: SteadyWave) -> Complex:

@@ -12,11 +12,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from meshes.arrays import Complex
 from meshes.errors import InputError
-
-Complex = NDArray[np.complex128]
 
 # Terms of the Taylor series of the phi functions for |z| < 1: the first one left out is below 1/19!.
 _TERMS = 19

@@ -16,14 +16,11 @@ from dataclasses import dataclass
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import fft
 from threadpoolctl import ThreadpoolController
 
+from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 DENSE_MODES = 511
 _NO_MEAN = np.zeros(1, dtype=complex)

@@ -16,11 +16,9 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dgetrf, dgetrs
 from scipy.sparse.linalg import LinearOperator, gmres
 
+from meshes.arrays import Array, Complex
 from meshes.errors import InputError
 from solvers.waves.modes import DENSE_MODES, System, WaveProblem, joined, resized, split, values
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 # Relative size of the last eighth of the spectrum that leaves the wave itself right to 1e-8 and better.
 TAIL = 1e-10

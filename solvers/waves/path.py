@@ -11,12 +11,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from meshes.arrays import Array
 from solvers.waves.modes import System, joined, resized, values
 from solvers.waves.newton import ALONE, Factors, factorise, tail_of
-
-Array = NDArray[np.float64]
 
 _CORRECTIONS = 24
 # Factors that gain less than this are made anew.

@@ -10,9 +10,9 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.kdv import KdvCoefficients, forcing, wave_frequency
+from meshes.arrays import Array, Complex
 from meshes.errors import InputError
 from solvers.waves.modes import (
     DENSE_MODES,
@@ -26,9 +26,6 @@ from solvers.waves.modes import (
 )
 from solvers.waves.newton import TOLERANCE, SteadyWave, as_wave, newton, refined, scaled_unknowns
 from solvers.waves.path import Pace, landing, march
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 MOST_POINTS = 8192
 # Damping and dispersion over steepening below which a wave at resonance is a bore; modes of its front.

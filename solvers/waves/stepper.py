@@ -15,10 +15,10 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from meshes.arrays import Array
 from meshes.errors import InputError, require_positive
 from solvers.waves.exponential import Weights, find_method, step_weights
 
-Array = NDArray[np.float64]
 Spectrum = NDArray[np.complex128]
 Status = Literal["finished", "step too small", "too many steps", "diverged"]
 

@@ -11,11 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 from fluid.fill import Fill
 from fluid.friction import NONE
 from fluid.whirl import Layer, neutral_stiffness
+from meshes.arrays import Array, Index
 from solvers.rotor.system import RotorSystem
 from solvers.whirl.growth import Friction, growth_at, planar, planar_layers
 
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 Bands = tuple[tuple[float, float], ...]
 
 _WIDTH = 1e-10  # relative, of the bracket an edge is left in

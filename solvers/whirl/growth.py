@@ -6,11 +6,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
 from fluid.friction import NONE
 from fluid.whirl import Layer, is_full, plane_layer
+from meshes.arrays import Array, Complex, Index
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
@@ -21,9 +22,6 @@ from solvers.whirl.planar import PlanarProblem, planar_modes
 from solvers.whirl.sections import drum_modes, standing_modes
 from solvers.whirl.system import SystemModes, circles_of, coupled_matrices, linear_modes
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Index = NDArray[np.intp]
 Friction = tuple[int, float]
 
 MOST_LAYERS = 50

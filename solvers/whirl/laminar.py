@@ -11,14 +11,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.whirl import Layer, stokes_rate
+from meshes.arrays import Array, Complex
 from solvers.rotor.system import RotorSystem
 from solvers.whirl.system import SystemModes, circles_of, coupled_matrices, linear_modes, sense_of
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 Placed = tuple[float, Layer]
 
 _EPS = float(np.finfo(float).eps)

@@ -15,10 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.whirl import damped_waves, stokes_rate
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Flags = NDArray[np.bool_]
+from meshes.arrays import Array, Complex, Flags
 
 _CHUNK = 4096  # points whose arrays fit the processor's cache
 _THREADS = 4

@@ -15,14 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
+from meshes.arrays import Array, Complex
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.sloshing.reduced import KEPT, ReducedLiquid, SectionLayer, spanned
 from solvers.whirl.system import CoupledMatrices, SystemModes, linear_modes
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 _TURN = np.array([[0.0, -1.0], [1.0, 0.0]])  # a quarter turn with the spin
 SLOW = 0.3  # frequency of slow waves over the spin

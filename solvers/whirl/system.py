@@ -10,14 +10,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.whirl import Layer
+from meshes.arrays import Array, Complex, Flags
 from solvers.rotor.system import RotorSystem
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Flags = NDArray[np.bool_]
 
 _EPS = float(np.finfo(float).eps)
 

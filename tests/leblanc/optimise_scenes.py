@@ -6,7 +6,6 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.liquid import known_liquid
@@ -15,9 +14,9 @@ from leblanc.scene.optimise import Aim
 from leblanc.scene.scene import Model, Rotor, Scene, Speeds
 from leblanc.studies.batch import answer_scenes
 from leblanc.studies.optimise.answers import with_volumes
+from meshes.arrays import Array
 from meshes.chamber import Chamber
 
-Array = NDArray[np.float64]
 MANY = 3000  # pairs of a scene and a speed at once
 
 

@@ -10,14 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.results.record import ChamberRecord, StudyRecord
+from meshes.arrays import Array
 from solvers.synchronous.planar import Response
 
 MASS, STIFFNESS, DAMPING, UNBALANCE = 4.0, 43864.9, 83.78, 6e-4  # critical speed 1000 rpm, damping ratio 0.1
 RPM = 2.0 * math.pi / 60.0
 LIQUID_MASS = 998.2e-5  # 10 ml of water
 ADDED = 998.2 * math.pi * 0.065**2 * 0.02  # the chamber full of water
-
-Array = NDArray[np.float64]
 
 
 def dry_deflection(speed: Array, mass: float, damping: float = DAMPING) -> NDArray[np.complex128]:

@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from leblanc.studies.sweep.distributions import Levels, Uniform
 from leblanc.studies.sweep.sampling import sample_rows
@@ -17,9 +16,8 @@ from leblanc.studies.sweep.sensitivity import (
     sensitivity,
     variance_shares,
 )
+from meshes.arrays import Array
 from tests.leblanc.test_sampling import sweep_of
-
-Array = NDArray[np.float64]
 
 
 def ishigami(x: Array) -> Array:

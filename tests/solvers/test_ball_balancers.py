@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.rotor.balls import motion as ball_motion
 from solvers.rotor.balls import steps as ball_steps
@@ -27,8 +27,6 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.two_plane_balance import dynamic_balancing, of_two_planes
-
-Array = NDArray[np.float64]
 
 ROTOR = Jeffcott(mass=10.0, stiffness=25000.0, damping=100.0, unbalance=2e-3)
 RACE = BallRace(0.0, 0.1, (0.02, 0.02), 0.5)

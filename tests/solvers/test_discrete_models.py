@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from fluid.fill import Fill, Fills
 from fluid.liquid import known_liquid
+from meshes.arrays import Array
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.layer.prescribed import Numerics, Whirl
@@ -20,8 +20,6 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.synchronous.discrete import Fem, LongWave, offered
 from solvers.synchronous.models import SYNCHRONOUS_MODELS, LiquidModel, Statics, SynchronousAnswer
 from solvers.synchronous.planar import synchronous_response
-
-Array = NDArray[np.float64]
 
 WATER = known_liquid("water")
 LAYER = Fill(Chamber(0.15, 0.05), WATER, 0.15 * Chamber(0.15, 0.05).capacity)

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.rotor.exciter import machine as exciter
 from solvers.rotor.exciter import steps as exciter_steps
 from solvers.rotor.exciter.machine import Dimensionless, platform_motion
 from solvers.rotor.exciter.motion import Start, critical_speed, critical_speeds, initial_state, integrate
 from solvers.rotor.exciter.stuck import characteristic_speeds, stuck_speeds
-
-Array = NDArray[np.float64]
 
 MACHINE = Dimensionless(0.01, 0.4, 0.25, 0.03)
 

@@ -8,14 +8,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.rotor.balls import motion as ball_motion
 from solvers.rotor.exciter import machine as exciter
 from solvers.rotor.exciter.machine import Dimensionless, Exciter, platform_motion, rolling_inertia
-
-Array = NDArray[np.float64]
 
 MACHINE = Exciter(36.1, 145083.0, 150.0, 0.1 * 0.105, 2, 0.325, 7.0 / 5.0, 0.0735, 0.05)
 

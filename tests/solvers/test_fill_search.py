@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from meshes.arrays import Array
 from meshes.errors import InputError
-from solvers.search import Array, Judge, Judgement, SearchPlan, best_of, search
+from solvers.search import Judge, Judgement, SearchPlan, best_of, search
 
 
 def free(function: Callable[[Array], Array]) -> Judge:

@@ -9,13 +9,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from fluid.moments import Moments
+from meshes.arrays import Array
 from meshes.section import disc, section_area
 from solvers.statics.free_surface import integrate_surface, optimal_volume_fem, solve_surface
-
-Array = NDArray[np.float64]
 
 GRAVITY = 9.81
 RADIUS, HEIGHT = 0.2, 0.05

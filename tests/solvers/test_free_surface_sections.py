@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from fluid.moments import Moments
+from meshes.arrays import Array
 from meshes.quality import triangle_areas
 from meshes.section import Section, annulus, disc, section_area
 from solvers.statics.free_surface import integrate_surface, solve_surface
@@ -23,8 +23,6 @@ from tests.solvers.test_free_surface import (
     round_chamber,
     values,
 )
-
-Array = NDArray[np.float64]
 
 
 def rectangle(x0: float, x1: float, y0: float, y1: float, floor: float, ramp: float) -> Array:

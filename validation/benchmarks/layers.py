@@ -10,10 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from fluid.friction import LINEAR
+from meshes.arrays import Array
 from solvers.layer.prescribed import Numerics, Whirl
 from solvers.layer.settle import simulate
 from validation.benchmarks.ours import CODE
-from validation.benchmarks.problems import SPIN, Array, fill
+from validation.benchmarks.problems import SPIN, fill
 from validation.benchmarks.timing import Answer, Contestant, Go
 
 # The axis turns at the layer's retrograde resonance; half the depth off would be dry.

@@ -10,11 +10,11 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.friction import LINEAR, NONE, STOKES
 from fluid.liquid import Liquid
+from meshes.arrays import Array
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import unbalance_response
@@ -23,8 +23,6 @@ from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
 from solvers.whirl.growth import growth_map
 from validation.benchmarks.timing import Answer, Contestant, Go, Sample, measure, one_core
 from validation.suspended_tub import suspended_tub
-
-Array = NDArray[np.float64]
 
 _OURS = "leblanc"
 _ROTOR = Jeffcott(30.0, 30.0 * 25.0**2, 2.0 * 0.06 * 30.0 * 25.0, 0.1)

@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from validation.benchmarks.problems import Array, SteadyProblem, TravellingProblem, spectrum
+from meshes.arrays import Array
+from validation.benchmarks.problems import SteadyProblem, TravellingProblem, spectrum
 from validation.benchmarks.timing import Contestant, Go
 
 CODE, PACKAGE = "py-pde", "pde/py-pde"

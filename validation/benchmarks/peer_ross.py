@@ -15,8 +15,8 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from meshes.arrays import Array, Complex
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.vibration import unbalance_response
@@ -24,9 +24,6 @@ from validation.benchmarks.timing import Contestant, Go, Sample, measure, one_co
 
 CODE, PACKAGE = "ROSS", "ross/ross-rotordynamics"
 _OURS = "leblanc"
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 def _speeds() -> Array:

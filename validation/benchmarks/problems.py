@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fluid import kdv
 from fluid.exact import TravellingWave, cnoidal_wave
@@ -15,6 +15,7 @@ from fluid.fill import Fill
 from fluid.friction import damping_rate
 from fluid.kdv import KdvCoefficients
 from fluid.liquid import Liquid
+from meshes.arrays import Array, Complex
 from meshes.chamber import Chamber
 from solvers.layer.prescribed import Whirl
 from solvers.layer.settle import friction_law
@@ -22,9 +23,6 @@ from solvers.waves.modes import WaveProblem
 from solvers.waves.periodic import family_problem, solve
 from solvers.waves.stepper import Advance, Control, Split, advance_adaptive
 from solvers.waves.terms import WaveTerms, wave_split
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 # One drum for all: a tenth of its radius is filled, water, a low chamber.
 RADIUS, SURFACE, SPIN, HEIGHT = 0.15, 0.135, 40.0, 0.01

@@ -13,12 +13,10 @@ from leblanc.scene.machine import dry_rotor, jeffcott
 from leblanc.scene.scene import Exciter, Rotor, Scene
 from leblanc.studies.choose import across_gravity, axial_gravity, choose
 from leblanc.studies.runup import RunupChoice, chosen_run, drive_of, judged, planned
+from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.runup.runup import RunupNumerics
 from solvers.synchronous.models import LiquidModel
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 RESPONSE, RUNUP = "response", "runup"
 DISPERSION = "dispersion"

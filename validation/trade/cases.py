@@ -6,11 +6,11 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from leblanc.scene.scene import Exciter, Runup, Scene
 from leblanc.studies.choose import across_gravity
 from leblanc.studies.runup import planned
+from meshes.arrays import Array
 from solvers.runup.chamber import layer_capture
 from validation.trade.answers import (
     DISPERSION,
@@ -22,8 +22,6 @@ from validation.trade.answers import (
     steady,
     taken_run,
 )
-
-Array = NDArray[np.float64]
 
 SPEEDS = 9  # at which the response is compared
 SAMPLES = 1000  # of a run-up's history

@@ -6,17 +6,14 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from leblanc.scene.machine import jeffcott
 from leblanc.scene.scene import Rotor, Scene, Speeds
 from leblanc.studies.batch import answer_scenes
 from leblanc.studies.choose import axial_gravity
+from meshes.arrays import Array, Flags
 from solvers.synchronous.planar import machine_responses
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 AT_ONCE = 4000  # pairs; more at once would only take memory
 

@@ -6,18 +6,16 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from leblanc.results.record import MM, RPM
 from leblanc.scene.scene import Scene
 from leblanc.studies.choose import axial_gravity
 from leblanc.studies.optimise.constraints import Verdict
+from leblanc.units import MM, RPM
+from meshes.arrays import Array
 from meshes.chamber import Chamber
 from solvers.search import Found, Judgement, SearchPlan, search
 from solvers.statics.hydrostatics import equilibrium, optimal_volume
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -7,16 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.liquid import expansion, liquid_at
 from leblanc.scene.scene import Rotor, Scene
 from leblanc.studies.optimise.answers import FilledMachine
 from leblanc.studies.optimise.objectives import AlwaysExact
+from meshes.arrays import Array
 from meshes.errors import InputError
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

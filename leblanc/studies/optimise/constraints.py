@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from leblanc.scene.machine import dry_rotor
@@ -16,10 +15,9 @@ from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.conditions import Robust
 from leblanc.studies.optimise.objectives import PeakOver, Vibration
 from leblanc.studies.whirl_map import solver_friction
+from meshes.arrays import Array
 from solvers.search import Judgement
 from solvers.whirl.growth import growth_map
-
-Array = NDArray[np.float64]
 
 _BEYOND = 1.3  # of a limit, up to which a vibration above it must be known exactly
 

@@ -10,14 +10,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.record import MM
 from leblanc.scene.optimise import Aim
 from leblanc.scene.scene import Scene
 from leblanc.studies.sweep.emulator import CrossValidation, Emulator, emulate_store, varied_fields
 from leblanc.studies.sweep.store import read_store
+from leblanc.units import MM
+from meshes.arrays import Array
 from meshes.errors import InputError
-
-Array = NDArray[np.float64]
 
 _VOLUME = re.compile(r"chambers\.(\d+)\.volume")
 

@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 from leblanc.scene.scene import Scene
 from leblanc.studies.optimise.constraints import growth
 from leblanc.studies.optimise.judge import Goal
-from solvers.search import Array, Found
-
-Flags = NDArray[np.bool_]
+from meshes.arrays import Array, Flags
+from solvers.search import Found
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from leblanc.results.record import MM, RPM
 from leblanc.scene.optimise import OBJECTIVES, Aim
 from leblanc.scene.scene import Rotor, Scene, Speeds
 from leblanc.studies.optimise.answers import FilledMachine
@@ -24,10 +22,10 @@ from leblanc.studies.optimise.constraints import (
     stability,
 )
 from leblanc.studies.optimise.objectives import AtSpeed, PeakOver, RunupPeak, Vibration
+from leblanc.units import MM, RPM
+from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.search import Found
-
-Array = NDArray[np.float64]
 
 COARSE_CELLS = 64  # of a run-up while the search goes on
 GROWTH_SPEEDS = 65  # at which the growth of small whirls is looked at

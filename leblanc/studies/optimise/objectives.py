@@ -8,13 +8,10 @@ from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from leblanc.scene.scene import Scene, Speeds
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
+from meshes.arrays import Array, Flags, Index
 
 
 class Vibration(Protocol):
@@ -111,8 +108,6 @@ class RunupPeak(AlwaysExact):
             self._known[key] = float(run.amplitude.max()) if run.converged else math.inf
         return self._known[key]
 
-
-Index = NDArray[np.intp]
 
 _EQUAL = 1e-9  # relative
 _COARSE = 16  # speeds at which a peak is first looked for

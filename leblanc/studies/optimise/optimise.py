@@ -7,10 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.whirl import is_full
-from leblanc.results.record import RPM
 from leblanc.scene.machine import require_clear
 from leblanc.scene.optimise import Aim
 from leblanc.scene.scene import Scene, Speeds
@@ -31,10 +29,10 @@ from leblanc.studies.optimise.judge import Goal, goal_of, growth_speeds
 from leblanc.studies.optimise.objectives import RunupPeak
 from leblanc.studies.optimise.search import best_volumes, bounds_of, judged_again, on_all_cells
 from leblanc.studies.validity import RANGES
+from leblanc.units import RPM
+from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.search import Found, Judgement
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

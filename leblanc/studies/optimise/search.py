@@ -7,7 +7,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from leblanc.scene.machine import jeffcott
 from leblanc.scene.optimise import Aim
@@ -16,10 +15,9 @@ from leblanc.studies.choose import axial_gravity
 from leblanc.studies.optimise.closed_form import covering
 from leblanc.studies.optimise.judge import Goal
 from leblanc.studies.optimise.objectives import PeakOver, RunupPeak
+from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.search import Found, Judgement, SearchPlan, search
-
-Array = NDArray[np.float64]
 
 # Where an answer costs tens of milliseconds and more.
 _SPARING = SearchPlan(

@@ -8,13 +8,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from leblanc import units
 from leblanc.scene.rules import Entries, Quantity, Refused, Whole
+from meshes.arrays import Array
 from meshes.errors import InputError
-
-Array = NDArray[np.float64]
 
 MAX_LEVELS = 1_000_000
 MAX_CHOICES = 1000

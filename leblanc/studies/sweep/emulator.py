@@ -14,14 +14,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from leblanc.studies.sweep.outputs import DONE, SINGLE
 from leblanc.studies.sweep.store import Store, read_store
+from meshes.arrays import Array, Flags
 from meshes.errors import InputError
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 LEAST = 10  # samples for each varied value
 MOST = 400  # samples a process learns from; its cost grows with their cube

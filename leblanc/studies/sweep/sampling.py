@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from leblanc.studies.sweep.distributions import Choice, Levels
 from leblanc.studies.sweep.study import Sweep, VariedField
+from meshes.arrays import Array
 
-Array = NDArray[np.float64]
 Rows = Callable[[int, int], Array]
 
 _SOBOL_CELL = 2.0**-30  # points of the sequence are multiples of it

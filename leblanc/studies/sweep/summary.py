@@ -15,8 +15,7 @@ from leblanc.studies.sweep.sampling import sample_rows
 from leblanc.studies.sweep.sensitivity import Sensitivity, sensitivity
 from leblanc.studies.sweep.store import Store
 from leblanc.studies.sweep.study import Sweep
-
-Array = NDArray[np.float64]
+from meshes.arrays import Array
 
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 OVER_SPEED = ("amplitude", "amplitude_dry")

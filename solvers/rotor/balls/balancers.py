@@ -8,14 +8,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.rotor.balls.motion import energy
 from solvers.rotor.system import RotorSystem
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 MOST_STEPS = 100_000_000  # about ten minutes
 

@@ -6,12 +6,10 @@ import math
 from dataclasses import astuple, dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.rotor.system import RotorSystem
-
-Array = NDArray[np.float64]
 
 # Rolling inertia over that of the sliding mass, m R^2 [YF17, eq. 7].
 ROLLING = {"ball": 7.0 / 5.0, "roller": 3.0 / 2.0}

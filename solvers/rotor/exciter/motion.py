@@ -8,13 +8,12 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.rotor.exciter.machine import Dimensionless, platform_motion
 from solvers.rotor.exciter.stuck import CharacteristicSpeeds, characteristic_speeds, stuck_speeds
-
-Array = NDArray[np.float64]
 
 # Coefficients of 1, delta, h, b: numerators and denominators of g1, g2, g3 [YF17, eq. 20].
 _PRINTED = (

@@ -6,11 +6,9 @@ from typing import Any
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from meshes.arrays import Array
 from solvers.rotor.exciter import machine as exciter
-
-Array = NDArray[np.float64]
 
 _jit: Any = njit(cache=True, error_model="numpy", nogil=True)
 _rates: Any = _jit(exciter.rates)

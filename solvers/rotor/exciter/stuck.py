@@ -8,13 +8,12 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import polynomial
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.roots import bracketed_root
 from solvers.rotor.exciter.machine import Dimensionless
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
