@@ -28,7 +28,7 @@ _HOMES = {
     "SceneError": ("leblanc.scene.faults", "SceneFaults"),
 }
 
-__all__ = list(_HOMES)  # noqa: PLE0604 - strings all of them
+__all__ = ["Chamber", "Fill", "InputError", "Liquid", "Scene", "SceneError", "load_scene"]
 
 
 def __getattr__(name: str) -> Any:

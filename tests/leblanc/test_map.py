@@ -237,7 +237,7 @@ def test_figure_has_units_on_every_axis(law: Friction) -> None:
 
 
 def test_validation_agrees() -> None:
-    from validation.whirl import cases
+    from validation.cases.whirl import cases
 
     found = cases()
     assert len(found) == 15 and {one.verdict for one in found} == {"agrees"}

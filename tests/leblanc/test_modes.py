@@ -21,7 +21,7 @@ from meshes.section import Section, disc
 from solvers.sloshing.damping import mode_damping
 from solvers.sloshing.system import condense
 from tests.solvers.sloshing_oracles import ring_decay, sector_frequencies
-from validation.baffle_table import RADIUS, SPIN, SURFACE, baffle_row, markdown
+from validation.figures.baffle_table import RADIUS, SPIN, SURFACE, baffle_row, markdown
 
 R, A, H = 0.15, 0.135, 0.05
 VOLUME = math.pi * (R**2 - A**2) * H

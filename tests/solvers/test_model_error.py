@@ -26,12 +26,7 @@ from solvers.synchronous.models import Statics, synchronous_model
 from solvers.synchronous.pairs import PlanarMachine, pair_machines
 from solvers.synchronous.planar import machine_responses
 from tests.leblanc.test_runup import history_of
-from validation.model_error import (
-    gravity_sample,
-    linear_sample,
-    random_machines,
-    run_up_sample,
-)
+from validation.extremes.model_error import gravity_sample, linear_sample, random_machines, run_up_sample
 
 WATER = KNOWN_LIQUIDS["water"]
 G = 9.81
