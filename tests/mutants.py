@@ -1,8 +1,8 @@
 """Mutants: one wrong sign, factor or moment put into one function, which an oracle must catch.
 
-`@kills(function, right, wrong)` above a test says that the test fails while `wrong` stands for `right` in that
-function. The test runs once as it stands and once for each of its mutants (`tests/conftest.py`); a mutant that
-the test does not notice fails. `pytest -m mutant` runs the mutants alone, `-m "not mutant"` the tests alone.
+`@kills(function, right, wrong)` above a test says that the test fails while `wrong` stands for `right` in
+that function. The test runs once as it stands and once with each of its mutants (`tests/conftest.py`), which
+it must notice. `pytest -m mutant` runs the mutants alone, `-m "not mutant"` the tests alone.
 """
 
 from __future__ import annotations
@@ -108,10 +108,10 @@ def _wrong_code(mutant: Mutant, name: str, path: Path, first_line: int) -> types
         and node.name == last_name
         and min([node.lineno, *(d.lineno for d in node.decorator_list)]) == first_line
     )
-    before, body, after = lines[: node.lineno - 1], lines[node.lineno - 1 : node.end_lineno], lines[node.end_lineno :]
-    source = "".join(body)
+    first, last = node.lineno - 1, node.end_lineno
+    source = "".join(lines[first:last])
     assert source.count(mutant.right) == 1, f"{mutant}: stands there {source.count(mutant.right)} times"
-    text = "".join([*before, source.replace(mutant.right, mutant.wrong), *after])
+    text = "".join([*lines[:first], source.replace(mutant.right, mutant.wrong), *lines[last:]])
     whole = compile(text, str(path), "exec", dont_inherit=True)
     return next(c for c in _codes(whole) if c.co_name == last_name and c.co_firstlineno == first_line)
 
