@@ -32,6 +32,7 @@ from solvers.ross import (
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.synchronous.planar import synchronous_response
 from solvers.whirl.growth import asynchronous_growth
+from tests.mutants import kills
 from validation.benchmarks import peer_ross
 
 CHAMBER = Chamber(radius=0.15, height=0.01)
@@ -94,7 +95,10 @@ def close(found: Any, wanted: Any, relative: float, size: float) -> None:
     assert np.abs(np.asarray(found) - np.asarray(wanted)).max() <= relative * size
 
 
-def check_field() -> None:
+@kills("solvers.ross:dynamic_stiffness", "* (1.0 + offset)", "* (1.0 - offset)")
+@kills("solvers.ross:dynamic_stiffness", "-layer.mass * np.square(w)", "layer.mass * np.square(w)")
+@kills("solvers.ross:dynamic_stiffness", "rate = layer.rate + stokes", "rate = 2.0 * layer.rate + stokes")
+def test_field() -> None:
     # Two 2 x 2 systems with condition numbers below 1e3: 1e-12 leaves room for rounding only.
     for whirl in (-55.0, -20.0, 13.0, 33.0, 40.0, 61.0):
         found = complex(dynamic_stiffness(FILL, 40.0, whirl, linear(RATE)))
@@ -102,7 +106,11 @@ def check_field() -> None:
         close(found, wanted, 1e-12, abs(wanted))
 
 
-def check_laminar() -> None:
+@kills("solvers.ross:dynamic_stiffness", "slip = w - omega", "slip = w + omega")
+@kills(
+    "solvers.ross:dynamic_stiffness", "stokes_rate(layer.stokes, slip)", "stokes_rate(layer.stokes, -slip)"
+)
+def test_laminar() -> None:
     # Seen from the drum the whirl runs backward, s < 0: the wall layer lags the other way round, and its drag
     # sqrt(i nu s) has equal real and negative imaginary parts.
     whirl, spin = 33.0, 40.0
@@ -111,7 +119,15 @@ def check_laminar() -> None:
     close(complex(dynamic_stiffness(FILL, spin, whirl, (STOKES, 0.0))), wanted, 1e-12, abs(wanted))
 
 
-def check_both_whirls() -> None:
+@kills("solvers.ross:liquid_coefficients", "0.5 * (forward + backward)", "0.5 * (forward - backward)")
+@kills("solvers.ross:liquid_coefficients", "0.5 * (forward - backward)", "(forward - backward)")
+@kills("solvers.ross:liquid_coefficients", "half.imag / w", "mean.imag / w")
+@kills("solvers.ross:liquid_coefficients", "half.real / w", "-half.real / w")
+@kills(
+    "solvers.ross:liquid_coefficients", "mean.real + mass * np.square(w)", "mean.real - mass * np.square(w)"
+)
+@kills("solvers.ross:liquid_coefficients", ", -mean.imag)", ", mean.imag)")
+def test_both_whirls() -> None:
     # Of the order of ten operations on numbers of the size of H and m_f omega^2.
     for whirl in (13.0, 33.0, 40.0, 61.0):
         found = liquid_coefficients(FILL, 40.0, whirl, linear(RATE))
@@ -123,7 +139,8 @@ def check_both_whirls() -> None:
             close(acts_on(found, whirl, shape), wanted, 1e-12, size)
 
 
-def check_synchronous() -> None:
+@kills("solvers.ross:liquid_coefficients", "else fill.full_mass", "else fill.mass")
+def test_synchronous() -> None:
     spins = np.array([5.0, 40.0, 300.0])
     found = liquid_coefficients(FILL, spins, friction=linear(RATE))
     assert np.array_equal(found.mass, FILL.full_mass * np.broadcast_to(np.eye(2), (3, 2, 2)))
@@ -132,7 +149,14 @@ def check_synchronous() -> None:
         close(acts_on(found, spin, FORWARD, i), -full * FORWARD, 1e-12, full)
 
 
-def check_link() -> None:
+@kills(
+    "solvers.ross:liquid_link",
+    "layer.mass * (1.0 + layer.layer_tanh) / (1.0",
+    "layer.mass * (1.0 - layer.layer_tanh) / (1.0",
+)
+@kills("solvers.ross:liquid_link", "2.0 * layer.mass * layer.rate", "layer.mass * layer.rate")
+@kills("solvers.ross:_isotropic", "+ crossed[:, None", "- crossed[:, None")
+def test_link() -> None:
     # The link's matrices have condition numbers below 1e3.
     for whirl in (-55.0, -20.0, 13.0, 33.0, 40.0, 61.0):
         h = field_stiffness(FILL, 40.0, whirl, RATE)
@@ -156,7 +180,9 @@ def recorded() -> Iterator[None]:
         yield
 
 
-def check_names() -> None:
+@kills("solvers.ross:_named", "m[:, i, j]", "m[:, j, i]")
+@kills("solvers.ross:liquid_layer", "np.square(_AXIAL", "(_AXIAL")
+def test_names() -> None:
     """kxy is the force along x for a displacement along y, as ROSS has it."""
     spins = np.array([20.0, 30.0, 40.0, 50.0])
     with recorded():
@@ -176,30 +202,6 @@ def check_names() -> None:
     # The liquid between the chamber's ends is stiff: its axial frequency is ten times the highest spin.
     assert liquid.mass.given["m"] == FILL.mass
     np.testing.assert_allclose(np.sqrt(held["kzz"] / FILL.mass), 500.0, rtol=1e-15)
-
-
-def test_names() -> None:
-    check_names()
-
-
-def test_field() -> None:
-    check_field()
-
-
-def test_laminar() -> None:
-    check_laminar()
-
-
-def test_both_whirls() -> None:
-    check_both_whirls()
-
-
-def test_synchronous() -> None:
-    check_synchronous()
-
-
-def test_link() -> None:
-    check_link()
 
 
 @given(
@@ -262,7 +264,9 @@ def eigenvalues(spin: float, friction: Friction, mass: float, stiffness: float, 
     return np.asarray(np.linalg.eigvals(state))
 
 
-def check_self_excited_band() -> None:
+@kills("solvers.ross:liquid_link", "4.0 * inertia * omega", "2.0 * inertia * omega")
+@kills("solvers.ross:liquid_link", "-2.0 * inertia", "2.0 * inertia")
+def test_self_excited_band() -> None:
     """mu = 0.1, h0/R = 0.1 without damping: unstable from 1.1225 to 1.475 natural frequencies."""
     mass = FILL.full_mass / 0.1
     # The edges are known to a step of 5e-4 omega_n. Two roots meet there and the growth rises with the square
@@ -272,7 +276,8 @@ def check_self_excited_band() -> None:
         assert (found.real.max() > 1e-3) == unstable
 
 
-def check_growth() -> None:
+@kills("solvers.ross:liquid_link", "np.square(omega), damping * omega", "np.square(omega), -damping * omega")
+def test_growth() -> None:
     """The link's roots are those of the whirl's characteristic equation, with both dampings."""
     mass, stiffness, damping = 4.0, 4.4e4, 84.0
     for spin in (60.0, 120.0, 200.0):
@@ -287,18 +292,29 @@ def check_growth() -> None:
             assert min(left) < 1e-9
 
 
-def test_self_excited_band() -> None:
-    check_self_excited_band()
-
-
-def test_growth() -> None:
-    check_growth()
-
-
 PEER = peer_ross.RotorProblem(speed=np.linspace(5.3, 600.0, 12))
 
 
-def check_peer_answer() -> None:
+@kills("validation.benchmarks.peer_ross:RotorProblem.exact", "place @ held", "-place @ held")
+@kills(
+    "validation.benchmarks.peer_ross:RotorProblem.exact",
+    "(rotor.transverse_inertia - rotor.polar",
+    "(rotor.transverse_inertia + rotor.polar",
+)
+@kills(
+    "validation.benchmarks.peer_ross:RotorProblem.exact",
+    "direct * turning - crossed**2",
+    "direct * turning + crossed**2",
+)
+@kills(
+    "validation.benchmarks.peer_ross:RotorProblem.exact",
+    "held.sum(axis=0) - rotor.mass",
+    "held.sum(axis=0) + rotor.mass",
+)
+@kills(
+    "validation.benchmarks.peer_ross:RotorProblem.exact", "turning - arm * crossed", "turning + arm * crossed"
+)
+def test_peer_answer() -> None:
     """The benchmark's closed form against the matrices of the rigid rotor."""
     run = peer_ross.unbalance(PEER)[0].prepare()()
     exact = PEER.exact()
@@ -306,7 +322,15 @@ def check_peer_answer() -> None:
     close(run(), exact, 1e-12, float(np.abs(exact).max()))
 
 
-def check_peer_inertia() -> None:
+@kills(
+    "validation.benchmarks.peer_ross:RotorProblem.rigid", "self.diameter**2 / 16.0", "self.diameter**2 / 8.0"
+)
+@kills(
+    "validation.benchmarks.peer_ross:RotorProblem.rigid",
+    "places - masses @ places",
+    "places + masses @ places",
+)
+def test_peer_inertia() -> None:
     """The rigid rotor's masses against a rod cut into slices, Gauss points along it."""
     nodes, weights = np.polynomial.legendre.leggauss(4)
     z, dz = 0.5 * PEER.length * (nodes + 1.0), 0.5 * PEER.length * weights
@@ -322,14 +346,6 @@ def check_peer_inertia() -> None:
     polar = sum(PEER.polar) + 2.0 * PEER.density * spread * PEER.length
     np.testing.assert_allclose(rotor.polar_inertia, polar, rtol=1e-13)
     np.testing.assert_allclose(rotor.supports[0].position, -middle, rtol=1e-13)
-
-
-def test_peer_answer() -> None:
-    check_peer_answer()
-
-
-def test_peer_inertia() -> None:
-    check_peer_inertia()
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.search import Judge, Judgement, SearchPlan, best_of, search
+from tests.mutants import kills
 
 
 def free(function: Callable[[Array], Array]) -> Judge:
@@ -23,7 +24,10 @@ def solve(judge: Judge, count: int, **more: object):  # type: ignore[no-untyped-
     return search(judge, np.zeros(count), np.ones(count), np.ones(count), **more)  # type: ignore[arg-type]
 
 
-def check_plateau() -> None:
+@kills(
+    "solvers.search:_least_on_axis", "holds = (said.objective <= limit)", "holds = (said.objective >= limit)"
+)
+def test_plateau() -> None:
     """Of a plateau the edge with the least liquid; the slope before it is 1/place, so a hair is 0.2 hairs."""
     for place in (0.0123, 0.4, 3e-4):
         found = solve(free(lambda x, k=place: np.maximum(1.0 - 0.8 * x[:, 0] / k, 0.2)), 1)
@@ -39,14 +43,14 @@ def check_plateau() -> None:
     np.testing.assert_allclose(both.point, (0.012, 0.3), rtol=2e-6)
 
 
-def check_jump() -> None:
+def test_jump() -> None:
     """The value falls by a jump and rises again: the best is just behind it."""
     found = solve(free(lambda x: np.where(x[:, 0] < 0.4567, 3.0 + x[:, 0], 2.0 + x[:, 0])), 1)
     # Closed in to 1e-6 of its place, on the good side.
     assert 0.4567 <= found.point[0] <= 0.4567 * (1.0 + 2e-6)
 
 
-def check_global() -> None:
+def test_global() -> None:
     """A narrow valley beside a wide one that is less deep."""
     for place in (0.004, 0.05, 0.62):
         width = 0.25 * place
@@ -57,7 +61,8 @@ def check_global() -> None:
         assert solve(free(two), 1).objective == pytest.approx(0.5, rel=1e-4)
 
 
-def check_edge() -> None:
+@kills("solvers.search:_along_rays", "low + t[:, None] * one", "low + t[:, None] + 0.0 * one")
+def test_edge() -> None:
     """Least cost where 3 sqrt(x) + 2 sqrt(y) + sqrt(z) >= 1.5: by Lagrange (1.5 (3, 2, 1)/14)^2."""
     weights = np.array([3.0, 2.0, 1.0])
 
@@ -74,7 +79,8 @@ def check_edge() -> None:
         )  # the floor is flat: second order
 
 
-def check_valley() -> None:
+@kills("solvers.search:_exchanges", "moved / cost[i], -moved / cost[j]", "moved / cost[i], moved / cost[j]")
+def test_valley() -> None:
     """A kink that runs slantwise: no axis goes down along it."""
 
     def bent(x: Array) -> Array:
@@ -83,28 +89,26 @@ def check_valley() -> None:
     assert solve(free(bent), 2).objective <= 1.0 + 1e-3
 
 
-def check_infeasible() -> None:
+@kills("solvers.search:best_of", "np.maximum(judged.excess, 0.0)", "np.maximum(-judged.excess, 0.0)")
+def test_infeasible() -> None:
     """Nothing is allowed: the point that exceeds its limits least, whatever its objective."""
     found = solve(lambda x: Judgement(x[:, 0] * 100.0, 0.1 + np.abs(x[:, 0] - 0.37)), 1)
     assert not found.feasible
     assert found.point[0] == pytest.approx(0.37, abs=1e-4)
 
 
-def check_order() -> None:
+@kills(
+    "solvers.search:best_of",
+    "(judged.objective, cost, judged.excess)",
+    "(judged.objective, judged.excess, cost)",
+)
+def test_order() -> None:
     """Less excess before a smaller objective, that before less cost, that before more room to the limits."""
     cost = np.array([1.0, 2.0, 3.0, 4.0])
     assert best_of(Judgement(np.array([1.0, 5.0, 5.0, 9.0]), np.array([0.1, -1.0, -2.0, -9.0])), cost) == 1
     assert best_of(Judgement(np.array([5.0, 5.0, 4.0, 4.0]), -np.ones(4)), cost) == 2
     assert best_of(Judgement(np.array([5.0, 5.0]), np.array([-1.0, -2.0])), np.ones(2)) == 1
     assert best_of(Judgement(np.array([np.inf, 7.0]), np.array([0.5, 0.6])), np.ones(2)) == 0
-
-
-@pytest.mark.parametrize(
-    "check",
-    (check_plateau, check_jump, check_global, check_edge, check_valley, check_infeasible, check_order),
-)
-def test_search(check: Callable[[], None]) -> None:
-    check()
 
 
 @settings(max_examples=25)

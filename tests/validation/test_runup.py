@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from fluid.fill import Fill
+from tests.mutants import kills
 from validation.cases import runup
 from validation.cases.scenes import horizontal_rig
 from validation.figures import runup_lag, runup_trends
@@ -43,7 +44,12 @@ def test_the_run_up_with_weak_friction() -> None:
     given_figures(runup.GIVEN[1], 128, 0.01)
 
 
-def check_best_volume() -> None:
+@kills(
+    "validation.cases.runup:best_volume",
+    "optimal_volume(CHAMBER, deflection, RAMP.stop, _GRAVITY)",
+    "optimal_volume(CHAMBER, deflection, RAMP.start, _GRAVITY)",
+)
+def test_best_volume() -> None:
     """The fast-spin limit pi h_c (R^2 - (R - e)^2), less at most what the paraboloid leans back."""
     e, radius, height = 2.78e-3, 0.25, 0.04
     limit = math.pi * height * (radius**2 - (radius - e) ** 2)
@@ -52,11 +58,10 @@ def check_best_volume() -> None:
     assert limit - lean < runup.best_volume(e) < limit - 0.5 * lean
 
 
-def test_best_volume() -> None:
-    check_best_volume()
-
-
-def check_steady_end() -> None:
+@kills(
+    "validation.cases.runup:steady_end", "fills, [RAMP.stop], _GRAVITY", "fills[:0], [RAMP.stop], _GRAVITY"
+)
+def test_steady_end() -> None:
     """Beyond the volume that covers the wall the liquid is the added mass m_f; below, it does less."""
     wall = runup.CHAMBER
     full = Fill(wall, runup.known_liquid("water"), 1e-3).full_mass
@@ -68,11 +73,12 @@ def check_steady_end() -> None:
     assert thin > 1.1 * wet
 
 
-def test_steady_end() -> None:
-    check_steady_end()
-
-
-def check_orders() -> None:
+@kills(
+    "validation.figures.runup_lag:orders",
+    "/ math.log(one.rate / other.rate)",
+    "/ math.log(other.rate / one.rate)",
+)
+def test_orders() -> None:
     """Errors in proportion to a power of the rate give that power."""
     one = runup_lag.Lag(
         rate=8.0,
@@ -89,11 +95,17 @@ def check_orders() -> None:
     assert runup_lag.orders(lags) == pytest.approx([2.0, 0.5])
 
 
-def test_orders() -> None:
-    check_orders()
-
-
-def check_lag() -> None:
+@kills(
+    "validation.figures.runup_lag:lag",
+    "np.exp(-1j * exact_angle) / turn_mean(h.liquid_position",
+    "np.exp(1j * exact_angle) / turn_mean(h.liquid_position",
+)
+@kills(
+    "validation.figures.runup_lag:lag",
+    "h.deflection[:, 0] * np.exp(-1j * h.angle)",
+    "h.deflection[:, 0] * np.exp(1j * h.angle)",
+)
+def test_the_lag_of_a_known_run() -> None:
     """A run that shows the steady response, but for a tenth of the peak from half-way on."""
     time = np.linspace(0.0, 10.0, 12001)
     speed = np.linspace(runup_lag.FROM, runup_lag.TO, time.size)
@@ -119,10 +131,6 @@ def check_lag() -> None:
     assert found.angle_error == pytest.approx(0.3, abs=slack)
     wanted = np.interp(np.array([600.0, 900.0, 1000.0, 1100.0, 1200.0, 1300.0]) * RPM, speed, liquid) + 0.3
     assert found.angles == pytest.approx(wanted, abs=slack)
-
-
-def test_the_lag_of_a_known_run() -> None:
-    check_lag()
 
 
 @pytest.mark.slow
@@ -169,13 +177,14 @@ def test_tables_and_figures(tmp_path: Path) -> None:
     assert runup_lag.draw(lags, 0.1, tmp_path).stat().st_size > 10_000
 
 
-def check_steady_response() -> None:
+@kills(
+    "validation.figures.runup_lag:steady",
+    "answer.deflection, -answer.liquid_angle",
+    "answer.deflection_dry, -answer.liquid_angle",
+)
+def test_steady_response_of_the_rig() -> None:
     """At 1000 rpm, the resonance, the liquid is 90 deg behind and w = U0/(2 zeta m)."""
     deflection, angle = runup_lag.steady(np.array([1000.0]) * RPM, 0.1)
     assert angle[0] == pytest.approx(0.5 * math.pi, rel=1e-9)
     mass = 4.0 + sum(fill.full_mass for fill in horizontal_rig())
     assert deflection[0] == pytest.approx(-1j * 6e-4 / (2.0 * 0.1 * mass), rel=1e-9)
-
-
-def test_steady_response_of_the_rig() -> None:
-    check_steady_response()

@@ -21,6 +21,7 @@ from leblanc.cli import main
 from leblanc.results.record import versions
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.studies.runup import planned
+from tests.mutants import kills
 from validation.trade.answers import DISPERSION, RESPONSE, RUNUP, Answer, Case, answer, at_speeds
 from validation.trade.cases import (
     SPEEDS,
@@ -56,7 +57,15 @@ def row(error: float, time: float, spread: float = 0.1, **more: object) -> Row:
     return Row(**(given | more))  # type: ignore[arg-type]
 
 
-def check_dominates() -> None:
+@kills("validation.trade.judge:dominates", "one.error <= other.error + own", "one.error <= other.error - own")
+@kills("validation.trade.judge:dominates", "one.time + noise < other.time", "one.time - noise < other.time")
+@kills(
+    "validation.trade.judge:_noise",
+    "one.spread * one.time, other.spread * other.time,",
+    "one.spread * one.time, 0.0 * other.time,",
+)
+@kills("validation.trade.judge:_noise", "_REPRODUCED * min(", "0.0 * min(")
+def test_dominates() -> None:
     """As accurate, closer than the reference being equal, and cheaper by more than the times spread."""
     rival = row(1e-3, 1.0)
     assert dominates(row(5e-4, 0.8), rival, 1e-5)
@@ -71,10 +80,6 @@ def check_dominates() -> None:
     assert not dominates(row(0.0, 1.2), rival, 1e-5)
     assert dominates(rival, row(math.nan, 0.1), 1e-5) and not dominates(row(math.nan, 0.1), rival, 1e-5)
     assert not dominates(row(math.nan, 0.1), row(math.nan, 1.0), 1e-5)
-
-
-def test_dominates() -> None:
-    check_dominates()
 
 
 @given(
@@ -96,7 +101,14 @@ def ladder_question(name: str = RUNUP) -> Question:
     return Question(name, scene(), "made up", cases, cases[0], cases)
 
 
-def check_reference_error() -> None:
+@kills("validation.trade.judge:reference_error", "fine / (2.0**order - 1.0)", "fine / 2.0**order")
+@kills("validation.trade.judge:reference_error", "math.log2(coarse / fine)", "math.log2(fine / coarse)")
+@kills(
+    "validation.trade.judge:reference_error",
+    "return max(coarse, fine), math.nan",
+    "return min(coarse, fine), math.nan",
+)
+def test_reference_error() -> None:
     """Answers a + c/N^p: the order is p and the finest one's error exactly c/512^p, seen against itself."""
     shape = np.array([1.0, 2.0, 0.5])
     for order in (1.0, 2.0, 3.5):
@@ -114,11 +126,18 @@ def check_reference_error() -> None:
     assert math.isnan(reference_error(ladder_question(), lost)[0])
 
 
-def test_reference_error() -> None:
-    check_reference_error()
-
-
-def check_errors() -> None:
+@kills(
+    "validation.trade.judge:errors",
+    "np.linalg.norm(gap) / np.linalg.norm(size)",
+    "np.linalg.norm(gap) / largest",
+)
+@kills("validation.trade.judge:errors", "gap / np.where(size > 0.0, size, largest)", "gap / largest")
+@kills(
+    "validation.trade.judge:errors",
+    "float(found.values.max()) / largest - 1.0",
+    "float(found.values[-1]) / largest - 1.0",
+)
+def test_errors() -> None:
     """A response by its worst speed, a history by its root mean square, both with the error of the peak."""
     best = said([1.0, 10.0, 2.0])
     found = said([1.1, 9.0, 2.0])
@@ -131,11 +150,9 @@ def check_errors() -> None:
     assert errors(RUNUP, said([0.0, 0.0]), said([0.0, 0.0])) == (0.0, 0.0)
 
 
-def test_errors() -> None:
-    check_errors()
-
-
-def check_recommend() -> None:
+@kills("validation.trade.judge:recommend", "if rows[k].error <= tolerance]", "if rows[k].error >= tolerance]")
+@kills("validation.trade.judge:recommend", "best = min(within,", "best = max(within,")
+def test_recommend() -> None:
     """The cheapest within the tolerance; the default if it costs no more; the best if nothing is within."""
     rows = [row(1e-4, 1.0), row(5e-3, 0.3), row(2e-2, 0.1), row(1e-5, 9.0)]
     assert recommend(rows, 1e-6, 0.01) == 1
@@ -147,10 +164,6 @@ def check_recommend() -> None:
     assert recommend([row(1e-4, 1.0), row(1e-4, 0.5, note="other physics")], 1e-6, 0.01) == 0
     assert recommend([row(1e-4, 1.0), row(1e-4, 0.5, selectable=False)], 1e-6, 0.01) == 0
     assert recommend([row(math.nan, 1.0)], 1e-6, 0.01) == -1
-
-
-def test_recommend() -> None:
-    check_recommend()
 
 
 def record() -> TradeRecord:
@@ -181,7 +194,15 @@ def record() -> TradeRecord:
     return TradeRecord("Made up", "", ("rotor.mass",), "0", 0.01, (found,))
 
 
-def check_compare() -> None:
+@kills(
+    "validation.trade.judge:_spread", "np.median(times) / min(times) - 1.0", "max(times) / min(times) - 1.0"
+)
+@kills(
+    "validation.trade.judge:_judged",
+    "overhead=rows[0].time / twin - 1.0",
+    "overhead=twin / rows[0].time - 1.0",
+)
+def test_compare() -> None:
     """Default first, its twin's price, front and advice, as laid out in `record`."""
     one = record().comparisons[0]
     by = {r.label: r for r in one.rows}
@@ -199,10 +220,6 @@ def check_compare() -> None:
     # A single time takes the worst spread of the others.
     assert stands.repeats == 1 and stands.spread == pytest.approx(0.05)
     assert "other physics" in by["long_wave 32, dispersion"].note
-
-
-def test_compare() -> None:
-    check_compare()
 
 
 def test_words_and_json() -> None:
@@ -230,7 +247,8 @@ def test_words_and_json() -> None:
     assert "nothing is within" in recommendation(one, 1e-9)
 
 
-def check_speeds() -> None:
+@kills("validation.trade.cases:telling_speeds", "chosen = [top, speed.size - 1]", "chosen = [0]")
+def test_speeds() -> None:
     """The steady peak and the last speed are among them, and none at which gravity holds the liquid down."""
     for name in ("tub", "runup"):
         machine = scene(name)
@@ -247,11 +265,9 @@ def check_speeds() -> None:
     assert telling_speeds(few).size == 4
 
 
-def test_speeds() -> None:
-    check_speeds()
-
-
-def check_passage() -> None:
+@kills("validation.trade.cases:passage", "_HELD * _capture(scene)", "_capture(scene)")
+@kills("validation.trade.cases:passage", "length = (stop - start) / plan.rate", "length = stop / plan.rate")
+def test_passage() -> None:
     """Within the scene's own run-up; with gravity across, from four times that at the surface on."""
     for name, passes in (("runup", True), ("washing_machine", False)):
         machine = scene(name)
@@ -267,10 +283,6 @@ def check_passage() -> None:
         values = answer(replace(machine, runup=cut), Case(RUNUP, "long_wave", 32)).values
         top = int(np.argmax(values))
         assert not passes or 0 < top < values.size - 1
-
-
-def test_passage() -> None:
-    check_passage()
 
 
 def test_same_answer_alone() -> None:
@@ -311,7 +323,8 @@ def test_memory_is_that_of_the_run() -> None:
     assert 0.98 * size <= int(told.stdout) <= 1.1 * size + 4e6
 
 
-def check_exciter() -> None:
+@pytest.mark.slow
+def test_exciter() -> None:
     """Integration is of fourth order, and the formulas, of first order in a small number, are near it."""
     question = exciter_question(scene("vibratory_table"), quick=True)
     found = error_table(question, question.cases[:3])
@@ -319,11 +332,6 @@ def check_exciter() -> None:
     # Against 48 steps, which have a sixteenth of the error of 24: 15/16 and 255/256 of the errors are seen.
     assert math.log2(coarse / fine) == pytest.approx(4.0, abs=0.3)
     assert 1e-4 < found["formulas"][0] < 2e-2
-
-
-@pytest.mark.slow
-def test_exciter() -> None:
-    check_exciter()
 
 
 def test_response_ladder() -> None:
@@ -336,7 +344,8 @@ def test_response_ladder() -> None:
     assert not answer(cut.scene, Case(RESPONSE, "long_wave", 16)).in_range
 
 
-def check_labels() -> None:
+@kills("validation.trade.figure:_label", "sum(map(box.overlap, taken))", "0.0 * sum(map(box.overlap, taken))")
+def test_labels() -> None:
     """No two labels of the figure overlap, and no label leaves its axes."""
     found = record()
     one = found.comparisons[0]
@@ -354,10 +363,6 @@ def check_labels() -> None:
         assert frame.contains(box.x0, box.y0) and frame.contains(box.x1, box.y1)
         assert not any(box.overlaps(other) for other in boxes[:k])
     assert axes.get_xscale() == axes.get_yscale() == "log"
-
-
-def test_labels() -> None:
-    check_labels()
 
 
 def test_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

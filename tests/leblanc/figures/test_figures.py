@@ -20,28 +20,9 @@ from matplotlib.transforms import Bbox
 from leblanc import figures
 from leblanc.figures import chamber, curves
 from leblanc.results.record import ChamberRecord
-from tests.leblanc import faults_results as oracles
 from tests.oracles.records import EXTREMES, RPM, dry_deflection, folded, record_of, response_of, rig
 
 DRAW = (figures.amplitude_figure, figures.liquid_figure, figures.phase_figure, figures.chamber_figure)
-
-
-@pytest.mark.parametrize(
-    "oracle",
-    [
-        oracles.lags_stay_in_one_piece,
-        oracles.curves_have_their_units,
-        oracles.branches_are_followed_through_the_fold,
-        oracles.thinning_keeps_peaks_and_troughs,
-        oracles.spans_reach_half_way,
-        oracles.drawn_liquid_has_its_area_and_moment,
-        oracles.chords_end_on_the_circle,
-        oracles.drawing_keeps_wet_wet_and_dry_dry,
-        oracles.top_axis_is_in_radians_per_second,
-    ],
-)
-def test_oracles(oracle):
-    oracle()
 
 
 def line(figure: Figure, label: str, axes: int = 0):

@@ -19,15 +19,16 @@ from leblanc import figures
 from leblanc.figures import wave
 from leblanc.figures.wave import WaveHistory, WaveRecord
 from meshes.errors import InputError
-from tests.leblanc import faults_wave_figures as oracles
-from tests.leblanc.faults_wave_figures import R, bore, caption, eccentric, labelled, marked, running
-
-ORACLES = tuple(dict.fromkeys(fault.oracle for fault in oracles.FAULTS))
-
-
-@pytest.mark.parametrize("oracle", ORACLES, ids=lambda oracle: oracle.__name__)
-def test_oracles(oracle):
-    oracle()
+from tests.leblanc.figures.test_wave_values import (
+    R,
+    bore,
+    caption,
+    eccentric,
+    ends,
+    labelled,
+    marked,
+    running,
+)
 
 
 def nothing() -> WaveRecord:
@@ -233,7 +234,7 @@ def test_arrow_grows_with_the_deflection():
     lengths = []
     for index in range(3):
         show(index)
-        lengths.append(abs(oracles.ends(marked(figure.axes[0], "deflection"))))
+        lengths.append(abs(ends(marked(figure.axes[0], "deflection"))))
     assert math.isnan(lengths[0])
     assert lengths[1] == pytest.approx(0.5 * lengths[2])
     assert figure.axes[0].get_title() == "t = 0.50 s"

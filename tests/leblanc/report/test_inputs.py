@@ -191,7 +191,7 @@ def number(text: str) -> float:
     return float(text.split()[0].strip("(,").replace("\N{MINUS SIGN}", "-"))
 
 
-def check_units() -> None:
+def test_units() -> None:
     """Every text gives the value of the file back in the unit that stands beside it."""
     found = told(scene_inputs(scene_from_table(full("jeffcott"))))
     stiffness = 4.0 * (1000.0 * 2.0 * math.pi / 60.0) ** 2
@@ -218,7 +218,7 @@ def check_units() -> None:
     assert found["optimise.stability_margin"] == "at least 0.25 1/s"
 
 
-def check_units_of_other_rotors() -> None:
+def test_units_of_other_rotors() -> None:
     planes = told(scene_inputs(scene_from_table(full("two_plane", motor=True))))
     for path, value in {
         "rotor.transverse_inertia": 0.7, "rotor.polar_inertia": 0.2, "rotor.supports.0.position": -300.0,
@@ -241,11 +241,6 @@ def check_units_of_other_rotors() -> None:
         "rotor.balls.track_radius": 90.0, "rotor.balls.damping": 0.03,
     }.items():  # fmt: skip
         assert math.isclose(number(table[path]), value, rel_tol=6e-4), path
-
-
-@pytest.mark.parametrize("check", [check_units, check_units_of_other_rotors])
-def test_units(check: Any) -> None:
-    check()
 
 
 def test_values_that_the_report_does_not_need_stand_apart() -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import tomllib
-from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import cache
 from pathlib import Path
@@ -94,7 +93,7 @@ def small_map() -> StabilityRecord:
     return map_scene(scene_from_table(example("horizontal_rig", 9)), 7, 40)
 
 
-def check_map_numbers(record: StabilityRecord | None = None) -> None:
+def test_map_numbers(record: StabilityRecord | None = None) -> None:
     record = small_map() if record is None else record
     found = dict(report_map.facts(record))
     k, j = np.unravel_index(np.argmax(record.growth), record.growth.shape)
@@ -115,7 +114,7 @@ def check_map_numbers(record: StabilityRecord | None = None) -> None:
         assert row[1].text == ("; ".join(edges) or "none")
 
 
-def check_map_warnings() -> None:
+def test_map_warnings() -> None:
     record = small_map()
     calm = replace(
         record, growth=-np.ones_like(record.growth), scene_edges=(), in_range=np.ones_like(record.in_range)
@@ -189,7 +188,7 @@ def optimum() -> OptimumRecord:
     return optimise_scene(scene_from_table(example("centrifuge", 9)), front=True)
 
 
-def check_optimum_numbers() -> None:
+def test_optimum_numbers() -> None:
     record = optimum()
     (row,) = report_optimise.volumes(record).rows
     (form,), (fill,) = record.covering, record.scene.chambers
@@ -223,7 +222,7 @@ def check_optimum_numbers() -> None:
             assert row[1].text == printed(record.volume[0] * 1e6)
 
 
-def check_optimum_warnings() -> None:
+def test_optimum_warnings() -> None:
     """With constraints kept and nothing growing no row is marked; each trouble marks its own."""
     record = optimum()
     calm = replace(
@@ -311,7 +310,7 @@ def run() -> RunupRecord:
     return runup_scene(lying(runup={"start": 3.0, "stop": 30.0, "rate": 20.0, "back": True, "duration": 2.0}))
 
 
-def check_runup_numbers() -> None:
+def test_runup_numbers() -> None:
     record = run()
     h = record.history
     rows = {row[0].text: [cell.text for cell in row[1:]] for row in report_runup.moments(record).rows}
@@ -369,7 +368,7 @@ def calm_run() -> RunupRecord:
     return replace(record, history=history, in_range=np.ones_like(record.in_range), bands=())
 
 
-def check_runup_warnings() -> None:
+def test_runup_warnings() -> None:
     record = calm_run()
     h = record.history
     assert not any(cell.warning for row in report_runup.checks(record).rows for cell in row)
@@ -400,7 +399,7 @@ def check_runup_warnings() -> None:
         assert [(row[0].text, row[1].text) for row in rows if row[1].warning] == [(heading, text)]
 
 
-def check_events() -> None:
+def test_events() -> None:
     """When liquid is captured and let go, by the samples at which its state changes."""
     record = run()
     h = record.history
@@ -477,7 +476,7 @@ def exciter() -> ExciterRecord:
     return run_exciter(scene_from_table(example("vibratory_table", 6)))
 
 
-def check_exciter_numbers() -> None:
+def test_exciter_numbers() -> None:
     record = exciter()
     found = dict(report_exciter.facts(record))
     first, through, last = (one * RPM for one in record.characteristic)
@@ -509,7 +508,7 @@ def check_exciter_numbers() -> None:
             assert [row[3].text, row[4].text] == [printed(one.slow * 1e3), printed(one.fast * 1e3)]
 
 
-def check_exciter_warnings() -> None:
+def test_exciter_warnings() -> None:
     record = exciter()
     calm = replace(record, dual_frequency=np.ones_like(record.dual_frequency))
     assert not any(cell.warning for row in report_exciter.checks(calm).rows for cell in row)
@@ -542,17 +541,6 @@ def test_exciter_report_is_the_json(tmp_path: Path) -> None:
     assert ("Balls do not stick" in page.warnings()) == (not all(answer["dual_frequency"]))
     assert len(page.addresses) == 1
     check_command(page, "run", "")
-
-
-CHECKS: tuple[Callable[[], None], ...] = (
-    check_map_numbers, check_map_warnings, check_optimum_numbers, check_optimum_warnings, check_runup_numbers,
-    check_runup_warnings, check_events, check_exciter_numbers, check_exciter_warnings,
-)  # fmt: skip
-
-
-@pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.__name__)
-def test_oracles(check: Callable[[], None]) -> None:
-    check()
 
 
 def test_reports_of_one_scene_do_not_overwrite_one_another() -> None:

@@ -50,7 +50,7 @@ def page_of(record: StudyRecord, folder: Path, figures: Sequence[FigureFiles] = 
     return read_page(path)
 
 
-def check_comparisons() -> None:
+def test_comparisons() -> None:
     record = rig()
     r = record.response
     largest, at, last, critical = report_run.comparisons(record)
@@ -76,7 +76,7 @@ def check_comparisons() -> None:
     assert math.isclose(float(found["Mass of the liquid"].split()[0]), record.liquid_mass * 1000.0, **close)
 
 
-def check_ranges() -> None:
+def test_ranges() -> None:
     speed = np.array([100.0, 200.0, 300.0, 400.0, 500.0, 600.0]) * RPM
     holds = np.array([False, True, True, False, True, False])
     assert ranges(speed, holds) == "200 to 300; 500 rpm"
@@ -126,7 +126,7 @@ def troubled() -> dict[str, tuple[StudyRecord, str]]:
     }  # fmt: skip
 
 
-def check_warnings() -> None:
+def test_warnings() -> None:
     calm = report_run.checks(quiet(), 1e-3)
     assert not any(cell.warning for row in calm.rows for cell in row)
     for heading, (record, where) in troubled().items():
@@ -135,11 +135,6 @@ def check_warnings() -> None:
         (text,) = [row[1].text for row in rows if row[0].text == heading]
         assert text == where, heading
         assert all(row[1].text == "none" for row in rows if row[0].text != heading)
-
-
-@pytest.mark.parametrize("check", [check_comparisons, check_ranges, check_warnings])
-def test_oracles(check) -> None:
-    check()
 
 
 def test_warnings_stand_on_the_page_where_the_flags_say_so(tmp_path: Path) -> None:

@@ -14,7 +14,6 @@ from leblanc.results.netcdf import replacing, write_dataset
 from leblanc.results.record import StudyRecord
 from leblanc.results.response import run_json, to_dataset
 from meshes.errors import InputError
-from tests.leblanc import faults_results as oracles
 from tests.oracles.records import folded, record_of, response_of, rig
 
 CONTRACT = [
@@ -28,20 +27,6 @@ CONTRACT = [
     "stable",
     "model",
 ]
-
-
-@pytest.mark.parametrize(
-    "oracle",
-    [
-        oracles.lag_of_a_damped_rotor,
-        oracles.phase_lies_in_one_turn,
-        oracles.peak_is_the_largest,
-        oracles.json_is_the_record,
-        oracles.dataset_is_the_record,
-    ],
-)
-def test_oracles(oracle):
-    oracle()
 
 
 @pytest.fixture(scope="module", params=[rig, folded, lambda: rig(1)], ids=["rig", "folded", "one speed"])

@@ -6,7 +6,6 @@ import math
 import tomllib
 from dataclasses import FrozenInstanceError
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -16,7 +15,6 @@ from hypothesis import strategies as st
 from fluid.liquid import KNOWN_LIQUIDS, Liquid
 from leblanc.scene.scene import Friction, Rotor, Runup, Scene, Speeds, load_scene, scene_from_table
 from meshes.chamber import Chamber
-from tests.leblanc import faults_scene
 
 TEXT = """
 name = "Rig"
@@ -99,11 +97,6 @@ def test_what_may_be_left_out_has_its_default() -> None:
     scene = read(left_out.replace('source = "a paper"', ""))
     assert (scene.source, scene.assumed, scene.gravity, scene.runup) == ("", (), 9.81, None)
     assert (scene.model.liquid, scene.model.friction) == ("auto", Friction("stokes", 0.0))
-
-
-@pytest.mark.parametrize("fault", faults_scene.FAULTS, ids=str)
-def test_oracles_pass(fault: Any) -> None:
-    fault.oracle()
 
 
 def test_stiffness_and_damping_may_be_given_themselves() -> None:

@@ -24,6 +24,7 @@ from solvers.synchronous.mixed import mixed_coupled, mixed_response
 from solvers.synchronous.planar import synchronous_response
 from tests.leblanc.studies.test_explain import scene as small_scene
 from tests.leblanc.studies.test_runup import scene as upright_scene
+from tests.mutants import kills
 
 EXAMPLES = sorted(
     path.stem for path in Path("examples").glob("*.toml") if 'kind = "exciter"' not in path.read_text()
@@ -39,7 +40,8 @@ def strong(unbalance: float = 6e-3) -> Scene:
     return small_scene(axis="vertical", unbalance=unbalance)
 
 
-def check_within_tolerance() -> None:
+@kills("leblanc.studies.choose:_choice", "linear.wet & (linear.worst <= tolerance)", "linear.worst <= 9.0")
+def test_auto_is_within_its_tolerance() -> None:
     """What `auto` takes differs from the exact equilibrium by no more than it says and no more than asked.
 
     1e-9 stands for the solver's linear limit.
@@ -56,10 +58,6 @@ def check_within_tolerance() -> None:
         assert (np.abs(offset - true) <= slack * true).all()
         np.testing.assert_array_equal(auto.response.dry_patch, exact.response.dry_patch)
         np.testing.assert_array_equal(auto.response.in_range, exact.response.in_range)
-
-
-def test_auto_is_within_its_tolerance() -> None:
-    check_within_tolerance()
 
 
 def test_a_finer_tolerance_takes_the_exact_model_more_often() -> None:
@@ -79,7 +77,13 @@ def test_a_model_that_is_asked_for_is_taken_and_its_error_told() -> None:
     assert "the model asked for" in notes[0] and "more than the tolerance of 1 %" in notes[0]
 
 
-def check_missed() -> None:
+@kills("leblanc.studies.choose:_choice", "linear.worst, ROUNDING) + gravity", "linear.worst, ROUNDING)")
+@kills(
+    "leblanc.studies.choose:across_gravity",
+    'scene.rotor.axis == "horizontal"',
+    'scene.rotor.axis == "vertical"',
+)
+def test_where_the_tolerance_is_not_met() -> None:
     """Across a lying axis gravity spoils slow speeds: no number below capture, a large error above it."""
     choice = choose(small_scene())
     speed = small_scene().speed_array()
@@ -97,10 +101,6 @@ def check_missed() -> None:
     assert "does not ride" in spans[0].reason
 
 
-def test_where_the_tolerance_is_not_met() -> None:
-    check_missed()
-
-
 def test_all_scenes_at_once_are_each_one_alone() -> None:
     scenes = [
         small_scene(), strong(), load_scene("examples/two_plane_rig.toml"), asked(strong(), "linear"),
@@ -114,7 +114,8 @@ def test_all_scenes_at_once_are_each_one_alone() -> None:
         choose_all([small_scene(), asked(small_scene(), "kdv")])
 
 
-def check_mixed() -> None:
+@kills("solvers.synchronous.mixed:_merged", "np.concatenate(wide)[order]", "np.concatenate(wide)")
+def test_mixed_models() -> None:
     """Each speed is answered by its own model, whatever its neighbours take."""
     machine = strong()
     rotor, fills, speed = jeffcott(machine), machine.chambers, machine.speed_array()
@@ -129,10 +130,6 @@ def check_mixed() -> None:
         np.testing.assert_array_equal(count, np.isfinite(whole.branch_deflection[rows]).sum(axis=1))
     assert mixed.model.tolist() == models.tolist()
     np.testing.assert_array_equal(mixed.speed, speed)
-
-
-def test_mixed_models() -> None:
-    check_mixed()
 
 
 def test_mixed_models_of_a_tilting_rotor() -> None:
@@ -185,7 +182,7 @@ def test_reasons_name_what_decides() -> None:
     )
 
 
-def check_run_up_choice() -> None:
+def test_run_up_takes_linear_layers_while_waves_are_small() -> None:
     """Small waves stay linear and agree with long waves as estimated; large ones are done again."""
     mild = {"rotor": {"unbalance": 2e-3}, "model": {"friction": {"linear": "30 1/s"}, "tolerance": 0.01}}
     tame = upright_scene(**mild)
@@ -201,10 +198,6 @@ def check_run_up_choice() -> None:
     assert wild.model == "long_wave" and "with linear layers waves reach" in wild.model_reason
     strict = runup_scene(asked(tame, "auto", 1e-4), check=False)
     assert strict.model == "long_wave"
-
-
-def test_run_up_takes_linear_layers_while_waves_are_small() -> None:
-    check_run_up_choice()
 
 
 def test_what_rules_linear_layers_out() -> None:

@@ -21,6 +21,7 @@ from leblanc.studies.exciter import (
 )
 from meshes.errors import InputError
 from solvers.rotor.exciter.machine import Exciter
+from tests.mutants import kills
 
 ROOT = Path(__file__).parents[3]
 RPM = math.pi / 30.0
@@ -33,7 +34,18 @@ def record() -> ExciterRecord:
     return answer_exciter(MACHINE, np.linspace(10.0, 400.0, 40), "small", ("rotor.unbalance",), checks=4)
 
 
-def check_units() -> None:
+@kills(
+    "leblanc.studies.exciter:answer_exciter",
+    "np.abs(np.array(motions)).T * machine.length",
+    "np.abs(np.array(motions)).T",
+)
+@kills(
+    "leblanc.studies.exciter:answer_exciter",
+    "platform_motion(numbers, n, q) for",
+    "platform_motion(numbers, q, n) for",
+)
+@kills("leblanc.studies.exciter:answer_exciter", "stuck=stuck * unit", "stuck=stuck")
+def test_units() -> None:
     """Amplitudes in metres and speeds in rad/s solve the dimensional equations.
 
     The mean torque of the platform on the balls, N m, against the drag of the race, and the platform as a
@@ -53,7 +65,8 @@ def check_units() -> None:
     assert drag_torque * q == pytest.approx(eaten, rel=1e-9)
 
 
-def check_record() -> None:
+@kills("leblanc.studies.exciter:machine_of", "rolling=rolling", "rolling=rolling + 1.0")
+def test_the_worked_table() -> None:
     """Of the worked table: the source's numbers, loaded [YF17, section 5.2], and its scene."""
     machine = machine_of(load_scene(ROOT / "examples" / "vibratory_table.toml").rotor)  # type: ignore[arg-type]
     assert machine.whole_mass == pytest.approx(90.75, rel=1e-12)
@@ -61,14 +74,6 @@ def check_record() -> None:
     assert machine.length == pytest.approx(0.5264e-3, abs=5e-8)
     assert machine.unbalance == pytest.approx(0.1 * 0.105, rel=1e-12)
     assert machine.rolling == 7.0 / 5.0
-
-
-def test_units() -> None:
-    check_units()
-
-
-def test_the_worked_table() -> None:
-    check_record()
 
 
 def test_the_start_of_a_pendulum_is_its_own_inertia() -> None:

@@ -18,6 +18,7 @@ from leblanc.studies.choose import choose
 from leblanc.studies.explain import explain_scene
 from meshes.chamber import Chamber
 from meshes.errors import InputError
+from tests.mutants import kills
 
 RPM = math.pi / 30.0
 
@@ -38,7 +39,22 @@ def scene(**rotor: object) -> Scene:
     return scene_from_table(table(**rotor))
 
 
-def check_numbers() -> None:
+@kills("fluid.numbers:layer_numbers", "np.square(spin) * surface / gravity", "spin * surface / gravity")
+@kills("fluid.numbers:layer_numbers", "spin * radius**2 / viscosity", "spin * radius / viscosity")
+@kills(
+    "fluid.numbers:layer_numbers", "np.sqrt(viscosity / spin) / fill.depth", "viscosity / spin / fill.depth"
+)
+@kills(
+    "fluid.fill:Fill.depth",
+    "film / (self.chamber.radius + self.surface_radius)",
+    "film / (2.0 * self.chamber.radius)",
+)
+@kills(
+    "fluid.fill:Fill.surface_radius",
+    "self.chamber.radius**2 - self.volume / (math.pi",
+    "self.chamber.radius**2 - self.volume / (2.0 * math.pi",
+)
+def test_numbers() -> None:
     """Numbers of a layer whose values are round: R = 2, a = 1.2, nu = 0.04."""
     volume = math.pi * (4.0 - 1.44) * 0.5
     fill = Fill(Chamber(2.0, 0.5), Liquid("oil", 900.0, 0.04), volume)
@@ -52,11 +68,8 @@ def check_numbers() -> None:
     np.testing.assert_allclose(n.skin, np.sqrt([4e-3, 4e-4]) / 0.8)
 
 
-def test_numbers() -> None:
-    check_numbers()
-
-
-def check_capture() -> None:
+@kills("leblanc.studies.choose:_choice", "speed > captured_from", "speed < captured_from")
+def test_a_horizontal_axis_needs_capture() -> None:
     """The liquid of a horizontal axis is captured where Omega^2 a exceeds g; a vertical axis needs none."""
     lying = choose(scene())
     assert lying.captured_from is not None
@@ -66,10 +79,6 @@ def check_capture() -> None:
     np.testing.assert_array_equal(lying.in_range, speed > lying.captured_from)
     assert choose(scene(axis="vertical")).captured_from is None
     assert choose(scene(axis="vertical")).in_range.all()
-
-
-def test_a_horizontal_axis_needs_capture() -> None:
-    check_capture()
 
 
 @pytest.mark.parametrize("model", ["long_wave", "kdv"])

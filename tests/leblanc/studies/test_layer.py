@@ -17,6 +17,7 @@ from leblanc.results.layer import LayerAnswer
 from leblanc.studies.layer import answer_layer, steady_film
 from meshes.chamber import Chamber
 from solvers.layer.prescribed import Whirl
+from tests.mutants import kills
 
 R, A, H, SPIN = 0.15, 0.135, 0.01, 40.0
 VOLUME = math.pi * (R**2 - A**2) * H
@@ -30,7 +31,15 @@ def _first_moment(answer: LayerAnswer) -> float:
     return float(np.mean((R**3 - surface**3) / 3.0 * np.cos(answer.theta)) / area)
 
 
-def check_statics() -> None:
+@kills(
+    "leblanc.studies.layer:_statics", "moment / fill.volume - amplitude", "moment / fill.volume + amplitude"
+)
+@kills(
+    "leblanc.studies.layer:_statics",
+    "- amplitude * np.cos(theta), chamber",
+    "+ amplitude * np.cos(theta), chamber",
+)
+def test_statics() -> None:
     """Synchronous whirl: force of a full drum while the wall is wet; the drawn layer has the offset."""
     for amplitude in (0.001, 0.01):
         answer = answer_layer(FILL, SPIN, SPIN, amplitude, "statics")
@@ -41,10 +50,6 @@ def check_statics() -> None:
         assert amplitude + answer.offset == pytest.approx(force, rel=1e-12)
 
 
-def test_statics() -> None:
-    check_statics()
-
-
 def test_statics_with_a_dry_patch() -> None:
     answer = answer_layer(FILL, SPIN, SPIN, 0.04, "statics")
     assert answer.force_ratio.real < 0.99 and answer.notes
@@ -53,7 +58,13 @@ def test_statics_with_a_dry_patch() -> None:
     assert _first_moment(answer) == pytest.approx(answer.offset.real, rel=1e-3)
 
 
-def check_linear() -> None:
+@kills("leblanc.studies.layer:_linear", "surface + displacement * np.cos", "surface - displacement * np.cos")
+@kills(
+    "leblanc.studies.layer:_linear",
+    "ratio = (chamber.radius / surface) ** 2, whirl.speed / speed",
+    "ratio = (chamber.radius / surface) ** 2, speed / whirl.speed",
+)
+def test_linear() -> None:
     """Asynchronous whirl: momentum of the liquid, and the surface that carries its centre of mass."""
     for whirl in (-10.0, 20.0, 34.0, 46.0, 52.0):
         amplitude = 1e-5
@@ -65,10 +76,6 @@ def check_linear() -> None:
         s, kappa = whirl - SPIN, (R / A) ** 2
         exact = 1.0 - 2.0 * s**2 / ((1.0 - kappa) * whirl**2 + 2.0 * kappa * s**2)
         assert answer.force_ratio == pytest.approx(exact, rel=1e-9)
-
-
-def test_linear() -> None:
-    check_linear()
 
 
 def test_linear_tends_to_statics() -> None:

@@ -20,6 +20,7 @@ from meshes.files.exchange import write_section
 from meshes.section import Section, disc
 from solvers.sloshing.damping import mode_damping
 from solvers.sloshing.system import condense
+from tests.mutants import kills
 from tests.oracles.sloshing import ring_decay, sector_frequencies
 from validation.figures.baffle_table import RADIUS, SPIN, SURFACE, baffle_row, markdown
 
@@ -29,7 +30,18 @@ WATER = known_liquid("water")
 CALL = ["modes", "--radius", "0.15", "--height", "5 cm", "--volume", str(VOLUME), "--speed", "40"]
 
 
-def check_ring() -> None:
+@kills(
+    "leblanc.studies.modes:_error",
+    "np.abs(other / size - 1.0) / (4.0**order - 1.0)",
+    "np.abs(other / size - 1.0)",
+)
+@kills(
+    "leblanc.studies.modes:_exact",
+    "np.where(modes.frequency > 0.0, *both)",
+    "np.where(modes.frequency < 0.0, *both)",
+)
+@kills("leblanc.studies.modes:answer_modes", "damping.rate / size", "damping.rate * size")
+def test_ring() -> None:
     """Frequencies, exact values beside them, errors estimated within a factor of two, damping by hand."""
     answer, _ = answer_modes(Chamber(R, H), VOLUME, WATER, 40.0, 6, Resolution(64, 4))
     exact = np.array(answer.exact, dtype=float)
@@ -45,7 +57,8 @@ def check_ring() -> None:
     assert answer.converged and not answer.notes
 
 
-def check_closed_sectors() -> None:
+@kills("leblanc.studies.modes:table_lines", "k += same", "k += 1")
+def test_closed_sectors() -> None:
     """Six compartments: one frequency six times, against the series of sines."""
     chamber = Chamber(R, H, baffles=Baffles(6))
     answer, _ = answer_modes(chamber, VOLUME, WATER, 40.0, 8, Resolution(96, 4))
@@ -59,9 +72,15 @@ def check_closed_sectors() -> None:
     assert len(lines) == 3 and "stands" in lines[1] and " 6 " in lines[1]
 
 
-def check_file(folder: Path) -> None:
+@kills(
+    "leblanc.studies.modes:section_of_file",
+    "surface_radius_of(section, volume / chamber.height)",
+    "surface_radius_of(section, volume)",
+)
+@kills("leblanc.studies.modes:section_of_file", "[liquid, halved(liquid)]", "[liquid, liquid]")
+def test_file(tmp_path: Path) -> None:
     """A disc from a file, in millimetres, has the ring's waves."""
-    path = folder / "disc.msh"
+    path = tmp_path / "disc.msh"
     write_section(disc(150.0, 96, order=2), path)
     source = SectionSource(path, 1e-3)
     plain, _ = answer_modes(Chamber(R, H), VOLUME, WATER, 40.0, 8)
@@ -130,18 +149,6 @@ def test_a_poor_mesh_is_named(tmp_path: Path) -> None:
     answer, _ = answer_modes(Chamber(R, H), VOLUME, WATER, 40.0, 2, Resolution(32, 2), source)
     assert any(note.startswith("mesh: ") for note in answer.notes)
     assert any("straight sides" in note for note in answer.notes)
-
-
-def test_ring() -> None:
-    check_ring()
-
-
-def test_closed_sectors() -> None:
-    check_closed_sectors()
-
-
-def test_file(tmp_path: Path) -> None:
-    check_file(tmp_path)
 
 
 def test_json(capsys: pytest.CaptureFixture[str]) -> None:

@@ -22,6 +22,7 @@ from leblanc.studies.explain import explain_scene
 from leblanc.studies.run import run_scene
 from solvers.rotor.vibration import orbit, unbalance_response
 from tests.leblanc.studies.test_run import KEYS
+from tests.mutants import kills
 
 SAME = """
 name = "Two views of one rotor"
@@ -56,7 +57,8 @@ def read(rotor: str) -> Scene:
     return scene_from_table(tomllib.loads(SAME.format(rotor=rotor)))
 
 
-def check_one_rotor_two_ways() -> None:
+@kills("leblanc.studies.run:main_critical_speeds", "int(np.argmax(size))", "int(np.argmin(size))")
+def test_one_rotor_two_ways() -> None:
     """All in the middle plane: the record of the planar rotor, dry patches and branches included."""
     one, other = run_scene(read(JEFFCOTT)), run_scene(read(AS_TWO_PLANE))
     np.testing.assert_allclose(other.amplitude, one.amplitude, rtol=1e-8)
@@ -76,11 +78,8 @@ def check_one_rotor_two_ways() -> None:
     assert layers[1].optimal_volume == pytest.approx(layers[0].optimal_volume, rel=1e-6)
 
 
-def test_one_rotor_two_ways() -> None:
-    check_one_rotor_two_ways()
-
-
-def check_explained_mass() -> None:
+@kills("leblanc.studies.explain:explain_scene", "fill.added_mass / bare.mass", "fill.mass / bare.mass")
+def test_explained_mass() -> None:
     """A full chamber of liquid over the rotor's mass; of a tub, over that of tub and drum."""
     for name, mass, density in (("two_plane_rig", 20.0, 998.2), ("tub", 60.7, 1197.0)):
         layer = explain_scene(load_scene(f"examples/{name}.toml")).layers[0]
@@ -91,11 +90,17 @@ def check_explained_mass() -> None:
         )
 
 
-def test_explained_mass() -> None:
-    check_explained_mass()
-
-
-def check_amplitude_of_an_ellipse() -> None:
+@kills(
+    "leblanc.results.record:StudyRecord.amplitude",
+    "np.abs(self.motion.backward)\n",
+    "-np.abs(self.motion.backward)\n",
+)
+@kills(
+    "leblanc.results.record:StudyRecord.amplitude_dry",
+    "np.abs(self.motion.backward_dry)\n",
+    "0.5 * np.abs(self.motion.backward_dry)\n",
+)
+def test_amplitude_of_an_ellipse() -> None:
     """The amplitude reported is the largest radius of the path that the axis runs through."""
     scene = load_scene("examples/tub.toml")
     record = run_scene(replace(scene, chambers=()))
@@ -108,10 +113,6 @@ def check_amplitude_of_an_ellipse() -> None:
         assert record.amplitude[k] == pytest.approx(np.hypot(first, second).max(), rel=2e-6)
     np.testing.assert_allclose(record.amplitude, record.amplitude_dry, rtol=1e-12)
     np.testing.assert_allclose(record.amplitude, orbit(system, answer, 0.0).amplitude, rtol=1e-12)
-
-
-def test_amplitude_of_an_ellipse() -> None:
-    check_amplitude_of_an_ellipse()
 
 
 @pytest.mark.parametrize("name", ["two_plane_rig", "tub"])

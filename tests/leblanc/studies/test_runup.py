@@ -40,6 +40,7 @@ from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.runup.drive import Motor, Ramp
 from solvers.runup.runup import EnergyAudit, RunupHistory
+from tests.mutants import kills
 
 RPM = math.pi / 30.0
 WATER = known_liquid("water")
@@ -90,7 +91,13 @@ def record() -> RunupRecord:
 # --- means over turns ------------------------------------------------------------------------------------
 
 
-def check_turn_mean() -> None:
+@kills(
+    "leblanc.studies.runup:turn_mean",
+    "math.pi * np.maximum(1.0, np.ceil(",
+    "math.pi * np.maximum(0.5, 0.5 * np.ceil(",
+)
+@kills("leblanc.studies.runup:turn_mean", "/ (2.0 * half))", "/ half)")
+def test_turn_mean() -> None:
     """What stands in the drum stays, what stands in space goes: the trapezium is exact for one harmonic.
 
     At an even spin all windows hold whole numbers of samples, so nothing is left but rounding.
@@ -102,16 +109,12 @@ def check_turn_mean() -> None:
         assert np.abs(turn_mean(values, angle) - steady).max() < 1e-10 * angle.size
 
 
-def check_lines() -> None:
+@kills("leblanc.studies.runup:turn_mean", "0.5 * (values[1:] + values[:-1])", "values[1:]")
+def test_lines() -> None:
     """What grows in proportion to the angle is its own mean: an even spin, where the trapezium is exact."""
     angle = np.linspace(0.0, 60.0 * math.pi, 961)  # 32 samples to a turn
     middle = (angle > 2.0 * math.pi) & (angle < 58.0 * math.pi)
     assert np.abs(turn_mean(angle + 0j, angle) - angle)[middle].max() < 1e-9
-
-
-def test_means_over_turns() -> None:
-    check_turn_mean()
-    check_lines()
 
 
 @given(st.floats(1.0, 500.0), st.floats(-50.0, 50.0), st.floats(-1e-2, 1e-2), st.floats(-1e-2, 1e-2))
@@ -138,7 +141,9 @@ def test_a_mean_over_turns_of_few_samples() -> None:
 # --- what is asked ---------------------------------------------------------------------------------------
 
 
-def check_drive() -> None:
+@kills("leblanc.studies.runup:drive_of", "plan.rate, plan.duration", "plan.duration, plan.rate")
+@kills("leblanc.studies.runup:drive_of", "Motor(plan.start, motor", "Motor(plan.stop, motor")
+def test_drive() -> None:
     """The ramp of a scene as its file says it."""
     plan = scene(runup={"back": True}).runup
     assert plan is not None
@@ -150,10 +155,6 @@ def check_drive() -> None:
     driven = scene(runup={"start": 20.0, "stop": 40.0, "rate": None, "motor": curve, "duration": 3.0})
     motor = drive_of(planned(driven))
     assert motor == Motor(20.0, 2.0, (0.0, 50.0), (4.0, 1.0), 3.0)
-
-
-def test_drive() -> None:
-    check_drive()
 
 
 def test_a_scene_without_run_up_is_refused() -> None:
@@ -172,7 +173,12 @@ def test_resolution_from_outside_takes_the_place_of_the_scene_s(record: RunupRec
 # --- what comes back -------------------------------------------------------------------------------------
 
 
-def check_dry_run() -> None:
+@kills(
+    "leblanc.studies.runup:RunupRecord.deflection",
+    "self.history.deflection[:, 0] * np.exp(-1j * self.history.angle)",
+    "self.history.deflection[:, 0] * np.exp(1j * self.history.angle)",
+)
+def test_dry_run() -> None:
     """Amplitude and phase of the empty machine, by an independent integrator of its equation of motion."""
     found = runup_scene(scene(chambers=[_chamber(0.0)], runup={"samples": 2001}), check=False)
     time, rate, start = found.history.time, 20.0, 20.0
@@ -202,11 +208,12 @@ def _chamber(volume: float, **more: Any) -> dict[str, Any]:
     return {"radius": 0.25, "height": 0.04, "volume": volume, "liquid": "water"} | more
 
 
-def test_dry_run() -> None:
-    check_dry_run()
-
-
-def check_steady() -> None:
+@kills(
+    "leblanc.studies.runup:steady_response",
+    "synchronous_response(jeffcott(scene), scene.chambers, passed",
+    "synchronous_response(jeffcott(scene), (), passed",
+)
+def test_steady() -> None:
     """A wet wall acts as the added mass m_f; the axis stands, gravity along it changes nothing of that."""
     quiet = scene(rotor={"unbalance": 1e-4})
     answer = steady_response(quiet, np.array([20.0, 40.0]))
@@ -218,11 +225,15 @@ def check_steady() -> None:
 
 
 def test_steady_response() -> None:
-    check_steady()
     assert steady_response(scene(), np.array([20.0, 20.0])) is None
 
 
-def check_bands() -> None:
+@kills(
+    "leblanc.studies.runup:whirl_bands",
+    "unstable_bands(system, [scene.chambers], passed, friction)",
+    "unstable_bands(system, [scene.chambers], passed, (1, 1.0))",
+)
+def test_bands() -> None:
     """Edges of the unstable band of an undamped rotor with m_f = 0.1 M and h0 = 0.1 R, in its frequencies."""
     radius, height = 0.15, 0.04
     full = WATER.density * math.pi * radius**2 * height
@@ -237,7 +248,6 @@ def check_bands() -> None:
 
 
 def test_bands_of_self_excited_whirl() -> None:
-    check_bands()
     assert whirl_bands(scene(), np.array([30.0, 30.0])) == ()
 
 
@@ -286,7 +296,17 @@ def history_of(count: int, layers: int, **changes: Any) -> RunupHistory:
     return RunupHistory(**values | changes)
 
 
-def check_gravity_across() -> None:
+@kills(
+    "leblanc.studies.runup:judged",
+    "history.speed + history.mean_rotation[:, k]",
+    "history.speed - history.mean_rotation[:, k]",
+)
+@kills(
+    "leblanc.studies.runup:held_from",
+    "capture_speed(fill.surface_radius, scene.gravity)",
+    "capture_speed(fill.chamber.radius, scene.gravity)",
+)
+def test_gravity_across() -> None:
     """The liquid itself must turn faster than sqrt(g/a), whatever the drum does, and must be captured."""
     machine = lying()
     fill = machine.chambers[0]
@@ -301,7 +321,13 @@ def check_gravity_across() -> None:
     assert good.tolist() == [False, True]
 
 
-def check_gravity_along() -> None:
+@kills(
+    "leblanc.studies.runup:held_from",
+    "covering_speed(fill, axial_gravity(scene))",
+    "covering_speed(fill, 2.0 * axial_gravity(scene))",
+)
+@kills("leblanc.studies.runup:held_from", "max(held, covering", "min(held, covering")
+def test_gravity_along() -> None:
     """The paraboloid covers the wall's height: g h_c/Omega^2 < V/(pi h_c), in a centrifuge's field."""
     machine = scene(chambers=[_chamber(1e-3)])
     covered = math.sqrt(machine.gravity * 0.04 / (1e-3 / (math.pi * 0.04)))
@@ -317,7 +343,10 @@ def check_gravity_along() -> None:
     assert any("deeper than 0.3" in text for text in words)
 
 
-def check_inner_wall() -> None:
+@kills(
+    "leblanc.studies.runup:judged", ">= wall.radius - wall.inner_radius", ">= wall.radius + wall.inner_radius"
+)
+def test_inner_wall() -> None:
     """The surface must stay off the inner wall, where there is one."""
     ring = scene(chambers=[_chamber(0.5e-3, inner_radius=0.2)])
     depth = np.array([[0.049], [0.051]])
@@ -326,9 +355,6 @@ def check_inner_wall() -> None:
 
 
 def test_where_the_layer_is_a_fair_picture() -> None:
-    check_gravity_across()
-    check_gravity_along()
-    check_inner_wall()
     dry = scene(chambers=[_chamber(0.0)])
     assert judged(dry, history_of(2, 1, captured=np.zeros((2, 1), dtype=bool)))[0].all()
 
@@ -353,7 +379,12 @@ def test_gravity_captures_and_drops_the_liquid() -> None:
 # --- files -----------------------------------------------------------------------------------------------
 
 
-def check_json(capsys: pytest.CaptureFixture[str] | None = None) -> None:
+@kills(
+    "leblanc.results.runup:runup_json",
+    '"liquid_angle": np.angle(position)',
+    '"liquid_angle": -np.angle(position)',
+)
+def test_json(capsys: pytest.CaptureFixture[str] | None = None) -> None:
     """Place of the liquid and of the axis in the drum, turned back by hand from the standing frame."""
     found = runup_scene(scene(runup={"duration": 1.0}), check=False)
     h, got = found.history, runup_json(found)
@@ -372,10 +403,6 @@ def check_json(capsys: pytest.CaptureFixture[str] | None = None) -> None:
     gained = audit.unbalance + audit.drive + audit.gravity + audit.captured
     lost = audit.change + audit.support + audit.friction + audit.bores + audit.profile
     assert got["energy"]["remainder"] == pytest.approx(gained - lost, abs=1e-12 * abs(gained))
-
-
-def test_json() -> None:
-    check_json()
 
 
 def test_json_is_one_object_of_lists(capsys: pytest.CaptureFixture[str], record: RunupRecord) -> None:
@@ -423,7 +450,7 @@ def test_the_data_file_holds_the_run(tmp_path: Path, record: RunupRecord) -> Non
 # --- figures ---------------------------------------------------------------------------------------------
 
 
-def check_steady_lines() -> None:
+def test_steady_lines() -> None:
     """All branches end up in the two lines, each with its own amplitude."""
     branches = np.array([[1.0, np.nan, np.nan], [1.1, 2.0, 3.0], [1.2, 1.9, 3.1], [np.nan, np.nan, 3.2]]) * 1j
     branches = np.where(np.isnan(branches), complex(np.nan, np.nan), branches)
@@ -433,10 +460,6 @@ def check_steady_lines() -> None:
     assert sizes.size == 6
     assert np.allclose(sizes, 1e3 * np.array([1.0, 1.1, 1.2, 3.0, 3.1, 3.2]))
     assert np.allclose(np.sort(unstable[1][~np.isnan(unstable[1])]), [1900.0, 2000.0])
-
-
-def test_steady_lines() -> None:
-    check_steady_lines()
 
 
 def labels(figure: Any) -> list[str]:
@@ -509,7 +532,18 @@ def test_figures_of_dull_histories(layers: int) -> None:
 # --- film ------------------------------------------------------------------------------------------------
 
 
-def check_film() -> None:
+@kills("leblanc.studies.runup_film:_frame", "turn = np.exp(-1j", "turn = np.exp(1j")
+@kills(
+    "leblanc.studies.runup_film:_frame",
+    "1.0 - np.sqrt(np.maximum(1.0 - 2.0 * machine.area",
+    "1.0 - np.sqrt(np.maximum(1.0 - machine.area",
+)
+@kills(
+    "leblanc.studies.runup_film:_rate",
+    "corners[1, k + 1] - corners[1, k]",
+    "corners[1, k] - corners[1, k + 1]",
+)
+def test_film() -> None:
     """The frames hold the record's deflections in the drum frame and all of the liquid."""
     machine = scene(runup={"duration": 1.0, "samples": 201})
     found = runup_scene(machine, check=False)
@@ -524,15 +558,17 @@ def check_film() -> None:
     assert np.allclose(area[:, 0] * height, 0.5e-3, rtol=1e-12)
 
 
-def test_film() -> None:
-    check_film()
-
-
 def shoelace(edge: np.ndarray) -> float:
     return abs(float(np.sum(edge.real * np.roll(edge.imag, -1) - edge.imag * np.roll(edge.real, -1)))) / 2.0
 
 
-def check_pool() -> None:
+@kills(
+    "leblanc.studies.choose:across_gravity",
+    'scene.gravity if scene.rotor.axis == "horizontal"',
+    'scene.gravity if scene.rotor.axis == "vertical"',
+)
+@kills("leblanc.studies.runup_film:_frame", "np.angle(-turn)", "np.angle(turn)")
+def test_pool() -> None:
     """Liquid at the bottom: its outline holds its volume, and its middle points down as the drum turns."""
     machine = lying(runup={"start": 1.0, "stop": 3.0, "rate": 4.0, "duration": 0.5})
     found = runup_scene(machine, check=False)
@@ -549,10 +585,6 @@ def check_pool() -> None:
         # Down in space is against the first direction: in a drum that has turned by an angle, at pi less it.
         middle = edge[edge.size // 2]
         assert np.angle(middle * np.exp(1j * (angle - math.pi))) == pytest.approx(0.0, abs=1e-5)
-
-
-def test_pool() -> None:
-    check_pool()
 
 
 @given(st.floats(1e-3, 0.999))
@@ -697,7 +729,12 @@ def test_an_interrupted_run_leaves_its_files(tmp_path: Path, monkeypatch: pytest
     assert (tmp_path / "out" / "runup.nc").exists()
 
 
-def check_liquid_model() -> None:
+@kills(
+    "leblanc.studies.runup:liquid_model",
+    'return "long_wave" if asked == "auto"',
+    'return "linear" if asked == "auto"',
+)
+def test_liquid_model() -> None:
     """Long waves unless the scene asks for linear layers; what has no time is refused."""
     for asked, taken in (("auto", "long_wave"), ("long_wave", "long_wave"), ("linear", "linear")):
         machine = replace(scene(), model=replace(scene().model, liquid=asked))
@@ -705,10 +742,6 @@ def check_liquid_model() -> None:
     for asked in ("statics", "kdv", "fem"):
         with pytest.raises(InputError, match="liquid"):
             liquid_model(replace(scene(), model=replace(scene().model, liquid=asked)))
-
-
-def test_liquid_model() -> None:
-    check_liquid_model()
 
 
 def test_linear_waves_out_of_their_range_are_told() -> None:

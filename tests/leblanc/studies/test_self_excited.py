@@ -10,13 +10,16 @@ from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import load_scene
 from leblanc.studies.run import describe_whirl, self_excited, stable_with
 from solvers.whirl.growth import asynchronous_growth
+from tests.mutants import kills
 
 
 def found(growth: list[float], bands: tuple[tuple[float, float], ...]) -> SelfExcited:
     return SelfExcited(np.array(growth), np.array([50.0, 60.0, 70.0]), bands, "none")
 
 
-def check_stable() -> None:
+@kills("leblanc.studies.run:stable_with", "found.growth > 0.0)", "found.growth >= 0.0)")
+@kills("leblanc.studies.run:stable_with", "stable & ~(found", "stable | ~(found")
+def test_stability() -> None:
     """Growing whirls take stability away, and give none back."""
     whirl = found([-1.0, 0.0, 0.5], ((80.0, 90.0),))
     stable = stable_with(whirl, np.array([True, False, True]))
@@ -24,7 +27,9 @@ def check_stable() -> None:
     np.testing.assert_array_equal(stable_with(whirl, np.ones(3, dtype=bool)), [True, True, False])
 
 
-def check_words() -> None:
+@kills("leblanc.studies.run:describe_whirl", "np.argmax(found.growth)", "np.argmin(found.growth)")
+@kills("leblanc.studies.run:describe_whirl", "{high * RPM:.5g} rpm", "{high:.5g} rpm")
+def test_words() -> None:
     """Edges and the fastest whirl in rpm."""
     text = describe_whirl(found([-1.0, 0.25, 0.5], ((20.0 * np.pi, 30.0 * np.pi),)))
     assert "600 to 900 rpm" in text and "668.5 rpm" in text and "0.5 1/s" in text
@@ -32,7 +37,12 @@ def check_words() -> None:
     assert "not found" in describe_whirl(found([np.nan, 0.0, 0.0], ()))
 
 
-def check_rig() -> None:
+@kills(
+    "leblanc.studies.run:self_excited",
+    "unstable_bands(system, [scene.chambers], speed, friction, growth[None])",
+    "unstable_bands(system, [scene.chambers], speed, (0, 0.0), growth[None])",
+)
+def test_rig() -> None:
     """The horizontal rig whirls just above its critical speed, slower than it spins."""
     whirl = self_excited(load_scene("examples/horizontal_rig.toml"))
     ((low, high),) = whirl.bands
@@ -46,15 +56,3 @@ def check_rig() -> None:
     system = dry_rotor(scene).system()
     at_edges, _ = asynchronous_growth(system, scene.chambers, [low, high], (STOKES, 0.0))
     assert np.all(np.abs(at_edges) < 1e-6)
-
-
-def test_stability() -> None:
-    check_stable()
-
-
-def test_words() -> None:
-    check_words()
-
-
-def test_rig() -> None:
-    check_rig()

@@ -25,6 +25,7 @@ from leblanc.scene.scene import Scene, load_scene
 from leblanc.studies.whirl_map import SPEEDS, VOLUMES, StabilityRecord, fills_over_volume, map_scene
 from meshes.errors import InputError
 from solvers.whirl.growth import asynchronous_growth
+from tests.mutants import kills
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 RPM = 60.0 / (2.0 * math.pi)
@@ -38,7 +39,13 @@ def small(name: str = "washing_machine", **changes: object) -> StabilityRecord:
     return map_scene(scene(name), **({"volumes": 9, "speeds": 40} | changes))  # type: ignore[arg-type]
 
 
-def check_fills() -> None:
+@kills(
+    "leblanc.studies.whirl_map:fills_over_volume",
+    "share = parts / parts.sum()",
+    "share = parts / parts.max()",
+)
+@kills("leblanc.studies.whirl_map:fills_over_volume", "np.min(capacity[wet]", "np.max(capacity[wet]")
+def test_fills() -> None:
     """The volumes keep their ratios, add up, and end where the first chamber is full."""
     for name in ("horizontal_rig", "vertical_rig"):
         chambers = scene(name).chambers
@@ -57,11 +64,7 @@ def check_fills() -> None:
         assert fill.volume == pytest.approx(fill.chamber.capacity)
 
 
-def test_fills() -> None:
-    check_fills()
-
-
-def check_record() -> None:
+def test_record() -> None:
     """Each point is the growth of the scene's machine with those volumes; each band separates signs."""
     for name, law, pair in (
         ("horizontal_rig", Friction("stokes", 0.0), (STOKES, 0.0)),
@@ -79,11 +82,8 @@ def check_record() -> None:
         assert np.array_equal(record.growth > 0.0, signed_distance(record) > 0.0)
 
 
-def test_record() -> None:
-    check_record()
-
-
-def check_range() -> None:
+@kills("leblanc.studies.whirl_map:_held", "speed > max(needed", "speed > 2.0 * max(needed")
+def test_range() -> None:
     """Held by the centrifugal field: a level axis from the capture speed, an upright one from covering."""
     record, machine = small(friction=Friction("none", 0.0)), scene()
     for k, fills in enumerate(fills_over_volume(machine.chambers, 9)):
@@ -96,11 +96,9 @@ def check_range() -> None:
         assert np.array_equal(record.in_range[k], record.speed > covered)
 
 
-def test_range() -> None:
-    check_range()
-
-
-def check_thin_layers() -> None:
+@kills("leblanc.studies.whirl_map:map_scene", "zip(rows, whirl_speed - speed", "zip(rows, whirl_speed")
+@kills("leblanc.studies.whirl_map:_thin_layers", "2.0 * fill.liquid.viscosity", "fill.liquid.viscosity")
+def test_thin_layers() -> None:
     """With laminar friction a film thinner than five thicknesses of the wall layer is out of range."""
     record, machine = small(), scene()
     held = small(friction=Friction("none", 0.0)).in_range
@@ -109,10 +107,6 @@ def check_thin_layers() -> None:
         thick = np.sqrt(2.0 * fills[0].liquid.viscosity / slip) > 0.2 * fills[0].depth
         assert np.array_equal(record.in_range[k], held[k] & ~thick)
     assert not record.in_range[1:8].all() and record.in_range.any()
-
-
-def test_thin_layers() -> None:
-    check_thin_layers()
 
 
 def test_notes_say_which_dampings_there_are() -> None:
@@ -199,7 +193,7 @@ def test_a_range_of_one_speed_is_refused() -> None:
         map_scene(still)
 
 
-def check_outline() -> None:
+def test_outline() -> None:
     """The outline runs through the refined edges: the contour of the signed distance at zero does."""
     record = small(volumes=21, speeds=200)
     lines = [path.vertices for drawn in map_figure(record).axes[0].collections for path in drawn.get_paths()]
@@ -212,10 +206,6 @@ def check_outline() -> None:
             assert near < 1e-6 * place[0]
             checked += 1
     assert checked > 20
-
-
-def test_outline() -> None:
-    check_outline()
 
 
 @pytest.mark.parametrize("law", [Friction("stokes", 0.0), Friction("none", 0.0), Friction("linear", 500.0)])

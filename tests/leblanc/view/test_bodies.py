@@ -84,7 +84,7 @@ def distance(fill: Fill, radius: float, moved: complex, angle: np.ndarray) -> np
     return np.asarray(toward.real + np.sqrt(radius**2 - toward.imag**2))
 
 
-def check_each_compartment_keeps_its_volume() -> None:
+def test_each_compartment_keeps_its_volume() -> None:
     fresh()
     for fill, moved, speed, gravity in CASES:
         drawn = bodies_at_rest(fill, fill.volume, moved, speed, gravity)
@@ -95,7 +95,7 @@ def check_each_compartment_keeps_its_volume() -> None:
         assert drawn.volume() == pytest.approx(fill.volume, rel=10.0 * CHORD)
 
 
-def check_surfaces_are_about_the_axis() -> None:
+def test_surfaces_are_about_the_axis() -> None:
     fresh()
     for fill, moved, speed, gravity in CASES:
         found = []
@@ -116,7 +116,7 @@ def check_surfaces_are_about_the_axis() -> None:
         assert np.ptp(found) > 1e-4 if fill.compartments > 1 and gravity == 0.0 else True
 
 
-def check_radius_of_each_compartment() -> None:
+def test_radius_of_each_compartment() -> None:
     fresh()
     # The area of a sector between wall and circle, by a rule of its own.
     fill, moved = closed(5, 0.0), 0.008 * np.exp(0.4j)
@@ -131,7 +131,7 @@ def check_radius_of_each_compartment() -> None:
         assert area * HEIGHT * 5.0 == pytest.approx(VOLUME, rel=1e-5)
 
 
-def check_added_mass() -> None:
+def test_added_mass() -> None:
     fresh()
     # The first moment of the drawn liquid about the axis is that of the added mass [theory: sections, eq. 8].
     for fill in (closed(3, 0.0), closed(6), lobes()):
@@ -144,7 +144,7 @@ def check_added_mass() -> None:
         assert abs(moment / moved * WATER.density / fill.added_mass - 1.0) < 5e-3
 
 
-def check_dry_walls() -> None:
+def test_dry_walls() -> None:
     fresh()
     # A circle falls dry where the deflection passes the depth of the layer.
     fill = drawn_circle()
@@ -171,7 +171,7 @@ def check_dry_walls() -> None:
     assert dry and not wall_is_dry(fill, VOLUME, moved / 1.3 * 0.9, 100.0, 0.0)
 
 
-def check_outline() -> None:
+def test_outline() -> None:
     fresh()
     # A parabola leaves cos(6 theta) by h^3/6 times 6^3 times 0.048 over sides h = 2 pi/72, here 3.5e-5.
     shape = lobes().chamber.section
@@ -199,7 +199,7 @@ def check_outline() -> None:
     assert np.abs(np.abs(slit.walls) - RADIUS)[np.abs(slit.walls) > 0.1].max() < 1e-4 * RADIUS
 
 
-def check_a_deeper_layer() -> None:
+def test_a_deeper_layer() -> None:
     fresh()
     # A drawn circle is a circle; in other sections the thinnest place grows by the factor.
     plain = Fill(Chamber(RADIUS, HEIGHT), WATER, VOLUME)
@@ -229,7 +229,7 @@ def across(view: View, name: str) -> np.ndarray:
     return np.asarray(points[:, 0] + 1j * points[:, 1])
 
 
-def check_picture_of_compartments() -> None:
+def test_picture_of_compartments() -> None:
     fresh()
     view = view_scene(scene_of(**CLOSED))
     centre = 1e3 * view.scale.deflection * complex(view.sight.deflection[-1, 0])
@@ -305,18 +305,6 @@ def check_modes_of_a_section(folder: Path) -> None:
         assert volumes == [pytest.approx(VOLUME, rel=1e-4)] * 2
         # Re(e^{i (n theta - sigma t)}): the phase of the harmonic is sigma t. Sides are nearly even.
         assert np.angle(harmonic / first) == pytest.approx(0.7, abs=0.02)
-
-
-CHECKS = [
-    check_each_compartment_keeps_its_volume, check_surfaces_are_about_the_axis,
-    check_radius_of_each_compartment, check_added_mass, check_dry_walls, check_outline, check_a_deeper_layer,
-    check_picture_of_compartments,
-]  # fmt: skip
-
-
-@pytest.mark.parametrize("check", CHECKS)
-def test_bodies_and_walls(check: Any) -> None:
-    check()
 
 
 @pytest.mark.parametrize("check", [check_picture_of_a_section, check_modes_of_a_section])

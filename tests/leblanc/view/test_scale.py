@@ -26,7 +26,7 @@ def choose(fill: Fill, *deflections: float, speed: float = 100.0, gravity: float
     return choose_scale((fill,), found, np.full(len(deflections), speed), gravity)
 
 
-def check_drying_deflection() -> None:
+def test_drying_deflection() -> None:
     # Without gravity the wall falls dry when the deflection passes the mean depth of the layer.
     found = drying_deflection(THICK.chamber, THICK.volume, np.array([50.0]), 0.0)
     assert found[0] == pytest.approx(THICK.depth, rel=1e-9)
@@ -35,7 +35,7 @@ def check_drying_deflection() -> None:
     assert float(optimal_volume(THICK.chamber, edge[0], 20.0, 9.81)) == pytest.approx(THICK.volume, rel=1e-6)
 
 
-def check_wet_stays_wet() -> None:
+def test_wet_stays_wet() -> None:
     for fill in (THICK, THIN):
         for part in (0.01, 0.3, 0.95):
             size = part * fill.depth
@@ -47,7 +47,7 @@ def check_wet_stays_wet() -> None:
             assert not bool(drawn.dry_patch)
 
 
-def check_dry_stays_dry() -> None:
+def test_dry_stays_dry() -> None:
     for fill in (THICK, THIN):
         size = 1.3 * fill.depth
         scale = choose(fill, 0.2 * size, size)
@@ -59,29 +59,13 @@ def check_dry_stays_dry() -> None:
         assert bool(drawn.dry_patch)
 
 
-def check_drawn_volume() -> None:
+def test_drawn_volume() -> None:
     # The layer's area is pi (R^2 - (R - d h)^2).
     layer = 3.0 * THIN.depth
     outer, inner = THIN.chamber.radius, THIN.chamber.radius - layer
     exact = math.pi * (outer**2 - inner**2) * THIN.chamber.height
     assert drawn_volume(THIN, 3.0) == pytest.approx(exact, rel=1e-12)
     assert drawn_volume(THIN, 1.0) == THIN.volume
-
-
-def test_drying_deflection() -> None:
-    check_drying_deflection()
-
-
-def test_wet_stays_wet() -> None:
-    check_wet_stays_wet()
-
-
-def test_dry_stays_dry() -> None:
-    check_dry_stays_dry()
-
-
-def test_drawn_volume() -> None:
-    check_drawn_volume()
 
 
 def test_a_thick_layer_keeps_its_volume() -> None:

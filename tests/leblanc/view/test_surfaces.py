@@ -51,7 +51,7 @@ def centroid(shape: LiquidShape) -> complex:
     return complex(found[0], found[1])
 
 
-def check_volume() -> None:
+def test_volume() -> None:
     # Twice the chord error: walls about the drum's centre, seen from the axis at rest, and thin crescents,
     # whose ends fall between two half-planes.
     for chamber, volume, deflection, speed, gravity in CASES:
@@ -60,7 +60,7 @@ def check_volume() -> None:
         assert abs(shape.volume() / volume - 1.0) < thin * CHORD, (chamber, volume, speed)
 
 
-def check_paraboloid() -> None:
+def test_paraboloid() -> None:
     # Every point of the free surface lies on z = beta r^2 + C with C of the equilibrium, or where the surface
     # is cut: at floor, lid or a wall.
     for chamber, volume, deflection, speed, gravity in CASES:
@@ -81,7 +81,7 @@ def check_paraboloid() -> None:
         assert z.max() <= chamber.height * (1.0 + 1e-12)
 
 
-def check_centre_of_mass() -> None:
+def test_centre_of_mass() -> None:
     # The first moment of the equilibrium by another way (arcs of the wall, Gauss-Legendre), along the
     # deflection. The chords move it by the same share of the lever.
     for chamber, volume, deflection, speed, gravity in CASES:
@@ -91,7 +91,7 @@ def check_centre_of_mass() -> None:
         assert abs(centroid(shape) - expected) < 4.0 * CHORD * chamber.radius
 
 
-def check_dry_arc() -> None:
+def test_dry_arc() -> None:
     # Without gravity the dry arc ends where the circle of the surface meets the wall.
     chamber, volume, deflection, speed, gravity = CASES[6]
     shape = body_at_rest(chamber, volume, deflection, speed, gravity)
@@ -106,7 +106,7 @@ def check_dry_arc() -> None:
     assert float(optimal_volume(chamber, abs(deflection), speed, gravity)) > volume
 
 
-def check_layer_and_pool() -> None:
+def test_layer_and_pool() -> None:
     theta = 2.0 * np.pi * np.arange(240) / 240
     depth = 0.01 + 0.004 * np.cos(2.0 * theta)
     shape = body_of_layer(DRUM, 0.01j, theta, depth)
@@ -125,35 +125,11 @@ def check_layer_and_pool() -> None:
         assert np.ptp(level[pool.wet]) < 1e-12
 
 
-def check_no_film_on_a_dry_wall() -> None:
+def test_no_film_on_a_dry_wall() -> None:
     theta = 2.0 * np.pi * np.arange(64) / 64
     shape = body_of_layer(DRUM, 0j, theta, np.where(theta < math.pi, 0.01, 0.0))
     assert np.array_equal(shape.wet, (shape.angle >= 0.0) & (shape.angle < math.pi - 1e-9))
     assert np.all(shape.height[~shape.wet] == 0.0)
-
-
-def test_volume() -> None:
-    check_volume()
-
-
-def test_paraboloid() -> None:
-    check_paraboloid()
-
-
-def test_centre_of_mass() -> None:
-    check_centre_of_mass()
-
-
-def test_dry_arc() -> None:
-    check_dry_arc()
-
-
-def test_layer_and_pool() -> None:
-    check_layer_and_pool()
-
-
-def test_no_film_on_a_dry_wall() -> None:
-    check_no_film_on_a_dry_wall()
 
 
 @given(

@@ -18,6 +18,7 @@ from meshes.errors import InputError
 from meshes.rings.sectors import sector
 from meshes.section import annulus, disc
 from solvers.statics.free_surface import integrate_surface, solve_surface
+from tests.mutants import kills
 from tests.oracles.statics import LiquidReference, liquid_reference
 
 R, H = 0.2, 0.05
@@ -58,7 +59,16 @@ def errors(beta: float, constant: float, e: float, segments: int, order: int) ->
     )
 
 
-def check_paraboloid() -> None:
+@kills("meshes.bodies.body:_tetrahedra", "start = np.where(empty[column[:, c]], high, low)", "start = low")
+@kills(
+    "meshes.bodies.paraboloid:_squares",
+    "(-constant / beta, height / beta)",
+    "(constant / beta, height / beta)",
+)
+@kills(
+    "meshes.bodies.paraboloid:_depth_share", "(square - floor) / ramp, 0.0", "(floor - square) / ramp, 0.0"
+)
+def test_paraboloid() -> None:
     """Volume and moments of every case against quadrature in high precision.
 
     Depth is quadratic and meets the nodes. Where an arc of length s bends a cell, by s^2/(8 r), it is off by
@@ -68,10 +78,6 @@ def check_paraboloid() -> None:
     for beta, constant, e in SURFACES:
         found = errors(beta, constant, e, 64, 2)
         assert np.abs(found).max() < 1e-4
-
-
-def test_paraboloid() -> None:
-    check_paraboloid()
 
 
 @pytest.mark.parametrize(("order", "expected"), [(1, 2.0), (2, 4.0)])
@@ -89,7 +95,8 @@ def test_order_of_the_body(order: int, expected: float, beta: float, constant: f
     assert slope == pytest.approx(expected, abs=0.25 * expected)
 
 
-def check_upright() -> None:
+@kills("meshes.bodies.paraboloid:_upright_circle", "floor + 0.5 * ramp", "floor + ramp")
+def test_upright() -> None:
     """Without gravity the surface stands upright; at a high speed all but so."""
     section = disc(R, 48, order=2)
     for e, dry in ((0.0, 0.15), (0.02, 0.15), (0.02, 0.19)):
@@ -105,10 +112,6 @@ def check_upright() -> None:
     fast = paraboloid_body(section, H, 1e4, -1e4 * 0.15**2, axis=(-0.02, 0.0), size=0.02)
     exact = integrate_surface(section, H, 1e4, dry_radius=0.15, axis=(-0.02, 0.0))
     assert body_integrals(fast).volume == pytest.approx(float(exact.volume), rel=1e-5)
-
-
-def test_upright() -> None:
-    check_upright()
 
 
 @given(
@@ -133,7 +136,8 @@ def test_bodies_are_valid_and_hold_their_volume(
     assert body_integrals(body).volume == pytest.approx(volume, rel=2e-3, abs=1e-4 * H * R**2)
 
 
-def check_faces() -> None:
+@kills("meshes.bodies.body:columns", "(top & open_top[:, None])", "(top & ~open_top[:, None])")
+def test_faces() -> None:
     """Gauss's theorem closes, floor and lid are flat, the area of the surface is that of the paraboloid."""
     for order in (1, 2):
         body = paraboloid_body(disc(R, 48, order=order), H, 20.0, -0.2, size=0.01, order=order)
@@ -159,10 +163,6 @@ def check_faces() -> None:
         # The normal of the free surface points to the axis.
         middle = corners[: len(body.surface)].mean(axis=1)
         assert np.all(np.sum(middle[:, :2] * normal[: len(body.surface), :2], axis=1) < 0.0)
-
-
-def test_faces() -> None:
-    check_faces()
 
 
 def test_surface_lies_on_the_paraboloid() -> None:
@@ -267,7 +267,10 @@ def test_uneven_angles() -> None:
     assert body_integrals(body).volume == pytest.approx(exact, rel=1e-12)
 
 
-def check_tetrahedron() -> None:
+@kills("meshes.bodies.body:body_integrals", "np.sum(x * flux)) / 3.0", "np.sum(x * flux)) / 2.0")
+@kills("meshes.bodies.body:body_integrals", "volume * middle", "middle")
+@kills("meshes.bodies.body:body_jacobians", "np.diag(4.0 * share - 1.0)", "np.diag(4.0 * share)")
+def test_tetrahedron() -> None:
     """A corner of a cube: 1/6, its centre of mass at 1/4; one side bent outwards adds its parabola."""
     points = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
     faces = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
@@ -285,10 +288,6 @@ def check_tetrahedron() -> None:
     # x = L1 + 0.4 L1 L2: det = dx/dL1 = 1 + 0.4 L2, with L1, L2, L3 the coordinates.
     second = np.array([0, 0, 1, 0, 0, 0.5, 0.5, 0, 0, 0.5])
     assert jacobian == pytest.approx(1.0 + 0.4 * second, rel=1e-13)
-
-
-def test_tetrahedron() -> None:
-    check_tetrahedron()
 
 
 @pytest.mark.parametrize(
@@ -319,3 +318,12 @@ def test_bad_requests_are_refused(make, field: str) -> None:  # type: ignore[no-
     with pytest.raises(InputError) as fault:
         make()
     assert fault.value.field == field
+
+
+@kills(
+    "meshes.bodies.body:body_integrals", "first = 0.5 * np.sum(x * x * flux", "first = np.sum(x * x * flux"
+)
+@kills("meshes.bodies.wave:wave_body", "radius - (1.0 - share) * thickness", "radius - share * thickness")
+@kills("meshes.bodies.wave:wave_body", "np.stack([r * np.cos(theta)", "np.stack([r * np.sin(theta)")
+def test_wave_of_quadratic_cells() -> None:
+    check_wave()

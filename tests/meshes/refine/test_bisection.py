@@ -15,6 +15,7 @@ from meshes.refine.waterline_cut import liquid_outside
 from meshes.rings.quadrilaterals import ring
 from meshes.rings.sectors import compartment
 from meshes.section import Section, annulus, disc
+from tests.mutants import kills
 
 
 def area(points: np.ndarray, cells: np.ndarray) -> float:
@@ -27,7 +28,8 @@ def bend(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     return np.asarray(np.abs(points[cells[:, 3:]] - middle).max(axis=(1, 2)))
 
 
-def check_halved() -> None:
+@kills("meshes.refine.bisection:halved", "points[on_circle] *=", "points[on_circle] *= 1.0 + 0.0 *")
+def test_halved() -> None:
     base = annulus(0.2, 0.05, 48, order=2)
     angle = np.arctan2(base.points[:, 1], base.points[:, 0])
     bent = Section(base.points * (1.0 + 0.05 * np.cos(3.0 * angle))[:, None], base.triangles)
@@ -59,7 +61,8 @@ def check_halved() -> None:
         assert np.abs(inner - 0.25).max() < 0.1
 
 
-def check_straight_parts_of_straight_triangles() -> None:
+@kills("meshes.refine.bisection:_quartered", "_INNER, points[cells]", "0.9999 * _INNER, points[cells]")
+def test_straight_parts_of_straight_triangles() -> None:
     liquid = liquid_outside(disc(0.2, 24, order=1), 0.14, order=2)
     finer = halved(liquid)
     bends = [bend(one.points, one.cells) for one in (liquid, finer)]
@@ -67,7 +70,9 @@ def check_straight_parts_of_straight_triangles() -> None:
     assert straight.sum() > 100 and bends[1][straight].max() < 1e-12
 
 
-def check_walls_keep_their_shape() -> None:
+@kills("meshes.refine.bisection:_quartered", "0.375 * low + 0.75", "0.5 * low + 0.625")
+@kills("meshes.refine.bisection:_quartered", "0.375 * high + 0.75", "0.5 * high + 0.625")
+def test_walls_keep_their_shape() -> None:
     """Every new node of a wall lies on the parabola of the side it came from."""
     liquid = liquid_outside(disc(0.2, 24, order=2), 0.14, order=2)
     finer = halved(liquid)
@@ -77,18 +82,6 @@ def check_walls_keep_their_shape() -> None:
         on = (1 - t) * (1 - 2 * t) * start + 4 * t * (1 - t) * middle + t * (2 * t - 1) * end
         away = np.hypot(*(on[:, None] - made[None]).transpose(2, 0, 1)).min(axis=1)
         assert away.max() < 1e-15
-
-
-def test_halved() -> None:
-    check_halved()
-
-
-def test_straight_parts_of_straight_triangles() -> None:
-    check_straight_parts_of_straight_triangles()
-
-
-def test_walls_keep_their_shape() -> None:
-    check_walls_keep_their_shape()
 
 
 def test_straightened() -> None:

@@ -10,6 +10,7 @@ import pytest
 from meshes.quality import EDGES
 from meshes.refine.waterline import beyond, distance_range, monotone_arcs
 from meshes.section import Section, disc, section_area
+from tests.mutants import kills
 
 AXES = [(0.0, 0.0), (0.013, -0.007), (-0.2, 0.0), (0.1, 0.1), (-0.5, 0.3)]
 
@@ -30,7 +31,10 @@ def beyond_circle(section: Section, axis: tuple[float, float], radius: float) ->
     return np.stack([np.ones_like(x), x, y]) @ weight
 
 
-def check_whole_section() -> None:
+@kills("meshes.refine.waterline:beyond", "curve[1] + 2.0 * t * curve[2]", "curve[1] + t * curve[2]")
+@kills("meshes.refine.waterline:beyond", "(x * dy - y * dx)", "(y * dx - x * dy)")
+@kills("meshes.refine.waterline:_along_rays", "* _RAY[1] * fraction\n", "* _RAY[1]\n")
+def test_whole_section() -> None:
     """Outside a circle of no size lies all of it, wherever the axis is."""
     for section in (disc(0.2, 8), bent_disc()):
         for axis in AXES:
@@ -39,7 +43,8 @@ def check_whole_section() -> None:
             assert area == pytest.approx(section_area(section), rel=1e-9)
 
 
-def check_hole() -> None:
+@kills("meshes.refine.waterline:_extremes", "3.0 * np.sum(c1 * c2, axis=0)", "2.0 * np.sum(c1 * c2, axis=0)")
+def test_hole() -> None:
     """A circle within the section takes away its area, and its moment about its own centre is nothing."""
     for section in (disc(0.2, 8), bent_disc()):
         area, x, y = beyond_circle(section, (0.0, 0.0), 1e-9)
@@ -51,7 +56,13 @@ def check_hole() -> None:
                 assert found[1:] == pytest.approx(about[1:], abs=1e-9 * 0.2 * area)
 
 
-def check_half_plane() -> None:
+@kills(
+    "meshes.refine.waterline:_crossing",
+    "_square(curve, middle) < level",
+    "_square(curve, middle) < 0.9 * level",
+)
+@kills("meshes.refine.waterline:beyond", "np.sqrt(np.minimum(origin, square)", "(np.minimum(origin, square)")
+def test_half_plane() -> None:
     """A straight wall at distance d from the axis leaves a circular segment of closed area."""
     square = Section(np.array([[0.0, -1], [1, -1], [1, 1], [0, 1]]), np.array([[0, 1, 2], [0, 2, 3]]))
     for distance in (0.0, 0.05, 0.3):
@@ -62,18 +73,6 @@ def check_half_plane() -> None:
             # Two triangles as large as the circle: the edge rule's 8 points see the pole at the axis from a
             # distance like the length of the pieces, and keep 8 digits.
             assert found == pytest.approx(2.0 - inside, rel=1e-8)
-
-
-def test_whole_section() -> None:
-    check_whole_section()
-
-
-def test_hole() -> None:
-    check_hole()
-
-
-def test_half_plane() -> None:
-    check_half_plane()
 
 
 @pytest.mark.parametrize("axis", AXES)
@@ -116,3 +115,8 @@ def check_range(axis: tuple[float, float] = AXES[1]) -> None:
 @pytest.mark.parametrize("axis", AXES)
 def test_range_of_the_distance(axis: tuple[float, float]) -> None:
     check_range(axis)
+
+
+@kills("meshes.refine.waterline:distance_range", "(xa * yb - ya * xb, xa * xb", "(xa * yb + ya * xb, xa * xb")
+def test_range_about_one_axis() -> None:
+    check_range()

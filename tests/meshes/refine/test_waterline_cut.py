@@ -18,6 +18,7 @@ from meshes.refine.waterline_cut import area_outside, liquid_outside, surface_ra
 from meshes.rings.sectors import sector
 from meshes.rings.slits import open_slits
 from meshes.section import Section, annulus, disc, section_area
+from tests.mutants import kills
 
 
 def square(half: float, cells: int = 8) -> Section:
@@ -64,7 +65,8 @@ def slide_slack(section: Section) -> float:
     return float(6.0 * np.abs(turn).max() * 0.3 * np.max(np.sum((end - start) ** 2, axis=1)))
 
 
-def check_area_outside() -> None:
+@kills("meshes.refine.waterline_cut:area_outside", "square = radius * radius", "square = radius")
+def test_area_outside() -> None:
     """A square beyond a circle within it, beyond one that cuts its sides, beyond one about its corner."""
     section = square(1.0)
     assert area_outside(section, 0.7) == pytest.approx(4.0 - math.pi * 0.49, rel=1e-9)
@@ -76,7 +78,12 @@ def check_area_outside() -> None:
     assert area_outside(section, 0.0) == pytest.approx(4.0, rel=1e-12)
 
 
-def check_inverse() -> None:
+@kills(
+    "meshes.refine.waterline_cut:surface_radius_of",
+    "farthest - depth) - liquid_area",
+    "farthest - depth) - 1.01 * liquid_area",
+)
+def test_inverse() -> None:
     """The radius that leaves an area leaves it, down to layers of a millionth."""
     for section in (square(1.0), bent(disc(1.0, 32, order=2), 0.1), sector(1.0, 0.2, 1.1)):
         whole = section_area(section)
@@ -86,7 +93,7 @@ def check_inverse() -> None:
             assert area_outside(section, radius) == pytest.approx(share * whole, rel=1e-8, abs=1e-13)
 
 
-def check_cut_area() -> None:
+def test_cut_area() -> None:
     """Area of the mesh against the integral of the same section beyond the same circle."""
     for section in (
         disc(0.2, 48, order=2),
@@ -101,18 +108,6 @@ def check_cut_area() -> None:
             assert area == pytest.approx(exact, abs=slack + 1e-9 * exact)
             # The parabolas run inside their circles: liquid is gained.
             assert area > exact - 1e-9 * exact
-
-
-def test_area_outside() -> None:
-    check_area_outside()
-
-
-def test_inverse() -> None:
-    check_inverse()
-
-
-def test_cut_area() -> None:
-    check_cut_area()
 
 
 @pytest.mark.parametrize(("order", "expected"), [(1, 2.0), (2, 4.0)])
@@ -152,7 +147,8 @@ def test_any_section_can_be_cut(amount: float, seed: int, segments: int, share: 
     assert cell_areas(liquid.points, liquid.cells).sum() == pytest.approx(exact, abs=slack)
 
 
-def check_sizes() -> None:
+@kills("meshes.refine.waterline_cut:liquid_outside", "0.5 * (growth - 1.0)", "0.5 * (growth + 1.0)")
+def test_sizes() -> None:
     """Sides at surface and wall, and how they grow between."""
     section = disc(0.2, 32, order=2)
     liquid = liquid_outside(section, 0.12, surface_size=0.004, wall_size=0.006, growth=1.4)
@@ -166,10 +162,6 @@ def check_sizes() -> None:
     quality = assess(liquid.points, liquid.cells)
     assert math.degrees(quality.worst_angle) < 150
     assert quality.aspect_ratio < 12
-
-
-def test_sizes() -> None:
-    check_sizes()
 
 
 def test_a_square_chamber_has_one_body_or_four() -> None:
@@ -217,7 +209,18 @@ def test_a_thin_layer() -> None:
     )
 
 
-def check_bisection() -> None:
+@kills(
+    "meshes.refine.bisection:_quarter_nodes",
+    "0.375 * low + 0.75 * middle - 0.125 * high",
+    "0.375 * low + 0.625 * middle",
+)
+@kills(
+    "meshes.refine.bisection:_halve",
+    "0.5 * (points[bc] + points[ca]) - 0.125",
+    "0.5 * (points[bc] + points[ca]) - 0.25",
+)
+@kills("meshes.refine.bisection:bisect", "marked[base[more]] = True", "break")
+def test_bisection() -> None:
     """Halving keeps the area to rounding, leaves no hanging node, and at least half of the least angle."""
     section = bent(disc(1.0, 16, order=2), 0.1)
     points, triangles = quadratic_triangles(section)
@@ -237,10 +240,6 @@ def check_bisection() -> None:
     assert vertex_angles(points, triangles[:, :3]).min() > 0.45 * least
 
 
-def test_bisection() -> None:
-    check_bisection()
-
-
 def test_refinement_reaches_the_size() -> None:
     points, triangles = quadratic_triangles(square(1.0, 2))
     points, triangles = refine(points, triangles, lambda at: 0.02 + 0.3 * np.hypot(*at.T))
@@ -250,7 +249,23 @@ def test_refinement_reaches_the_size() -> None:
     assert cell_areas(points, triangles).sum() == pytest.approx(4.0, rel=1e-13)
 
 
-def check_both_sides() -> None:
+@kills(
+    "meshes.refine.circle_cut:_cut_corners",
+    "signs * np.sign(signs.sum(axis=1))[:, None] < 0.0",
+    "signs * np.sign(signs.sum(axis=1))[:, None] > 0.0",
+)
+@kills("meshes.refine.circle_cut:_bend_onto", "bent[middle] = circle.project(0.5", "bent[middle] = (0.5")
+@kills(
+    "meshes.refine.circle_cut:_cut_corners",
+    "tip_out = signs[np.arange(n), apex] > 0.0",
+    "tip_out = signs[np.arange(n), apex] < 0.0",
+)
+@kills(
+    "meshes.refine.circle_cut:Circle.beyond",
+    "points[..., 1] - self.y) - self.radius",
+    "points[..., 1] + self.y) - self.radius",
+)
+def test_both_sides_of_a_circle() -> None:
     """A circle off the centre: the triangles outside and inside share out the section."""
     for section in (disc(1.0, 32, order=2), square(1.0)):
         points, triangles = quadratic_triangles(section)
@@ -266,10 +281,6 @@ def check_both_sides() -> None:
             beyond = area_outside(section, circle.radius, axis)
             assert areas[outside].sum() == pytest.approx(beyond, abs=0.1**4 / 30 * math.pi * circle.radius**2)
             assert areas.sum() == pytest.approx(whole, rel=1e-7)
-
-
-def test_both_sides_of_a_circle() -> None:
-    check_both_sides()
 
 
 @pytest.mark.parametrize(

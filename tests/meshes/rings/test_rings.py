@@ -17,6 +17,7 @@ from meshes.rings.sectors import compartment, sector
 from meshes.rings.slits import open_slits
 from meshes.rings.triangles import graded, ring
 from meshes.section import section_area
+from tests.mutants import kills
 
 
 def grid_area(mesh: LiquidSection, radius: float) -> float:
@@ -33,7 +34,13 @@ def grid_area(mesh: LiquidSection, radius: float) -> float:
     return float((radius**2 - mesh.surface_radius**2) * sectors.sum())
 
 
-def check_ring_area() -> None:
+@kills(
+    "meshes.rings.triangles:_halved",
+    "0.5 * (values[1:] + values[:-1])",
+    "0.6 * values[1:] + 0.4 * values[:-1]",
+)
+@kills("meshes.rings.triangles:_grid", "np.sin(angle)], axis=-1)", "np.cos(angle)], axis=-1)")
+def test_ring_area() -> None:
     for order in (1, 2):
         for baffles in (None, Baffles(5, 0.14, 0.002, 0.3)):
             mesh = ring(0.15, 0.135, 24, order=order, baffles=baffles)
@@ -45,7 +52,8 @@ def wall_length(mesh: LiquidSection) -> float:
     return float(np.hypot(*(mesh.points[mesh.wall[:, 1]] - mesh.points[mesh.wall[:, 0]]).T).sum())
 
 
-def check_baffle_length() -> None:
+@kills("meshes.baffles:Baffles.wetted_span", "radius - self.wall_gap", "radius + self.wall_gap")
+def test_baffle_length() -> None:
     """The wall and both sides of every baffle, in chords."""
     for baffles, length in (
         (Baffles(4, 0.14), 0.010),
@@ -58,7 +66,8 @@ def check_baffle_length() -> None:
         assert wall_length(mesh) == pytest.approx(chords + 2 * baffles.count * length, rel=1e-8)
 
 
-def check_angles() -> None:
+@kills("meshes.baffles:Baffles.angles", "2.0 * math.pi / self.count", "math.pi / self.count")
+def test_baffles_lie_on_their_rays() -> None:
     """Nodes on the rays of the baffles are there twice, but for the tips."""
     baffles = Baffles(3, 0.14, 0.002, 0.4)
     mesh = ring(0.15, 0.135, 24, baffles=baffles)
@@ -68,18 +77,6 @@ def check_angles() -> None:
         on = radius[(off < 1e-9) & (radius > 0.14 - 1e-9) & (radius < 0.148 + 1e-9)]
         places, count = np.unique(np.round(on, 9), return_counts=True)
         assert list(count) == [1, *[2] * (len(places) - 2), 1]
-
-
-def test_ring_area() -> None:
-    check_ring_area()
-
-
-def test_baffle_length() -> None:
-    check_baffle_length()
-
-
-def test_baffles_lie_on_their_rays() -> None:
-    check_angles()
 
 
 baffle_sets = st.builds(
@@ -120,7 +117,15 @@ def test_rings_are_valid_over_the_input_box(
     assert int((~mesh.fixed_piece).sum()) == (baffles.count if free and baffles else 0)
 
 
-def check_grading() -> None:
+@kills(
+    "meshes.rings.triangles:graded", "shorter = slope / (growth - 1.0)", "shorter = (growth - 1.0) / slope"
+)
+@kills(
+    "meshes.rings.triangles:graded",
+    "0.5 * (length + (end - start) / slope)",
+    "0.5 * (length + (start - end) / slope)",
+)
+def test_grading() -> None:
     """Steps start and end as asked, neighbours differ by the growth at most, none is above the largest."""
     for length, largest, start, end, growth in (
         (1.0, 0.1, 1e-3, 1e-2, 1.5),
@@ -143,10 +148,6 @@ def check_grading() -> None:
             assert steps[0] > 0.5 * math.log(growth) / (growth - 1) * start
 
 
-def test_grading() -> None:
-    check_grading()
-
-
 def test_layers_at_wall_and_surface() -> None:
     mesh = ring(0.2, 0.1, 24, order=1, wall_depth=1e-3, surface_depth=4e-3)
     rows = np.unique(np.round(np.hypot(*mesh.points.T), 12))
@@ -154,7 +155,8 @@ def test_layers_at_wall_and_surface() -> None:
     assert 1.2e-3 < rows[1] - rows[0] <= 4e-3 * (1 + 1e-9)
 
 
-def check_slits() -> None:
+@kills("meshes.rings.slits:open_slits", "turned = [1, 0, 2]", "turned = [0, 1, 2]")
+def test_slits() -> None:
     """A square of four: opened across, from the middle outwards, and along a cross."""
     x, y = np.meshgrid(np.arange(3.0), np.arange(3.0), indexing="ij")
     points = np.stack([x.ravel(), y.ravel()], axis=1)
@@ -169,10 +171,6 @@ def check_slits() -> None:
         assert len(opened) == nodes
         assert np.array_equal(opened[numbers], points[cells])
         assert np.array_equal(opened[:9], points)
-
-
-def test_slits() -> None:
-    check_slits()
 
 
 @pytest.mark.parametrize(
@@ -192,7 +190,10 @@ def test_slits_that_open_nothing_are_refused(slits: list[list[int]]) -> None:
         open_slits(points, cells, np.array(slits))
 
 
-def check_sector_area() -> None:
+@kills(
+    "meshes.rings.sectors:sector", "middle = 0.5 * (r[one] + r[other])", "middle = 0.49 * (r[one] + r[other])"
+)
+def test_sector_area() -> None:
     """Chords and parabolas of both walls, as in `grid_area`; the sides are rays."""
     for inner in (0.0, 0.1, 0.1999):
         for order in (1, 2):
@@ -205,10 +206,6 @@ def check_sector_area() -> None:
             assert section_area(section) == pytest.approx(exact, abs=slack)
             if inner == 0.0:
                 assert section_area(section) == pytest.approx(exact * (1 - lost), rel=lost * (1 / 24) ** 2)
-
-
-def test_sector_area() -> None:
-    check_sector_area()
 
 
 @given(

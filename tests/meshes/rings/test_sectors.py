@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from meshes.baffles import Baffles
 from meshes.liquid_section import SIDES
 from meshes.rings.quadrilaterals import ring
+from tests.mutants import kills
 
 R, A = 0.2, 0.17
 
@@ -27,7 +28,13 @@ def area(points: np.ndarray, sides: np.ndarray) -> float:
     return 0.5 * total
 
 
-def check_geometry() -> None:
+@kills("meshes.rings.quadrilaterals:_rays", "turns = baffles.first_angle", "turns = -baffles.first_angle")
+@kills(
+    "meshes.rings.quadrilaterals:ring",
+    "radii[0], radii[-1] = surface_radius, radius",
+    "radii[-1] = 1.01 * radius",
+)
+def test_geometry() -> None:
     """The boundary is that of the liquid: whole area, surface on r = a, wall on r = R and on the baffles."""
     for baffles in (None, Baffles(3, 0.18), Baffles(2, 0.0, 0.01), Baffles(4, 0.18, 0.01, 0.3), Baffles(5)):
         for order, bound in ((1, 4e-3), (2, 1e-6)):
@@ -56,7 +63,14 @@ def check_geometry() -> None:
             assert np.isclose(length, 2 * baffles.count * (outer - inner))
 
 
-def check_grading() -> None:
+@kills("meshes.rings.quadrilaterals:_between", "np.power(t, rise) if fall", "np.power(t, fall) if fall")
+@kills("meshes.rings.quadrilaterals:_rays", "(4.0 * near / gap)", "(near / depth)")
+@kills(
+    "meshes.rings.quadrilaterals:_circles",
+    "start + length * _between(count * times",
+    "start + length * _between(count",
+)
+def test_grading() -> None:
     """Cells at edges of baffles shrink as powers, and `times` splits every cell evenly in its number."""
     mesh = ring(R, A, 48, 4, baffles=Baffles(2, 0.18))
     edge = np.abs(mesh.points - [0.18, 0.0]).sum(axis=1).argmin()
@@ -70,14 +84,6 @@ def check_grading() -> None:
     narrow = ring(R, A, 48, 4, baffles=Baffles(2, 0.0, 1e-8))
     angle = np.abs(np.arctan2(*narrow.points.T[::-1]))
     assert angle[angle > 1e-12].min() < 0.25 * 1e-8 / R
-
-
-def test_geometry() -> None:
-    check_geometry()
-
-
-def test_grading() -> None:
-    check_grading()
 
 
 def test_steps_towards_walls() -> None:

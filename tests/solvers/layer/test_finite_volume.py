@@ -37,7 +37,7 @@ def run(
     return advance(area, q, 0.0, length, (*drive, SPIN), rub, angles(n), 0.8, 10**9, scratch(n), sums)
 
 
-def check_equilibria() -> None:
+def test_equilibria() -> None:
     """Circles are kept to rounding at any amplitude, dry patches included."""
     for amplitude, radius in ((0.05, 0.9), (0.2, 0.95), (0.5, 1.2), (0.9, 1.7)):
         for n in (64, 200):
@@ -48,10 +48,6 @@ def check_equilibria() -> None:
             assert steps > 300
             # Rounding of some 1e-16 a step, of which the waves keep the square root.
             np.testing.assert_allclose(area, start, atol=1e-13)
-
-
-def test_equilibria() -> None:
-    check_equilibria()
 
 
 def test_a_million_steps_lose_no_mass() -> None:
@@ -67,7 +63,7 @@ def test_a_million_steps_lose_no_mass() -> None:
     assert abs(area.sum() / before - 1.0) < 1e-12
 
 
-def check_angular_momentum() -> None:
+def test_angular_momentum() -> None:
     """Without a body force nothing turns the liquid, bores or not."""
     n = 256
     theta = 2 * np.pi * (np.arange(n) + 0.5) / n
@@ -85,10 +81,6 @@ def check_angular_momentum() -> None:
     assert all(late < early for early, late in pairwise(energy))
 
 
-def test_angular_momentum() -> None:
-    check_angular_momentum()
-
-
 def jump_residual(a: tuple[float, float], u: tuple[float, float]) -> float:
     """Rankine-Hugoniot: both equations give the same speed of the jump."""
     areas, us = np.array(a), np.array(u)
@@ -99,7 +91,7 @@ def jump_residual(a: tuple[float, float], u: tuple[float, float]) -> float:
     return float((mass[1] - mass[0]) / (areas[1] - areas[0]) - (flow[1] - flow[0]) / (q[1] - q[0]))
 
 
-def check_bore() -> None:
+def test_bore() -> None:
     """A dam break: the bore obeys the jump conditions, runs at their speed, and does not overshoot."""
     n = 2048
     theta = 2 * np.pi * (np.arange(n) + 0.5) / n
@@ -121,10 +113,6 @@ def check_bore() -> None:
     assert abs(jump_residual(a, u)) < 2e-3 * speed
     # The front is a few cells wide.
     assert front == pytest.approx(np.pi + 1.5 * speed, abs=5 * 2 * np.pi / n)
-
-
-def test_bore() -> None:
-    check_bore()
 
 
 def test_a_bore_under_a_whirl_leaves_no_ripples() -> None:
@@ -151,7 +139,7 @@ def test_films_and_dry_beds_stay_positive() -> None:
         assert abs(area.sum() / before - 1.0) < 1e-13
 
 
-def check_energy() -> None:
+def test_energy() -> None:
     """A free wave loses energy to the grid alone, ever less of it, and gains none."""
     lost = []
     for n in (32, 64, 128):
@@ -172,11 +160,7 @@ def check_energy() -> None:
     assert lost[0] > 6.0 * lost[1] > 36.0 * lost[2], lost
 
 
-def test_energy() -> None:
-    check_energy()
-
-
-def check_order() -> None:
+def test_order() -> None:
     """Second order on a smooth travelling disturbance, by successive grids."""
     answers = []
     for n in (64, 128, 256, 512):
@@ -193,11 +177,7 @@ def check_order() -> None:
     assert np.all(orders > 1.7), orders
 
 
-def test_order() -> None:
-    check_order()
-
-
-def check_ring() -> None:
+def test_ring() -> None:
     """The system of the dispersive term, against dense elimination."""
     rng = np.random.default_rng(3)
     for n, side in ((8, 12.0), (33, 12.0), (40, 0.0), (500, 1e4)):
@@ -212,11 +192,7 @@ def check_ring() -> None:
         )
 
 
-def test_ring() -> None:
-    check_ring()
-
-
-def check_friction() -> None:
+def test_friction() -> None:
     """A layer that turns as a whole slows down as each law says."""
     n, area0, u0 = 32, 0.08, 0.05
     depth = 1.0 - math.sqrt(1.0 - 2.0 * area0)
@@ -229,10 +205,6 @@ def check_friction() -> None:
         q = u0 * area - SPIN * area**2
         run(area, q, 2.0, rub=(law, coefficient, lid, 0.0))
         np.testing.assert_allclose((q + SPIN * area**2) / area, u0 * kept, rtol=1e-10)
-
-
-def test_friction() -> None:
-    check_friction()
 
 
 def test_euler_force_spins_the_liquid_back() -> None:

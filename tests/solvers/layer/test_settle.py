@@ -35,7 +35,7 @@ def deviation(relative_depth: float, ratio: float, dispersion: bool, cells: int 
     return float(abs(answer.force_ratio[-1] - exact))
 
 
-def check_linear_force() -> None:
+def test_linear_force() -> None:
     """With dispersion the force is the exact one; without, off by the square of the depth."""
     for ratio in (0.5, 0.85, 1.3):
         exact = abs(float(force_ratio(1.0 / 0.81, ratio)))
@@ -44,11 +44,7 @@ def check_linear_force() -> None:
         assert deviation(0.1, ratio, dispersion=False) < 4.0 * 0.1**2 * exact
 
 
-def test_linear_force() -> None:
-    check_linear_force()
-
-
-def check_long_wave_limit() -> None:
+def test_long_wave_limit() -> None:
     """What dispersion makes up for falls as the square of the depth, in units of the force."""
     gaps = []
     for depth in (0.05, 0.1, 0.2):
@@ -60,10 +56,6 @@ def check_long_wave_limit() -> None:
     orders = np.log2(np.array(gaps[1:]) / gaps[:-1])
     # tanh(L) - L is of order L^2 of L, and L = h0/R + (h0/R)^2/2: a little below two at these depths.
     assert np.all((orders > 1.6) & (orders < 2.2)), orders
-
-
-def test_long_wave_limit() -> None:
-    check_long_wave_limit()
 
 
 @pytest.mark.slow
@@ -78,7 +70,7 @@ def test_linear_force_everywhere(depth: float, ratio: float) -> None:
     assert deviation(depth, ratio, dispersion=True) < 1e-2 * max(abs(exact), depth)
 
 
-def check_synchronous() -> None:
+def test_synchronous() -> None:
     """Full drum's force to rounding while wet; with a dry patch it tends to the exact statics."""
     fill = layer(0.1)
     for cells in (64, 256):
@@ -99,10 +91,6 @@ def check_synchronous() -> None:
         assert errors[1] < errors[0] / 16.0 and errors[1] < 1e-4
 
 
-def test_synchronous() -> None:
-    check_synchronous()
-
-
 def test_from_rest_with_friction_to_the_synchronous_state() -> None:
     # Spun up from a uniform layer by wall friction alone, the liquid ends where statics has it.
     whirl = Whirl(SPIN, SPIN, 0.003, ramp=2.0)
@@ -112,7 +100,7 @@ def test_from_rest_with_friction_to_the_synchronous_state() -> None:
     assert answer.force_ratio[-1] == pytest.approx(1.0, abs=1e-4)
 
 
-def check_history() -> None:
+def test_history() -> None:
     """Near resonance: momentum and pressure agree in the force, the layer is dragged against the whirl."""
     fill = layer(0.1)
     whirl = Whirl(SPIN, 30.575880656422154, 7.5e-4, ramp=0.6)
@@ -125,10 +113,6 @@ def check_history() -> None:
     # The long-wave assumption's own error, of the order of the depth over the radius.
     assert np.all(gap < 0.1 * np.maximum(np.abs(answer.force_ratio), 1.0))
     assert answer.depth_max.max() > 1.2 * 0.1 * R > answer.depth_min.min()
-
-
-def test_history() -> None:
-    check_history()
 
 
 def test_gravity_across_the_axis_is_carried() -> None:

@@ -35,6 +35,7 @@ from solvers.layer.prescribed import Numerics, Whirl
 from solvers.layer.settle import friction_law, simulate
 from solvers.pypde.long_wave import AnnularLongWavePDE, FiniteVolumeSolver
 from solvers.pypde.one_family import circle
+from tests.mutants import kills
 
 SPIN, R, H = 40.0, 0.15, 0.01
 OIL = Liquid("oil", 900.0, 1e-3)
@@ -155,7 +156,12 @@ def test_history_is_the_layers(law: str, dispersion: bool) -> None:
     check_history(law, dispersion)
 
 
-def check_force() -> None:
+@kills(
+    "solvers.pypde.readings:pressure_force", "terms.fill.chamber.radius**3", "terms.fill.chamber.radius**2"
+)
+@kills("solvers.pypde.readings:liquid_offset", "2.0 / 3.0 * a", "1.0 / 3.0 * a")
+@kills("solvers.pypde.readings:_rays", "ring(cells)[0] + 1j", "ring(cells)[0] - 1j")
+def test_force_and_offset_are_the_layers() -> None:
     """The mean over a period of the force at each instant is what `simulate` reports; the offset as well."""
     fill, whirl, cells = layer(), Whirl(SPIN, 28.0, 3e-4, ramp=0.5), 48
     friction, periods, samples = (LINEAR, 3.0), 6, 48
@@ -174,11 +180,7 @@ def check_force() -> None:
     assert abs(offset - answer.offset[-1]) < 1e-3 * abs(answer.offset[-1])
 
 
-def test_force_and_offset_are_the_layers() -> None:
-    check_force()
-
-
-def check_whole_step_order() -> None:
+def test_steps_are_of_second_order() -> None:
     """The solver's steps approach the same right-hand side integrated to rounding, with their square."""
     fill = layer()
     eq = AnnularLongWavePDE(fill, Whirl(SPIN, 20.0, 1e-4), friction=(LINEAR, 2.0), dispersion=True)
@@ -192,10 +194,6 @@ def check_whole_step_order() -> None:
     assert np.all(orders > 1.7) and np.all(orders < 2.3), orders
 
 
-def test_steps_are_of_second_order() -> None:
-    check_whole_step_order()
-
-
 # Equilibria, conservation, changing spin.
 
 
@@ -206,7 +204,14 @@ def circle_depth(amplitude: float, surface: float, cells: int) -> np.ndarray:
     return np.asarray(np.maximum(R - across + amplitude * np.cos(theta), 0.0))
 
 
-def check_synchronous() -> None:
+@kills("solvers.pypde.readings:area_at", "- 0.5 * depth", "- depth")
+@kills("solvers.pypde.readings:depth", "return 2.0 * area /", "return area /")
+@kills(
+    "solvers.pypde.readings:momentum_at",
+    "- terms.spin(time) * np.square(area)",
+    "+ terms.spin(time) * np.square(area)",
+)
+def test_synchronous_circle_is_an_equilibrium() -> None:
     """A circle about the rotation axis stays, and pulls as the statics have it."""
     amplitude, surface = 0.006, 0.135
     eq = AnnularLongWavePDE(layer(), Whirl(SPIN, SPIN, amplitude))
@@ -223,10 +228,6 @@ def check_synchronous() -> None:
     assert abs(eq.offset(state) * mass / (air * amplitude) - 1.0) < 1e-12
     assert np.abs(eq.velocity(state, 0.7)).max() < 1e-12 * SPIN * R
     np.testing.assert_allclose(eq.depth(state), R - eq.surface_radius(state), atol=4.0 * EPSILON * R)
-
-
-def test_synchronous_circle_is_an_equilibrium() -> None:
-    check_synchronous()
 
 
 @pytest.mark.parametrize(
@@ -250,7 +251,14 @@ def test_synchronous_circle_stays(options: dict[str, Any], amplitude: float) -> 
     assert relative(final.data[0], state.data[0]) < 1e-12
 
 
-def check_spin_up() -> None:
+@kills("solvers.pypde.terms:layer_rates", "rates(a, q, spin, terms.spin_rate", "rates(a, q, spin, 0.0")
+@kills(
+    "solvers.pypde.terms:layer_rates",
+    "rates(a, q, spin, terms.spin_rate",
+    "rates(a, q, spin, -terms.spin_rate",
+)
+@kills("solvers.pypde.readings:angular_momentum", "* fill.chamber.radius**2 * area", "* area")
+def test_spin_up_without_friction_leaves_angular_momentum() -> None:
     """Without friction a drum that spins up leaves the liquid's angular momentum in space as it is."""
     eq = AnnularLongWavePDE(layer(), STILL, spin_rate=30.0)
     depth = 0.015 * (1.0 + 0.2 * np.cos(circle(32).axes_coords[0]))
@@ -268,10 +276,6 @@ def check_spin_up() -> None:
     final = eq.solve(uniform, 0.4, solver="runge-kutta", dt=2e-3, tracker=None)
     area = uniform.data[0][0]
     np.testing.assert_allclose(eq.velocity(final, 0.4), -12.0 * (R - area / R), rtol=1e-12)
-
-
-def test_spin_up_without_friction_leaves_angular_momentum() -> None:
-    check_spin_up()
 
 
 def test_spin_up_with_friction_tends_to_a_lag() -> None:
@@ -514,3 +518,31 @@ def test_the_example_of_the_theory_page(capsys: pytest.CaptureFixture[str]) -> N
     told = page.partition("It prints ")[2].split()
     assert float(words[0]) == pytest.approx(float(told[0]), abs=5e-4)
     assert float(words[2]) == pytest.approx(float(told[2]), abs=0.05)
+
+
+@kills(
+    "solvers.pypde.terms:body_force", "0.5 * terms.spin_rate * time) * time", "terms.spin_rate * time) * time"
+)
+@kills("solvers.pypde.terms:body_force", "whirl.speed * time - turned", "whirl.speed * time + turned")
+@kills("solvers.pypde.terms:body_force", "- 1j * whirl.gravity", "+ 1j * whirl.gravity")
+@kills("solvers.pypde.terms:body_force", "(part - math.sin(part))", "(part + math.sin(part))")
+@kills("solvers.pypde.terms:body_force", "whirl.speed**2 * whirl.amplitude", "whirl.speed * whirl.amplitude")
+@kills("solvers.pypde.terms:radial_force", "force.imag * table[1], force", "-force.imag * table[1], force")
+@kills("solvers.pypde.terms:radial_force", "force.imag * table[3]", "-force.imag * table[3]")
+@kills(
+    "solvers.pypde.terms:LongWaveTerms.spin",
+    "self.whirl.spin + self.spin_rate",
+    "self.whirl.spin - self.spin_rate",
+)
+@kills("solvers.pypde.terms:layer_rates", "d_q -= _shear", "d_q += _shear")
+@kills("solvers.pypde.terms:_shear", "* held * u", "* u")
+def test_manufactured_solution_with_linear_friction() -> None:
+    check_manufactured()
+
+
+@kills("solvers.pypde.terms:march", "whirl.slip,", "-whirl.slip,")
+@kills("solvers.pypde.terms:march", "whirl.gravity / radius,", "whirl.gravity,")
+@kills("solvers.pypde.terms:march", "_lid(terms), _spread(terms, a))", "0.0, _spread(terms, a))")
+@kills("solvers.pypde.terms:_spread", "layer_log(a.mean())) ** 2", "layer_log(a.mean()))")
+def test_history_with_stokes_friction() -> None:
+    check_history()

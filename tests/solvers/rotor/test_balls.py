@@ -27,6 +27,7 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.two_plane_balance import dynamic_balancing, of_two_planes
+from tests.mutants import kills
 
 ROTOR = Jeffcott(mass=10.0, stiffness=25000.0, damping=100.0, unbalance=2e-3)
 RACE = BallRace(0.0, 0.1, (0.02, 0.02), 0.5)
@@ -64,7 +65,40 @@ def momenta(q_rate: Array, angle: Array, rate: Array, mass: Array, axes: Array, 
     return np.concatenate((p, own))
 
 
-def check_equations() -> None:
+@kills(
+    "solvers.rotor.balls.motion:rates", "* cosine - turning[1, i] * sine", "* cosine + turning[1, i] * sine"
+)
+@kills("solvers.rotor.balls.motion:rates", "cosine, sine = spin * spin *", "cosine, sine = spin *")
+@kills("solvers.rotor.balls.motion:rates", "push - drawn - held", "push - drawn + held")
+@kills("solvers.rotor.balls.motion:rates", "damping[i, k] * state[n + k]", "damping[k, i] * state[n + k]")
+@kills("solvers.rotor.balls.motion:rates", "-drag * radius * radius * (rate", "-drag * radius * (rate")
+@kills("solvers.rotor.balls.motion:rates", "slip - weight * gravity", "slip + weight * gravity")
+@kills("solvers.rotor.balls.motion:rates", "weight * radius * rate * rate\n", "weight * radius * rate\n")
+@kills(
+    "solvers.rotor.balls.motion:rates",
+    "torque / (rolling * weight * radius * radius)",
+    "torque / (weight * radius * radius)",
+)
+@kills(
+    "solvers.rotor.balls.motion:rates",
+    "x * axes[j, 0, i] + y * axes[j, 1, i], x * axes",
+    "x * axes[j, 0, i] - y * axes[j, 1, i], x * axes",
+)
+@kills(
+    "solvers.rotor.balls.motion:rates",
+    "away * outward - torque / (rolling * radius)",
+    "away * outward + torque / (rolling * radius)",
+)
+@kills("solvers.rotor.balls.motion:rates", "(1.0 - 1.0 / rolling) * along", "1.0 / rolling * along")
+@kills(
+    "solvers.rotor.balls.motion:rates",
+    "out[second + j] -= along * out[n + i]",
+    "out[second + j] += along * out[n + i]",
+)
+@kills(
+    "solvers.rotor.balls.motion:rates", "out[n + k] -= share * out[n + i]", "out[n + k] += share * out[n + i]"
+)
+def test_equations() -> None:
     """Lagrange's equations: the rate of the momenta along the motion is the force, by central differences.
 
     Over +-1e-5 of an order-one motion these are right to 1e-9, with rounding over the step to 1e-10.
@@ -101,7 +135,13 @@ def check_equations() -> None:
         assert found == pytest.approx(np.array(force), abs=2e-8)
 
 
-def check_energy() -> None:
+@kills("solvers.rotor.balls.motion:rates", "out[work] += (push - drawn)", "out[work] += (push + drawn)")
+@kills("solvers.rotor.balls.motion:rates", "out[work] += slip * rate", "out[work] += slip")
+@kills("solvers.rotor.balls.motion:energy", "(rolling - 1.0) * np.square", "rolling * np.square")
+@kills("solvers.rotor.balls.motion:energy", "carried[:, 0] - radius * rate", "carried[:, 0] + radius * rate")
+@kills("solvers.rotor.balls.motion:energy", "lifted = gravity * np.sum", "lifted = -gravity * np.sum")
+@kills("solvers.rotor.balls.motion:energy", "0.5 * q @ stiffness @ q", "q @ stiffness @ q")
+def test_energy() -> None:
     """The rate of the energy is the work that `rates` counts: central difference, as above."""
     for seed in range(3):
         state, matrices, numbers = random_case(seed)
@@ -116,7 +156,9 @@ def check_energy() -> None:
         assert rates[-1] >= 0.0
 
 
-def check_turnover() -> None:
+@kills("solvers.rotor.balls.motion:rates", "out[work + 1] += abs(slip * rate)", "out[work + 1] += abs(slip)")
+@kills("solvers.rotor.balls.motion:rates", "abs(push * state[n + i])", "abs(push * state[i])")
+def test_turnover() -> None:
     """The size of all work, written out: push of the unbalance, drag of the balls."""
     state, matrices, numbers = random_case(4)
     mass, _, _, turning, _, balls = matrices
@@ -128,7 +170,9 @@ def check_turnover() -> None:
     assert slope(time, state, matrices, numbers)[-1] == pytest.approx(total, rel=1e-12)
 
 
-def check_steps() -> None:
+@kills("solvers.rotor.balls.steps:_advance", "2.0 * middle", "1.0 * middle")
+@kills("solvers.rotor.balls.steps:_advance", "(sample - 1) * steps + i)", "(sample - 1) + i)")
+def test_steps() -> None:
     """The loop as Python against an adaptive method: fourth order, factor 16 within a third."""
     state, matrices, numbers = random_case(2, n=2, count=1)
     state[-2:] = 0.0
@@ -150,7 +194,22 @@ def check_steps() -> None:
     assert errors[1] < 1e-5 and 11.0 < errors[0] / errors[1] < 21.0
 
 
-def check_places() -> None:
+@kills(
+    "solvers.rotor.balls.balancers:balanced_places",
+    "cosine = (needed - odd) / pairs",
+    "cosine = (needed + odd) / pairs",
+)
+@kills(
+    "solvers.rotor.balls.balancers:balanced_places",
+    "cmath.phase(unbalance) + math.pi",
+    "cmath.phase(unbalance)",
+)
+@kills(
+    "solvers.rotor.balls.balancers:residual_unbalance",
+    "complex(unbalance + moment *",
+    "complex(unbalance - moment *",
+)
+def test_places() -> None:
     """The balls' moment is the unbalance, opposite, to rounding; what cannot be balanced is said so."""
     for count in (2, 3, 4, 7):
         unbalance = cmath.rect(2.9e-3, 0.7)
@@ -164,7 +223,12 @@ def check_places() -> None:
     assert balanced_places(0.0, 1.6e-3, 2) == pytest.approx([math.pi / 2, -math.pi / 2])
 
 
-def check_supercritical() -> None:
+@kills(
+    "solvers.rotor.balls.balancers:BalancedRun.ball_place",
+    "self.ball_angle - self.speed * self.time",
+    "self.ball_angle + self.speed * self.time",
+)
+def test_supercritical() -> None:
     """Above the critical speed (50 rad/s) the residual is 0 and the balls stand where statics put them.
 
     The slowest motion about the balanced state decays at more than 1/s here: after 30 s rounding is left.
@@ -181,7 +245,12 @@ def check_supercritical() -> None:
     assert np.max(np.abs(gaps)) < 1e-7
 
 
-def check_subcritical() -> None:
+@kills(
+    "solvers.rotor.balls.balancers:BalancedRun.deflection",
+    "1j * self.speed * self.time",
+    "2j * self.speed * self.time",
+)
+def test_subcritical() -> None:
     """Below it the balls gather on the heavy side: amplitude of the unbalance and both balls together.
 
     The synchronous answer of (M + 2 m) to U0 + 2 m R; the balls lie along the deflection, which lags,
@@ -200,7 +269,7 @@ def check_subcritical() -> None:
     assert np.exp(1j * run.ball_place[-1]) == pytest.approx(np.full(2, w / abs(w)), rel=1e-5)
 
 
-def check_too_light() -> None:
+def test_too_light() -> None:
     """Balls too light for the unbalance come to lie opposite and leave U0 - N m R."""
     light = BallRace(0.0, 0.1, (0.005, 0.005), 0.05)
     run = simulate(ROTOR.system(), [light], 150.0, 60.0, places=[1.0, 2.5], steps=96)
@@ -232,7 +301,12 @@ def largest_end(run: BalancedRun, system: RotorSystem) -> float:
     return max(float(np.abs(run.deflection(system, z))[-40:].max()) for z in (0.2, -0.22))
 
 
-def check_two_planes() -> None:
+@kills(
+    "solvers.rotor.balls.balancers:simulate",
+    "damping = system.damping + speed * system.gyroscopic",
+    "damping = system.damping",
+)
+def test_two_planes() -> None:
     """Balancers in two planes balance the long rotor above its resonances, where the conditions say yes."""
     for inertia, speed in ((LONG, 30.0), (LONG, 120.0), (SHORT, 30.0), (SHORT, 120.0)):
         run, system = two_plane_run(inertia, speed)
@@ -244,49 +318,15 @@ def check_two_planes() -> None:
             assert largest_end(run, system) > 5e-5
 
 
-def check_two_plane_places() -> None:
+@kills(
+    "solvers.rotor.balls.balancers:unbalance_in_planes", "couple - first * static", "couple + first * static"
+)
+def test_two_plane_places() -> None:
     """The balls of each race end opposite to the race's part of the static and couple unbalance."""
     run, _ = two_plane_run(LONG, 120.0)
     parts = unbalance_in_planes([(u.position, cmath.rect(u.size, u.angle)) for u in UNBALANCES], 0.15, -0.15)
     for part, angles in zip(parts, (run.ball_place[-1, :2], run.ball_place[-1, 2:]), strict=True):
         assert abs(residual_unbalance(part, 0.015 * 0.08, angles)) < 1e-7 * abs(part)
-
-
-def test_equations() -> None:
-    check_equations()
-
-
-def test_energy() -> None:
-    check_energy()
-    check_turnover()
-
-
-def test_steps() -> None:
-    check_steps()
-
-
-def test_places() -> None:
-    check_places()
-
-
-def test_supercritical() -> None:
-    check_supercritical()
-
-
-def test_subcritical() -> None:
-    check_subcritical()
-
-
-def test_too_light() -> None:
-    check_too_light()
-
-
-def test_two_planes() -> None:
-    check_two_planes()
-
-
-def test_two_plane_places() -> None:
-    check_two_plane_places()
 
 
 def test_gravity_across_leaves_a_small_wobble() -> None:

@@ -14,6 +14,7 @@ from meshes.errors import InputError
 from solvers.rotor.balls import motion as ball_motion
 from solvers.rotor.exciter import machine as exciter
 from solvers.rotor.exciter.machine import Dimensionless, Exciter, platform_motion, rolling_inertia
+from tests.mutants import kills
 
 MACHINE = Exciter(36.1, 145083.0, 150.0, 0.1 * 0.105, 2, 0.325, 7.0 / 5.0, 0.0735, 0.05)
 
@@ -24,7 +25,22 @@ def slope(numbers: Dimensionless, speed: float, time: float, state: Array) -> Ar
     return out
 
 
-def check_printed_numbers() -> None:
+@kills(
+    "solvers.rotor.exciter.machine:Exciter.dimensionless",
+    "smallness=balls / (self.rolling * mass)",
+    "smallness=balls / mass",
+)
+@kills(
+    "solvers.rotor.exciter.machine:Exciter.dimensionless",
+    "unbalance=self.unbalance / (balls * self.track_radius)",
+    "unbalance=self.unbalance / balls",
+)
+@kills(
+    "solvers.rotor.exciter.machine:Exciter.dimensionless",
+    "damping=self.damping / (2.0 * mass * frequency)",
+    "damping=self.damping / (mass * frequency)",
+)
+def test_printed_numbers() -> None:
     """[YF17, section 5.2], the empty table: two or three digits as printed."""
     numbers = MACHINE.dimensionless()
     assert numbers.smallness == pytest.approx(0.0126, abs=5e-5)
@@ -36,7 +52,27 @@ def check_printed_numbers() -> None:
     assert MACHINE.natural_frequency / (2.0 * math.pi) == pytest.approx(10.0, abs=5e-3)
 
 
-def check_units() -> None:
+@kills(
+    "solvers.rotor.exciter.machine:Exciter.whole_mass",
+    "return self.platform_mass + self.ball_count * self.ball_mass",
+    "return self.platform_mass + self.ball_mass",
+)
+@kills(
+    "solvers.rotor.exciter.machine:Exciter.dimensionless",
+    "drag=self.ball_damping * mass / (balls * self.ball_mass * frequency)",
+    "drag=self.ball_damping * mass / (balls * balls * frequency)",
+)
+@kills(
+    "solvers.rotor.exciter.machine:Exciter.dimensionless",
+    "gravity=gravity / (self.length * frequency**2)",
+    "gravity=gravity / (self.length * frequency)",
+)
+@kills(
+    "solvers.rotor.exciter.machine:Exciter.system",
+    "np.array([-1j * self.unbalance]",
+    "np.array([1j * self.unbalance]",
+)
+def test_units() -> None:
     """Seconds and metres: the dimensional equations of the general balls give the same accelerations.
 
     Two derivations of one motion, equal to rounding: 1e-11 of the largest.
@@ -68,7 +104,18 @@ def check_units() -> None:
         assert ours[4:] * unit**2 == pytest.approx(out[4:6], rel=1e-11)
 
 
-def check_equations() -> None:
+@kills("solvers.rotor.exciter.machine:rates", "load = delta * n * n *", "load = delta * n *")
+@kills("solvers.rotor.exciter.machine:rates", "- 2.0 * h * velocity", "- h * velocity")
+@kills("solvers.rotor.exciter.machine:rates", "velocity - state[0]", "velocity + state[0]")
+@kills("solvers.rotor.exciter.machine:rates", "own = -eps * b * (rate - n)", "own = -eps * b * (rate + n)")
+@kills("solvers.rotor.exciter.machine:rates", "np.cos(angle - alpha)", "np.cos(angle + alpha)")
+@kills("solvers.rotor.exciter.machine:rates", "(rate * rate * np.sin(angle) -", "(rate * np.sin(angle) -")
+@kills("solvers.rotor.exciter.machine:rates", "- own * cosine)", "+ own * cosine)")
+@kills("solvers.rotor.exciter.machine:rates", "load / (1.0 - eps * carried", "load / (1.0 + eps * carried")
+@kills(
+    "solvers.rotor.exciter.machine:rates", "-= eps * acceleration * np.cos", "+= eps * acceleration * np.cos"
+)
+def test_equations() -> None:
     """The source's equations as printed [YF17, eq. 1] hold for what `rates` solved: residual at rounding."""
     numbers = Dimensionless(0.03, 0.4, 0.25, 0.05, gravity=1.9, incline=0.4)
     rng, n, time = np.random.default_rng(1), 4.0, 0.7
@@ -85,7 +132,17 @@ def check_equations() -> None:
         assert np.array_equal(out[2 : 2 + balls], dphi) and out[0] == dv
 
 
-def check_platform_motion() -> None:
+@kills(
+    "solvers.rotor.exciter.machine:platform_motion",
+    "complex(1.0 - frequency**2,",
+    "complex(frequency**2 - 1.0,",
+)
+@kills(
+    "solvers.rotor.exciter.machine:platform_motion",
+    "return frequency**2 / complex",
+    "return frequency / complex",
+)
+def test_platform_motion() -> None:
     """The linear platform under the balls' even turning: its equation at any time, to rounding."""
     numbers, n, q = Dimensionless(0.01, 0.4, 0.25, 0.03), 5.0, 0.93
     slow, fast = platform_motion(numbers, n, q, together=0.7)
@@ -97,32 +154,18 @@ def check_platform_motion() -> None:
         assert ddv + 2 * 0.03 * dv + v == pytest.approx(drive, abs=1e-12)
 
 
-def check_rolling() -> None:
+@kills(
+    "solvers.rotor.exciter.machine:rolling_inertia",
+    "return 1.0 + own_inertia / (mass",
+    "return own_inertia / (mass",
+)
+@kills("solvers.rotor.exciter.machine:rolling_inertia", "(mass * radius**2)", "(mass * radius)")
+def test_rolling() -> None:
     """Kinetic energy of a rolling solid ball and cylinder: 2/5 and 1/2 of m r^2."""
     assert rolling_inertia("ball") == 1.0 + 2.0 / 5.0
     assert rolling_inertia("roller") == 1.0 + 1.0 / 2.0
     # A rod of length 2 R hung at its end: m (2 R)^2/12 about its middle, m R^2 4/3 about the shaft.
     assert rolling_inertia("pendulum", 3.0, 0.2, 3.0 * 0.4**2 / 12.0) == pytest.approx(4.0 / 3.0, rel=1e-15)
-
-
-def test_printed_numbers() -> None:
-    check_printed_numbers()
-
-
-def test_units() -> None:
-    check_units()
-
-
-def test_equations() -> None:
-    check_equations()
-
-
-def test_platform_motion() -> None:
-    check_platform_motion()
-
-
-def test_rolling() -> None:
-    check_rolling()
 
 
 @given(

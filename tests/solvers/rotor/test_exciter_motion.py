@@ -13,6 +13,7 @@ from solvers.rotor.exciter import steps as exciter_steps
 from solvers.rotor.exciter.machine import Dimensionless, platform_motion
 from solvers.rotor.exciter.motion import Start, critical_speed, critical_speeds, initial_state, integrate
 from solvers.rotor.exciter.stuck import characteristic_speeds, stuck_speeds
+from tests.mutants import kills
 
 MACHINE = Dimensionless(0.01, 0.4, 0.25, 0.03)
 
@@ -29,7 +30,9 @@ def reference(machine: Dimensionless, speed: float, state: Array, time: float) -
     return solve_ivp(slope, (0.0, time), state, method="DOP853", rtol=1e-12, atol=1e-12).y[:, -1]
 
 
-def check_steps() -> None:
+@kills("solvers.rotor.exciter.steps:_advance", "time = (block * steps + i) * step", "time = i * step + step")
+@kills("solvers.rotor.exciter.steps:_advance", "before[j]) / (steps * step)", "before[j]) / steps")
+def test_steps() -> None:
     """One block against the reference: the error falls by 16 when the step is halved (fourth order).
 
     Run as Python with a few steps, so that a fault in the loop is seen. The factor of a smooth problem at
@@ -49,7 +52,9 @@ def check_steps() -> None:
     assert means[0, :2] == pytest.approx((state[2:4] - begin[2:4]) / time, rel=1e-14)
 
 
-def check_step() -> None:
+@kills("solvers.rotor.exciter.steps:_step", "step * weights[stage] * slopes", "step * weights[0] * slopes")
+@kills("solvers.rotor.exciter.steps:_step", "(1.0 if stage == 3 else 0.5)", "(0.5 if stage == 3 else 0.5)")
+def test_step() -> None:
     """One step as Python: v' = v'' ... with a fifth-order error, against the reference."""
     begin = np.array([0.3, -0.2, 0.1, 2.0, 0.8, 1.4])
     errors = []
@@ -73,7 +78,9 @@ def reference_between(state: Array, start: float, stop: float) -> Array:
     return solve_ivp(slope, (start, stop), state, method="DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
 
 
-def check_projection() -> None:
+@kills("solvers.rotor.exciter.motion:_motion", "np.hypot(sums[2], sums[3])", "np.hypot(sums[0], sums[3])")
+@kills("solvers.rotor.exciter.motion:_motion", "np.hypot(sums[0], sums[1])", "np.hypot(sums[0], sums[0])")
+def test_projection() -> None:
     """The amplitudes read from the motion are those put in: a platform without balls' pull.
 
     With a tiny share of the balls the platform moves as the linear theory says, to the size of the share,
@@ -86,7 +93,7 @@ def check_projection() -> None:
     assert motion.fast == pytest.approx(abs(fast), rel=1e-4)
 
 
-def check_mean_speed() -> None:
+def test_mean_speed() -> None:
     """[YF17, section 5.3]: 0.9469 by their integration, 0.9465 by the quintic; balls together."""
     motion = integrate(MACHINE, 5.0)
     assert motion.holds and motion.converged
@@ -99,7 +106,10 @@ def check_mean_speed() -> None:
     assert motion.fast == pytest.approx(abs(fast), rel=0.011)
 
 
-def check_critical_speed() -> None:
+@kills(
+    "solvers.rotor.exciter.motion:critical_speed", "            low = middle\n", "            high = middle\n"
+)
+def test_critical_speed() -> None:
     """Near the source's 7.0, from the start that comes closest to its figures; and the bracket is one."""
     found = critical_speed(MACHINE)
     assert 0.0 < found.lost - found.holds <= 0.05
@@ -107,7 +117,18 @@ def check_critical_speed() -> None:
     assert found.holds == pytest.approx(7.0, rel=0.12)
 
 
-def check_starts() -> None:
+@kills("solvers.rotor.exciter.motion:initial_state", "state[1] = (1j * (stuck", "state[1] = -(1j * (stuck")
+@kills(
+    "solvers.rotor.exciter.motion:initial_state",
+    "state[0] = (slow + fast).imag",
+    "state[0] = (slow + fast).real",
+)
+@kills(
+    "solvers.rotor.exciter.motion:initial_state",
+    "np.linspace(0.0, start.separation",
+    "np.linspace(0.0, 2.0 * start.separation",
+)
+def test_starts() -> None:
     """Where each start puts platform and balls."""
     stuck = 0.9
     rest = initial_state(MACHINE, 5.0, stuck, 3, Start("rest", 0.4))
@@ -122,27 +143,6 @@ def check_starts() -> None:
     # First difference of a motion with accelerations of the order of 10.
     assert regime[1] == pytest.approx((moved - regime[0]) / tiny, abs=10.0 * tiny)
     assert regime[4:].tolist() == [stuck, stuck]
-
-
-def test_steps() -> None:
-    check_steps()
-    check_step()
-
-
-def test_projection() -> None:
-    check_projection()
-
-
-def test_mean_speed() -> None:
-    check_mean_speed()
-
-
-def test_starts() -> None:
-    check_starts()
-
-
-def test_critical_speed() -> None:
-    check_critical_speed()
 
 
 def test_compiled_and_plain_steps_are_one() -> None:

@@ -19,6 +19,7 @@ from solvers.rotor.exciter.stuck import (
     shaft_speed,
     stuck_speeds,
 )
+from tests.mutants import kills
 
 MACHINE = Dimensionless(0.01, 0.4, 0.25, 0.03)
 
@@ -29,7 +30,12 @@ def quintic(machine: Dimensionless, n: float, together: float = 1.0) -> list[flo
     return [1 + chi, -n, -2 * (1 - 2 * h * h), 2 * n * (1 - 2 * h * h), 1, -n]
 
 
-def check_printed_roots() -> None:
+@kills(
+    "solvers.rotor.exciter.stuck:lag_number",
+    "return together**2 * machine.damping",
+    "return together * machine.drag",
+)
+def test_printed_roots() -> None:
     """[YF17, section 5.3]: 0.9465, 1.0732, 4.61875 at n = 5; further digits from the quintic's roots."""
     found = stuck_speeds(5.0, MACHINE)
     assert found == pytest.approx([0.94653, 1.07323, 4.61875], abs=5e-6)
@@ -37,7 +43,10 @@ def check_printed_roots() -> None:
     assert found == pytest.approx(exact, rel=1e-12)  # simple roots: rounding times their condition
 
 
-def check_printed_characteristic() -> None:
+@kills("solvers.rotor.exciter.stuck:shaft_speed", "np.square(2.0 * h * q)", "np.square(h * q)")
+@kills("solvers.rotor.exciter.stuck:_turning_points", "4.0 * h * h - 2.0", "2.0 * h * h - 2.0")
+@kills("solvers.rotor.exciter.stuck:_turning_points", "polysub(5.0 * bell", "polysub(4.0 * bell")
+def test_printed_characteristic() -> None:
     """[YF17, section 5.3]: 21.833 and 21.877, five digits."""
     known = characteristic_speeds(MACHINE)
     assert known.through_resonance == pytest.approx(21.833, abs=5e-4)
@@ -51,7 +60,8 @@ def check_printed_characteristic() -> None:
     assert stuck_speeds(known.through_resonance, MACHINE)[0] == pytest.approx(1.0, abs=1e-12)
 
 
-def check_balance() -> None:
+@kills("solvers.rotor.exciter.stuck:shaft_speed", "chi * q**5 /", "chi * q**4 /")
+def test_balance() -> None:
     """Torque of the platform against the drag, by quadrature over a turn with the motion of the platform.
 
     b (n - Q) = mean of v'' cos(phi) with its sign, A = 1: the mean of a product of two harmonics, exact by
@@ -67,7 +77,13 @@ def check_balance() -> None:
         assert np.mean(push * np.cos(angle)) == pytest.approx(MACHINE.drag * (n - q), rel=1e-10)
 
 
-def check_expansion() -> None:
+@kills("solvers.rotor.exciter.stuck:approximate_speeds", "+ 1.5 * root +", "+ 1.25 * root +")
+@kills("solvers.rotor.exciter.stuck:approximate_speeds", "+ 2.0 * root**2", "+ 1.0 * root**2")
+@kills("solvers.rotor.exciter.stuck:approximate_speeds", "53.0 / 24.0", "23.0 / 8.0")
+@kills("solvers.rotor.exciter.stuck:approximate_speeds", "9.0 / 16.0 * chi", "9.0 / 8.0 * chi")
+@kills("solvers.rotor.exciter.stuck:approximate_speeds", "1.5 * (1.0 + 27.0", "0.5 * (1.0 + 27.0")
+@kills("solvers.rotor.exciter.stuck:approximate_speeds", "resonance = 0.25 * chi", "resonance = 0.5 * chi")
+def test_expansion() -> None:
     """The expansions fall short by the next order: factor 16 and more for chi and h falling together.
 
     n1 is off by order chi^(4/3): chi by 64 is a factor 256 of it; n3 by chi^3, h^2 chi^2 and h^4/chi.
@@ -86,14 +102,21 @@ def check_expansion() -> None:
     assert 128.0 < errors[0] / errors[1] < 512.0
 
 
-def check_regression() -> None:
+@kills(
+    "solvers.rotor.exciter.motion:printed_critical_speed",
+    "(4.0 * (b + eps * second)",
+    "(2.0 * (b + eps * second)",
+)
+def test_regression() -> None:
     """The printed function at the source's worked numbers: 7.0, with its error of 6 %."""
     assert float(printed_critical_speed(0.01, 0.4, 0.25, 0.03)) == pytest.approx(7.0, rel=0.06)
     # For eps = 0 it is n2 [YF17, section 5.5].
     assert float(printed_critical_speed(0.0, 0.4, 0.25, 0.03)) == pytest.approx(1.0 + 1.0 / (4 * 0.4 * 0.03))
 
 
-def check_regression_by_hand() -> None:
+@kills("solvers.rotor.exciter.motion:printed_critical_speed", "(h + eps * third)", "(h - eps * third)")
+@kills("solvers.rotor.exciter.motion:printed_critical_speed", "(1.0 + eps * first)", "(1.0 - eps * first)")
+def test_regression_by_hand() -> None:
     """One value by long-hand arithmetic from the printed coefficients."""
     e, b, d, h = 0.02, 0.3, 0.5, 0.05
     g1 = (1 - 26.5235 * d - 16.7424 * h - 30.1288 * b) / (-0.2537 - 0.8080 * d - 3.9439 * h + 0.6984 * b)
@@ -101,27 +124,6 @@ def check_regression_by_hand() -> None:
     g3 = (1 - 9.2714 * d + 229.7664 * h + 43.5133 * b) / (-0.0992 + 2.4911 * d + 35.3149 * h - 0.1019 * b)
     value = 1 + (1 + e * g1) / (4 * (b + e * g2) * (h + e * g3))
     assert float(printed_critical_speed(e, b, d, h)) == pytest.approx(value, rel=1e-13)
-
-
-def test_printed_roots() -> None:
-    check_printed_roots()
-
-
-def test_printed_characteristic() -> None:
-    check_printed_characteristic()
-
-
-def test_balance() -> None:
-    check_balance()
-
-
-def test_expansion() -> None:
-    check_expansion()
-
-
-def test_regression() -> None:
-    check_regression()
-    check_regression_by_hand()
 
 
 @given(st.floats(0.05, 2.0), st.floats(0.005, 0.5), st.floats(0.05, 200.0), st.floats(0.1, 1.0))

@@ -14,6 +14,7 @@ from solvers.rotor.system import RotorSystem
 from solvers.rotor.tub import Mount, Tub, displacement
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.vibration import modes, orbit, unbalance_response
+from tests.mutants import kills
 from tests.oracles.rotors import free_energy_drift, tub, tub_energies
 
 
@@ -75,7 +76,25 @@ def derived(angle: float = 0.7) -> dict[str, np.ndarray]:
     }
 
 
-def check_matrices() -> None:
+@kills("solvers.rotor.tub:displacement", "[0.0, 1.0, 0.0, -z, 0.0, x]", "[0.0, 1.0, 0.0, 0.0, -z, x]")
+@kills("solvers.rotor.tub:displacement", "[0.0, 0.0, 1.0, y, -x, 0.0]", "[0.0, 0.0, 1.0, y, x, 0.0]")
+@kills("solvers.rotor.tub:Mount.matrix", "/ math.hypot(*self.direction)", "")
+@kills(
+    "solvers.rotor.tub:Mount.matrix",
+    "moving.T @ tensor @ moving",
+    "moving.T @ np.diag(np.diag(tensor)) @ moving",
+)
+@kills(
+    "solvers.rotor.tub:Tub.system",
+    "gyroscopic[5, 3] = -along, along",
+    "gyroscopic[5, 3] = -2.0 * along, 2.0 * along",
+)
+@kills("solvers.rotor.tub:Tub.system", "gyroscopic[5, 3] = -along, along", "gyroscopic[5, 3] = along, -along")
+@kills("solvers.rotor.tub:Tub.system", "0.0, across, along, across]", "0.0, along, across, along]")
+@kills(
+    "solvers.rotor.tub:Tub.system", "inertia += self.drum_mass * drum.T", "inertia -= self.drum_mass * drum.T"
+)
+def test_matrices() -> None:
     """Mass, gyroscopic, damping and stiffness matrices of the energies [DR18, eq. 1-8]."""
     system, reference = tub().system(), derived()
     for name in ("mass", "gyroscopic", "stiffness", "damping"):
@@ -84,18 +103,17 @@ def check_matrices() -> None:
     assert np.abs(reference["gyroscopic"]).max() == pytest.approx(0.32)
 
 
-def test_matrices() -> None:
-    check_matrices()
-
-
-def check_unbalance() -> None:
+@kills("solvers.rotor.tub:Tub.system", "[[2, 0]]", "[[0, 2]]")
+@kills("solvers.rotor.tub:Tub.system", "(centre + heavy * lean).T", "(centre - heavy * lean).T")
+@kills(
+    "solvers.rotor.tub:Tub.system",
+    "+ heavy * lean).T @ np.array([1.0, -1j])",
+    "+ heavy * lean).T @ np.array([1.0, 1j])",
+)
+def test_unbalance() -> None:
     """The force of a mass point that goes round in the drum, z into x."""
     force = np.real(tub().system().unbalance * np.exp(0.7j))
     np.testing.assert_allclose(force, derived()["force"], atol=1e-13 * np.abs(force).max())
-
-
-def test_unbalance() -> None:
-    check_unbalance()
 
 
 def test_natural_frequencies_against_an_independent_solution() -> None:
@@ -125,7 +143,8 @@ def test_symmetry() -> None:
     assert np.linalg.eigvalsh(system.stiffness).min() > 0.0
 
 
-def check_displacement() -> None:
+@kills("solvers.rotor.tub:displacement", "[1.0, 0.0, 0.0, 0.0, z, -y]", "[1.0, 0.0, 0.0, 0.0, -z, -y]")
+def test_displacement() -> None:
     """Points of the tub and of the drum's axis move as under a small rotation about x, y, z."""
     q = np.array([0.1, 0.2, 0.3, 1e-7, -2e-7, 3e-7])
     place = np.array([0.4, -0.5, 0.6])
@@ -133,10 +152,6 @@ def check_displacement() -> None:
     np.testing.assert_allclose(displacement((0.4, -0.5, 0.6)) @ q, q[:3] + turned, rtol=1e-15)
     moved = q[:3] + np.cross(q[3:], [0.02, 0.25, -0.03])
     np.testing.assert_allclose(tub().system().at(0.25) @ q, moved[[2, 0]], rtol=1e-14)
-
-
-def test_displacement() -> None:
-    check_displacement()
 
 
 def test_a_spring_works_along_its_line() -> None:
@@ -155,7 +170,7 @@ def test_a_spring_in_three_directions_is_three_springs() -> None:
     np.testing.assert_allclose(along, sum(three), rtol=1e-14)
 
 
-def check_rigid_body_limits() -> None:
+def test_rigid_body_limits() -> None:
     """Drum at the tub's centre, isotropic springs about it: six separate oscillators."""
     places = [(x, y, z) for x in (-0.2, 0.2) for y in (-0.1, 0.1) for z in (-0.15, 0.15)]
     springs = tuple(Mount(place, along_axes=(500.0, 500.0, 500.0)) for place in places)
@@ -169,11 +184,7 @@ def check_rigid_body_limits() -> None:
     np.testing.assert_allclose(found, np.sort([shift, shift, shift, *turns]), rtol=1e-10)
 
 
-def test_rigid_body_limits() -> None:
-    check_rigid_body_limits()
-
-
-def check_supercritical() -> None:
+def test_supercritical() -> None:
     """[DG21, table 1]: far above resonance the tub goes round with m_2 e/(m_1 + m_2) = 3.05 mm."""
     springs = (Mount((0.2, 0.0, 0.2), along_axes=(6e3, 6e3, 6e3)),)
     machine = Tub(48.2, 12.5, (1.3, 1.5, 1.3), 0.32, 0.2, springs, (), 12.5 * 14.8e-3)
@@ -182,10 +193,6 @@ def check_supercritical() -> None:
     assert np.angle(found.forward[0]) == pytest.approx(math.pi) or np.angle(
         found.forward[0]
     ) == pytest.approx(-math.pi)
-
-
-def test_supercritical() -> None:
-    check_supercritical()
 
 
 def two_views() -> tuple[RotorSystem, RotorSystem]:
@@ -207,7 +214,7 @@ def two_views() -> tuple[RotorSystem, RotorSystem]:
     return plain.system(), as_tub.system()
 
 
-def check_two_plane_limit() -> None:
+def test_two_plane_limit() -> None:
     """With all inertia in the drum the tub answers as a rotor in two planes, gyroscopic terms included."""
     plain, as_tub = two_views()
     held = [0, 2, 3, 5]  # along and about the axis nothing holds it
@@ -225,10 +232,6 @@ def check_two_plane_limit() -> None:
     for z in (-0.2, 0.3):
         one = orbit(plain, unbalance_response(plain, speed), z).forward
         np.testing.assert_allclose(orbit(as_tub, answer, z).forward, one, rtol=1e-7)
-
-
-def test_two_plane_limit() -> None:
-    check_two_plane_limit()
 
 
 @pytest.mark.parametrize(

@@ -13,10 +13,13 @@ from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.vibration import modes, orbit, unbalance_response, whirl_direction
+from tests.mutants import kills
 from tests.oracles.rotors import free_energy_drift, two_plane
 
 
-def check_support_matrices() -> None:
+@kills("solvers.rotor.two_plane:_axis", "[0.0, 1.0, -position, 0.0]", "[0.0, 1.0, position, 0.0]")
+@kills("solvers.rotor.two_plane:TwoPlane.system", "support.damping * axis.T", "support.stiffness * axis.T")
+def test_support_matrices() -> None:
     """[FF20]: k11 = k1 + k2, k14 = k1 l1 - k2 l2, k33 = k1 l1^2 + k2 l2^2, supports at +l1 and -l2."""
     k1, k2, l1, l2 = 5e4, 4e4, 0.31, 0.35
     system = two_plane().system()
@@ -35,10 +38,6 @@ def check_support_matrices() -> None:
     assert rate @ system.damping @ rate == pytest.approx(power, rel=1e-14)
 
 
-def test_support_matrices() -> None:
-    check_support_matrices()
-
-
 def test_symmetry() -> None:
     system = two_plane().system()
     np.testing.assert_array_equal(system.mass, system.mass.T)
@@ -46,7 +45,12 @@ def test_symmetry() -> None:
     np.testing.assert_array_equal(system.gyroscopic, -system.gyroscopic.T)
 
 
-def check_gyroscopic_splitting() -> None:
+@kills(
+    "solvers.rotor.two_plane:TwoPlane.system",
+    "= self.polar_inertia, -self.polar_inertia",
+    "= 2.0 * self.polar_inertia, -2.0 * self.polar_inertia",
+)
+def test_gyroscopic_splitting() -> None:
     """Supports alike on both sides: A w^2 -+ C Omega w - k33 = 0, the forward one rises with the spin."""
     rotor = TwoPlane(10.0, 0.5, 0.3, (Support(-0.3, 2e4, 0.0), Support(0.3, 2e4, 0.0)))
     system, spin = rotor.system(), np.array([40.0, 150.0, 900.0])
@@ -65,11 +69,12 @@ def check_gyroscopic_splitting() -> None:
         assert tilt == pytest.approx(closed, rel=1e-11)
 
 
-def test_gyroscopic_splitting() -> None:
-    check_gyroscopic_splitting()
-
-
-def check_free_top() -> None:
+@kills(
+    "solvers.rotor.two_plane:TwoPlane.system",
+    "= self.polar_inertia, -self.polar_inertia",
+    "= -self.polar_inertia, self.polar_inertia",
+)
+def test_free_top() -> None:
     """Without supports the axis of a free body goes round forward at C Omega/A."""
     system = TwoPlane(10.0, 0.5, 0.3, ()).system()
     found = modes(system, 100.0)
@@ -78,11 +83,9 @@ def check_free_top() -> None:
     assert whirl_direction(system, found.shape[0, :, -1]) == pytest.approx(1.0)
 
 
-def test_free_top() -> None:
-    check_free_top()
-
-
-def check_long_shaft() -> None:
+@kills("solvers.rotor.two_plane:TwoPlane.system", "np.array([1.0, -1j])", "np.array([1.0, 1j])")
+@kills("solvers.rotor.two_plane:TwoPlane.system", "cmath.exp(1j * one.angle)", "cmath.exp(-1j * one.angle)")
+def test_long_shaft() -> None:
     """Two equal masses at the supports, A = m L^2, C = 0: two separate Jeffcott rotors."""
     half, length = 5.0, 0.4
     ends = ((-length, 3e4, 50.0, 1e-3, 0.3), (length, 5e4, 30.0, 2e-3, -1.2))
@@ -104,11 +107,12 @@ def check_long_shaft() -> None:
         np.testing.assert_allclose(np.abs(found.backward), 0.0, atol=1e-14 * np.abs(closed).max())
 
 
-def test_long_shaft() -> None:
-    check_long_shaft()
-
-
-def check_far_above_resonance() -> None:
+@kills(
+    "solvers.rotor.two_plane:TwoPlane.system",
+    "[self.mass, self.mass, inertia, inertia]",
+    "[self.mass, self.mass, inertia, 2.0 * inertia]",
+)
+def test_far_above_resonance() -> None:
     """The rotor turns about its principal axis: shift -U/M and tilt -sum(u z)/(A - C)."""
     rotor = two_plane()
     one, other = rotor.unbalances
@@ -121,10 +125,6 @@ def check_far_above_resonance() -> None:
     tilt = orbit(rotor.system(), answer, 1.0).forward - shift
     couple = turned[0] * one.position + turned[1] * other.position
     np.testing.assert_allclose(tilt, -couple / (0.72 - 0.16), rtol=1e-5)
-
-
-def test_far_above_resonance() -> None:
-    check_far_above_resonance()
 
 
 def test_energy_is_kept() -> None:

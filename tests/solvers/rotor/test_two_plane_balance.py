@@ -17,11 +17,14 @@ from solvers.rotor.two_plane_balance import (
     of_two_planes,
     potential_hessian,
 )
+from tests.mutants import kills
 
 ROTOR = RigidRotor(10.0, (0.5, 0.6, 0.1), (1e4, 1.3e4), (0.2, -0.25))
 
 
-def check_support() -> None:
+@kills("solvers.rotor.two_plane_balance:RigidRotor.support", "sum(k * z for k, z", "sum(-k * z for k, z")
+@kills("solvers.rotor.two_plane_balance:RigidRotor.support", "sum(k * z * z for k, z", "sum(k * z for k, z")
+def test_support() -> None:
     """[FF20, eq. 17]."""
     k1, k2, l1, l2 = 1e4, 1.3e4, 0.2, 0.25
     assert ROTOR.support == pytest.approx((k1 + k2, k1 * l1 - k2 * l2, k1 * l1**2 + k2 * l2**2), rel=1e-15)
@@ -43,7 +46,23 @@ def elastic_less_kinetic(rotor: RigidRotor, speed: float, q: np.ndarray) -> floa
     return elastic - 0.5 * speed**2 * float(inertia)
 
 
-def check_hessian() -> None:
+@kills(
+    "solvers.rotor.two_plane_balance:potential_hessian",
+    "tilt_x, tilt_y = (b - c)",
+    "tilt_x, tilt_y = (a - c)",
+)
+@kills(
+    "solvers.rotor.two_plane_balance:potential_hessian", "[0.0, tilt_y, -k14, 0.0]", "[0.0, tilt_y, k14, 0.0]"
+)
+@kills(
+    "solvers.rotor.two_plane_balance:potential_hessian", "[k14, 0.0, 0.0, shift]", "[-k14, 0.0, 0.0, shift]"
+)
+@kills(
+    "solvers.rotor.two_plane_balance:potential_hessian",
+    "shift = rotor.mass * speed**2 - k11",
+    "shift = rotor.mass * speed**2 + k11",
+)
+def test_hessian() -> None:
     """Minus the second differences of elastic less kinetic energy.
 
     The sign turns where the unbalances are eliminated instead of the coordinates.
@@ -65,7 +84,16 @@ def check_hessian() -> None:
     assert found == pytest.approx(matrix, rel=1e-4, abs=1e-5 * np.abs(matrix).max())
 
 
-def check_conditions() -> None:
+@kills(
+    "solvers.rotor.two_plane_balance:dynamic_balancing", "v11, v22, v33 = (b - c)", "v11, v22, v33 = (b + c)"
+)
+@kills(
+    "solvers.rotor.two_plane_balance:dynamic_balancing", "(a - c) * square - k33", "(a - c) * square + k33"
+)
+@kills("solvers.rotor.two_plane_balance:dynamic_balancing", "rotor.mass * square - k11", "square - k11")
+@kills("solvers.rotor.two_plane_balance:dynamic_balancing", "v11 * v33 - k14 * k14", "v11 * v33 + k14 * k14")
+@kills("solvers.rotor.two_plane_balance:dynamic_balancing", "v22 * v33 - k14 * k14", "v11 * v33 - k14 * k14")
+def test_conditions() -> None:
     """Yes exactly where the Hessian is positive definite, over speed; the limit is where it becomes so."""
     answer = dynamic_balancing(ROTOR, np.linspace(0.0, 200.0, 401))
     for speed, possible in zip(answer.speed, answer.possible, strict=True):
@@ -84,7 +112,18 @@ def check_conditions() -> None:
             assert below < np.interp(one.above * 1.1, answer.speed, one.value)
 
 
-def check_resonances() -> None:
+@kills(
+    "solvers.rotor.two_plane_balance:_tilt_limits",
+    "excess * k11 + rotor.mass * k33",
+    "excess * k11 + 2.0 * rotor.mass * k33",
+)
+@kills(
+    "solvers.rotor.two_plane_balance:_tilt_limits",
+    "k11 * k33 - k14 * k14\n    # Never",
+    "k11 * k33 + k14 * k14\n    # Never",
+)
+@kills("solvers.rotor.two_plane_balance:of_two_planes", "mass=rotor.mass + added_mass", "mass=rotor.mass")
+def test_resonances() -> None:
     """They are the speeds at which the whole undamped rotor has no stiffness against its unbalance."""
     rotor = TwoPlane(10.0, 0.5, 0.1, (Support(0.2, 1e4, 0.0), Support(-0.25, 1.3e4, 0.0)))
     system = rotor.system()
@@ -97,7 +136,8 @@ def check_resonances() -> None:
     assert of_two_planes(rotor, 0.5).mass == 10.5
 
 
-def check_uncoupled() -> None:
+@kills("solvers.rotor.two_plane_balance:_root", "math.sqrt(stiffness / inertia)", "stiffness / inertia")
+def test_uncoupled() -> None:
     """k14 = 0 [FF20, eq. 34]: the largest of three square roots."""
     rotor = RigidRotor(8.0, (0.5, 0.7, 0.2), (1e4, 1e4), (0.3, -0.3))
     answer = dynamic_balancing(rotor, [10.0, 300.0])
@@ -108,26 +148,6 @@ def check_uncoupled() -> None:
         [roots[2], roots[1], roots[0]], rel=1e-14
     )
     assert answer.possible.tolist() == [False, True]
-
-
-def test_support() -> None:
-    check_support()
-
-
-def test_hessian() -> None:
-    check_hessian()
-
-
-def test_conditions() -> None:
-    check_conditions()
-
-
-def test_resonances() -> None:
-    check_resonances()
-
-
-def test_uncoupled() -> None:
-    check_uncoupled()
 
 
 def test_a_short_rotor_is_never_balanced() -> None:

@@ -12,6 +12,7 @@ from solvers.rotor.vector_model import (
     total_over_liquid,
     unbalance_left,
 )
+from tests.mutants import kills
 
 EPS = np.finfo(float).eps
 
@@ -98,7 +99,8 @@ def assert_jeffcott(added: float = 0.3, zeta: float = 0.1, speeds: np.ndarray | 
     )
 
 
-def assert_second_root_between_the_critical_speeds() -> None:
+@kills("solvers.rotor.vector_model:balance_angles", "delta + np.pi - inner", "delta - np.pi - 2.0 * inner")
+def test_second_root_between_the_critical_speeds() -> None:
     """Between the critical speeds with and without liquid the answer is the second root, else the first."""
     omega, added = np.array([0.5, 0.8, 0.95, 1.5]), 1.0
     alpha, delta, k = jeffcott(omega, 1.0, added, 0.02, 1.0)
@@ -108,11 +110,8 @@ def assert_second_root_between_the_critical_speeds() -> None:
     assert np.all(k[1:3] < 1.0)
 
 
-def test_second_root_between_the_critical_speeds() -> None:
-    assert_second_root_between_the_critical_speeds()
-
-
-def assert_lag() -> None:
+@kills("solvers.rotor.vector_model:deflection_lag", "k - m * np.square(omega)", "k + m * np.square(omega)")
+def test_lag() -> None:
     # At the dry resonance 90 deg whatever the damping; far above it 180 deg.
     assert float(deflection_lag(10.0, 2.0, 3.0, 200.0)) == pytest.approx(np.pi / 2, rel=1e-15)
     # tan = 3*5/(200 - 50)
@@ -120,21 +119,13 @@ def assert_lag() -> None:
     assert float(deflection_lag(1e6, 2.0, 3.0, 200.0)) == pytest.approx(np.pi, abs=1e-5)
 
 
-def test_lag() -> None:
-    assert_lag()
-
-
-def assert_equal_unbalances() -> None:
+def test_equal_unbalances() -> None:
     """k = 1: an isosceles triangle, alpha = 2 delta, and the opposite liquid."""
     delta = np.array([0.1, 0.7, 1.5])
     first, second = balance_angles(delta, 1.0)
     np.testing.assert_allclose(first, 2.0 * delta, rtol=1e-13)
     np.testing.assert_allclose(second, np.pi, rtol=1e-13)
     np.testing.assert_allclose(unbalance_left(first, 1.0), 2.0 * np.cos(delta), rtol=1e-12)
-
-
-def test_equal_unbalances() -> None:
-    assert_equal_unbalances()
 
 
 def test_printed_solution_holds_only_for_equal_unbalances() -> None:
@@ -167,3 +158,19 @@ def test_bad_input(call, field: str) -> None:
     with pytest.raises(InputError) as caught:
         call()
     assert caught.value.field == field
+
+
+@kills(
+    "solvers.rotor.vector_model:balance_residual", "k * np.sin(alpha - delta)", "k * np.sin(alpha + delta)"
+)
+@kills(
+    "solvers.rotor.vector_model:total_over_liquid",
+    "+ k * np.cos(alpha - delta)",
+    "- k * np.cos(alpha - delta)",
+)
+@kills(
+    "solvers.rotor.vector_model:balance_angles", "np.arcsin(np.sin(delta) / k)", "np.arcsin(np.sin(delta))"
+)
+@kills("solvers.rotor.vector_model:unbalance_left", "k * np.sin(alpha)) / k)", "k * np.sin(alpha)))")
+def test_jeffcott_rotor_with_three_tenths_of_added_mass() -> None:
+    assert_jeffcott()

@@ -20,6 +20,7 @@ from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
 from solvers.runup.state import DRIVE, FRICTION, GRAVITY, SUPPORT, UNBALANCE
 from solvers.synchronous.planar import synchronous_response
 from solvers.whirl.growth import asynchronous_growth
+from tests.mutants import kills
 
 WATER = Liquid("water", 1000.0, 1e-6)
 MASS, NATURAL = 30.0, 25.0
@@ -79,7 +80,8 @@ def test_growth_is_that_of_the_characteristic_equation(spin: float, rate: float,
     assert abs(found.imag) == pytest.approx(abs(wanted.imag), rel=1e-3)
 
 
-def check_steady() -> None:
+@kills("solvers.runup.linear:read_linear", "1j * m.place[n + 1 :: 2]", "-1j * m.place[n + 1 :: 2]")
+def test_hold_comes_to_the_steady_response() -> None:
     """Held at a speed, the synchronous response with the mass of a full drum."""
     drive = Ramp(59.9, 60.0, 1.0, 6.0)
     for law in (("linear", 8.0), ("linear", 30.0)):
@@ -93,7 +95,7 @@ def check_steady() -> None:
         assert abs(place.imag) < 2e-3 * place.real
 
 
-def check_energy() -> None:
+def test_energy_closes_with_the_step() -> None:
     """The balance closes with the square of the step, on a ramp, with gravity and friction."""
     left = []
     for cells in (64, 128):
@@ -109,7 +111,7 @@ def check_energy() -> None:
     assert 3.0 < left[0] / left[1] < 5.0
 
 
-def check_motor() -> None:
+def test_motor() -> None:
     """A motor spins rotor and liquid: their angular momentum is the integral of its torque."""
     rotor = replace(ROTOR, unbalance=0.0)
     drive = Motor(10.0, 0.5, (0.0, 100.0), (5.0, 5.0), 2.0)
@@ -123,7 +125,8 @@ def check_motor() -> None:
     assert history.mean_rotation.min() < -1.0
 
 
-def check_capture() -> None:
+@kills("solvers.runup.linear:switch_linear", "0.98 * machine.capture", "machine.capture")
+def test_capture() -> None:
     """Caught at sqrt(g/a) and let go below; momentum and energy are kept account of."""
     drive = Ramp(3.0, 20.0, 4.0, 5.0, back=True)
     history = run_up(ROTOR.system(), [FILL], drive, ("linear", 3.0), 9.81, ALONE, model="linear")
@@ -135,7 +138,8 @@ def check_capture() -> None:
     assert history.audit.closure < 1e-3
 
 
-def check_switch() -> None:
+@kills("solvers.runup.linear:switch_linear", "lost += machine.masses[j]", "lost -= machine.masses[j]")
+def test_switching_keeps_the_momentum() -> None:
     """Rotor and liquid keep their momentum when a layer is let go."""
     machine = couple_linear(ROTOR.system(), [FILL], 20.0, ("linear", 1.0), 9.81, 64, False)
     machine.machine.rate[:4] = 0.3, -0.2, 0.5, 0.4
@@ -150,7 +154,12 @@ def check_switch() -> None:
     assert machine.energy() - energy == pytest.approx(brought, rel=1e-12)
 
 
-def check_depth() -> None:
+@kills(
+    "solvers.runup.linear:read_linear",
+    "(m.layers[:, 1] - 1.0) * np.abs(offset)",
+    "m.layers[:, 1] * np.abs(offset)",
+)
+def test_depths() -> None:
     """A surface shifted by xi moves the liquid's moment by pi a^2 h xi: the offset gives the depths."""
     machine = couple_linear(ROTOR.system(), [FILL], 20.0, ("none", 0.0), 0.0, 64, False)
     machine.machine.place[2:4] = 3e-3, 4e-3
@@ -160,30 +169,6 @@ def check_depth() -> None:
     assert found["depth_max"][0] == pytest.approx(FILL.depth + shift, rel=1e-12)
     assert found["depth_min"][0] == pytest.approx(FILL.depth - shift, rel=1e-12)
     assert found["offset"][0] == 3e-3 + 4e-3j
-
-
-def test_switching_keeps_the_momentum() -> None:
-    check_switch()
-
-
-def test_depths() -> None:
-    check_depth()
-
-
-def test_hold_comes_to_the_steady_response() -> None:
-    check_steady()
-
-
-def test_energy_closes_with_the_step() -> None:
-    check_energy()
-
-
-def test_motor() -> None:
-    check_motor()
-
-
-def test_capture() -> None:
-    check_capture()
 
 
 def test_stiff_empty_full_and_many() -> None:

@@ -20,6 +20,7 @@ from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
 from solvers.runup.state import DRIVE, FRICTION, GRAVITY, SUPPORT, UNBALANCE
 from solvers.synchronous.planar import synchronous_response
 from solvers.whirl.in_time import whirl_in_time
+from tests.mutants import kills
 
 WATER = Liquid("water", 1000.0, 1e-6)
 # The machine of the run-ups: 30 kg, 25 rad/s, damping ratio 0.06, one chamber of 0.25 m.
@@ -58,7 +59,7 @@ def dry_reference(ramp: Ramp, rotor: Jeffcott, time: np.ndarray) -> np.ndarray:
     return found.y[0] + 1j * found.y[1]
 
 
-def check_dry_ramp() -> None:
+def test_dry_ramp_is_of_second_order() -> None:
     """Error of second order against an independent integrator, lag behind the resonance included."""
     ramp = Ramp(5.0, 60.0, 10.0, 5.5)
     errors = []
@@ -72,10 +73,6 @@ def check_dry_ramp() -> None:
     assert 3.6 < errors[0] / errors[1] < 4.4
 
 
-def test_dry_ramp_is_of_second_order() -> None:
-    check_dry_ramp()
-
-
 def test_dry_energy_closes_to_rounding() -> None:
     history = run(0.0, 0.0)
     # 22000 steps of rounding.
@@ -86,7 +83,7 @@ def test_dry_energy_closes_to_rounding() -> None:
 # --- balances ---
 
 
-def check_momentum() -> None:
+def test_momentum_is_handed_over_to_rounding() -> None:
     """Without support and unbalance the momentum of rotor and liquid stays, whatever the waves do."""
     free = Jeffcott(3.0, 1e-15, 0.0, 0.0)
     machine = couple(free.system(), [layer(8e-4)], 20.0, ("none", 0.0), 0.0, 32, False)
@@ -105,7 +102,7 @@ def check_momentum() -> None:
     np.testing.assert_allclose(momentum(), before, rtol=0.0, atol=1e-12 * np.abs(before).max())
 
 
-def check_energy() -> None:
+def test_energy_closes_with_the_mesh() -> None:
     """What the audit's parts leave vanishes with the square of the step in smooth motion under gravity."""
     rotor = Jeffcott(3.0, 3.0 * 15.0**2, 4.0, 2e-3)
     left = []
@@ -121,14 +118,6 @@ def check_energy() -> None:
         left.append(abs(remainder) / sums[UNBALANCE])
     assert left[0] < 0.05
     assert left[1] < 0.4 * left[0]
-
-
-def test_momentum_is_handed_over_to_rounding() -> None:
-    check_momentum()
-
-
-def test_energy_closes_with_the_mesh() -> None:
-    check_energy()
 
 
 def test_energy_of_a_free_machine_only_falls() -> None:
@@ -177,7 +166,15 @@ def test_frictionless_layer_does_nothing() -> None:
 # --- the steady state, and growth ---
 
 
-def check_steady() -> None:
+@kills(
+    "solvers.runup.runup:RunupHistory.liquid_position", "np.exp(-1j * self.angle)", "np.exp(1j * self.angle)"
+)
+@kills(
+    "solvers.runup.runup:RunupHistory.liquid_position",
+    "places @ self.layer_mass",
+    "0.5 * places @ self.layer_mass",
+)
+def test_hold_comes_to_the_steady_response() -> None:
     """Held at a speed, the machine comes to the statics' answer, wet all round and with a dry patch."""
     drive = Ramp(59.9, 60.0, 1.0, 6.0)
     for volume in (5e-5, 5e-4):
@@ -192,10 +189,6 @@ def check_steady() -> None:
         # The liquid lies along the deflection, which the unbalance's own direction fixes in the drum.
         assert abs(np.angle(place * np.exp(-1j * wet.liquid_angle[0]))) < 2e-3
         assert (history.depth_min[-1, 0] < 1e-6) == bool(wet.dry_patch[0])
-
-
-def test_hold_comes_to_the_steady_response() -> None:
-    check_steady()
 
 
 def wolf(spin: float, rate: float = 0.0, zeta: float = 0.0) -> complex:
@@ -248,7 +241,7 @@ def test_whirl_dies_outside_the_band_with_liquid_friction(spin: float) -> None:
 # --- motors, gravity ---
 
 
-def check_motor() -> None:
+def test_motor_runs_up_a_balanced_rotor() -> None:
     """A balanced rotor on a straight torque curve: Omega = Omega_0 + (Omega_1 - Omega_0)(1 - e^{-ct})."""
     rotor = replace(ROTOR, unbalance=0.0)
     drive = Motor(10.0, 0.5, (0.0, 100.0), (50.0, 0.0), 2.0)
@@ -257,10 +250,6 @@ def check_motor() -> None:
     # Steps of at most 0.8 * 2 pi/128 rad, trapezium: (tau c)^2/12 of the change.
     np.testing.assert_allclose(history.speed, wanted, rtol=1e-5)
     assert history.audit.motor == pytest.approx(0.25 * (history.speed[-1] ** 2 - 100.0), rel=1e-5)
-
-
-def test_motor_runs_up_a_balanced_rotor() -> None:
-    check_motor()
 
 
 def test_weak_motor_hangs_at_the_resonance() -> None:
@@ -276,7 +265,19 @@ def test_weak_motor_hangs_at_the_resonance() -> None:
     assert spins["strong"].max() > 2.0 * NATURAL
 
 
-def check_switch() -> None:
+@kills("solvers.runup.long_wave:_rearrange", "plane.T @ momentum * (not kept)", "plane.T @ momentum * kept")
+@kills("solvers.runup.long_wave:fall", "1.2 * machine.spin", "1.4 * machine.spin")
+@kills(
+    "solvers.runup.long_wave:_rearrange",
+    "-machine.spin * np.square(machine.area[anew])",
+    "0.0 * machine.area[anew]",
+)
+@kills(
+    "solvers.runup.long_wave:_parts",
+    "mass += layer[MASS] * plane.T @ plane",
+    "mass -= layer[MASS] * plane.T @ plane",
+)
+def test_switching_keeps_the_momentum() -> None:
     """Rotor and liquid keep their momentum when a layer is let go, fallen or caught again."""
     for change in (switch, fall):
         machine = couple(ROTOR.system(), [layer(2e-3)], 20.0, ("linear", 3.0), 9.81, 32, False)
@@ -308,11 +309,17 @@ def check_switch() -> None:
         assert abs(reading(machine)["mean_rotation"][0]) < 1e-12 * machine.spin
 
 
-def test_switching_keeps_the_momentum() -> None:
-    check_switch()
-
-
-def check_reading() -> None:
+@kills(
+    "solvers.runup.long_wave:reading", "(1.0 + surface + np.square(surface)) / 3.0", "(1.0 + surface) / 2.0"
+)
+@kills("solvers.runup.long_wave:reading", "1j * (lever @ angles[1])", "1j * (lever @ angles[0])")
+@kills(
+    "solvers.runup.long_wave:reading",
+    "velocity += machine.spin * machine.area",
+    "velocity -= machine.spin * machine.area",
+)
+@kills("solvers.runup.long_wave:reading", "1.0 - surface.max(axis=1", "1.0 - surface.min(axis=1")
+def test_reading() -> None:
     """Offset, depths and rotation of a layer that is known."""
     machine = couple(ROTOR.system(), [layer(2e-3)], 20.0, ("none", 0.0), 0.0, 64, False)
     theta = 2.0 * math.pi * (np.arange(64) + 0.5) / 64
@@ -334,11 +341,23 @@ def check_reading() -> None:
     assert found["mean_rotation"][0] == pytest.approx(1.5 * log.sum() / machine.area[0].sum(), rel=1e-12)
 
 
-def test_reading() -> None:
-    check_reading()
-
-
-def check_capture() -> None:
+@kills(
+    "solvers.runup.drive:Ramp.corners", "self.start + self.rate * rise", "self.start + 0.9 * self.rate * rise"
+)
+@kills("solvers.runup.drive:Ramp.corners", "self.duration + rise, self.start", "self.duration + rise, top")
+@kills("solvers.runup.runup:_times", "np.diff(corners[1]) / np.diff(corners[0])", "np.diff(corners[1])")
+@kills(
+    "solvers.runup.runup:EnergyAudit.remainder",
+    "self.gravity + self.captured",
+    "self.gravity - self.captured",
+)
+@kills("solvers.runup.long_wave:switch", "_RELEASE * machine.capture", "machine.capture")
+@kills(
+    "solvers.runup.chamber:layer_capture",
+    "gravity / fill.surface_radius",
+    "gravity / fill.chamber.radius * 0.5",
+)
+def test_capture_and_release_in_the_balance() -> None:
     """Below sqrt(g/a) the liquid lies at the bottom; the balance of energy goes on through both changes."""
     fill = layer(5e-4)
     speed = math.sqrt(9.81 / fill.surface_radius)
@@ -356,7 +375,8 @@ def check_capture() -> None:
     assert history.audit.closure < 0.01
 
 
-def check_error_estimate() -> None:
+@kills("solvers.runup.runup:run_up", "cells = numerics.cells // 2", "cells = numerics.cells")
+def test_error_estimate_is_of_the_size_of_the_error() -> None:
     """The estimate is of the size of the error."""
     ramp = Ramp(20.0, 40.0, 20.0, 1.5)
     numerics = RunupNumerics(cells=32, samples=100)
@@ -364,10 +384,6 @@ def check_error_estimate() -> None:
     fine = run_up(ROTOR.system(), [layer(5e-4)], ramp, ("linear", 3.0), 0.0, replace(numerics, cells=128))
     error = np.abs(coarse.amplitude - fine.amplitude).max() / fine.amplitude.max()
     assert error < coarse.error_estimate < 8.0 * error
-
-
-def test_capture_and_release_in_the_balance() -> None:
-    check_capture()
 
 
 def test_liquid_is_captured_and_let_go() -> None:
@@ -459,7 +475,7 @@ def test_empty_and_full_chambers_are_nothing_and_a_mass() -> None:
     np.testing.assert_allclose(full.deflection, solid.deflection, rtol=1e-12, atol=1e-15)
 
 
-def check_chambers_add_up() -> None:
+def test_chambers_add_up() -> None:
     """Sixteen equal chambers are one of sixteen times the height."""
     ramp = Ramp(20.0, 35.0, 20.0, 1.0)
     numerics = replace(ALONE, cells=16, samples=20)
@@ -471,19 +487,11 @@ def check_chambers_add_up() -> None:
     np.testing.assert_allclose(many.liquid_position, one.liquid_position, atol=1e-6 * 0.25)
 
 
-def test_chambers_add_up() -> None:
-    check_chambers_add_up()
-
-
 def test_one_run_gives_the_same_digits_again() -> None:
     ramp = Ramp(20.0, 35.0, 20.0, 1.0)
     numerics = replace(ALONE, cells=32, samples=20)
     runs = [run_up(ROTOR.system(), [layer(5e-4)], ramp, ("stokes", 0.0), 0.0, numerics) for _ in range(2)]
     np.testing.assert_array_equal(runs[0].deflection, runs[1].deflection)
-
-
-def test_error_estimate_is_of_the_size_of_the_error() -> None:
-    check_error_estimate()
 
 
 @pytest.mark.parametrize("volume, said", [(0.9999 * CHAMBER.capacity, "axis")])

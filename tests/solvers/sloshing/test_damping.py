@@ -17,12 +17,20 @@ from meshes.rings.quadrilaterals import ring
 from solvers.sloshing.damping import baffle_edges, mode_damping, wall_loss
 from solvers.sloshing.modes import sloshing_modes
 from solvers.sloshing.system import condense
+from tests.mutants import kills
 from tests.oracles.sloshing import ring_decay
 
 R, A, SPIN, HEIGHT, WATER = 0.15, 0.135, 40.0, 0.05, 1e-6
 
 
-def check_ring_by_hand() -> None:
+@kills(
+    "fluid.wall_layer:decay_rate", "first * (k + c) + second * (k - c)", "first * (k - c) + second * (k + c)"
+)
+@kills("fluid.wall_layer:decay_rate", "lost / (k + potential)", "lost / (2.0 * k)")
+@kills(
+    "solvers.sloshing.damping:mode_damping", "modes.spin / modes.frequency", "modes.frequency / modes.spin"
+)
+def test_ring_by_hand() -> None:
     """Both rates of the ring's slowest modes against the integrals of (r/R)^n - (R/r)^n."""
     system = condense(ring(R, A, 96, 6))
     modes = sloshing_modes(system, SPIN, 5)
@@ -37,7 +45,9 @@ def check_ring_by_hand() -> None:
         assert np.all(found.edge_spread == 0.0)
 
 
-def check_plate_layer() -> None:
+@kills("fluid.wall_layer:plate_drags", "(viscosity, twice - sigma), ", "(viscosity, twice + sigma), ")
+@kills("fluid.wall_layer:plate_drags", "2.0 * np.asarray(spin", "1.0 * np.asarray(spin")
+def test_plate_layer() -> None:
     """Loss in the layers on a plate against the defect solved as a system: mean of shear times velocity."""
     sigma, nu, along = -17.0, 3e-6, np.array([0.3 - 0.1j, 0.2 + 0.5j])
     matrix = np.array([[-1j * sigma, -2.0 * SPIN], [2.0 * SPIN, -1j * sigma]])
@@ -52,7 +62,8 @@ def check_plate_layer() -> None:
     assert abs(first * abs(alpha) ** 2 + second * abs(beta) ** 2 - loss) < 1e-12 * loss
 
 
-def check_thin_layer() -> None:
+@kills("solvers.sloshing.damping:mode_damping", "rate(once, g, g)", "rate(once, 2.0 * g, g)")
+def test_thin_layer() -> None:
     """The plain rate of a thin layer is half that of the long waves' friction, to the root of its depth."""
     for depth in (1e-2, 1e-3):
         system = condense(ring(R, R * (1.0 - depth), 64, 2))
@@ -66,7 +77,12 @@ def check_thin_layer() -> None:
         assert np.all(found.rate > found.plain_rate)
 
 
-def check_edges() -> None:
+@kills(
+    "fluid.wall_layer:edge_weight", "1.0 / (1.0 + np.asarray(thickness", "1.0 / (0.0 + np.asarray(thickness"
+)
+@kills("solvers.sloshing.damping:baffle_edges", "before[wall[:, 1]] = ", "before[wall[:, 0]] = ")
+@kills("solvers.sloshing.damping:baffle_edges", "< _BACK * size", "> -_BACK * size")
+def test_edges() -> None:
     """At an edge the square of the slope goes as 1/d: each halving of the cut adds the same, 2 c^2 ln 2."""
     baffles = Baffles(2, 0.139, 0.004, 0.4)
     section = ring(R, A, 48, 3, baffles=baffles, times=2)
@@ -87,11 +103,11 @@ def check_edges() -> None:
     assert np.all((damping.edge_spread > 0.0) & (damping.edge_spread < 0.05))
 
 
-@pytest.mark.parametrize("check", [check_ring_by_hand, check_plate_layer, check_thin_layer, check_edges])
-def test_oracle(check) -> None:  # type: ignore[no-untyped-def]
-    check()
-
-
+@kills(
+    "fluid.wall_layer:layer_thickness",
+    "np.sqrt(2.0 * np.asarray(viscosity",
+    "np.sqrt(0.5 * np.asarray(viscosity",
+)
 @given(
     st.floats(1e-8, 1e-3), st.floats(0.01, 1e3), st.floats(0.01, 1e3), st.floats(1e-9, 1.0)
 )  # fmt: skip

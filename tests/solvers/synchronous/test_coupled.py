@@ -29,6 +29,7 @@ from solvers.synchronous.coupled import (
 )
 from solvers.synchronous.models import synchronous_model
 from solvers.synchronous.planar import critical_speed, synchronous_response
+from tests.mutants import kills
 from tests.oracles.rotors import tub, two_plane
 from tests.solvers.synchronous.test_planar import WATER, fills, folded, rig
 
@@ -37,7 +38,18 @@ def at_plane(plane: float, volume: float, radius: float = 0.065, inner: float = 
     return Fill(Chamber(radius, 0.02, inner, plane), WATER, volume)
 
 
-def check_planar_rotor() -> None:
+@kills(
+    "solvers.synchronous.coupled:one_plane",
+    "elastic = support.real - squared * mass",
+    "elastic = support.real",
+)
+@kills("solvers.synchronous.coupled:one_plane", "moment - mass * deflection", "moment")
+@kills(
+    "solvers.synchronous.coupled:_phase",
+    "np.angle(support * size - pulled)",
+    "np.angle(support * size + pulled)",
+)
+def test_planar_rotor() -> None:
     """Every branch, dry patch and angle of the planar rotor, by the other way of solving."""
     for rotor, wet, speed, gravity in (
         (*folded(), 0.0),
@@ -59,10 +71,6 @@ def check_planar_rotor() -> None:
         assert np.abs(found.backward).max() < 1e-14 and found.residual.max() < 1e-12
 
 
-def test_planar_rotor() -> None:
-    check_planar_rotor()
-
-
 def with_discs(system: RotorSystem, discs: list[tuple[float, float]]) -> RotorSystem:
     """The rotor with point masses on its axis, (mass, position)."""
     mass = system.mass + sum(m * system.at(z).T @ system.at(z) for m, z in discs)
@@ -72,7 +80,18 @@ def with_discs(system: RotorSystem, discs: list[tuple[float, float]]) -> RotorSy
     )  # fmt: skip
 
 
-def check_added_mass() -> None:
+@kills(
+    "solvers.synchronous.coupled:Balance.forward",
+    "0.5 * answer @ np.conj(self.plane).T",
+    "0.5 * answer @ self.plane.T",
+)
+@kills("solvers.synchronous.coupled:Balance.linear", "0.5 * np.einsum(", "1.0 * np.einsum(")
+@kills("solvers.synchronous.coupled:directions", "np.array([1.0, -1j])", "np.array([1.0, 1j])")
+@kills(
+    "solvers.synchronous.coupled:balance", "force=squared[:, None] * system", "force=speed[:, None] * system"
+)
+@kills("solvers.synchronous.coupled:_centre_of_mass", "np.abs(moment) / mass", "np.abs(moment) * mass")
+def test_added_mass() -> None:
     """Walls wet all over in isotropic supports: the mass of full chambers, at each plane its own."""
     system, speed = two_plane().system(), np.linspace(10.0, 300.0, 60)
     wet = [at_plane(-0.25, 1.2e-4), at_plane(0.2, 1e-4, radius=0.08)]
@@ -91,11 +110,12 @@ def check_added_mass() -> None:
     np.testing.assert_allclose(found.response.liquid_angle, np.angle(moment), rtol=1e-12)
 
 
-def test_added_mass() -> None:
-    check_added_mass()
-
-
-def check_full_chambers() -> None:
+@kills(
+    "solvers.synchronous.coupled:backward_mass",
+    "        return fill.mass\n",
+    "        return fill.full_mass\n",
+)
+def test_full_chambers() -> None:
     """Completely full chambers on an anisotropic rotor are solid discs, forward and backward alike."""
     system, speed = tub().system(), np.linspace(3.0, 60.0, 40)
     places = (0.1, -0.05)
@@ -108,10 +128,6 @@ def check_full_chambers() -> None:
     found = coupled_response(system, wet, speed, 0.0)
     np.testing.assert_allclose(found.response.deflection, expected.forward, rtol=1e-9)
     np.testing.assert_allclose(found.backward, expected.backward, rtol=1e-9)
-
-
-def test_full_chambers() -> None:
-    check_full_chambers()
 
 
 def layered(system: RotorSystem, fill: Fill, speed: float) -> np.ndarray:
@@ -133,7 +149,16 @@ def layered(system: RotorSystem, fill: Fill, speed: float) -> np.ndarray:
     return np.linalg.solve(stiffness - speed**2 * mass + 1j * speed * rate, force)[:n]
 
 
-def check_linear_layer() -> None:
+@kills(
+    "solvers.synchronous.coupled:balance", "squared[:, None, None] * back", "-squared[:, None, None] * back"
+)
+@kills(
+    "solvers.synchronous.coupled:balance",
+    "backward_mass(fill) * np.outer(np.conj(p), p)",
+    "backward_mass(fill) * np.outer(p, np.conj(p))",
+)
+@kills("solvers.synchronous.coupled:_arranged", "np.conj(0.5 * q @ terms.plane.T)", "0.5 * q @ terms.plane.T")
+def test_linear_layer() -> None:
     """A deep layer on an anisotropic rotor: its equations of motion as they stand, no parts taken apart."""
     system = tub().system()
     fill = Fill(Chamber(0.2, 0.1, 0.0, 0.12), Liquid("heavy", 3000.0, 1e-6), 0.011)
@@ -148,11 +173,10 @@ def check_linear_layer() -> None:
     np.testing.assert_allclose(found.chamber_backward[:, 0], found.backward, rtol=1e-12)
 
 
-def test_linear_layer() -> None:
-    check_linear_layer()
-
-
-def check_backward_mass() -> None:
+@kills(
+    "solvers.synchronous.coupled:backward_mass", "force_ratio(curvature, -1.0)", "force_ratio(curvature, 1.0)"
+)
+def test_backward_mass() -> None:
     """Newton's law for the liquid: m_b = m_l (1 + offset of its centre of mass over the whirl)."""
     for volume in (1e-6, 5e-5, 2e-4):
         fill = at_plane(0.0, volume)
@@ -161,10 +185,6 @@ def check_backward_mass() -> None:
         # Both sides are differences: a layer of 0.1 mm costs them three digits.
         assert backward_mass(fill) == pytest.approx(expected, rel=1e-10)
     assert backward_mass(at_plane(0.0, 1e-9)) == pytest.approx(7.0 / 8.0 * 1e-6, rel=1e-4)
-
-
-def test_backward_mass() -> None:
-    check_backward_mass()
 
 
 def dumbbell(ends: tuple[tuple[float, Jeffcott], ...], length: float = 0.4) -> TwoPlane:
@@ -179,7 +199,7 @@ def dumbbell(ends: tuple[tuple[float, Jeffcott], ...], length: float = 0.4) -> T
     )
 
 
-def check_independent_ends() -> None:
+def test_independent_ends() -> None:
     """Dry patches and folds at both ends of a dumbbell: each end as if the other were not there."""
     first, second = rig(0.001, 1e-4), Jeffcott(4.0, 3.6e4, 40.0, 3e-3)
     system = dumbbell(((-1.0, first), (1.0, second))).system()
@@ -198,11 +218,7 @@ def check_independent_ends() -> None:
     np.testing.assert_array_equal(np.isfinite(found.response.branch_deflection).sum(axis=1), several)
 
 
-def test_independent_ends() -> None:
-    check_independent_ends()
-
-
-def check_newton_finds_what_the_search_finds() -> None:
+def test_newton_finds_what_the_search_finds() -> None:
     """Both ways of solving on one plane of a lopsided rotor: the same branches, the same numbers of them."""
     rotor = TwoPlane(
         4.0,
@@ -224,11 +240,17 @@ def check_newton_finds_what_the_search_finds() -> None:
     assert np.bincount(tables[0][0]).max() == 3
 
 
-def test_newton_finds_what_the_search_finds() -> None:
-    check_newton_finds_what_the_search_finds()
-
-
-def check_balance() -> None:
+@kills(
+    "solvers.synchronous.coupled:_linearised",
+    "- squared[:, None] * ((secant * w) @ p)",
+    "- squared[:, None] * ((law.slope * w) @ p)",
+)
+@kills(
+    "solvers.synchronous.coupled:_linearised",
+    "- squared[:, None] * ((secant * w) @ p)",
+    "- squared[:, None] * ((secant * w) @ np.conj(p))",
+)
+def test_balance() -> None:
     """Chambers in three planes of an anisotropic rotor, walls partly dry: the forces balance one by one."""
     system, speed = tub().system(), np.linspace(5.0, 40.0, 24)
     wet = [at_plane(z, v, 0.18, 0.12) for z, v in ((0.12, 2e-5), (0.0, 5e-5), (-0.1, 1e-4))]
@@ -250,11 +272,17 @@ def check_balance() -> None:
         np.testing.assert_allclose(held, force, atol=1e-10 * scale)
 
 
-def test_balance() -> None:
-    check_balance()
-
-
-def check_critical_speeds() -> None:
+@kills(
+    "solvers.synchronous.coupled:_added_mass",
+    "0.5 * full * np.outer(p, np.conj(p))",
+    "full * np.outer(p, np.conj(p))",
+)
+@kills(
+    "solvers.synchronous.coupled:_added_mass",
+    "0.5 * backward_mass(fill) * np.outer",
+    "backward_mass(fill) * np.outer",
+)
+def test_critical_speeds() -> None:
     """As of the planar rotor with liquid, at any gravity; dry without liquid; discs where it is full."""
     for wet in (fills(1e-4, 8e-5), [Fill(Chamber(0.2, 0.5), WATER, 0.02)]):
         for gravity in (0.0, 9.81):
@@ -270,10 +298,6 @@ def check_critical_speeds() -> None:
     np.testing.assert_allclose(
         wet_critical_speeds(system, [full], 0.0)[0], critical_speeds(heavy)[0], rtol=1e-10
     )
-
-
-def test_critical_speeds() -> None:
-    check_critical_speeds()
 
 
 def test_no_liquid_is_the_dry_rotor() -> None:

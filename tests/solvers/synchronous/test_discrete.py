@@ -20,6 +20,7 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.synchronous.discrete import Fem, LongWave, offered
 from solvers.synchronous.models import SYNCHRONOUS_MODELS, LiquidModel, Statics, SynchronousAnswer
 from solvers.synchronous.planar import synchronous_response
+from tests.mutants import kills
 
 WATER = known_liquid("water")
 LAYER = Fill(Chamber(0.15, 0.05), WATER, 0.15 * Chamber(0.15, 0.05).capacity)
@@ -35,7 +36,13 @@ def ask(
     return model.synchronous(Fills.of([fill] * count), *every)
 
 
-def check_scheme_at_rest() -> None:
+@kills(
+    "solvers.synchronous.discrete:_middles",
+    "(np.arange(cells) + 0.5) / cells",
+    "(np.arange(cells) + 0.25) / cells",
+)
+@kills("solvers.synchronous.discrete:_circle", "- np.square(e * sine)", "+ np.square(e * sine)")
+def test_scheme_at_rest() -> None:
     """The finite-volume scheme, started from rest in its own equilibrium and run on, has the same force.
 
     Its equilibrium is found by bisection on the squared radius to 1e-16 and kept to rounding, of which some
@@ -53,11 +60,32 @@ def check_scheme_at_rest() -> None:
             assert mine.unbalance[0] / LAYER.mass - e == pytest.approx(held.offset[-1].real, rel=1e-12)
 
 
-def test_scheme_at_rest() -> None:
-    check_scheme_at_rest()
-
-
-def check_wet_wall() -> None:
+@kills(
+    "solvers.synchronous.discrete:_circle",
+    "below = level - e * (away - away[0])",
+    "below = level - 2.0 * e * (away - away[0])",
+)
+@kills(
+    "solvers.synchronous.discrete:_circle",
+    "seen = 1.0 + e * cosine + chord",
+    "seen = 1.0 - e * cosine + chord",
+)
+@kills(
+    "solvers.synchronous.discrete:LongWave._at_rest",
+    "lever = depth * (3.0 - depth * (3.0 - depth)) / 3.0",
+    "lever = depth * (2.0 - depth) / 2.0",
+)
+@kills(
+    "solvers.synchronous.discrete:LongWave._at_rest",
+    "moment = fills.volume * deflection + size",
+    "moment = size",
+)
+@kills(
+    "solvers.synchronous.discrete:LongWave._at_rest",
+    "np.mean(depth * (2.0 - depth), axis=1) - film",
+    "np.mean(2.0 * depth, axis=1) - film",
+)
+def test_wet_wall() -> None:
     """With every cell wet the sums are those of a smooth periodic function: the full mass to rounding.
 
     The surface's nearest singularity, where its circle has no chord, is at |Im theta| = acosh(rho/e) > 2 for
@@ -77,11 +105,7 @@ def check_wet_wall() -> None:
     assert still.slope[0] == pytest.approx(LAYER.full_mass, rel=1e-13)
 
 
-def test_wet_wall() -> None:
-    check_wet_wall()
-
-
-def check_cells_converge() -> None:
+def test_cells_converge() -> None:
     """Beside a dry patch the depth has a kink, which the middle rule leaves at second order.
 
     The kink's error is J/(12 N^2) (2 pi)^2 at most and turns with its place in a cell, so that the root mean
@@ -98,11 +122,18 @@ def check_cells_converge() -> None:
     assert all(worst <= 4.0 / n for worst, n in zip(steep, grids, strict=True))
 
 
-def test_cells_converge() -> None:
-    check_cells_converge()
-
-
-def check_slope() -> None:
+@kills(
+    "solvers.synchronous.discrete:LongWave._at_rest",
+    "share = np.divide(surface, chord,",
+    "share = np.divide(chord, surface + 1.0,",
+)
+@kills("solvers.synchronous.discrete:LongWave._at_rest", "np.square(arm - middle[:, None])", "np.square(arm)")
+@kills(
+    "solvers.synchronous.discrete:LongWave._at_rest",
+    "fills.volume + size * spread, dry",
+    "size * spread, dry",
+)
+def test_slope() -> None:
     """The slope is the derivative of the unbalance while no cell changes sides.
 
     Central differences over 1e-4 of the depth leave its square times the third derivative, some 1e-6, as
@@ -113,10 +144,6 @@ def check_slope() -> None:
         found = ask(LongWave(24), LAYER, np.array([e - step, e, e + step]))
         slope = (found.unbalance[2] - found.unbalance[0]) / (2.0 * step)
         assert found.slope[1] == pytest.approx(slope, rel=1e-6)
-
-
-def test_slope() -> None:
-    check_slope()
 
 
 @settings(max_examples=60)
@@ -141,7 +168,14 @@ def test_law_never_falls(cells: int, filled: float, shares: list[float], radius:
     assert np.all(found.slope <= fill.full_mass * (1.0 + 1e-9))
 
 
-def check_elements_converge() -> None:
+@kills("solvers.synchronous.discrete:_surface", "level - (far - near)", "level + (far - near)")
+@kills("solvers.synchronous.discrete:_surface", "axis, plane = (-e, 0.0)", "axis, plane = (e, 0.0)")
+@kills(
+    "solvers.synchronous.discrete:Fem.synchronous",
+    "float(steep[k]) * height / radius**2",
+    "float(steep[k]) * height / radius",
+)
+def test_elements_converge() -> None:
     """Straight edges lose the segments of the circle, second order; quadratic ones run inside it by b^4/60.
 
     The wall's error is that of the area with a wet wall: 1 - sin(x)/x, x = 2 pi/N, for straight edges. The
@@ -165,11 +199,13 @@ def check_elements_converge() -> None:
     )
 
 
-def test_elements_converge() -> None:
-    check_elements_converge()
-
-
-def check_elements_slope() -> None:
+@kills(
+    "solvers.synchronous.discrete:_surface",
+    "slope = float(here.volume) + 2.0 * spread",
+    "slope = float(here.volume) + spread",
+)
+@kills("solvers.synchronous.discrete:_surface", "square - arm * arm / plan", "square")
+def test_elements_slope() -> None:
     """The slope by the plan's moments against the exact one, on both kinds of surface.
 
     Quadratic edges leave 1e-5; the difference of levels, 1e-4 apart, leaves 1e-4 times the logarithmic
@@ -181,11 +217,13 @@ def check_elements_slope() -> None:
         np.testing.assert_allclose(found.slope, exact.slope, rtol=6e-4)
 
 
-def test_elements_slope() -> None:
-    check_elements_slope()
-
-
-def check_range() -> None:
+@kills(
+    "solvers.synchronous.discrete:LongWave.synchronous",
+    "0.5 * math.pi * np.square(chamber.radius)",
+    "math.pi * np.square(chamber.radius)",
+)
+@kills("solvers.synchronous.discrete:LongWave._at_rest", "drop = level + e * away[0]", "drop = level - e")
+def test_range() -> None:
     """Long waves are for layers that are thin, upright, and clear of the axis and of an inner wall."""
     wave = LongWave(32)
     small = np.array([1e-4])
@@ -201,11 +239,7 @@ def check_range() -> None:
     assert ask(wave, RING, np.array([0.98, 1.02]) * (gap - RING.depth)).in_range.tolist() == [True, False]
 
 
-def test_range() -> None:
-    check_range()
-
-
-def check_response() -> None:
+def test_response() -> None:
     """A rotor finds the same branches with cells as with the exact equilibrium.
 
     With a wet wall to rounding; with a dry one the law's own error at 256 cells, 3e-5, times the
@@ -223,10 +257,6 @@ def check_response() -> None:
     assert off.max() < 3e-4
     np.testing.assert_array_equal(mine.dry_patch, exact.dry_patch)
     np.testing.assert_array_equal(mine.stable, exact.stable)
-
-
-def test_response() -> None:
-    check_response()
 
 
 def test_offered_only_for_a_while() -> None:

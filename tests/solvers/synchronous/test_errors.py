@@ -26,6 +26,7 @@ from solvers.synchronous.models import Statics, synchronous_model
 from solvers.synchronous.pairs import PlanarMachine, pair_machines
 from solvers.synchronous.planar import machine_responses
 from tests.leblanc.studies.test_runup import history_of
+from tests.mutants import kills
 from validation.extremes.model_error import gravity_sample, linear_sample, random_machines, run_up_sample
 
 WATER = KNOWN_LIQUIDS["water"]
@@ -56,7 +57,20 @@ def chambers(count: int = 400, seed: int = 5) -> tuple[Fills, np.ndarray, np.nda
     return fills, speed, gravity, deflection
 
 
-def check_upright_surface() -> None:
+@kills(
+    "solvers.statics.law_defect:upright_surfaces", "1.0 - filled - 0.5 * ring", "1.0 - filled + 0.5 * ring"
+)
+@kills("solvers.statics.law_defect:upright_surfaces", "np.sqrt(2.0 * air * ring)", "np.sqrt(air * ring)")
+@kills(
+    "solvers.statics.law_defect:upright_surfaces", "np.sqrt(2.0 * filled * ring)", "np.sqrt(filled * ring)"
+)
+@kills("solvers.statics.law_defect:upright_surfaces", "air * ring / (1.0 - inner)", "air * ring")
+@kills(
+    "solvers.statics.law_defect:upright_surfaces",
+    "filled - 0.5 * ring, 1.0 - np",
+    "filled + 0.5 * ring, 1.0 - np",
+)
+def test_upright_surface() -> None:
     """The clipped paraboloid of the floor's squared radius holds the volume, and bends where the solver says.
 
     A midpoint sum over n heights is exact where the integrand is a straight line, which it is but for two
@@ -75,11 +89,18 @@ def check_upright_surface() -> None:
     np.testing.assert_allclose((one.straight * one.radius)[plain], solved[plain], rtol=1e-6, atol=1e-8)
 
 
-def test_upright_surface() -> None:
-    check_upright_surface()
-
-
-def check_law_bound() -> None:
+@kills("solvers.statics.law_defect:upright_surfaces", "air - 0.5 * ring, cut", "air + 0.5 * ring, cut")
+@kills(
+    "solvers.statics.law_defect:defect_bound",
+    "np.pi * (1.0 - surfaces.filled)",
+    "np.pi * (0.5 - surfaces.filled)",
+)
+@kills("solvers.statics.law_defect:_moved_moment", "np.abs(missing) * (1.0 + eps)", "missing * (1.0 - eps)")
+@kills("solvers.statics.law_defect:_air", "np.pi * np.square(wall) * eps[rows] - pushed", "-pushed")
+@kills("solvers.statics.law_defect:_under", "b * (s * area[rows] - low", "b * (s * area[rows] + low")
+@kills("solvers.statics.law_defect:_under", "b * (s * x[rows] - low", "b * (s * x[rows] + low")
+@kills("solvers.statics.law_defect:_moved_moment", "floor + np.divide(missing", "floor - np.divide(missing")
+def test_law_bound() -> None:
     """The bound is never below what the law lacks, and close to it where little is lacking.
 
     The solved law is good to 1e-12 of the liquid's unbalance about the chamber's axis, m_l R at most, and so
@@ -97,10 +118,6 @@ def check_law_bound() -> None:
     # Two Newton steps: next to right for most, a small factor for the rest.
     assert np.median(ratio) < 1.02
     assert np.percentile(ratio, 90) < 2.5
-
-
-def test_law_bound() -> None:
-    check_law_bound()
 
 
 def test_slope_is_between_the_liquids_mass_and_the_full_one() -> None:
@@ -137,7 +154,29 @@ def enclosures(seed: int, count: int) -> tuple[list[PlanarMachine], Enclosure, n
     return machines, planar_enclosure(pairs), np.abs(exact.branch_deflection)
 
 
-def check_enclosure() -> None:
+@kills(
+    "solvers.synchronous.errors:planar_enclosure",
+    "elastic - pairs.added_mass * squared",
+    "elastic + pairs.added_mass * squared",
+)
+@kills(
+    "solvers.synchronous.errors:planar_enclosure",
+    "force + squared * pairs.reach",
+    "force - squared * pairs.reach",
+)
+@kills(
+    "solvers.synchronous.errors:_root",
+    "stiffness * pull + np.sqrt(under)",
+    "np.sqrt(under) - stiffness * pull",
+)
+@kills(
+    "solvers.synchronous.errors:_most",
+    "single & above, np.minimum(most, beside)",
+    "single, np.minimum(most, linear)",
+)
+@kills("solvers.synchronous.errors:_smallest", "np.minimum(linear, softened)), 0.0)", "linear), linear)")
+@kills("solvers.synchronous.errors:planar_enclosure", "np.maximum(np.abs(beyond), frozen)", "np.abs(beyond)")
+def test_enclosure() -> None:
     """Every branch that the solver finds lies between the bounds, to the 1e-9 of its linear limit."""
     _, found, branches = enclosures(21, 80)
     for k in range(branches.shape[1]):
@@ -153,11 +192,9 @@ def check_enclosure() -> None:
     )
 
 
-def test_enclosure() -> None:
-    check_enclosure()
-
-
-def check_coverage() -> None:
+@kills("solvers.synchronous.errors:_relative", "1.0 - low), 0.0)", "low - 1.0), 0.0)")
+@kills("solvers.synchronous.errors:Enclosure.error", "full * least - lost", "full * least + lost")
+def test_coverage_of_300_random_machines() -> None:
     """Of 300 random machines at least 95 % have no larger error than the estimate.
 
     The bounds are strict, so all are covered; what is refused although it is good measures how wide they are.
@@ -172,10 +209,6 @@ def check_coverage() -> None:
     assert taken.mean() > 0.25
     np.testing.assert_array_equal(found.linear.dry_patch[taken], found.exact.dry_patch[taken])
     assert found.linear.in_range[taken].all()
-
-
-def test_coverage_of_300_random_machines() -> None:
-    check_coverage()
 
 
 def planar(rotor: Jeffcott, fills: list[Fill], speed: list[float], gravity: float = 0.0) -> Enclosure:
@@ -220,7 +253,16 @@ def test_several_branches_have_no_narrow_bounds() -> None:
     assert (error.amplitude > 0.1).all()
 
 
-def check_tilting() -> None:
+@kills(
+    "solvers.synchronous.coupled_errors:_largest", "linear + _carried(spread,", "linear - _carried(spread,"
+)
+@kills(
+    "solvers.synchronous.coupled_errors:_missing",
+    "np.square(speed)[:, None] * np.stack(bounds",
+    "np.stack(bounds",
+)
+@kills("solvers.synchronous.coupled_errors:_share", "left = size - change", "left = size + 1e3 * change")
+def test_tilting_rotors() -> None:
     """Rotors that tilt: amplitude and liquid of the linear law within their bounds of the exact one."""
     rng = np.random.default_rng(3)
     narrow = 0
@@ -248,10 +290,6 @@ def check_tilting() -> None:
     assert narrow > 10
 
 
-def test_tilting_rotors() -> None:
-    check_tilting()
-
-
 def test_tilting_and_planar_bounds_agree() -> None:
     """A Jeffcott rotor is both; the wet wall has no error in either, and strain is the same."""
     speeds = np.array([40.0, 60.0, 140.0])
@@ -268,7 +306,15 @@ def test_tilting_and_planar_bounds_agree() -> None:
     assert (none.worst == ROUNDING).all() and (still == 0.0).all()
 
 
-def check_gravity() -> None:
+@kills("solvers.synchronous.errors:law_error", "(radius / depth) ** _THIN", "(depth / radius) ** _THIN")
+@kills("solvers.synchronous.errors:law_error", "_THIN * np.square(weakness)", "_THIN * weakness")
+@kills(
+    "solvers.synchronous.errors:planar_gravity_error",
+    "pull = np.square(pairs.speed) * weighted",
+    "pull = weighted",
+)
+@kills("solvers.synchronous.errors:planar_gravity_error", "largest + moved", "largest - moved")
+def test_gravity() -> None:
     """Gravity: as its square over that of the spin's fourth power, none upright, no number below capture.
 
     A layer of 0.016 R (R/h0 = 62.5: 62.5^(5/4) = 175.7) at 20 times gravity: 0.15 * 175.7/400.
@@ -292,10 +338,6 @@ def check_gravity() -> None:
     np.testing.assert_allclose(planar_gravity_error(one, np.array([G]), most), expected, rtol=1e-9)
 
 
-def test_gravity() -> None:
-    check_gravity()
-
-
 @pytest.mark.slow
 def test_gravity_against_long_waves() -> None:
     """Of a dozen layers or more, held at a speed until they settle, at most one in ten changes more."""
@@ -305,7 +347,10 @@ def test_gravity_against_long_waves() -> None:
     assert found.ratio(0.0, 1.0) < 10.0
 
 
-def check_run_up_estimate() -> None:
+@kills("solvers.runup.error:linear_run_error", "crest / fill.depth - 1.0", "crest / fill.depth")
+@kills("solvers.runup.error:linear_run_error", "_WAVE * wave**2", "_WAVE * wave")
+@kills("solvers.runup.error:linear_run_error", "_LAG * lag**2", "_LAG * lag")
+def test_run_up_estimate() -> None:
     """A run's own word: twice the squares of wave and lag, beyond half a depth there is none."""
     wall = Chamber(0.1, 0.02)
     fill = Fill(wall, WATER, wall.capacity * 0.19)
@@ -327,10 +372,6 @@ def check_run_up_estimate() -> None:
     assert linear_run_error(history, [replace(fill, volume=0.0)]).estimate == pytest.approx(0.006)
     free = replace(history, captured=np.zeros((3, 1), dtype=bool), depth_max=np.full((3, 1), np.nan))
     assert linear_run_error(free, [fill]).wave == 0.0
-
-
-def test_run_up_estimate() -> None:
-    check_run_up_estimate()
 
 
 @pytest.mark.slow

@@ -16,6 +16,7 @@ from solvers.synchronous.models import SYNCHRONOUS_MODELS
 from solvers.synchronous.pairs import PlanarMachine, pair_machines
 from solvers.synchronous.planar import machine_responses, synchronous_response
 from solvers.whirl.growth import asynchronous_growth, machines_growth
+from tests.mutants import kills
 
 WATER, OIL = Liquid("water", 1000.0, 1e-6), Liquid("oil", 870.0, 6.9e-5)
 GRAVITY = np.array([0.0, 9.81, 9.81, 0.0, 9.81])
@@ -37,7 +38,8 @@ def machines() -> list[PlanarMachine]:
     ]
 
 
-def check_each_as_if_alone() -> None:
+@kills("solvers.synchronous.pairs:pair_machines", "place = index[owner]", "place = index[owner[::-1]]")
+def test_each_as_if_alone() -> None:
     """The response of many machines is that of each by itself, for every model."""
     for model in ("statics", "linear"):
         many = machine_responses(machines(), OWNER, SPEED, GRAVITY, model)
@@ -55,11 +57,21 @@ def check_each_as_if_alone() -> None:
         assert many.converged.all()
 
 
-def test_each_as_if_alone() -> None:
-    check_each_as_if_alone()
-
-
-def check_sums() -> None:
+@kills(
+    "solvers.synchronous.pairs:Pairs.dynamic_stiffness",
+    "elastic + 1j * self.damping",
+    "elastic - 1j * self.damping",
+)
+@kills(
+    "solvers.synchronous.pairs:pair_machines",
+    "here.added_mass, here.mass * here.chamber.radius",
+    "here.added_mass, here.mass",
+)
+@kills("solvers.synchronous.pairs:Pairs.pull", "moment - fills.mass * e", "moment")
+@kills("solvers.synchronous.pairs:Pairs.liquid", "(one.unbalance, one.slope))", "(one.slope, one.unbalance))")
+@kills("solvers.synchronous.pairs:Pairs.pull", "moment = fills.added_mass * e", "moment = fills.mass * e")
+@kills("solvers.synchronous.pairs:Pairs.pull", "moment[bent] = law.unbalance", "moment[bent] = law.slope")
+def test_sums() -> None:
     """The pull and the liquid's state of a machine are sums over its chambers, each asked by itself."""
     statics = SYNCHRONOUS_MODELS["statics"]
     pairs = pair_machines(machines(), OWNER, SPEED, GRAVITY, statics)
@@ -87,11 +99,13 @@ def check_sums() -> None:
     assert np.isinf(pairs.limit[OWNER == 3]).all() and np.isfinite(pairs.limit[OWNER == 1]).all()
 
 
-def test_sums() -> None:
-    check_sums()
-
-
-def check_arrays_of_fills() -> None:
+@kills("fluid.fill:Fills.mass", "return self.density * self.volume", "return self.volume")
+@kills(
+    "fluid.fill:Fill.depth",
+    "return film / (self.chamber.radius + self.surface_radius)",
+    "return film / (2.0 * self.chamber.radius)",
+)
+def test_arrays_of_fills() -> None:
     """Arrays say what the fills say."""
     fills = [fill for _, some in machines() for fill in some]
     arrays = Fills.of(fills)
@@ -108,11 +122,13 @@ def check_arrays_of_fills() -> None:
     np.testing.assert_array_equal(back.chamber.inner_radius, arrays.chamber.inner_radius[[3, 1]])
 
 
-def test_arrays_of_fills() -> None:
-    check_arrays_of_fills()
-
-
-def check_growth() -> None:
+@kills("solvers.whirl.growth:machines_growth", "support[own[place]].T", "support[place].T")
+@kills(
+    "solvers.whirl.growth:machines_growth",
+    "mass = np.array([tables[i][0] for i in own])[place]",
+    "mass = np.array([tables[0][0] for i in own])[place]",
+)
+def test_growth() -> None:
     """Growth of many machines, each with its own friction, is that of each by itself."""
     frictions = [(NONE, 0.0), (STOKES, 0.0), (LINEAR, 2.0), (NONE, 0.0), (STOKES, 0.0)]
     growth, whirl_speed = machines_growth(machines(), frictions, OWNER, SPEED)
@@ -123,7 +139,3 @@ def check_growth() -> None:
         np.testing.assert_allclose(growth[own], alone[0], rtol=1e-8, atol=1e-10 * SPEED.max())
         np.testing.assert_allclose(whirl_speed[own], alone[1], rtol=1e-8)
     assert np.any(growth > 0.1) and np.any(growth < -0.1)
-
-
-def test_growth() -> None:
-    check_growth()

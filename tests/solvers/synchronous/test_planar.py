@@ -19,6 +19,7 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vector_model import balance_residual, deflection_lag
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.planar import Response, critical_speed, synchronous_response
+from tests.mutants import kills
 
 WATER = Liquid("water", 1000.0, 1e-6)
 
@@ -37,7 +38,17 @@ def folded() -> tuple[Jeffcott, list[Fill], np.ndarray]:
     return rig(0.001, 1e-4), fills(1.2e-5), np.linspace(96.0, 100.0, 41)
 
 
-def check_added_mass() -> None:
+@kills(
+    "solvers.synchronous.planar:_all_deflections",
+    "force, damping = pairs.unbalance * squared",
+    "force, damping = pairs.unbalance * pairs.speed",
+)
+@kills(
+    "solvers.synchronous.planar:_offset",
+    "np.divide(unbalance, pairs.liquid_mass",
+    "np.divide(unbalance - deflection, pairs.liquid_mass",
+)
+def test_added_mass() -> None:
     """Wall wet all over: a Jeffcott rotor of mass M + m_f, whatever the volume."""
     rotor, speed = rig(), np.linspace(10.0, 300.0, 30)
     added = sum(WATER.density * math.pi * r**2 * 0.02 for r in (0.065, 0.05))
@@ -57,11 +68,32 @@ def check_added_mass() -> None:
             np.testing.assert_allclose(answer.liquid_angle, np.angle(closed), rtol=1e-11)
 
 
-def test_added_mass() -> None:
-    check_added_mass()
-
-
-def check_balance() -> None:
+@kills(
+    "solvers.rotor.jeffcott:Jeffcott.dynamic_stiffness",
+    "- self.mass * np.square(speed) + 1j",
+    "+ self.mass * np.square(speed) + 1j",
+)
+@kills(
+    "solvers.rotor.jeffcott:Jeffcott.dynamic_stiffness",
+    "+ 1j * self.damping * speed",
+    "- 1j * self.damping * speed",
+)
+@kills(
+    "solvers.synchronous.planar:_with_phase",
+    "pull = np.square(pairs.speed[which]) * state.unbalance",
+    "pull = pairs.speed[which] * state.unbalance",
+)
+@kills(
+    "solvers.synchronous.planar:_all_deflections",
+    "elastic = pairs.stiffness - (pairs.mass + pairs",
+    "elastic = pairs.stiffness - (pairs.mass - pairs",
+)
+@kills(
+    "solvers.synchronous.models:_touching",
+    "1.0 + 4.0 * steep[which] * deflection",
+    "1.0 + 2.0 * steep[which] * deflection",
+)
+def test_balance() -> None:
     """Every branch satisfies the vector balance of forces, with the liquid's law taken point by point."""
     for rotor, wet, speed, gravity in (
         (*folded(), 0.0),
@@ -88,11 +120,7 @@ def check_balance() -> None:
         np.testing.assert_allclose(left / scale, 1.0, atol=1e-9)
 
 
-def test_balance() -> None:
-    check_balance()
-
-
-def check_vector_model() -> None:
+def test_vector_model() -> None:
     """Angles of the solved response balance at every speed, wet wall or dry patch [DR18, eq. 24]."""
     dry = np.zeros(0, dtype=bool)
     for rotor, wet in ((rig(0.1), fills(1e-5, 1e-5)), (rig(0.03, 3e-3), fills(1e-5, 8e-6))):
@@ -111,11 +139,8 @@ def check_vector_model() -> None:
     assert dry.any() and not dry.all()
 
 
-def test_vector_model() -> None:
-    check_vector_model()
-
-
-def check_all_branches() -> None:
+@kills("solvers.synchronous.branches:_one_way", "for slope in (a - rise, a)", "for slope in (a,)")
+def test_all_branches() -> None:
     """As many branches as a fine scan of the balance sees."""
     rotor, wet, speed = folded()
     answer = synchronous_response(rotor, wet, speed, 0.0)
@@ -132,11 +157,12 @@ def check_all_branches() -> None:
     assert set(counts) == {1, 3}
 
 
-def test_all_branches() -> None:
-    check_all_branches()
-
-
-def check_middle_branch() -> None:
+@kills(
+    "solvers.synchronous.planar:_is_stable",
+    "np.square(spin) * (own + state.slope)",
+    "np.square(spin) * (own + secant)",
+)
+def test_middle_branch() -> None:
     """Of three branches the middle one is unstable, the others stable; the largest stable one is reported."""
     answer = synchronous_response(*folded(), 0.0)
     three = np.isfinite(answer.branch_deflection).sum(axis=1) == 3
@@ -146,10 +172,6 @@ def check_middle_branch() -> None:
     )
     np.testing.assert_array_equal(answer.deflection[three], answer.branch_deflection[three, 2])
     assert answer.stable.all()
-
-
-def test_middle_branch() -> None:
-    check_middle_branch()
 
 
 def _settle(rotor: Jeffcott, fill: Fill, spin: float, start: complex) -> complex:
@@ -201,7 +223,12 @@ def same(a: Response, b: Response) -> None:
     np.testing.assert_array_equal(a.deflection, b.deflection)
 
 
-def check_critical_speed() -> None:
+@kills(
+    "solvers.synchronous.planar:critical_speed",
+    "rotor.stiffness - (rotor.mass + slope) * np.square(speed)",
+    "rotor.stiffness - (rotor.mass - slope) * np.square(speed)",
+)
+def test_critical_speed() -> None:
     """Added mass of full chambers where the wall is wet, of a bowl where floor and lid decide otherwise."""
     added = sum(WATER.density * math.pi * r**2 * 0.02 for r in (0.065, 0.05))
     wet = critical_speed(rig(), fills(1e-4, 8e-5), gravity=0.0)
@@ -212,10 +239,6 @@ def check_critical_speed() -> None:
     speed = critical_speed(rotor, [tall])
     bowl = WATER.density * (0.02 + speed**2 / (2 * 9.81) * math.pi * 0.2**4 / 2)
     assert (rotor.mass + bowl) * speed**2 == pytest.approx(rotor.stiffness, rel=1e-9)
-
-
-def test_critical_speed() -> None:
-    check_critical_speed()
 
 
 def test_no_liquid_is_the_dry_rotor() -> None:

@@ -11,6 +11,7 @@ from solvers.waves.continuation import Branch, Response, _segment, follow, growt
 from solvers.waves.modes import System, WaveProblem, split
 from solvers.waves.newton import SteadyWave, newton
 from solvers.waves.periodic import family_problem, solve
+from tests.mutants import kills
 from tests.solvers.waves.test_periodic import FAMILIES, PROGRADE, RETROGRADE, cnoidal, free_problem
 
 # A curve that folds twice: one resonance, its answers one, three, one.
@@ -22,7 +23,8 @@ def gentle() -> Response:
     return respond(GENTLE, GENTLE_SPEEDS, stability=True)
 
 
-def curve_folds() -> None:
+@kills("solvers.waves.continuation:growth_rates", "np.argsort(-values.real)", "np.argsort(values.real)")
+def test_curve_folds() -> None:
     """Three answers next to resonance, on the side of faster waves; the middle one is unstable."""
     answer = gentle()
     assert answer.complete, answer.reason
@@ -41,7 +43,7 @@ def curve_folds() -> None:
     assert len(answer.branches[0].folds) == 2
 
 
-def stability_changes_at_the_fold() -> None:
+def test_stability_changes_at_the_fold() -> None:
     """A real rate passes 0 there: small on both sides, and of opposite sign."""
     branch = follow(GENTLE, 17.6, 18.2, longest=0.02)
     assert branch.complete
@@ -52,7 +54,7 @@ def stability_changes_at_the_fold() -> None:
         assert max(abs(before), abs(after)) < 0.012
 
 
-def segments_follow_the_curve() -> None:
+def test_segments_follow_the_curve() -> None:
     """Between two points the cubic lies on the curve to third order of the step and better."""
     branch = follow(GENTLE, 17.6, 18.2, longest=0.1)
     scale = GENTLE.speed_scale
@@ -69,7 +71,22 @@ def segments_follow_the_curve() -> None:
         assert np.linalg.norm(middle[:-1] - on_curve) < 0.01 * chord
 
 
-def linear_spectrum() -> None:
+@kills(
+    "solvers.waves.periodic:family_problem",
+    "c.steepening, float(forcing(c, acceleration)), decay, diffusion",
+    "c.steepening, float(forcing(c, acceleration)), diffusion, decay",
+)
+@kills(
+    "solvers.waves.continuation:growth_rates",
+    "np.vstack((n * jacobian[m:], -n * jacobian[:m]))",
+    "np.vstack((-n * jacobian[m:], n * jacobian[:m]))",
+)
+@kills(
+    "solvers.waves.continuation:growth_rates",
+    "np.vstack((n * jacobian[m:], -n * jacobian[:m]))",
+    "np.vstack((jacobian[m:], -jacobian[:m]))",
+)
+def test_linear_spectrum() -> None:
     """Disturbances of a vanishing wave are free waves, seen from the whirl, that decay."""
     problem = family_problem(RETROGRADE, 1e-9, whitham=True, decay=0.2, diffusion=0.03)
     s = -9.0
@@ -83,7 +100,7 @@ def linear_spectrum() -> None:
     assert growth(solve(problem, s)) == pytest.approx(-0.23, abs=1e-6)
 
 
-def growth_is_seen_in_time() -> None:
+def test_growth_is_seen_in_time() -> None:
     """The unstable wave, disturbed, departs at its growth rate: two Runge-Kutta runs of its modes."""
     answer = respond(GENTLE, np.array([17.6, 17.93, 18.2]), stability=True)
     wave, rate = answer.waves[1][1], answer.growth[1][1]
@@ -116,20 +133,6 @@ def growth_is_seen_in_time() -> None:
     grown = np.linalg.norm(two - rest) / np.linalg.norm(one - rest)
     # What still decays at 0.05 1/s beside it is e^-10; the disturbance stays linear below 1e-3.
     assert math.log(grown) / 30.0 == pytest.approx(rate, rel=0.02)
-
-
-def test_curve_folds() -> None:
-    curve_folds()
-    segments_follow_the_curve()
-    stability_changes_at_the_fold()
-
-
-def test_linear_spectrum() -> None:
-    linear_spectrum()
-
-
-def test_growth_is_seen_in_time() -> None:
-    growth_is_seen_in_time()
 
 
 @pytest.mark.parametrize("c", FAMILIES, ids=("prograde", "retrograde"))

@@ -8,6 +8,7 @@ import pytest
 from solvers.waves.modes import DENSE_MODES, DampingSystem, System, WaveProblem, joined, split
 from solvers.waves.newton import ALONE, _step, factorise, newton, scaled_unknowns
 from solvers.waves.periodic import family_problem, solve
+from tests.mutants import kills
 from tests.solvers.waves.test_periodic import PROGRADE, RETROGRADE, free_problem
 
 DAMPED = family_problem(PROGRADE, 0.3, whitham=True, decay=0.2, diffusion=0.05)
@@ -18,7 +19,21 @@ def systems(modes: int) -> tuple[System, System]:
     return System(DAMPED, modes), DampingSystem(DAMPED, modes, 17.6)
 
 
-def jacobian_is_the_derivative() -> None:
+@kills(
+    "solvers.waves.modes:System.jacobian",
+    "np.subtract(hi, ti, out=matrix[:m, m:full])",
+    "np.add(hi, ti, out=matrix[:m, m:full])",
+)
+@kills("solvers.waves.modes:System.jacobian", "matrix[k, m + k] += d.imag", "matrix[k, m + k] -= d.imag")
+@kills("solvers.waves.modes:System.by_parameter", "return -y", "return y")
+@kills(
+    "solvers.waves.modes:DampingSystem.by_parameter",
+    "(self.n * y[m:], -self.n * y[:m])",
+    "(-self.n * y[m:], self.n * y[:m])",
+)
+@kills("solvers.waves.modes:System.act", "heights * values(dv, self", "0.5 * heights * values(dv, self")
+@kills("solvers.waves.modes:_difference_and_sum", "(m + 1) * item, (item, item)", "m * item, (item, item)")
+def test_derivative() -> None:
     """Against central differences of the residual; the low block is a part of it."""
     rng = np.random.default_rng(1)
     for system in systems(12):
@@ -40,7 +55,8 @@ def jacobian_is_the_derivative() -> None:
         assert system.act(heights, p, x) == pytest.approx(exact @ x, rel=1e-12, abs=1e-11)
 
 
-def products_do_not_alias() -> None:
+@kills("solvers.waves.modes:System.__init__", "next_fast_len(3 * modes + 1", "next_fast_len(2 * modes + 1")
+def test_products_do_not_alias() -> None:
     """The square of two modes has no part in the others: cos(m xi)^2 = (1 + cos(2 m xi))/2."""
     system = System(free_problem(PROGRADE), 20)
     for m in range(11, 21):
@@ -51,7 +67,12 @@ def products_do_not_alias() -> None:
         assert np.max(np.abs(left)) < 1e-12
 
 
-def extra_diffusion_is_diffusion() -> None:
+@kills(
+    "solvers.waves.modes:DampingSystem.coefficient",
+    "self._still - (1j * p) * self.n",
+    "self._still - (1j * p) / self.n",
+)
+def test_extra_diffusion() -> None:
     """Both systems state one equation: x more in one is x more in the problem of the other."""
     rng = np.random.default_rng(3)
     extra, speed, y = 0.7, 17.6, rng.normal(size=20)
@@ -76,7 +97,17 @@ def steep_wave(modes: int) -> tuple[System, np.ndarray, float]:
     return system, y, float(problem.frequency(np.array([1.0]))[0] / system.scale + 0.3)
 
 
-def factors_invert_the_derivative() -> None:
+@kills(
+    "solvers.waves.newton:factorise",
+    "2.0 * plane[:low], 2.0 * plane[m : m + low]",
+    "plane[:low], plane[m : m + low]",
+)
+@kills(
+    "solvers.waves.newton:Factors.solve",
+    "r[low:m] + 1j * r[m + low : size]",
+    "r[low:m] - 1j * r[m + low : size]",
+)
+def test_factors_invert_the_derivative() -> None:
     """Exactly with all modes in the block, else nearly: what is left shrinks by ALONE and more."""
     rng = np.random.default_rng(4)
     system, y, p = steep_wave(63)
@@ -103,7 +134,8 @@ def factors_invert_the_derivative() -> None:
     assert bare.solve(full[:-1, :-1] @ x[:-1]) == pytest.approx(x[:-1], rel=1e-9, abs=1e-9)
 
 
-def nothing_is_left_out_at_rest() -> None:
+@kills("solvers.waves.newton:Factors.solve", "off -= 2.0 * float(", "off -= float(")
+def test_nothing_is_left_out_at_rest() -> None:
     """Without a wave no modes are coupled but by the plane: any block gives the exact inverse."""
     rng = np.random.default_rng(5)
     system = steep_wave(63)[0]
@@ -117,7 +149,8 @@ def nothing_is_left_out_at_rest() -> None:
     assert found == pytest.approx(x, rel=1e-11, abs=1e-11)
 
 
-def coupled_modes_are_in_the_block() -> None:
+@kills("solvers.waves.newton:factorise", "alone * height", "height")
+def test_coupled_modes_are_in_the_block() -> None:
     """Outside of it every coefficient is ALONE times the wave's height or more."""
     system, y, p = steep_wave(63)
     factors = factorise(system, y, p)
@@ -125,24 +158,6 @@ def coupled_modes_are_in_the_block() -> None:
     # The height is taken on 192 points.
     assert np.min(np.abs(factors.high)) > 0.98 * ALONE * height
     assert abs(system.coefficient(p)[factors.low - 1]) < 1.02 * ALONE * height
-
-
-def test_derivative() -> None:
-    jacobian_is_the_derivative()
-
-
-def test_products_do_not_alias() -> None:
-    products_do_not_alias()
-
-
-def test_extra_diffusion() -> None:
-    extra_diffusion_is_diffusion()
-
-
-def test_factors() -> None:
-    factors_invert_the_derivative()
-    nothing_is_left_out_at_rest()
-    coupled_modes_are_in_the_block()
 
 
 def test_krylov_step_is_newtons() -> None:

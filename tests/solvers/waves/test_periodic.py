@@ -18,6 +18,7 @@ from solvers.waves.continuation import growth
 from solvers.waves.modes import System, WaveProblem, joined, one_thread, split
 from solvers.waves.newton import SteadyWave
 from solvers.waves.periodic import _starts, family_problem, solve
+from tests.mutants import kills
 
 PROGRADE = coefficients(0.15, 0.135, 40.0, 1)
 RETROGRADE = coefficients(0.15, 0.135, 40.0, -1)
@@ -38,7 +39,15 @@ def free_problem(c: KdvCoefficients) -> WaveProblem:
     return WaveProblem(lambda n: wave_frequency(n, c, whitham=False), c.steepening, 0.0)
 
 
-def cnoidal_waves_are_steady() -> None:
+@kills(
+    "solvers.waves.modes:System.residual",
+    "self.coefficient(p) * v + 0.5 * square",
+    "self.coefficient(p) * v + square",
+)
+@kills(
+    "solvers.waves.modes:System.coefficient", "np.asarray(self.diagonal - p)", "np.asarray(self.diagonal + p)"
+)
+def test_cnoidal_waves_are_steady() -> None:
     """The unforced, undamped equation keeps them."""
     for c in FAMILIES:
         for m in (0.3, 0.9, 0.999):
@@ -49,7 +58,13 @@ def cnoidal_waves_are_steady() -> None:
             assert system.error(system.residual(y, s / system.scale), y) < 1e-12
 
 
-def linear_limit() -> None:
+@kills("solvers.waves.modes:System.__init__", "/ self.scale - 1j * damping", "/ self.scale + 1j * damping")
+@kills(
+    "solvers.waves.modes:System.__init__",
+    "0.5 * problem.forcing * problem.steepening / self.scale**2",
+    "problem.forcing * problem.steepening / self.scale**2",
+)
+def test_linear_limit() -> None:
     """A small forcing gets the closed form, in the phase that damping gives."""
     for c in FAMILIES:
         for whitham in (False, True):
@@ -83,13 +98,23 @@ def manufactured(modes: int, ratio: float = 0.6) -> tuple[float, np.ndarray]:
     return float(np.max(np.abs(wave.modes - exact)) / height), wave.modes
 
 
-def manufactured_wave() -> None:
+def test_manufactured_wave() -> None:
     """Newton finds it."""
     # Newton stops at a residual of 1e-11, which the equations' condition, 240, can multiply.
     assert manufactured(64)[0] < 2e-9
 
 
-def power_balances() -> None:
+@kills(
+    "solvers.waves.modes:System.__init__",
+    "problem.diffusion * n + problem.decay / n",
+    "problem.diffusion * n**2 + problem.decay / n",
+)
+@kills(
+    "solvers.waves.modes:System.__init__",
+    "problem.diffusion * n + problem.decay / n",
+    "problem.diffusion * n + problem.decay * n",
+)
+def test_power_balances() -> None:
     """What the whirl feeds is what diffusion and decay take; in physical space."""
     for c in FAMILIES:
         problem = family_problem(c, 0.3, decay=0.2, diffusion=0.05)
@@ -107,7 +132,8 @@ def power_balances() -> None:
             assert abs(np.mean(eta)) < 1e-15
 
 
-def collocation_agrees() -> None:
+@kills("solvers.waves.modes:System.residual", "r[0] -= self.half_forcing", "r[0] += self.half_forcing")
+def test_another_method_finds_the_same_wave() -> None:
     """The damped, forced, tall wave of the differential equation, by scipy's collocation."""
     c, s = PROGRADE, 17.95
     problem = family_problem(c, 0.002, decay=0.02, diffusion=0.01)
@@ -143,7 +169,7 @@ def bore(c: KdvCoefficients, diffusion: float) -> SteadyWave:
     return wave
 
 
-def bore_obeys_the_jump_condition() -> None:
+def test_bore() -> None:
     """Outside the front 2 sqrt(q/alpha) cos(xi/2), the mean of both sides at the speed of the front."""
     for c in FAMILIES:
         error = []
@@ -169,7 +195,7 @@ def outer_bore(detuning: float, xi: np.ndarray) -> np.ndarray:
     return detuning - 2.0 * np.cos(0.5 * (np.mod(xi - front, 2.0 * np.pi) + front))
 
 
-def bore_follows_the_whirl() -> None:
+def test_bore_follows_the_whirl() -> None:
     """Beside its resonance: the front moves aside, the wave elsewhere is the one without dispersion."""
     xi = 2.0 * np.pi * np.arange(4096) / 4096
     for c in FAMILIES:
@@ -192,7 +218,11 @@ def bore_follows_the_whirl() -> None:
             assert error[0] / error[1] == pytest.approx(2.0, abs=0.3)
 
 
-def search_begins_at_the_bore() -> None:
+@kills("solvers.waves.periodic:_starts", "front, n = -2.0 * math.asin", "front, n = 2.0 * math.asin")
+@kills(
+    "solvers.waves.periodic:_starts", "(turn / (n - 0.5) + np.conj(turn)", "(turn / (n - 0.5) - np.conj(turn)"
+)
+def test_search_begins_at_the_bore() -> None:
     """Fourier coefficients of that wave, rounded off, where steepening rules; by the trapezium rule."""
     problem = family_problem(PROGRADE, 0.7, decay=0.05)
     system = System(problem, 63)
@@ -206,11 +236,6 @@ def search_begins_at_the_bore() -> None:
         # The jump costs the rule 1e-5 at its 65536 points.
         assert start == pytest.approx(strength * wave * np.exp(-((n / 8.0) ** 2)), abs=3e-5)
         assert abs(np.mean(outer_bore(detuning, xi))) < 3e-5
-
-
-def test_bore_beside_its_resonance() -> None:
-    bore_follows_the_whirl()
-    search_begins_at_the_bore()
 
 
 def test_no_forcing_no_wave() -> None:
@@ -246,7 +271,8 @@ def two_families(c: KdvCoefficients, acceleration: float, s: float, guess: np.nd
     return np.asarray(found.x[:size] * c.mean_area)
 
 
-def error_is_first_order_in_the_height() -> None:
+@kills("fluid.kdv:coefficients", "3.0 * spin / surface_radius**2", "2.0 * spin / surface_radius**2")
+def test_one_family_against_both() -> None:
     """Against both families: at the same shape, half the height makes half the relative error."""
     for family in (1, -1):
         c, error = coefficients(0.15, 0.135, 40.0, family), []
@@ -266,47 +292,23 @@ def error_is_first_order_in_the_height() -> None:
         assert error[0] / error[1] == pytest.approx(2.0, abs=0.03)
 
 
-def rms_is_that_of_the_profile() -> None:
+@kills(
+    "solvers.waves.newton:SteadyWave.rms",
+    "float(np.sqrt(2.0) * np.linalg.norm(self.modes))",
+    "float(np.linalg.norm(self.modes))",
+)
+def test_rms_is_that_of_the_profile() -> None:
     """Parseval."""
     wave = solve(family_problem(PROGRADE, 0.3, decay=0.2, diffusion=0.05), 17.5)
     assert wave.rms == pytest.approx(float(np.sqrt(np.mean(wave.profile(1024) ** 2))), rel=1e-12)
 
 
-def test_rms_is_that_of_the_profile() -> None:
-    rms_is_that_of_the_profile()
-
-
-def test_cnoidal_waves_are_steady() -> None:
-    cnoidal_waves_are_steady()
-
-
-def test_linear_limit() -> None:
-    linear_limit()
-
-
 def test_manufactured_wave_is_found_with_spectral_accuracy() -> None:
-    manufactured_wave()
     counts = np.array([8, 12, 16, 24, 32])
     errors = np.array([manufactured(int(m))[0] for m in counts])
     # What is cut off falls as ratio^(2 M) in the lowest modes and ratio^M in the last ones.
     slope = np.polyfit(counts, np.log(errors), 1)[0]
     assert slope < 0.9 * math.log(0.6)
-
-
-def test_power_balances() -> None:
-    power_balances()
-
-
-def test_another_method_finds_the_same_wave() -> None:
-    collocation_agrees()
-
-
-def test_one_family_against_both() -> None:
-    error_is_first_order_in_the_height()
-
-
-def test_bore() -> None:
-    bore_obeys_the_jump_condition()
 
 
 def test_blas_runs_on_one_thread() -> None:

@@ -14,6 +14,7 @@ from fluid.kdv import coefficients
 from meshes.errors import InputError
 from solvers.waves.exponential import METHODS, find_method, phi_functions, step_weights
 from solvers.waves.stepper import Control, Split, advance_adaptive, advance_fixed, squared, to_spectrum
+from tests.mutants import kills
 
 # u_t + 6 u u_x + u_xxx = 0, written out here, and its periodic solitary wave.
 PLAIN = replace(coefficients(0.15, 0.135, 40.0, 1), linear_speed=0.0, steepening=6.0, dispersion=1.0)
@@ -129,7 +130,9 @@ def test_without_linear_part_it_is_the_classical_runge_kutta_method(method: str)
     assert done.spectrum[0] == pytest.approx(want, rel=1e-14)
 
 
-def assert_phi() -> None:
+@kills("solvers.waves.exponential:phi_functions", "(two - 0.5) / large", "(two - 1.0) / large")
+@kills("solvers.waves.exponential:phi_functions", "math.factorial(j + k)", "math.factorial(j)")
+def test_phi_functions() -> None:
     radii = np.array([0.0, 1e-9, 1e-3, 0.3, 0.999, 1.001, 3.0, 40.0, 500.0])
     z = (radii[:, None] * np.exp(1j * np.array([0.5, 0.75, 1.0, 1.3, 1.5]) * np.pi)).ravel()
     with mpmath.workdps(60):
@@ -145,10 +148,6 @@ def assert_phi() -> None:
             want = np.array([phi(k, w) for w in z])
             # Outside the unit circle each of three subtractions may double the rounding.
             assert np.max(np.abs(found - want) / np.abs(want)) < 16.0 * np.finfo(float).eps
-
-
-def test_phi_functions() -> None:
-    assert_phi()
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -293,6 +292,7 @@ def test_bad_input_is_named() -> None:
         Control(first=-1.0)
 
 
+@kills("solvers.waves.stepper:_step", "+ _BEND * bend", "+ 0.0 * bend")
 def test_a_rest_that_depends_on_time_alone_is_followed() -> None:
     """v' = cos(9 t) from 0: the stages agree at any step, only the bend of N tells."""
     split = Split(np.zeros(1, dtype=complex), lambda v, t: np.array([math.cos(9.0 * t) + 0j]))
@@ -302,9 +302,33 @@ def test_a_rest_that_depends_on_time_alone_is_followed() -> None:
         assert abs(done.spectrum[0] - math.sin(45.0) / 9.0) < tolerance / 9.0
 
 
-def assert_phases() -> None:
+@kills(
+    "solvers.waves.exponential:_end_weights", "one - 3.0 * two + 4.0 * three", "one - 3.0 * two + 2.0 * three"
+)
+@kills("solvers.waves.exponential:_end_weights", "4.0 * three - two", "4.0 * three + two")
+@kills(
+    "solvers.waves.exponential:_cox_matthews", "0.5 * half * np.expm1(0.5 * z)", "half * np.expm1(0.5 * z)"
+)
+@kills("solvers.waves.exponential:_krogstad", "full - 2.0 * full_2, 2.0 * full_2", "full - full_2, full_2")
+@kills(
+    "solvers.waves.exponential:_integrating_factor",
+    "half * half / 6.0, half / 3.0",
+    "half * half / 6.0, half / 2.0",
+)
+@kills("solvers.waves.exponential:step_weights", "symbol + turn", "symbol - turn")
+@kills("solvers.waves.exponential:step_weights", "near * b2", "b2")
+@kills("solvers.waves.stepper:_step", "w.b2 * (n2 + n3)", "w.b2 * (n2 + n2)")
+@kills(
+    "solvers.waves.stepper:_step", "w.a41 * n1 + w.a43 * n3, t + h)", "w.a41 * n1 + w.a43 * n3, t + 0.5 * h)"
+)
+def test_phases() -> None:
     """Weights and stages with a frame, a moving wave and a source: order 4 has nothing left to hide in."""
     for method in METHODS:
         errors = [manufactured_error(method, steps) for steps in (20, 40)]
         assert math.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.2), method
         assert errors[1] < 1e-6, method
+
+
+@kills("solvers.waves.stepper:squared", "3 * points // 2", "points")
+def test_square_of_sixteen_points_has_no_aliases() -> None:
+    test_square_has_no_aliases(16)

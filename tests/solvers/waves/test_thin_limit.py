@@ -23,6 +23,7 @@ from solvers.layer.prescribed import Numerics, Whirl
 from solvers.layer.settle import settle
 from solvers.waves.modes import WaveProblem
 from solvers.waves.periodic import family_problem, solve
+from tests.mutants import kills
 
 RADIUS, HEIGHT, SPIN = 0.15, 0.01, 40.0
 # delta and gamma over sqrt(alpha q): a wave of three and more modes, and only one of it.
@@ -159,7 +160,12 @@ def settled(case: Case, cells: int) -> tuple[complex, np.ndarray]:
     return complex(history.force_ratio[-1]), np.mean(turns * eta, axis=1)
 
 
-def gap_goes_with_the_height() -> None:
+@kills("fluid.kdv:coefficients", "3.0 * spin / surface_radius**2", "3.0 * spin / radius**2")
+@kills("fluid.kdv:coefficients", "log * surface_radius / (2.0", "log * radius / (2.0")
+@kills("fluid.kdv:decay", "k * abs(c.linear_speed) /", "0.5 * k + 0.0 * abs(c.linear_speed) /")
+@kills("fluid.kdv:coefficients", "spin * log**3 / 3.0 * share", "spin * log**3 * (1.0 + log) / 3.0 * share")
+@kills("fluid.kdv:offset", "c.surface_radius / c.mean_area * first", "c.radius / c.mean_area * first")
+def test_gap_goes_with_the_height() -> None:
     """The height over the depth goes with the square of the depth, and the gap with the height."""
     for family in (1, -1):
         for whitham in (False, True):
@@ -171,7 +177,7 @@ def gap_goes_with_the_height() -> None:
             assert found[-1, 0] < 4e-4 and found[-1, 1] < 1e-3
 
 
-def thinness_alone_closes_no_gap() -> None:
+def test_thinness_alone_closes_no_gap() -> None:
     """Without dispersion, at one height over the depth: the gap is that height's, whatever the depth."""
     tall, thin, low = (gaps(hydraulic(*x)) for x in ((0.1, 1, 0.02), (0.025, 1, 0.02), (0.025, 1, 0.01)))
     assert tall[0] == pytest.approx(thin[0], rel=0.05)
@@ -179,7 +185,7 @@ def thinness_alone_closes_no_gap() -> None:
     assert thin[1] / low[1] == pytest.approx(2.0, rel=0.02)
 
 
-def time_stepping_settles_there() -> None:
+def test_time_stepping_settles_there() -> None:
     """The same layer in time comes to the steady long waves as its cells shrink: their gap is the model's."""
     case = balanced(0.2, 1)
     one = one_family(case)
@@ -197,18 +203,6 @@ def time_stepping_settles_there() -> None:
     limit = (4.0 * found[1][0] - found[0][0]) / 3.0
     assert abs(limit - exact) < abs(exact) * model / 4.0
     assert abs(family - limit) / abs(limit) == pytest.approx(model, rel=0.25)
-
-
-def test_gap_goes_with_the_height() -> None:
-    gap_goes_with_the_height()
-
-
-def test_thinness_alone_closes_no_gap() -> None:
-    thinness_alone_closes_no_gap()
-
-
-def test_time_stepping_settles_there() -> None:
-    time_stepping_settles_there()
 
 
 @pytest.mark.slow

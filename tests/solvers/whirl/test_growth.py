@@ -28,6 +28,7 @@ from solvers.whirl.growth import asynchronous_growth, growth_at, growth_map, pla
 from solvers.whirl.laminar import _eliminate, _layer_waves
 from solvers.whirl.planar import PlanarProblem, planar_modes
 from solvers.whirl.system import coupled_matrices
+from tests.mutants import kills
 
 WATER = Liquid("water", 1000.0, 1e-6)
 RADIUS, HEIGHT, NATURAL = 0.1, 0.02, 100.0
@@ -61,7 +62,29 @@ def wolf(mu: float, depth: float, zeta: float, spin: float, rate: float) -> np.n
     return np.asarray((rotor * d - liquid * omega**2 * (d - omega**2)).roots)
 
 
-def check_characteristic_equation() -> None:
+@kills(
+    "solvers.whirl.planar:_scaled",
+    "damping=problem.damping / mass / spin",
+    "damping=0.5 * problem.damping / mass / spin",
+)
+@kills("solvers.whirl.planar:_scaled", "mass=1.0 + share.sum", "mass=1.0 - share.sum")
+@kills(
+    "solvers.whirl.planar:_scaled",
+    "2.0 * problem.layer_tanh + 1j * problem.rate",
+    "2.0 * problem.layer_tanh - 1j * problem.rate",
+)
+@kills(
+    "solvers.whirl.planar:_scaled",
+    "share * 0.5 * (1.0 - problem.layer_tanh)",
+    "share * 0.5 * (1.0 + problem.layer_tanh)",
+)
+@kills(
+    "solvers.whirl.system:coupled_matrices",
+    "layer.mass / (0.5 * (1.0 - layer.layer_tanh))",
+    "layer.mass / (0.5 * (1.0 + layer.layer_tanh))",
+)
+@kills("solvers.whirl.system:coupled_matrices", "rate * one + 2.0", "rate * one - 2.0")
+def test_characteristic_equation() -> None:
     """Growth and whirl speed of the fastest of the polynomial's roots."""
     spins = np.array([30.0, 95.0, 128.0, 160.0, 400.0])
     for mu, depth, zeta, k in ((0.1, 0.1, 0.05, 0.0), (0.5, 0.2, 0.02, 3.0), (0.3, 0.6, 0.1, 40.0)):
@@ -77,10 +100,6 @@ def check_characteristic_equation() -> None:
             np.testing.assert_allclose(whirl, best.real, rtol=1e-8)
 
 
-def test_characteristic_equation() -> None:
-    check_characteristic_equation()
-
-
 def scan(mu: float, depth: float, zeta: float) -> tuple[np.ndarray, np.ndarray]:
     """Speeds over the natural frequency in steps of 5e-4 and growth over it."""
     ratio = np.arange(0.3, 4.0, 5e-4)
@@ -88,7 +107,8 @@ def scan(mu: float, depth: float, zeta: float) -> tuple[np.ndarray, np.ndarray]:
     return ratio, asynchronous_growth(system, [fill], ratio * NATURAL)[0] / NATURAL
 
 
-def check_published_bands() -> None:
+@kills("solvers.whirl.growth:dominant", "-np.inf, -omega.imag)", "-np.inf, omega.imag)")
+def test_published_bands() -> None:
     """Edges to the step of the scan, peaks to the last digit given."""
     for mu, depth, low, high in ((0.1, 0.1, 1.1225, 1.475), (0.5, 0.2, 0.969, 1.699)):
         ratio, growth = scan(mu, depth, 0.0)
@@ -98,10 +118,6 @@ def check_published_bands() -> None:
     assert np.max(scan(0.1, 0.1, 0.0)[1]) == pytest.approx(0.066, abs=5e-4)
     damped = scan(0.1, 0.1, 0.05)[1]
     assert np.all(damped > 0.0) and np.max(damped) == pytest.approx(0.046, abs=5e-4)
-
-
-def test_published_bands() -> None:
-    check_published_bands()
 
 
 def discriminant(mu: float, depth: float, ratio: mp.mpf) -> mp.mpf:
@@ -133,7 +149,11 @@ def exact_edge(mu: float, depth: float, low: float, high: float) -> float:
         return float(low)
 
 
-def check_refined_edges() -> None:
+@kills("solvers.whirl.edges:undamped_edges", "top - share * ratio**2", "top + share * ratio**2")
+@kills("solvers.whirl.edges:undamped_edges", "(2.0 * top + ratio", "(1.0 * top + ratio")
+@kills("solvers.whirl.edges:undamped_edges", "stiffness / needed[needed", "needed[needed")
+@kills("solvers.whirl.edges:undamped_edges", "-2.0 * one.layer_tanh, 1.0", "2.0 * one.layer_tanh, 1.0")
+def test_refined_edges() -> None:
     """To 1e-8 against the sign of the discriminant in 40 digits, and by the extrema of the stiffness."""
     speeds = np.linspace(30.0, 400.0, 75)
     for mu, depth, brackets in (
@@ -149,11 +169,8 @@ def check_refined_edges() -> None:
         np.testing.assert_allclose(edges / NATURAL, exact, rtol=1e-10)
 
 
-def test_refined_edges() -> None:
-    check_refined_edges()
-
-
-def check_edges_with_friction() -> None:
+@kills("solvers.whirl.edges:_refine", "(rates > 0.0) != first", "(rates > 0.0) == first")
+def test_edges_with_friction() -> None:
     """On either side of each edge the growth has the sign it should; outside all is decay."""
     speeds = np.linspace(30.0, 400.0, 200)
     for friction in ((LINEAR, 5.0), (STOKES, 0.0)):
@@ -166,11 +183,8 @@ def check_edges_with_friction() -> None:
                 assert np.array_equal(growth > 0.0, [False, True, True, False])
 
 
-def test_edges_with_friction() -> None:
-    check_edges_with_friction()
-
-
-def check_edge_steps() -> None:
+@kills("solvers.whirl.edges:_refine", "np.divide(at_a, at_a - at_b", "np.divide(at_b, at_a - at_b")
+def test_edge_steps() -> None:
     """Secants need few looks: the growth at an edge is as good as linear."""
     looks = []
 
@@ -186,11 +200,8 @@ def check_edge_steps() -> None:
     assert len(looks) - 1 <= 7
 
 
-def test_edge_steps() -> None:
-    check_edge_steps()
-
-
-def check_thin_film() -> None:
+@kills("solvers.whirl.edges:_seeds", "np.concatenate([edges, 0.5 * (", "np.concatenate([0.1 * edges, 0.1 * (")
+def test_thin_film() -> None:
     """The band of a film, off the grid here, lies between the critical speeds with and without added mass."""
     speeds = np.linspace(30.0, 400.0, 20)
     for depth in (1e-5, 1e-7):
@@ -208,10 +219,6 @@ def check_thin_film() -> None:
         np.testing.assert_allclose(band, undamped_edges(mass, mass * NATURAL**2, layers), rtol=1e-8)
 
 
-def test_thin_film() -> None:
-    check_thin_film()
-
-
 def motion(system: RotorSystem, fill: Fill, spin: float, rate: float) -> np.ndarray:
     """First-order matrix of (w, d, w', d') in complex coordinates, from the equation of the offset."""
     mass, stiffness, damping = (m[0, 0] for m in (system.mass, system.stiffness, system.damping))
@@ -224,7 +231,8 @@ def motion(system: RotorSystem, fill: Fill, spin: float, rate: float) -> np.ndar
     return np.block([[np.zeros((2, 2)), np.eye(2)], [-inverse @ spring, -inverse @ drag]])
 
 
-def check_time() -> None:
+@kills("solvers.whirl.growth:machines_growth", "modes.slip + problem.spin", "modes.slip - problem.spin")
+def test_time() -> None:
     """A small disturbance advanced in time grows, or decays, at the rate given."""
     for spin, k in ((128.0, 0.0), (128.0, 5.0), (95.0, 5.0), (300.0, 5.0)):
         system, fill = machine(0.1, 0.1, 0.05)
@@ -244,11 +252,7 @@ def check_time() -> None:
         assert abs(phase) < 1e-6
 
 
-def test_time() -> None:
-    check_time()
-
-
-def check_energy() -> None:
+def test_energy() -> None:
     """Slow growth is the work of the dampers over twice the energy, negative for the retrograde wave."""
     zeta, spin = 1e-4, 250.0
     for k in (0.0, 1e-3):
@@ -272,11 +276,14 @@ def check_energy() -> None:
     assert growth[0] > 0.0
 
 
-def test_energy() -> None:
-    check_energy()
-
-
-def check_synchronous() -> None:
+@kills("solvers.whirl.system:coupled_matrices", "+= layer.mass * at.T @ at", "-= layer.mass * at.T @ at")
+@kills("solvers.whirl.system:coupled_matrices", "rate * spin * turn - (1.0", "-rate * spin * turn - (1.0")
+@kills(
+    "solvers.whirl.system:coupled_matrices",
+    "- (1.0 + t) * np.square(spin) * one",
+    "- (1.0 - t) * np.square(spin) * one",
+)
+def test_synchronous() -> None:
     """Driven by an unbalance the same equations give the synchronous response while the wall is wet."""
     rotor = Jeffcott(6.0, 6.0e4, 80.0, 1e-6)
     chambers = (Chamber(0.1, 0.02), Chamber(0.08, 0.03))
@@ -296,10 +303,6 @@ def check_synchronous() -> None:
         assert y == pytest.approx(-1j * answer.deflection[k], rel=1e-10)
 
 
-def test_synchronous() -> None:
-    check_synchronous()
-
-
 def laminar_function(system: RotorSystem, fill: Fill, spin: float, s: np.ndarray) -> np.ndarray:
     """Characteristic function with laminar friction, in kappa, the square root as it stands."""
     mass, stiffness, damping = (m[0, 0] for m in (system.mass, system.stiffness, system.damping))
@@ -311,7 +314,15 @@ def laminar_function(system: RotorSystem, fill: Fill, spin: float, s: np.ndarray
     return np.asarray(rotor * d - fill.mass * omega**2 * (d - omega**2))
 
 
-def check_laminar() -> None:
+@kills("solvers.whirl.planar:_scaled", "problem.stokes / np.sqrt(spin)", "problem.stokes / spin")
+@kills("solvers.whirl.planar:_polynomial", "wave - drag * x * x * x, bend", "wave + drag * x * x * x, bend")
+@kills("solvers.whirl.planar:_chunk", "admitted = x.real > 0.0", "admitted = x.imag > 0.0")
+@kills(
+    "solvers.whirl.planar:_chunk",
+    "np.where(admitted, -1j * np.square(x)",
+    "np.where(admitted, 1j * np.square(x)",
+)
+def test_laminar() -> None:
     """Modes solve the equation with its square root; Nyquist counts as many growing ones."""
     unstable = 0
     for viscosity, depth, zeta in ((1e-6, 0.1, 0.05), (1e-4, 0.1, 0.0), (1e-3, 0.3, 0.1), (1e-6, 1e-4, 0.02)):
@@ -343,11 +354,17 @@ def check_laminar() -> None:
     assert unstable > 3
 
 
-def test_laminar() -> None:
-    check_laminar()
-
-
-def check_any_rotor() -> None:
+@kills(
+    "solvers.whirl.laminar:_eliminate", "np.square(root) * (1.0 - share)", "np.square(root) * (1.0 + share)"
+)
+@kills(
+    "solvers.whirl.laminar:_eliminate",
+    "turned = root - 1j * sense * spin",
+    "turned = root + 1j * sense * spin",
+)
+@kills("solvers.whirl.laminar:_eliminate", "share = 0.5 * (1.0 - t) * np", "share = 0.5 * (1.0 + t) * np")
+@kills("solvers.whirl.laminar:_eliminate", "- (1.0 + t) * np.square(spin)", "- (1.0 - t) * np.square(spin)")
+def test_any_rotor() -> None:
     """The solver of any rotor with laminar friction finds what the one for one plane does."""
     speeds = np.array([50.0, 118.0, 130.0, 250.0])
     for depth, zeta, viscosity in ((0.1, 0.05, 1e-6), (0.3, 0.0, 1e-4), (0.02, 0.02, 1e-5)):
@@ -362,11 +379,9 @@ def check_any_rotor() -> None:
                 np.testing.assert_allclose(other[1][moving], planar[1][moving], rtol=1e-8)
 
 
-def test_any_rotor() -> None:
-    check_any_rotor()
-
-
-def check_laminar_derivative() -> None:
+@kills("solvers.whirl.laminar:_eliminate", "+ 1.5 * friction", "+ 1.0 * friction")
+@kills("solvers.whirl.laminar:_eliminate", "2.0 - 4.0 * share", "2.0 - 2.0 * share")
+def test_laminar_derivative() -> None:
     """The slope of the eliminated rotor against a central difference."""
     system, fill = machine(0.2, 0.1, 0.05, 1e-4)
     layer = plane_layer(fill, (STOKES, 0.0))
@@ -381,11 +396,13 @@ def check_laminar_derivative() -> None:
         np.testing.assert_allclose(here.slope, slope, rtol=1e-6, atol=1e-6 * np.abs(slope).max())
 
 
-def test_laminar_derivative() -> None:
-    check_laminar_derivative()
-
-
-def check_layer_waves() -> None:
+@kills("solvers.whirl.laminar:_layer_waves", "(np.square(p) + 1j) * speed", "(np.square(p) - 1j) * speed")
+@kills("solvers.whirl.laminar:_layer_waves", "2j * t - rate", "2j * t + rate")
+@kills("solvers.whirl.laminar:_layer_waves", "0, 3] = -t", "0, 3] = t")
+@kills(
+    "solvers.whirl.laminar:_layer_waves", "-layer.stokes / np.sqrt(speed)", "layer.stokes / np.sqrt(speed)"
+)
+def test_layer_waves() -> None:
     """Waves of a layer alone: zeros of E with its square root as it stands."""
     for stokes, t, rate in ((0.05, 0.1, 0.0), (2.0, 0.3, 4.0), (3e3, 1e-4, 0.0)):
         speed = np.array([20.0, 150.0])
@@ -399,10 +416,6 @@ def check_layer_waves() -> None:
             residual = s**2 - 2.0 * t * spin * s - t * spin**2 - 1j * drag * s
             # s keeps what the spin's size leaves of it.
             assert np.all(np.abs(residual) <= 1e-8 * terms)
-
-
-def test_layer_waves() -> None:
-    check_layer_waves()
 
 
 def cone(polar: float) -> tuple[RotorSystem, Fill, float]:
@@ -424,7 +437,18 @@ def cone(polar: float) -> tuple[RotorSystem, Fill, float]:
     return system, Fill(chamber, WATER, 0.3 * chamber.capacity), place
 
 
-def check_cone() -> None:
+@kills("solvers.whirl.system:coupled_matrices", "spin * system.gyroscopic", "-spin * system.gyroscopic")
+@kills(
+    "solvers.whirl.system:coupled_matrices",
+    "system.at(plane)\n        t, rate",
+    "system.at(0.0)\n        t, rate",
+)
+@kills(
+    "solvers.whirl.system:sense_of",
+    "np.where(along + least >= against, 1.0, -1.0)",
+    "np.where(along + least >= against, -1.0, 1.0)",
+)
+def test_cone() -> None:
     """Gyroscopic couple and lever arm against the polynomial of that rotor."""
     for polar in (0.0, 0.03):
         system, fill, place = cone(polar)
@@ -443,11 +467,9 @@ def check_cone() -> None:
             assert whirl[0] == pytest.approx(best.real, rel=1e-8)
 
 
-def test_cone() -> None:
-    check_cone()
-
-
-def check_limits() -> None:
+@kills("solvers.whirl.growth:planar_layers", "mass += fill.mass", "mass -= fill.mass")
+@kills("solvers.whirl.growth:system_modes", "heavy.mass + fill.mass * at.T", "heavy.mass - fill.mass * at.T")
+def test_limits() -> None:
     """No liquid: the bare rotor. Full: a heavier one. Stiff supports: no band."""
     system, fill = machine(0.3, 0.2, 0.03)
     chamber, speeds = fill.chamber, np.linspace(20.0, 400.0, 60)
@@ -466,10 +488,6 @@ def check_limits() -> None:
     nearly = Fill(chamber, WATER, chamber.capacity * (1.0 - 1e-8))
     undamped, _ = machine(0.3, 0.2)
     assert not asynchronous_growth(undamped, [nearly], np.linspace(20.0, 80.0, 20))[0].any()
-
-
-def test_limits() -> None:
-    check_limits()
 
 
 @pytest.mark.parametrize("share", [0.0, 1e-9, 1e-4, 0.3, 1.0 - 1e-6, 1.0])

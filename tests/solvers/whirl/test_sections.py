@@ -29,6 +29,7 @@ from solvers.synchronous.coupled import backward_mass
 from solvers.synchronous.models import synchronous_model
 from solvers.whirl.growth import asynchronous_growth, system_modes
 from solvers.whirl.sections import circle_layer, drum_matrices, drum_modes, standing_modes
+from tests.mutants import kills
 from tests.oracles.rotors import tub, two_plane
 
 WALL, SURFACE, HEIGHT = 0.15, 0.135, 0.05
@@ -57,7 +58,23 @@ def drum_growth(fill: Fill, friction: tuple[int, float], damping_ratio: float = 
     return np.asarray(modes.root.real.max(axis=1))
 
 
-def check_clear_ring() -> None:
+@kills(
+    "solvers.sloshing.reduced:ReducedLiquid.compliance",
+    "-np.square(s) * self.inertia",
+    "np.square(s) * self.inertia",
+)
+@kills(
+    "solvers.sloshing.reduced:ReducedLiquid.compliance",
+    "+ 2j * s * self.gyration",
+    "- 2j * s * self.gyration",
+)
+@kills(
+    "solvers.sloshing.reduced:ReducedLiquid.force_ratio", "np.square(1.0 + s) * moved", "np.square(s) * moved"
+)
+@kills("solvers.sloshing.reduced:ReducedLiquid.force_ratio", "along - 1j * across", "along + 1j * across")
+@kills("solvers.sloshing.reduced:clear_ring", "gyration=tangent * turn", "gyration=-tangent * turn")
+@kills("solvers.sloshing.reduced:clear_ring", "math.sqrt(math.pi * tangent)", "math.sqrt(math.pi)")
+def test_the_ring_without_baffles_is_that_of_linear_theory() -> None:
     """Reduced finite elements against the closed form, the closed form against linear theory."""
     slip = np.array([-2.0, -0.8, -0.3, 0.0, 0.4, 1.3])
     exact = force_ratio((WALL / SURFACE) ** 2, 1.0 + slip)
@@ -67,10 +84,6 @@ def check_clear_ring() -> None:
     assert len(elements.inertia) <= 4  # one circle; a uniform force drives nothing else but rounding
     # 96 quadratic sides: (2 pi/96)^4 = 2e-5 times a small constant, enlarged near the waves.
     np.testing.assert_allclose(elements.force_ratio(slip), exact, rtol=2e-6, atol=1e-7)
-
-
-def test_the_ring_without_baffles_is_that_of_linear_theory() -> None:
-    check_clear_ring()
 
 
 @pytest.mark.parametrize("baffles", [Baffles(3, 0.1425), Baffles(4), Baffles(1), Baffles(5, 0.13, 0.004)])
@@ -116,16 +129,21 @@ def _both_ways(count: int) -> float:
     return math.pi - total
 
 
-def check_all_compartments() -> None:
+@kills(
+    "fluid.fill:Fill.full_mass",
+    "self.liquid.density * math.pi * self.chamber.radius**2 * self.chamber.height",
+    "self.liquid.density * math.pi * self.chamber.radius * self.chamber.height",
+)
+@kills("fluid.fill:compartment_share", "math.sin(math.pi / count)) ** 2", "math.sin(math.pi / count))")
+@kills("fluid.fill:Fill.added_mass", "self.compartments) * self.surface_radius**2", "self.compartments)")
+@kills("fluid.fill:Fill.added_mass", "return self.full_mass - self.liq", "return self.full_mass + self.liq")
+def test_compartments_keep_their_volume() -> None:
     for count in (3, 4, 5, 8):
         check_compartments(count)
 
 
-def test_compartments_keep_their_volume() -> None:
-    check_all_compartments()
-
-
-def check_wall_drag() -> None:
+@kills("solvers.sloshing.reduced:wall_drag", "along.T @ (weights[:, None] * along)", "along.T @ along")
+def test_drag_on_the_wall() -> None:
     """Of a clear ring: the slip along the wall is 1/sinh L of that at the surface."""
     mesh = ring(WALL, SURFACE, 96)
     x, y = mesh.points.T
@@ -137,11 +155,13 @@ def check_wall_drag() -> None:
     assert wall_drag(mesh, motion[None])[0, 0] == pytest.approx(exact, rel=1e-3)
 
 
-def test_drag_on_the_wall() -> None:
-    check_wall_drag()
-
-
-def check_friction() -> None:
+@kills(
+    "solvers.sloshing.reduced:section_layer",
+    "2.0 / chamber.height * liquid.inertia",
+    "1.0 / chamber.height * liquid.inertia",
+)
+@kills("solvers.sloshing.reduced:_of_baffles", "return liquid, drag / radius", "return liquid, drag")
+def test_friction_of_a_thin_ring() -> None:
     """Baffles too short to matter leave the laminar drag of a thin ring, 1/h + 2/h_c."""
     thin = math.pi * (WALL**2 - 0.147**2) * HEIGHT
     clear = replace(CLEAR, volume=thin)
@@ -155,10 +175,6 @@ def check_friction() -> None:
         rates.append((answer @ layer.laminar @ answer) / (answer @ layer.liquid.inertia @ answer))
     # Thickness over radius is 2 %, and the baffles are a thirtieth of it high.
     assert rates[1] == pytest.approx(rates[0], rel=0.05)
-
-
-def test_friction_of_a_thin_ring() -> None:
-    check_friction()
 
 
 @given(st.integers(3, 400))
@@ -194,7 +210,14 @@ def lobed() -> Fill:
     return Fill(Chamber(section.farthest, HEIGHT, section=section), WATER, VOLUME)
 
 
-def check_section_added_mass() -> None:
+@kills(
+    "solvers.synchronous.coupled:backward_mass",
+    "whole = layer.density * layer.liquid.enclosed_area",
+    "whole = fill.full_mass * 1.0",
+)
+@kills("fluid.fill:Fill.added_mass", "if not self.uneven:\n                return self.mass", "")
+@kills("fluid.fill:Fill.added_mass", "(self.volume + air)", "(self.volume - air)")
+def test_added_mass_of_another_section() -> None:
     """Closed form, finite elements at s = 0, and the free surface about a shifted axis are one mass."""
     fill = lobed()
     section = fill.chamber.section
@@ -216,11 +239,12 @@ def check_section_added_mass() -> None:
     assert fill.added_mass * e == pytest.approx(WATER.density * surface.moments.x, rel=1e-6)
 
 
-def test_added_mass_of_another_section() -> None:
-    check_section_added_mass()
-
-
-def check_least_depth() -> None:
+@kills(
+    "fluid.fill:Fill.depth",
+    "layer_depth(section, area) if 0.0",
+    "self.chamber.radius - self.surface_radius if 0.0",
+)
+def test_a_section_is_dry_first_where_it_is_thinnest() -> None:
     """The model holds until the deflection is the depth at the nearest wall, not the one in the lobes."""
     fill = lobed()
     # The nearest wall is 0.97 R away.
@@ -229,10 +253,6 @@ def check_least_depth() -> None:
     answer = synchronous_model("fem").synchronous(Fills.same(fill, 2), np.full(2, 40.0), e, np.zeros(2))
     assert answer.in_range.tolist() == [True, False]
     assert answer.dry_patch.tolist() == [False, True]
-
-
-def test_a_section_is_dry_first_where_it_is_thinnest() -> None:
-    check_least_depth()
 
 
 def test_a_drawn_circle_whirls_like_a_ring() -> None:
@@ -244,7 +264,23 @@ def test_a_drawn_circle_whirls_like_a_ring() -> None:
         np.testing.assert_allclose(found, drum_growth(CLEAR, friction), atol=2e-4)
 
 
-def check_clear_whirl() -> None:
+@kills(
+    "solvers.sloshing.reduced:section_layer",
+    "density = fill.liquid.density * chamber.height",
+    "density = fill.liquid.density",
+)
+@kills(
+    "solvers.sloshing.reduced:section_layer", "plain.stokes * liquid.inertia", "plain.rate * liquid.inertia"
+)
+@kills("solvers.whirl.sections:drum_matrices", "2.0 * spin * twist", "spin * twist")
+@kills(
+    "solvers.whirl.sections:drum_matrices", "[heavy * _TURN, _TURN @ pull]", "[heavy * _TURN, -_TURN @ pull]"
+)
+@kills("solvers.whirl.sections:drum_matrices", "spin * turned + support", "support")
+@kills("solvers.whirl.sections:drum_matrices", "[-pull.T, surface]", "[pull.T, surface]")
+@kills("solvers.whirl.sections:drum_modes", "damping + 1.5 * drag", "damping - 15.0 * drag")
+@kills("solvers.whirl.sections:drum_modes", "drag = np.sqrt(at)", "drag = np.sqrt(-at)")
+def test_whirl_without_baffles_is_the_known_one() -> None:
     """Without baffles the drum's frame gives what the characteristic equation does."""
     for friction in LAWS:
         exact, _ = asynchronous_growth(rotor(0.05).system(), [CLEAR], SPIN, friction)
@@ -252,11 +288,20 @@ def check_clear_whirl() -> None:
         np.testing.assert_allclose(drum_growth(CLEAR, friction), exact, atol=1e-9 * SPIN[-1])
 
 
-def test_whirl_without_baffles_is_the_known_one() -> None:
-    check_clear_whirl()
-
-
-def check_two_frames() -> None:
+@kills("solvers.whirl.sections:standing_matrices", "twist - one.density * turn", "twist + one.density * turn")
+@kills(
+    "solvers.whirl.sections:standing_matrices",
+    "spread - unit - 2.0 * turn @ twist",
+    "spread - unit + 2.0 * turn @ twist",
+)
+@kills(
+    "solvers.whirl.sections:standing_matrices",
+    "- one.rate * one.density * spin * turn",
+    "+ one.rate * one.density * spin * turn",
+)
+@kills("solvers.whirl.sections:standing_modes", "for way in (-1j, 1j):", "for way in (1j, -1j):")
+@kills("solvers.whirl.sections:standing_modes", "-0.5j * (one[0] - one[1])", "0.5j * (one[0] - one[1])")
+def test_drum_frame_and_standing_frame_agree() -> None:
     """Real motions in the drum's frame and circles in the standing one are one machine."""
     for fill in (HALF, FULL, FREE):
         for friction in LAWS:
@@ -268,11 +313,8 @@ def check_two_frames() -> None:
             np.testing.assert_allclose(modes.root.real.max(axis=1), drum_growth(fill, friction), atol=1e-6)
 
 
-def test_drum_frame_and_standing_frame_agree() -> None:
-    check_two_frames()
-
-
-def check_layer_as_in_the_standing_system() -> None:
+@kills("solvers.whirl.sections:standing_matrices", "pull = -one.density", "pull = one.density * 0.5")
+def test_any_rotor_with_a_clear_ring_is_the_known_one() -> None:
     """A rotor of two planes: circles of a clear ring give what the known coupled matrices do."""
     fill = replace(CLEAR, chamber=replace(CLEAR.chamber, plane=0.07))
     for system in (two_plane().system(), tub().system()):
@@ -283,10 +325,6 @@ def check_layer_as_in_the_standing_system() -> None:
             known = system_modes(system, [fill], SPIN, friction)
             most = np.where(known.found, known.root.real, -np.inf).max(axis=1)
             np.testing.assert_allclose(found.root.real.max(axis=1), most, atol=1e-8 * SPIN[-1])
-
-
-def test_any_rotor_with_a_clear_ring_is_the_known_one() -> None:
-    check_layer_as_in_the_standing_system()
 
 
 def test_matrices_are_those_of_lagrange() -> None:
@@ -313,7 +351,7 @@ def test_backward_mass_of_a_clear_ring_by_elements() -> None:
     assert backward_mass(shallow) == pytest.approx(backward_mass(CLEAR), rel=0.05)
 
 
-def check_directions() -> None:
+def test_what_differs_in_two_directions_is_refused_for_other_rotors() -> None:
     """What answers differently in two directions has no circles: one or two baffles, an oval wall."""
     base = disc(WALL, 64, order=2)
     oval = chamber_section("oval", Section(base.points * np.array([1.02, 1.0]), base.triangles))
@@ -323,11 +361,6 @@ def check_directions() -> None:
         assert layer is not None
         with pytest.raises(InputError, match="3 or more"):
             circle_layer(layer)
-
-
-def test_what_differs_in_two_directions_is_refused_for_other_rotors() -> None:
-    # What may go in the other sense is a thousandth; the oval's share is that of its flattening, hundredths.
-    check_directions()
 
 
 def test_equal_chambers_act_together() -> None:

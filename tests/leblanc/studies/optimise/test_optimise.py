@@ -31,6 +31,7 @@ from leblanc.studies.run import run_scene
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.statics.hydrostatics import equilibrium
+from tests.mutants import kills
 from tests.oracles.optimise import amplitudes, brute_force, random_aim, random_scene
 
 EXAMPLES = Path(__file__).parents[4] / "examples"
@@ -45,7 +46,12 @@ CHAMBERS = (
 )
 
 
-def check_optimal_volume() -> None:
+@kills(
+    "leblanc.studies.optimise.closed_form:covering_by_search",
+    "np.divide(-state.nearest_depth",
+    "np.divide(1.0 - state.nearest_depth",
+)
+def test_optimal_volume() -> None:
     """At a given deflection the least liquid without a dry wall is the closed form's, to 1e-9 of it."""
     for chamber, deflection, speed in CHAMBERS:
         for gravity in (9.81, 0.0):
@@ -55,7 +61,12 @@ def check_optimal_volume() -> None:
             assert found.point[0] == pytest.approx(form.optimal_volume, rel=1e-9)
 
 
-def check_largest_unbalance() -> None:
+@kills(
+    "leblanc.studies.optimise.closed_form:largest_unbalance_by_search",
+    "Judgement(-state.unbalance()[0] / most",
+    "Judgement(state.unbalance()[0] / most",
+)
+def test_largest_unbalance() -> None:
     """On a horizontal axis the largest unbalance has the same least volume; along an upright one eq. 1 has.
 
     The unbalance is short of the largest by x**1.5 or x**2.5 of what is missing, so a hair of 1e-13 hides
@@ -73,7 +84,19 @@ def check_largest_unbalance() -> None:
             assert found.point[0] == pytest.approx(form.full_volume, rel=1e-4)
 
 
-def check_full_volume() -> None:
+@kills("leblanc.studies.optimise.closed_form:full_volume", "ring + 0.5 * fall", "ring + fall")
+@kills(
+    "leblanc.studies.optimise.closed_form:full_volume",
+    "deflection * (chamber.radius + near)",
+    "deflection * chamber.radius",
+)
+@kills(
+    "leblanc.studies.optimise.closed_form:full_volume",
+    "2.0 * gravity * chamber.height / speed**2",
+    "gravity * chamber.height / speed**2",
+)
+@kills("leblanc.studies.optimise.closed_form:covering", "of_touching / of_most", "of_most / of_touching")
+def test_full_volume() -> None:
     """With it the unbalance is that of a full chamber; with a tenth less it is not; with more it stays."""
     for chamber, deflection, speed in CHAMBERS:
         full = full_volume(chamber, deflection, speed, 9.81)
@@ -93,12 +116,6 @@ def check_full_volume() -> None:
         own = float(equilibrium(chamber, form.optimal_volume, deflection, speed, 9.81).unbalance()[0])
         assert form.share == pytest.approx(own / most, rel=1e-9)
         assert form.share < 1.0
-
-
-def test_closed_forms() -> None:
-    check_optimal_volume()
-    check_largest_unbalance()
-    check_full_volume()
 
 
 @settings(max_examples=30)
@@ -124,7 +141,12 @@ def rig(volumes: tuple[float, ...] = (0.0, 0.0)) -> Scene:
     return replace(scene, chambers=tuple(fills), speeds=Speeds(50.0, 200.0, 61))
 
 
-def check_mean() -> None:
+@kills(
+    "leblanc.studies.optimise.objectives:AtSpeed.__init__",
+    "weights / weights.sum()",
+    "weights / weights.size",
+)
+def test_mean() -> None:
     """Shares of 3 and 1 of what `run` finds at two speeds."""
     volumes = (4e-6, 1e-6)
     each = [
@@ -135,7 +157,12 @@ def check_mean() -> None:
     assert mean.exact(np.array([volumes]))[0] == pytest.approx(0.75 * each[0] + 0.25 * each[1], rel=1e-12)
 
 
-def check_mean_of_several() -> None:
+@kills(
+    "leblanc.studies.optimise.objectives:AtSpeed.exact",
+    "np.repeat(volumes, count, axis=0)",
+    "np.tile(volumes, (count, 1))",
+)
+def test_mean_of_several() -> None:
     """Each set of volumes has its own."""
     mean = AtSpeed(FilledMachine(rig()), np.array([90.0, 150.0]), np.array([3.0, 1.0]))
     volumes = np.array([(4e-6, 1e-6), (0.0, 2e-6), (0.0, 0.0)])
@@ -143,7 +170,13 @@ def check_mean_of_several() -> None:
     np.testing.assert_allclose(mean.exact(volumes), each, rtol=1e-12)
 
 
-def check_excess() -> None:
+@kills(
+    "leblanc.studies.optimise.constraints:Constraint.excess",
+    "(value - self.limit) / self.scale",
+    "(self.limit - value) / self.scale",
+)
+@kills("leblanc.studies.optimise.constraints:stability", '"1/s", -margin, scale', '"1/s", margin, scale')
+def test_excess() -> None:
     """A decay of 0.7 1/s meets a margin of 0.5, one of 0.3 does not."""
     one = stability(rig(), np.array([100.0, 200.0]), 0.5)
     np.testing.assert_allclose(one.excess(np.array([-0.7, -0.5, -0.3])), (-0.4, 0.0, 0.4), atol=1e-12)
@@ -154,7 +187,7 @@ def _statics(scene: Scene):  # type: ignore[no-untyped-def]
     return replace(scene.model, liquid="statics")
 
 
-def check_peak() -> None:
+def test_peak() -> None:
     """The peak found among a few speeds is that of all of them, and so is the best of several volumes."""
     for seed in (3, 8, 13):
         scene = random_scene(seed, 1, 61)
@@ -173,7 +206,20 @@ def check_peak() -> None:
             assert np.all(value <= every * (1.0 + 1e-12))
 
 
-def check_robust() -> None:
+@kills(
+    "leblanc.studies.optimise.conditions:_in_circumstance",
+    "liquid_at(fill.liquid, one.temperature), 0.0",
+    "fill.liquid, 0.0",
+)
+@kills(
+    "leblanc.studies.optimise.conditions:Robust.exact", "self.quantile, axis=0", "1.0 - self.quantile, axis=0"
+)
+@kills(
+    "leblanc.studies.optimise.conditions:circumstances",
+    "low + (high - low) * share[:, 0]",
+    "low + (high + low) * share[:, 0]",
+)
+def test_robust() -> None:
     """Worst case and median over a grid, from the machine itself with those unbalances and densities."""
     scene = load_scene(EXAMPLES / "runup.toml")
     volume = np.array([[4e-4]])
@@ -199,7 +245,12 @@ def check_robust() -> None:
     assert worst.fullest(np.array([[full]]))[0] == pytest.approx(WATER.density / 983.20, rel=1e-4)
 
 
-def check_growth() -> None:
+@kills(
+    "leblanc.studies.optimise.constraints:growth",
+    "growth_map(system, rows, speed, friction)[0].max(axis=1)",
+    "growth_map(system, rows, speed, friction)[0].min(axis=1)",
+)
+def test_growth() -> None:
     """The largest growth at the operating speeds, as the map of self-excited whirl has it."""
     from leblanc.studies.run import self_excited
 
@@ -210,7 +261,12 @@ def check_growth() -> None:
     assert found[0] == pytest.approx(exact, rel=1e-9)
 
 
-def check_front() -> None:
+@kills(
+    "leblanc.studies.optimise.front:not_dominated",
+    "~np.all(values[later] >= values[k], axis=1)",
+    "~np.any(values[later] >= values[k], axis=1)",
+)
+def test_front() -> None:
     """Against the definition, pair by pair."""
     values = np.round(np.random.default_rng(5).random((60, 3)), 1)
     kept = not_dominated(values)
@@ -218,16 +274,6 @@ def check_front() -> None:
         beaten = np.any(np.all(values <= one, axis=1) & np.any(values < one, axis=1))
         twin = np.any(np.all(values[:k] == one, axis=1))
         assert kept[k] == (not beaten and not twin)
-
-
-def test_objectives_are_what_they_say() -> None:
-    check_mean()
-    check_mean_of_several()
-    check_excess()
-    check_peak()
-    check_robust()
-    check_growth()
-    check_front()
 
 
 def against_brute_force(seed: int, chambers: int, count: int = 25) -> None:

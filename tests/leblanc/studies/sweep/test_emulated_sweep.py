@@ -36,9 +36,9 @@ def swept(folder: Path, study: str = SMOOTH) -> tuple[Sweep, Store]:
     return plan, run_sweep(plan, folder, workers=0)
 
 
-def check_between_samples(folder: Path) -> None:
+def test_between_samples(tmp_path: Path) -> None:
     """Fresh scenes: as far off as cross-validation says, in the order of the study's fields."""
-    plan, store = swept(folder)
+    plan, store = swept(tmp_path)
     emulator = emulate_store(store, "last_amplitude")
     assert emulator.fields == varied_fields(store) == ("rotor.mass", "rotor.damping_ratio")
     fresh = emulator.low + np.random.default_rng(1).random((40, 2)) * (emulator.high - emulator.low)
@@ -49,10 +49,6 @@ def check_between_samples(folder: Path) -> None:
     off = emulator.predict(fresh)[0] / answer_scenes(scenes).amplitude[:, -1] - 1.0
     # A fold knows four fifths of the samples; 64 of them scatter.
     assert np.sqrt(np.mean(off**2)) < 2.0 * emulator.error.root_mean_square < 0.1 * emulator.error.spread
-
-
-def test_between_samples(tmp_path: Path) -> None:
-    check_between_samples(tmp_path)
 
 
 def test_samples_that_are_not_done_are_left_out(tmp_path: Path) -> None:

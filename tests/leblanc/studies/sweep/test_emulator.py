@@ -8,6 +8,7 @@ from scipy.stats import qmc
 
 from leblanc.studies.sweep.emulator import Emulator, emulate
 from meshes.errors import InputError
+from tests.mutants import kills
 
 NAMES = ("rotor.mass", "chambers.0.volume")
 LOW, HIGH = np.array([1.0, 1e-5]), np.array([3.0, 1e-3])
@@ -28,7 +29,32 @@ def inside(emulator: Emulator, values: np.ndarray) -> np.ndarray:
     return np.clip(values, emulator.low, emulator.high)
 
 
-def check_error_is_that_of_unseen_samples() -> None:
+@kills(
+    "leblanc.studies.sweep.emulator:Emulator.predict",
+    "(np.exp(mean), np.exp(mean) * deviation)",
+    "(mean, deviation)",
+)
+@kills(
+    "leblanc.studies.sweep.emulator:Emulator.predict", "self.centre + self.scale * mean", "self.centre + mean"
+)
+@kills(
+    "leblanc.studies.sweep.emulator:_on_unseen",
+    "missed[fold == k] = mean - standard",
+    "missed[fold == k] = 0.1 * mean - 0.1 * standard",
+)
+@kills(
+    "leblanc.studies.sweep.emulator:_on_unseen", "points[fold != k], standard[fold != k]", "points, standard"
+)
+@kills("leblanc.studies.sweep.emulator:emulate", "size = scale if positive else 1.0", "size = 1.0")
+@kills(
+    "leblanc.studies.sweep.emulator:_unit", "np.log(np.maximum(values[:, wide], 1e-300))", "values[:, wide]"
+)
+@kills(
+    "leblanc.studies.sweep.emulator:emulate",
+    "np.log(output[taken]) if positive else",
+    "output[taken] if positive else",
+)
+def test_error_is_that_of_unseen_samples() -> None:
     """On fresh samples the error is what cross-validation says, and the claimed deviation covers it."""
     values = drawn(120, 1)
     emulator = emulate(NAMES, values, known(values), seed=2)
@@ -48,11 +74,7 @@ def check_error_is_that_of_unseen_samples() -> None:
     assert emulator.positive and emulator.wide.tolist() == [False, True]
 
 
-def test_error_is_that_of_unseen_samples() -> None:
-    check_error_is_that_of_unseen_samples()
-
-
-def check_samples_are_met() -> None:
+def test_samples_are_met() -> None:
     """At a sample the process gives the sample, to the noise it allows itself."""
     values = drawn(60, 4)
     emulator = emulate(NAMES, values, known(values))
@@ -60,21 +82,13 @@ def check_samples_are_met() -> None:
     np.testing.assert_allclose(output, known(values), rtol=5e-3)
 
 
-def test_samples_are_met() -> None:
-    check_samples_are_met()
-
-
-def check_signs() -> None:
+def test_signs() -> None:
     """An output of both signs is emulated as it is, its error measured by its spread."""
     x = np.linspace(0.0, 1.0, 30)[:, None]
     emulator = emulate(["x"], x, 4.0 * np.cos(5.0 * x[:, 0]))
     output, deviation = emulator.predict(np.array([[0.123], [0.777]]))
     np.testing.assert_allclose(output, 4.0 * np.cos(5.0 * np.array([0.123, 0.777])), atol=0.02)
     assert not emulator.positive and emulator.error.spread == 1.0 and np.all(deviation < 0.1)
-
-
-def test_signs() -> None:
-    check_signs()
 
 
 def test_a_kink_is_told_by_the_error() -> None:

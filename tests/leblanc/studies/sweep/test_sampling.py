@@ -18,6 +18,7 @@ from leblanc.scene.scene import load_scene
 from leblanc.studies.sweep.distributions import Choice, Distribution, Levels, LogNormal, Normal, Uniform
 from leblanc.studies.sweep.sampling import sample_rows, sampling_note
 from leblanc.studies.sweep.study import Sweep, VariedField
+from tests.mutants import kills
 
 EXAMPLE = Path(__file__).parents[4] / "examples" / "horizontal_rig.toml"
 DESIGNS = ("random", "latin_hypercube", "sobol", "saltelli")
@@ -35,7 +36,20 @@ def sweep_of(method: str, points: int, *distributions: Distribution, seed: int =
     return replace(base(), method=method, points=points, seed=seed, fields=fields)
 
 
-def check_distributions() -> None:
+@kills("leblanc.studies.sweep.distributions:Uniform.at", "(self.high - self.low) * u", "self.high * u")
+@kills(
+    "leblanc.studies.sweep.distributions:Normal.at",
+    "self.mean + self.deviation",
+    "self.mean - self.deviation",
+)
+@kills("leblanc.studies.sweep.distributions:LogNormal.at", "math.log(self.factor)", "math.log10(self.factor)")
+@kills("leblanc.studies.sweep.distributions:LogNormal.at", "self.median * np.exp(", "np.exp(")
+@kills(
+    "leblanc.studies.sweep.distributions:Choice.at",
+    "np.floor(u * len(self.options))",
+    "np.rint(u * len(self.options))",
+)
+def test_distributions() -> None:
     """Inverse distribution functions against those of scipy, which have other parameters."""
     u = np.linspace(0.0, 1.0, 1001)[1:-1]
     # Two or three operations on numbers of order one: a few rounding errors.
@@ -50,14 +64,21 @@ def check_distributions() -> None:
     np.testing.assert_array_equal(Choice(("a", "b", "c")).at(halves), np.repeat([0.0, 1.0, 2.0], 100))
 
 
-def check_grid() -> None:
+@kills(
+    "leblanc.studies.sweep.sampling:grid_rows",
+    "np.unravel_index(np.arange(start, stop), tuple(one.size for one in levels))",
+    'np.unravel_index(np.arange(start, stop), tuple(one.size for one in levels), order="F")',
+)
+def test_grid() -> None:
     """A grid is the product of its levels, the last field fastest."""
     sweep = sweep_of("grid", 6, Levels(1.0, 2.0, 2), Choice(("a", "b", "c")))
     expected = [[a, b] for a in (1.0, 2.0) for b in (0.0, 1.0, 2.0)]
     np.testing.assert_array_equal(sample_rows(sweep)(0, 6), expected)
 
 
-def check_saltelli_members() -> None:
+@kills("leblanc.studies.sweep.sampling:_saltelli", "taken[-1] = True", "taken[-1] = False")
+@kills("leblanc.studies.sweep.sampling:_saltelli", "np.eye(width, dtype=bool)", "~np.eye(width, dtype=bool)")
+def test_saltelli_members() -> None:
     """Around one point: A, then A with one field after the other from B, then B."""
     rows = sample_rows(sweep_of("saltelli", 8, *[Uniform(0.0, 1.0)] * 3))(0, 40).reshape(8, 5, 3)
     a, b = rows[:, 0], rows[:, -1]
@@ -70,19 +91,17 @@ def check_saltelli_members() -> None:
     np.testing.assert_array_equal(np.count_nonzero(np.concatenate([a, b], axis=1) < 0.5, axis=0), 4)
 
 
-def check_designs_are_even() -> None:
+@kills(
+    "leblanc.studies.sweep.sampling:sobol_points",
+    "engine.random(stop - start - 1)",
+    "engine.random(stop - start - 1) ** 2",
+)
+def test_designs_are_even() -> None:
     """In each stratum of each field one sample; for the Sobol sequence where they are a power of two."""
     for method in ("latin_hypercube", "sobol"):
         rows = sample_rows(sweep_of(method, 64, *[Uniform(0.0, 1.0)] * 4))(0, 64)
         for column in rows.T:
             np.testing.assert_array_equal(np.sort(np.floor(64 * column)), np.arange(64.0))
-
-
-@pytest.mark.parametrize(
-    "check", [check_distributions, check_grid, check_saltelli_members, check_designs_are_even]
-)
-def test_designs(check) -> None:  # type: ignore[no-untyped-def]
-    check()
 
 
 @given(

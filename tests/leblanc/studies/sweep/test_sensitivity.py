@@ -18,6 +18,7 @@ from leblanc.studies.sweep.sensitivity import (
 )
 from meshes.arrays import Array
 from tests.leblanc.studies.sweep.test_sampling import sweep_of
+from tests.mutants import kills
 
 
 def ishigami(x: Array) -> Array:
@@ -45,7 +46,22 @@ def within(found: Array, interval: Array | None, expected: Array) -> None:
     assert np.all(np.abs(found - expected) < 2.0 * interval + 1e-3)
 
 
-def check_ishigami_saltelli() -> None:
+@kills(
+    "leblanc.studies.sweep.sensitivity:saltelli_indices",
+    "np.array([first_order(a, one, b) for one in swapped])",
+    "np.array([first_order(b, one, a) for one in swapped])",
+)
+@kills(
+    "leblanc.studies.sweep.sensitivity:saltelli_indices",
+    "np.array([total_order(a, one, b) for one in swapped])",
+    "np.array([total_order(b, one, a) for one in swapped])",
+)
+@kills(
+    "leblanc.studies.sweep.sensitivity:saltelli_indices",
+    "swapped = whole[:, 1:-1].T",
+    "swapped = whole[:, -2:0:-1].T",
+)
+def test_ishigami_saltelli() -> None:
     sweep = sweep_of("saltelli", 4096, *CUBE)
     found = sensitivity(
         "saltelli", (rows := sample_rows(sweep)(0, sweep.samples)), [False] * 3, ishigami(rows), 3
@@ -58,7 +74,12 @@ def check_ishigami_saltelli() -> None:
     assert found.used == 4096
 
 
-def check_ishigami_given_data() -> None:
+@kills(
+    "leblanc.studies.sweep.sensitivity:given_data",
+    "output / np.std(output)",
+    "np.sort(output) / np.std(output)",
+)
+def test_ishigami_given_data() -> None:
     sweep = sweep_of("random", 8192, *CUBE)
     rows = sample_rows(sweep)(0, sweep.samples)
     found = sensitivity("random", rows, [False] * 3, ishigami(rows), 3)
@@ -66,7 +87,22 @@ def check_ishigami_given_data() -> None:
     within(found.first, found.first_interval, ishigami_shares()[0])
 
 
-def check_linear_grid() -> None:
+@kills(
+    "leblanc.studies.sweep.sensitivity:variance_shares",
+    "/ count) / np.sum(centred**2)",
+    ") / np.sum(centred**2)",
+)
+@kills(
+    "leblanc.studies.sweep.sensitivity:variance_shares",
+    "centred = output - output.mean()",
+    "centred = output",
+)
+@kills(
+    "leblanc.studies.sweep.sensitivity:variance_shares",
+    "np.unique(column, return_inverse=True)",
+    "np.unique(np.sign(column), return_inverse=True)",
+)
+def test_linear_grid() -> None:
     """y = c . x on a grid: field j explains c_j^2 Var(x_j), Var of n even levels over width w being
     w^2 (n + 1)/(12 (n - 1)); exact, so to rounding."""
     sweep = sweep_of("grid", 4 * 7 * 3, Levels(0.0, 1.0, 4), Levels(-2.0, 1.0, 7), Levels(5.0, 6.0, 3))
@@ -78,7 +114,12 @@ def check_linear_grid() -> None:
     np.testing.assert_allclose(found.first, parts / parts.sum(), rtol=1e-12)
 
 
-def check_choice_given_data() -> None:
+@kills(
+    "leblanc.studies.sweep.sensitivity:given_data",
+    "place + rng.random(output.size)",
+    "rng.random(output.size)",
+)
+def test_choice_given_data() -> None:
     """y = k + x/2 of a choice k of four and a share x: Var(k) = 15/12, Var(x/2) = 1/48."""
     rng = np.random.default_rng(5)
     rows = np.stack([rng.integers(4, size=4096).astype(float), rng.random(4096)], axis=1)
@@ -88,14 +129,6 @@ def check_choice_given_data() -> None:
     # of what its steps add to a straight line: below 0.02 of the whole.
     assert abs(found.first[0] - 60.0 / 61.0) < 0.02
     assert abs(found.first[1] - 1.0 / 61.0) < 0.02
-
-
-@pytest.mark.parametrize(
-    "check",
-    [check_ishigami_saltelli, check_ishigami_given_data, check_linear_grid, check_choice_given_data],
-)
-def test_shares_of_known_functions(check) -> None:  # type: ignore[no-untyped-def]
-    check()
 
 
 def test_the_intervals_shrink_with_the_root_of_the_samples() -> None:

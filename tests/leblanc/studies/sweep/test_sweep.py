@@ -29,6 +29,7 @@ from leblanc.studies.sweep.store import STORE, block_size, locked, open_store, r
 from leblanc.studies.sweep.summary import QUANTILES, statistics, summarise
 from leblanc.studies.sweep.sweep import run_sweep
 from meshes.errors import InputError
+from tests.mutants import kills
 from tests.oracles.sweeps import ROOT, STUDY, added_mass_answers, study_in, tree, write_study
 
 Capture = pytest.CaptureFixture[str]
@@ -44,7 +45,9 @@ def run_all(folder: Path, study: str = STUDY) -> Path:
 # -- scenes --------------------------------------------------------------------------------------------------
 
 
-def check_sampled_scenes() -> None:
+@kills("leblanc.studies.sweep.scenes:scene_maker", "fills[k] = _fill", "fills[0] = _fill")
+@kills("leblanc.studies.sweep.scenes:scene_maker", 'if ("rotor",) in touched:', "if not touched:")
+def test_sampled_scenes_are_those_of_the_whole_table() -> None:
     """A scene made by parts is the one that the whole table gives."""
     for name, values in (
         ("horizontal_rig", {"rotor.mass": 5.0, "chambers.1.volume": 2e-5, "chambers.1.liquid": "brine"}),
@@ -58,10 +61,6 @@ def check_sampled_scenes() -> None:
         whole = scene_from_table(with_values(table, changes))
         made = scene_maker(table, [keys for keys, _ in changes])([value for _, value in changes])
         assert made == replace(whole, source=made.source, assumed=made.assumed, runup=made.runup)
-
-
-def test_sampled_scenes_are_those_of_the_whole_table() -> None:
-    check_sampled_scenes()
 
 
 @given(mass=st.floats(-1.0, 10.0), volume=st.floats(-1e-5, 6e-4))
@@ -80,11 +79,27 @@ def test_a_sample_fails_where_its_scene_does_and_in_the_same_words(mass: float, 
 # -- answers -------------------------------------------------------------------------------------------------
 
 
-def check_answers_stand_at_their_samples(folder: Path) -> None:
+@kills(
+    "leblanc.studies.sweep.block:answer_block",
+    "values[name][places] = value",
+    "values[name][places] = value[::-1]",
+)
+@kills(
+    "leblanc.studies.sweep.outputs:values_of",
+    "np.fmax.reduce(values[name], axis=1)",
+    "np.fmin.reduce(values[name], axis=1)",
+)
+@kills("leblanc.studies.sweep.outputs:values_of", "values[name][:, -1]", "values[name][:, 0]")
+@kills(
+    "leblanc.studies.sweep.sweep:_write",
+    "field_values(field, drawn[:, j])",
+    "field_values(field, drawn[::-1, j])",
+)
+def test_answers_stand_at_their_samples(tmp_path: Path) -> None:
     """Each row of the store is what `run` says of the scene with the values of that row."""
-    found = xr.open_zarr(run_all(folder, SMALL), consolidated=False).load()
+    found = xr.open_zarr(run_all(tmp_path, SMALL), consolidated=False).load()
     assert (found.status == DONE).all()
-    table = read_toml(folder / "scene.toml")
+    table = read_toml(tmp_path / "scene.toml")
     for k in range(8):
         row = found.isel(sample=k)
         liquid = str(row["chambers.1.liquid"].values)
@@ -114,10 +129,6 @@ def check_answers_stand_at_their_samples(folder: Path) -> None:
         assert row.last_amplitude == row.amplitude[-1]
         assert row.last_amplitude_dry == row.amplitude_dry[-1]
         assert row.peak_growth == row.growth.max()
-
-
-def test_answers_stand_at_their_samples(tmp_path: Path) -> None:
-    check_answers_stand_at_their_samples(tmp_path)
 
 
 @pytest.mark.usefixtures("quick")
@@ -261,14 +272,15 @@ class Killed(BaseException):
     """The process ends here."""
 
 
-def check_going_on(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.usefixtures("quick")
+def test_a_stopped_sweep_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A sweep stopped anywhere ends the same, and no finished block is answered again."""
     import leblanc.studies.sweep.sweep as sweeps
     from leblanc.studies.sweep.store import write_block
 
-    (folder / "whole").mkdir()
-    whole = tree(run_all(folder / "whole"))
-    sweep = study_in(folder)
+    (tmp_path / "whole").mkdir()
+    whole = tree(run_all(tmp_path / "whole"))
+    sweep = study_in(tmp_path)
     answered: list[float] = []
 
     def counting(scenes: Sequence[Scene]) -> Answers:
@@ -289,24 +301,19 @@ def check_going_on(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         patch.setattr(sweeps, "write_block", two_blocks)
         patch.setattr("leblanc.studies.sweep.store._to_disk", lambda _: None)
         with pytest.raises(Killed):
-            run_sweep(sweep, folder / "out", workers=0)
+            run_sweep(sweep, tmp_path / "out", workers=0)
     monkeypatch.setattr("leblanc.studies.sweep.store._to_disk", lambda _: None)
-    path = folder / "out" / STORE
+    path = tmp_path / "out" / STORE
     (path / "amplitude" / "c" / "2.0123.partial").write_bytes(b"left over")
     assert np.count_nonzero(read_store(path).read("status") != PENDING) == 128
     assert tree(path) != whole
     before = len(answered)
-    run_sweep(sweep, folder / "out", workers=0)
+    run_sweep(sweep, tmp_path / "out", workers=0)
     assert tree(path) == whole
     # the two blocks that were not finished, and the scene itself that is tried before
     assert len(answered) - before == 128 + 1
-    run_sweep(sweep, folder / "out", workers=0)
+    run_sweep(sweep, tmp_path / "out", workers=0)
     assert len(answered) - before == 128 + 1
-
-
-@pytest.mark.usefixtures("quick")
-def test_a_stopped_sweep_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    check_going_on(tmp_path, monkeypatch)
 
 
 class Unlucky:
@@ -382,7 +389,9 @@ def test_what_is_no_store_is_not_read(tmp_path: Path) -> None:
 # -- what comes out ------------------------------------------------------------------------------------------
 
 
-def check_statistics() -> None:
+@kills("leblanc.studies.sweep.summary:statistics", "known.std(ddof=1)", "known.std()")
+@kills("leblanc.studies.sweep.summary:statistics", "column[np.isfinite(column)]", "column[~np.isnan(column)]")
+def test_statistics_of_known_numbers() -> None:
     """Of the numbers 1 to 101: mean 51, variance 101 * 102/12, quantiles evenly spaced."""
     values = np.random.default_rng(1).permutation(np.append(np.arange(1.0, 102.0), [np.nan, np.inf]))
     found = statistics(np.stack([values, 2.0 * values, np.full(103, np.nan)], axis=1))
@@ -393,10 +402,6 @@ def check_statistics() -> None:
     np.testing.assert_allclose(found.quantiles[0], 1.0 + 100.0 * np.array(QUANTILES), rtol=1e-14)
     assert np.isnan(found.mean[2])
     assert np.isnan(found.quantiles[2]).all()
-
-
-def test_statistics_of_known_numbers() -> None:
-    check_statistics()
 
 
 @pytest.mark.usefixtures("quick")

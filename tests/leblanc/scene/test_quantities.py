@@ -1,4 +1,4 @@
-"""Seeded faults of the scene: what a critical speed, a damping ratio and a unit mean."""
+"""What a critical speed, a damping ratio and a unit mean."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from leblanc import units
 from leblanc.scene.scene import scene_from_table
-from tests.faults import Fault
+from tests.mutants import kills
 
 _SCENE = """
 name = "x"
@@ -24,7 +24,17 @@ speeds = { start = 1, stop = 2, count = 2 }
 """
 
 
-def free_vibration() -> None:
+@kills(
+    "leblanc.scene.rotors:_jeffcott",
+    "table.mass * table.critical_speed**2",
+    "table.mass * table.critical_speed",
+)
+@kills("leblanc.scene.rotors:_jeffcott", "table.mass * table.critical_speed**2", "table.critical_speed**2")
+@kills("leblanc.scene.rotors:_jeffcott", "2.0 * table.damping_ratio", "table.damping_ratio")
+@kills(
+    "leblanc.scene.rotors:_jeffcott", "math.sqrt(stiffness * table.mass)", "math.sqrt(stiffness / table.mass)"
+)
+def test_free_vibration() -> None:
     """The rotor let go turns at its critical speed and loses 2 pi zeta/sqrt(1 - zeta^2) a turn."""
     rotor = scene_from_table(tomllib.loads(_SCENE)).rotor
     roots = np.roots([rotor.mass, rotor.damping, rotor.stiffness])
@@ -33,7 +43,10 @@ def free_vibration() -> None:
     np.testing.assert_allclose(-roots.real / np.abs(roots), 0.1, rtol=1e-12)
 
 
-def one_box_in_three_units() -> None:
+@kills("leblanc.units:_scaled", "return number / parts", "return number * parts")
+@kills("leblanc.units:_scaled", "return number * (whole", "return number / (whole")
+@kills("leblanc.units:_base", r"(\1turn/s)", r"(\1rad/s)")
+def test_one_box_in_three_units() -> None:
     """A litre is a cube of ten centimetres; a hertz is a turn, 60 rpm."""
     units._factor.cache_clear()
     try:
@@ -46,29 +59,3 @@ def one_box_in_three_units() -> None:
         assert kilo == 1000.0
     finally:
         units._factor.cache_clear()
-
-
-FAULTS: tuple[Fault, ...] = (
-    Fault(
-        "leblanc.scene.rotors",
-        "table.mass * table.critical_speed**2",
-        "table.mass * table.critical_speed",
-        free_vibration,
-    ),
-    Fault(
-        "leblanc.scene.rotors",
-        "table.mass * table.critical_speed**2",
-        "table.critical_speed**2",
-        free_vibration,
-    ),
-    Fault("leblanc.scene.rotors", "2.0 * table.damping_ratio", "table.damping_ratio", free_vibration),
-    Fault(
-        "leblanc.scene.rotors",
-        "math.sqrt(stiffness * table.mass)",
-        "math.sqrt(stiffness / table.mass)",
-        free_vibration,
-    ),
-    Fault("leblanc.units", "return number / parts", "return number * parts", one_box_in_three_units),
-    Fault("leblanc.units", "return number * (whole", "return number / (whole", one_box_in_three_units),
-    Fault("leblanc.units", r"(\1turn/s)", r"(\1rad/s)", one_box_in_three_units),
-)

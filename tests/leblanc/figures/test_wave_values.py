@@ -1,9 +1,8 @@
-"""Seeded faults in the figures of a wave: signs of angles, units, areas and moments, frames of a film."""
+"""Figures of a wave show its values: signs of angles, units, areas and moments, frames of a film."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +12,6 @@ from matplotlib.markers import MarkerStyle
 from leblanc import figures
 from leblanc.figures import wave
 from leblanc.figures.wave import WaveHistory, WaveRecord
-from tests.faults import Fault
 
 R, SURFACE, SPIN = 0.15, 0.135, 40.0
 
@@ -101,7 +99,7 @@ def ends(line) -> complex:
     return complex(x[-1] - x[0], y[-1] - y[0])
 
 
-def drawn_liquid_has_its_area_and_moment() -> None:
+def test_drawn_liquid_has_its_area_and_moment() -> None:
     """At exaggeration 1 the drawing is the layer: exact area, moment and centre of mass of two circles."""
     for turned in (0.0, 2.0):
         record = eccentric(turned=turned)
@@ -114,7 +112,7 @@ def drawn_liquid_has_its_area_and_moment() -> None:
         assert abs(moment - record.offset * exact) < cut * record.whirl_amplitude
 
 
-def profile_closes() -> None:
+def test_profile_closes() -> None:
     """Linear across the back of the frame, so the value there is known, whatever the angles."""
     theta = np.array([0.4, 1.9, 2.8, 3.9, 5.0, 6.1])
     angle, depth = wave.unrolled(theta + 4.0 * math.pi, 1.0 + 0.1 * theta)
@@ -125,7 +123,7 @@ def profile_closes() -> None:
     assert np.all(np.abs(np.exp(1j * angle[1:-1]) - np.exp(1j * np.roll(theta, 3))) < 1e-13)
 
 
-def exaggeration_keeps_the_layer_between_the_walls() -> None:
+def test_exaggeration_keeps_the_layer_between_the_walls() -> None:
     for inner, depth in ((0.0, 0.001), (0.1, 0.02), (0.12, 0.001), (0.0, 0.14)):
         record = replace(bore(), inner_radius=inner, mean_depth=0.5 * depth)
         factor = wave.depth_factor(record, depth)
@@ -135,7 +133,7 @@ def exaggeration_keeps_the_layer_between_the_walls() -> None:
         np.testing.assert_allclose(drawn, R - factor * depth, rtol=1e-12)
 
 
-def arrows_and_marks_have_their_directions() -> None:
+def test_arrows_and_marks_have_their_directions() -> None:
     """Deflection to the right, force and centre of mass at their angles, which run with the spin."""
     for force in (2.0j, -1.0 - 1.0j, 0.3 + 0.0j):
         record = replace(bore(), force_ratio=force, offset=0.001 + 0.004j)
@@ -150,7 +148,7 @@ def arrows_and_marks_have_their_directions() -> None:
         assert math.isclose(x, 1.0) and math.isclose(y, 4.0)
 
 
-def senses_of_rotation() -> None:
+def test_senses_of_rotation() -> None:
     """Counter-clockwise is the spin; a whirl against it is drawn clockwise."""
     for whirl, sense in ((30.0, 1.0), (-30.0, -1.0)):
         axes = figures.wave_figure(bore(whirl)).axes[0]
@@ -159,7 +157,7 @@ def senses_of_rotation() -> None:
             assert np.all(expected * (x[:-1] * y[1:] - x[1:] * y[:-1]) > 0.0)
 
 
-def profile_is_in_mm_over_degrees() -> None:
+def test_profile_is_in_mm_over_degrees() -> None:
     record = bore()
     curve = labelled(figures.wave_figure(record).axes[1], "depth of the layer")
     angle, depth = curve.get_data()
@@ -168,13 +166,13 @@ def profile_is_in_mm_over_degrees() -> None:
     np.testing.assert_allclose(depth, np.append(record.depth, record.depth[0]) * 1e3, rtol=1e-12)
 
 
-def dry_places_are_those_without_liquid() -> None:
+def test_dry_places_are_those_without_liquid() -> None:
     depth = np.array([0.0, 0.0, 1e-7, 0.01, 0.0, 0.01, 0.02, 0.0])
     assert wave.is_dry(depth, 0.01).tolist() == [True, True, True, False, False, False, False, False]
     assert wave.is_dry(np.zeros(4), 0.0).all()
 
 
-def film_is_in_the_frame_of_the_drum() -> None:
+def test_film_is_in_the_frame_of_the_drum() -> None:
     """The crest keeps its 60 degrees from the deflection, which runs at the whirl less the spin."""
     for whirl in (30.0, -30.0, 55.0):
         record = bore(whirl)
@@ -199,7 +197,7 @@ def film_is_in_the_frame_of_the_drum() -> None:
             assert abs(np.angle(deepest / crest)) < math.radians(1.0)
 
 
-def frames_can_be_followed() -> None:
+def test_frames_can_be_followed() -> None:
     """The deflection never turns so far from frame to frame that it seems to run backwards."""
     for whirl, duration in ((30.0, 1.0), (30.0, 100.0), (-60.0, 20.0)):
         record = bore(whirl)
@@ -216,7 +214,7 @@ def frames_can_be_followed() -> None:
         assert shown == duration or shown > 0.9 * 119.0 * math.pi / 4.0 / abs(whirl - SPIN)
 
 
-def history_has_its_values() -> None:
+def test_history_has_its_values() -> None:
     record = bore()
     history = running(record)
     force, rotation, depths = figures.history_figure(record, history).axes[:3]
@@ -234,7 +232,7 @@ def history_has_its_values() -> None:
     np.testing.assert_allclose(labelled(depths, "trough").get_ydata(), history.depth.min(axis=1) * 1e3)
 
 
-def caption_converts() -> None:
+def test_caption_converts() -> None:
     """40 rad/s are 381.97 rpm, 30 rad/s 286.48 rpm."""
     text = caption(figures.wave_figure(bore()))
     for part in ("spin 40 rad/s (382 rpm)", "whirl 30 rad/s (286.5 rpm)", "mean depth 15 mm"):
@@ -245,76 +243,3 @@ def caption_converts() -> None:
 def caption(figure) -> str:
     lines = " ".join(text.get_text() for text in reversed(figure.texts))
     return lines.replace("\N{NO-BREAK SPACE}", " ")
-
-
-def _faults(module: str, *entries: tuple[str, str, Callable[[], None]]) -> tuple[Fault, ...]:
-    return tuple(Fault(f"leblanc.figures.{module}", *entry) for entry in entries)
-
-
-FAULTS: tuple[Fault, ...] = (
-    *_faults(
-        "wave",
-        ("radius - factor * np.interp", "radius + factor * np.interp", drawn_liquid_has_its_area_and_moment),
-        (
-            "surface * np.exp(1j * angle)",
-            "surface * np.exp(-1j * angle)",
-            drawn_liquid_has_its_area_and_moment,
-        ),
-        ("inner[::-1]", "inner", drawn_liquid_has_its_area_and_moment),
-        ("2.0 * math.pi) - math.pi", "2.0 * math.pi)", profile_closes),
-        (
-            "(1.0 - share) * depth[-1] + share * depth[0]",
-            "share * depth[-1] + (1.0 - share) * depth[0]",
-            profile_closes,
-        ),
-        (
-            "record.radius - record.inner_radius",
-            "record.radius + record.inner_radius",
-            exaggeration_keeps_the_layer_between_the_walls,
-        ),
-        ("depth <= DRY * mean_depth", "depth >= DRY * mean_depth", dry_places_are_those_without_liquid),
-        ("self.whirl_speed - self.spin", "self.whirl_speed + self.spin", film_is_in_the_frame_of_the_drum),
-        (
-            "span = TURN * (MOST_FRAMES - 1) / turning",
-            "span = TURN * (MOST_FRAMES - 1) * turning",
-            frames_can_be_followed,
-        ),
-    ),
-    *_faults(
-        "wave_axes",
-        (
-            "angle = cmath.phase(record.force_ratio)",
-            "angle = -cmath.phase(record.force_ratio)",
-            arrows_and_marks_have_their_directions,
-        ),
-        ("math.degrees(angle) - 90.0", "math.degrees(angle) + 90.0", arrows_and_marks_have_their_directions),
-        (
-            "record.offset * MM",
-            "record.offset.conjugate() * MM",
-            arrows_and_marks_have_their_directions,
-        ),
-        ("sense * np.linspace", "-sense * np.linspace", senses_of_rotation),
-        (
-            "np.degrees(angle), depth * MM, color=SURFACE",
-            "angle, depth * MM, color=SURFACE",
-            profile_is_in_mm_over_degrees,
-        ),
-        ("signed(rate * RPM)", "signed(rate / RPM)", caption_converts),
-        (
-            "size, angle = abs(direction), cmath",
-            "size, angle = abs(direction), -cmath",
-            film_is_in_the_frame_of_the_drum,
-        ),
-    ),
-    *_faults(
-        "wave_time",
-        ("force.imag, label", "force.real, label", history_has_its_values),
-        ("lambda rate: rate * RPM", "lambda rate: rate / RPM", history_has_its_values),
-        ("history.depth.min(axis=1)", "history.depth.mean(axis=1)", history_has_its_values),
-        (
-            "math.degrees(cmath.phase(deflection)",
-            "-math.degrees(cmath.phase(deflection)",
-            film_is_in_the_frame_of_the_drum,
-        ),
-    ),
-)
