@@ -9,8 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fluid.friction import stokes_coefficient
-from fluid.wall_layer import edge_weight, layer_thickness, plate_drags
+from fluid.friction import edge_weight, layer_thickness, plate_drags, stokes_coefficient
 from meshes.baffles import Baffles
 from meshes.errors import InputError
 from meshes.rings.quadrilaterals import ring
