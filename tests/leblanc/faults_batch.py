@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.leblanc import test_batch as oracle
+from tests.leblanc.studies import test_batch as oracle
 
 BATCH, CHECK = "leblanc.studies.batch", oracle.check_each_is_what_run_gives
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.leblanc import test_emulator as oracle
+from tests.leblanc.studies.sweep import test_emulator as oracle
 
 EMULATOR, ERROR = "leblanc.studies.sweep.emulator", oracle.check_error_is_that_of_unseen_samples
 

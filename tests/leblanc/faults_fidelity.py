@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.leblanc import test_fidelity as choice
-from tests.solvers import test_model_error as error
+from tests.leblanc.studies import test_choose as choice
+from tests.solvers.synchronous import test_errors as error
 
 _DEFECT, _ERROR = "solvers.statics.law_defect", "solvers.synchronous.errors"
 

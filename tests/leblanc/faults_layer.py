@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.leblanc import test_explain, test_layer
+from tests.leblanc.studies import test_explain, test_layer
 
 FAULTS: tuple[Fault, ...] = (
     Fault(

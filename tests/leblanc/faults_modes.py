@@ -6,7 +6,7 @@ import tempfile
 from pathlib import Path
 
 from tests.faults import Fault
-from tests.leblanc import test_modes as oracle
+from tests.leblanc.studies import test_modes as oracle
 
 
 def check_file() -> None:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.leblanc import test_optimise as oracle
-from tests.solvers import test_fill_search as searching
+from tests.leblanc.studies.optimise import test_optimise as oracle
+from tests.solvers import test_search as searching
 
 FAULTS: tuple[Fault, ...] = (
     Fault(

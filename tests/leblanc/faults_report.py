@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.leblanc.test_report import check_comparisons, check_ranges, check_warnings
-from tests.leblanc.test_report_inputs import check_units, check_units_of_other_rotors
-from tests.leblanc.test_report_kinds import (
+from tests.leblanc.report.test_inputs import check_units, check_units_of_other_rotors
+from tests.leblanc.report.test_kinds import (
     check_events,
     check_exciter_numbers,
     check_exciter_warnings,
@@ -16,6 +15,7 @@ from tests.leblanc.test_report_kinds import (
     check_runup_numbers,
     check_runup_warnings,
 )
+from tests.leblanc.report.test_run import check_comparisons, check_ranges, check_warnings
 
 RUN, MAP, BEST, UP, TABLE = (
     f"study.report_{name}" for name in ("run", "map", "optimise", "runup", "exciter")

@@ -12,7 +12,7 @@ from leblanc.figures import curves, section
 from leblanc.results import response as results
 from leblanc.results.record import ChamberRecord, peak, phase
 from tests.faults import Fault
-from tests.leblanc.records import DAMPING, MASS, RPM, STIFFNESS, dry_deflection, folded, rig
+from tests.oracles.records import DAMPING, MASS, RPM, STIFFNESS, dry_deflection, folded, rig
 
 CHAMBER = ChamberRecord(
     radius=0.065, inner_radius=0.0, height=0.02, volume=1e-5, liquid_name="water", mean_surface_radius=0.06376

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.leblanc import test_self_excited as oracle
+from tests.leblanc.studies import test_self_excited as oracle
 
 FAULTS: tuple[Fault, ...] = (
     Fault("leblanc.studies.run", "found.growth > 0.0)", "found.growth >= 0.0)", oracle.check_stable),

@@ -6,19 +6,19 @@ import tempfile
 from pathlib import Path
 
 from tests.faults import Fault
-from tests.leblanc.test_sampling import (
+from tests.leblanc.studies.sweep.test_sampling import (
     check_designs_are_even,
     check_distributions,
     check_grid,
     check_saltelli_members,
 )
-from tests.leblanc.test_sensitivity import (
+from tests.leblanc.studies.sweep.test_sensitivity import (
     check_choice_given_data,
     check_ishigami_given_data,
     check_ishigami_saltelli,
     check_linear_grid,
 )
-from tests.leblanc.test_sweep import (
+from tests.leblanc.studies.sweep.test_sweep import (
     check_answers_stand_at_their_samples,
     check_sampled_scenes,
     check_statistics,

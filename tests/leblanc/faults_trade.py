@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.leblanc import test_trade as oracle
+from tests.validation import test_trade_errors as oracle
 
 _JUDGE, _CASES, _FIGURE = "validation.trade.judge", "validation.trade.cases", "validation.trade.figure"
 

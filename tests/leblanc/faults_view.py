@@ -6,10 +6,10 @@ import tempfile
 from pathlib import Path
 
 from tests.faults import Fault
-from tests.leblanc import test_view_picture as picture
-from tests.leblanc import test_view_scale as scale
-from tests.leblanc import test_view_shapes as shapes
-from tests.leblanc import test_view_uneven as uneven
+from tests.leblanc.view import test_bodies as uneven
+from tests.leblanc.view import test_picture as picture
+from tests.leblanc.view import test_scale as scale
+from tests.leblanc.view import test_surfaces as shapes
 
 
 def section_picture() -> None:

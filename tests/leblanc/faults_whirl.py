@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.leblanc import test_map as oracle
+from tests.leblanc.studies import test_whirl_map as oracle
 
 FAULTS: tuple[Fault, ...] = (
     Fault(

@@ -9,12 +9,22 @@ from pathlib import Path
 
 from meshes.errors import InputError
 from tests.faults import Fault
-from tests.meshes.test_body import check_faces, check_paraboloid, check_tetrahedron, check_upright, check_wave
-from tests.meshes.test_exchange import check_groups, check_turned_cells
-from tests.meshes.test_findings import check_points_across, check_points_per_wave, check_wave_error
-from tests.meshes.test_liquid_section import check_pieces, check_sides
-from tests.meshes.test_quality import check_quadrilaterals
-from tests.meshes.test_ring import (
+from tests.meshes.bodies.test_body import (
+    check_faces,
+    check_paraboloid,
+    check_tetrahedron,
+    check_upright,
+    check_wave,
+)
+from tests.meshes.files.test_exchange import check_groups, check_turned_cells
+from tests.meshes.refine.test_waterline_cut import (
+    check_area_outside,
+    check_bisection,
+    check_both_sides,
+    check_inverse,
+    check_sizes,
+)
+from tests.meshes.rings.test_rings import (
     check_angles,
     check_baffle_length,
     check_grading,
@@ -22,13 +32,9 @@ from tests.meshes.test_ring import (
     check_sector_area,
     check_slits,
 )
-from tests.meshes.test_waterline_cut import (
-    check_area_outside,
-    check_bisection,
-    check_both_sides,
-    check_inverse,
-    check_sizes,
-)
+from tests.meshes.test_findings import check_points_across, check_points_per_wave, check_wave_error
+from tests.meshes.test_liquid_section import check_pieces, check_sides
+from tests.meshes.test_quality import check_quadrilaterals
 
 
 def check_files() -> None:

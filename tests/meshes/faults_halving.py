@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.meshes import test_halving as oracle
+from tests.meshes.refine import test_bisection as oracle
 
 _MODULE = "meshes.refine.bisection"
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tests.faults import Fault
+from tests.meshes.refine.test_waterline import check_half_plane, check_hole, check_range, check_whole_section
 from tests.meshes.test_quality import (
     check_equilateral,
     check_jacobian_at_the_nodes,
@@ -10,7 +11,6 @@ from tests.meshes.test_quality import (
     check_parabola_area,
 )
 from tests.meshes.test_section import check_polygon_area, check_quadratic_wall
-from tests.meshes.test_waterline import check_half_plane, check_hole, check_range, check_whole_section
 
 FAULTS: tuple[Fault, ...] = (
     Fault("meshes.quality", "cross(c1, c2) / 3.0", "cross(c1, c2) / 2.0", check_parabola_area),

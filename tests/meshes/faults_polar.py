@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.meshes import test_polar as oracle
+from tests.meshes.rings import test_sectors as oracle
 
 FAULTS: tuple[Fault, ...] = (
     Fault(

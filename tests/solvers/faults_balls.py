@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.solvers import test_ball_balancers as oracle
+from tests.solvers.rotor import test_balls as oracle
 
 _MOTION, _RUN, _STEPS = (
     "solvers.rotor.balls.motion",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.solvers import test_discrete_models as oracle
+from tests.solvers.synchronous import test_discrete as oracle
 
 _MODULE = "solvers.synchronous.discrete"
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.solvers import test_dual_frequency as motion
-from tests.solvers import test_exciter as oracle
-from tests.solvers import test_stuck as roots
+from tests.solvers.rotor import test_exciter as oracle
+from tests.solvers.rotor import test_exciter_motion as motion
+from tests.solvers.rotor import test_exciter_stuck as roots
 
 _EXCITER, _STUCK, _MOTION = (
     "solvers.rotor.exciter.machine",

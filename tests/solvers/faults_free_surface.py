@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.solvers.test_free_surface import check_crescent, check_optimal_volumes, check_state
-from tests.solvers.test_free_surface_limits import check_clear_surface, check_flat_surface
-from tests.solvers.test_free_surface_sections import check_turned
+from tests.solvers.statics.test_free_surface import check_crescent, check_optimal_volumes, check_state
+from tests.solvers.statics.test_free_surface_limits import check_clear_surface, check_flat_surface
+from tests.solvers.statics.test_free_surface_sections import check_turned
 
 MODULE = "solvers.statics.free_surface"
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.solvers import test_hydrostatics as oracle
+from tests.solvers.statics import test_hydrostatics as oracle
 
 
 def _whole() -> None:

@@ -1,7 +1,7 @@
 """Seeded faults of the long waves in SI units: forces, friction, changing spin, time steps, readings."""
 
 from tests.faults import Fault
-from tests.solvers import test_long_wave_pde as oracle
+from tests.solvers.pypde import test_long_wave as oracle
 
 
 def _terms(right: str, wrong: str, check=oracle.check_manufactured) -> Fault:  # type: ignore[no-untyped-def]

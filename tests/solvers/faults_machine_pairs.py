@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.solvers import test_branches, test_hydrostatics, test_response
-from tests.solvers import test_machine_pairs as oracle
+from tests.solvers.statics import test_hydrostatics
+from tests.solvers.synchronous import test_branches
+from tests.solvers.synchronous import test_pairs as oracle
+from tests.solvers.synchronous import test_planar as test_response
 
 PAIRS, RESPONSE, BRANCHES = (
     "solvers.synchronous.pairs",

@@ -1,7 +1,7 @@
 """Seeded faults seen in the limit of small waves in thin layers: each an error of the order of the depth."""
 
 from tests.faults import Fault
-from tests.solvers.test_one_family_limit import gap_goes_with_the_height as gap
+from tests.solvers.waves.test_thin_limit import gap_goes_with_the_height as gap
 
 FAULTS = (
     Fault("fluid.kdv", "3.0 * spin / surface_radius**2", "3.0 * spin / radius**2", gap),

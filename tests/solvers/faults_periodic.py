@@ -1,10 +1,10 @@
 """Seeded faults of the steady waves, their curves and their stability."""
 
 from tests.faults import Fault
-from tests.solvers import test_continuation as curves
-from tests.solvers import test_periodic as periodic
-from tests.solvers import test_wave_newton as newton
-from tests.solvers import test_wave_path as path
+from tests.solvers.waves import test_continuation as curves
+from tests.solvers.waves import test_newton as newton
+from tests.solvers.waves import test_path as path
+from tests.solvers.waves import test_periodic as periodic
 
 FAULTS = (
     # No linear oracle sees it.

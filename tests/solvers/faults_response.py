@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.solvers import test_response as oracle
+from tests.solvers.synchronous import test_planar as oracle
 
 FAULTS: tuple[Fault, ...] = (
     Fault(

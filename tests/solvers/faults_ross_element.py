@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.solvers import test_ross_element as oracle
+from tests.solvers import test_ross as oracle
 
 _MODULE = "solvers.ross"
 _PEER = "validation.benchmarks.peer_ross"

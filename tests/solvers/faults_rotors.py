@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.solvers import test_bearing as bearing
-from tests.solvers import test_tub as tub
-from tests.solvers import test_two_plane as two_plane
-from tests.solvers import test_vibration as vibration
+from tests.solvers.rotor import test_bearing as bearing
+from tests.solvers.rotor import test_tub as tub
+from tests.solvers.rotor import test_two_plane as two_plane
+from tests.solvers.rotor import test_vibration as vibration
 
 TWO_PLANE, TUB = "solvers.rotor.two_plane", "solvers.rotor.tub"
 VIBRATION, CAMPBELL = "solvers.rotor.vibration", "solvers.rotor.campbell"

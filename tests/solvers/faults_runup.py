@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.solvers import test_linear_runup as linear
-from tests.solvers import test_runup as oracle
+from tests.solvers.runup import test_linear as linear
+from tests.solvers.runup import test_runup as oracle
 
 RUN, SET, READ, FILL = (
     f"solvers.{name}" for name in ("runup", "coupled_machine", "coupled_reading", "coupled_fill")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.solvers import test_sections as oracle
+from tests.solvers.whirl import test_sections as oracle
 
 FILL, REDUCED, LAYER = "fluid.fill", "solvers.sloshing.reduced", "solvers.sloshing.reduced"
 DRUM, STANDING = "solvers.whirl.sections", "solvers.whirl.sections"

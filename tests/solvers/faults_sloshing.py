@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.solvers import test_sloshing as oracle
-from tests.solvers import test_sloshing_damping as damping
+from tests.solvers.sloshing import test_damping as damping
+from tests.solvers.sloshing import test_sloshing as oracle
 
 FAULTS: tuple[Fault, ...] = (
     Fault(

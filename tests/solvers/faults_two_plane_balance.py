@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.solvers import test_two_plane_balance as oracle
+from tests.solvers.rotor import test_two_plane_balance as oracle
 
 _BALANCE = "solvers.rotor.two_plane_balance"
 

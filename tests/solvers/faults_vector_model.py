@@ -1,7 +1,7 @@
 """Seeded faults of the vector model."""
 
 from tests.faults import Fault
-from tests.solvers import test_vector_model as oracle
+from tests.solvers.rotor import test_vector_model as oracle
 
 _MODULE = "solvers.rotor.vector_model"
 

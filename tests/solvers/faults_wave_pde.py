@@ -1,7 +1,8 @@
 """Seeded faults of the wave equations and of the exponential steppers."""
 
 from tests.faults import Fault
-from tests.solvers import test_stepper, test_wave_terms
+from tests.solvers.waves import test_stepper
+from tests.solvers.waves import test_terms as test_wave_terms
 
 
 def _cnoidal() -> None:

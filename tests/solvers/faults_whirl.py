@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.solvers import test_whirl as oracle
+from tests.solvers.whirl import test_growth as oracle
 
 ROOTS, SYSTEM, LAMINAR = "solvers.whirl.planar", "solvers.whirl.system", "solvers.whirl.laminar"
 EDGES, WHIRL = "solvers.whirl.edges", "solvers.whirl.growth"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tests.faults import Fault
 from tests.validation import test_notebooks_cases as oracle
 
-OPTIMUM, TUB, WAVE = "validation.fill_optimum", "validation.tub", "validation.layer_figures"
+OPTIMUM, TUB, WAVE = "validation.cases.fill_optimum", "validation.cases.tub", "validation.figures.layer"
 
 FAULTS: tuple[Fault, ...] = (
     Fault(OPTIMUM, "rotor.mass + fill.full_mass", "rotor.mass + fill.mass", oracle.check_closed_forms),

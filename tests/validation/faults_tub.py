@@ -5,7 +5,7 @@ from __future__ import annotations
 from tests.faults import Fault
 from tests.validation import test_tub as oracle
 
-MODULE = "validation.suspended_tub"
+MODULE = "validation.cases.suspended_tub"
 
 FAULTS: tuple[Fault, ...] = (
     Fault(MODULE, "side * math.sin(turn)", "side * math.cos(angle) * math.sin(turn)", oracle.check_direction),

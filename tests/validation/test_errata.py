@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from meshes.errors import InputError
-from validation import errata
-from validation.case import Case, compare
-from validation.errata_tub import tub_matrices
+from validation.cases import errata
+from validation.cases.case import Case, compare
+from validation.cases.errata_tub import tub_matrices
 
 
 @cache

@@ -13,21 +13,16 @@ from leblanc.scene.machine import jeffcott
 from leblanc.studies.choose import axial_gravity
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.planar import synchronous_response
-from validation import (
-    errata,
-    fill_optimum,
-    layer,
-    rig_figures,
-    runup_given,
-    tub,
-    volume_figures,
-    whirl_figures,
-)
-from validation.case import Case, compare
-from validation.layer_figures import bore_summary
+from validation.cases import errata, fill_optimum, layer, tub
+from validation.cases import runup as runup_given
+from validation.cases.case import Case, compare
+from validation.cases.runup import GIVEN, Point
+from validation.cases.scenes import data
+from validation.figures import rigs as rig_figures
+from validation.figures import volume as volume_figures
+from validation.figures import whirl as whirl_figures
+from validation.figures.layer import bore_summary
 from validation.notebook_page import case_table, example, from_markdown, picture, verdicts
-from validation.runup_trends import GIVEN, Point
-from validation.scenes import data
 from validation.trade import again, kept, names
 from validation.trade.answers import Case as TradeCase
 from validation.trade.cases import Question, response_question
@@ -178,7 +173,7 @@ def test_run_up_given(share: float, verdict: str) -> None:
         moved = peak * share * 1e-3, speed * share
         return Point(volume, friction, *moved, math.nan, end * share * 1e-3, 0.0, math.nan, True)
 
-    with mock.patch("validation.runup_given.run", run):
+    with mock.patch("validation.cases.runup.run", run):
         assert [case.verdict for case in runup_given.cases()] == [verdict] * 9
 
 

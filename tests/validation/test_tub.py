@@ -12,9 +12,9 @@ from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import load_scene
 from solvers.rotor.tub import Tub
 from solvers.rotor.vibration import critical_speeds, unbalance_response
-from validation.suspended_tub import FARTHEST, amplitude, direction, suspended_tub
-from validation.tub import cases
-from validation.tub_figures import draw, main, plots
+from validation.cases.suspended_tub import FARTHEST, amplitude, direction, suspended_tub
+from validation.cases.tub import cases
+from validation.figures.tub import draw, main, plots
 
 
 def test_verdicts() -> None:
