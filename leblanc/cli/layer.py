@@ -175,8 +175,8 @@ def _film(asked: dict[str, Any], duration: float | None, ramp: float, path: Path
 
     from rich.progress import Progress
 
+    from fluid.friction import NO_FRICTION
     from leblanc.figures import animate
-    from leblanc.results.layer import NO_FRICTION
     from leblanc.studies.layer import answer_layer, steady_film, wave_film, wave_record
     from solvers.layer.prescribed import Whirl
 

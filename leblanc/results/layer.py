@@ -7,11 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from leblanc.friction import Friction
 from leblanc.studies.validity import Number
 from meshes.arrays import Array
 
-NO_FRICTION = Friction("none", 0.0)
 _POINTS = 360
 
 

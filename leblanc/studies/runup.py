@@ -9,16 +9,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fluid.fill import Fill
+from fluid.friction import Friction
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
-from leblanc.friction import Friction
 from leblanc.results.record import ChamberRecord, phase
 from leblanc.scene.machine import dry_rotor, jeffcott, require_clear
 from leblanc.scene.scene import Rotor, Runup, Scene
 from leblanc.studies.choose import across_gravity as across_gravity  # of a run-up, asked for with it
 from leblanc.studies.choose import axial_gravity
 from leblanc.studies.validity import RANGES
-from leblanc.studies.whirl_map import solver_friction
 from leblanc.text.models import percent
 from leblanc.text.runup import Bands, describe_inputs, describe_run
 from meshes.arrays import Array, Complex, Flags
@@ -138,8 +137,7 @@ def chosen_run(
     InputError : the scene asks for a model that does not go through time
     """
     model, tolerance = liquid_model(scene), scene.model.tolerance
-    system, law = dry_rotor(scene).system(), scene.model.friction
-    friction = (law.law, law.coefficient)
+    system, friction = dry_rotor(scene).system(), scene.model.friction
 
     def run(name: str, resolved: RunupNumerics, told: Progress) -> RunupHistory:
         return run_up(system, scene.chambers, drive, friction, gravity, resolved, told, name)
@@ -396,7 +394,7 @@ def whirl_bands(scene: Scene, speed: Array) -> Bands:
     passed = _passed(speed, BAND_SPEEDS)
     if not scene.chambers or passed.size == 0:
         return ()
-    system, friction = dry_rotor(scene).system(), solver_friction(scene.model.friction)
+    system, friction = dry_rotor(scene).system(), scene.model.friction
     return unstable_bands(system, [scene.chambers], passed, friction)[0]
 
 

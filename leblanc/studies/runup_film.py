@@ -71,7 +71,7 @@ def film(scene: Scene, record: RunupRecord, frames: int = FRAMES) -> Reel:
     if not 2 <= frames <= MOST_FRAMES:
         raise InputError("frames", frames, f"from 2 to {MOST_FRAMES}")
     drive, numerics = drive_of(planned(scene)), record.numerics
-    system, law = dry_rotor(scene).system(), (record.friction.law, record.friction.coefficient)
+    system, law = dry_rotor(scene).system(), record.friction
     start = float(drive.corners()[1, 0])
     machine = couple(system, scene.chambers, start, law, record.gravity, numerics.cells, numerics.dispersion)
     machine.drive(torque_curve(drive), 0.0 if isinstance(drive, Ramp) else drive.inertia)

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.friction import Friction, friction_words
+from fluid.friction import Friction
+from leblanc.friction import friction_words
 from leblanc.results.record import peak
 from leblanc.units import ML, MM, RPM
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy import linalg
 
 from fluid.fill import Fill
-from fluid.friction import LINEAR, NONE, QUADRATIC, STOKES, stokes_coefficient
+from fluid.friction import Friction, stokes_coefficient
 from fluid.liquid import Liquid
 from fluid.waves import force_ratio, free_wave_frequencies, offset_ratio
 from fluid.whirl import (
@@ -130,12 +130,12 @@ def test_laws() -> None:
         fill = Fill(chamber, WATER, share * chamber.capacity)
         a, depth = fill.surface_radius, fill.depth
         area = 0.5 * share * RADIUS**2
-        layer = plane_layer(fill, (LINEAR, 0.7))
+        layer = plane_layer(fill, Friction("linear", 0.7))
         assert layer is not None
         assert layer.rate == pytest.approx(0.7 * depth * RADIUS / area, rel=1e-12)
         assert layer.layer_tanh == pytest.approx(share / (2.0 - share), rel=1e-12)
         assert layer.mass == pytest.approx(1000.0 * fill.volume)
-        layer = plane_layer(fill, (STOKES, 0.0))
+        layer = plane_layer(fill, Friction("stokes"))
         assert layer is not None and layer.rate == 0.0
         for slip in (7.0, -7.0):
             k = float(stokes_coefficient(1e-6, slip)) * (1.0 / depth + 2.0 / chamber.height)
@@ -143,7 +143,7 @@ def test_laws() -> None:
             assert drag.real == pytest.approx(2.0 * RADIUS / (RADIUS + a) * k, rel=1e-9)
             # Inertia: -i k s has the real part k_i s, of the sign of s^2.
             assert drag.imag == pytest.approx(math.copysign(drag.real, slip), rel=1e-12)
-    for law in ((NONE, 0.0), (QUADRATIC, 0.3)):
+    for law in (Friction(), Friction("quadratic", 0.3)):
         layer = plane_layer(fill, law)
         assert layer is not None and layer.rate == layer.stokes == 0.0
 
@@ -198,7 +198,7 @@ def test_covering_speed() -> None:
 
 def test_no_layer_without_liquid_or_surface() -> None:
     for chamber in (Chamber(0.1, 0.02), Chamber(0.1, 0.02, 0.04)):
-        assert plane_layer(Fill(chamber, WATER, 0.0), (NONE, 0.0)) is None
+        assert plane_layer(Fill(chamber, WATER, 0.0), Friction()) is None
         full = Fill(chamber, WATER, chamber.capacity)
-        assert is_full(full) and plane_layer(full, (NONE, 0.0)) is None
+        assert is_full(full) and plane_layer(full, Friction()) is None
         assert not is_full(Fill(chamber, WATER, 0.999 * chamber.capacity))

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from fluid.fill import Fill
+from fluid.friction import Friction
 from fluid.liquid import known_liquid
-from leblanc.friction import Friction
 from leblanc.scene.optimise import Aim
 from leblanc.scene.scene import Model, Rotor, Scene, Speeds
 from leblanc.studies.batch import answer_scenes

@@ -15,14 +15,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fluid.fill import Fill
-from fluid.friction import LINEAR, NONE, STOKES, damping_rate
+from fluid.friction import LINEAR, STOKES, Friction, damping_rate
 from fluid.liquid import Liquid
 from fluid.waves import force_ratio
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.ross import (
     Coefficients,
-    Friction,
     dynamic_stiffness,
     liquid_bearing,
     liquid_coefficients,
@@ -45,7 +44,7 @@ RATE = 0.7  # 1/s
 
 def linear(rate: float, fill: Fill = FILL) -> Friction:
     """Linear friction whose decay rate is the one wanted."""
-    return LINEAR, rate / decay(LINEAR, 1.0, fill)
+    return Friction("linear", rate / decay(LINEAR, 1.0, fill))
 
 
 def decay(law: int, coefficient: float, fill: Fill = FILL) -> float:
@@ -116,7 +115,7 @@ def test_laminar() -> None:
     whirl, spin = 33.0, 40.0
     real = decay(STOKES, np.sqrt(WATER.viscosity * abs(whirl - spin) / 2.0) / CHAMBER.radius)
     wanted = field_stiffness(FILL, spin, whirl, real * (1.0 - 1.0j))
-    close(complex(dynamic_stiffness(FILL, spin, whirl, (STOKES, 0.0))), wanted, 1e-12, abs(wanted))
+    close(complex(dynamic_stiffness(FILL, spin, whirl, Friction("stokes"))), wanted, 1e-12, abs(wanted))
 
 
 @kills("solvers.ross:liquid_coefficients", "0.5 * (forward + backward)", "0.5 * (forward - backward)")
@@ -272,7 +271,7 @@ def test_self_excited_band() -> None:
     # The edges are known to a step of 5e-4 omega_n. Two roots meet there and the growth rises with the square
     # root of the distance: 1.5e-3 away it is of the order of 1e-2 omega_n, outside it is rounding.
     for ratio, unstable in ((1.121, False), (1.124, True), (1.3, True), (1.4735, True), (1.4765, False)):
-        found = eigenvalues(ratio * 100.0, (NONE, 0.0), mass, mass * 1e4, 0.0)
+        found = eigenvalues(ratio * 100.0, Friction(), mass, mass * 1e4, 0.0)
         assert (found.real.max() > 1e-3) == unstable
 
 
@@ -355,9 +354,9 @@ def test_peer_inertia() -> None:
         ("whirl_speed", lambda: liquid_coefficients(FILL, 40.0, -3.0)),
         ("whirl_speed", lambda: dynamic_stiffness(FILL, 40.0, np.inf)),
         ("spin", lambda: liquid_coefficients(FILL, np.nan)),
-        ("friction", lambda: dynamic_stiffness(FILL, 40.0, 30.0, (LINEAR, -1.0))),
-        ("friction", lambda: liquid_link(FILL, 40.0, (LINEAR, -1.0))),
-        ("friction", lambda: liquid_link(FILL, 40.0, (STOKES, 0.0))),
+        ("friction", lambda: dynamic_stiffness(FILL, 40.0, 30.0, Friction("linear", -1.0))),
+        ("friction", lambda: liquid_link(FILL, 40.0, Friction("linear", -1.0))),
+        ("friction", lambda: liquid_link(FILL, 40.0, Friction("stokes"))),
         ("spin", lambda: liquid_link(FILL, np.inf)),
         ("speed", lambda: liquid_layer(FILL, 0, 1, [1.0, 2.0, 3.0])),
         ("spin", lambda: liquid_bearing(FILL, 0, [1.0, 2.0, 2.0, 3.0])),

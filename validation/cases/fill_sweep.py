@@ -10,7 +10,6 @@ from functools import cache
 
 import numpy as np
 
-from leblanc.friction import Friction
 from leblanc.scene.scene import Model, Rotor, Runup, Scene, Speeds
 from leblanc.studies.optimise.answers import FilledMachine
 from leblanc.studies.optimise.objectives import RunupPeak
@@ -35,6 +34,7 @@ _ASSUMED = (
 def machine() -> Scene:
     """The assumed machine, its ring empty."""
     from fluid.fill import Fill
+    from fluid.friction import Friction, FrictionLaw
     from fluid.liquid import known_liquid
     from meshes.chamber import Chamber
 
@@ -47,7 +47,7 @@ def machine() -> Scene:
         rotor=Rotor("jeffcott", MASS, stiffness, damping, UNBALANCE, "vertical"),
         chambers=(Fill(Chamber(OUTER, HEIGHT, INNER), known_liquid("water"), 0.0),),
         speeds=Speeds(START, CRUISE, 201),
-        model=Model(liquid="auto", friction=Friction("linear", FRICTION)),
+        model=Model(liquid="auto", friction=Friction(FrictionLaw.LINEAR, FRICTION)),
         runup=Runup(START, CRUISE, RATE, DURATION, 32, False),
     )
 

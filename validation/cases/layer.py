@@ -14,11 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
+from fluid.friction import NO_FRICTION, Friction, FrictionLaw
 from fluid.liquid import Liquid
 from fluid.waves import force_ratio
 from meshes.chamber import Chamber
 from solvers.layer.prescribed import LayerHistory, Numerics, Whirl
-from solvers.layer.settle import friction_law, settle, simulate
+from solvers.layer.settle import settle, simulate
 from validation.cases.case import Case, Verdict
 from validation.cases.scenes import data
 
@@ -76,11 +77,11 @@ def bore_histories() -> dict[str, LayerHistory]:
     run = bore_reference()
     fill = plane_layer(run)
     whirl = Whirl(run["speed"], run["whirl_speed"], run["whirl_amplitude"], run["ramp"])
-    stokes = friction_law("stokes", 0.0, fill, whirl)
+    stokes = Friction(FrictionLaw.STOKES)
     # Floor and lid are not in a plane flow: the wall's layer alone.
     variants = {
-        "plain": ((0, 0.0), Numerics(512)),
-        "dispersion": ((0, 0.0), Numerics(512, dispersion=True)),
+        "plain": (NO_FRICTION, Numerics(512)),
+        "dispersion": (NO_FRICTION, Numerics(512, dispersion=True)),
         "friction": (stokes, Numerics(512)),
         "both": (stokes, Numerics(512, dispersion=True)),
     }

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import LINEAR
+from fluid.friction import Friction, FrictionLaw
 from fluid.liquid import known_liquid
 from leblanc.units import LITRE, MM
 from meshes.arrays import Array
@@ -74,7 +74,7 @@ def run(volume: float, friction: float, cells: int = 128, check: bool = False) -
     """
     fills = [Fill(CHAMBER, known_liquid("water"), volume)] if volume > 0.0 else []
     numerics = RunupNumerics(cells=cells, companion=check)
-    h = run_up(ROTOR.system(), fills, RAMP, ("linear", friction), 0.0, numerics)
+    h = run_up(ROTOR.system(), fills, RAMP, Friction(FrictionLaw.LINEAR, friction), 0.0, numerics)
     k = int(np.argmax(h.amplitude))
     late = h.time >= h.time[-1] - _LAST
     return Point(
@@ -125,7 +125,7 @@ def band(volumes: Sequence[float], friction: float) -> tuple[Array, Array]:
     """First and last speed at which some whirl grows, for each volume, rad/s; nan where none does."""
     rows = [[Fill(CHAMBER, known_liquid("water"), volume)] for volume in volumes]
     speed = np.linspace(RAMP.start, RAMP.stop, 191)
-    bands = unstable_bands(ROTOR.system(), rows, speed, (LINEAR, friction))
+    bands = unstable_bands(ROTOR.system(), rows, speed, Friction(FrictionLaw.LINEAR, friction))
     ends = [(one[0][0], one[-1][1]) if one else (math.nan, math.nan) for one in bands]
     low, high = np.array(ends).T
     return low, high

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fluid.fill import Fill
+from fluid.friction import Friction, FrictionLaw
 from fluid.liquid import Liquid
 from meshes.arrays import Array
 from meshes.chamber import Chamber
@@ -23,7 +24,7 @@ LONG = TwoPlane(20.0, 1.0, 0.4, SUPPORTS, UNBALANCES)
 SHORT = TwoPlane(20.0, 1.0, 1.4, SUPPORTS, UNBALANCES)
 FILLS = tuple(Fill(Chamber(0.15, 0.03, 0.0, z), Liquid("water", 998.2, 1e-6), 3e-4) for z in (-0.25, 0.25))
 # Friction of chambers with baffles: with smooth walls the liquid's waves would excite whirls of their own.
-FRICTION = ("linear", 30.0)
+FRICTION = Friction(FrictionLaw.LINEAR, 30.0)
 SPEEDS = (20.0, 45.0, 110.0, 150.0)  # rad/s: below, between and above the critical speeds of the long rotor
 _HOLD = 6.0  # s
 

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import LINEAR, NONE, STOKES
+from fluid.friction import NO_FRICTION, Friction, FrictionLaw
 from fluid.liquid import known_liquid
 from meshes.arrays import Array
 from meshes.chamber import Chamber
@@ -61,14 +61,13 @@ def _in_time() -> list[Case]:
     points = [(one, 0.0, 0.0) for one in free] + [(one, 0.02, 30.0) for one in damped_points]
     for ratio, zeta, rate in points:
         rotor, fill = layered_rotor(0.1, 0.1, zeta)
-        law = (LINEAR, rate) if rate else (NONE, 0.0)
+        law = Friction(FrictionLaw.LINEAR, rate) if rate else NO_FRICTION
         speed = ratio * NATURAL
         growth, _ = asynchronous_growth(rotor.system(), [fill], [speed], law)
-        named = ("linear", rate) if rate else ("none", 0.0)
         numerics = RunupNumerics(cells=256, dispersion=True)
         # The mode that dies slowest stands alone late.
         duration = (400.0 if rate else 150.0) / NATURAL
-        seen = whirl_in_time(rotor.system(), [fill], speed, named, duration, numerics)
+        seen = whirl_in_time(rotor.system(), [fill], speed, law, duration, numerics)
         damped = f", damping ratio {zeta:g}, friction {rate:g} 1/s" if rate else ", no damping"
         found.append(
             compare(
@@ -98,12 +97,12 @@ def layered_rotor(mu: float, depth: float, zeta: float) -> tuple[Jeffcott, Fill]
     return Jeffcott(mass, mass * NATURAL**2, 2.0 * zeta * mass * NATURAL, 0.0), fill
 
 
-def growth_over_speed(zeta: float, friction: tuple[int, float] = (NONE, 0.0)) -> Array:
+def growth_over_speed(zeta: float, friction: Friction = NO_FRICTION) -> Array:
     """Growth over the natural frequency at the speeds of `RANGE`, m_f/M = 0.1, h0/R = 0.1.
 
     Parameters
     ----------
-    zeta, friction : damping ratio of the support; law and coefficient of the liquid's
+    zeta, friction : damping ratio of the support; of the liquid, none by default
     """
     rotor, fill = layered_rotor(0.1, 0.1, zeta)
     return asynchronous_growth(rotor.system(), [fill], RANGE * NATURAL, friction)[0] / NATURAL
@@ -126,7 +125,7 @@ def _peaks() -> list[Case]:
 
 def _weak() -> Case:
     """Damping of the support alone leaves every speed unstable; with laminar friction a band remains."""
-    alone, both = growth_over_speed(0.05), growth_over_speed(0.05, (STOKES, 0.0))
+    alone, both = growth_over_speed(0.05), growth_over_speed(0.05, Friction(FrictionLaw.STOKES))
     unstable = RANGE[both > 0.0]
     return Case(
         name="whirl/damping-alone",

@@ -11,11 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from fluid.fill import Fill, Fills
+from fluid.friction import Friction, FrictionLaw
 from fluid.liquid import KNOWN_LIQUIDS
 from meshes.arrays import Array
 from meshes.chamber import Chamber
 from solvers.layer.prescribed import Numerics, Whirl
-from solvers.layer.settle import friction_law, settle
+from solvers.layer.settle import settle
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.drive import Ramp
 from solvers.runup.error import linear_run_error
@@ -154,7 +155,7 @@ def gravity_sample(seed: int, count: int, weakest: float = 4.0, cells: int = 64)
         chamber = Chamber(radius, 0.02)
         fill = Fill(chamber, WATER, chamber.capacity * depth * (2.0 - depth))
         whirl = Whirl(speed, speed, between(rng, 0.03, 3.0) * depth * radius, gravity=GRAVITY)
-        friction = friction_law("linear", between(rng, 0.01, 0.5) * speed, fill, whirl)
+        friction = Friction(FrictionLaw.LINEAR, between(rng, 0.01, 0.5) * speed)
         found = settle(fill, whirl, friction, Numerics(cells=cells, dispersion=True))
         if not found.converged:
             continue
@@ -181,7 +182,7 @@ def run_up_sample(seed: int, count: int, cells: int = 64) -> Coverage:
             rotor: Jeffcott = rotor,
             fills: list[Fill] = fills,
             drive: Ramp = drive,
-            friction: tuple[str, float] = friction,
+            friction: Friction = friction,
             gravity: float = gravity,
         ) -> RunupHistory:
             numerics = RunupNumerics(cells, 1000, dispersion=True, companion=False)
@@ -198,7 +199,7 @@ def run_up_sample(seed: int, count: int, cells: int = 64) -> Coverage:
 
 def random_run_up(
     rng: np.random.Generator,
-) -> tuple[Jeffcott, list[Fill], Ramp, tuple[str, float], float]:
+) -> tuple[Jeffcott, list[Fill], Ramp, Friction, float]:
     """Rotor, fills, ramp, friction and gravity across the axis of a short run-up."""
     largest, critical = between(rng, 0.05, 0.4), between(rng, 10.0, 150.0)
     damping, chambers = between(rng, 0.02, 0.3), int(rng.integers(1, 3))
@@ -219,8 +220,10 @@ def random_run_up(
     duration = between(rng, 60.0, 300.0) * 4.0 * math.pi / (start + stop)
     rate = (stop - start) / (duration * (1.0 - rng.uniform(0.0, 0.4)))
     drive = Ramp(start, stop, rate, duration, bool(rng.random() < 0.2))
-    law = ("stokes", 0.0) if rng.random() < 0.4 else ("linear", between(rng, 0.005, 0.5) * critical)
-    return rotor, fills, drive, law, gravity
+    friction = Friction(FrictionLaw.STOKES)
+    if rng.random() >= 0.4:
+        friction = Friction(FrictionLaw.LINEAR, between(rng, 0.005, 0.5) * critical)
+    return rotor, fills, drive, friction, gravity
 
 
 def main() -> None:

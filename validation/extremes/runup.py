@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fluid.fill import Fill
+from fluid.friction import Friction, FrictionLaw
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
@@ -20,6 +21,8 @@ from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
 
 _MASS, _NATURAL, _CHAMBER = 30.0, 25.0, Chamber(0.25, 0.04)
 _RAMP = Ramp(15.0, 60.0, 15.0, 4.0)
+
+_FRICTION = Friction(FrictionLaw.LINEAR, 3.0)
 
 
 @dataclass(frozen=True)
@@ -33,7 +36,7 @@ class RunupExtreme:
     unbalance : kg m
     share : of each chamber that is filled
     chambers : how many, of 40 mm height together
-    friction : law and coefficient
+    friction : on the walls
     gravity : across the axis, m/s^2
     ramp : of the spin
     cells : of each layer
@@ -45,7 +48,7 @@ class RunupExtreme:
     unbalance: float = 0.1
     share: float = 5e-4 / _CHAMBER.capacity
     chambers: int = 1
-    friction: tuple[str, float] = ("linear", 3.0)
+    friction: Friction = _FRICTION
     gravity: float = 0.0
     ramp: Ramp = _RAMP
     cells: int = 64
@@ -58,10 +61,10 @@ def runup_extremes() -> Iterator[RunupExtreme]:
     for stiffness in (1e-3, 1e4, 1e12):
         yield replace(base, name=f"stiffness times {stiffness:g}", stiffness=stiffness)
     yield replace(base, name="no damping of the supports", damping=0.0)
-    yield replace(base, name="no damping, no friction", damping=0.0, friction=("none", 0.0))
+    yield replace(base, name="no damping, no friction", damping=0.0, friction=Friction())
     yield replace(base, name="damping times 100", damping=100.0)
-    yield replace(base, name="friction of 1e4 1/s", friction=("linear", 1e4))
-    yield replace(base, name="quadratic friction, c_f = 1", friction=("quadratic", 1.0))
+    yield replace(base, name="friction of 1e4 1/s", friction=Friction(FrictionLaw.LINEAR, 1e4))
+    yield replace(base, name="quadratic friction, c_f = 1", friction=Friction(FrictionLaw.QUADRATIC, 1.0))
     for share in (0.0, 1e-9, 1e-4, 0.5, 0.99, 1.0):
         yield replace(base, name=f"filled to {share:g}", share=share)
     yield replace(base, name="no unbalance", unbalance=0.0)

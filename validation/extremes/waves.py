@@ -12,12 +12,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fluid.fill import Fill
+from fluid.friction import Friction, FrictionLaw
 from fluid.liquid import Liquid
-from leblanc.friction import Friction
 from leblanc.studies.layer import answer_layer, long_wave_notes, long_wave_validity
 from meshes.chamber import Chamber
 from solvers.layer.prescribed import Numerics, Whirl
-from solvers.layer.settle import friction_law, simulate
+from solvers.layer.settle import simulate
 
 _RADIUS, _HEIGHT = 0.15, 0.01
 
@@ -109,9 +109,9 @@ def outcome(case: Extreme) -> Outcome:
     fill = Fill(Chamber(_RADIUS, _HEIGHT), Liquid("test", 1000.0, case.viscosity), volume)
     amplitude, speed = case.amplitude * case.depth * _RADIUS, case.ratio * case.spin
     numerics = Numerics(case.points, case.dispersion)
-    law = Friction("stokes" if case.viscosity else "none", 0.0)
+    friction = Friction(FrictionLaw.STOKES if case.viscosity else FrictionLaw.NONE)
     if case.model == "kdv":
-        answer = answer_layer(fill, case.spin, speed, amplitude, "kdv", law, numerics=numerics)
+        answer = answer_layer(fill, case.spin, speed, amplitude, "kdv", friction, numerics=numerics)
         return Outcome(
             converged=answer.converged,
             in_range=answer.in_range,
@@ -124,7 +124,6 @@ def outcome(case: Extreme) -> Outcome:
             says="; ".join(answer.notes),
         )
     whirl = Whirl(case.spin, speed, amplitude, ramp=20.0 / case.spin)
-    friction = friction_law(law.law, 0.0, fill, whirl)
     history = simulate(fill, whirl, case.periods * whirl.period, friction, numerics)
     validity = long_wave_validity(fill, whirl, history)
     numbers = (history.force_ratio, history.offset, history.mean_rotation, history.depth)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import NONE, STOKES
+from fluid.friction import NO_FRICTION, Friction, FrictionLaw
 from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
 from meshes.baffles import Baffles
 from solvers.rotor.jeffcott import Jeffcott
@@ -24,7 +24,7 @@ from validation.cases.whirl import NATURAL, layered_rotor
 
 _FRAME = Frame(left=0.72, top=0.15, between=0.0, below=0.42)
 _ZETA = 0.05
-_LAW = (STOKES, 0.0)
+_LAW = Friction(FrictionLaw.STOKES)
 
 SPEEDS = np.linspace(0.3, 2.5, 221)  # over the natural frequency
 COUNTS = (1, 2, 3, 4, 6, 8)
@@ -90,14 +90,14 @@ def table(counts: Sequence[int] = COUNTS, depths: Sequence[float] = DEPTHS) -> l
                 count,
                 depth,
                 float(growth.max()) / NATURAL,
-                _bands(free, fill, (NONE, 0.0)),
+                _bands(free, fill, NO_FRICTION),
                 _bands(damped, fill, _LAW),
             )
         )
     return lines
 
 
-def _bands(rotor: Jeffcott, fill: Fill, friction: tuple[int, float]) -> tuple[tuple[float, float], ...]:
+def _bands(rotor: Jeffcott, fill: Fill, friction: Friction) -> tuple[tuple[float, float], ...]:
     (found,) = unstable_bands(rotor.system(), [[fill]], NATURAL * SPEEDS, friction)
     return tuple((low / NATURAL, high / NATURAL) for low, high in found)
 

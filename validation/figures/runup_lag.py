@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from fluid.friction import Friction, FrictionLaw
 from leblanc.studies.runup import turn_mean
 from meshes.arrays import Array, Complex
 from solvers.runup.drive import Ramp
@@ -85,7 +86,7 @@ def lag(rate: float, damping_ratio: float, cells: int = 64, gravity: float = _GR
     turns = 0.5 * (TO**2 - FROM**2) / rate / (2.0 * math.pi)
     numerics = RunupNumerics(cells=cells, samples=max(400, int(12.0 * turns)), companion=False)
     rotor = horizontal_rotor(damping_ratio, 1000.0 * _RPM).system()
-    h = run_up(rotor, horizontal_rig(), ramp, ("stokes", 0.0), gravity, numerics)
+    h = run_up(rotor, horizontal_rig(), ramp, Friction(FrictionLaw.STOKES), gravity, numerics)
     deflection = turn_mean(h.deflection[:, 0] * np.exp(-1j * h.angle), h.angle)
     exact, exact_angle = steady(h.speed, damping_ratio)
     apart = np.angle(np.exp(-1j * exact_angle) / turn_mean(h.liquid_position, h.angle))

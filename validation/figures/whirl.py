@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from fluid.friction import LINEAR, NONE, STOKES
+from fluid.friction import NO_FRICTION, Friction, FrictionLaw
 from leblanc.figures.page import Figure, Frame, lay_out, number, style
 from validation.cases.case import Case
 from validation.cases.whirl import NATURAL, RANGE, growth_over_speed
@@ -19,11 +19,17 @@ def growth_figure(in_time: list[Case]) -> Figure:
     ----------
     in_time : the cases of `validation.cases.whirl` that were run in time
     """
-    curves: tuple[tuple[str, float, tuple[int, float], str, Any], ...] = (
-        ("no damping", 0.0, (NONE, 0.0), "#0072B2", "-"),
-        ("support 0.05", 0.05, (NONE, 0.0), "#D55E00", (0, (5, 1.5))),
-        ("support 0.05, laminar friction", 0.05, (STOKES, 0.0), "#009E73", (0, (6, 1.5, 1, 1.5))),
-        ("support 0.02, friction 30 1/s", 0.02, (LINEAR, 30.0), "#CC79A7", (0, (1, 1.2))),
+    curves: tuple[tuple[str, float, Friction, str, Any], ...] = (
+        ("no damping", 0.0, NO_FRICTION, "#0072B2", "-"),
+        ("support 0.05", 0.05, NO_FRICTION, "#D55E00", (0, (5, 1.5))),
+        (
+            "support 0.05, laminar friction",
+            0.05,
+            Friction(FrictionLaw.STOKES),
+            "#009E73",
+            (0, (6, 1.5, 1, 1.5)),
+        ),
+        ("support 0.02, friction 30 1/s", 0.02, Friction(FrictionLaw.LINEAR, 30.0), "#CC79A7", (0, (1, 1.2))),
     )
     with style():
         figure = Figure()

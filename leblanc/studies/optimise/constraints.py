@@ -14,7 +14,6 @@ from leblanc.scene.scene import Scene
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.conditions import Robust
 from leblanc.studies.optimise.objectives import PeakOver, Vibration
-from leblanc.studies.whirl_map import solver_friction
 from meshes.arrays import Array
 from solvers.search import Judgement
 from solvers.whirl.growth import growth_map
@@ -115,7 +114,7 @@ def growth(scene: Scene, volumes: Array, speed: Array) -> Array:
     1/s, below 0 where every whirl dies out, nan where the whirls were not found, shape (m,)
     """
     rows: list[Sequence[Fill]] = [with_volumes(scene, row).chambers for row in volumes]
-    system, friction = dry_rotor(scene).system(), solver_friction(scene.model.friction)
+    system, friction = dry_rotor(scene).system(), scene.model.friction
     return np.asarray(growth_map(system, rows, speed, friction)[0].max(axis=1))
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from leblanc.friction import Friction
+from fluid.friction import Friction
 from leblanc.results.record import StudyRecord, phase
 from leblanc.scene.scene import Model, Scene, load_scene
 from leblanc.studies.batch import Answers, answer_scenes

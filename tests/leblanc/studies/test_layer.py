@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from fluid.fill import Fill
+from fluid.friction import Friction
 from fluid.liquid import known_liquid
 from leblanc.cli import main
-from leblanc.friction import Friction
 from leblanc.results.layer import LayerAnswer
 from leblanc.studies.layer import answer_layer, steady_film
 from meshes.chamber import Chamber

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fluid.friction import STOKES
+from fluid.friction import Friction
 from leblanc.results.record import SelfExcited
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import load_scene
@@ -54,5 +54,5 @@ def test_rig() -> None:
     # Refined edges: growth there is its slope, some 0.1 in a unit of speed, times 1e-8 of the speed.
     scene = load_scene("examples/horizontal_rig.toml")
     system = dry_rotor(scene).system()
-    at_edges, _ = asynchronous_growth(system, scene.chambers, [low, high], (STOKES, 0.0))
+    at_edges, _ = asynchronous_growth(system, scene.chambers, [low, high], Friction("stokes"))
     assert np.all(np.abs(at_edges) < 1e-6)

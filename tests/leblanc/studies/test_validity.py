@@ -8,10 +8,10 @@ import math
 import pytest
 
 from fluid.fill import Fill
+from fluid.friction import NO_FRICTION, Friction
 from fluid.liquid import known_liquid
 from leblanc.cli import main
-from leblanc.friction import Friction
-from leblanc.results.layer import NO_FRICTION, LayerAnswer
+from leblanc.results.layer import LayerAnswer
 from leblanc.studies.layer import answer_layer
 from leblanc.studies.validity import MEANING
 from meshes.chamber import Chamber

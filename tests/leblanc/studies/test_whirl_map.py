@@ -13,12 +13,11 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from fluid.friction import LINEAR, NONE, STOKES
+from fluid.friction import Friction
 from fluid.whirl import covering_speed
 from leblanc.cli import main
 from leblanc.cli.map import map as map_command
 from leblanc.figures.stability_map import map_figure, signed_distance
-from leblanc.friction import Friction
 from leblanc.results.whirl_map import write_map
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import Scene, load_scene
@@ -67,9 +66,9 @@ def test_fills() -> None:
 def test_record() -> None:
     """Each point is the growth of the scene's machine with those volumes; each band separates signs."""
     for name, law, pair in (
-        ("horizontal_rig", Friction("stokes", 0.0), (STOKES, 0.0)),
-        ("washing_machine", Friction("linear", 2.0), (LINEAR, 2.0)),
-        ("washing_machine", Friction("quadratic", 0.1), (NONE, 0.0)),
+        ("horizontal_rig", Friction("stokes", 0.0), Friction("stokes")),
+        ("washing_machine", Friction("linear", 2.0), Friction("linear", 2.0)),
+        ("washing_machine", Friction("quadratic", 0.1), Friction()),
     ):
         record, machine = small(name, friction=law), scene(name)
         system = dry_rotor(machine).system()

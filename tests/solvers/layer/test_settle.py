@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from fluid.fill import Fill
+from fluid.friction import Friction
 from fluid.liquid import Liquid
 from fluid.waves import force_ratio
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.layer.prescribed import Numerics, Whirl
-from solvers.layer.settle import friction_law, settle, simulate
+from solvers.layer.settle import settle, simulate
 from solvers.statics.hydrostatics import equilibrium
 
 SPIN, R, H = 40.0, 0.15, 0.01
@@ -95,7 +96,7 @@ def test_from_rest_with_friction_to_the_synchronous_state() -> None:
     # Spun up from a uniform layer by wall friction alone, the liquid ends where statics has it.
     whirl = Whirl(SPIN, SPIN, 0.003, ramp=2.0)
     fill = layer(0.1)
-    answer = simulate(fill, whirl, 12.0, friction_law("linear", 2.0, fill, whirl), Numerics(128))
+    answer = simulate(fill, whirl, 12.0, Friction("linear", 2.0), Numerics(128))
     assert answer.converged
     assert answer.force_ratio[-1] == pytest.approx(1.0, abs=1e-4)
 
@@ -118,13 +119,11 @@ def test_history() -> None:
 def test_gravity_across_the_axis_is_carried() -> None:
     # Its mean over whirl periods is no part of the synchronous force.
     fill = layer(0.1)
-    plain = settle(
-        fill, Whirl(SPIN, 0.5 * SPIN, 1e-4), friction_law("linear", 1.0, fill, Whirl(SPIN, 20.0, 1e-4))
-    )
+    plain = settle(fill, Whirl(SPIN, 0.5 * SPIN, 1e-4), Friction("linear", 1.0))
     pulled = settle(
         fill,
         Whirl(SPIN, 0.5 * SPIN, 1e-4, gravity=1.0),
-        friction_law("linear", 1.0, fill, Whirl(SPIN, 20.0, 1e-4)),
+        Friction("linear", 1.0),
     )
     assert pulled.converged and plain.converged
     assert abs(pulled.force_ratio[-1] - plain.force_ratio[-1]) < 0.02
@@ -150,7 +149,9 @@ def test_bad_requests() -> None:
     with pytest.raises(InputError):
         Numerics(cells=4)
     with pytest.raises(InputError):
-        friction_law("glue", 0.0, layer(0.1), Whirl(40.0, 30.0, 1e-3))
+        Friction("glue")
+    with pytest.raises(InputError):
+        Friction("linear", -1.0)
     chamber = Chamber(R, H)
     with pytest.raises(InputError):
         simulate(Fill(chamber, WATER, chamber.capacity), Whirl(40.0, 30.0, 1e-3), 1.0)

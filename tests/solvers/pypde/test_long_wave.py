@@ -27,12 +27,12 @@ from pde.solvers import registered_solvers
 from pde.solvers.base import ConvergenceError
 
 from fluid.fill import Fill
-from fluid.friction import LINEAR, NONE
+from fluid.friction import Friction
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.layer.prescribed import Numerics, Whirl
-from solvers.layer.settle import friction_law, simulate
+from solvers.layer.settle import simulate
 from solvers.pypde.long_wave import AnnularLongWavePDE, FiniteVolumeSolver
 from solvers.pypde.one_family import circle
 from tests.mutants import kills
@@ -93,7 +93,7 @@ class Sourced(AnnularLongWavePDE):
     """The equation with the sources of the manufactured solution."""
 
     def __init__(self, law: str) -> None:
-        friction = friction_law(law, LAWS[law], layer(), MADE)
+        friction = Friction(law, LAWS[law])
         super().__init__(layer(), MADE, friction=friction, spin_rate=MADE_RATE)
         self.exact = made(law)
 
@@ -138,7 +138,7 @@ DRIVEN = Whirl(SPIN, 28.0, 2e-3, ramp=0.3, gravity=0.5)
 def check_history(law: str = "stokes", dispersion: bool = True) -> None:
     """Stopping where `simulate` does, the solver takes the same steps: the layer agrees to rounding."""
     fill, cells, periods = layer(), 48, 3
-    friction = friction_law(law, 0.02 if law == "quadratic" else 1.0, fill, DRIVEN)
+    friction = Friction(law, 0.02 if law == "quadratic" else 1.0)
     answer = simulate(fill, DRIVEN, periods * DRIVEN.period, friction, Numerics(cells, dispersion=dispersion))
     eq = AnnularLongWavePDE(fill, DRIVEN, friction=friction, dispersion=dispersion)
     stop, storage = periods * DRIVEN.period, MemoryStorage()
@@ -164,7 +164,7 @@ def test_history_is_the_layers(law: str, dispersion: bool) -> None:
 def test_force_and_offset_are_the_layers() -> None:
     """The mean over a period of the force at each instant is what `simulate` reports; the offset as well."""
     fill, whirl, cells = layer(), Whirl(SPIN, 28.0, 3e-4, ramp=0.5), 48
-    friction, periods, samples = (LINEAR, 3.0), 6, 48
+    friction, periods, samples = Friction("linear", 3.0), 6, 48
     answer = simulate(fill, whirl, periods * whirl.period, friction, Numerics(cells))
     eq = AnnularLongWavePDE(fill, whirl, friction=friction)
     loads = DataTracker(lambda state, t: [eq.force(state, t), eq.offset(state)], whirl.period / samples)
@@ -183,7 +183,7 @@ def test_force_and_offset_are_the_layers() -> None:
 def test_steps_are_of_second_order() -> None:
     """The solver's steps approach the same right-hand side integrated to rounding, with their square."""
     fill = layer()
-    eq = AnnularLongWavePDE(fill, Whirl(SPIN, 20.0, 1e-4), friction=(LINEAR, 2.0), dispersion=True)
+    eq = AnnularLongWavePDE(fill, Whirl(SPIN, 20.0, 1e-4), friction=Friction("linear", 2.0), dispersion=True)
     state = eq.start(circle(32))
     exact = eq.solve(state, 0.3, solver="scipy", method="DOP853", rtol=1e-10, atol=1e-14, tracker=None).data
     gaps = [
@@ -243,7 +243,7 @@ def test_synchronous_circle_is_an_equilibrium() -> None:
     ids=str,
 )
 def test_synchronous_circle_stays(options: dict[str, Any], amplitude: float) -> None:
-    eq = AnnularLongWavePDE(layer(), Whirl(SPIN, SPIN, amplitude), friction=(LINEAR, 1.0))
+    eq = AnnularLongWavePDE(layer(), Whirl(SPIN, SPIN, amplitude), friction=Friction("linear", 1.0))
     state = eq.start(circle(64), circle_depth(amplitude, R * (0.9 + (amplitude > 0.01) * 0.2), 64))
     assert (state.data[0].min() == 0.0) == (amplitude > 0.01)
     final = eq.solve(state, 0.5, tracker=None, **options)
@@ -281,7 +281,7 @@ def test_spin_up_without_friction_leaves_angular_momentum() -> None:
 def test_spin_up_with_friction_tends_to_a_lag() -> None:
     """R A u_t = -rate A (R^2 - A) - R^2 k h u has an exponential as its solution."""
     rate, k, stop = 30.0, 2.0, 0.8
-    eq = AnnularLongWavePDE(layer(), STILL, friction=(LINEAR, k), spin_rate=rate)
+    eq = AnnularLongWavePDE(layer(), STILL, friction=Friction("linear", k), spin_rate=rate)
     state = eq.start(circle(8))
     final = eq.solve(state, stop, solver="runge-kutta", dt=4e-3, tracker=None)
     area, depth = state.data[0][0], layer().depth
@@ -294,7 +294,7 @@ def test_spin_up_with_friction_tends_to_a_lag() -> None:
 
 def test_dry_patches_lose_nothing() -> None:
     """A dry patch that goes round: mass to rounding and nothing below zero by the solver's own steps."""
-    eq = AnnularLongWavePDE(layer(), Whirl(SPIN, 37.0, 0.04, gravity=2.0), friction=(LINEAR, 1.0))
+    eq = AnnularLongWavePDE(layer(), Whirl(SPIN, 37.0, 0.04, gravity=2.0), friction=Friction("linear", 1.0))
     state = eq.start(circle(64), circle_depth(0.04, 1.1 * R, 64))
     storage, stop = MemoryStorage(), 2.0
     final = eq.solve(state, stop, tracker=[storage.tracker(0.02)])
@@ -308,7 +308,7 @@ def test_dry_patches_lose_nothing() -> None:
 
 def test_stock_steps_lose_nothing_either() -> None:
     """Beside a dry patch cells fall below zero by what a step takes, but what is there in all stays."""
-    eq = AnnularLongWavePDE(layer(), Whirl(SPIN, 37.0, 0.04, gravity=2.0), friction=(LINEAR, 1.0))
+    eq = AnnularLongWavePDE(layer(), Whirl(SPIN, 37.0, 0.04, gravity=2.0), friction=Friction("linear", 1.0))
     state = eq.start(circle(64), circle_depth(0.04, 1.1 * R, 64))
     final = eq.solve(state, 0.2, solver="runge-kutta", dt=5e-4, tracker=None)
     assert abs(final[0].integral / state[0].integral - 1.0) < 400.0 * EPSILON
@@ -340,7 +340,7 @@ STOCK = {
 @functools.cache
 def arrived() -> tuple[AnnularLongWavePDE, Any, np.ndarray]:
     """A driven layer with friction, its start, and its deviation from rest after 0.05 s."""
-    eq = AnnularLongWavePDE(layer(), Whirl(SPIN, 28.0, 1e-3), friction=(LINEAR, 2.0))
+    eq = AnnularLongWavePDE(layer(), Whirl(SPIN, 28.0, 1e-3), friction=Friction("linear", 2.0))
     state = eq.start(circle(16))
     final = eq.solve(state, 0.05, solver="scipy", method="DOP853", rtol=1e-11, atol=1e-15, tracker=None)
     return eq, state, final.data[0] - state.data[0]
@@ -439,7 +439,6 @@ def test_the_equation_can_be_copied() -> None:
     ("change", "field"),
     [
         ({"friction": (7, 0.0)}, "friction"),
-        ({"friction": (LINEAR, -1.0)}, "friction coefficient"),
         ({"spin_rate": math.inf}, "spin_rate"),
     ],
 )
@@ -507,7 +506,7 @@ def test_bad_states_and_options_are_named() -> None:
         eq.force(below, 0.0)
     with pytest.raises(InputError, match="area"):
         eq.offset(eq.start(grid, 0.0))
-    assert eq.terms.friction == (NONE, 0.0)
+    assert eq.terms.friction == Friction()
 
 
 def test_the_example_of_the_theory_page(capsys: pytest.CaptureFixture[str]) -> None:
@@ -540,7 +539,7 @@ def test_manufactured_solution_with_linear_friction() -> None:
     check_manufactured()
 
 
-@kills("solvers.pypde.terms:march", "whirl.slip,", "-whirl.slip,")
+@kills("solvers.pypde.terms:march", "whirl.slip,\n        whirl.ramp", "-whirl.slip,\n        whirl.ramp")
 @kills("solvers.pypde.terms:march", "whirl.gravity / radius,", "whirl.gravity,")
 @kills("solvers.pypde.terms:march", "_lid(terms), _spread(terms, a))", "0.0, _spread(terms, a))")
 @kills("solvers.pypde.terms:_spread", "layer_log(a.mean())) ** 2", "layer_log(a.mean()))")

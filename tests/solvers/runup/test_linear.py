@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fluid.fill import Fill
-from fluid.friction import LINEAR
+from fluid.friction import Friction
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from meshes.errors import InputError
@@ -31,16 +31,21 @@ RAMP = Ramp(5.0, 60.0, 10.0, 6.0)
 ALONE = RunupNumerics(cells=128, samples=600, companion=False)
 
 
-def run(model: str, friction: tuple[str, float], **changes: object) -> RunupHistory:
+def run(model: str, friction: Friction, **changes: object) -> RunupHistory:
     numerics = replace(ALONE, **{"dispersion": model == "long_wave", **changes})  # type: ignore[arg-type]
     return run_up(ROTOR.system(), [FILL], RAMP, friction, 0.0, numerics, model=model)
 
 
 @pytest.mark.parametrize(
     "friction, apart",
-    [(("linear", 0.5), 0.02), (("linear", 3.0), 0.005), (("none", 0.0), 0.005), (("stokes", 0.0), 0.08)],
+    [
+        (Friction("linear", 0.5), 0.02),
+        (Friction("linear", 3.0), 0.005),
+        (Friction(), 0.005),
+        (Friction("stokes"), 0.08),
+    ],
 )
-def test_small_waves_are_those_of_the_long_wave_model(friction: tuple[str, float], apart: float) -> None:
+def test_small_waves_are_those_of_the_long_wave_model(friction: Friction, apart: float) -> None:
     """The same run-up by two models that share no line but the rotor, spin-up of the liquid included.
 
     Where the liquid lags by a third of the speed the models differ: the long waves keep the vorticity of the
@@ -58,7 +63,7 @@ def grown(spin: float, rate: float, duration: float) -> tuple[complex, complex]:
     fill = Fill(chamber, WATER, 0.19 * chamber.capacity)
     mass = fill.full_mass / 0.1
     rotor = Jeffcott(mass, mass, 0.04 * mass * (rate > 0.0), 0.0).system()
-    friction = ("linear", rate)
+    friction = Friction("linear", rate)
     machine = couple_linear(rotor, [fill], spin, friction, 0.0, 256, False)
     machine.machine.place[0] = 1e-6
     times, seen = np.linspace(0.0, duration, 801)[1:], []
@@ -68,7 +73,7 @@ def grown(spin: float, rate: float, duration: float) -> tuple[complex, complex]:
     last = slice(400, None)
     growth = np.polyfit(times[last], np.log(np.abs(seen))[last], 1)[0]
     turning = np.polyfit(times[last], np.unwrap(np.angle(seen))[last], 1)[0]
-    wanted, whirl = asynchronous_growth(rotor, [fill], [spin], (LINEAR, rate))
+    wanted, whirl = asynchronous_growth(rotor, [fill], [spin], Friction("linear", rate))
     return complex(growth, turning), complex(wanted[0], whirl[0])
 
 
@@ -84,7 +89,7 @@ def test_growth_is_that_of_the_characteristic_equation(spin: float, rate: float,
 def test_hold_comes_to_the_steady_response() -> None:
     """Held at a speed, the synchronous response with the mass of a full drum."""
     drive = Ramp(59.9, 60.0, 1.0, 6.0)
-    for law in (("linear", 8.0), ("linear", 30.0)):
+    for law in (Friction("linear", 8.0), Friction("linear", 30.0)):
         history = run_up(ROTOR.system(), [FILL], drive, law, 0.0, ALONE, model="linear")
         found = history.deflection[-1, 0] * np.exp(-1j * history.angle[-1])
         steady = synchronous_response(ROTOR, [FILL], [60.0], gravity=0.0)
@@ -100,7 +105,7 @@ def test_energy_closes_with_the_step() -> None:
     left = []
     for cells in (64, 128):
         rotor = replace(ROTOR, unbalance=0.05)
-        machine = couple_linear(rotor.system(), [FILL], 30.0, ("linear", 2.0), 3.0, cells, False)
+        machine = couple_linear(rotor.system(), [FILL], 30.0, Friction("linear", 2.0), 3.0, cells, False)
         machine.machine.rate[:2] = 0.05, -0.02
         before = machine.energy()
         assert machine.advance(1.0, 20.0, 0.8, 10**6) == 0
@@ -115,7 +120,7 @@ def test_motor() -> None:
     """A motor spins rotor and liquid: their angular momentum is the integral of its torque."""
     rotor = replace(ROTOR, unbalance=0.0)
     drive = Motor(10.0, 0.5, (0.0, 100.0), (5.0, 5.0), 2.0)
-    history = run_up(rotor.system(), [FILL], drive, ("linear", 2.0), 0.0, ALONE, model="linear")
+    history = run_up(rotor.system(), [FILL], drive, Friction("linear", 2.0), 0.0, ALONE, model="linear")
     area = 5e-4 / (2.0 * math.pi * 0.04 * 0.25**2)
     inertia = 1000.0 * 0.04 * 2.0 * math.pi * 0.25**4 * area * (1.0 - area)
     own = history.speed + history.mean_rotation[:, 0]
@@ -129,7 +134,7 @@ def test_motor() -> None:
 def test_capture() -> None:
     """Caught at sqrt(g/a) and let go below; momentum and energy are kept account of."""
     drive = Ramp(3.0, 20.0, 4.0, 5.0, back=True)
-    history = run_up(ROTOR.system(), [FILL], drive, ("linear", 3.0), 9.81, ALONE, model="linear")
+    history = run_up(ROTOR.system(), [FILL], drive, Friction("linear", 3.0), 9.81, ALONE, model="linear")
     caught, speed = history.captured[:, 0], math.sqrt(9.81 / FILL.surface_radius)
     assert history.converged
     assert history.speed[caught & (history.time < 5.0)].min() == pytest.approx(speed, rel=0.02)
@@ -141,7 +146,7 @@ def test_capture() -> None:
 @kills("solvers.runup.linear:switch_linear", "lost += machine.masses[j]", "lost -= machine.masses[j]")
 def test_switching_keeps_the_momentum() -> None:
     """Rotor and liquid keep their momentum when a layer is let go."""
-    machine = couple_linear(ROTOR.system(), [FILL], 20.0, ("linear", 1.0), 9.81, 64, False)
+    machine = couple_linear(ROTOR.system(), [FILL], 20.0, Friction("linear", 1.0), 9.81, 64, False)
     machine.machine.rate[:4] = 0.3, -0.2, 0.5, 0.4
     before = MASS * machine.machine.rate[:2] + FILL.mass * (
         machine.machine.rate[:2] + machine.machine.rate[2:4]
@@ -161,7 +166,7 @@ def test_switching_keeps_the_momentum() -> None:
 )
 def test_depths() -> None:
     """A surface shifted by xi moves the liquid's moment by pi a^2 h xi: the offset gives the depths."""
-    machine = couple_linear(ROTOR.system(), [FILL], 20.0, ("none", 0.0), 0.0, 64, False)
+    machine = couple_linear(ROTOR.system(), [FILL], 20.0, Friction(), 0.0, 64, False)
     machine.machine.place[2:4] = 3e-3, 4e-3
     found = read_linear(machine)
     inner = FILL.surface_radius
@@ -173,7 +178,7 @@ def test_depths() -> None:
 
 def test_stiff_empty_full_and_many() -> None:
     stiff = replace(ROTOR, stiffness=1e15, damping=0.0)
-    history = run_up(stiff.system(), [FILL], RAMP, ("linear", 1.0), 0.0, ALONE, model="linear")
+    history = run_up(stiff.system(), [FILL], RAMP, Friction("linear", 1.0), 0.0, ALONE, model="linear")
     assert history.converged and history.amplitude.max() < 3.0 * 1e-3 * 60.0**2 / 1e15
     dry = run_up(ROTOR.system(), [], RAMP, numerics=ALONE, model="linear")
     waves = run_up(ROTOR.system(), [], RAMP, numerics=ALONE)
@@ -185,8 +190,8 @@ def test_stiff_empty_full_and_many() -> None:
     heavy = run_up(replace(ROTOR, mass=MASS + full.mass).system(), [], RAMP, numerics=ALONE, model="linear")
     np.testing.assert_allclose(solid.deflection, heavy.deflection, atol=1e-12)
     flat = Fill(Chamber(0.25, 0.0025), WATER, 5e-4 / 16.0)
-    many = run_up(ROTOR.system(), [flat] * 16, RAMP, ("linear", 2.0), 0.0, ALONE, model="linear")
-    one = run("linear", ("linear", 2.0))
+    many = run_up(ROTOR.system(), [flat] * 16, RAMP, Friction("linear", 2.0), 0.0, ALONE, model="linear")
+    one = run("linear", Friction("linear", 2.0))
     np.testing.assert_allclose(many.deflection[:, 0], one.deflection[:, 0], atol=1e-10 * one.amplitude.max())
 
 

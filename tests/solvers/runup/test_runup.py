@@ -10,6 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from fluid.fill import Fill
+from fluid.friction import Friction
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from meshes.errors import InputError
@@ -38,7 +39,7 @@ def layer(volume: float) -> Fill:
 
 def run(volume: float, rate: float, cells: int = 128) -> RunupHistory:
     fills = [layer(volume)] if volume else []
-    return run_up(ROTOR.system(), fills, RAMP, ("linear", rate), 0.0, replace(ALONE, cells=cells))
+    return run_up(ROTOR.system(), fills, RAMP, Friction("linear", rate), 0.0, replace(ALONE, cells=cells))
 
 
 # --- the rotor alone ---
@@ -86,7 +87,7 @@ def test_dry_energy_closes_to_rounding() -> None:
 def test_momentum_is_handed_over_to_rounding() -> None:
     """Without support and unbalance the momentum of rotor and liquid stays, whatever the waves do."""
     free = Jeffcott(3.0, 1e-15, 0.0, 0.0)
-    machine = couple(free.system(), [layer(8e-4)], 20.0, ("none", 0.0), 0.0, 32, False)
+    machine = couple(free.system(), [layer(8e-4)], 20.0, Friction(), 0.0, 32, False)
     machine.state.rotor[2:4] = 0.05, -0.02
 
     def momentum() -> np.ndarray:
@@ -107,7 +108,7 @@ def test_energy_closes_with_the_mesh() -> None:
     rotor = Jeffcott(3.0, 3.0 * 15.0**2, 4.0, 2e-3)
     left = []
     for cells in (32, 64):
-        machine = couple(rotor.system(), [layer(8e-4)], 30.0, ("quadratic", 0.02), 0.3, cells, False)
+        machine = couple(rotor.system(), [layer(8e-4)], 30.0, Friction("quadratic", 0.02), 0.3, cells, False)
         machine.state.rotor[2:4] = 0.02, -0.01
         energy = machine.energy()
         assert machine.advance(0.3, 4.0, 0.4, 10**6) == 0
@@ -123,9 +124,9 @@ def test_energy_closes_with_the_mesh() -> None:
 def test_energy_of_a_free_machine_only_falls() -> None:
     """No damping, no friction, no unbalance: what bores and the scheme take is all that is lost."""
     free = Jeffcott(3.0, 3.0 * 15.0**2, 0.0, 0.0)
-    machine = couple(free.system(), [layer(8e-4)], 30.0, ("none", 0.0), 0.0, 128, False)
+    machine = couple(free.system(), [layer(8e-4)], 30.0, Friction(), 0.0, 128, False)
     machine.state.rotor[0] = 2e-3
-    reference = couple(free.system(), [layer(8e-4)], 30.0, ("none", 0.0), 0.0, 128, False).energy()
+    reference = couple(free.system(), [layer(8e-4)], 30.0, Friction(), 0.0, 128, False).energy()
     before = machine.energy() - reference
     assert machine.advance(2.0, 0.0, 0.8, 10**6) == 0
     after = machine.energy() - reference
@@ -180,7 +181,7 @@ def test_hold_comes_to_the_steady_response() -> None:
     for volume in (5e-5, 5e-4):
         wet = synchronous_response(ROTOR, [layer(volume)], [60.0], gravity=0.0)
         numerics = replace(ALONE, cells=128, samples=50)
-        history = run_up(ROTOR.system(), [layer(volume)], drive, ("linear", 8.0), 0.0, numerics)
+        history = run_up(ROTOR.system(), [layer(volume)], drive, Friction("linear", 8.0), 0.0, numerics)
         found = history.deflection[-1, 0] * np.exp(-1j * history.angle[-1])
         # The static force of 128 cells is within 3e-4 of the full drum's; a dry edge costs their order.
         assert abs(found - wet.deflection[0]) < 2e-3 * abs(wet.deflection[0])
@@ -219,7 +220,7 @@ def test_whirl_grows_as_the_linear_theory_says(spin: float, dispersion: bool, er
     """Long waves run 0.4 % faster than the exact ones, which moves the growth by as much."""
     rotor, fill = thin_layer()
     numerics = RunupNumerics(cells=128, dispersion=dispersion)
-    found = whirl_in_time(rotor.system(), [fill], spin, ("none", 0.0), 150.0, numerics)
+    found = whirl_in_time(rotor.system(), [fill], spin, Friction(), 150.0, numerics)
     wanted = wolf(spin)
     assert found.linear
     assert found.growth == pytest.approx(wanted.real, rel=error)
@@ -231,7 +232,7 @@ def test_whirl_dies_outside_the_band_with_liquid_friction(spin: float) -> None:
     rotor, fill = thin_layer(zeta=0.02)
     rate = 0.3
     numerics = RunupNumerics(cells=128, dispersion=True)
-    found = whirl_in_time(rotor.system(), [fill], spin, ("linear", rate), 250.0, numerics)
+    found = whirl_in_time(rotor.system(), [fill], spin, Friction("linear", rate), 250.0, numerics)
     wanted = wolf(spin, rate * 0.1 / 0.095, 0.02)
     assert wanted.real < 0.0
     # The slowest mode stands alone once the others have died; the scheme's own loss adds to its decay.
@@ -280,7 +281,7 @@ def test_weak_motor_hangs_at_the_resonance() -> None:
 def test_switching_keeps_the_momentum() -> None:
     """Rotor and liquid keep their momentum when a layer is let go, fallen or caught again."""
     for change in (switch, fall):
-        machine = couple(ROTOR.system(), [layer(2e-3)], 20.0, ("linear", 3.0), 9.81, 32, False)
+        machine = couple(ROTOR.system(), [layer(2e-3)], 20.0, Friction("linear", 3.0), 9.81, 32, False)
         machine.state.rotor[2:4] = 0.3, -0.2
         assert machine.advance(0.2, -20.0, 0.8, 10**6) == 0
         total = 2.0
@@ -321,7 +322,7 @@ def test_switching_keeps_the_momentum() -> None:
 @kills("solvers.runup.long_wave:reading", "1.0 - surface.max(axis=1", "1.0 - surface.min(axis=1")
 def test_reading() -> None:
     """Offset, depths and rotation of a layer that is known."""
-    machine = couple(ROTOR.system(), [layer(2e-3)], 20.0, ("none", 0.0), 0.0, 64, False)
+    machine = couple(ROTOR.system(), [layer(2e-3)], 20.0, Friction(), 0.0, 64, False)
     theta = 2.0 * math.pi * (np.arange(64) + 0.5) / 64
     mean = float(machine.area[0, 0])
     machine.area[0] = mean * (1.0 + 0.1 * np.cos(theta - 0.5))
@@ -363,7 +364,7 @@ def test_capture_and_release_in_the_balance() -> None:
     speed = math.sqrt(9.81 / fill.surface_radius)
     drive = Ramp(3.0, 20.0, 8.0, 2.5, back=True)
     numerics = replace(ALONE, cells=64, samples=400)
-    history = run_up(ROTOR.system(), [fill], drive, ("linear", 30.0), 9.81, numerics)
+    history = run_up(ROTOR.system(), [fill], drive, Friction("linear", 30.0), 9.81, numerics)
     caught, rising = history.captured[:, 0], history.time < 2.5
     # Samples are a tenth of a rad/s apart.
     assert history.speed[rising & caught].min() == pytest.approx(speed, rel=0.035)
@@ -380,8 +381,10 @@ def test_error_estimate_is_of_the_size_of_the_error() -> None:
     """The estimate is of the size of the error."""
     ramp = Ramp(20.0, 40.0, 20.0, 1.5)
     numerics = RunupNumerics(cells=32, samples=100)
-    coarse = run_up(ROTOR.system(), [layer(5e-4)], ramp, ("linear", 3.0), 0.0, numerics)
-    fine = run_up(ROTOR.system(), [layer(5e-4)], ramp, ("linear", 3.0), 0.0, replace(numerics, cells=128))
+    coarse = run_up(ROTOR.system(), [layer(5e-4)], ramp, Friction("linear", 3.0), 0.0, numerics)
+    fine = run_up(
+        ROTOR.system(), [layer(5e-4)], ramp, Friction("linear", 3.0), 0.0, replace(numerics, cells=128)
+    )
     error = np.abs(coarse.amplitude - fine.amplitude).max() / fine.amplitude.max()
     assert error < coarse.error_estimate < 8.0 * error
 
@@ -392,7 +395,7 @@ def test_liquid_is_captured_and_let_go() -> None:
     speed = math.sqrt(9.81 / fill.surface_radius)
     drive = Ramp(3.0, 20.0, 4.0, 5.0, back=True)
     numerics = replace(ALONE, cells=64, samples=1000)
-    history = run_up(ROTOR.system(), [fill], drive, ("linear", 3.0), 9.81, numerics)
+    history = run_up(ROTOR.system(), [fill], drive, Friction("linear", 3.0), 9.81, numerics)
     caught = history.captured[:, 0]
     assert history.converged
     rising = np.gradient(history.speed) > 0.0
@@ -411,7 +414,7 @@ def test_liquid_that_gravity_throws_about_falls_back() -> None:
     """Hardly any friction: the layer caught at the speed of capture collapses; the run goes on without it."""
     ramp = Ramp(8.0, 14.0, 3.0, 2.0)
     numerics = replace(ALONE, cells=32, samples=400)
-    history = run_up(ROTOR.system(), [layer(2e-3)], ramp, ("none", 0.0), 9.81, numerics)
+    history = run_up(ROTOR.system(), [layer(2e-3)], ramp, Friction(), 9.81, numerics)
     assert history.converged
     caught = history.captured[:, 0]
     assert np.isfinite(history.amplitude).all()
@@ -429,7 +432,12 @@ def test_liquid_that_gravity_throws_about_falls_back() -> None:
 def test_stiff_supports_hold_the_rotor() -> None:
     rotor = replace(ROTOR, stiffness=1e15, damping=0.0)
     history = run_up(
-        rotor.system(), [layer(5e-4)], RAMP, ("linear", 1.0), 0.0, replace(ALONE, cells=32, samples=50)
+        rotor.system(),
+        [layer(5e-4)],
+        RAMP,
+        Friction("linear", 1.0),
+        0.0,
+        replace(ALONE, cells=32, samples=50),
     )
     assert history.converged
     # Nothing moves but by the unbalance's force over the stiffness, ringing to twice as much.
@@ -439,7 +447,7 @@ def test_stiff_supports_hold_the_rotor() -> None:
 def test_no_damping_at_all_stays_finite_on_a_ramp() -> None:
     rotor = replace(ROTOR, damping=0.0)
     history = run_up(
-        rotor.system(), [layer(5e-4)], RAMP, ("none", 0.0), 0.0, replace(ALONE, cells=32, samples=50)
+        rotor.system(), [layer(5e-4)], RAMP, Friction(), 0.0, replace(ALONE, cells=32, samples=50)
     )
     assert history.converged
     assert np.isfinite(history.amplitude).all()
@@ -450,7 +458,7 @@ def test_slow_and_fast_ramps(rate: float) -> None:
     duration = 20.0 if rate == 1.0 else 0.02
     drive = Ramp(20.0, 35.0, rate, duration)
     numerics = RunupNumerics(cells=32, samples=200)
-    history = run_up(ROTOR.system(), [layer(5e-4)], drive, ("linear", 3.0), 0.0, numerics)
+    history = run_up(ROTOR.system(), [layer(5e-4)], drive, Friction("linear", 3.0), 0.0, numerics)
     assert history.converged
     assert math.isfinite(history.error_estimate)
     dry = run_up(ROTOR.system(), [], drive, numerics=numerics)
@@ -480,8 +488,8 @@ def test_chambers_add_up() -> None:
     ramp = Ramp(20.0, 35.0, 20.0, 1.0)
     numerics = replace(ALONE, cells=16, samples=20)
     flat = Fill(Chamber(0.25, 0.0025), WATER, 5e-4 / 16.0)
-    many = run_up(ROTOR.system(), [flat] * 16, ramp, ("linear", 2.0), 0.0, numerics)
-    one = run_up(ROTOR.system(), [layer(5e-4)], ramp, ("linear", 2.0), 0.0, numerics)
+    many = run_up(ROTOR.system(), [flat] * 16, ramp, Friction("linear", 2.0), 0.0, numerics)
+    one = run_up(ROTOR.system(), [layer(5e-4)], ramp, Friction("linear", 2.0), 0.0, numerics)
     # The rounds end at a disagreement of 1e-6 of the acceleration.
     np.testing.assert_allclose(many.deflection[:, 0], one.deflection[:, 0], atol=1e-6 * one.amplitude.max())
     np.testing.assert_allclose(many.liquid_position, one.liquid_position, atol=1e-6 * 0.25)
@@ -490,14 +498,19 @@ def test_chambers_add_up() -> None:
 def test_one_run_gives_the_same_digits_again() -> None:
     ramp = Ramp(20.0, 35.0, 20.0, 1.0)
     numerics = replace(ALONE, cells=32, samples=20)
-    runs = [run_up(ROTOR.system(), [layer(5e-4)], ramp, ("stokes", 0.0), 0.0, numerics) for _ in range(2)]
+    runs = [run_up(ROTOR.system(), [layer(5e-4)], ramp, Friction("stokes"), 0.0, numerics) for _ in range(2)]
     np.testing.assert_array_equal(runs[0].deflection, runs[1].deflection)
 
 
 @pytest.mark.parametrize("volume, said", [(0.9999 * CHAMBER.capacity, "axis")])
 def test_what_cannot_go_on_says_so(volume: float, said: str) -> None:
     history = run_up(
-        ROTOR.system(), [layer(volume)], RAMP, ("linear", 1.0), 0.0, replace(ALONE, cells=16, samples=20)
+        ROTOR.system(),
+        [layer(volume)],
+        RAMP,
+        Friction("linear", 1.0),
+        0.0,
+        replace(ALONE, cells=16, samples=20),
     )
     assert not history.converged
     assert said in history.reason
@@ -524,4 +537,4 @@ def test_wrong_motors_are_refused(change: dict[str, object]) -> None:
 
 def test_unknown_friction_is_refused() -> None:
     with pytest.raises(InputError, match="friction"):
-        run_up(ROTOR.system(), [layer(5e-4)], RAMP, ("honey", 0.0))
+        run_up(ROTOR.system(), [layer(5e-4)], RAMP, Friction("honey"))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fluid.fill import Fill
-from fluid.friction import LINEAR
+from fluid.friction import Friction
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
@@ -22,7 +22,7 @@ ROTOR = Jeffcott(3.0, 3.0 * 15.0**2, 6.0, 4e-3)
 
 
 def machine(cells: int, friction: float = 2.0, gravity: float = 0.0) -> LinearCoupled:
-    found = couple_linear(ROTOR.system(), [FILL], 30.0, ("linear", friction), gravity, cells, False)
+    found = couple_linear(ROTOR.system(), [FILL], 30.0, Friction("linear", friction), gravity, cells, False)
     found.machine.place[:4] = 2e-3, -1e-3, 5e-3, 2e-3
     found.machine.rate[:4] = 0.05, 0.02, -0.1, 0.04
     return found
@@ -79,7 +79,7 @@ def test_growth() -> None:
     """A machine let go grows, or dies, as its characteristic equation says."""
     for rate in (0.0, 5.0):
         free = Jeffcott(3.0, 3.0 * 15.0**2, 0.0, 0.0).system()
-        found = couple_linear(free, [FILL], 22.0, ("linear", rate), 0.0, 64, False)
+        found = couple_linear(free, [FILL], 22.0, Friction("linear", rate), 0.0, 64, False)
         found.machine.place[0] = 1e-6
         seen = []
         times = np.linspace(0.0, 3.0, 61)[1:]
@@ -87,7 +87,7 @@ def test_growth() -> None:
             assert found.advance(stop, 0.0, 0.8, 10**5) == 0
             seen.append(complex(*found.machine.place[:2]))
         growth = np.polyfit(times[40:], np.log(np.abs(seen))[40:], 1)[0]
-        wanted, _ = asynchronous_growth(free, [FILL], [22.0], (LINEAR, rate))
+        wanted, _ = asynchronous_growth(free, [FILL], [22.0], Friction("linear", rate))
         assert growth == pytest.approx(wanted[0], rel=0.05, abs=0.02)
 
 
@@ -140,7 +140,7 @@ def test_tallies() -> None:
 def test_motor() -> None:
     """Torque of the motor, less what spins the liquid and what the unbalance takes."""
     found = couple_linear(
-        replace(ROTOR, unbalance=0.1).system(), [FILL], 30.0, ("linear", 2.0), 0.0, 64, False
+        replace(ROTOR, unbalance=0.1).system(), [FILL], 30.0, Friction("linear", 2.0), 0.0, 64, False
     )
     found.machine.rate[:4] = 0.05, 0.02, -0.1, 0.04
     found.drive(np.array([[0.0, 80.0], [6.0, 0.0]]), 0.05)
@@ -168,7 +168,7 @@ def test_motor() -> None:
 @kills("solvers.runup.linear:_layer", "chamber.radius**4 * area * (1.0 - area)", "chamber.radius**4 * area")
 def test_inertia() -> None:
     """Moment of inertia of the layer, and the squared ratio of the radii."""
-    layer = couple_linear(ROTOR.system(), [FILL], 30.0, ("none", 0.0), 0.0, 8, False).machine.layers[0]
+    layer = couple_linear(ROTOR.system(), [FILL], 30.0, Friction(), 0.0, 8, False).machine.layers[0]
     inner = FILL.surface_radius
     assert layer[4] == pytest.approx(0.5 * FILL.mass * (0.25**2 + inner**2), rel=1e-12)
     assert layer[1] == pytest.approx((0.25 / inner) ** 2, rel=1e-12)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from fluid.fill import Fill
+from fluid.friction import Friction
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers.layer import finite_volume
@@ -194,9 +195,9 @@ def test_calm() -> None:
     assert q[2] == 5.0
 
 
-def machine(cells: int, gravity: float = 0.0, friction: tuple[str, float] = ("linear", 0.5)) -> Coupled:
+def machine(cells: int, gravity: float = 0.0, rate: float = 0.5) -> Coupled:
     rotor = Jeffcott(3.0, 3.0 * 15.0**2, 6.0, 4e-3)
-    found = couple(rotor.system(), [FILL], 30.0, friction, gravity, cells, False)
+    found = couple(rotor.system(), [FILL], 30.0, Friction("linear", rate), gravity, cells, False)
     found.state.rotor[:4] = 2e-3, -1e-3, 0.05, 0.02
     return found
 
@@ -229,7 +230,7 @@ def momentum(found: Coupled) -> np.ndarray:
 def test_momentum() -> None:
     """Momentum of a machine without support stays to rounding: rotor, liquid and unbalance."""
     rotor = Jeffcott(3.0, 1e-15, 0.0, 4e-3)
-    free = couple(rotor.system(), [FILL], 30.0, ("linear", 0.5), 0.0, 12, False)
+    free = couple(rotor.system(), [FILL], 30.0, Friction("linear", 0.5), 0.0, 12, False)
     free.state.rotor[2:4] = 0.05, 0.02
     before = momentum(free)
     assert free.advance(0.05, 20.0, 0.4, 1000) == 0
@@ -330,7 +331,7 @@ def test_gyroscope() -> None:
     system = RotorSystem(
         ("a", "b"), one, 0.0 * one, 0.5 * cross, 9.0 * one, np.zeros(2, dtype=complex), one, 0.0 * one
     )
-    found = couple(system, [], 4.0, ("none", 0.0), 0.0, 400, False)
+    found = couple(system, [], 4.0, Friction(), 0.0, 400, False)
     found.state.rotor[0] = 1.0
     assert found.advance(0.5, 0.0, 0.8, 1000) == 0
     # z'' - 2i z' + 9 z = 0 with Omega G = 2: z'' + 2 (y', -x') + 9 z = 0.
@@ -357,7 +358,7 @@ def test_gyroscope() -> None:
 def test_motor() -> None:
     """The motor's torque goes into the spin, less what the unbalance and the liquid take."""
     rotor = Jeffcott(3.0, 3.0 * 15.0**2, 6.0, 0.05)
-    found = couple(rotor.system(), [FILL], 30.0, ("linear", 0.5), 0.0, 12, False)
+    found = couple(rotor.system(), [FILL], 30.0, Friction("linear", 0.5), 0.0, 12, False)
     found.state.rotor[:4] = 2e-3, -1e-3, 0.05, 0.02
     curve = np.array([[0.0, 40.0, 80.0], [6.0, 2.0, 0.0]])
     found.drive(curve, 0.05)
@@ -393,7 +394,7 @@ def test_motor() -> None:
 def test_gravity() -> None:
     """The rotor held, liquid let go is pulled against the first direction by its flow's inertia."""
     rotor = Jeffcott(3.0, 1e15, 0.0, 0.0)
-    found = couple(rotor.system(), [FILL], 30.0, ("none", 0.0), 0.5, 24, False)
+    found = couple(rotor.system(), [FILL], 30.0, Friction(), 0.5, 24, False)
     found.state.rotor[5] = TURNED
     inertia = found.measured()[0][2][INERTIA] * 40.0 * 0.25**2
     assert found.advance(0.001, 0.0, 0.8, 100) == 0
@@ -419,7 +420,7 @@ def test_stokes() -> None:
     """Stokes' friction takes the frequency of the slower free wave, with floor and lid."""
     viscous = Fill(FILL.chamber, Liquid("oil", 1000.0, 1e-3), FILL.volume)
     rotor = Jeffcott(3.0, 1e15, 0.0, 0.0)
-    found = couple(rotor.system(), [viscous], 30.0, ("stokes", 0.0), 0.0, 8, False)
+    found = couple(rotor.system(), [viscous], 30.0, Friction("stokes"), 0.0, 8, False)
     found.momentum[0] += 0.2 * found.area[0]
     found.state.momentum[:] = found.momentum
     assert found.advance(0.2, 0.0, 0.8, 1000) == 0

@@ -9,8 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fluid.friction import stokes_coefficient
-from fluid.wall_layer import edge_weight, layer_thickness, plate_drags
+from fluid.friction import edge_weight, layer_thickness, plate_drags, stokes_coefficient
 from meshes.baffles import Baffles
 from meshes.errors import InputError
 from meshes.rings.quadrilaterals import ring
@@ -24,9 +23,9 @@ R, A, SPIN, HEIGHT, WATER = 0.15, 0.135, 40.0, 0.05, 1e-6
 
 
 @kills(
-    "fluid.wall_layer:decay_rate", "first * (k + c) + second * (k - c)", "first * (k - c) + second * (k + c)"
+    "fluid.friction:decay_rate", "first * (k + c) + second * (k - c)", "first * (k - c) + second * (k + c)"
 )
-@kills("fluid.wall_layer:decay_rate", "lost / (k + potential)", "lost / (2.0 * k)")
+@kills("fluid.friction:decay_rate", "lost / (k + potential)", "lost / (2.0 * k)")
 @kills(
     "solvers.sloshing.damping:mode_damping", "modes.spin / modes.frequency", "modes.frequency / modes.spin"
 )
@@ -45,8 +44,8 @@ def test_ring_by_hand() -> None:
         assert np.all(found.edge_spread == 0.0)
 
 
-@kills("fluid.wall_layer:plate_drags", "(viscosity, twice - sigma), ", "(viscosity, twice + sigma), ")
-@kills("fluid.wall_layer:plate_drags", "2.0 * np.asarray(spin", "1.0 * np.asarray(spin")
+@kills("fluid.friction:plate_drags", "(viscosity, twice - sigma), ", "(viscosity, twice + sigma), ")
+@kills("fluid.friction:plate_drags", "2.0 * np.asarray(spin", "1.0 * np.asarray(spin")
 def test_plate_layer() -> None:
     """Loss in the layers on a plate against the defect solved as a system: mean of shear times velocity."""
     sigma, nu, along = -17.0, 3e-6, np.array([0.3 - 0.1j, 0.2 + 0.5j])
@@ -77,9 +76,7 @@ def test_thin_layer() -> None:
         assert np.all(found.rate > found.plain_rate)
 
 
-@kills(
-    "fluid.wall_layer:edge_weight", "1.0 / (1.0 + np.asarray(thickness", "1.0 / (0.0 + np.asarray(thickness"
-)
+@kills("fluid.friction:edge_weight", "1.0 / (1.0 + np.asarray(thickness", "1.0 / (0.0 + np.asarray(thickness")
 @kills("solvers.sloshing.damping:baffle_edges", "before[wall[:, 1]] = ", "before[wall[:, 0]] = ")
 @kills("solvers.sloshing.damping:baffle_edges", "< _BACK * size", "> -_BACK * size")
 def test_edges() -> None:
@@ -104,7 +101,7 @@ def test_edges() -> None:
 
 
 @kills(
-    "fluid.wall_layer:layer_thickness",
+    "fluid.friction:layer_thickness",
     "np.sqrt(2.0 * np.asarray(viscosity",
     "np.sqrt(0.5 * np.asarray(viscosity",
 )

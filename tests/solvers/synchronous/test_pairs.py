@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from fluid.fill import Fill, Fills
-from fluid.friction import LINEAR, NONE, STOKES
+from fluid.friction import Friction
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
@@ -130,7 +130,7 @@ def test_arrays_of_fills() -> None:
 )
 def test_growth() -> None:
     """Growth of many machines, each with its own friction, is that of each by itself."""
-    frictions = [(NONE, 0.0), (STOKES, 0.0), (LINEAR, 2.0), (NONE, 0.0), (STOKES, 0.0)]
+    frictions = [Friction(), Friction("stokes"), Friction("linear", 2.0), Friction(), Friction("stokes")]
     growth, whirl_speed = machines_growth(machines(), frictions, OWNER, SPEED)
     for k, (rotor, fills) in enumerate(machines()):
         own = k == OWNER

@@ -15,7 +15,7 @@ import pytest
 
 from fluid import kdv
 from fluid.fill import Fill
-from fluid.friction import LINEAR
+from fluid.friction import Friction
 from fluid.liquid import Liquid
 from fluid.long_wave import PADE
 from meshes.chamber import Chamber
@@ -153,7 +153,7 @@ def settled(case: Case, cells: int) -> tuple[complex, np.ndarray]:
         Chamber(RADIUS, HEIGHT), Liquid("any", 1000.0, 1e-6), math.pi * (RADIUS**2 - surface**2) * HEIGHT
     )
     whirl = Whirl(SPIN, SPIN + case.speed, case.amplitude, ramp=2.0 / case.decay)
-    history = settle(fill, whirl, (LINEAR, case.friction), Numerics(cells, case.dispersive))
+    history = settle(fill, whirl, Friction("linear", case.friction), Numerics(cells, case.dispersive))
     assert history.converged
     eta = 0.5 * (RADIUS**2 - np.square(RADIUS - history.depth)) - c.mean_area
     turns = np.exp(-1j * np.outer(np.arange(1, 9), history.theta))

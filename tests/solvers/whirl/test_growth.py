@@ -14,7 +14,7 @@ from mpmath import mp, polyroots
 from scipy.linalg import expm
 
 from fluid.fill import Fill
-from fluid.friction import LINEAR, NONE, QUADRATIC, STOKES
+from fluid.friction import Friction
 from fluid.liquid import Liquid
 from fluid.whirl import Layer, plane_layer, stokes_rate
 from meshes.chamber import Chamber
@@ -33,7 +33,7 @@ from tests.mutants import kills
 WATER = Liquid("water", 1000.0, 1e-6)
 RADIUS, HEIGHT, NATURAL = 0.1, 0.02, 100.0
 FULL = 1000.0 * math.pi * RADIUS**2 * HEIGHT
-NO_FRICTION = (NONE, 0.0)
+NO_FRICTION = Friction()
 
 
 def machine(mu: float, depth: float, zeta: float = 0.0, viscosity: float = 1e-6) -> tuple[RotorSystem, Fill]:
@@ -94,7 +94,7 @@ def test_characteristic_equation() -> None:
         roots = [wolf(mu, depth, zeta, spin, rate) for spin in spins]
         best = np.array([one[np.argmin(one.imag)] for one in roots])
         for one in (system, not_planar(system)):
-            growth, whirl = asynchronous_growth(one, [fill], spins, (LINEAR, k))
+            growth, whirl = asynchronous_growth(one, [fill], spins, Friction("linear", k))
             # The polynomial in omega has lost some digits where its roots are close.
             np.testing.assert_allclose(growth, -best.imag, rtol=0.0, atol=1e-8 * NATURAL)
             np.testing.assert_allclose(whirl, best.real, rtol=1e-8)
@@ -173,7 +173,7 @@ def test_refined_edges() -> None:
 def test_edges_with_friction() -> None:
     """On either side of each edge the growth has the sign it should; outside all is decay."""
     speeds = np.linspace(30.0, 400.0, 200)
-    for friction in ((LINEAR, 5.0), (STOKES, 0.0)):
+    for friction in (Friction("linear", 5.0), Friction("stokes")):
         for system, fill in (machine(0.1, 0.1, 0.05), machine(0.1, 0.02, 0.02)):
             (bands,) = unstable_bands(system, [[fill]], speeds, friction)
             assert bands
@@ -195,7 +195,7 @@ def test_edge_steps() -> None:
     system, fill = machine(0.1, 0.1, 0.05)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(whirl_edges, "growth_at", counted)
-        unstable_bands(system, [[fill]], np.linspace(30.0, 400.0, 75), (LINEAR, 5.0))
+        unstable_bands(system, [[fill]], np.linspace(30.0, 400.0, 75), Friction("linear", 5.0))
     # Quarters alone take 15 rounds from a step of 5 to 1e-10; one call is not at the edges.
     assert len(looks) - 1 <= 7
 
@@ -245,7 +245,7 @@ def test_time() -> None:
             state = state / sizes[-1]
         # The slowest of the other modes has died out against this one.
         rate = math.log(sizes[-1]) / time
-        growth, whirl = asynchronous_growth(system, [fill], [spin], (LINEAR, k))
+        growth, whirl = asynchronous_growth(system, [fill], [spin], Friction("linear", k))
         assert growth[0] == pytest.approx(rate, rel=1e-6)
         turned = step @ state
         phase = math.remainder(whirl[0] * time - np.angle(turned[0] / state[0]), 2.0 * math.pi)
@@ -269,7 +269,7 @@ def test_energy() -> None:
         assert energy < 0.0
         drag = liquid * (1.0 + kappa) * rate * (np.conj(dd) * (dd - 1j * spin * d)).real
         power = -damping * abs(dw) ** 2 - drag
-        growth = system_modes(system, [fill], np.array([spin]), (LINEAR, k)).root.real
+        growth = system_modes(system, [fill], np.array([spin]), Friction("linear", k)).root.real
         # To second order in the dampings, 1e-4.
         assert np.min(np.abs(growth / (power / (2.0 * energy)) - 1.0)) < 1e-3
     growth, _ = asynchronous_growth(machine(0.1, 0.1, zeta)[0], [fill], [spin])
@@ -292,7 +292,7 @@ def test_synchronous() -> None:
     answer = synchronous_response(rotor, fills, speeds, gravity=0.0)
     assert not answer.dry_patch.any()
     system = rotor.system()
-    layers = [(0.0, plane_layer(fill, (LINEAR, 2.0))) for fill in fills]
+    layers = [(0.0, plane_layer(fill, Friction("linear", 2.0))) for fill in fills]
     matrices = coupled_matrices(system, [(z, one) for z, one in layers if one is not None], speeds)
     for k, spin in enumerate(speeds):
         dynamic = matrices.stiffness[k] + 1j * spin * matrices.damping[k] - spin**2 * matrices.mass
@@ -328,7 +328,7 @@ def test_laminar() -> None:
     for viscosity, depth, zeta in ((1e-6, 0.1, 0.05), (1e-4, 0.1, 0.0), (1e-3, 0.3, 0.1), (1e-6, 1e-4, 0.02)):
         system, fill = machine(0.1, depth, zeta, viscosity)
         for spin in (60.0, 118.0, 130.0, 350.0):
-            layer = plane_layer(fill, (STOKES, 0.0))
+            layer = plane_layer(fill, Friction("stokes"))
             assert layer is not None
             one = np.ones((1, 1))
             mass, stiffness, damping = (m[0, 0] for m in (system.mass, system.stiffness, system.damping))
@@ -371,7 +371,7 @@ def test_any_rotor() -> None:
         system, fill = machine(0.2, depth, zeta, viscosity)
         small = Fill(Chamber(0.06, 0.03), fill.liquid, 5e-5)
         for fills in ([fill], [fill, small], [fill, fill, fill]):
-            for friction in (NO_FRICTION, (LINEAR, 2.0), (STOKES, 0.0)):
+            for friction in (NO_FRICTION, Friction("linear", 2.0), Friction("stokes")):
                 planar = asynchronous_growth(system, fills, speeds, friction)
                 other = asynchronous_growth(not_planar(system), fills, speeds, friction)
                 np.testing.assert_allclose(other[0], planar[0], rtol=0.0, atol=1e-9 * NATURAL)
@@ -384,7 +384,7 @@ def test_any_rotor() -> None:
 def test_laminar_derivative() -> None:
     """The slope of the eliminated rotor against a central difference."""
     system, fill = machine(0.2, 0.1, 0.05, 1e-4)
-    layer = plane_layer(fill, (STOKES, 0.0))
+    layer = plane_layer(fill, Friction("stokes"))
     assert layer is not None
     layers, spin = [(0.0, layer)], np.array([[90.0]])
     for value in (3.0 + 70.0j, -2.0 - 130.0j):
@@ -462,7 +462,7 @@ def test_cone() -> None:
             rotor = np.poly1d([-inertia, polar * spin + 1j * damping, stiffness])
             roots = (rotor * d - place**2 * fill.mass * omega**2 * (d - omega**2)).roots
             best = roots[np.argmin(roots.imag)]
-            growth, whirl = asynchronous_growth(system, [fill], [spin], (LINEAR, k))
+            growth, whirl = asynchronous_growth(system, [fill], [spin], Friction("linear", k))
             assert growth[0] == pytest.approx(-best.imag, rel=1e-8, abs=1e-8)
             assert whirl[0] == pytest.approx(best.real, rel=1e-8)
 
@@ -482,7 +482,7 @@ def test_limits() -> None:
             np.testing.assert_allclose(np.abs(whirl), frequency, rtol=1e-9)
     stiff = Jeffcott(mass, 1e15, 0.0, 0.0).system()
     assert not asynchronous_growth(stiff, [fill], speeds)[0].any()
-    growth, _ = asynchronous_growth(stiff, [fill], speeds, (STOKES, 0.0))
+    growth, _ = asynchronous_growth(stiff, [fill], speeds, Friction("stokes"))
     assert np.all(growth < 0.0)
     # Nearly full: the solid mass, its own waves neutral.
     nearly = Fill(chamber, WATER, chamber.capacity * (1.0 - 1e-8))
@@ -493,8 +493,10 @@ def test_limits() -> None:
 @pytest.mark.parametrize("share", [0.0, 1e-9, 1e-4, 0.3, 1.0 - 1e-6, 1.0])
 @pytest.mark.parametrize("stiffness", [1e-6, 4e4, 1e15])
 @pytest.mark.parametrize("damping", [0.0, 80.0, 1e10])
-@pytest.mark.parametrize("friction", [NO_FRICTION, (LINEAR, 0.5), (LINEAR, 1e6), (STOKES, 0.0)])
-def test_extremes(share: float, stiffness: float, damping: float, friction: tuple[int, float]) -> None:
+@pytest.mark.parametrize(
+    "friction", [NO_FRICTION, Friction("linear", 0.5), Friction("linear", 1e6), Friction("stokes")]
+)
+def test_extremes(share: float, stiffness: float, damping: float, friction: Friction) -> None:
     """From 1e-3 to 1e6 rad/s both solvers find all modes and agree to a part of the fastest rate there is."""
     chamber, speeds = Chamber(RADIUS, HEIGHT), np.array([1e-3, 1.0, 60.0, 120.0, 1e4, 1e6])
     system = Jeffcott(4.0, stiffness, damping, 0.0).system()
@@ -518,7 +520,7 @@ def test_modes_over_the_box(mu: float, depth: float, zeta: float, k: float) -> N
     """Against the polynomial in kappa, by its residual where its roots are ill-conditioned."""
     system, fill = machine(mu, depth, zeta)
     spins = np.array([40.0, 97.0, 140.0, 500.0])
-    growth, whirl = asynchronous_growth(system, [fill], spins, (LINEAR, k))
+    growth, whirl = asynchronous_growth(system, [fill], spins, Friction("linear", k))
     for k_spin, spin in enumerate(spins):
         roots = wolf(mu, depth, zeta, spin, k * 2.0 / (2.0 - depth))
         # Roots of the power basis meet to half of their digits.
@@ -573,9 +575,9 @@ def test_map_has_rows_of_volumes_with_different_numbers_of_layers() -> None:
     system, fill = machine(0.1, 0.1, 0.05)
     chamber, speeds = fill.chamber, np.linspace(50.0, 300.0, 40)
     rows = [[Fill(chamber, WATER, share * chamber.capacity)] for share in (0.0, 0.19, 1.0)]
-    growth, whirl = growth_map(system, rows, speeds, (LINEAR, 1.0))
+    growth, whirl = growth_map(system, rows, speeds, Friction("linear", 1.0))
     for k, fills in enumerate(rows):
-        one, speed = asynchronous_growth(system, fills, speeds, (LINEAR, 1.0))
+        one, speed = asynchronous_growth(system, fills, speeds, Friction("linear", 1.0))
         np.testing.assert_array_equal(growth[k], one)
         np.testing.assert_array_equal(whirl[k], speed)
 
@@ -583,20 +585,20 @@ def test_map_has_rows_of_volumes_with_different_numbers_of_layers() -> None:
 def test_quadratic_friction_does_nothing_to_a_small_whirl() -> None:
     system, fill = machine(0.1, 0.1, 0.05)
     without = asynchronous_growth(system, [fill], [130.0])
-    assert asynchronous_growth(system, [fill], [130.0], (QUADRATIC, 0.1)) == without
+    assert asynchronous_growth(system, [fill], [130.0], Friction("quadratic", 0.1)) == without
 
 
 def test_growth_crosses_zero_with_the_rate_of_the_laminar_layer() -> None:
     """Small viscosity: the wave of a layer on a rigid drum decays as the real drag and the inertia say."""
     system, fill = machine(0.1, 0.1)
     stiff = replace(system, stiffness=1e12 * np.eye(2))
-    layer = plane_layer(fill, (STOKES, 0.0))
+    layer = plane_layer(fill, Friction("stokes"))
     assert layer is not None
     t, spin = layer.layer_tanh, 40.0
     s = spin * (t - math.sqrt(t * t + t))
     # First order: ds = i k s/(2 (s - T Omega)); second order is k/s, 3 %, of it.
     first = (1j * stokes_rate(layer.stokes, s) * s / (2.0 * (s - t * spin))).imag
-    growth, _ = asynchronous_growth(stiff, [fill], [spin], (STOKES, 0.0))
+    growth, _ = asynchronous_growth(stiff, [fill], [spin], Friction("stokes"))
     assert growth[0] == pytest.approx(-first, rel=0.05)
 
 
@@ -619,7 +621,7 @@ def test_many_chambers() -> None:
     system, _ = machine(0.1, 0.1, 0.05)
     for step in (0.002, 0.0):
         fills = [Fill(Chamber(0.05 + step * k, 0.01, plane=0.01 * k), WATER, 2e-5) for k in range(16)]
-        for friction in (NO_FRICTION, (STOKES, 0.0)):
+        for friction in (NO_FRICTION, Friction("stokes")):
             growth, _ = asynchronous_growth(system, fills, [60.0, 105.0, 300.0], friction)
             other, _ = asynchronous_growth(not_planar(system), fills, [60.0, 105.0, 300.0], friction)
             np.testing.assert_allclose(other, growth, rtol=1e-6, atol=1e-6 * NATURAL)

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fluid.fill import Fill, Fills, compartment_share
-from fluid.friction import LINEAR, NONE, STOKES
+from fluid.friction import Friction
 from fluid.liquid import known_liquid
 from fluid.waves import force_ratio
 from meshes.baffles import Baffles
@@ -39,7 +39,7 @@ CLEAR = Fill(Chamber(WALL, HEIGHT), WATER, VOLUME)
 HALF = replace(CLEAR, chamber=Chamber(WALL, HEIGHT, baffles=Baffles(3, 0.1425)))
 FULL = replace(CLEAR, chamber=Chamber(WALL, HEIGHT, baffles=Baffles(4)))
 FREE = replace(CLEAR, chamber=Chamber(WALL, HEIGHT, baffles=Baffles(3, 0.13, 0.003)))
-LAWS = [(NONE, 0.0), (LINEAR, 0.5), (STOKES, 0.0)]
+LAWS = [Friction(), Friction("linear", 0.5), Friction("stokes")]
 
 # Rotor of physical size with mu = m_f/M = 0.1, omega_n = 25 rad/s.
 MASS = CLEAR.full_mass / 0.1
@@ -50,7 +50,7 @@ def rotor(damping_ratio: float = 0.0) -> Jeffcott:
     return Jeffcott(MASS, MASS * 625.0, 50.0 * damping_ratio * MASS, 0.0)
 
 
-def drum_growth(fill: Fill, friction: tuple[int, float], damping_ratio: float = 0.05) -> np.ndarray:
+def drum_growth(fill: Fill, friction: Friction, damping_ratio: float = 0.05) -> np.ndarray:
     """Largest growth over the spin in the drum's frame."""
     heavy, layers = section_layers(rotor(damping_ratio), [fill], friction)
     modes = drum_modes(heavy, layers, SPIN)
@@ -106,7 +106,7 @@ def _compliance(system: LiquidSystem, s: complex) -> np.ndarray:
 def check_compartments(count: int) -> None:
     """Finite elements at s = 0, and a quadrature of the displacement by hand, against the closed form."""
     fill = replace(CLEAR, chamber=Chamber(WALL, HEIGHT, baffles=Baffles(count)))
-    layer = section_layer(fill, (NONE, 0.0))
+    layer = section_layer(fill, Friction())
     assert layer is not None
     found = fill.full_mass * layer.liquid.force_ratio([0.0])[0]
     # The displacement is a polynomial on each of 64 sides and more: (2 pi/64)^4 = 9e-5 of it is lost at most,
@@ -166,7 +166,7 @@ def test_friction_of_a_thin_ring() -> None:
     thin = math.pi * (WALL**2 - 0.147**2) * HEIGHT
     clear = replace(CLEAR, volume=thin)
     shallow = replace(clear, chamber=Chamber(WALL, HEIGHT, baffles=Baffles(3, 0.1499)))
-    plain, cut = (section_layer(fill, (STOKES, 0.0)) for fill in (clear, shallow))
+    plain, cut = (section_layer(fill, Friction("stokes")) for fill in (clear, shallow))
     assert plain is not None
     assert cut is not None
     rates = []
@@ -194,7 +194,7 @@ def test_liquid_that_can_pass_adds_the_full_mass() -> None:
     for fill in (HALF, FREE, CLEAR):
         assert fill.compartments == 1
         assert fill.added_mass == fill.full_mass
-        layer = section_layer(fill, (NONE, 0.0))
+        layer = section_layer(fill, Friction())
         assert layer is not None
         assert layer.liquid.force_ratio([0.0])[0] == pytest.approx(1.0, abs=2e-7)
     assert Fills.of([HALF, FULL]).added_mass == pytest.approx([HALF.full_mass, FULL.added_mass])
@@ -222,7 +222,7 @@ def test_added_mass_of_another_section() -> None:
     fill = lobed()
     section = fill.chamber.section
     assert section is not None
-    layer = section_layer(fill, (NONE, 0.0))
+    layer = section_layer(fill, Friction())
     assert layer is not None
     found = layer.density * layer.liquid.enclosed_area * layer.liquid.force_ratio([0.0])[0]
     # 64 sides on the surface and more: (2 pi/64)^4 with a small constant.
@@ -328,7 +328,7 @@ def test_any_rotor_with_a_clear_ring_is_the_known_one() -> None:
 
 
 def test_matrices_are_those_of_lagrange() -> None:
-    layer = section_layer(HALF, (NONE, 0.0))
+    layer = section_layer(HALF, Friction())
     assert layer is not None
     found = drum_matrices(rotor(), [layer], SPIN[:1])
     for matrix, sign in ((found.mass, 1.0), (found.stiffness[0], 1.0), (found.damping[0], -1.0)):
@@ -337,7 +337,7 @@ def test_matrices_are_those_of_lagrange() -> None:
 
 
 def test_undamped_liquid_in_compartments_does_not_whirl_where_the_clear_ring_does() -> None:
-    clear, cut = (drum_growth(fill, (NONE, 0.0), 0.0) for fill in (CLEAR, FULL))
+    clear, cut = (drum_growth(fill, Friction(), 0.0) for fill in (CLEAR, FULL))
     # mu = 0.1, h0/R = 0.1: unstable between 1.1225 and 1.475 of the natural frequency.
     inside = (SPIN > 1.13 * 25.0) & (SPIN < 1.47 * 25.0)
     assert np.all(clear[inside] > 0.5)
@@ -357,7 +357,7 @@ def test_what_differs_in_two_directions_is_refused_for_other_rotors() -> None:
     oval = chamber_section("oval", Section(base.points * np.array([1.02, 1.0]), base.triangles))
     plain = [Chamber(WALL, HEIGHT, baffles=Baffles(count)) for count in (1, 2)]
     for chamber in (*plain, Chamber(oval.farthest, HEIGHT, section=oval)):
-        layer = section_layer(replace(CLEAR, chamber=chamber), (NONE, 0.0))
+        layer = section_layer(replace(CLEAR, chamber=chamber), Friction())
         assert layer is not None
         with pytest.raises(InputError, match="3 or more"):
             circle_layer(layer)
@@ -365,7 +365,7 @@ def test_what_differs_in_two_directions_is_refused_for_other_rotors() -> None:
 
 def test_equal_chambers_act_together() -> None:
     heavy, layers = section_layers(
-        rotor(), [HALF, replace(HALF, chamber=replace(HALF.chamber, plane=0.1))], (NONE, 0.0)
+        rotor(), [HALF, replace(HALF, chamber=replace(HALF.chamber, plane=0.1))], Friction()
     )
     assert len(layers) == 1
     assert layers[0].density == pytest.approx(2.0 * WATER.density * HEIGHT)
