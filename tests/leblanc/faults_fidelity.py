@@ -6,7 +6,7 @@ from tests.faults import Fault
 from tests.leblanc import test_fidelity as choice
 from tests.solvers import test_model_error as error
 
-_DEFECT, _ERROR = "solvers.statics.law_defect", "solvers.synchronous.errors"
+_DEFECT, _ERROR = "solvers.statics.law_defect", "solvers.synchronous.enclosure"
 
 FAULTS: tuple[Fault, ...] = (
     Fault(_DEFECT, "1.0 - filled - 0.5 * ring", "1.0 - filled + 0.5 * ring", error.check_upright_surface),
@@ -49,19 +49,19 @@ FAULTS: tuple[Fault, ...] = (
     Fault(_ERROR, "np.minimum(linear, softened)), 0.0)", "linear), linear)", error.check_enclosure),
     Fault(_ERROR, "np.maximum(np.abs(beyond), frozen)", "np.abs(beyond)", error.check_enclosure),
     Fault(
-        "solvers.synchronous.coupled_errors",
+        "solvers.synchronous.coupled_bounds",
         "linear + _carried(spread,",
         "linear - _carried(spread,",
         error.check_tilting,
     ),
     Fault(
-        "solvers.synchronous.coupled_errors",
+        "solvers.synchronous.coupled_bounds",
         "np.square(speed)[:, None] * np.stack(bounds",
         "np.stack(bounds",
         error.check_tilting,
     ),
     Fault(
-        "solvers.synchronous.coupled_errors",
+        "solvers.synchronous.coupled_bounds",
         "left = size - change",
         "left = size + 1e3 * change",
         error.check_tilting,
@@ -76,19 +76,22 @@ FAULTS: tuple[Fault, ...] = (
         "solvers.synchronous.errors", "_THIN * np.square(weakness)", "_THIN * weakness", error.check_gravity
     ),
     Fault(
-        "solvers.synchronous.errors",
+        "solvers.synchronous.enclosure",
         "pull = np.square(pairs.speed) * weighted",
         "pull = weighted",
         error.check_gravity,
     ),
-    Fault("solvers.synchronous.errors", "largest + moved", "largest - moved", error.check_gravity),
+    Fault("solvers.synchronous.enclosure", "largest + moved", "largest - moved", error.check_gravity),
     Fault(
         "solvers.runup.error", "crest / fill.depth - 1.0", "crest / fill.depth", error.check_run_up_estimate
     ),
     Fault("solvers.runup.error", "_WAVE * wave**2", "_WAVE * wave", error.check_run_up_estimate),
     Fault("solvers.runup.error", "_LAG * lag**2", "_LAG * lag", error.check_run_up_estimate),
     Fault(
-        "solvers.synchronous.mixed", "np.concatenate(wide)[order]", "np.concatenate(wide)", choice.check_mixed
+        "solvers.synchronous.response",
+        "np.concatenate(wide)[order]",
+        "np.concatenate(wide)",
+        choice.check_mixed,
     ),
     Fault(
         "leblanc.studies.choose",

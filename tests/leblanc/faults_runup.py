@@ -62,8 +62,8 @@ FAULTS: tuple[Fault, ...] = (
     ),
     Fault(
         "leblanc.studies.runup",
-        "synchronous_response(jeffcott(scene), scene.chambers, passed",
-        "synchronous_response(jeffcott(scene), (), passed",
+        "response(jeffcott(scene), scene.chambers, passed",
+        "response(jeffcott(scene), (), passed",
         oracle.check_steady,
     ),
     Fault(

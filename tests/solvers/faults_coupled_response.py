@@ -5,11 +5,12 @@ from __future__ import annotations
 from tests.faults import Fault
 from tests.solvers import test_coupled_response as oracle
 
-TERMS, BRANCHES, RESPONSE = (
-    "solvers.synchronous.coupled",
-    "solvers.synchronous.coupled",
+TERMS, BACKWARD, BRANCHES = (
+    "solvers.synchronous.balance",
+    "solvers.synchronous.backward",
     "solvers.synchronous.coupled",
 )
+RESPONSE, CRITICAL = "solvers.synchronous.response", "solvers.synchronous.critical"
 
 FAULTS: tuple[Fault, ...] = (
     Fault(
@@ -25,8 +26,12 @@ FAULTS: tuple[Fault, ...] = (
         "backward_mass(fill) * np.outer(p, np.conj(p))",
         oracle.check_linear_layer,
     ),
-    Fault(TERMS, "force_ratio(curvature, -1.0)", "force_ratio(curvature, 1.0)", oracle.check_backward_mass),
-    Fault(TERMS, "        return fill.mass\n", "        return fill.full_mass\n", oracle.check_full_chambers),
+    Fault(
+        BACKWARD, "force_ratio(curvature, -1.0)", "force_ratio(curvature, 1.0)", oracle.check_backward_mass
+    ),
+    Fault(
+        BACKWARD, "        return fill.mass\n", "        return fill.full_mass\n", oracle.check_full_chambers
+    ),
     Fault(TERMS, "np.array([1.0, -1j])", "np.array([1.0, 1j])", oracle.check_added_mass),
     Fault(TERMS, "force=squared[:, None] * system", "force=speed[:, None] * system", oracle.check_added_mass),
     Fault(
@@ -55,15 +60,14 @@ FAULTS: tuple[Fault, ...] = (
         oracle.check_balance,
     ),
     Fault(RESPONSE, "np.abs(moment) / mass", "np.abs(moment) * mass", oracle.check_added_mass),
-    Fault(RESPONSE, "np.conj(0.5 * q @ terms.plane.T)", "0.5 * q @ terms.plane.T", oracle.check_linear_layer),
     Fault(
-        RESPONSE,
+        CRITICAL,
         "0.5 * full * np.outer(p, np.conj(p))",
         "full * np.outer(p, np.conj(p))",
         oracle.check_critical_speeds,
     ),
     Fault(
-        RESPONSE,
+        CRITICAL,
         "0.5 * backward_mass(fill) * np.outer",
         "backward_mass(fill) * np.outer",
         oracle.check_critical_speeds,

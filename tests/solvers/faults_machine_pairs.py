@@ -22,7 +22,7 @@ FAULTS: tuple[Fault, ...] = (
     ),
     Fault(PAIRS, "place = index[owner]", "place = index[owner[::-1]]", oracle.check_each_as_if_alone),
     Fault(PAIRS, "moment - fills.mass * e", "moment", oracle.check_sums),
-    Fault(PAIRS, "(one.unbalance, one.slope))", "(one.slope, one.unbalance))", oracle.check_sums),
+    Fault(PAIRS, "(law.unbalance, law.slope))", "(law.slope, law.unbalance))", oracle.check_sums),
     Fault(PAIRS, "moment = fills.added_mass * e", "moment = fills.mass * e", oracle.check_sums),
     Fault(PAIRS, "moment[bent] = law.unbalance", "moment[bent] = law.slope", oracle.check_sums),
     Fault(

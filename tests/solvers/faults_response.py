@@ -55,7 +55,7 @@ FAULTS: tuple[Fault, ...] = (
         oracle.check_balance,
     ),
     Fault(
-        "solvers.synchronous.planar",
+        "solvers.synchronous.critical",
         "rotor.stiffness - (rotor.mass + slope) * np.square(speed)",
         "rotor.stiffness - (rotor.mass - slope) * np.square(speed)",
         oracle.check_critical_speed,

@@ -10,11 +10,11 @@ from fluid.fill import Fill, Fills
 from fluid.friction import LINEAR, NONE, STOKES
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
-from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
 from solvers.statics.hydrostatics import equilibrium
-from solvers.synchronous.models import SYNCHRONOUS_MODELS
-from solvers.synchronous.pairs import PlanarMachine, pair_machines
-from solvers.synchronous.planar import machine_responses, synchronous_response
+from solvers.synchronous.models import STATICS, model_named
+from solvers.synchronous.pairs import pair_machines
+from solvers.synchronous.response import machine_responses, response
 from solvers.whirl.growth import asynchronous_growth, machines_growth
 
 WATER, OIL = Liquid("water", 1000.0, 1e-6), Liquid("oil", 870.0, 6.9e-5)
@@ -39,12 +39,12 @@ def machines() -> list[PlanarMachine]:
 
 def check_each_as_if_alone() -> None:
     """The response of many machines is that of each by itself, for every model."""
-    for model in ("statics", "linear"):
+    for model in map(model_named, ("statics", "linear")):
         many = machine_responses(machines(), OWNER, SPEED, GRAVITY, model)
         branches = np.isfinite(many.branch_deflection).sum(axis=1)
         for k, (rotor, fills) in enumerate(machines()):
             own = k == OWNER
-            alone = synchronous_response(rotor, fills, SPEED[own], GRAVITY[k], model)
+            alone = response(rotor, fills, SPEED[own], GRAVITY[k], model)
             for name in ("deflection", "deflection_dry", "liquid_offset", "liquid_angle"):
                 np.testing.assert_allclose(
                     getattr(many, name)[own], getattr(alone, name), rtol=1e-12, atol=1e-18
@@ -61,8 +61,7 @@ def test_each_as_if_alone() -> None:
 
 def check_sums() -> None:
     """The pull and the liquid's state of a machine are sums over its chambers, each asked by itself."""
-    statics = SYNCHRONOUS_MODELS["statics"]
-    pairs = pair_machines(machines(), OWNER, SPEED, GRAVITY, statics)
+    pairs = pair_machines(machines(), OWNER, SPEED, GRAVITY, STATICS)
     which = np.flatnonzero(np.isin(OWNER, (1, 2)))[::3]
     e = np.linspace(1e-4, 2e-2, which.size)
     state, pull = pairs.liquid(e, which), pairs.pull(e, which)
@@ -118,7 +117,7 @@ def check_growth() -> None:
     growth, whirl_speed = machines_growth(machines(), frictions, OWNER, SPEED)
     for k, (rotor, fills) in enumerate(machines()):
         own = k == OWNER
-        alone = asynchronous_growth(rotor.system(), fills, SPEED[own], frictions[k])
+        alone = asynchronous_growth(rotor, fills, SPEED[own], frictions[k])
         # The order in which terms are added differs.
         np.testing.assert_allclose(growth[own], alone[0], rtol=1e-8, atol=1e-10 * SPEED.max())
         np.testing.assert_allclose(whirl_speed[own], alone[1], rtol=1e-8)

@@ -16,15 +16,15 @@ from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import load_scene
 from leblanc.studies.choose import across_gravity, axial_gravity
 from meshes.chamber import Chamber
-from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
 from solvers.runup.error import MOST_LAG, MOST_WAVE, linear_run_error
 from solvers.statics.law_defect import defect_bound, upright_surfaces
-from solvers.synchronous.coupled import coupled_response
-from solvers.synchronous.coupled_errors import coupled_error
-from solvers.synchronous.errors import ROUNDING, Enclosure, law_error, planar_enclosure, planar_gravity_error
-from solvers.synchronous.models import Statics, synchronous_model
-from solvers.synchronous.pairs import PlanarMachine, pair_machines
-from solvers.synchronous.planar import machine_responses
+from solvers.synchronous.enclosure import Enclosure, planar_enclosure, planar_gravity_error
+from solvers.synchronous.errors import ROUNDING, law_error
+from solvers.synchronous.estimate import error_estimate
+from solvers.synchronous.models import LINEAR, STATICS, Statics
+from solvers.synchronous.pairs import pair_machines
+from solvers.synchronous.response import machine_responses, response
 from tests.leblanc.test_runup import history_of
 from validation.model_error import (
     gravity_sample,
@@ -137,8 +137,8 @@ def test_moved_air_of_a_cylinder(depth: float, share: float, inner: float) -> No
 def enclosures(seed: int, count: int) -> tuple[list[PlanarMachine], Enclosure, np.ndarray]:
     machines, speed, gravity = random_machines(seed, count)
     own = np.arange(count)
-    pairs = pair_machines(machines, own, speed, gravity, synchronous_model("linear"))
-    exact = machine_responses(machines, own, speed, gravity, "statics")
+    pairs = pair_machines(machines, own, speed, gravity, LINEAR)
+    exact = machine_responses(machines, own, speed, gravity, STATICS)
     return machines, planar_enclosure(pairs), np.abs(exact.branch_deflection)
 
 
@@ -185,7 +185,7 @@ def test_coverage_of_300_random_machines() -> None:
 
 def planar(rotor: Jeffcott, fills: list[Fill], speed: list[float], gravity: float = 0.0) -> Enclosure:
     own = np.zeros(len(speed), dtype=np.intp)
-    law = synchronous_model("linear")
+    law = LINEAR
     return planar_enclosure(pair_machines([(rotor, fills)], own, np.array(speed), np.array([gravity]), law))
 
 
@@ -240,14 +240,12 @@ def check_tilting() -> None:
             ]
             speed = np.sort(rng.uniform(scene.speeds.start, scene.speeds.stop, 5))
             gravity, place = axial_gravity(scene), fills[0].chamber.plane
-            error, _ = coupled_error(system, fills, speed, gravity, place)
-            linear, exact = (
-                coupled_response(system, fills, speed, gravity, one) for one in ("linear", "statics")
-            )
-            sizes = [np.abs(one.response.deflection) + np.abs(one.backward) for one in (linear, exact)]
+            error, _ = error_estimate(system, fills, speed, gravity, position=place)
+            linear, exact = (response(system, fills, speed, gravity, model) for model in (LINEAR, STATICS))
+            sizes = [np.abs(one.deflection) + np.abs(one.backward) for one in (linear, exact)]
             # Newton's method meets the balance to 1e-10.
             assert (np.abs(sizes[0] - sizes[1]) <= (error.amplitude + 1e-9) * sizes[1]).all()
-            offsets = [one.response.liquid_offset for one in (linear, exact)]
+            offsets = [one.liquid_offset for one in (linear, exact)]
             assert (np.abs(offsets[0] - offsets[1]) <= (error.liquid + 1e-9) * offsets[1]).all()
             narrow += int((error.amplitude < 1e-3).sum())
     assert narrow > 10
@@ -260,16 +258,14 @@ def test_tilting_rotors() -> None:
 def test_tilting_and_planar_bounds_agree() -> None:
     """A Jeffcott rotor is both; the wet wall has no error in either, and strain is the same."""
     speeds = np.array([40.0, 60.0, 140.0])
-    error, thrown = coupled_error(ROTOR.system(), [DRUM], speeds, 0.0, 0.0, G)
+    error, thrown = error_estimate(ROTOR.system(), [DRUM], speeds, 0.0, G)
     other = planar(ROTOR, [DRUM], speeds.tolist())
     np.testing.assert_allclose(error.strain, other.error().strain, rtol=1e-9)
     assert (error.amplitude < 1e-9).all() and (other.error().amplitude < 1e-9).all()
-    pairs = pair_machines(
-        [(ROTOR, [DRUM])], np.zeros(3, np.intp), speeds, np.zeros(1), synchronous_model("linear")
-    )
+    pairs = pair_machines([(ROTOR, [DRUM])], np.zeros(3, np.intp), speeds, np.zeros(1), LINEAR)
     # Next to no backward part: the stiffness along the deflection is what one unit of force meets.
     np.testing.assert_allclose(thrown, planar_gravity_error(pairs, np.full(3, G), other.most), rtol=1e-6)
-    none, still = coupled_error(ROTOR.system(), [], speeds, 0.0, 0.0, G)
+    none, still = error_estimate(ROTOR.system(), [], speeds, 0.0, G)
     assert (none.worst == ROUNDING).all() and (still == 0.0).all()
 
 
@@ -289,7 +285,7 @@ def check_gravity() -> None:
     rotor, slow = replace(ROTOR, stiffness=4.0e9), speed
     one = pair_machines(
         [(rotor, [Fill(wall, WATER, fills.volume[0])])], np.zeros(1, np.intp), slow, np.zeros(1),
-        synchronous_model("linear"),
+        LINEAR,
     )  # fmt: skip
     most = rotor.unbalance * slow**2 / 4.0e9
     change = law_error(fills, slow, np.array([G]))

@@ -25,8 +25,8 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.sloshing.reduced import clear_ring, reduce_liquid, section_layer, section_layers, wall_drag
 from solvers.sloshing.system import LiquidSystem, condense
 from solvers.statics.free_surface import solve_surface
-from solvers.synchronous.coupled import backward_mass
-from solvers.synchronous.models import synchronous_model
+from solvers.synchronous.backward import backward_mass
+from solvers.synchronous.models import ELEMENTS
 from solvers.whirl.growth import asynchronous_growth, system_modes
 from solvers.whirl.sections import circle_layer, drum_matrices, drum_modes, standing_modes
 from tests.solvers.rotor_cases import tub, two_plane
@@ -51,8 +51,8 @@ def rotor(damping_ratio: float = 0.0) -> Jeffcott:
 
 def drum_growth(fill: Fill, friction: tuple[int, float], damping_ratio: float = 0.05) -> np.ndarray:
     """Largest growth over the spin in the drum's frame."""
-    heavy, layers = section_layers(rotor(damping_ratio), [fill], friction)
-    modes = drum_modes(heavy, layers, SPIN)
+    _, layers = section_layers([fill], friction)
+    modes = drum_modes(rotor(damping_ratio), layers, SPIN)
     assert modes.found.all()
     return np.asarray(modes.root.real.max(axis=1))
 
@@ -226,7 +226,7 @@ def check_least_depth() -> None:
     # The nearest wall is 0.97 R away.
     assert fill.depth == pytest.approx(0.97 * WALL - fill.surface_radius, rel=1e-4)
     e = fill.depth * np.array([0.99, 1.01])
-    answer = synchronous_model("fem").synchronous(Fills.same(fill, 2), np.full(2, 40.0), e, np.zeros(2))
+    answer = ELEMENTS.synchronous(Fills.same(fill, 2), np.full(2, 40.0), e, np.zeros(2))
     assert answer.in_range.tolist() == [True, False]
     assert answer.dry_patch.tolist() == [False, True]
 
@@ -247,7 +247,7 @@ def test_a_drawn_circle_whirls_like_a_ring() -> None:
 def check_clear_whirl() -> None:
     """Without baffles the drum's frame gives what the characteristic equation does."""
     for friction in LAWS:
-        exact, _ = asynchronous_growth(rotor(0.05).system(), [CLEAR], SPIN, friction)
+        exact, _ = asynchronous_growth(rotor(0.05), [CLEAR], SPIN, friction)
         # Newton leaves 1e-12 of the frequencies; growth is their small imaginary part.
         np.testing.assert_allclose(drum_growth(CLEAR, friction), exact, atol=1e-9 * SPIN[-1])
 
@@ -331,9 +331,8 @@ def test_what_differs_in_two_directions_is_refused_for_other_rotors() -> None:
 
 
 def test_equal_chambers_act_together() -> None:
-    heavy, layers = section_layers(
-        rotor(), [HALF, replace(HALF, chamber=replace(HALF.chamber, plane=0.1))], (NONE, 0.0)
-    )
+    again = replace(HALF, chamber=replace(HALF.chamber, plane=0.1))
+    solid, layers = section_layers([HALF, again], (NONE, 0.0))
     assert len(layers) == 1
     assert layers[0].density == pytest.approx(2.0 * WATER.density * HEIGHT)
-    assert heavy.mass == MASS
+    assert solid == 0.0
