@@ -25,7 +25,7 @@ from meshes.arrays import Array, Complex
 from meshes.chamber import Chamber
 from solvers.ross import liquid_layer
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.synchronous.planar import synchronous_response
+from solvers.synchronous.response import response
 from solvers.whirl.growth import asynchronous_growth
 
 ELEMENTS, LENGTH, DRUM = 8, 1.0, 4  # of the shaft, m, and the node at mid-span where the drum sits
@@ -154,7 +154,7 @@ def compare(ross: Any) -> Comparison:
     liquid = liquid_layer(FILL, DRUM, LIQUID, np.linspace(0.0, SPEEDS[-1], 8), FRICTION)
     dry_rotor, wet_rotor = machine(ross), machine(ross, liquid)
     model = reduced(dry_rotor)
-    own = synchronous_response(model, [FILL], SPEEDS, gravity=0.0)
+    own = response(model, [FILL], SPEEDS, gravity=0.0)
     return Comparison(
         model=model,
         dry=drum_deflection(dry_rotor),

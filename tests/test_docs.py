@@ -296,12 +296,9 @@ class TestExamples:
     """What the page on contributing shows."""
 
     def test_a_frozen_liquid_is_dead_weight(self) -> None:
-        from solvers.synchronous.models import SYNCHRONOUS_MODELS
-
         try:
             frozen, heavier = _module("frozen_liquid", "docs/examples").answers()
         finally:
-            SYNCHRONOUS_MODELS.pop("frozen", None)
             sys.modules.pop("frozen_liquid", None)
         # The balance of the wet rotor is solved to 1e-12 of the deflection, amplified near resonance by
         # 1/(2 zeta) = 8.

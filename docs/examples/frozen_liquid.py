@@ -12,33 +12,18 @@ from fluid.liquid import known_liquid
 from meshes.arrays import Array
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.synchronous.models import SYNCHRONOUS_MODELS, SynchronousAnswer
-from solvers.synchronous.planar import Response, synchronous_response
+from solvers.synchronous.models import LiquidModel, SynchronousAnswer
+from solvers.synchronous.response import Response, response
 
 
-class Frozen:
+class Frozen(LiquidModel):
     """An even ring of ice on the wall: its unbalance is its mass times the deflection, at any amplitude."""
 
     name = "frozen"
 
     def synchronous(self, fills: Fills, speed: Array, deflection: Array, gravity: Array) -> SynchronousAnswer:
         """See `solvers.synchronous.models.LiquidModel`."""
-        mass = fills.density * fills.volume
-        everywhere = np.ones(deflection.shape, dtype=bool)
-        return SynchronousAnswer(
-            unbalance=mass * deflection,
-            slope=mass,
-            dry_patch=~everywhere,
-            in_range=everywhere,
-            converged=everywhere,
-        )
-
-    def linear_limit(self, fills: Fills, speed: Array, gravity: Array) -> Array:
-        """Nowhere is it that of a full chamber."""
-        return np.zeros(speed.shape)
-
-
-SYNCHRONOUS_MODELS[Frozen.name] = Frozen()
+        return SynchronousAnswer.everywhere(unbalance=fills.mass * deflection, slope=fills.mass)
 
 
 def answers() -> tuple[Response, Response]:
@@ -48,8 +33,8 @@ def answers() -> tuple[Response, Response]:
     light = Jeffcott(mass=30.0, stiffness=18750.0, damping=90.0, unbalance=0.1)
     heavy = Jeffcott(mass=30.0 + fill.mass, stiffness=18750.0, damping=90.0, unbalance=0.1)
     return (
-        synchronous_response(light, [fill], speed, model=Frozen.name),
-        synchronous_response(heavy, [], speed),
+        response(light, [fill], speed, model=Frozen()),
+        response(heavy, [], speed),
     )
 
 

@@ -22,7 +22,7 @@ from leblanc.text.models import ModelSpan, model_spans
 from leblanc.text.numbers import number
 from leblanc.text.optimum import shown
 from leblanc.units import ML, MM, RPM
-from solvers.synchronous.models import SYNCHRONOUS_MODELS
+from solvers.synchronous.models import MODEL_NAMES
 
 if TYPE_CHECKING:
     from leblanc.figures.page import FigureFiles
@@ -40,7 +40,7 @@ RUN_UP = "The objective itself is judged by run-ups in time with this model."
 def filled(record: OptimumRecord) -> Scene | None:
     """The scene with the best volumes and the model of the search; None where that gives no steady answer."""
     scene = FilledMachine(record.scene).scene
-    if scene.model.liquid not in SYNCHRONOUS_MODELS:
+    if scene.model.liquid not in MODEL_NAMES:
         return None
     return with_volumes(scene, record.volume)
 

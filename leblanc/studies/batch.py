@@ -16,7 +16,8 @@ from leblanc.studies.choose import axial_gravity, choose_all
 from leblanc.studies.run import run_scene
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
-from solvers.synchronous.planar import machine_responses
+from solvers.synchronous.models import model_named
+from solvers.synchronous.response import machine_responses
 from solvers.whirl.growth import machines_growth
 
 
@@ -32,7 +33,7 @@ class Answers:
     liquid_offset : distance of the liquid's centre of mass from the rotation axis, m
     liquid_angle : angle from the unbalance to it, rad
     growth, whirl_speed : of the whirl that grows most by itself, 1/s and rad/s
-    dry_patch, stable, in_range, converged : as in `solvers.synchronous.planar.Response`; stable
+    dry_patch, stable, in_range, converged : as in `solvers.synchronous.response.Response`; stable
         against whirls as well
     model : of the liquid, by name
     error_estimate : of the model taken, relative, of amplitude and liquid the larger one; nan where unknown
@@ -112,7 +113,7 @@ def _planar(scenes: Sequence[Scene]) -> Answers:
     }
     for name in np.unique(model).tolist():
         rows = np.flatnonzero(model == name)
-        one = machine_responses(machines, owner[rows], speed[rows], gravity, name)
+        one = machine_responses(machines, owner[rows], speed[rows], gravity, model_named(name))
         values = {
             "amplitude": np.abs(one.deflection),
             "amplitude_dry": np.abs(one.deflection_dry),

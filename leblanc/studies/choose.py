@@ -17,10 +17,9 @@ from leblanc.scene.scene import Rotor, Scene
 from meshes.arrays import Array, Flags
 from meshes.chamber_section import rest_offset, surface_is_whole
 from meshes.errors import InputError
-from solvers.synchronous.coupled_errors import coupled_error
-from solvers.synchronous.errors import ROUNDING, LinearError, planar_enclosure, planar_gravity_error
-from solvers.synchronous.models import SYNCHRONOUS_MODELS, synchronous_model
-from solvers.synchronous.pairs import pair_machines
+from solvers.synchronous.errors import ROUNDING, LinearError
+from solvers.synchronous.estimate import error_estimate, machine_errors
+from solvers.synchronous.models import MODEL_NAMES, LiquidModel, model_named
 
 _NO_DEPTH = 1e-6  # over the surface's radius: a slit that reaches the surface leaves the circle whole
 _BALANCED = 1e-3  # of the surface's radius, that the liquid at rest may lie off the axis
@@ -58,6 +57,11 @@ class Choice:
     cut: bool = False
 
     @property
+    def liquid_models(self) -> list[LiquidModel]:
+        """The model taken at each speed, n of them."""
+        return [model_named(name) for name in self.models.tolist()]
+
+    @property
     def missed(self) -> Flags:
         """Where even the model taken is not known to be within the tolerance, shape (n,)."""
         return ~(self.error <= self.tolerance)
@@ -91,8 +95,8 @@ def choose_all(scenes: Sequence[Scene]) -> list[Choice]:
     InputError : as `choose`
     """
     for scene in scenes:
-        if scene.model.liquid not in ("auto", *SYNCHRONOUS_MODELS):
-            allowed = ", ".join(("auto", *SYNCHRONOUS_MODELS))
+        if scene.model.liquid not in ("auto", *MODEL_NAMES):
+            allowed = ", ".join(("auto", *MODEL_NAMES))
             raise InputError(
                 "model.liquid", scene.model.liquid, f"one of {allowed} for the response to an unbalance"
             )
@@ -138,11 +142,8 @@ def _planar_errors(scenes: Sequence[Scene]) -> list[tuple[LinearError, Array]]:
     owner = np.repeat(np.arange(len(scenes)), [one.size for one in speeds])
     speed, gravity = np.concatenate(speeds), np.array([axial_gravity(scene) for scene in scenes])
     machines = [(jeffcott(scene), scene.chambers) for scene in scenes]
-    pairs = pair_machines(machines, owner, speed, gravity, synchronous_model("linear"))
-    bounds = planar_enclosure(pairs)
-    error = bounds.error()
-    across = np.array([across_gravity(scene) for scene in scenes])[owner]
-    thrown = planar_gravity_error(pairs, across, bounds.most)
+    across = np.array([across_gravity(scene) for scene in scenes])
+    error, thrown = machine_errors(machines, owner, speed, gravity, across)
     ends = np.cumsum([one.size for one in speeds])
     parts = [slice(stop - one.size, stop) for stop, one in zip(ends, speeds, strict=True)]
     return [
@@ -156,15 +157,8 @@ def _planar_errors(scenes: Sequence[Scene]) -> list[tuple[LinearError, Array]]:
 
 def _other_errors(scene: Scene) -> tuple[LinearError, Array]:
     """The same of a rotor that tilts, or moves differently in two directions."""
-    position = scene.chambers[0].chamber.plane if scene.chambers else 0.0
-    return coupled_error(
-        dry_rotor(scene).system(),
-        scene.chambers,
-        scene.speed_array(),
-        axial_gravity(scene),
-        position,
-        across_gravity(scene),
-    )
+    along, across = axial_gravity(scene), across_gravity(scene)
+    return error_estimate(dry_rotor(scene), scene.chambers, scene.speed_array(), along, across)
 
 
 def _choice(scene: Scene, linear: LinearError, gravity: Array) -> Choice:

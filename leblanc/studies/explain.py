@@ -24,8 +24,8 @@ from solvers.rotor.exciter.stuck import characteristic_speeds
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import critical_speeds, modes, orbit, unbalance_response
 from solvers.statics.hydrostatics import optimal_volume
-from solvers.synchronous.coupled import wet_critical_speeds
-from solvers.synchronous.planar import critical_speed
+from solvers.synchronous.critical import critical_speed, wet_critical_speeds
+from solvers.synchronous.models import model_named
 
 
 def explain_exciter(scene: Scene) -> dict[str, Any]:
@@ -208,9 +208,10 @@ def _bare(scene: Scene, gravity: float, model: str) -> _Bare:
     moved = [float(np.abs(orbit(system, answer, fill.chamber.plane).forward[0])) for fill in fills]
     deflection = tuple(one if np.isfinite(one) else 0.0 for one in moved)
     if isinstance(rotor, Jeffcott):
-        wet = critical_speed(rotor, fills, gravity, model)
+        wet = critical_speed(rotor, fills, gravity, model_named(model))
         return _Bare(rotor.mass, rotor.natural_frequency, wet, rotor.damping_ratio, deflection)
-    speeds = critical_speeds(system)[0], wet_critical_speeds(system, fills, gravity, model)[0]
+    liquid = wet_critical_speeds(system, fills, gravity, model_named(model))[0]
+    speeds = critical_speeds(system)[0], liquid
     position = fills[0].chamber.plane if fills else 0.0
     dry, wet = main_critical_speeds(system, fills, position, *speeds)
     turning = modes(system, dry if np.isfinite(dry) else 0.0)

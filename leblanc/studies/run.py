@@ -29,9 +29,9 @@ from solvers.rotor.vibration import (
     whirl_direction,
 )
 from solvers.statics.hydrostatics import optimal_volume
-from solvers.synchronous.coupled import CoupledResponse, coupled_response, wet_critical_speeds
-from solvers.synchronous.mixed import mixed_coupled, mixed_response
-from solvers.synchronous.planar import Response, critical_speed
+from solvers.synchronous.critical import critical_speed, wet_critical_speeds
+from solvers.synchronous.models import LINEAR, model_named
+from solvers.synchronous.response import Response, response
 from solvers.whirl.edges import unstable_bands
 from solvers.whirl.growth import asynchronous_growth
 
@@ -43,12 +43,12 @@ def self_excited(scene: Scene) -> SelfExcited:
     ----------
     scene : the machine; its friction acts in the liquid
     """
-    system, speed = dry_rotor(scene).system(), scene.speed_array()
+    rotor, speed = dry_rotor(scene), scene.speed_array()
     friction = scene.model.friction
-    growth, whirl_speed = asynchronous_growth(system, scene.chambers, speed, friction)
+    growth, whirl_speed = asynchronous_growth(rotor, scene.chambers, speed, friction)
     bands: tuple[tuple[float, float], ...] = ()
     if speed[-1] > speed[0]:
-        bands = unstable_bands(system, [scene.chambers], speed, friction, growth[None])[0]
+        bands = unstable_bands(rotor, [scene.chambers], speed, friction, growth[None])[0]
     return SelfExcited(growth, whirl_speed, bands, small_whirl_friction(scene.model.friction))
 
 
@@ -95,7 +95,7 @@ _WORDS = {
 }
 
 
-def motion_response(scene: Scene, choice: Choice) -> tuple[CoupledResponse, Motion, tuple[float, float]]:
+def motion_response(scene: Scene, choice: Choice) -> tuple[Response, Motion, tuple[float, float]]:
     """Response of a scene's rotor with all its chambers, and what its vibration is without them.
 
     Parameters
@@ -112,10 +112,11 @@ def motion_response(scene: Scene, choice: Choice) -> tuple[CoupledResponse, Moti
     ------
     InputError : an exciter, or an unknown model
     """
-    system, gravity = dry_rotor(scene).system(), axial_gravity(scene)
-    found = mixed_coupled(system, scene.chambers, scene.speed_array(), gravity, choice.models)
+    rotor, gravity = dry_rotor(scene), axial_gravity(scene)
+    system = rotor.system()
+    found = response(rotor, scene.chambers, scene.speed_array(), gravity, choice.liquid_models)
     dry, dry_shape = critical_speeds(system)
-    wet, wet_shape = wet_critical_speeds(system, scene.chambers, gravity, choice.model)
+    wet, wet_shape = wet_critical_speeds(system, scene.chambers, gravity, model_named(choice.model))
     motion = Motion(
         position=found.position,
         backward=found.backward,
@@ -131,7 +132,7 @@ def motion_response(scene: Scene, choice: Choice) -> tuple[CoupledResponse, Moti
     return found, motion, main_critical_speeds(system, scene.chambers, found.position, dry, wet)
 
 
-def _at_chambers(system: RotorSystem, fills: tuple[Fill, ...], found: CoupledResponse) -> Complex:
+def _at_chambers(system: RotorSystem, fills: tuple[Fill, ...], found: Response) -> Complex:
     """Forward part at every chamber, those without liquid as well, shape (s, c)."""
     places = [orbit(system, found.coordinates, fill.chamber.plane).forward for fill in fills]
     return np.stack(places, axis=1) if places else np.zeros((found.residual.size, 0), dtype=complex)
@@ -181,8 +182,8 @@ def main_critical_speeds(
             chosen.append(float("nan"))
             continue
         if liquid:
-            found = coupled_response(system, liquid, speeds, 0.0, "linear", position)
-            size = np.abs(found.response.deflection) + np.abs(found.backward)
+            found = response(system, liquid, speeds, 0.0, LINEAR, position)
+            size = np.abs(found.deflection) + np.abs(found.backward)
         else:
             size = orbit(system, unbalance_response(system, speeds), position).amplitude
         chosen.append(float(speeds[int(np.argmax(size))]))
@@ -215,11 +216,11 @@ def run_scene(scene: Scene) -> StudyRecord:
     motion: Motion | None = None
     if isinstance(scene.rotor, Rotor):
         gravity, rotor = axial_gravity(scene), jeffcott(scene)
-        answer = mixed_response(rotor, scene.chambers, scene.speed_array(), gravity, choice.models)
-        dry, wet = rotor.natural_frequency, critical_speed(rotor, scene.chambers, gravity, choice.model)
+        answer = response(rotor, scene.chambers, scene.speed_array(), gravity, choice.liquid_models)
+        dry = rotor.natural_frequency
+        wet = critical_speed(rotor, scene.chambers, gravity, model_named(choice.model))
     else:
-        coupled, motion, (dry, wet) = motion_response(scene, choice)
-        answer = coupled.response
+        answer, motion, (dry, wet) = motion_response(scene, choice)
     whirl = self_excited(scene)
     answer = replace(
         answer, in_range=answer.in_range & choice.in_range, stable=stable_with(whirl, answer.stable)

@@ -25,7 +25,7 @@ from meshes.errors import InputError
 from solvers.runup.drive import Drive, Motor, Ramp
 from solvers.runup.error import MOST_LAG, MOST_WAVE, LinearRunError, largest_wave, linear_run_error
 from solvers.runup.runup import MODELS, RunupHistory, RunupNumerics, run_up
-from solvers.synchronous.planar import Response, synchronous_response
+from solvers.synchronous.response import Response, response
 
 
 def liquid_model(scene: Scene) -> str:
@@ -384,7 +384,7 @@ def steady_response(scene: Scene, speed: Array) -> Response | None:
     passed = _passed(speed, STEADY_SPEEDS)
     if not isinstance(scene.rotor, Rotor) or passed.size == 0:
         return None
-    return synchronous_response(jeffcott(scene), scene.chambers, passed, axial_gravity(scene))
+    return response(jeffcott(scene), scene.chambers, passed, axial_gravity(scene))
 
 
 def whirl_bands(scene: Scene, speed: Array) -> Bands:
@@ -394,8 +394,8 @@ def whirl_bands(scene: Scene, speed: Array) -> Bands:
     passed = _passed(speed, BAND_SPEEDS)
     if not scene.chambers or passed.size == 0:
         return ()
-    system, friction = dry_rotor(scene).system(), scene.model.friction
-    return unstable_bands(system, [scene.chambers], passed, friction)[0]
+    rotor, friction = dry_rotor(scene), scene.model.friction
+    return unstable_bands(rotor, [scene.chambers], passed, friction)[0]
 
 
 def _passed(speed: Array, count: int) -> Array:

@@ -16,7 +16,7 @@ from leblanc.studies.run import run_scene
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError
 from solvers.rotor.vibration import orbit
-from solvers.synchronous.mixed import mixed_coupled
+from solvers.synchronous.response import response
 
 GAP = 0.25  # between chambers moved apart, over the wider one's radius
 
@@ -98,10 +98,9 @@ def _lean(scene: Scene, record: StudyRecord) -> Complex:
         known = np.isfinite(low) & np.isfinite(high)
         low, high = np.where(known, low, np.nan), np.where(known, high, np.nan)
         return np.asarray((high - low) / np.ptp(planes))
-    system = dry_rotor(scene).system()
-    found = mixed_coupled(
-        system, scene.chambers, scene.speed_array(), axial_gravity(scene), choose(scene).models
-    )
+    rotor, models = dry_rotor(scene), choose(scene).liquid_models
+    found = response(rotor, scene.chambers, scene.speed_array(), axial_gravity(scene), models)
+    system = rotor.system()
     low, high = (orbit(system, found.coordinates, place).forward for place in (-0.5, 0.5))
     known = np.isfinite(low) & np.isfinite(high)
     return np.asarray(np.where(known, high, np.nan) - np.where(known, low, np.nan))

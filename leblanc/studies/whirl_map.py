@@ -88,16 +88,16 @@ def map_scene(
     _check(scene, volumes, speeds)
     law = scene.model.friction if friction is None else friction
     speed = np.linspace(scene.speeds.start, scene.speeds.stop, speeds)
-    system = dry_rotor(scene).system()
+    rotor = dry_rotor(scene)
     rows = fills_over_volume(scene.chambers, volumes, max_volume)
     parts = []
     for first in range(0, volumes, _AT_ONCE):
-        parts.append(growth_map(system, rows[first : first + _AT_ONCE], speed, law))
+        parts.append(growth_map(rotor, rows[first : first + _AT_ONCE], speed, law))
         if progress is not None:
             progress(min(first + _AT_ONCE, volumes), volumes)
     growth, whirl_speed = (np.concatenate([one[k] for one in parts]) for k in (0, 1))
-    edges = unstable_bands(system, rows, speed, law, growth)
-    (own,) = unstable_bands(system, [scene.chambers], speed, law)
+    edges = unstable_bands(rotor, rows, speed, law, growth)
+    (own,) = unstable_bands(rotor, [scene.chambers], speed, law)
     held = np.array([_held(scene, fills, speed) for fills in rows])
     pairs = zip(rows, whirl_speed - speed, strict=True)
     thin = np.array([_thin_layers(fills, slip) for fills, slip in pairs]) | (law.law != "stokes")
@@ -116,7 +116,7 @@ def map_scene(
         damping=_damping_words(scene),
         scene_volume=sum(fill.volume for fill in scene.chambers),
         scene_edges=own,
-        notes=_notes(scene, law, own, held, thin, bool(np.any(system.damping))),
+        notes=_notes(scene, law, own, held, thin, bool(np.any(rotor.system().damping))),
     )
 
 

@@ -16,7 +16,7 @@ from leblanc.units import ML, MM, RPM
 if TYPE_CHECKING:
     from leblanc.scene.scene import Runup, Scene
     from solvers.runup.runup import RunupHistory, RunupNumerics
-    from solvers.synchronous.planar import Response
+    from solvers.synchronous.response import Response
 
 Bands = tuple[tuple[float, float], ...]
 

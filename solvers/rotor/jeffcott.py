@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fluid.fill import Fill
 from meshes.arrays import Array
 from meshes.errors import require_not_negative, require_positive
 from solvers.rotor.system import RotorSystem
@@ -57,15 +59,19 @@ class Jeffcott:
 
     def system(self) -> RotorSystem:
         """Equations of motion in the two directions across the axis; chambers in any plane move alike."""
-        one = np.eye(2)
+        unit = np.eye(2)
         return RotorSystem(
             coordinates=("x", "y"),
-            mass=self.mass * one,
-            damping=self.damping * one,
-            gyroscopic=0.0 * one,
-            stiffness=self.stiffness * one,
+            mass=self.mass * unit,
+            damping=self.damping * unit,
+            gyroscopic=0.0 * unit,
+            stiffness=self.stiffness * unit,
             # Its force turns with the spin, from the first direction to the second.
             unbalance=np.array([self.unbalance, -1j * self.unbalance], dtype=complex),
-            centre=one,
-            lean=0.0 * one,
+            centre=unit,
+            lean=0.0 * unit,
         )
+
+
+# A rotor with the fills of its chambers, all of which move alike.
+PlanarMachine = tuple[Jeffcott, Sequence[Fill]]

@@ -56,9 +56,16 @@ class RotorSystem:
         """In-plane displacement of the spin axis at a position, for unit coordinates, shape (2, n)."""
         return np.asarray(self.centre + position * self.lean)
 
+    def system(self) -> RotorSystem:
+        """Itself: equations of motion are a rotor, whatever they were written down for."""
+        return self
+
 
 class Rotor(Protocol):
-    """A dry rotor to which chambers can be fitted."""
+    """A dry rotor to which chambers can be fitted.
+
+    Solvers that know more about a kind of rotor ask for that kind, never for the shape of its matrices.
+    """
 
     def system(self) -> RotorSystem:
         """Its equations of motion."""

@@ -19,13 +19,14 @@ from meshes.arrays import Array, Complex
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.chamber_section import ChamberSection, liquid_of
-from solvers.rotor.jeffcott import Jeffcott
 
 if TYPE_CHECKING:
     from meshes.liquid_section import LiquidSection
     from solvers.sloshing.system import LiquidSystem
 
-
+# Slip at which the thickness of the layer at edges is taken, rad/s: twice as thick a layer changes the drag
+# by some per cent.
+_SLIP = 10.0
 # Frequencies over the spin whose answers are kept, off the real axis where no wave resonates; with them go
 # rest and the limit of very fast whirl.
 KEPT = (0.2 + 0.08j, 0.45 + 0.12j, 0.75 + 0.15j, 1.1 + 0.2j, 1.6 + 0.4j)
@@ -109,7 +110,7 @@ def reduce_liquid(system: LiquidSystem) -> ReducedLiquid:
         answers += [answer.real, answer.imag]
     basis = spanned(np.hstack(answers))
     motions = solve_triangular(root.T, basis, lower=False)
-    turn, spread = (basis.T @ one @ basis for one in (gyration, surface))
+    turn, spread = (basis.T @ matrix @ basis for matrix in (gyration, surface))
     return ReducedLiquid(
         inertia=np.eye(basis.shape[1]),
         gyration=0.5 * (turn - turn.T),
@@ -135,19 +136,14 @@ def spanned(vectors: Any, distinct: float = _DISTINCT) -> Any:
     """
     kept: list[Any] = []
     for vector in vectors.T:
-        one = vector / np.linalg.norm(vector)
+        left = vector / np.linalg.norm(vector)
         for _ in range(2):  # twice is enough
             for other in kept:
-                one = one - other * np.vdot(other, one)
-        size = float(np.linalg.norm(one))
+                left = left - other * np.vdot(other, left)
+        size = float(np.linalg.norm(left))
         if size > distinct:
-            kept.append(one / size)
+            kept.append(left / size)
     return np.stack(kept, axis=1)
-
-
-# Slip at which the thickness of the layer at edges is taken, rad/s: twice as thick a layer changes the drag
-# by some per cent.
-_SLIP = 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,31 +222,29 @@ def _of_baffles(fill: Fill, cut: float) -> tuple[ReducedLiquid, Array]:
     return liquid, drag / radius
 
 
-def section_layers(
-    rotor: Jeffcott, fills: Sequence[Fill], friction: Friction
-) -> tuple[Jeffcott, list[SectionLayer]]:
-    """A planar rotor with all liquid that has no free surface, and its layers, equal ones as one.
+def section_layers(fills: Sequence[Fill], friction: Friction) -> tuple[float, list[SectionLayer]]:
+    """Mass of all liquid that has no free surface, kg, and the layers of chambers that move alike.
 
-    Against one another equal layers slosh as if the rotor were not there; such motion does not grow.
+    Equal layers count as one: against one another they slosh as if the rotor were not there, and such motion
+    does not grow.
 
     Parameters
     ----------
-    rotor : without liquid
-    fills : its chambers with their liquid
+    fills : chambers in one plane, or of a rotor whose planes move alike
     friction : as for `section_layer`
     """
-    mass, found = rotor.mass, dict[tuple[object, ...], list[Fill]]()
+    solid, found = 0.0, dict[tuple[object, ...], list[Fill]]()
     for fill in fills:
         if is_full(fill):
-            mass += fill.mass
+            solid += fill.mass
         else:
             found.setdefault((replace(fill.chamber, plane=0.0), fill.liquid, fill.volume), []).append(fill)
     layers = []
     for same in found.values():
-        one = section_layer(same[0], friction)
-        if one is not None:
-            layers.append(replace(one, density=len(same) * one.density))
-    return replace(rotor, mass=mass), layers
+        layer = section_layer(same[0], friction)
+        if layer is not None:
+            layers.append(replace(layer, density=len(same) * layer.density))
+    return solid, layers
 
 
 def clear_ring(radius: float, surface_radius: float) -> ReducedLiquid:

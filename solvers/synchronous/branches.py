@@ -13,9 +13,8 @@ from collections.abc import Callable
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshes.arrays import Array, Index
+from meshes.arrays import Array, Flags, Index
 from solvers.roots import bracketed_root
 
 # Pull Y at deflections e, shape (m,), of the speeds given by their index, shape (m,).
@@ -27,9 +26,45 @@ _COARSE = 14
 _FINE = 26
 
 
+def branches_beyond(
+    pull: Law,
+    elastic: Array,
+    damping: Array,
+    force: Array,
+    steepest: Array,
+    limit: Array,
+    dead: Array,
+    moved: Flags,
+) -> tuple[Array, Index, Flags, Flags]:
+    """Every solution beyond the straight part of the law, as far out as damping and stiffness allow.
+
+    Parameters
+    ----------
+    pull, elastic, damping, force, steepest : as for `find_branches`
+    limit : deflection up to which the law is a straight line, shape (n,)
+    dead : largest pull of the liquid beyond its mass at the chamber's centre, shape (n,)
+    moved : there is a force; without one nothing moves, and there is nothing to look for, shape (n,)
+
+    Returns
+    -------
+    solution, which, converged : as from `find_branches`
+    bounded : solutions are bounded, or the law is straight everywhere, shape (n,)
+    """
+    # No solution is farther out than the damper or the spring allows.
+    reach = np.minimum(over(force, damping), over(force + dead, np.abs(elastic))) * (1.0 + 1e-9)
+    bounded = np.isfinite(reach) | np.isinf(limit)
+    stop = np.where(moved & bounded & np.isfinite(limit), np.maximum(reach, limit), limit)
+    return *find_branches(pull, elastic, damping, force, steepest, limit, stop), bounded
+
+
+def over(above: Array, below: Array) -> Array:
+    """Quotient, shape (n,), infinite where there is nothing to divide by."""
+    return np.asarray(np.divide(above, below, out=np.full(above.shape, np.inf), where=below > 0.0))
+
+
 def find_branches(
     pull: Law, elastic: Array, damping: Array, force: Array, steepest: Array, start: Array, stop: Array
-) -> tuple[Array, Index, NDArray[np.bool_]]:
+) -> tuple[Array, Index, Flags]:
     """Every solution e of (a e - Y(e))^2 + (c e)^2 = u^2 with start < e <= stop, at n speeds.
 
     Parameters
@@ -116,7 +151,7 @@ def _distinct(solution: Array, which: Index, distance: Array, span: Array) -> tu
 
 def _one_way(
     low: Array, high: Array, at_low: Array, at_high: Array, a: Array, c: Array, rise: Array
-) -> NDArray[np.bool_]:
+) -> Flags:
     """Whether the left-hand side only rises or only falls: r (a - Y') + c^2 e keeps its sign, r = a e - Y."""
     corners = [
         r * slope
@@ -128,9 +163,7 @@ def _one_way(
     return np.asarray((least >= 0.0) | (most <= 0.0))
 
 
-def _may_hold(
-    low: Array, high: Array, at_low: Array, at_high: Array, a: Array, c: Array
-) -> NDArray[np.bool_]:
+def _may_hold(low: Array, high: Array, at_low: Array, at_high: Array, a: Array, c: Array) -> Flags:
     """Whether the interval can hold a solution: 1 lies between the bounds of the left-hand side."""
     least = np.minimum(a * low, a * high) - at_high
     most = np.maximum(a * low, a * high) - at_low

@@ -7,39 +7,36 @@ liquid's mass times the deflection never falls as that grows, which the search f
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fills
 from fluid.paraboloid import CYLINDER_STEEPNESS, steepness
-from meshes.arrays import Array
+from meshes.arrays import Array, Index
 from meshes.errors import InputError
 from meshes.section import Section, annulus
 from solvers.roots import bracketed_root
-from solvers.synchronous.models import SYNCHRONOUS_MODELS, LiquidModel, SynchronousAnswer
+from solvers.synchronous.models import LiquidModel, SynchronousAnswer
 
 _CELLS_AT_ONCE = 1 << 17  # of all states together, so that they stay in the processor's cache
 _DEEPEST = 0.3  # mean depth over the radius up to which waves on the layer are long
 _SHIFT = 1e-4  # relative change of a level across which the plan of the surface is measured
 
 
-@dataclass
-class LongWave:
+@dataclass(frozen=True)
+class LongWave(LiquidModel):
     """The plane layer at rest on finite-volume cells, as the long-wave scheme holds it in synchronous whirl.
 
     In every cell the surface is that of one circle about the rotation axis [theory: long_wave, eq. 6]; cells
     beyond the circle are dry, and the volume is met by the cells' sum. Unbalance and volume are the sums of
-    what the cells hold. Gravity along the axis is left out.
+    what the cells hold, so that even with every cell wet the law is the straight line to rounding only if
+    there are many cells. Gravity along the axis is left out.
 
     Parameters
     ----------
     cells : round the wall, at least 8; the deflection points between two of them
-    name : model and resolution
 
     Raises
     ------
@@ -47,12 +44,15 @@ class LongWave:
     """
 
     cells: int
-    name: str = field(init=False)
 
     def __post_init__(self) -> None:
         if not 8 <= self.cells <= 65536:
             raise InputError("cells", self.cells, "from 8 to 65536")
-        self.name = f"long_wave {self.cells}"
+
+    @property
+    def name(self) -> str:
+        """Model and resolution."""
+        return f"long_wave {self.cells}"
 
     def synchronous(self, fills: Fills, speed: Array, deflection: Array, gravity: Array) -> SynchronousAnswer:
         """See `LiquidModel`; in range while the layer is long, upright, and clear of axis and inner wall."""
@@ -72,10 +72,6 @@ class LongWave:
             converged=met > 0.0,
         )
 
-    def linear_limit(self, fills: Fills, speed: Array, gravity: Array) -> Array:
-        """None: with every cell wet the sums are the full mass to rounding only if there are many of them."""
-        return np.zeros(speed.shape)
-
     def _at_rest(self, fills: Fills, deflection: Array) -> Array:
         """First moment about the rotation axis, slope; dry, greatest depth, volume met; shape (5, n)."""
         chamber = fills.chamber
@@ -83,7 +79,7 @@ class LongWave:
         e, film = deflection / radius, fills.volume / (math.pi * height * np.square(radius))
         mean = fills.depth / radius
 
-        def excess(level: Array, which: NDArray[np.intp]) -> Array:
+        def excess(level: Array, which: Index) -> Array:
             depth = _circle(e[which], level, self.cells)[0]
             return np.asarray(np.mean(depth * (2.0 - depth), axis=1) - film[which])
 
@@ -134,15 +130,16 @@ def _circle(e: Array, level: Array, cells: int) -> tuple[Array, Array]:
     return np.clip(depth, 0.0, 1.0), chord
 
 
-@dataclass
-class Fem:
+@dataclass(frozen=True)
+class Fem(LiquidModel):
     """The exact free surface integrated over a finite-element mesh of the section [theory: statics, eq. 1].
+
+    The section has the area of its mesh, a little less than the circle's.
 
     Parameters
     ----------
     segments : edges along the wall, 8 or more
     order : 1 for straight edges, 2 for quadratic ones
-    name : model and resolution
 
     Raises
     ------
@@ -151,12 +148,15 @@ class Fem:
 
     segments: int
     order: int = 1
-    name: str = field(init=False)
 
     def __post_init__(self) -> None:
         if self.segments < 8 or self.order not in (1, 2):
             raise InputError("segments, order", (self.segments, self.order), "8 or more; 1 or 2")
-        self.name = f"fem {self.segments} order {self.order}"
+
+    @property
+    def name(self) -> str:
+        """Model and resolution."""
+        return f"fem {self.segments} order {self.order}"
 
     def synchronous(self, fills: Fills, speed: Array, deflection: Array, gravity: Array) -> SynchronousAnswer:
         """See `LiquidModel`; holds at every deflection."""
@@ -178,10 +178,6 @@ class Fem:
             in_range=np.ones(count, dtype=bool),
             converged=met,
         )
-
-    def linear_limit(self, fills: Fills, speed: Array, gravity: Array) -> Array:
-        """None: the section has the area of its mesh, a little less than the circle's."""
-        return np.zeros(speed.shape)
 
 
 @lru_cache(maxsize=32)
@@ -214,13 +210,3 @@ def _surface(
     spread = max(square - arm * arm / plan, 0.0) if plan > 0.0 else 0.0
     slope = float(here.volume) + 2.0 * spread / (level - lower)
     return float(here.x), slope, level - (far - near), solved.converged
-
-
-@contextmanager
-def offered(model: LiquidModel) -> Iterator[str]:
-    """Make a model known to the synchronous solvers by its name while the block runs."""
-    SYNCHRONOUS_MODELS[model.name] = model
-    try:
-        yield model.name
-    finally:
-        del SYNCHRONOUS_MODELS[model.name]

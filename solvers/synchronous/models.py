@@ -1,4 +1,4 @@
-"""Liquid models behind one small interface: the liquid's unbalance under a deflection fixed in the drum."""
+"""Liquid models as objects: the liquid's unbalance under a deflection that is fixed in the drum."""
 
 from __future__ import annotations
 
@@ -6,18 +6,17 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fills
 from fluid.paraboloid import CYLINDER_STEEPNESS, steepness
-from meshes.arrays import Array
+from meshes.arrays import Array, Flags, Index
 from meshes.errors import InputError
 from solvers.roots import bracketed_root
 from solvers.statics.hydrostatics import equilibrium
 from solvers.statics.integrals import volume_under
 
-# The limit of the straight line is taken a hair low, so that the law is the line up to it and with it.
-_HAIR = 1e-9
+# The end of the straight line is taken so much too low, relatively, that the law is the line up to it.
+_MARGIN = 1e-9
 
 
 @dataclass(frozen=True)
@@ -26,7 +25,7 @@ class SynchronousAnswer:
 
     Parameters
     ----------
-    unbalance : first moment of the liquid about the rotation axis, kg m
+    unbalance : first moment of the liquid about the rotation axis, along the deflection, kg m
     slope : its derivative with respect to the deflection at fixed volume, kg
     dry_patch : the wall is dry over its whole height somewhere
     in_range : the model holds there
@@ -35,15 +34,28 @@ class SynchronousAnswer:
 
     unbalance: Array
     slope: Array
-    dry_patch: NDArray[np.bool_]
-    in_range: NDArray[np.bool_]
-    converged: NDArray[np.bool_]
+    dry_patch: Flags
+    in_range: Flags
+    converged: Flags
+
+    @classmethod
+    def everywhere(cls, unbalance: Array, slope: Array) -> SynchronousAnswer:
+        """Answer of a law that holds at every deflection and leaves the wall wet."""
+        yes = np.ones(unbalance.shape, dtype=bool)
+        return cls(unbalance, slope, ~yes, yes, yes)
 
 
 class LiquidModel(Protocol):
-    """What a model of the liquid must answer for the synchronous response."""
+    """Model of the liquid in chambers that whirl with their spin.
 
-    name: str
+    Solvers take it as an object. A class that inherits from it needs a name and `synchronous`; the branches
+    are found only if its unbalance less the liquid's mass times the deflection never falls as that grows.
+    """
+
+    @property
+    def name(self) -> str:
+        """By which results tell it, with its resolution if it has one."""
+        ...
 
     def synchronous(self, fills: Fills, speed: Array, deflection: Array, gravity: Array) -> SynchronousAnswer:
         """Answer of fills at spin speeds and deflections, all shape (n,).
@@ -52,17 +64,21 @@ class LiquidModel(Protocol):
         ----------
         fills : one for each state, none of them empty
         speed : spin speed Omega, rad/s
-        deflection : e, m
+        deflection : size of the chamber's deflection e, m, 0 or above
         gravity : along the axis, m/s^2
         """
         ...
 
     def linear_limit(self, fills: Fills, speed: Array, gravity: Array) -> Array:
-        """Deflection up to which the unbalance is exactly the full mass times the deflection, m, (n,)."""
-        ...
+        """Deflection up to which the unbalance is exactly the full mass times the deflection, m, (n,).
+
+        0, as here, is right for every model; a larger one saves time.
+        """
+        return np.zeros(speed.shape)
 
 
-class Statics:
+@dataclass(frozen=True)
+class Statics(LiquidModel):
     """Exact equilibrium of the liquid at any amplitude [theory: statics]."""
 
     name = "statics"
@@ -88,7 +104,7 @@ class Statics:
         chamber = fills.chamber
         steep = steepness(speed, gravity, chamber.radius, chamber.height)
         # A cylinder about the rotation axis touches the wall where the deflection is the mean depth.
-        limit = fills.depth * (1.0 - _HAIR)
+        limit = fills.depth * (1.0 - _MARGIN)
         bowl = np.flatnonzero(steep < CYLINDER_STEEPNESS)
         if bowl.size:
             limit[bowl] = _touching(fills.at(bowl), steep[bowl])
@@ -102,7 +118,7 @@ def _touching(fills: Fills, steep: Array) -> Array:
     """Deflection at which a bowl touches the near wall under the lid, m; 0 if it always does, R if never."""
     chamber = fills.chamber
 
-    def excess(deflection: Array, which: NDArray[np.intp]) -> Array:
+    def excess(deflection: Array, which: Index) -> Array:
         here = chamber.at(which)
         touching = 1.0 + 4.0 * steep[which] * deflection / here.radius
         return volume_under(here, deflection, steep[which], touching) - fills.volume[which]
@@ -112,16 +128,17 @@ def _touching(fills: Fills, steep: Array) -> Array:
     between = np.flatnonzero((excess(np.zeros_like(steep), everyone) < 0.0) & (limit == 0.0))
     if between.size:
 
-        def missing(deflection: Array, which: NDArray[np.intp]) -> Array:
+        def missing(deflection: Array, which: Index) -> Array:
             return excess(deflection, between[which])
 
         ends = np.zeros(between.size), chamber.radius[between]
         root, _ = bracketed_root(missing, *ends, relative=1e-10)
-        limit[between] = root * (1.0 - _HAIR)
+        limit[between] = root * (1.0 - _MARGIN)
     return limit
 
 
-class Linear:
+@dataclass(frozen=True)
+class Linear(LiquidModel):
     """The layer's added mass, exact for small synchronous deflections [theory: waves, eq. 8]."""
 
     name = "linear"
@@ -142,6 +159,7 @@ class Linear:
         return np.full(speed.shape, np.inf)
 
 
+@dataclass(frozen=True)
 class Elements(Linear):
     """The same with baffles, whose waves are found by finite elements [theory: sections, eq. 8].
 
@@ -151,20 +169,18 @@ class Elements(Linear):
     name = "fem"
 
 
-SYNCHRONOUS_MODELS: dict[str, LiquidModel] = {
-    model.name: model for model in (Statics(), Linear(), Elements())
-}
+STATICS, LINEAR, ELEMENTS = Statics(), Linear(), Elements()
+MODEL_NAMES = tuple(model.name for model in (STATICS, LINEAR, ELEMENTS))
 
 
-def synchronous_model(name: str) -> LiquidModel:
-    """Model by name; `auto` is the cheapest that is exact for synchronous whirl.
+def model_named(name: str) -> LiquidModel:
+    """The model that a scene names; `auto` is the cheapest that is exact for synchronous whirl.
 
     Raises
     ------
-    InputError : no such model answers a synchronous whirl
+    InputError : no model of that name answers a synchronous whirl
     """
-    if name == "auto":
-        return SYNCHRONOUS_MODELS["statics"]
-    if name not in SYNCHRONOUS_MODELS:
-        raise InputError("model.liquid", name, "one of auto, " + ", ".join(SYNCHRONOUS_MODELS))
-    return SYNCHRONOUS_MODELS[name]
+    known = {model.name: model for model in (STATICS, LINEAR, ELEMENTS)} | {"auto": STATICS}
+    if name not in known:
+        raise InputError("model.liquid", name, "one of auto, " + ", ".join(MODEL_NAMES))
+    return known[name]

@@ -6,15 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fluid.fill import Fill, Fills
-from meshes.arrays import Array, Flags, Index
-from solvers.rotor.jeffcott import Jeffcott
+from fluid.fill import Fills
+from meshes.arrays import Array, Complex, Flags, Index
+from solvers.rotor.jeffcott import PlanarMachine
 from solvers.synchronous.models import LiquidModel
-
-# A rotor with the fills of its chambers.
-PlanarMachine = tuple[Jeffcott, Sequence[Fill]]
 
 
 @dataclass(frozen=True)
@@ -79,7 +75,7 @@ class Pairs:
     reach: Array
 
     @property
-    def dynamic_stiffness(self) -> NDArray[np.complex128]:
+    def dynamic_stiffness(self) -> Complex:
         """K - M Omega^2 + i C Omega of the dry rotors in the drum frame, N/m, shape (n,)."""
         elastic = self.stiffness - self.mass * np.square(self.speed)
         return np.asarray(elastic + 1j * self.damping * self.speed, dtype=complex)
@@ -99,11 +95,11 @@ class Pairs:
             return LiquidState(np.zeros(size), np.zeros(size), dry, in_range, converged)
         rows, fills, _ = found
         own = which[rows]
-        one = self.model.synchronous(fills, self.speed[own], deflection[rows], self.gravity[own])
-        np.logical_or.at(dry, rows, one.dry_patch)
-        np.logical_and.at(in_range, rows, one.in_range)
-        np.logical_and.at(converged, rows, one.converged)
-        unbalance, slope = (_summed(rows, x, size) for x in (one.unbalance, one.slope))
+        law = self.model.synchronous(fills, self.speed[own], deflection[rows], self.gravity[own])
+        np.logical_or.at(dry, rows, law.dry_patch)
+        np.logical_and.at(in_range, rows, law.in_range)
+        np.logical_and.at(converged, rows, law.converged)
+        unbalance, slope = (_summed(rows, x, size) for x in (law.unbalance, law.slope))
         return LiquidState(unbalance, slope, dry, in_range, converged)
 
     def pull(self, deflection: Array, which: Index) -> Array:
@@ -132,11 +128,11 @@ class Pairs:
         """
         places = [slot.place[which] for slot in self.slots]
         rows = [np.flatnonzero(place >= 0) for place in places]
-        if not any(one.size for one in rows):
+        if not any(having.size for having in rows):
             return None
         parts = zip(self.slots, places, rows, strict=True)
-        fills = Fills.joined([slot.fills.at(place[one]) for slot, place, one in parts])
-        limits = [slot.limit[which[one]] for slot, one in zip(self.slots, rows, strict=True)]
+        fills = Fills.joined([slot.fills.at(place[having]) for slot, place, having in parts])
+        limits = [slot.limit[which[having]] for slot, having in zip(self.slots, rows, strict=True)]
         return np.concatenate(rows), fills, np.concatenate(limits)
 
 

@@ -12,8 +12,9 @@ from fluid.fill import Fill
 from fluid.friction import NO_FRICTION, Friction
 from fluid.whirl import Layer, neutral_stiffness
 from meshes.arrays import Array, Index
-from solvers.rotor.system import RotorSystem
-from solvers.whirl.growth import growth_at, planar, planar_layers
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.system import Rotor
+from solvers.whirl.growth import growth_at, planar_layers
 
 Bands = tuple[tuple[float, float], ...]
 
@@ -24,7 +25,7 @@ _MOST_SEEDED = 8  # layers; polynomials of more are too steep to have their zero
 
 
 def unstable_bands(
-    system: RotorSystem,
+    rotor: Rotor,
     rows: Sequence[Sequence[Fill]],
     speed: ArrayLike,
     friction: Friction = NO_FRICTION,
@@ -37,7 +38,7 @@ def unstable_bands(
 
     Parameters
     ----------
-    system, rows, friction : as for `solvers.whirl.growth.growth_map`
+    rotor, rows, friction : as for `solvers.whirl.growth.growth_map`
     speed : rising, rad/s, shape (n,)
     growth : at these speeds if it is known, shape (rows, n)
 
@@ -47,11 +48,11 @@ def unstable_bands(
     """
     grid = np.asarray(speed, dtype=float)
     row, points = np.repeat(np.arange(len(rows)), grid.size), np.tile(grid, len(rows))
-    known = growth_at(system, rows, row, points, friction)[0] if growth is None else growth.ravel()
-    seeds = [_seeds(system, fills, float(grid[0]), float(grid[-1])) for fills in rows]
-    more = np.repeat(np.arange(len(rows)), [one.size for one in seeds])
+    known = growth_at(rotor, rows, row, points, friction)[0] if growth is None else growth.ravel()
+    seeds = [_seeds(rotor, fills, float(grid[0]), float(grid[-1])) for fills in rows]
+    more = np.repeat(np.arange(len(rows)), [own.size for own in seeds])
     between = np.concatenate([*seeds, np.empty(0)])
-    added = growth_at(system, rows, more, between, friction)[0]
+    added = growth_at(rotor, rows, more, between, friction)[0]
     row, points = np.concatenate([row, more]), np.concatenate([points, between])
     rate = np.concatenate([known, added])
     grows = rate > 0.0
@@ -59,7 +60,7 @@ def unstable_bands(
     row, points, rate, grows = row[order], points[order], rate[order], grows[order]
     change = np.flatnonzero((row[1:] == row[:-1]) & (grows[1:] != grows[:-1]))
     low, high = (np.stack([points[change + i], rate[change + i]]) for i in (0, 1))
-    edge = _refine(system, rows, row[change], low, high, friction)
+    edge = _refine(rotor, rows, row[change], low, high, friction)
     return tuple(_bands(k, row, points, grows, row[change], edge) for k in range(len(rows)))
 
 
@@ -75,7 +76,7 @@ def _bands(k: int, row: Index, points: Array, grows: NDArray[np.bool_], owner: I
 
 
 def _refine(
-    system: RotorSystem,
+    rotor: Rotor,
     rows: Sequence[Sequence[Fill]],
     row: Index,
     low: Array,
@@ -106,7 +107,7 @@ def _refine(
             np.clip(np.stack([share - near, share + near, np.full(a.shape, 0.5)]), 0.0, 1.0), axis=0
         )
         looks = a + parts * width
-        found = growth_at(system, rows, np.tile(row[active], 3), looks.ravel(), friction)[0].reshape(3, -1)
+        found = growth_at(rotor, rows, np.tile(row[active], 3), looks.ravel(), friction)[0].reshape(3, -1)
         # The ends and the looks in order; the edge is before the first that is unlike the lower end.
         points = np.concatenate([a[None], looks, b[None]])
         rates = np.concatenate([at_a[None], found, at_b[None]])
@@ -117,10 +118,9 @@ def _refine(
     return np.asarray(0.5 * (low[0] + high[0]))
 
 
-def _seeds(system: RotorSystem, fills: Sequence[Fill], first: float, last: float) -> Array:
+def _seeds(rotor: Rotor, fills: Sequence[Fill], first: float, last: float) -> Array:
     """Edges without damping and the middles between neighbours, inside the range."""
-    rotor = planar(system)
-    if rotor is None:
+    if not isinstance(rotor, Jeffcott):
         return np.empty(0)
     mass, layers = planar_layers(rotor.mass, fills, NO_FRICTION)
     if not 0 < len(layers) <= _MOST_SEEDED:
@@ -146,26 +146,26 @@ def undamped_edges(mass: float, stiffness: float, layers: Sequence[Layer]) -> Ar
     -------
     Omega, rad/s, rising
     """
-    free = [one for one in layers if one.mass > 0.0]
+    free = [layer for layer in layers if layer.mass > 0.0]
     # In u = r - 1, in which the waves of a thin layer stand apart.
     ratio = Polynomial([1.0, 1.0])
-    waves = [Polynomial([-one.layer_tanh, -2.0 * one.layer_tanh, 1.0]) for one in free]
+    waves = [Polynomial([-layer.layer_tanh, -2.0 * layer.layer_tanh, 1.0]) for layer in free]
     bottom = _product(waves)
-    top = (mass + sum(one.mass for one in free)) * bottom
-    for k, one in enumerate(free):
-        share = 0.5 * (1.0 - one.layer_tanh) * one.mass
+    top = (mass + sum(layer.mass for layer in free)) * bottom
+    for k, layer in enumerate(free):
+        share = 0.5 * (1.0 - layer.layer_tanh) * layer.mass
         top = top - share * ratio**2 * _product(waves[:k] + waves[k + 1 :])
     # Y = r^2 top/bottom; the zero of Y' at r = 0 belongs to an infinite speed.
     extrema = (2.0 * top + ratio * top.deriv()) * bottom - ratio * top * bottom.deriv()
     roots = extrema.roots()
     real = roots.real[np.abs(roots.imag) <= 1e-9 * np.abs(roots)] + 1.0
-    masses, tanh = (np.array([getattr(one, name) for one in free]) for name in ("mass", "layer_tanh"))
+    masses, tanh = (np.array([getattr(layer, name) for layer in free]) for name in ("mass", "layer_tanh"))
     needed = neutral_stiffness(real, mass, masses, tanh)
     return np.sort(np.sqrt(stiffness / needed[needed > 0.0]))
 
 
 def _product(factors: Sequence[Polynomial]) -> Polynomial:
     total = Polynomial([1.0])
-    for one in factors:
-        total = total * one
+    for factor in factors:
+        total = total * factor
     return total

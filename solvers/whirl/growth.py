@@ -13,10 +13,9 @@ from fluid.friction import NO_FRICTION, Friction
 from fluid.whirl import Layer, is_full, plane_layer
 from meshes.arrays import Array, Complex, Index
 from meshes.errors import InputError
-from solvers.rotor.jeffcott import Jeffcott
-from solvers.rotor.system import RotorSystem
+from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
+from solvers.rotor.system import Rotor
 from solvers.sloshing.reduced import section_layer, section_layers
-from solvers.synchronous.pairs import PlanarMachine
 from solvers.whirl.laminar import laminar_modes
 from solvers.whirl.planar import PlanarProblem, planar_modes
 from solvers.whirl.sections import drum_modes, standing_modes
@@ -27,13 +26,13 @@ _ALIKE = 1e-9  # relative; layers that differ by less are one
 
 
 def asynchronous_growth(
-    system: RotorSystem, fills: Sequence[Fill], speed: ArrayLike, friction: Friction = NO_FRICTION
+    rotor: Rotor, fills: Sequence[Fill], speed: ArrayLike, friction: Friction = NO_FRICTION
 ) -> tuple[Array, Array]:
     """Growth of the fastest growing whirl of a rotor with liquid in its chambers [theory: whirl, eq. 7].
 
     Parameters
     ----------
-    system : the dry rotor
+    rotor : the dry rotor, of any kind
     fills : its chambers with their liquid, any number
     speed : spin speeds Omega, rad/s, shape (n,), above 0
     friction : the laminar law takes each liquid's viscosity, the
@@ -55,22 +54,22 @@ def asynchronous_growth(
     >>> from meshes.chamber import Chamber
     >>> fill = Fill(Chamber(0.1, 0.02), known_liquid("water"), 1.2e-4)
     >>> rotor = Jeffcott(mass=6.0, stiffness=6.0e4, damping=0.0, unbalance=0.0)
-    >>> growth, _ = asynchronous_growth(rotor.system(), [fill], [80.0, 130.0])
+    >>> growth, _ = asynchronous_growth(rotor, [fill], [80.0, 130.0])
     >>> print(f"{growth[0]:.1f} {growth[1]:.1f}")
     0.0 6.7
     """
-    growth, whirl_speed = growth_map(system, [fills], speed, friction)
+    growth, whirl_speed = growth_map(rotor, [fills], speed, friction)
     return growth[0], whirl_speed[0]
 
 
 def growth_map(
-    system: RotorSystem, rows: Sequence[Sequence[Fill]], speed: ArrayLike, friction: Friction = NO_FRICTION
+    rotor: Rotor, rows: Sequence[Sequence[Fill]], speed: ArrayLike, friction: Friction = NO_FRICTION
 ) -> tuple[Array, Array]:
     """Growth over speed for each of several sets of fills.
 
     Parameters
     ----------
-    system, speed, friction : as for `asynchronous_growth`
+    rotor, speed, friction : as for `asynchronous_growth`
     rows : the fills of the rotor's chambers, each row the same chambers
 
     Returns
@@ -79,13 +78,13 @@ def growth_map(
     """
     spin = np.array(speed, dtype=float).reshape(-1)
     row = np.repeat(np.arange(len(rows)), spin.size)
-    growth, whirl_speed = growth_at(system, rows, row, np.tile(spin, len(rows)), friction)
+    growth, whirl_speed = growth_at(rotor, rows, row, np.tile(spin, len(rows)), friction)
     shape = (len(rows), spin.size)
     return growth.reshape(shape), whirl_speed.reshape(shape)
 
 
 def growth_at(
-    system: RotorSystem,
+    rotor: Rotor,
     rows: Sequence[Sequence[Fill]],
     row: Index,
     speed: Array,
@@ -95,7 +94,7 @@ def growth_at(
 
     Parameters
     ----------
-    system, rows, friction : as for `growth_map`
+    rotor, rows, friction : as for `growth_map`
     row, speed : of each point, shape (n,)
 
     Returns
@@ -104,39 +103,38 @@ def growth_at(
     """
     if not np.all(np.isfinite(speed) & (speed > 0.0)):
         raise InputError("speed", speed.tolist(), "finite numbers above 0")
-    rotor = planar(system)
-    if rotor is not None:
+    if isinstance(rotor, Jeffcott):
         return machines_growth([(rotor, fills) for fills in rows], [friction] * len(rows), row, speed)
     growth, whirl_speed = np.full((2, speed.size), np.nan)
     for k in np.unique(row).tolist():
         here = np.flatnonzero(row == k)
-        modes = system_modes(system, rows[k], speed[here], friction)
+        modes = system_modes(rotor, rows[k], speed[here], friction)
         growth[here], whirl_speed[here] = _fastest(modes, speed[here])
     return growth, whirl_speed
 
 
 def system_modes(
-    system: RotorSystem, fills: Sequence[Fill], speed: Array, friction: Friction = NO_FRICTION
+    rotor: Rotor, fills: Sequence[Fill], speed: Array, friction: Friction = NO_FRICTION
 ) -> SystemModes:
     """All whirl modes of any rotor with its fills [theory: whirl, eq. 7].
 
     Parameters
     ----------
-    system, fills, friction : as for `asynchronous_growth`
+    rotor, fills, friction : as for `asynchronous_growth`
     speed : rad/s, shape (n,)
     """
-    heavy = system
+    heavy = rotor.system()
     for fill in fills:
         if is_full(fill):
-            at = system.at(fill.chamber.plane)
+            at = heavy.at(fill.chamber.plane)
             heavy = replace(heavy, mass=heavy.mass + fill.mass * at.T @ at)
     if any(fill.uneven for fill in fills):
         cut = [(fill.chamber.plane, section_layer(fill, friction)) for fill in fills]
-        return standing_modes(heavy, [(plane, one) for plane, one in cut if one is not None], speed)
+        return standing_modes(heavy, [(plane, layer) for plane, layer in cut if layer is not None], speed)
     found = [(fill.chamber.plane, plane_layer(fill, friction)) for fill in fills]
-    layers = [(plane, one) for plane, one in found if one is not None]
+    layers = [(plane, layer) for plane, layer in found if layer is not None]
     _require_few(len(layers))
-    if any(one.stokes > 0.0 for _, one in layers):
+    if any(layer.stokes > 0.0 for _, layer in layers):
         return laminar_modes(heavy, layers, speed)
     return linear_modes(coupled_matrices(heavy, layers, speed), circles_of(heavy, layers))
 
@@ -177,22 +175,6 @@ def dominant(omega: Complex, rounding: Array, spin: Array) -> tuple[Array, Array
     return most, np.take_along_axis(omega.real, which[None], axis=0)[0]
 
 
-def planar(system: RotorSystem) -> Jeffcott | None:
-    """The Jeffcott rotor whose equations these are; None if they are not a Jeffcott rotor's."""
-    if len(system.coordinates) != 2 or np.any(system.gyroscopic) or np.any(system.lean):
-        return None
-    one = np.eye(2)
-    for matrix in (system.mass, system.damping, system.stiffness):
-        if not np.array_equal(matrix, matrix[0, 0] * one):
-            return None
-    if not np.array_equal(system.centre, one):
-        return None
-    mass, damping, stiffness = (float(m[0, 0]) for m in (system.mass, system.damping, system.stiffness))
-    if stiffness <= 0.0 or damping < 0.0:
-        return None
-    return Jeffcott(mass, stiffness, damping, 0.0)
-
-
 def machines_growth(
     machines: Sequence[PlanarMachine], frictions: Sequence[Friction], owner: Index, speed: Array
 ) -> tuple[Array, Array]:
@@ -220,10 +202,10 @@ def machines_growth(
     ]
     support = np.array([(rotor.stiffness, rotor.damping) for rotor, _ in machines]).reshape(-1, 2)
     # The number of modes depends on that of the layers and on whether their drag depends on the mode.
-    kinds = [(len(layers), any(one.stokes > 0.0 for one in layers)) for _, layers in tables]
+    kinds = [(len(layers), any(layer.stokes > 0.0 for layer in layers)) for _, layers in tables]
     for kind in sorted(set(kinds)):
         _require_few(kind[0])
-        own = np.array([i for i, one in enumerate(kinds) if one == kind and not uneven[i]], dtype=np.intp)
+        own = np.array([i for i, other in enumerate(kinds) if other == kind and not uneven[i]], dtype=np.intp)
         index = np.full(len(machines), -1, dtype=np.intp)
         index[own] = np.arange(own.size)
         here = np.flatnonzero(index[owner] >= 0)
@@ -247,8 +229,8 @@ def machines_growth(
 def _uneven_growth(machine: PlanarMachine, friction: Friction, speed: Array) -> tuple[Array, Array]:
     """Growth of one machine whose chambers have baffles in the liquid [theory: sections, eq. 3]."""
     rotor, fills = machine
-    heavy, layers = section_layers(rotor, fills, friction)
-    modes = drum_modes(heavy, layers, speed)
+    solid, layers = section_layers(fills, friction)
+    modes = drum_modes(replace(rotor, mass=rotor.mass + solid), layers, speed)
     growth, slip = _fastest(modes, np.zeros(speed.shape))
     return growth, slip + speed
 
@@ -262,25 +244,25 @@ def planar_layers(mass: float, fills: Sequence[Fill], friction: Friction) -> tup
     layers: list[Layer] = []
     apart: list[Layer] = []
     for fill in fills:
-        one = plane_layer(fill, friction)
+        layer = plane_layer(fill, friction)
         if is_full(fill):
             mass += fill.mass
-        if one is None:
+        if layer is None:
             continue
-        same = [k for k, other in enumerate(layers) if _alike(one, other)]
+        same = [k for k, other in enumerate(layers) if _alike(layer, other)]
         if not same:
-            layers.append(one)
+            layers.append(layer)
             continue
         k = same[0]
-        if not any(_alike(one, other) for other in apart):
-            apart.append(replace(one, mass=0.0))
-        layers[k] = replace(layers[k], mass=layers[k].mass + one.mass)
+        if not any(_alike(layer, other) for other in apart):
+            apart.append(replace(layer, mass=0.0))
+        layers[k] = replace(layers[k], mass=layers[k].mass + layer.mass)
     return mass, layers + apart
 
 
-def _alike(one: Layer, other: Layer) -> bool:
+def _alike(first: Layer, second: Layer) -> bool:
     return all(
-        abs(getattr(one, name) - getattr(other, name)) <= _ALIKE * abs(getattr(one, name))
+        abs(getattr(first, name) - getattr(second, name)) <= _ALIKE * abs(getattr(first, name))
         for name in ("layer_tanh", "rate", "stokes")
     )
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.results.record import ChamberRecord, StudyRecord
 from meshes.arrays import Array
-from solvers.synchronous.planar import Response
+from solvers.synchronous.response import Response
 
 MASS, STIFFNESS, DAMPING, UNBALANCE = 4.0, 43864.9, 83.78, 6e-4  # critical speed 1000 rpm, damping ratio 0.1
 RPM = 2.0 * math.pi / 60.0
@@ -21,6 +22,17 @@ ADDED = 998.2 * math.pi * 0.065**2 * 0.02  # the chamber full of water
 
 def dry_deflection(speed: Array, mass: float, damping: float = DAMPING) -> NDArray[np.complex128]:
     return speed**2 * UNBALANCE / (STIFFNESS - mass * speed**2 + 1j * damping * speed)
+
+
+def circles(w: NDArray[np.complex128], branches: NDArray[np.complex128]) -> dict[str, Any]:
+    """What a response says besides the forward part, where every orbit is a circle."""
+    return {
+        "backward": 0.0 * w,
+        "backward_dry": 0.0 * w,
+        "branch_backward": 0.0 * branches,
+        "coordinates": np.stack((w, -1j * w), axis=1),
+        "residual": np.zeros(w.shape),
+    }
 
 
 def response_of(speed: Array, added: float = ADDED, depth: float = 1.24e-3) -> Response:
@@ -39,6 +51,7 @@ def response_of(speed: Array, added: float = ADDED, depth: float = 1.24e-3) -> R
         converged=np.ones(speed.shape, dtype=np.bool_),
         branch_deflection=w[:, None],
         branch_stable=np.ones((speed.size, 1), dtype=np.bool_),
+        **circles(w, w[:, None]),
     )
 
 
@@ -120,6 +133,7 @@ def folded(count: int = 241, follow: str = "low") -> StudyRecord:
         converged=np.ones(count, dtype=np.bool_),
         branch_deflection=branches,
         branch_stable=stable,
+        **circles(w, branches),
     )
     return record_of(
         response,

@@ -29,7 +29,8 @@ from solvers.ross import (
     liquid_link,
 )
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.synchronous.planar import synchronous_response
+from solvers.synchronous.models import Linear
+from solvers.synchronous.response import response
 from solvers.whirl.growth import asynchronous_growth
 from tests.mutants import kills
 from validation.benchmarks import peer_ross
@@ -413,7 +414,7 @@ def with_link(ross: ModuleType, stiffer: float = 1.0) -> Any:
 
 
 def test_ross_dry_rotor_is_ours(ross: ModuleType) -> None:
-    ours = synchronous_response(DRY, [], SPEEDS).deflection_dry
+    ours = response(DRY, [], SPEEDS).deflection_dry
     # The shaft's ends bend under their own inertia: their mass over the disc's is 2e-3, and their stiffness
     # 3 E I/L^3 = 2e7 N/m against Omega^2 of it, 7e2 N/m, leaves 4e-5 of that.
     close(unbalanced(rotor(ross)) / ours[:, None], np.broadcast_to(FORWARD, (29, 2)), 1e-7, 1.0)
@@ -421,7 +422,7 @@ def test_ross_dry_rotor_is_ours(ross: ModuleType) -> None:
 
 @pytest.mark.parametrize("form", ["link", "coefficients", "mass"])
 def test_ross_with_liquid_is_ours(ross: ModuleType, form: str) -> None:
-    ours = synchronous_response(DRY, [FILL], SPEEDS, gravity=0.0, model="linear").deflection
+    ours = response(DRY, [FILL], SPEEDS, gravity=0.0, model=Linear()).deflection
     if form == "link":
         wet = with_link(ross)
     elif form == "coefficients":
@@ -463,7 +464,7 @@ def test_ross_modes_grow_as_they_should(ross: ModuleType, sparse: bool) -> None:
         for value in eigenvalues(spin, RATE_IN_ROSS, DRY.mass, DRY.stiffness, DRY.damping):
             # Rounding of a state matrix whose largest entries are 1e8 times its slow eigenvalues.
             close(np.abs(found - value).min(), 0.0, 1e-7, abs(value))
-        growth, whirl_speed = asynchronous_growth(DRY.system(), [FILL], [spin], RATE_IN_ROSS)
+        growth, whirl_speed = asynchronous_growth(DRY, [FILL], [spin], RATE_IN_ROSS)
         most = complex(growth[0], abs(whirl_speed[0]))
         close(np.abs(found - most).min(), 0.0, 1e-7, abs(most))
 

@@ -12,7 +12,7 @@ import pytest
 from leblanc.scene.machine import jeffcott
 from leblanc.studies.choose import axial_gravity
 from solvers.statics.hydrostatics import equilibrium
-from solvers.synchronous.planar import synchronous_response
+from solvers.synchronous.response import response
 from tests.mutants import kills
 from validation.cases import errata, fill_optimum, layer, tub
 from validation.cases import runup as runup_given
@@ -138,7 +138,7 @@ def test_closed_forms() -> None:
         (fill,), speed, gravity = scene.chambers, scene.speeds.stop, axial_gravity(scene)
         # Six tenths of the ring leave its inner wall clear.
         ample = replace(fill, volume=0.6 * fill.chamber.capacity)
-        solved = synchronous_response(jeffcott(scene), [ample], [speed], gravity)
+        solved = response(jeffcott(scene), [ample], [speed], gravity)
         assert deflection == pytest.approx(float(abs(solved.deflection[0])), rel=1e-9)
         full = math.pi * fill.chamber.radius**2 * fill.chamber.height * deflection
         for share, reached in ((1.0 + 1e-6, True), (0.9, False)):

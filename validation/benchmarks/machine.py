@@ -69,10 +69,9 @@ def maps(repeats: int = 3) -> list[Sample]:
     """
     speed = np.linspace(5.0, 100.0, _MAP)
     fills = [replace(_FILL, volume=part * _CHAMBER.capacity) for part in np.linspace(0.001, 0.9, _MAP)]
-    system = _ROTOR.system()
 
     def ours(friction: Friction) -> Callable[[], Callable[[], Go]]:
-        return lambda: lambda: lambda: growth_map(system, [[one] for one in fills], speed, friction)[0]
+        return lambda: lambda: lambda: growth_map(_ROTOR, [[one] for one in fills], speed, friction)[0]
 
     def eigenvalues() -> Callable[[], Go]:
         return lambda: lambda: _by_eigenvalues(fills, speed, 3.0)

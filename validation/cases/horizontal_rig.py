@@ -14,7 +14,7 @@ import numpy as np
 from fluid.waves import gravity_displacement
 from meshes.arrays import Array
 from solvers.rotor.vector_model import deflection_lag
-from solvers.synchronous.planar import synchronous_response
+from solvers.synchronous.response import response
 from validation.cases.case import Case
 from validation.cases.scenes import data, horizontal_rig, horizontal_rotor
 
@@ -57,7 +57,7 @@ def _lag(speed: Array, damping_ratio: float) -> Array:
 def _liquid_angle(speed: Array, damping_ratio: float, resonance: float) -> Array:
     """Angle of the liquid behind the unbalance by the solved response, deg."""
     rotor = horizontal_rotor(damping_ratio, resonance)
-    answer = synchronous_response(rotor, horizontal_rig(), speed, gravity=0.0)
+    answer = response(rotor, horizontal_rig(), speed, gravity=0.0)
     return np.asarray(-np.degrees(answer.liquid_angle))
 
 

@@ -19,7 +19,7 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.drive import Ramp
 from solvers.runup.runup import RunupNumerics, run_up
 from solvers.statics.hydrostatics import optimal_volume
-from solvers.synchronous.planar import synchronous_response
+from solvers.synchronous.response import response
 from solvers.whirl.edges import unstable_bands
 from validation.cases.case import Case, compare
 
@@ -111,7 +111,7 @@ def steady_end(volumes: Sequence[float] = VOLUMES) -> Array:
     found = []
     for volume in volumes:
         fills = [Fill(CHAMBER, known_liquid("water"), volume)]
-        answer = synchronous_response(ROTOR, fills, [RAMP.stop], _GRAVITY)
+        answer = response(ROTOR, fills, [RAMP.stop], _GRAVITY)
         found.append(float(abs(answer.deflection[0])))
     return np.array(found)
 
@@ -125,7 +125,7 @@ def band(volumes: Sequence[float], friction: float) -> tuple[Array, Array]:
     """First and last speed at which some whirl grows, for each volume, rad/s; nan where none does."""
     rows = [[Fill(CHAMBER, known_liquid("water"), volume)] for volume in volumes]
     speed = np.linspace(RAMP.start, RAMP.stop, 191)
-    bands = unstable_bands(ROTOR.system(), rows, speed, Friction(FrictionLaw.LINEAR, friction))
+    bands = unstable_bands(ROTOR, rows, speed, Friction(FrictionLaw.LINEAR, friction))
     ends = [(one[0][0], one[-1][1]) if one else (math.nan, math.nan) for one in bands]
     low, high = np.array(ends).T
     return low, high

@@ -10,7 +10,7 @@ from fluid.printed import liquid_angle_as_printed
 from meshes.errors import InputError
 from solvers.rotor.vector_model import balance_residual, deflection_lag, unbalance_left
 from solvers.statics.hydrostatics import equilibrium
-from solvers.synchronous.planar import synchronous_response
+from solvers.synchronous.response import response
 from validation.cases.case import Case
 from validation.cases.scenes import horizontal_rig, horizontal_rotor
 
@@ -21,7 +21,7 @@ def cases() -> list[Case]:
     """Equation 24 at every speed of the solved response, equation 25 as printed, equation 26."""
     rotor, fills = horizontal_rotor(0.1, 1000.0 * _RPM), horizontal_rig()
     speed = np.linspace(100.0, 2000.0, 201) * _RPM
-    answer = synchronous_response(rotor, fills, speed, gravity=0.0)
+    answer = response(rotor, fills, speed, gravity=0.0)
     size = np.abs(answer.deflection)
     liquid = sum(
         fill.liquid.density * equilibrium(fill.chamber, fill.volume, size, speed, 0.0).unbalance()[0]

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from solvers.synchronous.planar import critical_speed, synchronous_response
+from solvers.synchronous.critical import critical_speed
+from solvers.synchronous.response import response
 from validation.cases.case import Case
 from validation.cases.scenes import data, vertical_rig, vertical_rotor
 
@@ -15,7 +16,7 @@ def cases() -> list[Case]:
     """Angle and gain at the three speeds of the photographs."""
     measured = data("dr18_vertical_rig.json")
     speed = np.array(measured["speed_rad_s"])
-    answer = synchronous_response(vertical_rotor(), vertical_rig(), speed)
+    answer = response(vertical_rotor(), vertical_rig(), speed)
     wet = critical_speed(vertical_rotor(), vertical_rig())
     gain = np.abs(answer.deflection) / np.abs(answer.deflection_dry)
     found = []

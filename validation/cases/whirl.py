@@ -19,8 +19,8 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.runup import RunupNumerics
 from solvers.whirl.edges import unstable_bands
 from solvers.whirl.growth import asynchronous_growth
-from solvers.whirl.in_time import whirl_in_time
 from validation.cases.case import Case, compare
+from validation.whirl_in_time import whirl_in_time
 
 _SOURCE = "Wolf's problem, scan in steps of 5e-4"
 NATURAL = 100.0  # rad/s
@@ -35,7 +35,7 @@ def cases() -> list[Case]:
     found: list[Case] = []
     for mu, depth, low, high in _BANDS:
         rotor, fill = layered_rotor(mu, depth, 0.0)
-        ((band,),) = unstable_bands(rotor.system(), [[fill]], RANGE * NATURAL)
+        ((band,),) = unstable_bands(rotor, [[fill]], RANGE * NATURAL)
         for name, printed, edge in (("lower", low, band[0]), ("upper", high, band[1])):
             found.append(
                 compare(
@@ -63,7 +63,7 @@ def _in_time() -> list[Case]:
         rotor, fill = layered_rotor(0.1, 0.1, zeta)
         law = Friction(FrictionLaw.LINEAR, rate) if rate else NO_FRICTION
         speed = ratio * NATURAL
-        growth, _ = asynchronous_growth(rotor.system(), [fill], [speed], law)
+        growth, _ = asynchronous_growth(rotor, [fill], [speed], law)
         numerics = RunupNumerics(cells=256, dispersion=True)
         # The mode that dies slowest stands alone late.
         duration = (400.0 if rate else 150.0) / NATURAL
@@ -105,7 +105,7 @@ def growth_over_speed(zeta: float, friction: Friction = NO_FRICTION) -> Array:
     zeta, friction : damping ratio of the support; of the liquid, none by default
     """
     rotor, fill = layered_rotor(0.1, 0.1, zeta)
-    return asynchronous_growth(rotor.system(), [fill], RANGE * NATURAL, friction)[0] / NATURAL
+    return asynchronous_growth(rotor, [fill], RANGE * NATURAL, friction)[0] / NATURAL
 
 
 def _peaks() -> list[Case]:
@@ -152,7 +152,7 @@ def _limits() -> list[Case]:
         ("full", rotor, chamber.capacity),
         ("rigid", rigid, fill.volume),
     ):
-        growth, _ = asynchronous_growth(machine.system(), [Fill(chamber, water, volume)], speed)
+        growth, _ = asynchronous_growth(machine, [Fill(chamber, water, volume)], speed)
         largest = float(growth.max())
         found.append(
             Case(

@@ -17,14 +17,15 @@ from meshes.arrays import Array
 from meshes.chamber import Chamber
 from solvers.layer.prescribed import Numerics, Whirl
 from solvers.layer.settle import settle
-from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
 from solvers.runup.drive import Ramp
 from solvers.runup.error import linear_run_error
 from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
-from solvers.synchronous.errors import LinearError, law_error, planar_enclosure
-from solvers.synchronous.models import synchronous_model
-from solvers.synchronous.pairs import PlanarMachine, pair_machines
-from solvers.synchronous.planar import Response, machine_responses
+from solvers.synchronous.enclosure import planar_enclosure
+from solvers.synchronous.errors import LinearError, law_error
+from solvers.synchronous.models import LINEAR, STATICS
+from solvers.synchronous.pairs import pair_machines
+from solvers.synchronous.response import Response, machine_responses
 
 WATER = KNOWN_LIQUIDS["water"]
 GRAVITY = 9.81
@@ -125,9 +126,9 @@ def linear_sample(seed: int, count: int) -> LinearSample:
     machines, speed, gravity = random_machines(seed, count)
     everyone = np.arange(count)
     linear, exact = (
-        machine_responses(machines, everyone, speed, gravity, name) for name in ("linear", "statics")
+        machine_responses(machines, everyone, speed, gravity, model) for model in (LINEAR, STATICS)
     )
-    pairs = pair_machines(machines, everyone, speed, gravity, synchronous_model("linear"))
+    pairs = pair_machines(machines, everyone, speed, gravity, LINEAR)
     error = planar_enclosure(pairs).error()
     sizes = [np.abs(one.deflection) for one in (linear, exact)]
     return LinearSample(
@@ -160,7 +161,7 @@ def gravity_sample(seed: int, count: int, weakest: float = 4.0, cells: int = 64)
         if not found.converged:
             continue
         one = Fills.of([fill]), np.array([speed])
-        law = synchronous_model("statics").synchronous(*one, np.array([whirl.amplitude]), np.zeros(1))
+        law = STATICS.synchronous(*one, np.array([whirl.amplitude]), np.zeros(1))
         exact = law.unbalance[0] / (fill.full_mass * whirl.amplitude)
         true = abs(found.force_ratio[-1] - exact)
         rows.append((true, law_error(*one, np.array([GRAVITY]))[0]))

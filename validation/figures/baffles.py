@@ -84,7 +84,7 @@ def table(counts: Sequence[int] = COUNTS, depths: Sequence[float] = DEPTHS) -> l
     lines = []
     for count, depth in [(0, 0.0), *((n, d) for n in counts for d in depths)]:
         fill = with_baffles(clear, count, depth)
-        growth, _ = asynchronous_growth(free.system(), [fill], NATURAL * SPEEDS)
+        growth, _ = asynchronous_growth(free, [fill], NATURAL * SPEEDS)
         lines.append(
             Line(
                 count,
@@ -98,7 +98,7 @@ def table(counts: Sequence[int] = COUNTS, depths: Sequence[float] = DEPTHS) -> l
 
 
 def _bands(rotor: Jeffcott, fill: Fill, friction: Friction) -> tuple[tuple[float, float], ...]:
-    (found,) = unstable_bands(rotor.system(), [[fill]], NATURAL * SPEEDS, friction)
+    (found,) = unstable_bands(rotor, [[fill]], NATURAL * SPEEDS, friction)
     return tuple((low / NATURAL, high / NATURAL) for low, high in found)
 
 
@@ -118,7 +118,7 @@ def growth_figure() -> Figure:
         axes.axhline(0.0, color="0.15", linewidth=0.8)
         for label, count, depth, color, dashes in curves:
             fill = with_baffles(clear, count, depth)
-            growth, _ = asynchronous_growth(damped.system(), [fill], NATURAL * SPEEDS, _LAW)
+            growth, _ = asynchronous_growth(damped, [fill], NATURAL * SPEEDS, _LAW)
             look = {"color": color, "linestyle": dashes, "linewidth": 1.4, "label": label}
             axes.plot(SPEEDS, growth / NATURAL, **look)
         axes.set_xlim(0.6, 2.4)

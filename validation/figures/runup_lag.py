@@ -22,7 +22,7 @@ from leblanc.studies.runup import turn_mean
 from meshes.arrays import Array, Complex
 from solvers.runup.drive import Ramp
 from solvers.runup.runup import RunupNumerics, run_up
-from solvers.synchronous.planar import synchronous_response
+from solvers.synchronous.response import response
 from validation.cases.scenes import data, horizontal_rig, horizontal_rotor
 
 _RPM = 2.0 * math.pi / 60.0
@@ -68,7 +68,7 @@ class Lag:
 def steady(speed: Array, damping_ratio: float) -> tuple[Complex, Array]:
     """Steady deflection, m, and angle of the liquid behind the unbalance, rad, shape (k,)."""
     rotor = horizontal_rotor(damping_ratio, 1000.0 * _RPM)
-    answer = synchronous_response(rotor, horizontal_rig(), speed, gravity=0.0)
+    answer = response(rotor, horizontal_rig(), speed, gravity=0.0)
     return answer.deflection, -answer.liquid_angle
 
 

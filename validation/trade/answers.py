@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from leblanc.scene.machine import dry_rotor, jeffcott
-from leblanc.scene.scene import Exciter, Rotor, Scene
+from leblanc.scene.machine import dry_rotor
+from leblanc.scene.scene import Exciter, Scene
 from leblanc.studies.choose import across_gravity, axial_gravity, choose
 from leblanc.studies.runup import RunupChoice, chosen_run, drive_of, judged, planned
 from meshes.arrays import Array, Flags
@@ -92,28 +91,26 @@ def at_speeds(scene: Scene, speed: Array) -> SceneAt:
     return SceneAt(**content, chosen=tuple(float(x) for x in speed))
 
 
-def steady(scene: Scene, models: NDArray[np.str_]) -> tuple[Array, Flags, Flags, tuple[str, ...]]:
+def steady(
+    scene: Scene, models: LiquidModel | Sequence[LiquidModel]
+) -> tuple[Array, Flags, Flags, tuple[str, ...]]:
     """Amplitude, dry patch, in range and found at a scene's speeds, and the models used.
 
     Parameters
     ----------
     scene : the machine, not an exciter
-    models : names known to the synchronous solvers, one for each speed
+    models : of the liquid, one for all speeds or one for each
     """
-    from solvers.synchronous.mixed import mixed_coupled, mixed_response
+    from solvers.synchronous.response import response
 
-    speed, gravity, fills = scene.speed_array(), axial_gravity(scene), scene.chambers
-    if isinstance(scene.rotor, Rotor):
-        found, back = mixed_response(jeffcott(scene), fills, speed, gravity, models), np.zeros(speed.size)
-    else:
-        coupled = mixed_coupled(dry_rotor(scene).system(), fills, speed, gravity, models)
-        found, back = coupled.response, np.abs(coupled.backward)
-    amplitude = np.abs(found.deflection) + back
+    gravity = axial_gravity(scene)
+    found = response(dry_rotor(scene), scene.chambers, scene.speed_array(), gravity, models)
+    amplitude = np.abs(found.deflection) + np.abs(found.backward)
     good = found.in_range & found.converged
     return amplitude, found.dry_patch, good, tuple(dict.fromkeys(found.model.tolist()))
 
 
-def chosen_models(scene: Scene, model: str) -> tuple[NDArray[np.str_], Flags]:
+def chosen_models(scene: Scene, model: str) -> tuple[list[LiquidModel], Flags]:
     """Model at each speed and where the liquid rides with the drum, as the main job finds them.
 
     A model that is named is taken as it is; its error is estimated all the same, as users get it.
@@ -124,7 +121,7 @@ def chosen_models(scene: Scene, model: str) -> tuple[NDArray[np.str_], Flags]:
     model : "auto" or a name
     """
     choice = choose(replace(scene, model=replace(scene.model, liquid=model)))
-    return choice.models, choice.in_range
+    return choice.liquid_models, choice.in_range
 
 
 def answer(scene: Scene, case: Case) -> Answer:
@@ -146,7 +143,7 @@ def answer(scene: Scene, case: Case) -> Answer:
 
 
 def _response(scene: Scene, case: Case) -> Answer:
-    from solvers.synchronous.discrete import Fem, LongWave, offered
+    from solvers.synchronous.discrete import Fem, LongWave
 
     size = case.resolution
     models, held = chosen_models(scene, "statics" if size else case.model)
@@ -154,8 +151,7 @@ def _response(scene: Scene, case: Case) -> Answer:
         amplitude, _, good, used = steady(scene, models)
     else:
         model: LiquidModel = LongWave(size) if case.model == "long_wave" else Fem(size, int(case.variant[-1]))
-        with offered(model) as name:
-            amplitude, _, good, _ = steady(scene, np.full(models.size, name))
+        amplitude, _, good, _ = steady(scene, model)
         used = (case.model,)
     good = good & held
     bad = not np.isfinite(amplitude).all()

@@ -13,7 +13,8 @@ from leblanc.scene.scene import Rotor, Scene, Speeds
 from leblanc.studies.batch import answer_scenes
 from leblanc.studies.choose import axial_gravity
 from meshes.arrays import Array, Flags
-from solvers.synchronous.planar import machine_responses
+from solvers.synchronous.models import model_named
+from solvers.synchronous.response import machine_responses
 
 AT_ONCE = 4000  # pairs; more at once would only take memory
 
@@ -93,7 +94,8 @@ class FilledMachine:
         rotor = jeffcott(self.scene)
         machines = [(rotor, with_volumes(self.scene, row).chambers) for row in different]
         gravity = np.full(len(machines), axial_gravity(self.scene))
-        found = machine_responses(machines, owner.reshape(-1), speed, gravity, self.scene.model.liquid)
+        model = model_named(self.scene.model.liquid)
+        found = machine_responses(machines, owner.reshape(-1), speed, gravity, model)
         return np.abs(found.deflection), found.dry_patch
 
     def _one_by_one(self, volumes: Array, speed: Array) -> tuple[Array, Flags]:

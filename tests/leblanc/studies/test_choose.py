@@ -19,9 +19,8 @@ from leblanc.studies.run import run_scene
 from leblanc.studies.runup import runup_outlook, runup_scene
 from leblanc.text.models import model_spans, percent
 from meshes.errors import InputError
-from solvers.synchronous.coupled import coupled_response
-from solvers.synchronous.mixed import mixed_coupled, mixed_response
-from solvers.synchronous.planar import synchronous_response
+from solvers.synchronous.models import LINEAR, model_named
+from solvers.synchronous.response import response
 from tests.leblanc.studies.test_explain import scene as small_scene
 from tests.leblanc.studies.test_runup import scene as upright_scene
 from tests.mutants import kills
@@ -114,16 +113,16 @@ def test_all_scenes_at_once_are_each_one_alone() -> None:
         choose_all([small_scene(), asked(small_scene(), "kdv")])
 
 
-@kills("solvers.synchronous.mixed:_merged", "np.concatenate(wide)[order]", "np.concatenate(wide)")
+@kills("solvers.synchronous.response:_merged", "np.concatenate(wide)[order]", "np.concatenate(wide)")
 def test_mixed_models() -> None:
     """Each speed is answered by its own model, whatever its neighbours take."""
     machine = strong()
     rotor, fills, speed = jeffcott(machine), machine.chambers, machine.speed_array()
     gravity = axial_gravity(machine)
     models = np.where(np.arange(speed.size) % 3 == 0, "linear", "statics")
-    mixed = mixed_response(rotor, fills, speed, gravity, models)
+    mixed = response(rotor, fills, speed, gravity, [model_named(name) for name in models.tolist()])
     for name in ("linear", "statics"):
-        whole, rows = synchronous_response(rotor, fills, speed, gravity, name), models == name
+        whole, rows = response(rotor, fills, speed, gravity, model_named(name)), models == name
         np.testing.assert_allclose(mixed.deflection[rows], whole.deflection[rows], rtol=1e-12)
         np.testing.assert_array_equal(mixed.stable[rows], whole.stable[rows])
         count = np.isfinite(mixed.branch_deflection[rows]).sum(axis=1)
@@ -134,13 +133,12 @@ def test_mixed_models() -> None:
 
 def test_mixed_models_of_a_tilting_rotor() -> None:
     machine = load_scene("examples/two_plane_rig.toml")
-    system, speed = dry_rotor(machine).system(), machine.speed_array()[::40]
+    rotor, speed = dry_rotor(machine), machine.speed_array()[::40]
     models = np.where(np.arange(speed.size) % 2 == 0, "linear", "statics")
-    mixed = mixed_coupled(system, machine.chambers, speed, 0.0, models)
-    linear = coupled_response(system, machine.chambers, speed, 0.0, "linear")
-    assert mixed.response.model.tolist() == models.tolist() and mixed.position == linear.position
+    mixed = response(rotor, machine.chambers, speed, 0.0, [model_named(name) for name in models.tolist()])
+    linear = response(rotor, machine.chambers, speed, 0.0, LINEAR)
+    assert mixed.model.tolist() == models.tolist() and mixed.position == linear.position
     np.testing.assert_allclose(mixed.coordinates[::2], linear.coordinates[::2], rtol=1e-12)
-    assert mixed.chamber_forward.shape == linear.chamber_forward.shape
 
 
 def test_the_estimate_is_written() -> None:

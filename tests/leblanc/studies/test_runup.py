@@ -210,8 +210,8 @@ def _chamber(volume: float, **more: Any) -> dict[str, Any]:
 
 @kills(
     "leblanc.studies.runup:steady_response",
-    "synchronous_response(jeffcott(scene), scene.chambers, passed",
-    "synchronous_response(jeffcott(scene), (), passed",
+    "response(jeffcott(scene), scene.chambers, passed",
+    "response(jeffcott(scene), (), passed",
 )
 def test_steady() -> None:
     """A wet wall acts as the added mass m_f; the axis stands, gravity along it changes nothing of that."""
@@ -230,8 +230,8 @@ def test_steady_response() -> None:
 
 @kills(
     "leblanc.studies.runup:whirl_bands",
-    "unstable_bands(system, [scene.chambers], passed, friction)",
-    "unstable_bands(system, [scene.chambers], passed, (1, 1.0))",
+    "unstable_bands(rotor, [scene.chambers], passed, friction)",
+    "unstable_bands(rotor, [scene.chambers], passed, (1, 1.0))",
 )
 def test_bands() -> None:
     """Edges of the unstable band of an undamped rotor with m_f = 0.1 M and h0 = 0.1 R, in its frequencies."""

@@ -71,11 +71,11 @@ def test_record() -> None:
         ("washing_machine", Friction("quadratic", 0.1), Friction()),
     ):
         record, machine = small(name, friction=law), scene(name)
-        system = dry_rotor(machine).system()
+        rotor = dry_rotor(machine)
         rows = fills_over_volume(machine.chambers, 9)
         np.testing.assert_allclose(record.volume, [sum(f.volume for f in fills) for fills in rows])
         for k in (0, 3, 8):
-            growth, whirl = asynchronous_growth(system, rows[k], record.speed, pair)
+            growth, whirl = asynchronous_growth(rotor, rows[k], record.speed, pair)
             np.testing.assert_array_equal(record.growth[k], growth)
             np.testing.assert_array_equal(record.whirl_speed[k], whirl)
         assert np.array_equal(record.growth > 0.0, signed_distance(record) > 0.0)

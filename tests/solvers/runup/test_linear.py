@@ -18,7 +18,7 @@ from solvers.runup.drive import Motor, Ramp
 from solvers.runup.linear import couple_linear, read_linear, switch_linear
 from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
 from solvers.runup.state import DRIVE, FRICTION, GRAVITY, SUPPORT, UNBALANCE
-from solvers.synchronous.planar import synchronous_response
+from solvers.synchronous.response import response
 from solvers.whirl.growth import asynchronous_growth
 from tests.mutants import kills
 
@@ -62,9 +62,9 @@ def grown(spin: float, rate: float, duration: float) -> tuple[complex, complex]:
     chamber = Chamber(0.1, 0.05)
     fill = Fill(chamber, WATER, 0.19 * chamber.capacity)
     mass = fill.full_mass / 0.1
-    rotor = Jeffcott(mass, mass, 0.04 * mass * (rate > 0.0), 0.0).system()
+    rotor = Jeffcott(mass, mass, 0.04 * mass * (rate > 0.0), 0.0)
     friction = Friction("linear", rate)
-    machine = couple_linear(rotor, [fill], spin, friction, 0.0, 256, False)
+    machine = couple_linear(rotor.system(), [fill], spin, friction, 0.0, 256, False)
     machine.machine.place[0] = 1e-6
     times, seen = np.linspace(0.0, duration, 801)[1:], []
     for stop in times.tolist():
@@ -92,7 +92,7 @@ def test_hold_comes_to_the_steady_response() -> None:
     for law in (Friction("linear", 8.0), Friction("linear", 30.0)):
         history = run_up(ROTOR.system(), [FILL], drive, law, 0.0, ALONE, model="linear")
         found = history.deflection[-1, 0] * np.exp(-1j * history.angle[-1])
-        steady = synchronous_response(ROTOR, [FILL], [60.0], gravity=0.0)
+        steady = response(ROTOR, [FILL], [60.0], gravity=0.0)
         # The trapezium: (0.8 * 2 pi/128)^2/12.
         assert abs(found - steady.deflection[0]) < 1e-3 * abs(steady.deflection[0])
         place = history.liquid_position[-1] * np.exp(-1j * steady.liquid_angle[0])

@@ -19,9 +19,9 @@ from solvers.runup.drive import Motor, Ramp
 from solvers.runup.long_wave import couple, fall, reading, switch
 from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
 from solvers.runup.state import DRIVE, FRICTION, GRAVITY, SUPPORT, UNBALANCE
-from solvers.synchronous.planar import synchronous_response
-from solvers.whirl.in_time import whirl_in_time
+from solvers.synchronous.response import response
 from tests.mutants import kills
+from validation.whirl_in_time import whirl_in_time
 
 WATER = Liquid("water", 1000.0, 1e-6)
 # The machine of the run-ups: 30 kg, 25 rad/s, damping ratio 0.06, one chamber of 0.25 m.
@@ -179,7 +179,7 @@ def test_hold_comes_to_the_steady_response() -> None:
     """Held at a speed, the machine comes to the statics' answer, wet all round and with a dry patch."""
     drive = Ramp(59.9, 60.0, 1.0, 6.0)
     for volume in (5e-5, 5e-4):
-        wet = synchronous_response(ROTOR, [layer(volume)], [60.0], gravity=0.0)
+        wet = response(ROTOR, [layer(volume)], [60.0], gravity=0.0)
         numerics = replace(ALONE, cells=128, samples=50)
         history = run_up(ROTOR.system(), [layer(volume)], drive, Friction("linear", 8.0), 0.0, numerics)
         found = history.deflection[-1, 0] * np.exp(-1j * history.angle[-1])
@@ -462,7 +462,7 @@ def test_slow_and_fast_ramps(rate: float) -> None:
     assert history.converged
     assert math.isfinite(history.error_estimate)
     dry = run_up(ROTOR.system(), [], drive, numerics=numerics)
-    steady = synchronous_response(ROTOR, [layer(5e-4)], np.linspace(20.0, 35.0, 301), gravity=0.0)
+    steady = response(ROTOR, [layer(5e-4)], np.linspace(20.0, 35.0, 301), gravity=0.0)
     largest = np.abs(steady.deflection).max()
     if rate == 1.0:
         # Slow: it comes close to the steady resonance, from below.

@@ -415,7 +415,7 @@ def test_gravity() -> None:
     "lid = 2.0 * chamber.radius / chamber.height",
     "lid = chamber.radius / chamber.height",
 )
-@kills("solvers.runup.chamber:layer_properties", "slip)) / chamber.radius", "slip))")
+@kills("fluid.friction:Friction.at", "frequency)) / radius", "frequency))")
 def test_stokes() -> None:
     """Stokes' friction takes the frequency of the slower free wave, with floor and lid."""
     viscous = Fill(FILL.chamber, Liquid("oil", 1000.0, 1e-3), FILL.volume)

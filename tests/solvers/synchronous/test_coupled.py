@@ -19,16 +19,12 @@ from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.vibration import critical_speeds, orbit, unbalance_response
 from solvers.statics.hydrostatics import equilibrium
-from solvers.synchronous.coupled import (
-    backward_mass,
-    balance,
-    coupled_response,
-    one_plane,
-    several_planes,
-    wet_critical_speeds,
-)
-from solvers.synchronous.models import synchronous_model
-from solvers.synchronous.planar import critical_speed, synchronous_response
+from solvers.synchronous.backward import backward_mass
+from solvers.synchronous.balance import harmonic_balance
+from solvers.synchronous.coupled import one_plane, several_planes
+from solvers.synchronous.critical import critical_speed, wet_critical_speeds
+from solvers.synchronous.models import STATICS, model_named
+from solvers.synchronous.response import Response, response
 from tests.mutants import kills
 from tests.oracles.rotors import tub, two_plane
 from tests.solvers.synchronous.test_planar import WATER, fills, folded, rig
@@ -36,6 +32,12 @@ from tests.solvers.synchronous.test_planar import WATER, fills, folded, rig
 
 def at_plane(plane: float, volume: float, radius: float = 0.065, inner: float = 0.0) -> Fill:
     return Fill(Chamber(radius, 0.02, inner, plane), WATER, volume)
+
+
+def at_chambers(system: RotorSystem, found: Response, wet: list[Fill]) -> tuple[np.ndarray, np.ndarray]:
+    """Forward and backward part of the axis at each chamber, shape (s, c)."""
+    orbits = [orbit(system, found.coordinates, fill.chamber.plane) for fill in wet]
+    return np.stack([one.forward for one in orbits], 1), np.stack([one.backward for one in orbits], 1)
 
 
 @kills(
@@ -57,9 +59,8 @@ def test_planar_rotor() -> None:
         (rig(0.02, 3e-3), fills(1e-5, 1e-5), np.linspace(40.0, 250.0, 16), 9.81),
         (rig(0.1), fills(1e-4, 8e-5), np.linspace(10.0, 300.0, 12), 9.81),
     ):
-        one = synchronous_response(rotor, wet, speed, gravity)
-        found = coupled_response(rotor.system(), wet, speed, gravity)
-        other = found.response
+        one = response(rotor, wet, speed, gravity)
+        found = other = response(rotor.system(), wet, speed, gravity)
         assert other.converged.all()
         # Next to a fold a root is known to the square root of rounding.
         np.testing.assert_allclose(other.deflection, one.deflection, rtol=1e-8)
@@ -81,37 +82,40 @@ def with_discs(system: RotorSystem, discs: list[tuple[float, float]]) -> RotorSy
 
 
 @kills(
-    "solvers.synchronous.coupled:Balance.forward",
+    "solvers.synchronous.balance:Balance.forward",
     "0.5 * answer @ np.conj(self.plane).T",
     "0.5 * answer @ self.plane.T",
 )
-@kills("solvers.synchronous.coupled:Balance.linear", "0.5 * np.einsum(", "1.0 * np.einsum(")
-@kills("solvers.synchronous.coupled:directions", "np.array([1.0, -1j])", "np.array([1.0, 1j])")
+@kills("solvers.synchronous.balance:Balance.linear", "0.5 * np.einsum(", "1.0 * np.einsum(")
+@kills("solvers.synchronous.balance:directions_at", "np.array([1.0, -1j])", "np.array([1.0, 1j])")
 @kills(
-    "solvers.synchronous.coupled:balance", "force=squared[:, None] * system", "force=speed[:, None] * system"
+    "solvers.synchronous.balance:harmonic_balance",
+    "force=squared[:, None] * system",
+    "force=speed[:, None] * system",
 )
-@kills("solvers.synchronous.coupled:_centre_of_mass", "np.abs(moment) / mass", "np.abs(moment) * mass")
+@kills("solvers.synchronous.response:_centre_of_mass", "np.abs(moment) / mass", "np.abs(moment) * mass")
 def test_added_mass() -> None:
     """Walls wet all over in isotropic supports: the mass of full chambers, at each plane its own."""
     system, speed = two_plane().system(), np.linspace(10.0, 300.0, 60)
     wet = [at_plane(-0.25, 1.2e-4), at_plane(0.2, 1e-4, radius=0.08)]
-    found = coupled_response(system, wet, speed, 0.0)
-    assert not found.response.dry_patch.any() and found.response.converged.all()
+    found = response(system, wet, speed, 0.0)
+    assert not found.dry_patch.any() and found.converged.all()
     heavy = with_discs(system, [(one.full_mass, one.chamber.plane) for one in wet])
     answer = unbalance_response(heavy, speed)
     for k, fill in enumerate(wet):
         expected = orbit(heavy, answer, fill.chamber.plane).forward
-        np.testing.assert_allclose(found.chamber_forward[:, k], expected, rtol=1e-10)
-    np.testing.assert_allclose(found.response.deflection, found.chamber_forward[:, 0], rtol=1e-14)
+        np.testing.assert_allclose(at_chambers(system, found, wet)[0][:, k], expected, rtol=1e-10)
+    forward = at_chambers(system, found, wet)[0]
+    np.testing.assert_allclose(found.deflection, forward[:, 0], rtol=1e-14)
     # First moments m_f f of both chambers, over the mass of their liquid.
-    moment = found.chamber_forward @ np.array([one.full_mass for one in wet])
+    moment = forward @ np.array([one.full_mass for one in wet])
     mass = sum(one.mass for one in wet)
-    np.testing.assert_allclose(found.response.liquid_offset, np.abs(moment) / mass, rtol=1e-12)
-    np.testing.assert_allclose(found.response.liquid_angle, np.angle(moment), rtol=1e-12)
+    np.testing.assert_allclose(found.liquid_offset, np.abs(moment) / mass, rtol=1e-12)
+    np.testing.assert_allclose(found.liquid_angle, np.angle(moment), rtol=1e-12)
 
 
 @kills(
-    "solvers.synchronous.coupled:backward_mass",
+    "solvers.synchronous.backward:backward_mass",
     "        return fill.mass\n",
     "        return fill.full_mass\n",
 )
@@ -125,8 +129,8 @@ def test_full_chambers() -> None:
     ]
     heavy = with_discs(system, [(one.mass, one.chamber.plane) for one in wet])
     expected = orbit(heavy, unbalance_response(heavy, speed), places[0])
-    found = coupled_response(system, wet, speed, 0.0)
-    np.testing.assert_allclose(found.response.deflection, expected.forward, rtol=1e-9)
+    found = response(system, wet, speed, 0.0)
+    np.testing.assert_allclose(found.deflection, expected.forward, rtol=1e-9)
     np.testing.assert_allclose(found.backward, expected.backward, rtol=1e-9)
 
 
@@ -150,31 +154,34 @@ def layered(system: RotorSystem, fill: Fill, speed: float) -> np.ndarray:
 
 
 @kills(
-    "solvers.synchronous.coupled:balance", "squared[:, None, None] * back", "-squared[:, None, None] * back"
+    "solvers.synchronous.balance:harmonic_balance",
+    "squared[:, None, None] * back",
+    "-squared[:, None, None] * back",
 )
 @kills(
-    "solvers.synchronous.coupled:balance",
+    "solvers.synchronous.balance:harmonic_balance",
     "backward_mass(fill) * np.outer(np.conj(p), p)",
     "backward_mass(fill) * np.outer(p, np.conj(p))",
 )
-@kills("solvers.synchronous.coupled:_arranged", "np.conj(0.5 * q @ terms.plane.T)", "0.5 * q @ terms.plane.T")
 def test_linear_layer() -> None:
     """A deep layer on an anisotropic rotor: its equations of motion as they stand, no parts taken apart."""
     system = tub().system()
     fill = Fill(Chamber(0.2, 0.1, 0.0, 0.12), Liquid("heavy", 3000.0, 1e-6), 0.011)
     speed = np.linspace(4.0, 60.0, 30)
-    found = coupled_response(system, [fill], speed, 0.0)
-    assert not found.response.dry_patch.any()
+    found = response(system, [fill], speed, 0.0)
+    assert not found.dry_patch.any()
     expected = np.array([layered(system, fill, one) for one in speed])
     orbits = orbit(system, expected, 0.12)
-    np.testing.assert_allclose(found.response.deflection, orbits.forward, rtol=1e-9)
+    np.testing.assert_allclose(found.deflection, orbits.forward, rtol=1e-9)
     np.testing.assert_allclose(found.backward, orbits.backward, rtol=1e-9)
-    assert np.abs(found.backward).max() > 0.1 * np.abs(found.response.deflection).max()
-    np.testing.assert_allclose(found.chamber_backward[:, 0], found.backward, rtol=1e-12)
+    assert np.abs(found.backward).max() > 0.1 * np.abs(found.deflection).max()
+    np.testing.assert_allclose(at_chambers(system, found, [fill])[1][:, 0], found.backward, rtol=1e-12)
 
 
 @kills(
-    "solvers.synchronous.coupled:backward_mass", "force_ratio(curvature, -1.0)", "force_ratio(curvature, 1.0)"
+    "solvers.synchronous.backward:backward_mass",
+    "force_ratio(curvature, -1.0)",
+    "force_ratio(curvature, 1.0)",
 )
 def test_backward_mass() -> None:
     """Newton's law for the liquid: m_b = m_l (1 + offset of its centre of mass over the whirl)."""
@@ -205,17 +212,15 @@ def test_independent_ends() -> None:
     system = dumbbell(((-1.0, first), (1.0, second))).system()
     wet = [at_plane(-0.4, 1.2e-5), at_plane(0.4, 1e-5)]
     speed = np.linspace(94.0, 102.0, 33)
-    found = coupled_response(system, wet, speed, 0.0)
-    ends = [
-        synchronous_response(one, [fill], speed, 0.0) for one, fill in zip((first, second), wet, strict=True)
-    ]
-    assert found.response.converged.all() and found.residual.max() < 1e-10
+    found = response(system, wet, speed, 0.0)
+    ends = [response(one, [fill], speed, 0.0) for one, fill in zip((first, second), wet, strict=True)]
+    assert found.converged.all() and found.residual.max() < 1e-10
     assert [bool(one.dry_patch.any()) for one in ends] == [True, True]
     several = np.isfinite(ends[0].branch_deflection).sum(axis=1)
     assert several.max() == 3 and np.isfinite(ends[1].branch_deflection).sum(axis=1).max() == 1
     for k, one in enumerate(ends):
-        np.testing.assert_allclose(found.chamber_forward[:, k], one.deflection, rtol=1e-7)
-    np.testing.assert_array_equal(np.isfinite(found.response.branch_deflection).sum(axis=1), several)
+        np.testing.assert_allclose(at_chambers(system, found, wet)[0][:, k], one.deflection, rtol=1e-7)
+    np.testing.assert_array_equal(np.isfinite(found.branch_deflection).sum(axis=1), several)
 
 
 def test_newton_finds_what_the_search_finds() -> None:
@@ -228,7 +233,7 @@ def test_newton_finds_what_the_search_finds() -> None:
         (PlaneUnbalance(0.05, 2e-4, 0.7),),
     )
     speed = np.linspace(94.0, 102.0, 33)
-    terms = balance(rotor.system(), [at_plane(0.03, 1.2e-5)], speed, 0.0, synchronous_model("auto"))
+    terms = harmonic_balance(rotor.system(), [at_plane(0.03, 1.2e-5)], speed, 0.0, STATICS)
     tables = []
     for answer, which, converged in (one_plane(terms), several_planes(terms)):
         assert converged.all()
@@ -255,14 +260,14 @@ def test_balance() -> None:
     system, speed = tub().system(), np.linspace(5.0, 40.0, 24)
     wet = [at_plane(z, v, 0.18, 0.12) for z, v in ((0.12, 2e-5), (0.0, 5e-5), (-0.1, 1e-4))]
     for gravity in (0.0, 9.81):
-        found = coupled_response(system, wet, speed, gravity)
-        assert found.response.converged.all() and found.response.dry_patch.any()
+        found = response(system, wet, speed, gravity)
+        assert found.converged.all() and found.dry_patch.any()
         q = found.coordinates
         held = q @ system.stiffness.T - speed[:, None] ** 2 * q @ system.mass.T
         held = held + 1j * speed[:, None] * (q @ system.damping.T + speed[:, None] * q @ system.gyroscopic.T)
         force = speed[:, None] ** 2 * system.unbalance
         for k, fill in enumerate(wet):
-            f, g = found.chamber_forward[:, k], found.chamber_backward[:, k]
+            f, g = (part[:, k] for part in at_chambers(system, found, wet))
             state = equilibrium(fill.chamber, fill.volume, np.abs(f), speed, gravity)
             forward = speed**2 * fill.liquid.density * state.unbalance()[0] * f / np.abs(f)
             backward = speed**2 * backward_mass(fill) * g
@@ -273,12 +278,12 @@ def test_balance() -> None:
 
 
 @kills(
-    "solvers.synchronous.coupled:_added_mass",
+    "solvers.synchronous.critical:_added_mass",
     "0.5 * full * np.outer(p, np.conj(p))",
     "full * np.outer(p, np.conj(p))",
 )
 @kills(
-    "solvers.synchronous.coupled:_added_mass",
+    "solvers.synchronous.critical:_added_mass",
     "0.5 * backward_mass(fill) * np.outer",
     "backward_mass(fill) * np.outer",
 )
@@ -304,29 +309,29 @@ def test_no_liquid_is_the_dry_rotor() -> None:
     system, speed = tub().system(), np.linspace(2.0, 100.0, 30)
     expected = orbit(system, unbalance_response(system, speed), 0.1)
     for wet in ([], [at_plane(0.1, 0.0)], [at_plane(0.1, 0.0), at_plane(-0.1, 0.0)]):
-        found = coupled_response(system, wet, speed, position=0.1)
-        np.testing.assert_allclose(found.response.deflection, expected.forward, rtol=1e-13)
+        found = response(system, wet, speed, position=0.1)
+        np.testing.assert_allclose(found.deflection, expected.forward, rtol=1e-13)
         np.testing.assert_allclose(found.backward, expected.backward, rtol=1e-13)
-        assert found.response.converged.all() and not found.response.liquid_offset.any()
+        assert found.converged.all() and not found.liquid_offset.any()
     # A trace of liquid changes nothing.
-    trace = coupled_response(system, [at_plane(0.1, 1e-12)], speed, 0.0)
-    np.testing.assert_allclose(trace.response.deflection, expected.forward, rtol=1e-3)
+    trace = response(system, [at_plane(0.1, 1e-12)], speed, 0.0)
+    np.testing.assert_allclose(trace.deflection, expected.forward, rtol=1e-3)
 
 
 def test_no_unbalance_stands_still() -> None:
     still = TwoPlane(10.0, 0.5, 0.1, (Support(-0.2, 1e4, 1.0), Support(0.2, 1e4, 1.0))).system()
     for wet in ([at_plane(0.0, 1e-5)], [at_plane(0.1, 1e-5), at_plane(-0.1, 1e-5)]):
-        found = coupled_response(still, wet, [50.0, 100.0], 0.0)
-        assert not found.response.deflection.any() and found.response.converged.all()
+        found = response(still, wet, [50.0, 100.0], 0.0)
+        assert not found.deflection.any() and found.converged.all()
 
 
 def test_an_undamped_resonance_is_said() -> None:
     rotor = Jeffcott(4.0, 4e4, 0.0, 6e-4).system()
-    found = coupled_response(rotor, [], [99.0, 100.0, 101.0])
-    np.testing.assert_array_equal(found.response.converged, [True, False, True])
-    assert np.isinf(np.abs(found.response.deflection[1])) and np.isfinite(found.residual).all()
-    wet = coupled_response(rotor, fills(1e-5), [99.0, 101.0], 0.0)
-    assert wet.response.converged.all()
+    found = response(rotor, [], [99.0, 100.0, 101.0])
+    np.testing.assert_array_equal(found.converged, [True, False, True])
+    assert np.isinf(np.abs(found.deflection[1])) and np.isfinite(found.residual).all()
+    wet = response(rotor, fills(1e-5), [99.0, 101.0], 0.0)
+    assert wet.converged.all()
 
 
 @given(share=st.floats(1e-9, 1.0), radius=st.floats(0.01, 10.0), inner=st.floats(0.0, 0.9))
@@ -360,12 +365,12 @@ EXTREMES = {
 def test_extremes(name: str, gravity: float) -> None:
     machine, places, volume, speed = EXTREMES[name]
     wet = [at_plane(float(z), volume, 0.06) for z in places]
-    found = coupled_response(machine().system(), wet, speed, gravity)
-    assert found.response.converged.all() and found.residual.max() < 1e-9
-    assert np.isfinite(found.response.deflection).all()
+    found = response(machine().system(), wet, speed, gravity)
+    assert found.converged.all() and found.residual.max() < 1e-9
+    assert np.isfinite(found.deflection).all()
 
 
 @pytest.mark.parametrize(("speed", "model"), [([0.0], "auto"), ([math.nan], "auto"), ([1.0], "kdv")])
 def test_bad_input(speed: list[float], model: str) -> None:
     with pytest.raises(InputError):
-        coupled_response(two_plane().system(), [], speed, model=model)
+        response(two_plane(), [], speed, model=model_named(model))

@@ -17,9 +17,9 @@ from meshes.errors import InputError
 from solvers.layer.prescribed import Numerics, Whirl
 from solvers.layer.settle import settle
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.synchronous.discrete import Fem, LongWave, offered
-from solvers.synchronous.models import SYNCHRONOUS_MODELS, LiquidModel, Statics, SynchronousAnswer
-from solvers.synchronous.planar import synchronous_response
+from solvers.synchronous.discrete import Fem, LongWave
+from solvers.synchronous.models import STATICS, LiquidModel, Statics, SynchronousAnswer
+from solvers.synchronous.response import response
 from tests.mutants import kills
 
 WATER = known_liquid("water")
@@ -247,9 +247,8 @@ def test_response() -> None:
     """
     rotor = Jeffcott(mass=20.0, stiffness=2.0e4, damping=60.0, unbalance=0.05)
     speed = np.array([15.0, 25.0, 31.0, 40.0, 80.0])
-    exact = synchronous_response(rotor, [LAYER], speed, 0.0, "statics")
-    with offered(LongWave(256)) as name:
-        mine = synchronous_response(rotor, [LAYER], speed, 0.0, name)
+    exact = response(rotor, [LAYER], speed, 0.0, STATICS)
+    mine = response(rotor, [LAYER], speed, 0.0, LongWave(256))
     assert mine.model.tolist() == ["long_wave 256"] * 5
     assert exact.dry_patch.any() and not exact.dry_patch.all()
     off = np.abs(mine.deflection / exact.deflection - 1.0)
@@ -259,12 +258,10 @@ def test_response() -> None:
     np.testing.assert_array_equal(mine.stable, exact.stable)
 
 
-def test_offered_only_for_a_while() -> None:
-    before = dict(SYNCHRONOUS_MODELS)
-    with pytest.raises(RuntimeError), offered(LongWave(64)):
-        assert "long_wave 64" in SYNCHRONOUS_MODELS
-        raise RuntimeError
-    assert before == SYNCHRONOUS_MODELS
+def test_models_are_values() -> None:
+    """Equal models count as one where each speed has its own; names tell resolutions apart."""
+    assert LongWave(64) == LongWave(64) and len({LongWave(64), LongWave(64), LongWave(32), STATICS}) == 3
+    assert LongWave(64).name == "long_wave 64" and Fem(16, 2).name == "fem 16 order 2"
 
 
 def test_no_states() -> None:

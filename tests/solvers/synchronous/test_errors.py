@@ -16,15 +16,15 @@ from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import load_scene
 from leblanc.studies.choose import across_gravity, axial_gravity
 from meshes.chamber import Chamber
-from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
 from solvers.runup.error import MOST_LAG, MOST_WAVE, linear_run_error
 from solvers.statics.law_defect import defect_bound, upright_surfaces
-from solvers.synchronous.coupled import coupled_response
-from solvers.synchronous.coupled_errors import coupled_error
-from solvers.synchronous.errors import ROUNDING, Enclosure, law_error, planar_enclosure, planar_gravity_error
-from solvers.synchronous.models import Statics, synchronous_model
-from solvers.synchronous.pairs import PlanarMachine, pair_machines
-from solvers.synchronous.planar import machine_responses
+from solvers.synchronous.enclosure import Enclosure, planar_enclosure, planar_gravity_error
+from solvers.synchronous.errors import ROUNDING, law_error
+from solvers.synchronous.estimate import error_estimate
+from solvers.synchronous.models import LINEAR, STATICS, Statics
+from solvers.synchronous.pairs import pair_machines
+from solvers.synchronous.response import machine_responses, response
 from tests.leblanc.studies.test_runup import history_of
 from tests.mutants import kills
 from validation.extremes.model_error import gravity_sample, linear_sample, random_machines, run_up_sample
@@ -149,33 +149,35 @@ def test_moved_air_of_a_cylinder(depth: float, share: float, inner: float) -> No
 def enclosures(seed: int, count: int) -> tuple[list[PlanarMachine], Enclosure, np.ndarray]:
     machines, speed, gravity = random_machines(seed, count)
     own = np.arange(count)
-    pairs = pair_machines(machines, own, speed, gravity, synchronous_model("linear"))
-    exact = machine_responses(machines, own, speed, gravity, "statics")
+    pairs = pair_machines(machines, own, speed, gravity, LINEAR)
+    exact = machine_responses(machines, own, speed, gravity, STATICS)
     return machines, planar_enclosure(pairs), np.abs(exact.branch_deflection)
 
 
 @kills(
-    "solvers.synchronous.errors:planar_enclosure",
+    "solvers.synchronous.enclosure:planar_enclosure",
     "elastic - pairs.added_mass * squared",
     "elastic + pairs.added_mass * squared",
 )
 @kills(
-    "solvers.synchronous.errors:planar_enclosure",
+    "solvers.synchronous.enclosure:planar_enclosure",
     "force + squared * pairs.reach",
     "force - squared * pairs.reach",
 )
 @kills(
-    "solvers.synchronous.errors:_root",
+    "solvers.synchronous.enclosure:_root",
     "stiffness * pull + np.sqrt(under)",
     "np.sqrt(under) - stiffness * pull",
 )
 @kills(
-    "solvers.synchronous.errors:_most",
+    "solvers.synchronous.enclosure:_most",
     "single & above, np.minimum(most, beside)",
     "single, np.minimum(most, linear)",
 )
-@kills("solvers.synchronous.errors:_smallest", "np.minimum(linear, softened)), 0.0)", "linear), linear)")
-@kills("solvers.synchronous.errors:planar_enclosure", "np.maximum(np.abs(beyond), frozen)", "np.abs(beyond)")
+@kills("solvers.synchronous.enclosure:_smallest", "np.minimum(linear, softened)), 0.0)", "linear), linear)")
+@kills(
+    "solvers.synchronous.enclosure:planar_enclosure", "np.maximum(np.abs(beyond), frozen)", "np.abs(beyond)"
+)
 def test_enclosure() -> None:
     """Every branch that the solver finds lies between the bounds, to the 1e-9 of its linear limit."""
     _, found, branches = enclosures(21, 80)
@@ -192,8 +194,8 @@ def test_enclosure() -> None:
     )
 
 
-@kills("solvers.synchronous.errors:_relative", "1.0 - low), 0.0)", "low - 1.0), 0.0)")
-@kills("solvers.synchronous.errors:Enclosure.error", "full * least - lost", "full * least + lost")
+@kills("solvers.synchronous.enclosure:_relative", "1.0 - low), 0.0)", "low - 1.0), 0.0)")
+@kills("solvers.synchronous.enclosure:Enclosure.error", "full * least - lost", "full * least + lost")
 def test_coverage_of_300_random_machines() -> None:
     """Of 300 random machines at least 95 % have no larger error than the estimate.
 
@@ -213,7 +215,7 @@ def test_coverage_of_300_random_machines() -> None:
 
 def planar(rotor: Jeffcott, fills: list[Fill], speed: list[float], gravity: float = 0.0) -> Enclosure:
     own = np.zeros(len(speed), dtype=np.intp)
-    law = synchronous_model("linear")
+    law = LINEAR
     return planar_enclosure(pair_machines([(rotor, fills)], own, np.array(speed), np.array([gravity]), law))
 
 
@@ -254,14 +256,14 @@ def test_several_branches_have_no_narrow_bounds() -> None:
 
 
 @kills(
-    "solvers.synchronous.coupled_errors:_largest", "linear + _carried(spread,", "linear - _carried(spread,"
+    "solvers.synchronous.coupled_bounds:_largest", "linear + _carried(spread,", "linear - _carried(spread,"
 )
 @kills(
-    "solvers.synchronous.coupled_errors:_missing",
+    "solvers.synchronous.coupled_bounds:_missing",
     "np.square(speed)[:, None] * np.stack(bounds",
     "np.stack(bounds",
 )
-@kills("solvers.synchronous.coupled_errors:_share", "left = size - change", "left = size + 1e3 * change")
+@kills("solvers.synchronous.coupled_bounds:_share", "left = size - change", "left = size + 1e3 * change")
 def test_tilting_rotors() -> None:
     """Rotors that tilt: amplitude and liquid of the linear law within their bounds of the exact one."""
     rng = np.random.default_rng(3)
@@ -277,14 +279,12 @@ def test_tilting_rotors() -> None:
             ]
             speed = np.sort(rng.uniform(scene.speeds.start, scene.speeds.stop, 5))
             gravity, place = axial_gravity(scene), fills[0].chamber.plane
-            error, _ = coupled_error(system, fills, speed, gravity, place)
-            linear, exact = (
-                coupled_response(system, fills, speed, gravity, one) for one in ("linear", "statics")
-            )
-            sizes = [np.abs(one.response.deflection) + np.abs(one.backward) for one in (linear, exact)]
+            error, _ = error_estimate(system, fills, speed, gravity, position=place)
+            linear, exact = (response(system, fills, speed, gravity, model) for model in (LINEAR, STATICS))
+            sizes = [np.abs(one.deflection) + np.abs(one.backward) for one in (linear, exact)]
             # Newton's method meets the balance to 1e-10.
             assert (np.abs(sizes[0] - sizes[1]) <= (error.amplitude + 1e-9) * sizes[1]).all()
-            offsets = [one.response.liquid_offset for one in (linear, exact)]
+            offsets = [one.liquid_offset for one in (linear, exact)]
             assert (np.abs(offsets[0] - offsets[1]) <= (error.liquid + 1e-9) * offsets[1]).all()
             narrow += int((error.amplitude < 1e-3).sum())
     assert narrow > 10
@@ -293,27 +293,25 @@ def test_tilting_rotors() -> None:
 def test_tilting_and_planar_bounds_agree() -> None:
     """A Jeffcott rotor is both; the wet wall has no error in either, and strain is the same."""
     speeds = np.array([40.0, 60.0, 140.0])
-    error, thrown = coupled_error(ROTOR.system(), [DRUM], speeds, 0.0, 0.0, G)
+    error, thrown = error_estimate(ROTOR.system(), [DRUM], speeds, 0.0, G)
     other = planar(ROTOR, [DRUM], speeds.tolist())
     np.testing.assert_allclose(error.strain, other.error().strain, rtol=1e-9)
     assert (error.amplitude < 1e-9).all() and (other.error().amplitude < 1e-9).all()
-    pairs = pair_machines(
-        [(ROTOR, [DRUM])], np.zeros(3, np.intp), speeds, np.zeros(1), synchronous_model("linear")
-    )
+    pairs = pair_machines([(ROTOR, [DRUM])], np.zeros(3, np.intp), speeds, np.zeros(1), LINEAR)
     # Next to no backward part: the stiffness along the deflection is what one unit of force meets.
     np.testing.assert_allclose(thrown, planar_gravity_error(pairs, np.full(3, G), other.most), rtol=1e-6)
-    none, still = coupled_error(ROTOR.system(), [], speeds, 0.0, 0.0, G)
+    none, still = error_estimate(ROTOR.system(), [], speeds, 0.0, G)
     assert (none.worst == ROUNDING).all() and (still == 0.0).all()
 
 
 @kills("solvers.synchronous.errors:law_error", "(radius / depth) ** _THIN", "(depth / radius) ** _THIN")
 @kills("solvers.synchronous.errors:law_error", "_THIN * np.square(weakness)", "_THIN * weakness")
 @kills(
-    "solvers.synchronous.errors:planar_gravity_error",
+    "solvers.synchronous.enclosure:planar_gravity_error",
     "pull = np.square(pairs.speed) * weighted",
     "pull = weighted",
 )
-@kills("solvers.synchronous.errors:planar_gravity_error", "largest + moved", "largest - moved")
+@kills("solvers.synchronous.enclosure:planar_gravity_error", "largest + moved", "largest - moved")
 def test_gravity() -> None:
     """Gravity: as its square over that of the spin's fourth power, none upright, no number below capture.
 
@@ -330,7 +328,7 @@ def test_gravity() -> None:
     rotor, slow = replace(ROTOR, stiffness=4.0e9), speed
     one = pair_machines(
         [(rotor, [Fill(wall, WATER, fills.volume[0])])], np.zeros(1, np.intp), slow, np.zeros(1),
-        synchronous_model("linear"),
+        LINEAR,
     )  # fmt: skip
     most = rotor.unbalance * slow**2 / 4.0e9
     change = law_error(fills, slow, np.array([G]))

@@ -10,11 +10,11 @@ from fluid.fill import Fill, Fills
 from fluid.friction import Friction
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
-from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
 from solvers.statics.hydrostatics import equilibrium
-from solvers.synchronous.models import SYNCHRONOUS_MODELS
-from solvers.synchronous.pairs import PlanarMachine, pair_machines
-from solvers.synchronous.planar import machine_responses, synchronous_response
+from solvers.synchronous.models import STATICS, model_named
+from solvers.synchronous.pairs import pair_machines
+from solvers.synchronous.response import machine_responses, response
 from solvers.whirl.growth import asynchronous_growth, machines_growth
 from tests.mutants import kills
 
@@ -41,12 +41,12 @@ def machines() -> list[PlanarMachine]:
 @kills("solvers.synchronous.pairs:pair_machines", "place = index[owner]", "place = index[owner[::-1]]")
 def test_each_as_if_alone() -> None:
     """The response of many machines is that of each by itself, for every model."""
-    for model in ("statics", "linear"):
+    for model in map(model_named, ("statics", "linear")):
         many = machine_responses(machines(), OWNER, SPEED, GRAVITY, model)
         branches = np.isfinite(many.branch_deflection).sum(axis=1)
         for k, (rotor, fills) in enumerate(machines()):
             own = k == OWNER
-            alone = synchronous_response(rotor, fills, SPEED[own], GRAVITY[k], model)
+            alone = response(rotor, fills, SPEED[own], GRAVITY[k], model)
             for name in ("deflection", "deflection_dry", "liquid_offset", "liquid_angle"):
                 np.testing.assert_allclose(
                     getattr(many, name)[own], getattr(alone, name), rtol=1e-12, atol=1e-18
@@ -68,13 +68,12 @@ def test_each_as_if_alone() -> None:
     "here.added_mass, here.mass",
 )
 @kills("solvers.synchronous.pairs:Pairs.pull", "moment - fills.mass * e", "moment")
-@kills("solvers.synchronous.pairs:Pairs.liquid", "(one.unbalance, one.slope))", "(one.slope, one.unbalance))")
+@kills("solvers.synchronous.pairs:Pairs.liquid", "(law.unbalance, law.slope))", "(law.slope, law.unbalance))")
 @kills("solvers.synchronous.pairs:Pairs.pull", "moment = fills.added_mass * e", "moment = fills.mass * e")
 @kills("solvers.synchronous.pairs:Pairs.pull", "moment[bent] = law.unbalance", "moment[bent] = law.slope")
 def test_sums() -> None:
     """The pull and the liquid's state of a machine are sums over its chambers, each asked by itself."""
-    statics = SYNCHRONOUS_MODELS["statics"]
-    pairs = pair_machines(machines(), OWNER, SPEED, GRAVITY, statics)
+    pairs = pair_machines(machines(), OWNER, SPEED, GRAVITY, STATICS)
     which = np.flatnonzero(np.isin(OWNER, (1, 2)))[::3]
     e = np.linspace(1e-4, 2e-2, which.size)
     state, pull = pairs.liquid(e, which), pairs.pull(e, which)
@@ -134,7 +133,7 @@ def test_growth() -> None:
     growth, whirl_speed = machines_growth(machines(), frictions, OWNER, SPEED)
     for k, (rotor, fills) in enumerate(machines()):
         own = k == OWNER
-        alone = asynchronous_growth(rotor.system(), fills, SPEED[own], frictions[k])
+        alone = asynchronous_growth(rotor, fills, SPEED[own], frictions[k])
         # The order in which terms are added differs.
         np.testing.assert_allclose(growth[own], alone[0], rtol=1e-8, atol=1e-10 * SPEED.max())
         np.testing.assert_allclose(whirl_speed[own], alone[1], rtol=1e-8)

@@ -18,7 +18,9 @@ from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vector_model import balance_residual, deflection_lag
 from solvers.statics.hydrostatics import equilibrium
-from solvers.synchronous.planar import Response, critical_speed, synchronous_response
+from solvers.synchronous.critical import critical_speed
+from solvers.synchronous.models import Linear, model_named
+from solvers.synchronous.response import Response, response
 from tests.mutants import kills
 
 WATER = Liquid("water", 1000.0, 1e-6)
@@ -39,12 +41,12 @@ def folded() -> tuple[Jeffcott, list[Fill], np.ndarray]:
 
 
 @kills(
-    "solvers.synchronous.planar:_all_deflections",
+    "solvers.synchronous.planar:all_deflections",
     "force, damping = pairs.unbalance * squared",
     "force, damping = pairs.unbalance * pairs.speed",
 )
 @kills(
-    "solvers.synchronous.planar:_offset",
+    "solvers.synchronous.planar:liquid_offset",
     "np.divide(unbalance, pairs.liquid_mass",
     "np.divide(unbalance - deflection, pairs.liquid_mass",
 )
@@ -54,7 +56,7 @@ def test_added_mass() -> None:
     added = sum(WATER.density * math.pi * r**2 * 0.02 for r in (0.065, 0.05))
     closed = 6e-4 * speed**2 / (4e4 - (4.0 + added) * speed**2 + 1j * rotor.damping * speed)
     for gravity in (0.0, 9.81):
-        answer = synchronous_response(rotor, fills(1e-4, 8e-5), speed, gravity)
+        answer = response(rotor, fills(1e-4, 8e-5), speed, gravity)
         wet = ~answer.dry_patch
         assert answer.converged.all() and answer.stable.all()
         dry = 6e-4 * speed**2 / (4e4 - 4.0 * speed**2 + 1j * rotor.damping * speed)
@@ -79,12 +81,12 @@ def test_added_mass() -> None:
     "- 1j * self.damping * speed",
 )
 @kills(
-    "solvers.synchronous.planar:_with_phase",
+    "solvers.synchronous.planar:with_phase",
     "pull = np.square(pairs.speed[which]) * state.unbalance",
     "pull = pairs.speed[which] * state.unbalance",
 )
 @kills(
-    "solvers.synchronous.planar:_all_deflections",
+    "solvers.synchronous.planar:all_deflections",
     "elastic = pairs.stiffness - (pairs.mass + pairs",
     "elastic = pairs.stiffness - (pairs.mass - pairs",
 )
@@ -106,7 +108,7 @@ def test_balance() -> None:
             9.81,
         ),
     ):
-        answer = synchronous_response(rotor, wet, speed, gravity)
+        answer = response(rotor, wet, speed, gravity)
         assert answer.converged.all()
         rows, _ = np.nonzero(np.isfinite(answer.branch_deflection))
         w, spin = answer.branch_deflection[np.isfinite(answer.branch_deflection)], speed[rows]
@@ -125,7 +127,7 @@ def test_vector_model() -> None:
     dry = np.zeros(0, dtype=bool)
     for rotor, wet in ((rig(0.1), fills(1e-5, 1e-5)), (rig(0.03, 3e-3), fills(1e-5, 8e-6))):
         speed = np.linspace(20.0, 250.0, 201)
-        answer = synchronous_response(rotor, wet, speed, 0.0)
+        answer = response(rotor, wet, speed, 0.0)
         size = np.abs(answer.deflection)
         liquid = sum(
             WATER.density * equilibrium(f.chamber, f.volume, size, speed, 0.0).unbalance()[0] for f in wet
@@ -143,7 +145,7 @@ def test_vector_model() -> None:
 def test_all_branches() -> None:
     """As many branches as a fine scan of the balance sees."""
     rotor, wet, speed = folded()
-    answer = synchronous_response(rotor, wet, speed, 0.0)
+    answer = response(rotor, wet, speed, 0.0)
     counts = np.isfinite(answer.branch_deflection).sum(axis=1)
     scan = np.linspace(0.0, 0.02, 40001)[1:]
     state = equilibrium(
@@ -158,13 +160,13 @@ def test_all_branches() -> None:
 
 
 @kills(
-    "solvers.synchronous.planar:_is_stable",
+    "solvers.synchronous.planar:is_stable",
     "np.square(spin) * (own + state.slope)",
     "np.square(spin) * (own + secant)",
 )
 def test_middle_branch() -> None:
     """Of three branches the middle one is unstable, the others stable; the largest stable one is reported."""
-    answer = synchronous_response(*folded(), 0.0)
+    answer = response(*folded(), 0.0)
     three = np.isfinite(answer.branch_deflection).sum(axis=1) == 3
     assert three.any()
     np.testing.assert_array_equal(
@@ -197,7 +199,7 @@ def test_time_integration_leaves_the_middle_branch() -> None:
     # Damping 100 rad/s * 0.003: what has found a stable branch has settled to exp(-12) of it after 40 s.
     rotor, wet = rig(0.003, 3e-4), fills(1.2e-5)
     speed = np.linspace(96.0, 99.0, 61)
-    answer = synchronous_response(rotor, wet, speed, 0.0)
+    answer = response(rotor, wet, speed, 0.0)
     three = np.flatnonzero(np.isfinite(answer.branch_deflection).sum(axis=1) == 3)
     row = int(three[three.size // 2])
     low, middle, high = answer.branch_deflection[row]
@@ -213,7 +215,7 @@ def test_far_above_resonance() -> None:
     # |w| -> U0/(M + m_f) with the wall wet, U0/(M + m_l) + pull beyond it; the dry rotor -> U0/M.
     rotor, speed = rig(0.1), np.array([1e5])
     added = WATER.density * math.pi * 0.065**2 * 0.02
-    answer = synchronous_response(rotor, fills(1e-4), speed, 9.81)
+    answer = response(rotor, fills(1e-4), speed, 9.81)
     np.testing.assert_allclose(np.abs(answer.deflection), 6e-4 / (4.0 + added), rtol=1e-5)
     np.testing.assert_allclose(np.abs(answer.deflection_dry), 6e-4 / 4.0, rtol=1e-5)
     np.testing.assert_allclose(answer.liquid_angle, -math.pi, atol=1e-3)
@@ -224,7 +226,7 @@ def same(a: Response, b: Response) -> None:
 
 
 @kills(
-    "solvers.synchronous.planar:critical_speed",
+    "solvers.synchronous.critical:critical_speed",
     "rotor.stiffness - (rotor.mass + slope) * np.square(speed)",
     "rotor.stiffness - (rotor.mass - slope) * np.square(speed)",
 )
@@ -244,7 +246,7 @@ def test_critical_speed() -> None:
 def test_no_liquid_is_the_dry_rotor() -> None:
     speed = np.linspace(5.0, 400.0, 50)
     for wet in ([], fills(0.0), fills(0.0, 0.0)):
-        answer = synchronous_response(rig(), wet, speed)
+        answer = response(rig(), wet, speed)
         np.testing.assert_allclose(answer.deflection, answer.deflection_dry, rtol=1e-14)
         assert not answer.dry_patch.any() and answer.stable.all() and answer.converged.all()
 
@@ -253,23 +255,23 @@ def test_full_chamber_is_a_solid() -> None:
     speed = np.linspace(5.0, 400.0, 50)
     chamber = Chamber(0.065, 0.02)
     solid = WATER.density * chamber.capacity
-    answer = synchronous_response(rig(), [Fill(chamber, WATER, chamber.capacity)], speed)
+    answer = response(rig(), [Fill(chamber, WATER, chamber.capacity)], speed)
     closed = 6e-4 * speed**2 / (4e4 - (4.0 + solid) * speed**2 + 1j * rig().damping * speed)
     np.testing.assert_allclose(answer.deflection, closed, rtol=1e-9)
 
 
 def test_no_unbalance_stands_still() -> None:
-    answer = synchronous_response(rig(unbalance=0.0), fills(1e-5), [50.0, 100.0])
+    answer = response(rig(unbalance=0.0), fills(1e-5), [50.0, 100.0])
     assert not answer.deflection.any() and not answer.liquid_offset.any()
     assert answer.converged.all()
 
 
 def test_undamped_resonance_is_said() -> None:
     rotor = Jeffcott(4.0, 4e4, 0.0, 6e-4)
-    answer = synchronous_response(rotor, [], [99.0, 100.0, 101.0])
+    answer = response(rotor, [], [99.0, 100.0, 101.0])
     np.testing.assert_array_equal(answer.converged, [True, False, True])
     assert np.isinf(answer.deflection_dry[1].real)
-    wet = synchronous_response(rotor, fills(1e-5), [99.0, 100.0, 101.0], 0.0)
+    wet = response(rotor, fills(1e-5), [99.0, 100.0, 101.0], 0.0)
     assert wet.converged.all() and np.isfinite(wet.deflection).all()
 
 
@@ -284,7 +286,7 @@ def test_undamped_resonance_is_said() -> None:
 def test_there_is_always_an_odd_number_of_branches(
     zeta: float, unbalance: float, volume: float, speed: float, gravity: float
 ) -> None:
-    answer = synchronous_response(rig(zeta, unbalance), fills(volume), [speed], gravity)
+    answer = response(rig(zeta, unbalance), fills(volume), [speed], gravity)
     assert answer.converged.all()
     assert np.isfinite(answer.branch_deflection).sum() % 2 == 1
     # The damper alone bounds the deflection.
@@ -293,8 +295,8 @@ def test_there_is_always_an_odd_number_of_branches(
 
 def test_linear_model_says_where_it_ends() -> None:
     speed = np.linspace(60.0, 150.0, 40)
-    exact = synchronous_response(rig(0.03, 2e-3), fills(1e-5), speed, 0.0)
-    linear = synchronous_response(rig(0.03, 2e-3), fills(1e-5), speed, 0.0, model="linear")
+    exact = response(rig(0.03, 2e-3), fills(1e-5), speed, 0.0)
+    linear = response(rig(0.03, 2e-3), fills(1e-5), speed, 0.0, model=Linear())
     inside = linear.in_range
     assert inside.any() and not inside.all()
     np.testing.assert_allclose(linear.deflection[inside], exact.deflection[inside], rtol=1e-9)
@@ -303,4 +305,4 @@ def test_linear_model_says_where_it_ends() -> None:
 @pytest.mark.parametrize(("speed", "model"), [([0.0], "auto"), ([math.nan], "auto"), ([1.0], "long_wave")])
 def test_bad_input(speed: list[float], model: str) -> None:
     with pytest.raises(InputError):
-        synchronous_response(rig(), [], speed, model=model)
+        response(rig(), [], speed, model=model_named(model))

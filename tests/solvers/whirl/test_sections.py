@@ -25,8 +25,8 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.sloshing.reduced import clear_ring, reduce_liquid, section_layer, section_layers, wall_drag
 from solvers.sloshing.system import LiquidSystem, condense
 from solvers.statics.free_surface import solve_surface
-from solvers.synchronous.coupled import backward_mass
-from solvers.synchronous.models import synchronous_model
+from solvers.synchronous.backward import backward_mass
+from solvers.synchronous.models import ELEMENTS
 from solvers.whirl.growth import asynchronous_growth, system_modes
 from solvers.whirl.sections import circle_layer, drum_matrices, drum_modes, standing_modes
 from tests.mutants import kills
@@ -52,8 +52,8 @@ def rotor(damping_ratio: float = 0.0) -> Jeffcott:
 
 def drum_growth(fill: Fill, friction: Friction, damping_ratio: float = 0.05) -> np.ndarray:
     """Largest growth over the spin in the drum's frame."""
-    heavy, layers = section_layers(rotor(damping_ratio), [fill], friction)
-    modes = drum_modes(heavy, layers, SPIN)
+    _, layers = section_layers([fill], friction)
+    modes = drum_modes(rotor(damping_ratio), layers, SPIN)
     assert modes.found.all()
     return np.asarray(modes.root.real.max(axis=1))
 
@@ -211,7 +211,7 @@ def lobed() -> Fill:
 
 
 @kills(
-    "solvers.synchronous.coupled:backward_mass",
+    "solvers.synchronous.backward:backward_mass",
     "whole = layer.density * layer.liquid.enclosed_area",
     "whole = fill.full_mass * 1.0",
 )
@@ -250,7 +250,7 @@ def test_a_section_is_dry_first_where_it_is_thinnest() -> None:
     # The nearest wall is 0.97 R away.
     assert fill.depth == pytest.approx(0.97 * WALL - fill.surface_radius, rel=1e-4)
     e = fill.depth * np.array([0.99, 1.01])
-    answer = synchronous_model("fem").synchronous(Fills.same(fill, 2), np.full(2, 40.0), e, np.zeros(2))
+    answer = ELEMENTS.synchronous(Fills.same(fill, 2), np.full(2, 40.0), e, np.zeros(2))
     assert answer.in_range.tolist() == [True, False]
     assert answer.dry_patch.tolist() == [False, True]
 
@@ -283,7 +283,7 @@ def test_a_drawn_circle_whirls_like_a_ring() -> None:
 def test_whirl_without_baffles_is_the_known_one() -> None:
     """Without baffles the drum's frame gives what the characteristic equation does."""
     for friction in LAWS:
-        exact, _ = asynchronous_growth(rotor(0.05).system(), [CLEAR], SPIN, friction)
+        exact, _ = asynchronous_growth(rotor(0.05), [CLEAR], SPIN, friction)
         # Newton leaves 1e-12 of the frequencies; growth is their small imaginary part.
         np.testing.assert_allclose(drum_growth(CLEAR, friction), exact, atol=1e-9 * SPIN[-1])
 
@@ -364,9 +364,8 @@ def test_what_differs_in_two_directions_is_refused_for_other_rotors() -> None:
 
 
 def test_equal_chambers_act_together() -> None:
-    heavy, layers = section_layers(
-        rotor(), [HALF, replace(HALF, chamber=replace(HALF.chamber, plane=0.1))], Friction()
-    )
+    again = replace(HALF, chamber=replace(HALF.chamber, plane=0.1))
+    solid, layers = section_layers([HALF, again], Friction())
     assert len(layers) == 1
     assert layers[0].density == pytest.approx(2.0 * WATER.density * HEIGHT)
-    assert heavy.mass == MASS
+    assert solid == 0.0

@@ -247,8 +247,8 @@ def test_robust() -> None:
 
 @kills(
     "leblanc.studies.optimise.constraints:growth",
-    "growth_map(system, rows, speed, friction)[0].max(axis=1)",
-    "growth_map(system, rows, speed, friction)[0].min(axis=1)",
+    "growth_map(rotor, rows, speed, friction)[0].max(axis=1)",
+    "growth_map(rotor, rows, speed, friction)[0].min(axis=1)",
 )
 def test_growth() -> None:
     """The largest growth at the operating speeds, as the map of self-excited whirl has it."""

@@ -1,4 +1,4 @@
-"""How far the linear law of the liquid can lead the answer of a tilting rotor astray, from closed forms."""
+"""Errors of the linear law in the answer of a rotor that tilts or has unlike springs, from closed forms."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from meshes.arrays import Array, Complex
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.vibration import solve_each
 from solvers.statics.law_defect import Surfaces, defect_bound, upright_surfaces
-from solvers.synchronous.coupled import Balance, balance
+from solvers.synchronous.balance import Balance, directions_at, harmonic_balance
 from solvers.synchronous.errors import ROUNDING, LinearError, law_error
-from solvers.synchronous.models import synchronous_model
+from solvers.synchronous.models import LINEAR
 
 _ROUNDS = 8  # of the bound on the largest deflections
 
@@ -41,9 +41,9 @@ def coupled_error(
 
     Returns
     -------
-    Of the linear law; by gravity, as `solvers.synchronous.errors.planar_gravity_error`, shape (s,)
+    Of the linear law; by gravity, as `solvers.synchronous.enclosure.planar_gravity_error`, shape (s,)
     """
-    terms = balance(system, fills, speed, gravity, synchronous_model("linear"))
+    terms = harmonic_balance(system, fills, speed, gravity, LINEAR)
     if not terms.fills:
         nothing = np.full(speed.shape, ROUNDING)
         exact = LinearError(nothing, nothing, np.ones(speed.shape, dtype=bool), np.zeros(speed.shape))
@@ -51,12 +51,12 @@ def coupled_error(
     full, own, radius, depth = np.array(
         [(fill.added_mass, fill.mass, fill.chamber.radius, fill.depth) for fill in terms.fills]
     ).T
-    place = np.concatenate((terms.plane, _at(system, position)))
+    place = np.concatenate((terms.plane, directions_at(system, [position])))
     answer, spread = _answer(terms, full, place)
     frozen, far = _answer(terms, own, place)
     chambers, upright = len(terms.fills), np.full(speed.size, gravity)
     each = [Fills.same(fill, speed.size) for fill in terms.fills]
-    surfaces = [upright_surfaces(one, speed, upright) for one in each]
+    surfaces = [upright_surfaces(same, speed, upright) for same in each]
     linear = np.abs(answer[0][:, :chambers])
     most = _largest(
         linear,
@@ -71,7 +71,7 @@ def coupled_error(
     size = np.sum([np.abs(part[:, chambers]) for part in answer], axis=0)
     lost = np.sum(full * _carried(spread[0][:, :chambers], missing), axis=1)
     lost = lost + missing.sum(axis=1) / np.square(speed)
-    straight = np.stack([one.straight * one.radius for one in surfaces], axis=1)
+    straight = np.stack([own.straight * own.radius for own in surfaces], axis=1)
     bent = np.divide(linear, straight, out=np.where(linear > 0.0, np.inf, 0.0), where=straight > 0.0)
     found = LinearError(
         amplitude=_share(_shift(spread, missing), size),
@@ -80,7 +80,7 @@ def coupled_error(
         strain=np.asarray(bent.max(axis=1)),
     )
     lying = np.full(speed.size, across)
-    change = np.stack([law_error(one, speed, lying) for one in each], axis=1)
+    change = np.stack([law_error(same, speed, lying) for same in each], axis=1)
     thrown = _shift(spread, np.square(speed)[:, None] * full * most * change)
     return found, np.asarray(change.max(axis=1) + _part(thrown, size))
 
@@ -112,18 +112,13 @@ def _part(change: Array, size: Array) -> Array:
 
 def _missing(surfaces: list[Surfaces], speed: Array, deflection: Array) -> Array:
     """Bound of the missing pull of each chamber, N, shape (s, c)."""
-    bounds = [defect_bound(one, deflection[:, j]) for j, one in enumerate(surfaces)]
+    bounds = [defect_bound(own, deflection[:, j]) for j, own in enumerate(surfaces)]
     return np.asarray(np.square(speed)[:, None] * np.stack(bounds, axis=1))
 
 
 def _shift(spread: tuple[Array, Array], pull: Array) -> Array:
     """Largest change of both parts of the orbit at the last place by pulls on the chambers, m, shape (s,)."""
     return np.asarray(sum(_carried(part[:, -1:], pull)[:, 0] for part in spread))
-
-
-def _at(system: RotorSystem, position: float) -> Complex:
-    """p = B^T (1, -i) of one place, shape (1, n)."""
-    return np.asarray(system.at(position).T @ np.array([1.0, -1j]))[None]
 
 
 def _answer(
@@ -141,7 +136,7 @@ def _answer(
     added = 0.5 * np.einsum("c,ci,cj->ij", mass, p, np.conj(p))
     matrix = terms.stiffness - np.square(terms.speed)[:, None, None] * added
     answer = solve_each(matrix, terms.force)
-    units = [solve_each(matrix, np.broadcast_to(one, terms.force.shape)) for one in p]
+    units = [solve_each(matrix, np.broadcast_to(along, terms.force.shape)) for along in p]
     unit = np.stack(units, axis=-1)  # (s, n, c)
     parts = 0.5 * answer @ np.conj(place).T, 0.5 * answer @ place.T
     spread = (

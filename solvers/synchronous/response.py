@@ -1,0 +1,323 @@
+"""Steady answer of any rotor with liquid to its unbalance: the entry to this room.
+
+`response` takes a rotor, its fills, speeds, gravity and a liquid model, and gives one result for every kind
+of rotor. A Jeffcott rotor is solved by its one circle, with the stability of every branch, and thousands of
+them at once by `machine_responses`; any other rotor by harmonic balance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fluid.fill import Fill
+from meshes.arrays import Array, Complex, Flags, Index
+from meshes.errors import InputError
+from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
+from solvers.rotor.system import Rotor, RotorSystem
+from solvers.rotor.vibration import orbit, unbalance_response
+from solvers.synchronous.balance import Balance, Liquid, harmonic_balance
+from solvers.synchronous.coupled import solutions
+from solvers.synchronous.models import STATICS, LiquidModel
+from solvers.synchronous.pairs import Pairs, pair_machines
+from solvers.synchronous.planar import all_deflections, divide, is_stable, liquid_offset, with_phase
+
+_Value = TypeVar("_Value", bound=np.generic)
+_NONE = complex(np.nan, np.nan)  # in tables of branches, where there are fewer
+
+
+@dataclass(frozen=True)
+class Response:
+    """Unbalance response over speed; n speeds, b branches, m coordinates of the rotor.
+
+    The axis goes round as forward e^{i Omega t} + backward e^{-i Omega t}; deflections without further word
+    are the forward part. Angles are measured from the unbalance, or from angle 0 of several unbalances,
+    positive with the spin; a lag is negative.
+
+    Parameters
+    ----------
+    speed : spin speed Omega, rad/s, shape (n,)
+    deflection : complex deflection w of the branch reported, m, shape (n,): of the stable ones the largest,
+        which is where a slow run-up of this hardening system arrives and the one to design for
+    deflection_dry : the same rotor without liquid, m, shape (n,)
+    liquid_offset : distance of the liquid's centre of mass from the rotation axis, m, shape (n,)
+    liquid_angle : angle from the unbalance to the liquid's centre of mass, rad, shape (n,)
+    dry_patch : the wall is dry somewhere in at least one chamber, shape (n,)
+    stable : the branch reported is stable against slow disturbances, shape (n,); of rotors other than the
+        Jeffcott rotor that is not known, it is True wherever a branch was found
+    model : name of the liquid model used, shape (n,)
+    in_range : the model holds there, shape (n,)
+    converged : every branch was found, shape (n,); with chambers in several planes, one was
+    branch_deflection : all branches by rising amplitude, m, shape (n, b), nan where there are fewer
+    branch_stable : their stability, shape (n, b)
+    backward, backward_dry : backward part of the branch reported, and without liquid, m, shape (n,)
+    branch_backward : of all branches, m, shape (n, b)
+    coordinates : complex amplitudes of the branch reported, q = Re(coordinates e^{i Omega t}), shape (n, m)
+    residual : what is left of the balance of forces over the largest of them, shape (n,)
+    position : along the axis of the plane whose motion is reported, m
+    """
+
+    speed: Array
+    deflection: Complex
+    deflection_dry: Complex
+    liquid_offset: Array
+    liquid_angle: Array
+    dry_patch: Flags
+    stable: Flags
+    model: NDArray[np.str_]
+    in_range: Flags
+    converged: Flags
+    branch_deflection: Complex
+    branch_stable: Flags
+    backward: Complex
+    backward_dry: Complex
+    branch_backward: Complex
+    coordinates: Complex
+    residual: Array
+    position: float = 0.0
+
+
+def response(
+    rotor: Rotor,
+    fills: Sequence[Fill],
+    speed: ArrayLike,
+    gravity: float = 9.81,
+    model: LiquidModel | Sequence[LiquidModel] = STATICS,
+    position: float | None = None,
+) -> Response:
+    """Steady motion of a rotor with liquid in its chambers under its unbalance [theory: rotor, eq. 2, 28-30].
+
+    Parameters
+    ----------
+    rotor : the dry rotor, of any kind
+    fills : its chambers with their liquid, any number
+    speed : spin speeds Omega, rad/s, shape (n,), > 0
+    gravity : along the axis, m/s^2; 0 for a horizontal axis
+    model : of the liquid, for the forward part; one for all speeds or one for each
+    position : of the plane that is reported, m; that of the first chamber if None, 0 without chambers. All
+        planes of a Jeffcott rotor move alike
+
+    Returns
+    -------
+    Response; `converged` is False where the deflection is unbounded (no damping at resonance)
+
+    Raises
+    ------
+    InputError : a speed that is not positive and finite
+
+    Examples
+    --------
+    >>> rotor = Jeffcott(mass=4.0, stiffness=4.4e4, damping=84.0, unbalance=6e-4)
+    >>> answer = response(rotor, [], [105.0, 200.0])
+    >>> print(np.round(1e3 * np.abs(answer.deflection), 4))
+    [0.75   0.2042]
+    """
+    spin = np.array(speed, dtype=float).reshape(-1)
+    place = position if position is not None else (fills[0].chamber.plane if fills else 0.0)
+
+    def solve(law: LiquidModel, at: Index) -> Response:
+        if isinstance(rotor, Jeffcott):
+            owner = np.zeros(at.size, dtype=np.intp)
+            return machine_responses([(rotor, fills)], owner, spin[at], np.array([gravity]), law)
+        _require_speeds(spin)
+        system = rotor.system()
+        return _of_balance(system, harmonic_balance(system, fills, spin[at], gravity, law), place)
+
+    if not isinstance(model, Sequence):
+        return solve(model, np.arange(spin.size))
+    if len(model) != spin.size:
+        raise InputError("model", len(model), f"one for each of {spin.size} speeds")
+    parts = []
+    for law in dict.fromkeys(model):
+        at = np.array([k for k, other in enumerate(model) if other == law], dtype=np.intp)
+        parts.append((at, solve(law, at)))
+    return parts[0][1] if len(parts) == 1 else _merged(parts)
+
+
+def machine_responses(
+    machines: Sequence[PlanarMachine],
+    owner: Index,
+    speed: Array,
+    gravity: Array,
+    model: LiquidModel = STATICS,
+) -> Response:
+    """`response` of many planar machines at once: of n pairs of a machine and a speed.
+
+    Parameters
+    ----------
+    machines : rotors, each with its chambers and their liquid
+    owner : which machine each pair has, shape (n,)
+    speed : spin speeds Omega, rad/s, shape (n,), > 0
+    gravity : along the axis of each machine, m/s^2, shape (machines,)
+    model : of the liquid
+
+    Returns
+    -------
+    Response over the pairs
+
+    Raises
+    ------
+    InputError : a speed that is not positive and finite
+    """
+    _require_speeds(speed)
+    pairs = pair_machines(machines, owner, speed, gravity, model)
+    size, which, converged = all_deflections(pairs)
+    bounded = np.isfinite(size)
+    deflection = np.where(bounded, size, 0.0)
+    state = pairs.liquid(deflection, which)
+    stable = bounded & is_stable(pairs, which, deflection, state)
+    phased = np.where(bounded, with_phase(pairs, which, deflection, state), complex(np.inf, 0.0))
+    table = _Table.arrange(speed.size, which, deflection, stable)
+    chosen = table.reported
+    farthest = np.array([max((f.chamber.radius for f in fills), default=0.0) for _, fills in machines])
+    w, found = phased[chosen], bounded[chosen, None]
+    still = np.where(bounded[chosen], w, 0.0)
+    np.logical_and.at(converged, which, state.converged)
+    none = np.zeros(speed.size, dtype=complex)
+    return Response(
+        speed=speed,
+        deflection=w,
+        deflection_dry=divide(pairs.unbalance * np.square(speed), pairs.dynamic_stiffness),
+        liquid_offset=liquid_offset(pairs, farthest[owner], deflection[chosen], state.unbalance[chosen]),
+        liquid_angle=np.angle(w),
+        dry_patch=state.dry_patch[chosen],
+        stable=stable[chosen],
+        model=np.full(speed.shape, model.name),
+        in_range=state.in_range[chosen],
+        converged=converged,
+        branch_deflection=table.spread(phased, _NONE),
+        branch_stable=table.spread(stable, False),
+        backward=none,
+        backward_dry=none,
+        branch_backward=table.spread(np.zeros(which.size, dtype=complex), _NONE),
+        coordinates=np.where(found, still[:, None] * np.array([1.0, -1j]), complex(np.inf, 0.0)),
+        residual=_left(pairs, still, state.unbalance[chosen]),
+    )
+
+
+def _require_speeds(speed: Array) -> None:
+    if not np.all(np.isfinite(speed) & (speed > 0.0)):
+        raise InputError("speed", speed.tolist(), "finite numbers above 0")
+
+
+def _left(pairs: Pairs, deflection: Complex, unbalance: Array) -> Array:
+    """What is left of the planar balance over its largest force."""
+    squared, size = np.square(pairs.speed), np.abs(deflection)
+    unit = np.divide(deflection, size, out=np.zeros_like(deflection), where=size > 0.0)
+    held, force = pairs.dynamic_stiffness * deflection, squared * pairs.unbalance
+    scale = np.maximum(np.abs(held), force)
+    left = np.abs(held - force - squared * unbalance * unit)
+    return np.asarray(np.divide(left, scale, out=np.zeros(scale.shape), where=scale > 0.0))
+
+
+def _of_balance(system: RotorSystem, terms: Balance, position: float) -> Response:
+    """The solutions of a harmonic balance as tables over speed and branch, and the largest of each speed."""
+    answer, which, converged = solutions(terms)
+    lost = np.setdiff1d(np.arange(terms.speed.size), which)
+    nothing = np.full((lost.size, answer.shape[1]), complex(np.inf, 0.0))
+    answer, which = np.concatenate((answer, nothing)), np.concatenate((which, lost))
+    motion = orbit(system, answer, position)
+    size = np.abs(motion.forward)
+    table = _Table.arrange(terms.speed.size, which, size, np.isfinite(size))
+    chosen = table.reported
+    bounded = np.isfinite(size[chosen])
+    q = np.where(bounded[:, None], answer[chosen], 0.0)
+    forward = terms.forward(q)
+    law = terms.liquid(which[chosen], np.abs(forward))
+    offset, angle = _centre_of_mass(terms, forward, law)
+    dry = orbit(system, unbalance_response(system, terms.speed), position)
+    deflection = motion.forward[chosen]
+    return Response(
+        speed=terms.speed,
+        deflection=deflection,
+        deflection_dry=dry.forward,
+        liquid_offset=offset,
+        liquid_angle=angle if terms.fills else np.angle(np.where(bounded, deflection, 0.0)),
+        dry_patch=np.asarray(law.dry_patch.any(axis=1)),
+        stable=bounded,
+        model=np.full(terms.speed.shape, terms.model.name),
+        in_range=np.asarray(law.in_range.all(axis=1)),
+        converged=converged & bounded & law.converged.all(axis=1),
+        branch_deflection=table.spread(motion.forward, _NONE),
+        branch_stable=table.spread(np.isfinite(size), False),
+        backward=motion.backward[chosen],
+        backward_dry=dry.backward,
+        branch_backward=table.spread(motion.backward, _NONE),
+        coordinates=answer[chosen],
+        residual=_residual(terms, q, forward, law),
+        position=position,
+    )
+
+
+def _centre_of_mass(terms: Balance, forward: Complex, law: Liquid) -> tuple[Array, Array]:
+    """Distance of all the liquid's centre of mass from the rotation axis, and its angle."""
+    size = np.abs(forward)
+    unit = np.divide(forward, size, out=np.zeros_like(forward), where=size > 0.0)
+    moment = np.sum(law.unbalance * unit, axis=1)
+    mass = sum(fill.mass for fill in terms.fills)
+    return np.abs(moment) / mass if mass > 0.0 else np.zeros(len(forward)), np.angle(moment)
+
+
+def _residual(terms: Balance, q: Complex, forward: Complex, law: Liquid) -> Array:
+    """What is left of the balance of forces over the largest of them."""
+    size = np.abs(forward)
+    unit = np.divide(forward, size, out=np.zeros_like(forward), where=size > 0.0)
+    held = np.einsum("kij,kj->ki", terms.stiffness, q)
+    pull = np.square(terms.speed)[:, None] * ((law.unbalance * unit) @ terms.plane)
+    scale = np.maximum(np.linalg.norm(held, axis=1), np.linalg.norm(terms.force, axis=1))
+    left = np.linalg.norm(held - terms.force - pull, axis=1)
+    return np.asarray(np.divide(left, scale, out=np.zeros(scale.shape), where=scale > 0.0))
+
+
+@dataclass(frozen=True)
+class _Table:
+    """Where each solution stands in the table of branches: its row is the speed, its column the rank."""
+
+    rows: Index
+    columns: Index
+    shape: tuple[int, int]
+    reported: Index
+
+    @classmethod
+    def arrange(cls, speeds: int, which: Index, size: Array, stable: Flags) -> _Table:
+        """Rank the solutions of each speed by amplitude; report the largest stable one, or the largest."""
+        order = np.lexsort((size, which))
+        counts = np.bincount(which, minlength=speeds)
+        starts = np.concatenate(([0], np.cumsum(counts)[:-1]))
+        columns = np.empty(which.size, dtype=np.intp)
+        columns[order] = np.arange(which.size) - np.repeat(starts, counts)
+        best = np.lexsort((size, stable, which))
+        return cls(which, columns, (speeds, int(counts.max())), best[np.cumsum(counts) - 1])
+
+    def spread(self, values: NDArray[_Value], missing: complex | bool) -> NDArray[_Value]:
+        """Values of the solutions as a table (speed, branch), `missing` where there is none."""
+        table = np.full(self.shape, missing, dtype=values.dtype)
+        table[self.rows, self.columns] = values
+        return table
+
+
+def _merged(parts: list[tuple[Index, Response]]) -> Response:
+    """Responses of several models, each at its own speeds, in the order of the speeds."""
+    order = np.argsort(np.concatenate([at for at, _ in parts]))
+    found: dict[str, Any] = {"position": parts[0][1].position}
+    for field in fields(Response):
+        values = [getattr(part, field.name) for _, part in parts]
+        if field.name not in found:
+            wide = _padded(values) if field.name.startswith("branch_") else values
+            found[field.name] = np.concatenate(wide)[order]
+    return Response(**found)
+
+
+def _padded(tables: list[NDArray[Any]]) -> list[NDArray[Any]]:
+    """The same number of branches in each, nan or False where there is none."""
+    most = max(table.shape[1] for table in tables)
+    wide = []
+    for table in tables:
+        out = np.full((table.shape[0], most), False if table.dtype == bool else _NONE, dtype=table.dtype)
+        out[:, : table.shape[1]] = table
+        wide.append(out)
+    return wide
