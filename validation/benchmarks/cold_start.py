@@ -5,8 +5,8 @@
 
 All times are processor time, user and system, of a process of its own with its threads, the least of several
 runs: other work on the machine hardly matters. The libraries' part is a process that imports all modules of
-libraries that the command ended with, in the same order, and nothing of ours. Compiled kernels come from numba's
-cache: an untimed run comes first. POSIX only.
+libraries that the command ended with, in the same order, and nothing of ours. Compiled kernels come from
+numba's cache: an untimed run comes first. POSIX only.
 """
 
 from __future__ import annotations
@@ -218,9 +218,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         found.append(cold_start(command, chosen.repeats))
         print(f"\n{text(found[-1])}", flush=True)
     if chosen.json is not None:
-        rows = [
-            asdict(one) | {"notes": [[*key, share] for key, share in one.notes.items()]} for one in found
-        ]
+        rows = [asdict(one) | {"notes": [[*key, share] for key, share in one.notes.items()]} for one in found]
         kept = json.dumps({"imports": doors, "commands": rows}, indent=1)
         chosen.json.write_text(kept + "\n", encoding="utf-8")
     return 0
