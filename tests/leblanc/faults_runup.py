@@ -62,14 +62,14 @@ FAULTS: tuple[Fault, ...] = (
     ),
     Fault(
         "leblanc.studies.runup",
-        "synchronous_response(jeffcott(scene), scene.chambers, passed",
+        "synchronous_response(jeffcott(scene), scene.fills, passed",
         "synchronous_response(jeffcott(scene), (), passed",
         oracle.check_steady,
     ),
     Fault(
         "leblanc.studies.runup",
-        "unstable_bands(system, [scene.chambers], passed, friction)",
-        "unstable_bands(system, [scene.chambers], passed, (1, 1.0))",
+        "unstable_bands(system, [scene.fills], passed, friction)",
+        "unstable_bands(system, [scene.fills], passed, (1, 1.0))",
         oracle.check_bands,
     ),
     Fault(

@@ -6,8 +6,10 @@ import math
 import tomllib
 
 import numpy as np
+import pytest
 
 from leblanc import units
+from leblanc.scene.machine import jeffcott
 from leblanc.scene.scene import scene_from_table
 from tests.faults import Fault
 
@@ -26,7 +28,7 @@ speeds = { start = 1, stop = 2, count = 2 }
 
 def free_vibration() -> None:
     """The rotor let go turns at its critical speed and loses 2 pi zeta/sqrt(1 - zeta^2) a turn."""
-    rotor = scene_from_table(tomllib.loads(_SCENE)).rotor
+    rotor = jeffcott(scene_from_table(tomllib.loads(_SCENE)))
     roots = np.roots([rotor.mass, rotor.damping, rotor.stiffness])
     # eigenvalues of a 2 x 2 matrix: a few rounding errors
     np.testing.assert_allclose(np.abs(roots), 1000.0 * 2.0 * math.pi / 60.0, rtol=1e-12)
@@ -40,6 +42,7 @@ def one_box_in_three_units() -> None:
         edge, litre = units.parse("10 cm", units.LENGTH), units.parse("1 l", units.VOLUME)
         hertz, rpm = units.parse("1 Hz", units.ANGULAR_SPEED), units.parse("60 rpm", units.ANGULAR_SPEED)
         kilo = units.parse("1 kN/m", units.STIFFNESS)
+        assert units.parse("0.001 kHz", units.ANGULAR_SPEED) == pytest.approx(hertz, rel=1e-15)
         assert math.isclose(edge**3, litre, rel_tol=1e-15)
         assert math.isclose(hertz, rpm, rel_tol=1e-15)
         assert math.isclose(rpm, 2.0 * math.pi, rel_tol=1e-15)
@@ -51,24 +54,26 @@ def one_box_in_three_units() -> None:
 FAULTS: tuple[Fault, ...] = (
     Fault(
         "leblanc.scene.rotors",
-        "table.mass * table.critical_speed**2",
-        "table.mass * table.critical_speed",
+        "self.mass * self.critical_speed**2",
+        "self.mass * self.critical_speed",
         free_vibration,
     ),
     Fault(
         "leblanc.scene.rotors",
-        "table.mass * table.critical_speed**2",
-        "table.critical_speed**2",
+        "self.mass * self.critical_speed**2",
+        "self.critical_speed**2",
         free_vibration,
     ),
-    Fault("leblanc.scene.rotors", "2.0 * table.damping_ratio", "table.damping_ratio", free_vibration),
+    Fault("leblanc.scene.rotors", "2.0 * self.damping_ratio", "self.damping_ratio", free_vibration),
     Fault(
         "leblanc.scene.rotors",
-        "math.sqrt(stiffness * table.mass)",
-        "math.sqrt(stiffness / table.mass)",
+        "math.sqrt(stiffness * self.mass)",
+        "math.sqrt(stiffness / self.mass)",
         free_vibration,
     ),
     Fault("leblanc.units", "return number / parts", "return number * parts", one_box_in_three_units),
     Fault("leblanc.units", "return number * (whole", "return number / (whole", one_box_in_three_units),
+    Fault("leblanc.units", '"rpm": _TURN / 60.0', '"rpm": _TURN', one_box_in_three_units),
+    Fault("leblanc.units", '"Hz": _TURN', '"Hz": 1.0', one_box_in_three_units),
     Fault("leblanc.units", r"(\1turn/s)", r"(\1rad/s)", one_box_in_three_units),
 )

@@ -44,7 +44,7 @@ def check_rig() -> None:
     # Refined edges: growth there is its slope, some 0.1 in a unit of speed, times 1e-8 of the speed.
     scene = load_scene("examples/horizontal_rig.toml")
     system = dry_rotor(scene).system()
-    at_edges, _ = asynchronous_growth(system, scene.chambers, [low, high], (STOKES, 0.0))
+    at_edges, _ = asynchronous_growth(system, scene.fills, [low, high], (STOKES, 0.0))
     assert np.all(np.abs(at_edges) < 1e-6)
 
 

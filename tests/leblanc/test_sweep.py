@@ -57,7 +57,7 @@ def check_sampled_scenes() -> None:
         changes = [(keys_of(path), value) for path, value in values.items()]
         whole = scene_from_table(with_values(table, changes))
         made = scene_maker(table, [keys for keys, _ in changes])([value for _, value in changes])
-        assert made == replace(whole, source=made.source, assumed=made.assumed, runup=made.runup)
+        assert made == whole.altered(source=made.source, assumed=made.assumed, runup=made.runup)
 
 
 def test_sampled_scenes_are_those_of_the_whole_table() -> None:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from leblanc.scene.machine import dry_rotor, jeffcott
-from leblanc.scene.scene import Exciter, Rotor, Scene
+from leblanc.scene.scene import Exciter, JeffcottRotor, Scene
 from leblanc.studies.choose import across_gravity, axial_gravity, choose
 from leblanc.studies.runup import RunupChoice, chosen_run, drive_of, judged, planned
 from meshes.arrays import Array, Flags
@@ -70,16 +70,10 @@ class Answer:
     used: tuple[str, ...]
 
 
-@dataclass(frozen=True)
 class SceneAt(Scene):
-    """A scene at chosen speeds.
+    """A scene at chosen speeds."""
 
-    Parameters
-    ----------
-    chosen : in place of the evenly spaced ones, rising, rad/s
-    """
-
-    chosen: tuple[float, ...] = ()
+    chosen: tuple[float, ...] = Field((), description="in place of the evenly spaced ones, rising")
 
     def speed_array(self) -> Array:
         """Spin speeds, rad/s, shape (k,)."""
@@ -88,8 +82,8 @@ class SceneAt(Scene):
 
 def at_speeds(scene: Scene, speed: Array) -> SceneAt:
     """The scene at those speeds."""
-    content: dict[str, Any] = {one.name: getattr(scene, one.name) for one in fields(Scene)}
-    return SceneAt(**content, chosen=tuple(float(x) for x in speed))
+    content = {name: getattr(scene, name) for name in Scene.model_fields}
+    return SceneAt.model_construct(**content, chosen=tuple(float(x) for x in speed))
 
 
 def steady(scene: Scene, models: NDArray[np.str_]) -> tuple[Array, Flags, Flags, tuple[str, ...]]:
@@ -102,8 +96,8 @@ def steady(scene: Scene, models: NDArray[np.str_]) -> tuple[Array, Flags, Flags,
     """
     from solvers.synchronous.mixed import mixed_coupled, mixed_response
 
-    speed, gravity, fills = scene.speed_array(), axial_gravity(scene), scene.chambers
-    if isinstance(scene.rotor, Rotor):
+    speed, gravity, fills = scene.speed_array(), axial_gravity(scene), scene.fills
+    if isinstance(scene.rotor, JeffcottRotor):
         found, back = mixed_response(jeffcott(scene), fills, speed, gravity, models), np.zeros(speed.size)
     else:
         coupled = mixed_coupled(dry_rotor(scene).system(), fills, speed, gravity, models)
@@ -123,7 +117,7 @@ def chosen_models(scene: Scene, model: str) -> tuple[NDArray[np.str_], Flags]:
     scene : the machine, not an exciter
     model : "auto" or a name
     """
-    choice = choose(replace(scene, model=replace(scene.model, liquid=model)))
+    choice = choose(scene.altered(model=scene.model.altered(liquid=model)))
     return choice.models, choice.in_range
 
 
@@ -181,19 +175,18 @@ def taken_run(scene: Scene, model: str, cells: int, dispersion: bool) -> RunupCh
     """
     plan = planned(scene)
     numerics = RunupNumerics(cells, plan.samples, dispersion, companion=False)
-    asked = replace(scene, model=replace(scene.model, liquid=model))
+    asked = scene.altered(model=scene.model.altered(liquid=model))
     return chosen_run(asked, drive_of(plan), across_gravity(scene), numerics)
 
 
 def _exciter(scene: Scene, case: Case) -> Answer:
-    from leblanc.studies.exciter import machine_of
     from solvers.rotor.exciter.machine import platform_motion
     from solvers.rotor.exciter.motion import integrate
     from solvers.rotor.exciter.stuck import stuck_speeds
 
     if not isinstance(scene.rotor, Exciter):
         raise InputError("rotor.kind", scene.rotor.kind, "exciter for this")
-    machine = machine_of(scene.rotor)
+    machine = scene.rotor.machine()
     numbers = machine.dimensionless()
     ratio = scene.speed_array() / machine.natural_frequency
     if case.resolution is None:
@@ -217,7 +210,7 @@ def taste(scene: Scene, case: Case) -> None:
     """A small piece of a case, which imports and compiles all that the whole takes."""
     if case.question == RUNUP:
         plan = planned(scene)
-        bit = replace(scene, runup=replace(plan, duration=1e-3 * plan.duration, samples=2))
+        bit = scene.altered(runup=plan.altered(duration=1e-3 * plan.duration, samples=2))
         answer(bit, case)
         if case.model == "auto":  # of which so small a piece takes one model alone
             answer(bit, replace(case, model="long_wave"))

@@ -100,7 +100,7 @@ class RunupPeak(AlwaysExact):
 
         key = volumes.tobytes()
         if key not in self._known:
-            law, fills = self.scene.model.friction, with_volumes(self.scene, volumes).chambers
+            law, fills = self.scene.model.friction, with_volumes(self.scene, volumes).fills
             system = dry_rotor(self.scene).system()
             friction = (law.law, law.coefficient)
             numerics, drive = self.numerics, self.drive
