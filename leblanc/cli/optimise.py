@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,7 +11,7 @@ import typer
 from leblanc.cli.output import out_dir, print_json, say
 
 if TYPE_CHECKING:
-    from leblanc.scene.optimise import Aim
+    from leblanc.scene.optimise import Optimisation
     from leblanc.scene.scene import Scene
     from leblanc.studies.optimise.optimise import OptimumRecord
 
@@ -93,25 +92,25 @@ def _aim(
     limit: str | None,
     steady: bool,
     seed: int | None,
-) -> Aim:
+) -> Optimisation:
     """The scene's aim with what the options say in its place."""
-    from leblanc.scene.optimise import OBJECTIVES, Aim
+    from leblanc.scene.optimise import OBJECTIVES, Optimisation
     from meshes.errors import InputError
 
-    aim = machine.optimise or Aim()
+    aim = machine.optimise or Optimisation()
     if objective is not None:
         if objective not in OBJECTIVES:
             raise InputError("--objective", objective, "one of " + ", ".join(OBJECTIVES))
-        aim = replace(aim, objective=objective)
+        aim = aim.altered(objective=objective)
     if deflection is not None:
-        aim = replace(aim, deflection=_length(deflection, "--deflection"))
+        aim = aim.altered(deflection=_length(deflection, "--deflection"))
     if limit is not None:
-        aim = replace(aim, vibration_limit=_length(limit, "--limit"))
+        aim = aim.altered(vibration_limit=_length(limit, "--limit"))
     if seed is not None:
         if seed < 0:
             raise InputError("--seed", seed, "a whole number, 0 or above")
-        aim = replace(aim, seed=seed)
-    return replace(aim, steady=aim.steady or steady)
+        aim = aim.altered(seed=seed)
+    return aim.altered(steady=aim.steady or steady)
 
 
 def _length(text: str, option: str) -> float:
@@ -125,7 +124,7 @@ def _length(text: str, option: str) -> float:
     return value
 
 
-def _run(machine: Scene, aim: Aim, front: bool, store: Path | None) -> OptimumRecord:
+def _run(machine: Scene, aim: Optimisation, front: bool, store: Path | None) -> OptimumRecord:
     """The search itself, with a count on a terminal."""
     from rich.progress import Progress, SpinnerColumn, TextColumn
 

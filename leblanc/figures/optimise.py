@@ -130,7 +130,7 @@ def _draw_section(axes: Axes, record: OptimumRecord, k: int) -> None:
     axes.set_ylim(low - room, high + room)
     if math.isfinite(least):
         axes.set_xscale("symlog", linthresh=least, linscale=0.3)
-        axes.set_xlim(-0.15 * least, 1.15 * record.scene.chambers[k].chamber.capacity * ML)
+        axes.set_xlim(-0.15 * least, 1.15 * record.scene.fills[k].chamber.capacity * ML)
         ticks = [0.0, *10.0 ** np.arange(math.ceil(math.log10(least)), 12)]
         axes.set_xticks([one for one in ticks if one <= axes.get_xlim()[1]])
     axes.minorticks_off()
@@ -163,7 +163,7 @@ def _draw_map(figure: Figure, axes: Axes, record: OptimumRecord) -> None:
     points, vibration, excess = _known(record)
     points, first = np.unique(points, axis=0, return_index=True)
     value, excess = vibration[first] * MM, excess[first]
-    capacity = np.array([fill.chamber.capacity for fill in record.scene.chambers])
+    capacity = np.array([fill.chamber.capacity for fill in record.scene.fills])
     least = LEAST * capacity
     worst = max(record.vibration_baseline, record.vibration) * MM
     low = float(value.min())

@@ -12,8 +12,8 @@ from leblanc.friction import friction_words
 from leblanc.report.parts import Cell, Table
 from leblanc.results.record import one_line
 from leblanc.scene.machine import dry_rotor
-from leblanc.scene.optimise import Aim
-from leblanc.scene.scene import Exciter, Rotor, Runup, Scene
+from leblanc.scene.optimise import Optimisation
+from leblanc.scene.scene import Exciter, JeffcottRotor, Runup, Scene
 from leblanc.text.numbers import number
 from leblanc.units import ML, MM, RPM
 from meshes.baffles import Baffles
@@ -77,10 +77,10 @@ def unbalance(size: float) -> str:
 AimRow = tuple[str, str, str]
 
 MOST = 6  # speeds of a duty cycle that are listed one by one
-_DEFAULT = Aim()
+_DEFAULT = Optimisation()
 
 
-def aim_rows(aim: Aim) -> list[AimRow]:
+def aim_rows(aim: Optimisation) -> list[AimRow]:
     """Label, value with its unit and name of what an aim says beyond its defaults; the objective always.
 
     Parameters
@@ -127,14 +127,15 @@ def _range(ends: tuple[float, float] | None, unit: float, name: str) -> str:
     return "" if ends is None else f"{number(ends[0] * unit)} to {number(ends[1] * unit)} {name}"
 
 
-def _duty(aim: Aim) -> str:
-    parts = [f"{number(speed * RPM)} rpm (weight {number(weight)})" for speed, weight in aim.duty]
+def _duty(aim: Optimisation) -> str:
+    duty = [(one.speed, one.weight) for one in aim.duty]
+    parts = [f"{number(speed * RPM)} rpm (weight {number(weight)})" for speed, weight in duty]
     if len(parts) <= MOST:
         return ", ".join(parts)
     return f"{len(parts)} speeds from {parts[0]} to {parts[-1]}"
 
 
-def _volumes(aim: Aim) -> str:
+def _volumes(aim: Optimisation) -> str:
     parts = [
         f"chamber {k + 1} {number(low * ML)} to {number(high * ML)} ml"
         for k, (low, high) in enumerate(aim.volumes)
@@ -142,17 +143,19 @@ def _volumes(aim: Aim) -> str:
     return ", ".join(parts)
 
 
-def jeffcott_entries(mark: Marker, rotor: Rotor) -> list[Entry]:
+def jeffcott_entries(mark: Marker, rotor: JeffcottRotor) -> list[Entry]:
     """What a scene says of a planar rotor."""
-    machine = Jeffcott(rotor.mass, rotor.stiffness, rotor.damping, rotor.unbalance)
+    machine = rotor.machine()
     critical = f"{number(machine.natural_frequency * RPM)} rpm"
     return [
         mark.entry("Rotor", f"{rotor.kind}, {rotor.axis} axis", "rotor.axis", "rotor.kind"),
         mark.entry("Mass", f"{number(rotor.mass)} kg", "rotor.mass"),
         mark.entry("Critical speed, dry", critical, "rotor.critical_speed", "rotor.stiffness"),
-        mark.entry("Stiffness", f"{number(rotor.stiffness)} N/m", "rotor.stiffness", "rotor.critical_speed"),
+        mark.entry(
+            "Stiffness", f"{number(machine.stiffness)} N/m", "rotor.stiffness", "rotor.critical_speed"
+        ),
         mark.entry("Damping ratio", number(machine.damping_ratio), "rotor.damping_ratio", "rotor.damping"),
-        mark.entry("Damping", f"{number(rotor.damping)} N s/m", "rotor.damping", "rotor.damping_ratio"),
+        mark.entry("Damping", f"{number(machine.damping)} N s/m", "rotor.damping", "rotor.damping_ratio"),
         mark.entry("Unbalance", unbalance(rotor.unbalance), "rotor.unbalance"),
     ]
 
@@ -160,7 +163,7 @@ def jeffcott_entries(mark: Marker, rotor: Rotor) -> list[Entry]:
 def exciter_entries(mark: Marker, rotor: Exciter) -> list[Entry]:
     """What a scene says of an exciter."""
     balls = rotor.balls
-    kind = "rotor.balls.kind" if balls.kind != "pendulum" else "rotor.balls.pendulum_inertia"
+    kind = "rotor.balls.kind" if balls.kind is not None else "rotor.balls.pendulum_inertia"
     found = [
         mark.entry("Rotor", "exciter", "rotor.kind"),
         mark.entry("Platform mass", f"{number(rotor.platform_mass)} kg", "rotor.platform_mass"),
@@ -169,13 +172,13 @@ def exciter_entries(mark: Marker, rotor: Exciter) -> list[Entry]:
         mark.entry("Unbalance of the shaft", unbalance(rotor.unbalance), "rotor.unbalance"),
         Entry(
             "In the track",
-            (mark.cell(f"{balls.count}", "rotor.balls.count"), mark.cell(f"{balls.kind}s", kind)),
+            (mark.cell(f"{balls.count}", "rotor.balls.count"), mark.cell(f"{balls.name}s", kind)),
         ),
         mark.entry("Mass of each", f"{number(balls.mass * 1e3)} g", "rotor.balls.mass"),
         mark.entry("Radius of the track", mm(balls.track_radius), "rotor.balls.track_radius"),
         mark.entry("Damping along it", f"{number(balls.damping)} N s/m", "rotor.balls.damping"),
     ]
-    if balls.kind == "pendulum":
+    if balls.pendulum_inertia is not None:
         found.append(mark.entry("Inertia of each", f"{number(balls.pendulum_inertia)} kg m²", kind))
     return found
 
@@ -291,7 +294,7 @@ class Inputs:
         return any(cell.assumed for cell in self.cells)
 
 
-def scene_inputs(scene: Scene, aim: Aim | None = None, unused: tuple[str, ...] = ()) -> Inputs:
+def scene_inputs(scene: Scene, aim: Optimisation | None = None, unused: tuple[str, ...] = ()) -> Inputs:
     """Everything that a scene says.
 
     Parameters
@@ -307,11 +310,11 @@ def scene_inputs(scene: Scene, aim: Aim | None = None, unused: tuple[str, ...] =
     entries += [] if scene.runup is None else _runup(mark, scene.runup)
     wanted = scene.optimise if aim is None else aim
     entries += [] if wanted is None else _optimise(wanted, scene)
-    tables += [_chambers(mark, scene)] if scene.chambers else []
-    baffles = [(k, fill.chamber.baffles) for k, fill in enumerate(scene.chambers)]
+    tables += [_chambers(mark, scene)] if scene.fills else []
+    baffles = [(k, fill.chamber.baffles) for k, fill in enumerate(scene.fills)]
     rows = [_baffle(mark, one, k) for k, one in baffles if one is not None]
     tables += [Table("", BAFFLES, tuple(rows))] if rows else []
-    shapes = [(k, fill.chamber.section) for k, fill in enumerate(scene.chambers)]
+    shapes = [(k, fill.chamber.section) for k, fill in enumerate(scene.fills)]
     rows = [_section(mark, one, k) for k, one in shapes if one is not None]
     tables += [Table("", SECTIONS, tuple(rows))] if rows else []
     aside = [one for one in entries if one.cells[0].path.partition(".")[0] in unused]
@@ -321,7 +324,7 @@ def scene_inputs(scene: Scene, aim: Aim | None = None, unused: tuple[str, ...] =
 def _rotor(mark: Marker, scene: Scene) -> tuple[list[Entry], list[Table]]:
     """Single values, and tables of parts."""
     rotor = scene.rotor
-    if isinstance(rotor, Rotor):
+    if isinstance(rotor, JeffcottRotor):
         return jeffcott_entries(mark, rotor), []
     if isinstance(rotor, Exciter):
         return exciter_entries(mark, rotor), []
@@ -335,7 +338,9 @@ def _rotor(mark: Marker, scene: Scene) -> tuple[list[Entry], list[Table]]:
 
 def _chambers(mark: Marker, scene: Scene) -> Table:
     """Sizes and fill; the plane along the axis where some chamber has one."""
-    planes = any(fill.chamber.plane != 0.0 for fill in scene.chambers) or not isinstance(scene.rotor, Rotor)
+    planes = any(fill.chamber.plane != 0.0 for fill in scene.fills) or not isinstance(
+        scene.rotor, JeffcottRotor
+    )
     head = [
         "Chamber",
         "radius (mm)",
@@ -345,7 +350,7 @@ def _chambers(mark: Marker, scene: Scene) -> Table:
         "volume (ml)",
         "liquid",
     ]
-    rows = [_chamber(mark, fill, k) for k, fill in enumerate(scene.chambers)]
+    rows = [_chamber(mark, fill, k) for k, fill in enumerate(scene.fills)]
     if not planes:
         del head[4]
         rows = [(*row[:4], *row[5:]) for row in rows]
@@ -447,7 +452,7 @@ def _runup(mark: Marker, plan: Runup) -> list[Entry]:
     ]
 
 
-def _optimise(aim: Aim, scene: Scene) -> list[Entry]:
+def _optimise(aim: Optimisation, scene: Scene) -> list[Entry]:
     """What an optimisation is after; a value that is not the scene's own is not marked."""
     own = aim_rows(scene.optimise) if scene.optimise is not None else []
     mark, bare = Marker(scene.assumed), Marker(())

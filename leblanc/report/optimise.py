@@ -76,7 +76,7 @@ def _value(label: str, value: float, baseline: float, unit: str) -> tuple[str, s
 def volumes(record: OptimumRecord) -> Table:
     """The answer chamber by chamber, with the closed forms at the deflection it has."""
     rows = []
-    for k, (fill, volume) in enumerate(zip(record.scene.chambers, record.volume.tolist(), strict=True)):
+    for k, (fill, volume) in enumerate(zip(record.scene.fills, record.volume.tolist(), strict=True)):
         row = [
             f"{k + 1}",
             number(volume * ML),

@@ -14,7 +14,7 @@ from leblanc.report.inputs import Inputs, scene_inputs
 from leblanc.report.parts import Table, table
 from leblanc.results.netcdf import replacing
 from leblanc.results.record import one_line
-from leblanc.scene.optimise import Aim
+from leblanc.scene.optimise import Optimisation
 from leblanc.scene.scene import Scene
 from leblanc.text.models import ModelSpan, described, error_words, speeds_words
 
@@ -49,7 +49,11 @@ class About:
 
 
 def about(
-    scene: Scene, command: str = "", data: str = "", aim: Aim | None = None, unused: tuple[str, ...] = ()
+    scene: Scene,
+    command: str = "",
+    data: str = "",
+    aim: Optimisation | None = None,
+    unused: tuple[str, ...] = (),
 ) -> About:
     """What a report of a scene is about.
 

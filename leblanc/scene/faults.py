@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import difflib
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 _LONGEST = 60  # characters of a value that are shown
@@ -83,6 +84,20 @@ def shown(value: object) -> str:
         text = str(value)
     text = one_line(text)
     return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
+
+
+def meant(given: object, words: Iterable[str]) -> str:
+    """What a misspelled word may have meant, to follow what is allowed; empty where nothing is near.
+
+    Parameters
+    ----------
+    given : what was written
+    words : what may be written
+    """
+    if not isinstance(given, str):
+        return ""
+    found = difflib.get_close_matches(given.lower()[:_LONGEST], list(words), n=1)
+    return f"; did you mean {found[0]}?" if found and found[0] != given else ""
 
 
 def one_line(text: str) -> str:

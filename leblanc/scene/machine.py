@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from leblanc.scene.scene import Rotor, Scene, TubRotor, TwoPlaneRotor
+from leblanc.scene.rotors import Exciter, JeffcottRotor
+from leblanc.scene.scene import Scene
 from meshes.errors import InputError
 
 if TYPE_CHECKING:
@@ -20,12 +21,9 @@ def jeffcott(scene: Scene) -> Jeffcott:
     ------
     InputError : the scene's rotor is of another kind
     """
-    from solvers.rotor.jeffcott import Jeffcott
-
-    rotor = scene.rotor
-    if not isinstance(rotor, Rotor):
-        raise InputError("rotor.kind", rotor.kind, "jeffcott for this")
-    return Jeffcott(rotor.mass, rotor.stiffness, rotor.damping, rotor.unbalance)
+    if not isinstance(scene.rotor, JeffcottRotor):
+        raise InputError("rotor.kind", scene.rotor.kind, "jeffcott for this")
+    return scene.rotor.machine()
 
 
 def require_clear(scene: Scene, what: str) -> None:
@@ -40,7 +38,7 @@ def require_clear(scene: Scene, what: str) -> None:
     ------
     InputError : a chamber with baffles or a section from a file
     """
-    for k, fill in enumerate(scene.chambers):
+    for k, fill in enumerate(scene.fills):
         if fill.chamber.section is not None:
             raise InputError(f"chambers.{k}.section", fill.chamber.section.name, f"left out for {what}")
         if fill.chamber.baffles is not None:
@@ -56,8 +54,6 @@ def dry_rotor(scene: Scene) -> Jeffcott | TwoPlane | Tub:
     ------
     InputError : the scene is that of an exciter, which has no linear equations of motion
     """
-    if isinstance(scene.rotor, TwoPlaneRotor | TubRotor):
-        return scene.rotor.machine
-    if not isinstance(scene.rotor, Rotor):
+    if isinstance(scene.rotor, Exciter):
         raise InputError("rotor.kind", scene.rotor.kind, "jeffcott, two_plane or tub for this")
-    return jeffcott(scene)
+    return scene.rotor.machine()

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import cache
 from typing import Annotated, Any, get_args, get_origin
 
-from leblanc.scene.faults import field_path
-from leblanc.scene.rotors import ALTERNATIVES
+from pydantic.fields import FieldInfo
+
+from leblanc.scene.faults import field_path, meant
+from leblanc.scene.part import Part, is_list_of_parts, parts_of, rule_of
 from leblanc.scene.rules import Entries, Refused, Several
-from leblanc.scene.tables import TABLES
 
 Keys = tuple[str | int, ...]
 
@@ -17,16 +19,36 @@ _ROOTS = ("gravity", "rotor", "chambers", "speeds", "model")
 _FIXED = (("rotor", "kind"), ("speeds", "count"))
 
 
+@cache
+def tables_of(root: type[Part], kind: str) -> dict[tuple[str, ...], type[Part]]:
+    """Each table of a file by its place; "*" stands for the number of an entry.
+
+    Parameters
+    ----------
+    root : the whole file
+    kind : of the rotor in it
+    """
+    found: dict[tuple[str, ...], type[Part]] = {(): root}
+    for name, field in root.model_fields.items():
+        parts = parts_of(field)
+        part = parts.get(kind) or parts.get("")
+        if part is not None:
+            place = (name, "*") if is_list_of_parts(field) else (name,)
+            found |= {(*place, *below): one for below, one in tables_of(part, kind).items()}
+    return found
+
+
 def keys_of(path: str) -> Keys:
     """Keys along a path such as "chambers.0.volume", numbers of entries as such."""
     return tuple(int(key) if key.isdecimal() and len(key) < 7 else key for key in path.split("."))
 
 
-def rule_at(table: Mapping[str, Any], path: str) -> Any:
+def rule_at(root: type[Part], table: Mapping[str, Any], path: str) -> Any:
     """Rule of one value of a scene.
 
     Parameters
     ----------
+    root : the whole file
     table : content of a scene file, free of faults
     path : of the value, as in "chambers.0.volume"
 
@@ -39,22 +61,45 @@ def rule_at(table: Mapping[str, Any], path: str) -> Any:
     Refused : there is no single value there that a study may vary; says what there is
     """
     keys = keys_of(path)
-    tables = TABLES[table["rotor"]["kind"]]
     pattern = tuple("*" if isinstance(key, int) else key for key in keys)
     if keys[0] not in _ROOTS or pattern in _FIXED:
         fixed = ", ".join(".".join(one) for one in _FIXED)
         raise Refused(f"the path of a field under {', '.join(_ROOTS)}, other than {fixed}")
+    field, depth = require_field(root, table, path)
+    rule = _rule_of(field, keys[depth + 1 :], field_path(keys[: depth + 1]))
+    if keys[depth + 1 :]:
+        _must_stand(table, keys, tables_of(root, table["rotor"]["kind"]))
+    return rule
+
+
+def require_field(root: type[Part], table: Mapping[str, Any], path: str) -> tuple[FieldInfo, int]:
+    """Field of a scene that a path leads to or into.
+
+    Parameters
+    ----------
+    root : the whole file
+    table : content of a scene file, free of faults
+    path : of the value, as in "chambers.0.volume"
+
+    Returns
+    -------
+    The field, and how many keys lead to its table.
+
+    Raises
+    ------
+    Refused : there is no such field, no table that it would stand in, or another one in its place
+    """
+    keys = keys_of(path)
+    tables = tables_of(root, table["rotor"]["kind"])
+    pattern = tuple("*" if isinstance(key, int) else key for key in keys)
     depth = max(n for n in range(len(keys)) if pattern[:n] in tables)
     fields = tables[pattern[:depth]].model_fields
     if pattern[depth] not in fields:
-        place = field_path(keys[:depth]) or "the scene"
-        raise Refused(f"the path of a field; {place} has: {', '.join(fields)}")
+        place, near = field_path(keys[:depth]) or "the scene", meant(pattern[depth], fields)
+        raise Refused(f"the path of a field; {place} has: {', '.join(fields)}{near}")
     _must_stand(table, keys[:-1], tables)
-    rule = _rule_of(fields[pattern[depth]], keys[depth + 1 :], field_path(keys[: depth + 1]))
-    if keys[depth + 1 :]:
-        _must_stand(table, keys, tables)
-    _must_be_alone(table, keys)
-    return rule
+    _must_be_alone(table, keys, tables[pattern[:depth]])
+    return fields[pattern[depth]], depth
 
 
 def _must_stand(table: Mapping[str, Any], keys: Keys, tables: Mapping[tuple[str, ...], Any]) -> None:
@@ -79,12 +124,11 @@ def _must_stand(table: Mapping[str, Any], keys: Keys, tables: Mapping[tuple[str,
 
 def _rule_of(field: Any, rest: Keys, place: str) -> Any:
     """Rule of a field, or of one entry of it."""
-    rules = [one.func for one in field.metadata if hasattr(one, "func")]
-    if not rules or len(rest) > 1:
+    rule = rule_of(field)
+    if rule is None or len(rest) > 1:
         raise Refused(
             f"the path of a single value; {place} is not one" if not rest else "the path of a field"
         )
-    (rule,) = rules[:1]
     if not rest:
         if isinstance(rule, Entries):
             raise Refused(f"the path of one value, such as {place}.0")
@@ -108,16 +152,18 @@ def _entry_rule(annotation: Any) -> Any:
     return next((one.func for one in get_args(entry)[1:] if hasattr(one, "func")), None)
 
 
-def _must_be_alone(table: Mapping[str, Any], keys: Keys) -> None:
+def _must_be_alone(table: Mapping[str, Any], keys: Keys, part: type[Part]) -> None:
     """The scene does not give what the value would be an alternative to."""
-    for place, pair in ALTERNATIVES.get(table["rotor"]["kind"], ()):
-        if keys[:-1] == place and keys[-1] in pair:
-            (other,) = set(pair) - {keys[-1]}
-            found: Any = table
-            for key in place:
-                found = found[key]
-            if other in found:
-                raise Refused(f"left out: the scene gives {'.'.join((*place, other))} in its place")
+    for pair in part.ALTERNATIVES:
+        if keys[-1] not in pair:
+            continue
+        (other,) = set(pair) - {keys[-1]}
+        found: Any = table
+        for key in keys[:-1]:
+            found = found[key]
+        if other in found:
+            path = field_path((*keys[:-1], other))
+            raise Refused(f"left out: the scene gives {path} in its place")
 
 
 def with_values(table: Mapping[str, Any], changes: Iterable[tuple[Keys, Any]]) -> dict[str, Any]:

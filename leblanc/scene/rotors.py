@@ -1,14 +1,16 @@
-"""The tables of a scene's rotor, one kind each: their keys and how the values of a table bind."""
+"""The rotor of a scene, a class for each kind; `machine()` is the solvers' rotor without liquid."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Literal
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, ValidationInfo, field_validator
+from pydantic import Field, PlainValidator
 
 from leblanc import units
+from leblanc.scene.part import Conflict, Part
 from leblanc.scene.rules import (
     DAMPING,
     POSITION,
@@ -16,369 +18,309 @@ from leblanc.scene.rules import (
     STIFFNESS,
     Axis,
     Damping,
-    Entries,
     Inertia,
     Length,
     Mass,
-    OneOf,
     Place,
     Position,
     Quantity,
-    Refused,
     Several,
     Stiffness,
-    Table,
     Unbalance,
-    Whole,
+    entries,
+    one_of,
+    quantity,
+    whole,
 )
 
 if TYPE_CHECKING:
+    from solvers.rotor.exciter.machine import Exciter as ExciterMachine
+    from solvers.rotor.jeffcott import Jeffcott
     from solvers.rotor.tub import Mount, Tub
     from solvers.rotor.two_plane import TwoPlane
 
-KINDS = ("jeffcott", "two_plane", "tub", "exciter")
 MAX_PARTS = 1000  # supports, springs, dampers, unbalances
 
-_KIND = BeforeValidator(OneOf(KINDS))
-_Number = Annotated[float, BeforeValidator(Quantity(units.NUMBER, -1e6, 1e6))]
+_Number = Annotated[float, quantity(units.NUMBER, -1e6, 1e6)]
 _Three = tuple[float, float, float]
 
-
-class JeffcottTable(Table):
-    """[rotor] with kind = "jeffcott"."""
-
-    kind: Annotated[Literal["jeffcott"], _KIND]
-    mass: Mass
-    critical_speed: Annotated[float | None, SPEED] = None
-    stiffness: Annotated[float | None, STIFFNESS] = None
-    damping_ratio: Annotated[float | None, BeforeValidator(Quantity(units.NUMBER, 0.0, 1e3))] = None
-    damping: Annotated[float | None, DAMPING] = None
-    unbalance: Unbalance
-    axis: Axis
+_AXIS = "horizontal: gravity lies across the axis; vertical: along it"
+_WITHOUT = "of the rotor without the liquid"
 
 
-class SupportTable(Table):
-    """[[rotor.supports]]."""
+class JeffcottRotor(Part):
+    """A rotor on an isotropic support, moving in one plane."""
 
-    position: Position
-    stiffness: Annotated[float, BeforeValidator(Quantity(units.STIFFNESS, 0.0, 1e15))]
-    damping: Damping
+    ALTERNATIVES: ClassVar = (("critical_speed", "stiffness"), ("damping_ratio", "damping"))
+
+    kind: Literal["jeffcott"] = Field("jeffcott", description="the kind of rotor")
+    mass: Mass = Field(description=f"{_WITHOUT}, M")
+    critical_speed: Annotated[float | None, SPEED] = Field(
+        None, description=f"{_WITHOUT} and damping; or stiffness"
+    )
+    stiffness: Annotated[float | None, STIFFNESS] = Field(
+        None, description="of the support, K; or critical_speed"
+    )
+    damping_ratio: Annotated[float | None, quantity(units.NUMBER, 0.0, 1e3)] = Field(
+        None, description=f"of the support over the critical damping {_WITHOUT}; or damping"
+    )
+    damping: Annotated[float | None, DAMPING] = Field(
+        None, description="of the support, external, C; or damping_ratio"
+    )
+    unbalance: Unbalance = Field(description="mass times its distance from the axis, m e")
+    axis: Axis = Field(description=_AXIS)
+
+    @cached_property
+    def _machine(self) -> Jeffcott:
+        from solvers.rotor.jeffcott import Jeffcott
+
+        stiffness, damping = self.stiffness, self.damping
+        if self.critical_speed is not None:
+            stiffness = self.mass * self.critical_speed**2
+        assert stiffness is not None
+        if self.damping_ratio is not None:
+            damping = 2.0 * self.damping_ratio * math.sqrt(stiffness * self.mass)
+        assert damping is not None
+        return Jeffcott(self.mass, stiffness, damping, self.unbalance)
+
+    def machine(self) -> Jeffcott:
+        """The rotor without liquid: K = M omega^2 and C = 2 zeta sqrt(K M) where omega and zeta are given."""
+        return self._machine
 
 
-class PlaneUnbalanceTable(Table):
-    """[[rotor.unbalances]]."""
+class Support(Part):
+    """An isotropic support of the rotor's axis."""
 
-    position: Position
-    size: Unbalance
-    angle: Annotated[float, BeforeValidator(Quantity(units.ANGLE, -1e3, 1e3))] = 0.0
+    position: Position = Field(description="along the axis from the rotor's centre of mass")
+    stiffness: Annotated[float, quantity(units.STIFFNESS, 0.0, 1e15)] = Field(
+        description="the same in all directions across the axis"
+    )
+    damping: Damping = Field(description="likewise")
 
 
-class TwoPlaneTable(Table):
-    """[rotor] with kind = "two_plane"."""
+class PlaneUnbalance(Part):
+    """An unbalance in one plane across the axis."""
 
-    kind: Annotated[Literal["two_plane"], _KIND]
-    mass: Mass
-    transverse_inertia: Inertia
-    polar_inertia: Annotated[float, BeforeValidator(Quantity(units.INERTIA, 0.0, 1e12))]
-    supports: Annotated[
-        tuple[SupportTable, ...], BeforeValidator(Entries(1, MAX_PARTS, "tables headed [[rotor.supports]]"))
-    ]
+    position: Position = Field(description="of the plane, along the axis from the rotor's centre of mass")
+    size: Unbalance = Field(description="mass times its distance from the axis")
+    angle: Annotated[float, quantity(units.ANGLE, -1e3, 1e3)] = Field(
+        0.0, description="fixed in the rotor, positive with the spin"
+    )
+
+
+class TwoPlaneRotor(Part):
+    """A rigid rotor in supports along its axis."""
+
+    kind: Literal["two_plane"] = Field("two_plane", description="the kind of rotor")
+    mass: Mass = Field(description=f"{_WITHOUT}")
+    transverse_inertia: Inertia = Field(
+        description="about an axis through the centre of mass across the rotor's, without the liquid"
+    )
+    polar_inertia: Annotated[float, quantity(units.INERTIA, 0.0, 1e12)] = Field(
+        description="about the rotor's axis, without the liquid; at most twice the transverse one"
+    )
+    supports: Annotated[tuple[Support, ...], entries(1, MAX_PARTS, "tables headed [[rotor.supports]]")] = (
+        Field(description="of the axis, one table each")
+    )
     unbalances: Annotated[
-        tuple[PlaneUnbalanceTable, ...],
-        BeforeValidator(Entries(0, MAX_PARTS, "tables headed [[rotor.unbalances]]")),
-    ] = ()
-    axis: Axis
+        tuple[PlaneUnbalance, ...], entries(0, MAX_PARTS, "tables headed [[rotor.unbalances]]")
+    ] = Field((), description="one table each")
+    axis: Axis = Field(description=_AXIS)
 
-    @field_validator("polar_inertia")
     @classmethod
-    def _of_a_body(cls, value: float, info: ValidationInfo) -> float:
-        transverse = info.data.get("transverse_inertia")
-        if transverse is not None and value > 2.0 * transverse * (1.0 + 1e-9):
-            raise Refused(f"at most twice rotor.transverse_inertia, {2.0 * transverse:g} kg*m^2")
-        return value
+    def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """No body has more inertia about an axis than about the two across it together."""
+        if {"transverse_inertia", "polar_inertia"} <= values.keys():
+            most = 2.0 * values["transverse_inertia"]
+            if values["polar_inertia"] > most * (1.0 + 1e-9):
+                text = f"at most twice rotor.transverse_inertia, {most:g} kg*m^2"
+                yield Conflict(("polar_inertia",), text)
 
+    @cached_property
+    def _machine(self) -> TwoPlane:
+        from solvers.rotor import two_plane
 
-_DIRECTION = BeforeValidator(Entries(3, 3, "pure numbers, along x, y, z"))
-
-
-class _MountTable(Table):
-    position: Place
-    direction: Annotated[tuple[_Number, _Number, _Number] | None, _DIRECTION] = None
-
-    @field_validator("direction")
-    @classmethod
-    def _of_some_length(cls, value: _Three | None) -> _Three | None:
-        if value is not None and not any(value):
-            raise Refused("three pure numbers that are not all 0")
-        return value
-
-
-def _one_way(value: float | _Three, info: ValidationInfo) -> float | _Three:
-    """A coefficient along a direction that is given, or three of them along the axes."""
-    if "direction" in info.data and isinstance(value, tuple) == (info.data["direction"] is not None):
-        raise Refused(
-            "a list of three, along x, y, z, where no direction is given"
-            if info.data["direction"] is None
-            else "a single value, along the direction that is given"
+        return two_plane.TwoPlane(
+            mass=self.mass,
+            transverse_inertia=self.transverse_inertia,
+            polar_inertia=self.polar_inertia,
+            supports=tuple(
+                two_plane.Support(one.position, one.stiffness, one.damping) for one in self.supports
+            ),
+            unbalances=tuple(
+                two_plane.PlaneUnbalance(one.position, one.size, one.angle) for one in self.unbalances
+            ),
         )
-    return value
+
+    def machine(self) -> TwoPlane:
+        """The rotor without liquid."""
+        return self._machine
 
 
-class SpringTable(_MountTable):
-    """[[rotor.springs]]."""
-
-    stiffness: Annotated[float | _Three, BeforeValidator(Several(Quantity(units.STIFFNESS, 0.0, 1e15)))]
-    _bound = field_validator("stiffness")(_one_way)
+_DIRECTION = entries(3, 3, "pure numbers, along x, y, z")
 
 
-class DamperTable(_MountTable):
-    """[[rotor.dampers]]."""
+class _Mounted(Part):
+    """What holds a tub at one point: along a direction, or along the axes."""
 
-    damping: Annotated[float | _Three, BeforeValidator(Several(Quantity(units.DAMPING, 0.0, 1e15)))]
-    _bound = field_validator("damping")(_one_way)
+    COEFFICIENT: ClassVar[str]
+
+    position: Place = Field(description="where it holds the tub, x, y, z from the tub's centre of mass")
+    direction: Annotated[tuple[_Number, _Number, _Number] | None, _DIRECTION] = Field(
+        None, description="along which it acts, of any length; left out where it acts along x, y and z"
+    )
+
+    @classmethod
+    def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """A coefficient along a direction that is given, or three of them along the axes."""
+        key, along = cls.COEFFICIENT, values.get("direction")
+        if along is not None and not any(along):
+            yield Conflict(("direction",), "three pure numbers that are not all 0")
+        if not {"direction", key} <= values.keys():
+            return
+        if isinstance(values[key], tuple) == (along is not None):
+            several, one = (
+                "a list of three, along x, y, z, where no direction is given",
+                "a single value, along the direction that is given",
+            )
+            yield Conflict((key,), several if along is None else one)
+
+    def mount(self) -> Mount:
+        """As the solvers take it."""
+        from solvers.rotor.tub import Mount
+
+        value = getattr(self, self.COEFFICIENT)
+        if isinstance(value, tuple):
+            return Mount(self.position, along_axes=value)
+        assert self.direction is not None
+        return Mount(self.position, coefficient=value, direction=self.direction)
 
 
-class TubTable(Table):
-    """[rotor] with kind = "tub"."""
+class Spring(_Mounted):
+    """A spring between the tub and the ground."""
 
-    kind: Annotated[Literal["tub"], _KIND]
-    tub_mass: Mass
-    drum_mass: Mass
+    COEFFICIENT: ClassVar = "stiffness"
+
+    stiffness: Annotated[float | _Three, PlainValidator(Several(Quantity(units.STIFFNESS, 0.0, 1e15)))] = (
+        Field(description="along its direction, or three along x, y, z")
+    )
+
+
+class Damper(_Mounted):
+    """A damper between the tub and the ground."""
+
+    COEFFICIENT: ClassVar = "damping"
+
+    damping: Annotated[float | _Three, PlainValidator(Several(Quantity(units.DAMPING, 0.0, 1e15)))] = Field(
+        description="along its direction, or three along x, y, z"
+    )
+
+
+class TubRotor(Part):
+    """A suspended tub with its drum, which spins about y."""
+
+    kind: Literal["tub"] = Field("tub", description="the kind of rotor")
+    tub_mass: Mass = Field(description="of the tub and all that does not spin")
+    drum_mass: Mass = Field(description="of the drum without the liquid")
     tub_inertia: Annotated[
-        tuple[Inertia, Inertia, Inertia],
-        BeforeValidator(Entries(3, 3, "moments of inertia, about x, y, z")),
-    ]
-    drum_polar_inertia: Inertia
-    drum_transverse_inertia: Inertia
-    drum_position: Place = (0.0, 0.0, 0.0)
-    unbalance: Unbalance
-    unbalance_position: Annotated[float | None, POSITION] = None
-    springs: Annotated[
-        tuple[SpringTable, ...], BeforeValidator(Entries(1, MAX_PARTS, "tables headed [[rotor.springs]]"))
-    ]
-    dampers: Annotated[
-        tuple[DamperTable, ...], BeforeValidator(Entries(0, MAX_PARTS, "tables headed [[rotor.dampers]]"))
-    ] = ()
-    axis: Axis = "horizontal"
+        tuple[Inertia, Inertia, Inertia], entries(3, 3, "moments of inertia, about x, y, z")
+    ] = Field(description="of the tub about x, y, z through its centre of mass")
+    drum_polar_inertia: Inertia = Field(description="of the drum about its axis")
+    drum_transverse_inertia: Inertia = Field(description="of the drum across its axis, about its own centre")
+    drum_position: Place = Field((0.0, 0.0, 0.0), description="of the drum's centre, x, y, z")
+    unbalance: Unbalance = Field(description="of the laundry, mass times its distance from the axis")
+    unbalance_position: Annotated[float | None, POSITION] = Field(
+        None, description="y of the unbalance; that of the drum's centre if left out"
+    )
+    springs: Annotated[tuple[Spring, ...], entries(1, MAX_PARTS, "tables headed [[rotor.springs]]")] = Field(
+        description="between the tub and the ground, one table each"
+    )
+    dampers: Annotated[tuple[Damper, ...], entries(0, MAX_PARTS, "tables headed [[rotor.dampers]]")] = Field(
+        (), description="between the tub and the ground, one table each"
+    )
+    axis: Axis = Field("horizontal", description=_AXIS)
+
+    @cached_property
+    def _machine(self) -> Tub:
+        from solvers.rotor.tub import Tub
+
+        return Tub(
+            tub_mass=self.tub_mass,
+            drum_mass=self.drum_mass,
+            tub_inertia=self.tub_inertia,
+            drum_polar_inertia=self.drum_polar_inertia,
+            drum_transverse_inertia=self.drum_transverse_inertia,
+            drum_position=self.drum_position,
+            unbalance=self.unbalance,
+            unbalance_position=self.unbalance_position,
+            springs=tuple(one.mount() for one in self.springs),
+            dampers=tuple(one.mount() for one in self.dampers),
+        )
+
+    def machine(self) -> Tub:
+        """Tub and drum without liquid."""
+        return self._machine
 
 
-class BallsTable(Table):
-    """balls = { ... } of an exciter."""
+class Balls(Part):
+    """The balls, rollers or pendulums of an exciter."""
 
-    count: Annotated[int, BeforeValidator(Whole(1, 1000))]
-    mass: Mass
-    kind: Annotated[Literal["ball", "roller"] | None, BeforeValidator(OneOf(("ball", "roller")))] = None
-    pendulum_inertia: Annotated[float | None, BeforeValidator(Quantity(units.INERTIA, 0.0, 1e12))] = None
-    track_radius: Length
-    damping: Damping
+    ALTERNATIVES: ClassVar = (("kind", "pendulum_inertia"),)
 
+    count: Annotated[int, whole(1, 1000)] = Field(description="how many there are")
+    mass: Mass = Field(description="of each")
+    kind: Annotated[Literal["ball", "roller"] | None, one_of("ball", "roller")] = Field(
+        None, description="what rolls in the track; or pendulum_inertia"
+    )
+    pendulum_inertia: Annotated[float | None, quantity(units.INERTIA, 0.0, 1e12)] = Field(
+        None, description="of each pendulum about its own centre of mass; or kind"
+    )
+    track_radius: Length = Field(description="of the circle of their centres")
+    damping: Damping = Field(description="of the motion along the track")
 
-class ExciterTable(Table):
-    """[rotor] with kind = "exciter"."""
-
-    kind: Annotated[Literal["exciter"], _KIND]
-    platform_mass: Mass
-    stiffness: Stiffness
-    damping: Damping
-    unbalance: Unbalance
-    balls: BallsTable
-
-
-ROTORS: dict[str, dict[tuple[str, ...], type[Table]]] = {
-    "jeffcott": {("rotor",): JeffcottTable},
-    "two_plane": {
-        ("rotor",): TwoPlaneTable,
-        ("rotor", "supports", "*"): SupportTable,
-        ("rotor", "unbalances", "*"): PlaneUnbalanceTable,
-    },
-    "tub": {
-        ("rotor",): TubTable,
-        ("rotor", "springs", "*"): SpringTable,
-        ("rotor", "dampers", "*"): DamperTable,
-    },
-    "exciter": {("rotor",): ExciterTable, ("rotor", "balls"): BallsTable},
-}
-
-# Where exactly one key of each pair must stand: the place of the table, the pairs.
-ALTERNATIVES: dict[str, tuple[tuple[tuple[str, ...], tuple[str, str]], ...]] = {
-    "jeffcott": (
-        (("rotor",), ("critical_speed", "stiffness")),
-        (("rotor",), ("damping_ratio", "damping")),
-    ),
-    "exciter": ((("rotor", "balls"), ("kind", "pendulum_inertia")),),
-}
+    @property
+    def name(self) -> Literal["ball", "roller", "pendulum"]:
+        """What one of them is."""
+        return self.kind or "pendulum"
 
 
-@dataclass(frozen=True)
-class Rotor:
-    """A rotor on an isotropic support, moving in one plane.
+class Exciter(Part):
+    """A platform that vibrates along one line, shaken by an unbalance and by balls in a rotating track."""
 
-    Parameters
-    ----------
-    kind : "jeffcott"
-    mass : M without the liquid, kg
-    stiffness : K, N/m
-    damping : C of the support, external, N s/m
-    unbalance : U0 = m e, kg m
-    axis : "horizontal" if gravity lies across the axis, "vertical" if along it
-    """
-
-    kind: Literal["jeffcott"]
-    mass: float
-    stiffness: float
-    damping: float
-    unbalance: float
-    axis: Axis
-
-
-@dataclass(frozen=True)
-class TwoPlaneRotor:
-    """A rigid rotor in supports along its axis.
-
-    Parameters
-    ----------
-    kind : "two_plane"
-    machine : the rotor without liquid
-    axis : as in `Rotor`
-    """
-
-    kind: Literal["two_plane"]
-    machine: TwoPlane
-    axis: Axis
-
-
-@dataclass(frozen=True)
-class TubRotor:
-    """A suspended tub with its drum.
-
-    Parameters
-    ----------
-    kind : "tub"
-    machine : tub and drum without liquid
-    axis : of the drum, as in `Rotor`
-    """
-
-    kind: Literal["tub"]
-    machine: Tub
-    axis: Axis
-
-
-@dataclass(frozen=True)
-class ExciterBalls:
-    """The balls, rollers or pendulums of an exciter.
-
-    Parameters
-    ----------
-    count : how many
-    mass : of each, kg
-    kind : "ball", "roller" or "pendulum"
-    pendulum_inertia : of each pendulum about its own centre of mass, kg m^2; 0 for the others
-    track_radius : of the circle of their centres, m
-    damping : of the motion along the track, N s/m
-    """
-
-    count: int
-    mass: float
-    kind: Literal["ball", "roller", "pendulum"]
-    pendulum_inertia: float
-    track_radius: float
-    damping: float
-
-
-@dataclass(frozen=True)
-class Exciter:
-    """A platform that vibrates along one line, shaken by an unbalance and by balls in a rotating track.
-
-    Parameters
-    ----------
-    kind : "exciter"
-    platform_mass : of all that vibrates without the balls, kg
-    stiffness : N/m
-    damping : N s/m
-    unbalance : of the shaft, kg m
-    balls : in the track on the shaft
-    """
-
-    kind: Literal["exciter"]
-    platform_mass: float
-    stiffness: float
-    damping: float
-    unbalance: float
-    balls: ExciterBalls
+    kind: Literal["exciter"] = Field("exciter", description="the kind of rotor")
+    platform_mass: Mass = Field(description="of all that vibrates without the balls")
+    stiffness: Stiffness = Field(description="of the platform's springs")
+    damping: Damping = Field(description="of the platform")
+    unbalance: Unbalance = Field(description="of the shaft, mass times its distance from the axis")
+    balls: Balls = Field(description="in the track on the shaft")
 
     @property
     def axis(self) -> Axis:
         """Its shaft lies across the vibration."""
         return "horizontal"
 
+    @cached_property
+    def _machine(self) -> ExciterMachine:
+        from solvers.rotor.exciter.machine import Exciter as Machine
+        from solvers.rotor.exciter.machine import rolling_inertia
 
-AnyRotor = Rotor | TwoPlaneRotor | TubRotor | Exciter
+        balls = self.balls
+        inertia = balls.pendulum_inertia or 0.0
+        return Machine(
+            platform_mass=self.platform_mass,
+            stiffness=self.stiffness,
+            damping=self.damping,
+            unbalance=self.unbalance,
+            ball_count=balls.count,
+            ball_mass=balls.mass,
+            rolling=rolling_inertia(balls.name, balls.mass, balls.track_radius, inertia),
+            track_radius=balls.track_radius,
+            ball_damping=balls.damping,
+        )
 
-
-def rotor_from_table(table: Table) -> AnyRotor:
-    """Rotor from the checked values of its table."""
-    if isinstance(table, TwoPlaneTable):
-        return _two_plane(table)
-    if isinstance(table, TubTable):
-        return _tub(table)
-    if isinstance(table, ExciterTable):
-        return _exciter(table)
-    assert isinstance(table, JeffcottTable)
-    return _jeffcott(table)
-
-
-def _jeffcott(table: JeffcottTable) -> Rotor:
-    """Stiffness and damping from a critical speed and a damping ratio, both of the rotor without liquid.
-
-    K = M omega^2 and C = 2 zeta sqrt(K M).
-    """
-    stiffness, damping = table.stiffness, table.damping
-    if table.critical_speed is not None:
-        stiffness = table.mass * table.critical_speed**2
-    assert stiffness is not None
-    if table.damping_ratio is not None:
-        damping = 2.0 * table.damping_ratio * math.sqrt(stiffness * table.mass)
-    assert damping is not None
-    return Rotor(table.kind, table.mass, stiffness, damping, table.unbalance, table.axis)
+    def machine(self) -> ExciterMachine:
+        """Platform, shaft and balls."""
+        return self._machine
 
 
-def _two_plane(table: TwoPlaneTable) -> TwoPlaneRotor:
-    from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
-
-    machine = TwoPlane(
-        mass=table.mass,
-        transverse_inertia=table.transverse_inertia,
-        polar_inertia=table.polar_inertia,
-        supports=tuple(Support(**one.model_dump()) for one in table.supports),
-        unbalances=tuple(PlaneUnbalance(**one.model_dump()) for one in table.unbalances),
-    )
-    return TwoPlaneRotor(table.kind, machine, table.axis)
-
-
-def _tub(table: TubTable) -> TubRotor:
-    from solvers.rotor.tub import Tub
-
-    values = table.model_dump(exclude={"kind", "axis", "springs", "dampers"})
-    machine = Tub(
-        **values, springs=tuple(map(_mount, table.springs)), dampers=tuple(map(_mount, table.dampers))
-    )
-    return TubRotor(table.kind, machine, table.axis)
-
-
-def _mount(table: SpringTable | DamperTable) -> Mount:
-    """Along its direction if it has one, else along the axes."""
-    from solvers.rotor.tub import Mount
-
-    value = table.stiffness if isinstance(table, SpringTable) else table.damping
-    if isinstance(value, tuple):
-        return Mount(table.position, along_axes=value)
-    assert table.direction is not None
-    return Mount(table.position, coefficient=value, direction=table.direction)
-
-
-def _exciter(table: ExciterTable) -> Exciter:
-    values = table.model_dump(exclude={"balls"})
-    balls = table.balls.model_dump(exclude={"kind", "pendulum_inertia"})
-    inertia = table.balls.pendulum_inertia
-    kind = table.balls.kind or "pendulum"
-    return Exciter(**values, balls=ExciterBalls(**balls, kind=kind, pendulum_inertia=inertia or 0.0))
+AnyRotor = JeffcottRotor | TwoPlaneRotor | TubRotor | Exciter

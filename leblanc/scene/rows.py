@@ -28,7 +28,7 @@ def input_rows(scene: Scene) -> tuple[Row, ...]:
     else:
         rows = _tub(machine) if isinstance(machine, Tub) else _jeffcott(machine)
     rows.append(("Axis", scene.rotor.axis, "rotor.axis"))
-    for k, fill in enumerate(scene.chambers):
+    for k, fill in enumerate(scene.fills):
         label, chamber = f"Chamber {k + 1}", fill.chamber
         inner = f", inner radius {chamber.inner_radius * MM:.4g} mm" if chamber.inner_radius > 0.0 else ""
         wall = (f"{label}: radius", f"{chamber.radius * MM:.4g} mm{inner}", f"chambers.{k}.radius")

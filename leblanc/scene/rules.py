@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict
+from pydantic import BeforeValidator, PlainValidator
 
 from leblanc import units
+from leblanc.scene.faults import meant
 from leblanc.units import Dimension, parse
 
 
@@ -70,7 +71,7 @@ class Several:
 
     def __call__(self, value: object) -> float | tuple[float, ...]:
         """Value or values in SI units."""
-        if not isinstance(value, list):
+        if not isinstance(value, list | tuple):
             return self.each(value)
         if len(value) != 3:
             raise Refused(self.allowed)
@@ -111,7 +112,7 @@ class OneOf:
         """The word."""
         if isinstance(value, str) and value in self.words:
             return value
-        raise Refused(self.allowed)
+        raise Refused(self.allowed + meant(value, self.words))
 
 
 @dataclass(frozen=True)
@@ -164,35 +165,89 @@ class Entries:
         size = f"{self.low}" if self.low == self.high else f"{self.low} to {self.high}"
         return f"a list of {size} {self.what}"
 
-    def __call__(self, value: object) -> list[object]:
+    def __call__(self, value: object) -> list[object] | tuple[object, ...]:
         """The list."""
-        if isinstance(value, list) and self.low <= len(value) <= self.high:
+        if isinstance(value, list | tuple) and self.low <= len(value) <= self.high:
             return value
         raise Refused(self.allowed)
 
 
-class Table(BaseModel):
-    """A table whose keys are all known and whose values do not change."""
+@dataclass(frozen=True)
+class Span:
+    """Two values of one quantity, the lower first."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    each: Quantity
+
+    @property
+    def allowed(self) -> str:
+        """The rule in words."""
+        return f"a list of two, the second at least the first, each {self.each.allowed}"
+
+    def __call__(self, value: object) -> tuple[float, float]:
+        """Both in SI units."""
+        if not isinstance(value, list | tuple) or len(value) != 2:
+            raise Refused(self.allowed)
+        low, high = map(self.each, value)
+        if high < low:
+            raise Refused(self.allowed)
+        return low, high
 
 
-# Rules of values that some tables may leave out.
-LENGTH = BeforeValidator(Quantity(units.LENGTH, 1e-6, 1e3))
-POSITION = BeforeValidator(Quantity(units.LENGTH, -1e3, 1e3))
-SPEED = BeforeValidator(Quantity(units.ANGULAR_SPEED, 1e-6, 1e6))
-DAMPING = BeforeValidator(Quantity(units.DAMPING, 0.0, 1e15))
-STIFFNESS = BeforeValidator(Quantity(units.STIFFNESS, 1e-9, 1e15))
+def quantity(dimension: Dimension, low: float, high: float) -> PlainValidator:
+    """Rule of a number with a unit, for an annotation.
+
+    Parameters
+    ----------
+    dimension, low, high : as in `Quantity`
+    """
+    return PlainValidator(Quantity(dimension, low, high))
+
+
+def entries(low: int, high: int, what: str) -> BeforeValidator:
+    """Rule of a list whose entries have rules of their own, for an annotation.
+
+    Parameters
+    ----------
+    low, high, what : as in `Entries`
+    """
+    return BeforeValidator(Entries(low, high, what))
+
+
+def whole(low: int, high: int) -> PlainValidator:
+    """Rule of a whole number, for an annotation.
+
+    Parameters
+    ----------
+    low, high : bounds, both allowed
+    """
+    return PlainValidator(Whole(low, high))
+
+
+def one_of(*words: str) -> PlainValidator:
+    """Rule of one of a few words, for an annotation.
+
+    Parameters
+    ----------
+    words : that may be written
+    """
+    return PlainValidator(OneOf(words))
+
+
+# Rules that several tables share; the plain names are those of optional values.
+LENGTH = quantity(units.LENGTH, 1e-6, 1e3)
+POSITION = quantity(units.LENGTH, -1e3, 1e3)
+SPEED = quantity(units.ANGULAR_SPEED, 1e-6, 1e6)
+DAMPING = quantity(units.DAMPING, 0.0, 1e15)
+STIFFNESS = quantity(units.STIFFNESS, 1e-9, 1e15)
 
 Length = Annotated[float, LENGTH]
 Position = Annotated[float, POSITION]
-Place = Annotated[
-    tuple[Position, Position, Position], BeforeValidator(Entries(3, 3, "lengths, along x, y, z"))
-]
+Place = Annotated[tuple[Position, Position, Position], entries(3, 3, "lengths, along x, y, z")]
 Speed = Annotated[float, SPEED]
-Mass = Annotated[float, BeforeValidator(Quantity(units.MASS, 1e-9, 1e9))]
-Inertia = Annotated[float, BeforeValidator(Quantity(units.INERTIA, 1e-12, 1e12))]
-Unbalance = Annotated[float, BeforeValidator(Quantity(units.UNBALANCE, 0.0, 1e9))]
+Mass = Annotated[float, quantity(units.MASS, 1e-9, 1e9)]
+Inertia = Annotated[float, quantity(units.INERTIA, 1e-12, 1e12)]
+Unbalance = Annotated[float, quantity(units.UNBALANCE, 0.0, 1e9)]
 Damping = Annotated[float, DAMPING]
 Stiffness = Annotated[float, STIFFNESS]
-Axis = Annotated[Literal["horizontal", "vertical"], BeforeValidator(OneOf(("horizontal", "vertical")))]
+Truth = Annotated[bool, PlainValidator(Flag())]
+Axis = Annotated[Literal["horizontal", "vertical"], one_of("horizontal", "vertical")]

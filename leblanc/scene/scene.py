@@ -2,133 +2,184 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict
+from functools import cached_property
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import Field, PlainValidator, ValidationError
 
 from fluid.fill import Fill
-from fluid.friction import Friction
-from leblanc.scene.load import check_table, read_scene
-from leblanc.scene.optimise import Aim, aim_of
-from leblanc.scene.rotors import AnyRotor, rotor_from_table
+from fluid.friction import Friction, FrictionLaw
+from leblanc import units
+from leblanc.scene.chambers import Chamber
+from leblanc.scene.digest import chamber_content, fingerprint, optimise_content, rotor_content
+from leblanc.scene.faults import SceneFault, SceneFaults, meant, shown
+from leblanc.scene.load import read_scene
+from leblanc.scene.optimise import Optimisation
+from leblanc.scene.part import Conflict, Part, faults_of
+from leblanc.scene.paths import keys_of, require_field, with_values
+from leblanc.scene.rotors import AnyRotor
 from leblanc.scene.rotors import Exciter as Exciter  # what a scene's rotor may be
-from leblanc.scene.rotors import Rotor as Rotor
+from leblanc.scene.rotors import JeffcottRotor as JeffcottRotor
 from leblanc.scene.rotors import TubRotor as TubRotor
 from leblanc.scene.rotors import TwoPlaneRotor as TwoPlaneRotor
-from leblanc.scene.runup import RunupTable
-from leblanc.scene.tables import SceneTable
+from leblanc.scene.rules import Entries, Refused, Speed, Text, entries, one_of, quantity, whole
+from leblanc.scene.runup import Runup as Runup
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-_DIGITS = 10  # of each number in the digest; spellings of one value differ in the sixteenth
+MAX_CHAMBERS = 1000
+MAX_SPEEDS = 100_000
+MAX_ASSUMED = 10_000
+
+_LIQUID_MODELS = ("auto", "statics", "linear", "long_wave", "kdv", "fem")
+_LAWS = ("none", "stokes")
+_SOME_CHAMBERS = Entries(1, MAX_CHAMBERS, "tables headed [[chambers]]")
+
+_Path = Annotated[str, PlainValidator(Text(200))]
 
 
-@dataclass(frozen=True)
-class Speeds:
-    """Evenly spaced spin speeds.
+class Speeds(Part):
+    """Evenly spaced spin speeds."""
 
-    Parameters
-    ----------
-    start, stop : first and last, rad/s
-    count : how many
+    start: Speed = Field(description="first spin speed")
+    stop: Speed = Field(description="last spin speed")
+    count: Annotated[int, whole(1, MAX_SPEEDS)] = Field(description="how many, evenly spaced")
+
+    @classmethod
+    def at(cls, speed: float) -> Speeds:
+        """A single speed, which is not checked.
+
+        Parameters
+        ----------
+        speed : rad/s
+        """
+        return cls.model_construct(start=speed, stop=speed, count=1)
+
+    @classmethod
+    def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """The last is not before the first, and one speed is one."""
+        if not {"start", "stop"} <= values.keys():
+            return
+        start, stop = values["start"], values["stop"]
+        if stop < start:
+            yield Conflict(("stop",), f"at least speeds.start, {start:g} rad/s")
+        elif values.get("count") == 1 and start != stop:
+            yield Conflict(("count",), "at least 2 where speeds.start and speeds.stop differ")
+
+
+class FrictionCoefficient(Part):
+    """A friction law with its coefficient; one of the two."""
+
+    linear: Annotated[float | None, quantity(units.RATE, 0.0, 1e6)] = Field(
+        None, description="force over mass and velocity"
+    )
+    quadratic: Annotated[float | None, quantity(units.NUMBER, 0.0, 1e3)] = Field(
+        None, description="c_f, wall stress over density and velocity squared"
+    )
+
+
+class FrictionRule:
+    """A friction law by its name, or with its coefficient."""
+
+    table = FrictionCoefficient
+    allowed = 'one of: none, stokes, { linear = "0.5 1/s" }, { quadratic = 0.01 }'
+
+    def __call__(self, value: object) -> Friction:
+        """Law and coefficient, 0 where there is none."""
+        if isinstance(value, Friction):
+            return value
+        if isinstance(value, str) and value in _LAWS:
+            return Friction(FrictionLaw(value))
+        if isinstance(value, dict):
+            found = FrictionCoefficient.model_validate(value)
+            if len(value) == 1 and found.linear is not None:
+                return Friction(FrictionLaw.LINEAR, found.linear)
+            if len(value) == 1 and found.quadratic is not None:
+                return Friction(FrictionLaw.QUADRATIC, found.quadratic)
+        raise Refused(self.allowed + meant(value, _LAWS))
+
+    @staticmethod
+    def written(value: Friction) -> object:
+        """As a file says it.
+
+        Parameters
+        ----------
+        value : law and coefficient
+        """
+        return value.law.value if value.law in _LAWS else {value.law.value: value.coefficient}
+
+
+class Model(Part):
+    """How the liquid is modelled."""
+
+    liquid: Annotated[str, one_of(*_LIQUID_MODELS)] = Field("auto", description="model of the liquid")
+    friction: Annotated[Friction, PlainValidator(FrictionRule())] = Field(
+        Friction(FrictionLaw.STOKES), description="of the liquid on the wall"
+    )
+    tolerance: Annotated[float, quantity(units.NUMBER, 1e-12, 1.0)] = Field(
+        1e-3, description="relative error that auto may make"
+    )
+
+
+class Scene(Part):
+    """One machine with its liquid: the content of a scene file, in SI units.
+
+    Examples
+    --------
+    >>> from leblanc.scene.rotors import JeffcottRotor
+    >>> scene = Scene(
+    ...     name="Rig",
+    ...     rotor=JeffcottRotor(
+    ...         mass="4 kg", critical_speed="1000 rpm", damping_ratio=0.1, unbalance=6e-4, axis="horizontal"
+    ...     ),
+    ...     chambers=[Chamber(radius="65 mm", height="20 mm", volume="10 ml", liquid="water")],
+    ...     speeds={"start": "100 rpm", "stop": "2000 rpm", "count": 20},
+    ... )
+    >>> scene.chambers[0].volume, scene.rotor.machine().mass
+    (1e-05, 4.0)
     """
 
-    start: float
-    stop: float
-    count: int
+    name: Annotated[str, PlainValidator(Text(200))] = Field(description="of the machine, free text")
+    source: Annotated[str, PlainValidator(Text(4000, may_be_empty=True))] = Field(
+        "", description="where its values come from, free text"
+    )
+    assumed: Annotated[tuple[_Path, ...], entries(0, MAX_ASSUMED, "field paths")] = Field(
+        (), description="paths of the values that the source does not give"
+    )
+    gravity: Annotated[float, quantity(units.ACCELERATION, 1e-6, 1e6)] = Field(
+        9.81, description="acceleration of gravity"
+    )
+    rotor: AnyRotor = Field(discriminator="kind", description="the machine without its liquid")
+    chambers: Annotated[tuple[Chamber, ...], entries(0, MAX_CHAMBERS, "tables headed [[chambers]]")] = Field(
+        (), description="each with its liquid; at least one with a jeffcott"
+    )
+    speeds: Speeds = Field(description="at which the machine is studied")
+    model: Model = Field(Model(), description="of the liquid")
+    runup: Runup | None = Field(None, description="run-up for `leblanc runup`")
+    optimise: Optimisation | None = Field(
+        None, description="what the liquid is chosen for by `leblanc optimise`"
+    )
 
+    @classmethod
+    def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """A planar rotor has liquid, and what is assumed stands in the file."""
+        if values.get("chambers") == () and _kind(given.get("rotor")) in (None, "jeffcott"):
+            missing = "chambers" not in given
+            yield Conflict(("chambers",), f"{'given: ' if missing else ''}{_SOME_CHAMBERS.allowed}")
+        for number, path in enumerate(values.get("assumed", ())):
+            if not _holds(given, path):
+                text = "the path of a value that stands in this file, such as "
+                yield Conflict(("assumed", number), f'{text}"rotor.mass" or "chambers.0.height"')
 
-@dataclass(frozen=True)
-class Model:
-    """How the liquid is modelled.
-
-    Parameters
-    ----------
-    liquid : "auto", "statics", "linear", "long_wave", "kdv" or "fem"
-    friction : on the wall
-    tolerance : relative error that "auto" may make
-    """
-
-    liquid: str
-    friction: Friction
-    tolerance: float = 1e-3
-
-
-@dataclass(frozen=True)
-class Motor:
-    """A motor that drives the rotor.
-
-    Parameters
-    ----------
-    inertia : of all that it turns, about the axis, kg m^2
-    speeds : rising, rad/s
-    torques : at those speeds, straight lines between them, N m
-    """
-
-    inertia: float
-    speeds: tuple[float, ...]
-    torques: tuple[float, ...]
-
-
-@dataclass(frozen=True)
-class Runup:
-    """A ramp of the spin speed, then held; or the speed that a motor reaches.
-
-    Parameters
-    ----------
-    start, stop : rad/s
-    rate : rad/s^2; None with a motor
-    duration : ramp and hold together, s
-    cells : of each liquid layer
-    back : down again at the same rate
-    dispersion : the layers' waves disperse
-    samples : of the results over time
-    motor : None with a ramp
-    """
-
-    start: float
-    stop: float
-    rate: float | None
-    duration: float
-    cells: int
-    back: bool
-    dispersion: bool = False
-    samples: int = 2000
-    motor: Motor | None = None
-
-
-@dataclass(frozen=True)
-class Scene:
-    """One machine.
-
-    Parameters
-    ----------
-    name, source : free text
-    assumed : paths of the values that the source does not give
-    gravity : m/s^2
-    rotor : without the liquid; its `kind` tells which of the four it is
-    chambers : each with its liquid
-    speeds : at which the machine is studied
-    model : of the liquid
-    runup : None unless the scene has one
-    optimise : what its liquid is chosen for; None unless the scene says so
-    """
-
-    name: str
-    source: str
-    assumed: tuple[str, ...]
-    gravity: float
-    rotor: AnyRotor
-    chambers: tuple[Fill, ...]
-    speeds: Speeds
-    model: Model
-    runup: Runup | None
-    optimise: Aim | None = None
+    @cached_property
+    def fills(self) -> tuple[Fill, ...]:
+        """The chambers with their liquids, as the solvers take them."""
+        return tuple(one.fill() for one in self.chambers)
 
     def speed_array(self) -> NDArray[np.float64]:
         """Spin speeds, rad/s, shape (count,)."""
@@ -136,23 +187,78 @@ class Scene:
 
         return np.linspace(self.speeds.start, self.speeds.stop, self.speeds.count)
 
+    def replace(self, changes: Mapping[str, Any]) -> Scene:
+        """A scene with other values, checked as a file is.
+
+        Parameters
+        ----------
+        changes : values by their paths, as in {"chambers.0.volume": "0.8 l"}
+
+        Raises
+        ------
+        SceneFaults : a path that leads nowhere, values that are not allowed; all of them
+
+        Examples
+        --------
+        >>> from leblanc.scene.examples import example
+        >>> round(example("runup").replace({"chambers.0.volume": "0.8 l"}).chambers[0].volume, 9)
+        0.0008
+        """
+        table, faults = self.table(), []
+        for path, value in changes.items():
+            try:
+                require_field(Scene, table, path)
+            except Refused as refused:
+                faults.append(SceneFault("scene", path, shown(value), refused.allowed))
+        if faults:
+            raise SceneFaults(faults)
+        table = with_values(table, [(keys_of(path), new) for path, new in changes.items()])
+        if "assumed" not in changes and self.assumed:  # a mark goes with what it stood at
+            table["assumed"] = [path for path in self.assumed if _holds(table, path)]
+        return scene_from_table(table)
+
     @property
     def digest(self) -> str:
         """Fingerprint of the content (SHA-256): the same however units, keys and blanks are written."""
-        sections = [fill.chamber.section for fill in self.chambers]
-        clear = tuple(replace(fill, chamber=replace(fill.chamber, section=None)) for fill in self.chambers)
-        values = asdict(replace(self, chambers=clear))
-        # A scene without a part that came later is the scene it was before there was one.
-        if self.optimise is None:
-            del values["optimise"]
-        for fill, section in zip(values["chambers"], sections, strict=True):
-            del fill["chamber"]["section"]
-            if section is not None:
-                fill["chamber"]["section"] = section.digest
-            if fill["chamber"]["baffles"] is None:
-                del fill["chamber"]["baffles"]
-        content = json.dumps(_rounded(values), sort_keys=True)
-        return hashlib.sha256(content.encode()).hexdigest()
+        model = self.model
+        content = {
+            "name": self.name,
+            "source": self.source,
+            "assumed": self.assumed,
+            "gravity": self.gravity,
+            "rotor": rotor_content(self.rotor),
+            "chambers": [chamber_content(fill) for fill in self.fills],
+            "speeds": self.speeds.model_dump(),
+            "model": {
+                "liquid": model.liquid,
+                "friction": asdict(model.friction),
+                "tolerance": model.tolerance,
+            },
+            "runup": None if self.runup is None else self.runup.model_dump(),
+        }
+        # Results on disk are known by it: a scene without a part that came later keeps the one it had.
+        if self.optimise is not None:
+            content["optimise"] = optimise_content(self.optimise)
+        return fingerprint(content)
+
+
+def _kind(rotor: object) -> object:
+    """Kind of a rotor, from its table or its model."""
+    return rotor.get("kind") if isinstance(rotor, Mapping) else getattr(rotor, "kind", None)
+
+
+def _holds(table: object, path: str) -> bool:
+    """Whether a value is given at that path."""
+    for key in path.split("."):
+        if isinstance(table, Mapping) and key in table:
+            table = table[key]
+        elif isinstance(table, Part) and (key in table.model_fields_set or key == "kind"):
+            table = getattr(table, key, None)
+        elif isinstance(table, list | tuple) and key.isdecimal() and len(key) < 7 and int(key) < len(table):
+            table = table[int(key)]
+        else:
+            return False
+    return True
 
 
 def load_scene(path: str | PathLike[str]) -> Scene:
@@ -181,35 +287,10 @@ def scene_from_table(table: Mapping[str, Any], file: str = "scene") -> Scene:
     ------
     SceneFaults : with everything that is wrong
     """
-    return _scene(check_table(table, file))
-
-
-def _scene(table: SceneTable) -> Scene:
-    """Typed parts from checked values."""
-    law, coefficient = table.model.friction
-    return Scene(
-        name=table.name,
-        source=table.source,
-        assumed=table.assumed,
-        gravity=table.gravity,
-        rotor=rotor_from_table(table.rotor),
-        chambers=tuple(Fill(one.chamber(), one.liquid, one.volume) for one in table.chambers),
-        speeds=Speeds(**table.speeds.model_dump()),
-        model=Model(table.model.liquid, Friction(law, coefficient), table.model.tolerance),
-        runup=None if table.runup is None else _runup(table.runup),
-        optimise=None if table.optimise is None else aim_of(table.optimise),
-    )
-
-
-def _runup(table: RunupTable) -> Runup:
-    values = table.model_dump(exclude={"motor"})
-    return Runup(**values, motor=None if table.motor is None else Motor(**table.motor.model_dump()))
-
-
-def _rounded(value: Any) -> Any:
-    """The same with every float as a text of a few digits."""
-    if isinstance(value, dict):
-        return {key: _rounded(entry) for key, entry in value.items()}
-    if isinstance(value, list | tuple):
-        return [_rounded(entry) for entry in value]
-    return f"{value:.{_DIGITS}g}" if isinstance(value, float) else value
+    if "vary" in table and "rotor" not in table:
+        text = "a scene; this is a study of many scenes, which `leblanc sweep` answers"
+        raise SceneFaults([SceneFault(file, "", None, text)])
+    try:
+        return Scene.model_validate(table)
+    except ValidationError as error:
+        raise SceneFaults(faults_of(error, file, Scene)) from error

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from leblanc.results.record import phase
 from leblanc.scene.machine import jeffcott
-from leblanc.scene.scene import Rotor, Scene
+from leblanc.scene.scene import JeffcottRotor, Scene
 from leblanc.studies.choose import axial_gravity, choose_all
 from leblanc.studies.run import run_scene
 from meshes.arrays import Array, Flags
@@ -80,8 +80,8 @@ def answer_scenes(scenes: Sequence[Scene]) -> Answers:
     counts = {scene.speeds.count for scene in scenes}
     if len(counts) != 1:
         raise InputError("scenes", sorted(counts), "at least one, all with one number of speeds")
-    planar = [k for k, scene in enumerate(scenes) if isinstance(scene.rotor, Rotor)]
-    others = [k for k, scene in enumerate(scenes) if not isinstance(scene.rotor, Rotor)]
+    planar = [k for k, scene in enumerate(scenes) if isinstance(scene.rotor, JeffcottRotor)]
+    others = [k for k, scene in enumerate(scenes) if not isinstance(scene.rotor, JeffcottRotor)]
     parts = [_planar([scenes[k] for k in planar])] if planar else []
     parts += [_single(scenes[k]) for k in others]
     order = np.argsort(np.array([*planar, *others], dtype=np.intp))
@@ -96,7 +96,7 @@ def answer_scenes(scenes: Sequence[Scene]) -> Answers:
 def _planar(scenes: Sequence[Scene]) -> Answers:
     """Answers of planar rotors, over all pairs of a scene and a speed at once."""
     shape = len(scenes), scenes[0].speeds.count
-    machines = [(jeffcott(scene), scene.chambers) for scene in scenes]
+    machines = [(jeffcott(scene), scene.fills) for scene in scenes]
     gravity = np.array([axial_gravity(scene) for scene in scenes])
     choices = choose_all(scenes)
     speed = np.stack([scene.speed_array() for scene in scenes]).ravel()

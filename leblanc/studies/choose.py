@@ -13,7 +13,7 @@ from fluid.fill import Fill
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed
 from leblanc.scene.machine import dry_rotor, jeffcott
-from leblanc.scene.scene import Rotor, Scene
+from leblanc.scene.scene import JeffcottRotor, Scene
 from meshes.arrays import Array, Flags
 from meshes.chamber_section import rest_offset, surface_is_whole
 from meshes.errors import InputError
@@ -101,15 +101,17 @@ def choose_all(scenes: Sequence[Scene]) -> list[Choice]:
                 "model.liquid", scene.model.liquid, f"one of {allowed} for the response to an unbalance"
             )
         _check_walls(scene)
-    planar = [scene for scene in scenes if isinstance(scene.rotor, Rotor)]
+    planar = [scene for scene in scenes if isinstance(scene.rotor, JeffcottRotor)]
     found = iter(_planar_errors(planar) if planar else ())
-    errors = [next(found) if isinstance(scene.rotor, Rotor) else _other_errors(scene) for scene in scenes]
+    errors = [
+        next(found) if isinstance(scene.rotor, JeffcottRotor) else _other_errors(scene) for scene in scenes
+    ]
     return [_choice(scene, *pair) for scene, pair in zip(scenes, errors, strict=True)]
 
 
 def _check_walls(scene: Scene) -> None:
     """What there is no model for."""
-    for k, fill in enumerate(scene.chambers):
+    for k, fill in enumerate(scene.fills):
         section, area = fill.chamber.section, fill.volume / fill.chamber.height
         if fill.compartments == 2:
             allowed = "3 or more where they reach from the wall through the surface: two compartments answer \
@@ -133,7 +135,7 @@ differently in two directions"
 
 def is_cut(scene: Scene) -> bool:
     """The exact equilibrium of a circular chamber does not hold in some chamber."""
-    return any(fill.compartments > 1 or fill.chamber.section is not None for fill in scene.chambers)
+    return any(fill.compartments > 1 or fill.chamber.section is not None for fill in scene.fills)
 
 
 def _planar_errors(scenes: Sequence[Scene]) -> list[tuple[LinearError, Array]]:
@@ -141,7 +143,7 @@ def _planar_errors(scenes: Sequence[Scene]) -> list[tuple[LinearError, Array]]:
     speeds = [scene.speed_array() for scene in scenes]
     owner = np.repeat(np.arange(len(scenes)), [one.size for one in speeds])
     speed, gravity = np.concatenate(speeds), np.array([axial_gravity(scene) for scene in scenes])
-    machines = [(jeffcott(scene), scene.chambers) for scene in scenes]
+    machines = [(jeffcott(scene), scene.fills) for scene in scenes]
     across = np.array([across_gravity(scene) for scene in scenes])
     error, thrown = machine_errors(machines, owner, speed, gravity, across)
     ends = np.cumsum([one.size for one in speeds])
@@ -158,7 +160,7 @@ def _planar_errors(scenes: Sequence[Scene]) -> list[tuple[LinearError, Array]]:
 def _other_errors(scene: Scene) -> tuple[LinearError, Array]:
     """The same of a rotor that tilts, or moves differently in two directions."""
     along, across = axial_gravity(scene), across_gravity(scene)
-    return error_estimate(dry_rotor(scene), scene.chambers, scene.speed_array(), along, across)
+    return error_estimate(dry_rotor(scene), scene.fills, scene.speed_array(), along, across)
 
 
 def _choice(scene: Scene, linear: LinearError, gravity: Array) -> Choice:
@@ -177,7 +179,7 @@ def _choice(scene: Scene, linear: LinearError, gravity: Array) -> Choice:
     error = np.where(enough, linear.worst, ROUNDING) + gravity
     if cut:
         # The exact equilibrium of compartments, which would judge small disturbances, is not computed.
-        held = held & (speed > max(_covers(fill, axial_gravity(scene)) for fill in scene.chambers))
+        held = held & (speed > max(_covers(fill, axial_gravity(scene)) for fill in scene.fills))
         error = np.full(speed.shape, np.nan)
     return Choice(
         model=small if enough.all() else "statics",
@@ -203,7 +205,7 @@ def _covers(fill: Fill, gravity: float) -> float:
 
 def _captured_from(scene: Scene) -> float | None:
     """Speed above which centrifugal acceleration holds every layer against gravity across the axis, rad/s."""
-    layers = [fill for fill in scene.chambers if _has_surface(fill)]
+    layers = [fill for fill in scene.fills if _has_surface(fill)]
     if scene.rotor.axis == "vertical" or scene.gravity == 0.0 or not layers:
         return None
     return max(float(capture_speed(fill.surface_radius, scene.gravity)) for fill in layers)

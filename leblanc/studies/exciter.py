@@ -12,12 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 from leblanc.units import MM, RPM
 from meshes.arrays import Array
 from meshes.errors import InputError
-from solvers.rotor.exciter.machine import Dimensionless, Exciter, platform_motion, rolling_inertia
+from solvers.rotor.exciter.machine import Dimensionless, Exciter, platform_motion
 from solvers.rotor.exciter.motion import RANGES, Start, critical_speed, integrate, printed_critical_speed
 from solvers.rotor.exciter.stuck import characteristic_speeds, stuck_speeds
 
 if TYPE_CHECKING:
-    from leblanc.scene.rotors import Exciter as ExciterOfScene
     from leblanc.scene.scene import Scene
 
 
@@ -90,28 +89,6 @@ class ExciterRecord:
         return all(one.converged for one in self.checks)
 
 
-def machine_of(rotor: ExciterOfScene) -> Exciter:
-    """The exciter that a scene describes.
-
-    Parameters
-    ----------
-    rotor : the scene's, of kind "exciter"
-    """
-    balls = rotor.balls
-    rolling = rolling_inertia(balls.kind, balls.mass, balls.track_radius, balls.pendulum_inertia)
-    return Exciter(
-        platform_mass=rotor.platform_mass,
-        stiffness=rotor.stiffness,
-        damping=rotor.damping,
-        unbalance=rotor.unbalance,
-        ball_count=balls.count,
-        ball_mass=balls.mass,
-        rolling=rolling,
-        track_radius=balls.track_radius,
-        ball_damping=balls.damping,
-    )
-
-
 def run_exciter(scene: Scene) -> ExciterRecord:
     """Answer of a scene of kind "exciter" over its speeds.
 
@@ -127,7 +104,7 @@ def run_exciter(scene: Scene) -> ExciterRecord:
 
     if not isinstance(scene.rotor, ExciterOfScene):
         raise InputError("rotor.kind", scene.rotor.kind, "exciter for this")
-    return answer_exciter(machine_of(scene.rotor), scene.speed_array(), scene.name, scene.assumed)
+    return answer_exciter(scene.rotor.machine(), scene.speed_array(), scene.name, scene.assumed)
 
 
 def printed_critical(numbers: Dimensionless) -> float:

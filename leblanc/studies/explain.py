@@ -16,7 +16,7 @@ from leblanc.scene.rotors import Exciter as ExciterOfScene
 from leblanc.scene.rows import baffle_words
 from leblanc.scene.scene import Scene
 from leblanc.studies.choose import axial_gravity, choose
-from leblanc.studies.exciter import machine_of, printed_critical
+from leblanc.studies.exciter import printed_critical
 from leblanc.studies.run import main_critical_speeds, rest_modes
 from leblanc.text.models import ModelSpan, model_spans
 from meshes.errors import InputError
@@ -46,7 +46,7 @@ def explain_exciter(scene: Scene) -> dict[str, Any]:
     """
     if not isinstance(scene.rotor, ExciterOfScene):
         raise InputError("rotor.kind", scene.rotor.kind, "exciter for this")
-    machine = machine_of(scene.rotor)
+    machine = scene.rotor.machine()
     numbers, unit = machine.dimensionless(), machine.natural_frequency
     known = characteristic_speeds(numbers)
     return {
@@ -133,7 +133,7 @@ def explain_scene(scene: Scene) -> Explanation:
     ends = np.array([scene.speeds.start, scene.speeds.stop])
     bare = _bare(scene, gravity, choice.model)
     layers: list[LayerExplanation | None] = []
-    for fill, dry in zip(scene.chambers, bare.deflection, strict=True):
+    for fill, dry in zip(scene.fills, bare.deflection, strict=True):
         if fill.volume == 0.0:
             layers.append(None)
             continue
@@ -203,7 +203,7 @@ class _Bare:
 
 def _bare(scene: Scene, gravity: float, model: str) -> _Bare:
     rotor, last = dry_rotor(scene), np.array([scene.speeds.stop])
-    system, fills = rotor.system(), scene.chambers
+    system, fills = rotor.system(), scene.fills
     answer = unbalance_response(system, last)
     moved = [float(np.abs(orbit(system, answer, fill.chamber.plane).forward[0])) for fill in fills]
     deflection = tuple(one if np.isfinite(one) else 0.0 for one in moved)

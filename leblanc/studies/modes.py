@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from fluid.fill import Fill
 from fluid.liquid import Liquid
 from fluid.waves import free_wave_frequencies
-from leblanc.scene.tables import is_outline, section_of_any_file
+from leblanc.scene.chambers import is_outline, section_of_any_file
 from meshes.arrays import Array
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber

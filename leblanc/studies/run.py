@@ -12,7 +12,7 @@ from leblanc.results.record import ChamberRecord, ModeRecord, Motion, SelfExcite
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.machine import jeffcott as jeffcott
 from leblanc.scene.rows import input_rows
-from leblanc.scene.scene import Rotor, Scene, TubRotor
+from leblanc.scene.scene import JeffcottRotor, Scene, TubRotor
 from leblanc.studies.choose import Choice, axial_gravity, choose
 from leblanc.studies.whirl_map import small_whirl_friction
 from leblanc.text.models import fidelity_notes
@@ -45,10 +45,10 @@ def self_excited(scene: Scene) -> SelfExcited:
     """
     rotor, speed = dry_rotor(scene), scene.speed_array()
     friction = scene.model.friction
-    growth, whirl_speed = asynchronous_growth(rotor, scene.chambers, speed, friction)
+    growth, whirl_speed = asynchronous_growth(rotor, scene.fills, speed, friction)
     bands: tuple[tuple[float, float], ...] = ()
     if speed[-1] > speed[0]:
-        bands = unstable_bands(rotor, [scene.chambers], speed, friction, growth[None])[0]
+        bands = unstable_bands(rotor, [scene.fills], speed, friction, growth[None])[0]
     return SelfExcited(growth, whirl_speed, bands, small_whirl_friction(scene.model.friction))
 
 
@@ -114,22 +114,22 @@ def motion_response(scene: Scene, choice: Choice) -> tuple[Response, Motion, tup
     """
     rotor, gravity = dry_rotor(scene), axial_gravity(scene)
     system = rotor.system()
-    found = response(rotor, scene.chambers, scene.speed_array(), gravity, choice.liquid_models)
+    found = response(rotor, scene.fills, scene.speed_array(), gravity, choice.liquid_models)
     dry, dry_shape = critical_speeds(system)
-    wet, wet_shape = wet_critical_speeds(system, scene.chambers, gravity, model_named(choice.model))
+    wet, wet_shape = wet_critical_speeds(system, scene.fills, gravity, model_named(choice.model))
     motion = Motion(
         position=found.position,
         backward=found.backward,
         backward_dry=found.backward_dry,
         branch_backward=found.branch_backward,
-        chamber_forward=_at_chambers(system, scene.chambers, found),
+        chamber_forward=_at_chambers(system, scene.fills, found),
         modes=rest_modes(system),
         campbell=campbell(system, np.linspace(0.0, scene.speeds.stop, _DIAGRAM)),
         critical_speeds_dry=_directed(system, dry, dry_shape),
         critical_speeds_wet=_directed(system, wet, wet_shape),
         zero="unbalance" if isinstance(scene.rotor, TubRotor) else "angle 0 of the unbalances",
     )
-    return found, motion, main_critical_speeds(system, scene.chambers, found.position, dry, wet)
+    return found, motion, main_critical_speeds(system, scene.fills, found.position, dry, wet)
 
 
 def _at_chambers(system: RotorSystem, fills: tuple[Fill, ...], found: Response) -> Complex:
@@ -214,11 +214,11 @@ def run_scene(scene: Scene) -> StudyRecord:
     """
     choice = choose(scene)
     motion: Motion | None = None
-    if isinstance(scene.rotor, Rotor):
+    if isinstance(scene.rotor, JeffcottRotor):
         gravity, rotor = axial_gravity(scene), jeffcott(scene)
-        answer = response(rotor, scene.chambers, scene.speed_array(), gravity, choice.liquid_models)
+        answer = response(rotor, scene.fills, scene.speed_array(), gravity, choice.liquid_models)
         dry = rotor.natural_frequency
-        wet = critical_speed(rotor, scene.chambers, gravity, model_named(choice.model))
+        wet = critical_speed(rotor, scene.fills, gravity, model_named(choice.model))
     else:
         answer, motion, (dry, wet) = motion_response(scene, choice)
     whirl = self_excited(scene)
@@ -232,10 +232,10 @@ def run_scene(scene: Scene) -> StudyRecord:
         inputs=input_rows(scene),
         digest=scene.digest,
         response=answer,
-        liquid_mass=sum(fill.mass for fill in scene.chambers),
+        liquid_mass=sum(fill.mass for fill in scene.fills),
         notes=_notes(scene, choice, answer, motion, whirl),
         axis=scene.rotor.axis,
-        chambers=tuple(_chamber(fill, motion) for fill in scene.chambers),
+        chambers=tuple(_chamber(fill, motion) for fill in scene.fills),
         capture_speed=choice.captured_from,
         critical_speed_dry=dry,
         critical_speed_wet=wet,
@@ -292,7 +292,7 @@ def _notes(
 def _mesh_notes(scene: Scene) -> list[str]:
     """What is poor in the meshes of chambers with a section of their own."""
     notes = []
-    for k, fill in enumerate(scene.chambers):
+    for k, fill in enumerate(scene.fills):
         if fill.chamber.section is None or not fill.uneven:
             continue
         from meshes.findings import mesh_findings, wave_findings
@@ -305,7 +305,7 @@ def _mesh_notes(scene: Scene) -> list[str]:
 
 def _motion_notes(scene: Scene, motion: Motion, answer: Response) -> list[str]:
     """How a rotor that is not planar is reported, and how far its orbit is from a circle."""
-    place = "the first chamber" if scene.chambers else "the origin of positions"
+    place = "the first chamber" if scene.fills else "the origin of positions"
     notes = [
         f"Amplitudes are the largest radius of the axis' orbit in the plane of {place}, at "
         f"{motion.position * MM:.4g} mm; angles are those of its part that turns with the spin, from "
@@ -316,7 +316,7 @@ def _motion_notes(scene: Scene, motion: Motion, answer: Response) -> list[str]:
     if known.any():
         share = against[known] / (size + against)[known]
         worst = int(np.argmax(share))
-        if share[worst] > 1e-6 and scene.chambers:
+        if share[worst] > 1e-6 and scene.fills:
             notes.append(
                 f"Against the spin goes up to {share[worst]:.2g} of the orbit, at "
                 f"{answer.speed[known][worst] * RPM:.4g} rpm; the liquid answers that part by linear theory."
@@ -328,7 +328,7 @@ def _volume_notes(scene: Scene, answer: Response, motion: Motion | None) -> list
     """The volume beyond which more liquid does nothing, for the deflection at the last speed."""
     notes: list[str] = []
     speed = answer.speed[-1]
-    for k, fill in enumerate(scene.chambers):
+    for k, fill in enumerate(scene.fills):
         deflection = abs(answer.deflection[-1] if motion is None else motion.chamber_forward[-1, k])
         if not np.isfinite(deflection) or fill.compartments > 1 or fill.chamber.section is not None:
             continue

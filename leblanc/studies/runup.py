@@ -14,7 +14,7 @@ from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
 from leblanc.results.record import ChamberRecord, phase
 from leblanc.scene.machine import dry_rotor, jeffcott, require_clear
-from leblanc.scene.scene import Rotor, Runup, Scene
+from leblanc.scene.scene import JeffcottRotor, Runup, Scene
 from leblanc.studies.choose import across_gravity as across_gravity  # of a run-up, asked for with it
 from leblanc.studies.choose import axial_gravity
 from leblanc.studies.validity import RANGES
@@ -61,7 +61,7 @@ def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tup
     words: list[str] = []
     deepest, highest = RANGES["long_wave"]["relative_depth"][1], RANGES["linear"]["wave_amplitude"][1]
     linear = (model or liquid_model(scene)) == "linear"
-    for k, fill in enumerate(scene.chambers):
+    for k, fill in enumerate(scene.fills):
         if fill.volume == 0.0 or is_full(fill):
             continue
         wall, label = fill.chamber, f"chamber {k + 1}"
@@ -140,20 +140,20 @@ def chosen_run(
     system, friction = dry_rotor(scene).system(), scene.model.friction
 
     def run(name: str, resolved: RunupNumerics, told: Progress) -> RunupHistory:
-        return run_up(system, scene.chambers, drive, friction, gravity, resolved, told, name)
+        return run_up(system, scene.fills, drive, friction, gravity, resolved, told, name)
 
     if scene.model.liquid == "long_wave":
         history = run(model, numerics, progress)
         return RunupChoice(history, model, history.error_estimate, "the scene asks for long waves.")
     if scene.model.liquid == "linear":
         history = run(model, numerics, progress)
-        found = linear_run_error(history, scene.chambers)
+        found = linear_run_error(history, scene.fills)
         reason = f"the scene asks for linear layers; {_words(found)}."
         return RunupChoice(history, model, found.estimate + history.error_estimate, reason)
     ruled_out = _ruled_out(scene)
     if not ruled_out:
         first = run("linear", replace(numerics, companion=False), None)
-        found = linear_run_error(first, scene.chambers)
+        found = linear_run_error(first, scene.fills)
         if found.estimate <= tolerance:
             history = run("linear", numerics, progress) if numerics.companion else first
             error = found.estimate + (0.0 if math.isnan(history.error_estimate) else history.error_estimate)
@@ -335,8 +335,8 @@ def runup_scene(
         in_range=in_range,
         steady=steady,
         bands=bands,
-        chambers=tuple(_chamber(fill) for fill in scene.chambers),
-        planes=tuple(fill.chamber.plane for fill in scene.chambers),
+        chambers=tuple(_chamber(fill) for fill in scene.fills),
+        planes=tuple(fill.chamber.plane for fill in scene.fills),
         notes=(f"Liquid model: {taken.reason}", *describe_run(scene, history, steady, bands), *faults),
     )
 
@@ -382,9 +382,9 @@ def numerics_of(
 def steady_response(scene: Scene, speed: Array) -> Response | None:
     """Synchronous response over the speeds that were passed; None unless the rotor is a Jeffcott rotor."""
     passed = _passed(speed, STEADY_SPEEDS)
-    if not isinstance(scene.rotor, Rotor) or passed.size == 0:
+    if not isinstance(scene.rotor, JeffcottRotor) or passed.size == 0:
         return None
-    return response(jeffcott(scene), scene.chambers, passed, axial_gravity(scene))
+    return response(jeffcott(scene), scene.fills, passed, axial_gravity(scene))
 
 
 def whirl_bands(scene: Scene, speed: Array) -> Bands:
@@ -392,10 +392,10 @@ def whirl_bands(scene: Scene, speed: Array) -> Bands:
     from solvers.whirl.edges import unstable_bands
 
     passed = _passed(speed, BAND_SPEEDS)
-    if not scene.chambers or passed.size == 0:
+    if not scene.fills or passed.size == 0:
         return ()
     rotor, friction = dry_rotor(scene), scene.model.friction
-    return unstable_bands(rotor, [scene.chambers], passed, friction)[0]
+    return unstable_bands(rotor, [scene.fills], passed, friction)[0]
 
 
 def _passed(speed: Array, count: int) -> Array:

@@ -73,7 +73,7 @@ def film(scene: Scene, record: RunupRecord, frames: int = FRAMES) -> Reel:
     drive, numerics = drive_of(planned(scene)), record.numerics
     system, law = dry_rotor(scene).system(), record.friction
     start = float(drive.corners()[1, 0])
-    machine = couple(system, scene.chambers, start, law, record.gravity, numerics.cells, numerics.dispersion)
+    machine = couple(system, scene.fills, start, law, record.gravity, numerics.cells, numerics.dispersion)
     machine.drive(torque_curve(drive), 0.0 if isinstance(drive, Ramp) else drive.inertia)
     wanted = np.linspace(0.0, float(record.history.time[-1]), frames)
     rows = [_frame(machine)]

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from fluid.fill import Fill
 from leblanc.results.record import StudyRecord
 from leblanc.scene.machine import dry_rotor
-from leblanc.scene.scene import Rotor, Scene, Speeds
+from leblanc.scene.scene import JeffcottRotor, Scene, Speeds
 from leblanc.studies.choose import axial_gravity, choose
 from leblanc.studies.run import run_scene
 from meshes.arrays import Array, Complex
@@ -71,27 +71,25 @@ def look_at(scene: Scene, speed: float | None = None) -> Sight:
     if speed is not None:
         if not (math.isfinite(speed) and speed > 0.0):
             raise InputError("--speed", speed, "a finite number above 0")
-        scene = replace(scene, speeds=Speeds(speed, speed, 1))
+        scene = scene.altered(speeds=Speeds.at(speed))
     record = run_scene(scene)
     places, moved = places_of(scene)
     deflection = np.where(np.isfinite(record.response.deflection), record.response.deflection, np.nan)[
         :, None
     ]
-    if record.motion is not None and scene.chambers:
+    if record.motion is not None and scene.fills:
         at = record.motion.chamber_forward
         deflection = np.where(np.isfinite(at), at, np.nan)
-    elif scene.chambers:
-        deflection = np.repeat(deflection, len(scene.chambers), axis=1)
-    return Sight(
-        record, scene.chambers, places, moved, axial_gravity(scene), deflection, _lean(scene, record)
-    )
+    elif scene.fills:
+        deflection = np.repeat(deflection, len(scene.fills), axis=1)
+    return Sight(record, scene.fills, places, moved, axial_gravity(scene), deflection, _lean(scene, record))
 
 
 def _lean(scene: Scene, record: StudyRecord) -> Complex:
     """Slope of the axis, from its forward part at two places of the rigid rotor."""
-    if isinstance(scene.rotor, Rotor):
+    if isinstance(scene.rotor, JeffcottRotor):
         return np.zeros(record.response.speed.shape, dtype=complex)
-    planes = np.array([fill.chamber.plane for fill in scene.chambers])
+    planes = np.array([fill.chamber.plane for fill in scene.fills])
     if planes.size and np.ptp(planes) > 0.0 and record.motion is not None:
         ends = [int(planes.argmin()), int(planes.argmax())]
         low, high = (record.motion.chamber_forward[:, k] for k in ends)
@@ -99,7 +97,7 @@ def _lean(scene: Scene, record: StudyRecord) -> Complex:
         low, high = np.where(known, low, np.nan), np.where(known, high, np.nan)
         return np.asarray((high - low) / np.ptp(planes))
     rotor, models = dry_rotor(scene), choose(scene).liquid_models
-    found = response(rotor, scene.chambers, scene.speed_array(), axial_gravity(scene), models)
+    found = response(rotor, scene.fills, scene.speed_array(), axial_gravity(scene), models)
     system = rotor.system()
     low, high = (orbit(system, found.coordinates, place).forward for place in (-0.5, 0.5))
     known = np.isfinite(low) & np.isfinite(high)
@@ -115,8 +113,8 @@ def places_of(scene: Scene) -> tuple[tuple[float, ...], bool]:
     ----------
     scene : the machine
     """
-    chambers = [fill.chamber for fill in scene.chambers]
-    if not isinstance(scene.rotor, Rotor):
+    chambers = [fill.chamber for fill in scene.fills]
+    if not isinstance(scene.rotor, JeffcottRotor):
         return tuple(one.plane for one in chambers), False
     stacks: list[list[int]] = []
     for k in sorted(range(len(chambers)), key=lambda k: -chambers[k].radius):

@@ -13,7 +13,7 @@ from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
 from leblanc.friction import friction_words
 from leblanc.scene.machine import dry_rotor, jeffcott
-from leblanc.scene.scene import Rotor, Scene
+from leblanc.scene.scene import JeffcottRotor, Scene
 from leblanc.studies.validity import RANGES
 from leblanc.units import ML, RPM
 from meshes.arrays import Array, Flags
@@ -89,7 +89,7 @@ def map_scene(
     law = scene.model.friction if friction is None else friction
     speed = np.linspace(scene.speeds.start, scene.speeds.stop, speeds)
     rotor = dry_rotor(scene)
-    rows = fills_over_volume(scene.chambers, volumes, max_volume)
+    rows = fills_over_volume(scene.fills, volumes, max_volume)
     parts = []
     for first in range(0, volumes, _AT_ONCE):
         parts.append(growth_map(rotor, rows[first : first + _AT_ONCE], speed, law))
@@ -97,7 +97,7 @@ def map_scene(
             progress(min(first + _AT_ONCE, volumes), volumes)
     growth, whirl_speed = (np.concatenate([one[k] for one in parts]) for k in (0, 1))
     edges = unstable_bands(rotor, rows, speed, law, growth)
-    (own,) = unstable_bands(rotor, [scene.chambers], speed, law)
+    (own,) = unstable_bands(rotor, [scene.fills], speed, law)
     held = np.array([_held(scene, fills, speed) for fills in rows])
     pairs = zip(rows, whirl_speed - speed, strict=True)
     thin = np.array([_thin_layers(fills, slip) for fills, slip in pairs]) | (law.law != "stokes")
@@ -114,7 +114,7 @@ def map_scene(
         edges=edges,
         friction=small_whirl_friction(law),
         damping=_damping_words(scene),
-        scene_volume=sum(fill.volume for fill in scene.chambers),
+        scene_volume=sum(fill.volume for fill in scene.fills),
         scene_edges=own,
         notes=_notes(scene, law, own, held, thin, bool(np.any(rotor.system().damping))),
     )
@@ -126,7 +126,7 @@ def _check(scene: Scene, volumes: int, speeds: int) -> None:
             raise InputError(field, count, f"a whole number from {FEWEST} to {MOST}")
     if scene.speeds.stop <= scene.speeds.start:
         raise InputError("speeds.stop", scene.speeds.stop, "above speeds.start for a map")
-    if not scene.chambers:
+    if not scene.fills:
         raise InputError("chambers", "none", "at least one for a map over volume")
 
 
@@ -194,7 +194,7 @@ def _thin_layers(fills: tuple[Fill, ...], slip: Array) -> Flags:
 
 
 def _damping_words(scene: Scene) -> str:
-    if isinstance(scene.rotor, Rotor):
+    if isinstance(scene.rotor, JeffcottRotor):
         return f"damping ratio {jeffcott(scene).damping_ratio:.3g}"
     return "damping as in the scene"
 
@@ -214,7 +214,7 @@ def _notes(
             "Without liquid friction the damping of the support feeds the wave that runs against the spin, "
             "whose energy is negative: a weak growth remains at almost every speed."
         )
-    if len(scene.chambers) > 1:
+    if len(scene.fills) > 1:
         notes.append("The volumes of the chambers grow by a common factor up to where the first is full.")
     if not held.all():
         why = (
@@ -232,7 +232,7 @@ def _notes(
 
 
 def _own_note(scene: Scene, own: Bands) -> str:
-    volume = sum(fill.volume for fill in scene.chambers) * ML
+    volume = sum(fill.volume for fill in scene.fills) * ML
     if not own:
         return f"With the scene's {volume:.4g} ml no whirl grows by itself at these speeds."
     words = ", ".join(f"{low * RPM:.5g} to {high * RPM:.5g} rpm" for low, high in own)

@@ -43,7 +43,7 @@ def _answer(record: OptimumRecord) -> list[str]:
     lines = [f"Objective: {record.objective}, the {record.meaning}"]
     if not record.feasible:
         lines.append("NOT FEASIBLE: no volumes meet every constraint; these exceed them least.")
-    for k, (fill, volume) in enumerate(zip(record.scene.chambers, record.volume.tolist(), strict=True)):
+    for k, (fill, volume) in enumerate(zip(record.scene.fills, record.volume.tolist(), strict=True)):
         share = volume / fill.chamber.capacity
         lines.append(
             f"Chamber {k + 1}: {volume * ML:.5g} ml of {fill.liquid.name} ({share:.3%} of what it holds)"

@@ -45,7 +45,7 @@ def describe_inputs(scene: Scene, plan: Runup, numerics: RunupNumerics) -> tuple
         ("Dispersion", "with" if numerics.dispersion else "without", "runup.dispersion"),
         ("Liquid friction", friction_words(scene.model.friction), "model.friction"),
     ]
-    for k, fill in enumerate(scene.chambers):
+    for k, fill in enumerate(scene.fills):
         text = f"{fill.volume * ML:.4g} ml of {fill.liquid.name} in R {fill.chamber.radius * MM:.4g} mm"
         rows.append((f"Chamber {k + 1}", text, f"chambers.{k}.volume"))
     return tuple(rows)

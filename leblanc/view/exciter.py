@@ -9,7 +9,6 @@ import numpy as np
 from leblanc.figures.section import rounded_down
 from leblanc.results.record import one_line
 from leblanc.scene.scene import Exciter, Scene
-from leblanc.studies.exciter import machine_of
 from leblanc.units import MM, RPM
 from leblanc.view.parts import NO_CELLS, Label, Picture, Piece, bar_length, circle, line
 from meshes.arrays import Array, Indices
@@ -44,7 +43,7 @@ def exciter_picture(scene: Scene, speed: float | None = None) -> tuple[Picture, 
     spin = scene.speeds.stop if speed is None else speed
     if not (math.isfinite(spin) and spin > 0.0):
         raise InputError("--speed", spin, "a finite number above 0")
-    machine = machine_of(rotor)
+    machine = rotor.machine()
     numbers, unit = machine.dimensionless(), machine.natural_frequency
     stuck = float(stuck_speeds(np.array([spin / unit]), numbers)[0, 0])
     slow, fast = (abs(one) * machine.length for one in platform_motion(numbers, spin / unit, stuck))
@@ -64,7 +63,7 @@ def exciter_picture(scene: Scene, speed: float | None = None) -> tuple[Picture, 
     ]
     labels = [
         Label("unbalance", (0.0, -0.62 * track * MM, 0.55 * track * MM)),
-        Label(f"{rotor.balls.count} {rotor.balls.kind}s", (0.0, 0.75 * track * MM, 1.1 * track * MM)),
+        Label(f"{rotor.balls.count} {rotor.balls.name}s", (0.0, 0.75 * track * MM, 1.1 * track * MM)),
         *names,
         name,
     ]

@@ -79,8 +79,8 @@ def solve_mode(scene: Scene, number: int, speed: float | None = None, chamber: i
     """
     if not 1 <= number <= MOST_MODES:
         raise InputError("--mode", number, f"a whole number from 1 to {MOST_MODES}")
-    if not 1 <= chamber <= len(scene.chambers):
-        count = len(scene.chambers)
+    if not 1 <= chamber <= len(scene.fills):
+        count = len(scene.fills)
         allowed = (
             f"from 1 to {count}, the chambers of this scene" if count else "left out: there is no chamber"
         )
@@ -88,7 +88,7 @@ def solve_mode(scene: Scene, number: int, speed: float | None = None, chamber: i
     spin = scene.speeds.stop if speed is None else speed
     if not (math.isfinite(spin) and spin > 0.0):
         raise InputError("--speed", spin, "a finite number above 0")
-    fill = scene.chambers[chamber - 1]
+    fill = scene.fills[chamber - 1]
     size, inner = fill.surface_radius, fill.chamber.inner_radius
     if fill.volume == 0.0 or size <= inner * (1.0 + 1e-9) or size <= 1e-9 * fill.chamber.radius:
         raise InputError("--chamber", chamber, "one with liquid and a free surface")

@@ -127,13 +127,13 @@ def film_of(scene: Scene, frames: int, factor: float | None, progress: Callable[
     require_layers(scene)
     record = runup_scene(scene, check=False, progress=progress)
     reel = film(scene, record, frames)
-    radius = max((fill.chamber.radius for fill in scene.chambers), default=0.1)
+    radius = max((fill.chamber.radius for fill in scene.fills), default=0.1)
     scale = runup_scale(radius, record, reel)
     if factor is not None:
-        scale = given_scale(factor, scene.chambers, reel.deflection)
+        scale = given_scale(factor, scene.fills, reel.deflection)
     places, _ = places_of(scene)
     stage = Stage(
-        scene.chambers,
+        scene.fills,
         places,
         scene.rotor.axis == "horizontal",
         scale,

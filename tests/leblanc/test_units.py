@@ -206,9 +206,55 @@ def test_options_take_units_too() -> None:
 def test_plain_numbers_need_no_unit_library() -> None:
     code = """if True:
         import sys
-        from study import units
+        from leblanc import units
         units.parse(0.1, units.MASS)
         units.parse_option("0.1", units.MASS, "mass")
+        sys.exit("pint" in sys.modules)
+    """
+    root = Path(units.__file__).parents[1]
+    assert subprocess.run([sys.executable, "-c", code], cwd=root, check=False).returncode == 0
+
+
+COMMON = [(dimension, unit) for dimension, table in units._COMMON.items() for unit in table]
+
+
+@pytest.mark.parametrize(("dimension", "unit"), COMMON, ids=lambda it: getattr(it, "name", it))
+@settings(max_examples=20)
+@given(number=st.floats(-1e12, 1e12))
+def test_common_units_are_those_of_the_library(dimension: Dimension, unit: str, number: float) -> None:
+    """Bit for bit, so that no scene changes its digest."""
+    factor = units._factor(unit, dimension)
+    assert isinstance(factor, float)
+    assert units._scaled(number, units._COMMON[dimension][unit]) == units._scaled(number, factor)
+
+
+@given(st.sampled_from(sorted(units._OFFSETS)), st.floats(-1e6, 1e6))
+def test_common_temperatures_are_those_of_the_library(unit: str, number: float) -> None:
+    registry = units._registry()
+    by_library = registry.Quantity(number, registry.parse_units(unit)).to("kelvin").magnitude
+    assert units.parse(f"{number!r} {unit}", units.TEMPERATURE) == by_library
+
+
+@pytest.mark.parametrize(
+    ("text", "dimension", "value"),
+    [
+        ("84 N s/m", units.DAMPING, 84.0),
+        ("84 N * s / m", units.DAMPING, 84.0),
+        ("9.8 m/s**2", units.ACCELERATION, 9.8),
+        ("3 cm ³", units.VOLUME, 3e-6),
+        ("600 g·mm", units.UNBALANCE, 6e-4),
+    ],
+)
+def test_common_units_in_any_spelling(text: str, dimension: Dimension, value: float) -> None:
+    assert parse(text, dimension) == value
+
+
+def test_usual_scenes_need_no_unit_library() -> None:
+    code = """if True:
+        import sys
+        from leblanc.scene.examples import example, example_names
+        for name in example_names():
+            name.startswith("studies/") or example(name)
         sys.exit("pint" in sys.modules)
     """
     root = Path(units.__file__).parents[1]

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
-from fluid.fill import Fill
-from fluid.friction import Friction
 from fluid.liquid import known_liquid
-from leblanc.scene.optimise import Aim
-from leblanc.scene.scene import Model, Rotor, Scene, Speeds
+from leblanc.scene.chambers import Chamber
+from leblanc.scene.optimise import Optimisation
+from leblanc.scene.scene import JeffcottRotor, Model, Scene, Speeds
 from leblanc.studies.batch import answer_scenes
 from leblanc.studies.optimise.answers import with_volumes
 from meshes.arrays import Array
-from meshes.chamber import Chamber
 
 MANY = 3000  # pairs of a scene and a speed at once
 
@@ -33,56 +30,57 @@ def random_scene(seed: int, chambers: int, count: int = 25) -> Scene:
             radius * float(chance.choice([0.0, 0.6, 0.8])),
         )
         liquid = known_liquid(str(chance.choice(["water", "brine", "glycerol"])))
-        fills.append(Fill(Chamber(radius, height, inner), liquid, 0.0))
-    unbalance = mass * max(one.chamber.radius for one in fills) * float(10.0 ** chance.uniform(-3.0, -1.5))
-    rotor = Rotor(
-        "jeffcott",
-        mass,
-        mass * natural**2,
-        2.0 * damping * mass * natural,
-        unbalance,
-        "vertical" if chance.random() < 0.5 else "horizontal",
+        fills.append(Chamber(radius=radius, height=height, inner_radius=inner, liquid=liquid, volume=0.0))
+    unbalance = mass * max(one.walls.radius for one in fills) * float(10.0 ** chance.uniform(-3.0, -1.5))
+    rotor = JeffcottRotor(
+        mass=mass,
+        stiffness=mass * natural**2,
+        damping=2.0 * damping * mass * natural,
+        unbalance=unbalance,
+        axis="vertical" if chance.random() < 0.5 else "horizontal",
     )
-    speeds = Speeds(0.5 * natural, natural * float(chance.uniform(1.1, 4.0)), count)
+    speeds = Speeds(start=0.5 * natural, stop=natural * float(chance.uniform(1.1, 4.0)), count=count)
     if seed % 4 == 1:  # a peak over speeds has sense only where their steps resolve it
-        speeds = Speeds(0.6 * natural, 1.6 * natural, count)
-    model = Model(liquid="statics", friction=Friction("stokes", 0.0))
-    return Scene("random", "", (), 9.81, rotor, tuple(fills), speeds, model, None)
+        speeds = Speeds(start=0.6 * natural, stop=1.6 * natural, count=count)
+    model = Model(liquid="statics")
+    return Scene(name="random", rotor=rotor, chambers=fills, speeds=speeds, model=model)
 
 
-def random_aim(seed: int, scene: Scene) -> Aim:
+def random_aim(seed: int, scene: Scene) -> Optimisation:
     """One of the objectives, in turn."""
     chance = np.random.default_rng(seed + 10_000)
     objective = ("working_speed", "peak", "mean", "least_mass")[seed % 4]
     if objective == "mean":
         speeds = chance.uniform(scene.speeds.start, scene.speeds.stop, 3)
-        return Aim(objective, duty=tuple((float(one), float(chance.uniform(0.1, 1.0))) for one in speeds))
+        duty = [{"speed": float(one), "weight": float(chance.uniform(0.1, 1.0))} for one in speeds]
+        return Optimisation(objective=objective, duty=duty)
     if objective == "least_mass":
         none, full = (
             float(amplitudes(scene, np.array([row]), at=scene.speeds.stop)[0, 0])
-            for row in (np.zeros(len(scene.chambers)), _capacity(scene))
+            for row in (np.zeros(len(scene.fills)), _capacity(scene))
         )
         low, high = sorted((none, full))
-        return Aim(objective, vibration_limit=low + float(chance.uniform(0.05, 0.9)) * (high - low) + 1e-9)
-    return Aim(objective)
+        limit = low + float(chance.uniform(0.05, 0.9)) * (high - low) + 1e-9
+        return Optimisation(objective=objective, vibration_limit=limit)
+    return Optimisation(objective=objective)
 
 
 def _capacity(scene: Scene) -> Array:
-    return np.array([fill.chamber.capacity for fill in scene.chambers])
+    return np.array([fill.chamber.capacity for fill in scene.fills])
 
 
 def amplitudes(scene: Scene, volumes: Array, at: float | None = None) -> Array:
     """Amplitudes at one speed or at all of the scene's, shape (m, s)."""
-    speeds = scene.speeds if at is None else Speeds(at, at, 1)
+    speeds = scene.speeds if at is None else Speeds.at(at)
     rows, step = [], max(1, MANY // speeds.count)
     for first in range(0, volumes.shape[0], step):
         part = volumes[first : first + step]
-        answers = answer_scenes([replace(with_volumes(scene, row), speeds=speeds) for row in part])
+        answers = answer_scenes([with_volumes(scene, row).altered(speeds=speeds) for row in part])
         rows.append(np.where(np.isnan(answers.amplitude), math.inf, answers.amplitude))
     return np.concatenate(rows)
 
 
-def values(scene: Scene, aim: Aim, volumes: Array) -> Array:
+def values(scene: Scene, aim: Optimisation, volumes: Array) -> Array:
     """The objective, infinite where a limit is exceeded: from its definition."""
     stop = scene.speeds.stop
     if aim.objective == "working_speed":
@@ -90,17 +88,17 @@ def values(scene: Scene, aim: Aim, volumes: Array) -> Array:
     if aim.objective == "peak":
         return amplitudes(scene, volumes).max(axis=1)
     if aim.objective == "mean":
-        speeds, weights = np.array(aim.duty).T
+        speeds, weights = np.array([(one.speed, one.weight) for one in aim.duty]).T
         each = np.stack([amplitudes(scene, volumes, float(one))[:, 0] for one in speeds])
         return np.asarray(weights @ each / weights.sum())
     assert aim.objective == "least_mass"
     assert aim.vibration_limit is not None
-    density = np.array([fill.liquid.density for fill in scene.chambers])
+    density = np.array([fill.liquid.density for fill in scene.fills])
     good = amplitudes(scene, volumes, stop)[:, 0] <= aim.vibration_limit
     return np.where(good, volumes @ density, math.inf)
 
 
-def brute_force(scene: Scene, aim: Aim, first: int, rounds: int, inner: int) -> tuple[Array, float]:
+def brute_force(scene: Scene, aim: Optimisation, first: int, rounds: int, inner: int) -> tuple[Array, float]:
     """Best of a dense grid, and of denser ones around its best."""
     capacity = _capacity(scene)
     levels = [

@@ -6,11 +6,13 @@ import os
 import subprocess
 import sys
 from collections.abc import Sequence
+from dataclasses import astuple
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from leblanc.scene.machine import jeffcott
 from leblanc.scene.scene import Scene
 from leblanc.studies.batch import Answers
 from leblanc.studies.sweep.study import Sweep, load_sweep
@@ -100,11 +102,8 @@ def added_mass_answers(scenes: Sequence[Scene]) -> Answers:
         for values in zip(
             *(
                 (
-                    scene.rotor.mass,  # type: ignore[union-attr]
-                    scene.rotor.stiffness,  # type: ignore[union-attr]
-                    scene.rotor.damping,  # type: ignore[union-attr]
-                    scene.rotor.unbalance,  # type: ignore[union-attr]
-                    sum(fill.full_mass for fill in scene.chambers),
+                    *astuple(jeffcott(scene)),
+                    sum(fill.full_mass for fill in scene.fills),
                 )
                 for scene in scenes
             ),

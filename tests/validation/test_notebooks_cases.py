@@ -135,7 +135,7 @@ def test_closed_forms() -> None:
     for name in ("runup", "washing_machine"):
         scene = example(name)
         deflection, volume = fill_optimum.closed_forms(scene)
-        (fill,), speed, gravity = scene.chambers, scene.speeds.stop, axial_gravity(scene)
+        (fill,), speed, gravity = scene.fills, scene.speeds.stop, axial_gravity(scene)
         # Six tenths of the ring leave its inner wall clear.
         ample = replace(fill, volume=0.6 * fill.chamber.capacity)
         solved = response(jeffcott(scene), [ample], [speed], gravity)

@@ -254,14 +254,14 @@ def test_speeds() -> None:
         machine = scene(name)
         chosen, every = telling_speeds(machine), machine.speed_array()
         if machine.rotor.axis == "horizontal":
-            held = max(float(capture_speed(fill.surface_radius, 9.81)) for fill in machine.chambers)
+            held = max(float(capture_speed(fill.surface_radius, 9.81)) for fill in machine.fills)
             every = every[every > held]
         assert chosen.size == SPEEDS and np.all(np.diff(chosen) > 0.0) and np.isin(chosen, every).all()
         assert chosen[-1] == every[-1]
         whole = answer(at_speeds(machine, every), Case(RESPONSE, "statics")).values
         part = answer(at_speeds(machine, chosen), Case(RESPONSE, "statics")).values
         assert part.max() == whole.max()
-    few = replace(machine, speeds=replace(machine.speeds, count=4))
+    few = machine.altered(speeds=machine.speeds.altered(count=4))
     assert telling_speeds(few).size == 4
 
 
@@ -278,9 +278,9 @@ def test_passage() -> None:
         if cut.rate is not None:
             assert cut.duration == pytest.approx((cut.stop - cut.start) / cut.rate)
         if machine.rotor.axis == "horizontal":
-            held = max(float(capture_speed(fill.surface_radius, 9.81)) for fill in machine.chambers)
+            held = max(float(capture_speed(fill.surface_radius, 9.81)) for fill in machine.fills)
             assert cut.start >= 2.0 * held * (1.0 - 1e-12)
-        values = answer(replace(machine, runup=cut), Case(RUNUP, "long_wave", 32)).values
+        values = answer(machine.altered(runup=cut), Case(RUNUP, "long_wave", 32)).values
         top = int(np.argmax(values))
         assert not passes or 0 < top < values.size - 1
 

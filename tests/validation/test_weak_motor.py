@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from leblanc.scene.scene import load_scene
 from validation.cases.weak_motor import SCENE, with_and_without
 
@@ -11,7 +9,7 @@ from validation.cases.weak_motor import SCENE, with_and_without
 def test_liquid_takes_a_weak_motor_through_the_resonance() -> None:
     scene = load_scene(SCENE)
     assert scene.runup is not None
-    wet, dry = with_and_without(replace(scene, runup=replace(scene.runup, cells=32, samples=600)))
+    wet, dry = with_and_without(scene.altered(runup=scene.runup.altered(cells=32, samples=600)))
     # It hangs where the vibration eats what the motor has: below the resonance at 25 rad/s.
     assert 24.0 < dry.speed[-1] < 25.0
     assert abs(dry.speed[-1] - dry.speed[-100]) < 1e-3

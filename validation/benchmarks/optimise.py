@@ -6,10 +6,10 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
-from leblanc.scene.optimise import Aim
+from leblanc.scene.optimise import DutyPoint, Optimisation
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.studies.optimise.optimise import optimise_scene
 
@@ -39,18 +39,20 @@ class Cost:
 def measured(name: str, objective: str) -> Cost:
     """Cost of one search; the mean is over four speeds, the peak is the steady one."""
     scene = load_scene(_EXAMPLES / f"{name}.toml")
-    aim = Aim(objective, steady=True, duty=_duty(scene), vibration_limit=_limit(scene, objective))
+    aim = Optimisation(
+        objective=objective, steady=True, duty=_duty(scene), vibration_limit=_limit(scene, objective)
+    )
     begin = time.process_time()
     best = optimise_scene(scene, aim=aim, front=False)
     seconds = time.process_time() - begin
-    return Cost(scene.name, len(scene.chambers), objective, seconds, best.evaluations)
+    return Cost(scene.name, len(scene.fills), objective, seconds, best.evaluations)
 
 
-def _duty(scene: Scene) -> tuple[tuple[float, float], ...]:
+def _duty(scene: Scene) -> tuple[DutyPoint, ...]:
     """Mostly the last speed, and the way there."""
     speeds = scene.speeds
     return tuple(
-        (speeds.start + share * (speeds.stop - speeds.start), weight)
+        DutyPoint(speed=speeds.start + share * (speeds.stop - speeds.start), weight=weight)
         for share, weight in ((0.25, 0.1), (0.5, 0.2), (0.75, 0.2), (1.0, 0.5))
     )
 
@@ -59,7 +61,7 @@ def _limit(scene: Scene, objective: str) -> float | None:
     """Half of what the liquid can do."""
     if objective != "least_mass":
         return None
-    best = optimise_scene(replace(scene, optimise=None), aim=Aim("working_speed"), front=False)
+    best = optimise_scene(scene.altered(optimise=None), aim=Optimisation(), front=False)
     return 0.5 * (best.value + best.baseline)
 
 

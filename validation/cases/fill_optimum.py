@@ -6,7 +6,6 @@ machine has with a full chamber's mass added to it: both follow without a search
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 from leblanc.scene.machine import jeffcott
@@ -30,7 +29,7 @@ def cases() -> list[Case]:
     found = []
     for name, tolerance in (("runup", _UPRIGHT), ("washing_machine", _HORIZONTAL)):
         scene = load_scene(_EXAMPLES / f"{name}.toml")
-        answer = optimise_scene(replace(scene, optimise=None), "working_speed", front=False)
+        answer = optimise_scene(scene.altered(optimise=None), "working_speed", front=False)
         deflection, volume = closed_forms(scene)
         at = f"{scene.name}, at the working speed"
         found += [
@@ -64,7 +63,7 @@ def closed_forms(scene: Scene) -> tuple[float, float]:
     ----------
     scene : with one chamber; the last of its speeds counts
     """
-    rotor, (fill,), speed = jeffcott(scene), scene.chambers, scene.speeds.stop
+    rotor, (fill,), speed = jeffcott(scene), scene.fills, scene.speeds.stop
     total = rotor.mass + fill.full_mass
     stiffness = complex(rotor.stiffness - total * speed**2, rotor.damping * speed)
     deflection = rotor.unbalance * speed**2 / abs(stiffness)

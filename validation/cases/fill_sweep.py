@@ -10,7 +10,8 @@ from functools import cache
 
 import numpy as np
 
-from leblanc.scene.scene import Model, Rotor, Runup, Scene, Speeds
+from leblanc.scene.chambers import Chamber
+from leblanc.scene.scene import JeffcottRotor, Model, Runup, Scene, Speeds
 from leblanc.studies.optimise.answers import FilledMachine
 from leblanc.studies.optimise.objectives import RunupPeak
 from leblanc.units import RPM
@@ -33,22 +34,17 @@ _ASSUMED = (
 
 def machine() -> Scene:
     """The assumed machine, its ring empty."""
-    from fluid.fill import Fill
-    from fluid.friction import Friction, FrictionLaw
-    from fluid.liquid import known_liquid
-    from meshes.chamber import Chamber
-
     stiffness, damping = MASS * NATURAL**2, 2.0 * RATIO * MASS * NATURAL
     return Scene(
         name="Top loader",
-        source="",
         assumed=("rotor", "chambers", "runup"),
-        gravity=9.81,
-        rotor=Rotor("jeffcott", MASS, stiffness, damping, UNBALANCE, "vertical"),
-        chambers=(Fill(Chamber(OUTER, HEIGHT, INNER), known_liquid("water"), 0.0),),
-        speeds=Speeds(START, CRUISE, 201),
-        model=Model(liquid="auto", friction=Friction(FrictionLaw.LINEAR, FRICTION)),
-        runup=Runup(START, CRUISE, RATE, DURATION, 32, False),
+        rotor=JeffcottRotor(
+            mass=MASS, stiffness=stiffness, damping=damping, unbalance=UNBALANCE, axis="vertical"
+        ),
+        chambers=[Chamber(radius=OUTER, height=HEIGHT, inner_radius=INNER, liquid="water", volume=0.0)],
+        speeds=Speeds(start=START, stop=CRUISE, count=201),
+        model=Model(friction={"linear": FRICTION}),
+        runup=Runup(start=START, stop=CRUISE, rate=RATE, duration=DURATION, cells=32),
     )
 
 

@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +25,7 @@ def with_and_without(scene: Scene, check: bool = False) -> tuple[RunupHistory, R
     scene : the machine
     check : estimate the error, with half the cells
     """
-    empty = replace(scene, chambers=tuple(replace(fill, volume=0.0) for fill in scene.chambers))
+    empty = scene.altered(chambers=tuple(one.holding(0.0) for one in scene.chambers))
     wet, dry = (runup_scene(one, check=check).history for one in (scene, empty))
     return wet, dry
 
@@ -63,7 +62,7 @@ def draw(wet: RunupHistory, dry: RunupHistory, scene: Scene, directory: Path) ->
             axes.xaxis.set_major_formatter(number)
         motor = scene.runup.motor if scene.runup is not None else None
         torque = f"Torque {motor.torques[0]:g} N m at rest, falling on a straight line; " if motor else ""
-        fill = scene.chambers[0]
+        fill = scene.fills[0]
         text = (
             f"Scene: {scene.name}. {torque}{fill.volume * 1e3:g} l of {fill.liquid.name}. Annular long waves "
             "in time, linear wall friction. Every value is assumed."

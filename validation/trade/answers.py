@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields, replace
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
+from pydantic import Field
 
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import Exciter, Scene
@@ -69,16 +69,10 @@ class Answer:
     used: tuple[str, ...]
 
 
-@dataclass(frozen=True)
 class SceneAt(Scene):
-    """A scene at chosen speeds.
+    """A scene at chosen speeds."""
 
-    Parameters
-    ----------
-    chosen : in place of the evenly spaced ones, rising, rad/s
-    """
-
-    chosen: tuple[float, ...] = ()
+    chosen: tuple[float, ...] = Field((), description="in place of the evenly spaced ones, rising")
 
     def speed_array(self) -> Array:
         """Spin speeds, rad/s, shape (k,)."""
@@ -87,8 +81,8 @@ class SceneAt(Scene):
 
 def at_speeds(scene: Scene, speed: Array) -> SceneAt:
     """The scene at those speeds."""
-    content: dict[str, Any] = {one.name: getattr(scene, one.name) for one in fields(Scene)}
-    return SceneAt(**content, chosen=tuple(float(x) for x in speed))
+    content = {name: getattr(scene, name) for name in Scene.model_fields}
+    return SceneAt.model_construct(**content, chosen=tuple(float(x) for x in speed))
 
 
 def steady(
@@ -104,7 +98,7 @@ def steady(
     from solvers.synchronous.response import response
 
     gravity = axial_gravity(scene)
-    found = response(dry_rotor(scene), scene.chambers, scene.speed_array(), gravity, models)
+    found = response(dry_rotor(scene), scene.fills, scene.speed_array(), gravity, models)
     amplitude = np.abs(found.deflection) + np.abs(found.backward)
     good = found.in_range & found.converged
     return amplitude, found.dry_patch, good, tuple(dict.fromkeys(found.model.tolist()))
@@ -120,7 +114,7 @@ def chosen_models(scene: Scene, model: str) -> tuple[list[LiquidModel], Flags]:
     scene : the machine, not an exciter
     model : "auto" or a name
     """
-    choice = choose(replace(scene, model=replace(scene.model, liquid=model)))
+    choice = choose(scene.altered(model=scene.model.altered(liquid=model)))
     return choice.liquid_models, choice.in_range
 
 
@@ -177,19 +171,18 @@ def taken_run(scene: Scene, model: str, cells: int, dispersion: bool) -> RunupCh
     """
     plan = planned(scene)
     numerics = RunupNumerics(cells, plan.samples, dispersion, companion=False)
-    asked = replace(scene, model=replace(scene.model, liquid=model))
+    asked = scene.altered(model=scene.model.altered(liquid=model))
     return chosen_run(asked, drive_of(plan), across_gravity(scene), numerics)
 
 
 def _exciter(scene: Scene, case: Case) -> Answer:
-    from leblanc.studies.exciter import machine_of
     from solvers.rotor.exciter.machine import platform_motion
     from solvers.rotor.exciter.motion import integrate
     from solvers.rotor.exciter.stuck import stuck_speeds
 
     if not isinstance(scene.rotor, Exciter):
         raise InputError("rotor.kind", scene.rotor.kind, "exciter for this")
-    machine = machine_of(scene.rotor)
+    machine = scene.rotor.machine()
     numbers = machine.dimensionless()
     ratio = scene.speed_array() / machine.natural_frequency
     if case.resolution is None:
@@ -213,7 +206,7 @@ def taste(scene: Scene, case: Case) -> None:
     """A small piece of a case, which imports and compiles all that the whole takes."""
     if case.question == RUNUP:
         plan = planned(scene)
-        bit = replace(scene, runup=replace(plan, duration=1e-3 * plan.duration, samples=2))
+        bit = scene.altered(runup=plan.altered(duration=1e-3 * plan.duration, samples=2))
         answer(bit, case)
         if case.model == "auto":  # of which so small a piece takes one model alone
             answer(bit, replace(case, model="long_wave"))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -146,7 +146,7 @@ def runup_question(scene: Scene, quick: bool = False) -> Question:
     Best are the long waves on the finest cells, with dispersion if the scene asks for it.
     """
     plan, about = passage(scene)
-    cut = replace(scene, runup=plan)
+    cut = scene.altered(runup=plan)
     cells = _doubled(QUICK_CELLS if quick else CELLS, 2 * plan.cells)
     own = DISPERSION if plan.dispersion else ""
     ladder = tuple(Case(RUNUP, "long_wave", n, own) for n in reversed(cells))
@@ -171,7 +171,7 @@ def passage(scene: Scene) -> tuple[Runup, str]:
     stays up on the next, and no mesh is fine enough to tell.
     """
     plan = planned(scene)
-    whole = replace(scene, runup=replace(plan, back=False, samples=SAMPLES))
+    whole = scene.altered(runup=plan.altered(back=False, samples=SAMPLES))
     history = taken_run(whole, "long_wave", _SCOUT, plan.dispersion).history
     top = int(np.argmax(history.amplitude))
     speed, time = float(history.speed[top]), float(history.time[top])
@@ -183,7 +183,7 @@ def passage(scene: Scene) -> tuple[Runup, str]:
         start = max(plan.start, start)
         stop = min(plan.stop, max(_BEYOND * speed, _WIDEST * start))
         length = (stop - start) / plan.rate
-    cut = replace(plan, start=start, stop=stop, duration=length, back=False, samples=SAMPLES)
+    cut = plan.altered(start=start, stop=stop, duration=length, back=False, samples=SAMPLES)
     about = (
         f"run-up, cut to {length:.4g} s from {start:.4g} rad/s"
         + (f" to {stop:.4g} rad/s" if plan.rate is not None else "")
@@ -195,7 +195,7 @@ def passage(scene: Scene) -> tuple[Runup, str]:
 
 def _capture(scene: Scene) -> float:
     """Speed above which every layer rides with the drum against gravity across the axis, rad/s."""
-    held = [layer_capture(fill, across_gravity(scene)) for fill in scene.chambers]
+    held = [layer_capture(fill, across_gravity(scene)) for fill in scene.fills]
     return max((speed for speed in held if math.isfinite(speed)), default=0.0)
 
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from fluid.fill import Fill
 from leblanc.scene.machine import jeffcott
-from leblanc.scene.scene import Rotor, Scene, Speeds
+from leblanc.scene.scene import JeffcottRotor, Scene, Speeds
 from leblanc.studies.batch import answer_scenes
 from leblanc.studies.choose import axial_gravity
 from meshes.arrays import Array, Flags
@@ -44,13 +43,13 @@ class FilledMachine:
     def __init__(self, scene: Scene) -> None:
         # One model for all volumes: a change of model within its tolerance would look like a better volume.
         liquid = "statics" if scene.model.liquid == "auto" else scene.model.liquid
-        self.scene = replace(scene, optimise=None, runup=None, model=replace(scene.model, liquid=liquid))
+        self.scene = scene.altered(optimise=None, runup=None, model=scene.model.altered(liquid=liquid))
         self._known: dict[tuple[bytes, float], tuple[float, float]] = {}
 
     @property
     def planar(self) -> bool:
         """The rotor moves in one plane, so that a single speed costs no more than its share of many."""
-        return isinstance(self.scene.rotor, Rotor)
+        return isinstance(self.scene.rotor, JeffcottRotor)
 
     @property
     def asked(self) -> int:
@@ -84,7 +83,7 @@ class FilledMachine:
 
     def over(self, volumes: Array, speeds: Speeds) -> Array:
         """Amplitudes over evenly spaced speeds, m, shape (m, count); other rotors need their neighbours."""
-        scenes = [replace(with_volumes(self.scene, row), speeds=speeds) for row in volumes]
+        scenes = [with_volumes(self.scene, row).altered(speeds=speeds) for row in volumes]
         answers = answer_scenes(scenes)
         return np.where(np.isnan(answers.amplitude), math.inf, answers.amplitude)
 
@@ -92,7 +91,7 @@ class FilledMachine:
         """Amplitude and dry wall at m pairs; whirls that grow by themselves are judged apart."""
         different, owner = np.unique(volumes, axis=0, return_inverse=True)
         rotor = jeffcott(self.scene)
-        machines = [(rotor, with_volumes(self.scene, row).chambers) for row in different]
+        machines = [(rotor, with_volumes(self.scene, row).fills) for row in different]
         gravity = np.full(len(machines), axial_gravity(self.scene))
         model = model_named(self.scene.model.liquid)
         found = machine_responses(machines, owner.reshape(-1), speed, gravity, model)
@@ -101,7 +100,7 @@ class FilledMachine:
     def _one_by_one(self, volumes: Array, speed: Array) -> tuple[Array, Flags]:
         """The same of rotors that tilt."""
         pairs = zip(volumes, speed.tolist(), strict=True)
-        scenes = [replace(with_volumes(self.scene, row), speeds=Speeds(one, one, 1)) for row, one in pairs]
+        scenes = [with_volumes(self.scene, row).altered(speeds=Speeds.at(one)) for row, one in pairs]
         found = answer_scenes(scenes)
         return found.amplitude[:, 0], found.dry_patch[:, 0]
 
@@ -119,4 +118,4 @@ def with_volumes(scene: Scene, volumes: Array) -> Scene:
     InputError : a volume that its chamber does not hold
     """
     pairs = zip(scene.chambers, volumes.tolist(), strict=True)
-    return replace(scene, chambers=tuple(Fill(one.chamber, one.liquid, volume) for one, volume in pairs))
+    return scene.altered(chambers=tuple(chamber.holding(volume) for chamber, volume in pairs))

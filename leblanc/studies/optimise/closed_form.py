@@ -158,9 +158,9 @@ def cover_walls(
     volumes found by the search, m^3, the closed forms, how many were judged, and what to say of them
     """
     gravity = axial_gravity(scene)
-    found = [covering_by_search(fill, deflection, speed, gravity) for fill in scene.chambers]
+    found = [covering_by_search(fill, deflection, speed, gravity) for fill in scene.fills]
     volumes, count = [float(one.point[0]) for one in found], sum(one.points.shape[0] for one in found)
-    forms = tuple(covering(fill.chamber, deflection, speed, gravity) for fill in scene.chambers)
+    forms = tuple(covering(fill.chamber, deflection, speed, gravity) for fill in scene.fills)
     gap = max(
         abs(volume / form.optimal_volume - 1.0) if form.optimal_volume > 0.0 else abs(volume)
         for volume, form in zip(volumes, forms, strict=True)
@@ -183,7 +183,7 @@ def dry_verdict(scene: Scene, volumes: list[float], deflection: float, speed: fl
     """Whether any wall is dry over its whole height."""
     gravity = axial_gravity(scene)
     dry = 0.0
-    for fill, volume in zip(scene.chambers, volumes, strict=True):
+    for fill, volume in zip(scene.fills, volumes, strict=True):
         # A hair above the volume that just covers it.
         held = min(volume * (1.0 + 1e-9), fill.chamber.capacity)
         dry = max(dry, float(equilibrium(fill.chamber, held, deflection, speed, gravity).dry_patch))

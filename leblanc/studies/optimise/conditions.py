@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from fluid.fill import Fill
 from fluid.liquid import expansion, liquid_at
-from leblanc.scene.scene import Rotor, Scene
+from leblanc.scene.scene import JeffcottRotor, Scene
 from leblanc.studies.optimise.answers import FilledMachine
 from leblanc.studies.optimise.objectives import AlwaysExact
 from meshes.arrays import Array
@@ -53,7 +52,7 @@ class Robust(AlwaysExact):
         made = [_in_circumstance(scene, one) for one in circumstances]
         self.machines = [FilledMachine(one) for one, _ in made]
         self.growths = np.array([growth for _, growth in made])
-        self.capacity = np.array([fill.chamber.capacity for fill in scene.chambers])
+        self.capacity = np.array([fill.chamber.capacity for fill in scene.fills])
 
     @property
     def asked(self) -> int:
@@ -76,16 +75,17 @@ class Robust(AlwaysExact):
 
 def _in_circumstance(scene: Scene, one: Circumstance) -> tuple[Scene, list[float]]:
     """The scene there, and by what factor the volume of each chamber's liquid grows."""
-    if not isinstance(scene.rotor, Rotor):
+    if not isinstance(scene.rotor, JeffcottRotor):
         raise InputError("rotor.kind", scene.rotor.kind, "jeffcott for the objective robust")
-    rotor = replace(scene.rotor, unbalance=one.unbalance)
+    rotor = scene.rotor.altered(unbalance=one.unbalance)
     if one.temperature is None:
-        return replace(scene, rotor=rotor), [1.0] * len(scene.chambers)
-    fills, growth = [], []
-    for fill in scene.chambers:
-        growth.append(expansion(fill.liquid, one.temperature))
-        fills.append(Fill(fill.chamber, liquid_at(fill.liquid, one.temperature), 0.0))
-    return replace(scene, rotor=rotor, chambers=tuple(fills)), growth
+        return scene.altered(rotor=rotor), [1.0] * len(scene.fills)
+    growth = [expansion(chamber.liquid, one.temperature) for chamber in scene.chambers]
+    warm = [
+        chamber.altered(liquid=liquid_at(chamber.liquid, one.temperature), volume=0.0)
+        for chamber in scene.chambers
+    ]
+    return scene.altered(rotor=rotor, chambers=tuple(warm)), growth
 
 
 def circumstances(

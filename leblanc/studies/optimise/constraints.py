@@ -113,7 +113,7 @@ def growth(scene: Scene, volumes: Array, speed: Array) -> Array:
     -------
     1/s, below 0 where every whirl dies out, nan where the whirls were not found, shape (m,)
     """
-    rows: list[Sequence[Fill]] = [with_volumes(scene, row).chambers for row in volumes]
+    rows: list[Sequence[Fill]] = [with_volumes(scene, row).fills for row in volumes]
     rotor, friction = dry_rotor(scene), scene.model.friction
     return np.asarray(growth_map(rotor, rows, speed, friction)[0].max(axis=1))
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.scene.optimise import Aim
+from leblanc.scene.optimise import Optimisation
 from leblanc.scene.scene import Scene
 from leblanc.studies.sweep.emulator import CrossValidation, Emulator, emulate_store, varied_fields
 from leblanc.studies.sweep.store import read_store
@@ -92,7 +92,7 @@ class EmulatedVibration:
         return least, most
 
 
-def emulated_vibration(store: Path, scene: Scene, aim: Aim, seed: int = 0) -> EmulatedVibration:
+def emulated_vibration(store: Path, scene: Scene, aim: Optimisation, seed: int = 0) -> EmulatedVibration:
     """Emulator of the vibration that an optimisation is after, from a sweep over the volumes.
 
     Parameters
@@ -115,7 +115,7 @@ def emulated_vibration(store: Path, scene: Scene, aim: Aim, seed: int = 0) -> Em
     return EmulatedVibration(emulate_store(found, _output(scene, aim), seed), chambers)
 
 
-def _output(scene: Scene, aim: Aim) -> str:
+def _output(scene: Scene, aim: Optimisation) -> str:
     """Output of a sweep that is the vibration asked for."""
     if aim.objective == "working_speed" and aim.working_speed in (None, scene.speeds.stop):
         return "last_amplitude"

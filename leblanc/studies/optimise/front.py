@@ -88,7 +88,7 @@ def front_around(
     """
     judge, known = goal.judge, found.judged.details
     count = _SPARING if goal.costly else _SWEEP
-    high = np.array([fill.chamber.capacity for fill in scene.chambers])
+    high = np.array([fill.chamber.capacity for fill in scene.fills])
     share = np.concatenate(([0.0], np.geomspace(1e-3, 1.0, count)))
     along = found.point if found.point.max() > 0.0 else high
     room = float(np.min(high[along > 0.0] / along[along > 0.0]))

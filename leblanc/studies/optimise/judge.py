@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from leblanc.scene.optimise import OBJECTIVES, Aim
-from leblanc.scene.scene import Rotor, Scene, Speeds
+from leblanc.scene.optimise import OBJECTIVES, Optimisation
+from leblanc.scene.scene import JeffcottRotor, Scene, Speeds
 from leblanc.studies.optimise.answers import FilledMachine
 from leblanc.studies.optimise.conditions import Robust, circumstances
 from leblanc.studies.optimise.constraints import (
@@ -55,21 +55,21 @@ class Goal:
     notes: tuple[str, ...] = ()
 
 
-def operating_speeds(scene: Scene, aim: Aim) -> Speeds:
+def operating_speeds(scene: Scene, aim: Optimisation) -> Speeds:
     """Speeds at which the machine is used: the scene's, or evenly over the range given."""
     if aim.operating is None:
         return scene.speeds
     start, stop = aim.operating
-    return Speeds(start, stop, 1 if start == stop else max(2, scene.speeds.count))
+    return Speeds(start=start, stop=stop, count=1 if start == stop else max(2, scene.speeds.count))
 
 
-def growth_speeds(scene: Scene, aim: Aim) -> Array:
+def growth_speeds(scene: Scene, aim: Optimisation) -> Array:
     """Operating speeds at which small whirls are looked at, rad/s."""
     speeds = operating_speeds(scene, aim)
     return np.linspace(speeds.start, speeds.stop, min(speeds.count, GROWTH_SPEEDS))
 
 
-def goal_of(scene: Scene, aim: Aim, machine: FilledMachine, solve: Callable[[Goal], Found]) -> Goal:
+def goal_of(scene: Scene, aim: Optimisation, machine: FilledMachine, solve: Callable[[Goal], Found]) -> Goal:
     """Goal of a scene.
 
     Parameters
@@ -85,8 +85,8 @@ def goal_of(scene: Scene, aim: Aim, machine: FilledMachine, solve: Callable[[Goa
     if aim.objective not in OBJECTIVES:
         raise InputError("--objective", aim.objective, "one of " + ", ".join(OBJECTIVES))
     speed = scene.speeds.stop if aim.working_speed is None else aim.working_speed
-    planar = isinstance(scene.rotor, Rotor)
-    density = np.array([fill.liquid.density for fill in scene.chambers])
+    planar = isinstance(scene.rotor, JeffcottRotor)
+    density = np.array([fill.liquid.density for fill in scene.fills])
     at_work = AtSpeed(machine, np.array([speed]), np.ones(1))
     constraints = _constraints(scene, aim, machine, speed)
     rpm = f"{speed * RPM:.4g} rpm"
@@ -94,7 +94,9 @@ def goal_of(scene: Scene, aim: Aim, machine: FilledMachine, solve: Callable[[Goa
     return _MAKERS[aim.objective](scene, aim, machine, goal, solve)
 
 
-def _constraints(scene: Scene, aim: Aim, machine: FilledMachine, speed: float) -> tuple[Constraint, ...]:
+def _constraints(
+    scene: Scene, aim: Optimisation, machine: FilledMachine, speed: float
+) -> tuple[Constraint, ...]:
     """What was asked to be kept to."""
     found = [] if aim.dry_patch else [dry_wall(machine, speed)]
     if aim.stability_margin is not None:
@@ -104,14 +106,14 @@ def _constraints(scene: Scene, aim: Aim, machine: FilledMachine, speed: float) -
     return tuple(found)
 
 
-_Make = Callable[[Scene, Aim, FilledMachine, Goal, Callable[[Goal], Found]], Goal]
+_Make = Callable[[Scene, Optimisation, FilledMachine, Goal, Callable[[Goal], Found]], Goal]
 
 
-def _working_speed(scene: Scene, aim: Aim, machine: FilledMachine, goal: Goal, _: object) -> Goal:
+def _working_speed(scene: Scene, aim: Optimisation, machine: FilledMachine, goal: Goal, _: object) -> Goal:
     return goal
 
 
-def _peak(scene: Scene, aim: Aim, machine: FilledMachine, goal: Goal, _: object) -> Goal:
+def _peak(scene: Scene, aim: Optimisation, machine: FilledMachine, goal: Goal, _: object) -> Goal:
     if scene.runup is not None and not aim.steady:
         few = min(COARSE_CELLS, scene.runup.cells)
         text = "largest amplitude of the run-up in time"
@@ -130,16 +132,16 @@ def _peak(scene: Scene, aim: Aim, machine: FilledMachine, goal: Goal, _: object)
 
 def _resonances(scene: Scene) -> tuple[float, ...]:
     """Critical speeds of a planar rotor with all walls wet and without liquid, rad/s."""
-    rotor = scene.rotor
-    if not isinstance(rotor, Rotor):
+    if not isinstance(scene.rotor, JeffcottRotor):
         return ()
-    added = sum(fill.added_mass for fill in scene.chambers)
+    rotor = scene.rotor.machine()
+    added = sum(fill.added_mass for fill in scene.fills)
     return math.sqrt(rotor.stiffness / (rotor.mass + added)), math.sqrt(rotor.stiffness / rotor.mass)
 
 
-def _mean(scene: Scene, aim: Aim, machine: FilledMachine, goal: Goal, _: object) -> Goal:
+def _mean(scene: Scene, aim: Optimisation, machine: FilledMachine, goal: Goal, _: object) -> Goal:
     if aim.duty:
-        speeds, weights = np.array(aim.duty).T
+        speeds, weights = np.array([(one.speed, one.weight) for one in aim.duty]).T
         text, notes = f"mean amplitude over a duty cycle of {len(aim.duty)} speeds", goal.notes
     else:
         speeds = scene.speed_array()
@@ -152,7 +154,7 @@ def _mean(scene: Scene, aim: Aim, machine: FilledMachine, goal: Goal, _: object)
 
 
 def _least_mass(
-    scene: Scene, aim: Aim, machine: FilledMachine, goal: Goal, solve: Callable[[Goal], Found]
+    scene: Scene, aim: Optimisation, machine: FilledMachine, goal: Goal, solve: Callable[[Goal], Found]
 ) -> Goal:
     vibration: Vibration = goal.judge.vibration
     where = f"at {goal.working_speed * RPM:.4g} rpm"
@@ -176,8 +178,8 @@ def _least_mass(
     return replace(goal, judge=judge, meaning=text, notes=notes)
 
 
-def _robust(scene: Scene, aim: Aim, machine: FilledMachine, goal: Goal, _: object) -> Goal:
-    if not isinstance(scene.rotor, Rotor):
+def _robust(scene: Scene, aim: Optimisation, machine: FilledMachine, goal: Goal, _: object) -> Goal:
+    if not isinstance(scene.rotor, JeffcottRotor):
         raise InputError("rotor.kind", scene.rotor.kind, "jeffcott for the objective robust")
     notes, unbalance = goal.notes, aim.unbalance
     if unbalance is None and aim.temperature is None:

@@ -100,7 +100,7 @@ class RunupPeak(AlwaysExact):
 
         key = volumes.tobytes()
         if key not in self._known:
-            friction, fills = self.scene.model.friction, with_volumes(self.scene, volumes).chambers
+            friction, fills = self.scene.model.friction, with_volumes(self.scene, volumes).fills
             system = dry_rotor(self.scene).system()
             numerics, drive = self.numerics, self.drive
             run = run_up(system, fills, drive, friction, self.gravity, numerics, None, self.model)

@@ -10,7 +10,7 @@ import numpy as np
 
 from fluid.whirl import is_full
 from leblanc.scene.machine import require_clear
-from leblanc.scene.optimise import Aim
+from leblanc.scene.optimise import Optimisation
 from leblanc.scene.scene import Scene, Speeds
 from leblanc.studies.choose import axial_gravity
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
@@ -63,7 +63,7 @@ class OptimumRecord:
     """
 
     scene: Scene
-    aim: Aim
+    aim: Optimisation
     objective: str
     meaning: str
     unit: str
@@ -90,7 +90,7 @@ class OptimumRecord:
 def optimise_scene(
     scene: Scene,
     objective: str | None = None,
-    aim: Aim | None = None,
+    aim: Optimisation | None = None,
     front: bool = True,
     progress: Callable[[int], None] | None = None,
     emulator: EmulatedVibration | None = None,
@@ -122,9 +122,9 @@ def optimise_scene(
     >>> bool(best.value < best.baseline)
     True
     """
-    wish = aim or scene.optimise or Aim()
-    wish = wish if objective is None else replace(wish, objective=objective)
-    if not scene.chambers:
+    wish = aim or scene.optimise or Optimisation()
+    wish = wish if objective is None else wish.altered(objective=objective)
+    if not scene.fills:
         raise InputError("chambers", "none", "at least one to choose the volume of")
     require_clear(scene, "a search over volumes, which rests on the exact equilibrium in a clear ring")
     low, high = bounds_of(scene, wish)
@@ -137,7 +137,7 @@ def optimise_scene(
         chosen, sure = on_all_cells(scene, goal, found)
         record = _record(scene, wish, sure, machine, chosen)
     else:
-        low, high = emulator.inside(low, high, np.array([fill.volume for fill in scene.chambers]))
+        low, high = emulator.inside(low, high, np.array([fill.volume for fill in scene.fills]))
         quick = replace(goal, judge=replace(goal.judge, vibration=emulator), costly=False)
         chosen = judged_again(goal, best_volumes(scene, quick, low, high, progress))
         told = emulator.answer(chosen.point)
@@ -149,7 +149,9 @@ def optimise_scene(
     return replace(record, front=edge, sweep=sweep)
 
 
-def _record(scene: Scene, aim: Aim, goal: Goal, machine: FilledMachine, found: Found) -> OptimumRecord:
+def _record(
+    scene: Scene, aim: Optimisation, goal: Goal, machine: FilledMachine, found: Found
+) -> OptimumRecord:
     """All that is to be told of the answer."""
     judge, volume = goal.judge, found.point
     nothing = np.zeros((1, volume.size))
@@ -189,7 +191,7 @@ def _record(scene: Scene, aim: Aim, goal: Goal, machine: FilledMachine, found: F
 
 def _capacity(scene: Scene, volume: Array) -> Verdict:
     """How full the fullest chamber is."""
-    share = max(v / fill.chamber.capacity for v, fill in zip(volume.tolist(), scene.chambers, strict=True))
+    share = max(v / fill.chamber.capacity for v, fill in zip(volume.tolist(), scene.fills, strict=True))
     return Verdict(1.0, share, share <= 1.0 + 1e-12, "1", "share of the chamber that is fullest")
 
 
@@ -200,7 +202,7 @@ def _warnings(scene: Scene, goal: Goal, volume: Array) -> tuple[str, ...]:
         return ()
     return tuple(
         f"Out of range: the layer in chamber {k + 1} is deeper than {deepest:g} of its radius."
-        for k, fill in enumerate(with_volumes(scene, volume).chambers)
+        for k, fill in enumerate(with_volumes(scene, volume).fills)
         if fill.depth > deepest * fill.chamber.radius and not is_full(fill)
     )
 
@@ -209,25 +211,25 @@ def _closed_forms(scene: Scene, volume: Array, speed: float) -> tuple[Covering, 
     """The covering volumes at the deflection that the answer has at the working speed."""
     from leblanc.studies.run import run_scene
 
-    record = run_scene(replace(with_volumes(scene, volume), speeds=Speeds(speed, speed, 1)))
+    record = run_scene(with_volumes(scene, volume).altered(speeds=Speeds.at(speed)))
     gravity = axial_gravity(scene)
     if record.motion is None:
         moved = np.full(volume.size, abs(record.response.deflection[0]))
     else:
         moved = np.abs(record.motion.chamber_forward[0])
     found = []
-    for fill, deflection in zip(scene.chambers, moved.tolist(), strict=True):
+    for fill, deflection in zip(scene.fills, moved.tolist(), strict=True):
         if not math.isfinite(deflection):
             return ()
         found.append(covering(fill.chamber, deflection, speed, gravity))
     return tuple(found)
 
 
-def _at_given_deflection(scene: Scene, aim: Aim, deflection: float) -> OptimumRecord:
+def _at_given_deflection(scene: Scene, aim: Optimisation, deflection: float) -> OptimumRecord:
     """The least volumes that leave no wall dry over its whole height at a given deflection."""
     speed = scene.speeds.stop if aim.working_speed is None else aim.working_speed
     volumes, forms, count, notes = cover_walls(scene, deflection, speed)
-    filled = with_volumes(scene, np.array(volumes)).chambers
+    filled = with_volumes(scene, np.array(volumes)).fills
     value = sum(liquid_unbalance(fill, deflection, speed, axial_gravity(scene)) for fill in filled)
     mass = sum(fill.mass for fill in filled)
     verdicts = {

@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from leblanc.scene.machine import jeffcott
-from leblanc.scene.optimise import Aim
-from leblanc.scene.scene import Rotor, Scene
+from leblanc.scene.optimise import Optimisation
+from leblanc.scene.scene import JeffcottRotor, Scene
 from leblanc.studies.choose import axial_gravity
 from leblanc.studies.optimise.closed_form import covering
 from leblanc.studies.optimise.judge import Goal
@@ -31,14 +31,14 @@ _AGAIN = 3  # searches at most, if a peak turns out to have been hidden between 
 _CLOSER = 6  # of the best that a cheaper judge found are judged again
 
 
-def bounds_of(scene: Scene, aim: Aim) -> tuple[Array, Array]:
+def bounds_of(scene: Scene, aim: Optimisation) -> tuple[Array, Array]:
     """Least and most volume of each chamber, m^3, shape (c,) each.
 
     Raises
     ------
     InputError : not one pair for each chamber, more than a chamber holds
     """
-    capacity = np.array([fill.chamber.capacity for fill in scene.chambers])
+    capacity = np.array([fill.chamber.capacity for fill in scene.fills])
     if not aim.volumes:
         return np.zeros_like(capacity), capacity
     if len(aim.volumes) != capacity.size:
@@ -86,21 +86,21 @@ def _starts(scene: Scene, goal: Goal, count: int) -> Array:
             : 5 if count == 1 and len(goal.speeds) == 1 else 2
         ]:
             row = []
-            for fill in scene.chambers:
+            for fill in scene.fills:
                 e = min(deflection, 0.9 * fill.chamber.radius)
                 form = covering(fill.chamber, e, speed, gravity)
                 row.append(form.optimal_volume if math.isinf(form.full_volume) else form.full_volume)
             rows.append(row)
-    return np.array(rows[: 12 if count == 1 else 3]).reshape(-1, len(scene.chambers))
+    return np.array(rows[: 12 if count == 1 else 3]).reshape(-1, len(scene.fills))
 
 
 def _likely_deflections(scene: Scene, speed: float) -> list[float]:
     """Of the planar rotor with all walls wet, and without liquid, m [theory: rotor, eq. 3]."""
-    if not isinstance(scene.rotor, Rotor):
+    if not isinstance(scene.rotor, JeffcottRotor):
         return []
     rotor = jeffcott(scene)
     force, stiffness = rotor.unbalance * speed**2, complex(rotor.dynamic_stiffness(np.array(speed)))
-    added = sum(fill.added_mass for fill in scene.chambers) * speed**2
+    added = sum(fill.added_mass for fill in scene.fills) * speed**2
     sizes = [abs(stiffness - added), abs(stiffness)]
     wet, dry = (force / size if size > 0.0 else math.inf for size in sizes)
     return [e for e in (wet, dry, 2.0 * wet, 0.5 * wet, math.sqrt(wet * dry)) if 0.0 < e < math.inf]
@@ -109,8 +109,8 @@ def _likely_deflections(scene: Scene, speed: float) -> list[float]:
 def _alike(scene: Scene, low: Array, high: Array) -> list[list[int]]:
     """Groups of chambers that may be exchanged without a change."""
     groups: dict[tuple[object, ...], list[int]] = {}
-    for k, fill in enumerate(scene.chambers):
-        chamber = replace(fill.chamber, plane=0.0) if isinstance(scene.rotor, Rotor) else fill.chamber
+    for k, fill in enumerate(scene.fills):
+        chamber = replace(fill.chamber, plane=0.0) if isinstance(scene.rotor, JeffcottRotor) else fill.chamber
         groups.setdefault((chamber, fill.liquid, float(low[k]), float(high[k])), []).append(k)
     return [group for group in groups.values() if len(group) > 1]
 

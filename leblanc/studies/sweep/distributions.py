@@ -128,7 +128,7 @@ def _quantity(rule: Any, kind: str) -> Quantity:
 
 
 def _several(given: Any, count: int, what: str) -> list[Any]:
-    return Entries(count, count, what)(given)
+    return list(Entries(count, count, what)(given))
 
 
 def _uniform(given: Any, rule: Any) -> Uniform:

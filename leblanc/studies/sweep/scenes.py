@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 from pydantic import ValidationError
 
-from fluid.fill import Fill
+from leblanc.scene.chambers import Chamber
 from leblanc.scene.faults import SceneFaults, one_line
-from leblanc.scene.paths import Keys, with_values
-from leblanc.scene.rotors import ROTORS, rotor_from_table
-from leblanc.scene.rules import Quantity, Table
+from leblanc.scene.part import Part, rule_of
+from leblanc.scene.paths import Keys, tables_of, with_values
+from leblanc.scene.rules import Quantity
 from leblanc.scene.scene import Scene, scene_from_table
-from leblanc.scene.tables import TABLES, ChamberTable
 
 _WORDS_ONLY = ("source", "assumed", "runup")  # no answer of a sweep depends on them
 
-_Tables = Mapping[tuple[str, ...], type[Table]]
+_Tables = Mapping[tuple[str, ...], type[Part]]
 
 Maker = Callable[[Sequence[Any]], Scene]
 
@@ -39,8 +37,8 @@ def scene_maker(table: Mapping[str, Any], paths: Sequence[Keys]) -> Maker:
     """
     base = {key: value for key, value in table.items() if key not in _WORDS_ONLY}
     scene = scene_from_table(base)
-    base = _in_si(base, (), TABLES[scene.rotor.kind])
-    rotor_table = ROTORS[scene.rotor.kind][("rotor",)]
+    base = _in_si(base, (), tables_of(Scene, scene.rotor.kind))
+    rotor_class = type(scene.rotor)
     touched = {keys[:2] if keys[0] == "chambers" else keys[:1] for keys in paths}
     chambers = sorted(int(keys[1]) for keys in touched if keys[0] == "chambers")
     in_parts = all(keys[0] in ("rotor", "chambers") for keys in paths)
@@ -50,15 +48,15 @@ def scene_maker(table: Mapping[str, Any], paths: Sequence[Keys]) -> Maker:
         if not in_parts:
             return scene_from_table(changed)
         try:
-            fills = list(scene.chambers)
+            parts = list(scene.chambers)
             for k in chambers:
-                fills[k] = _fill(changed["chambers"][k])
+                parts[k] = Chamber.model_validate(changed["chambers"][k])
             rotor = scene.rotor
             if ("rotor",) in touched:
-                rotor = rotor_from_table(rotor_table.model_validate(changed["rotor"]))
+                rotor = rotor_class.model_validate(changed["rotor"])
         except ValidationError:
             return scene_from_table(changed)  # says what is wrong in words
-        return replace(scene, rotor=rotor, chambers=tuple(fills))
+        return scene.altered(rotor=rotor, chambers=tuple(parts))
 
     return make
 
@@ -73,14 +71,9 @@ def _in_si(table: Mapping[str, Any], place: tuple[str, ...], tables: _Tables) ->
         elif isinstance(value, dict) and below in tables:
             plain[key] = _in_si(value, below, tables)
         elif isinstance(value, str):
-            rules = [getattr(one, "func", None) for one in tables[place].model_fields[key].metadata]
-            plain[key] = next((rule(value) for rule in rules if isinstance(rule, Quantity)), value)
+            rule = rule_of(tables[place].model_fields[key])
+            plain[key] = rule(value) if isinstance(rule, Quantity) else value
     return plain
-
-
-def _fill(table: Mapping[str, Any]) -> Fill:
-    one = ChamberTable.model_validate(table)
-    return Fill(one.chamber(), one.liquid, one.volume)
 
 
 def make_scenes(make: Maker, rows: Iterable[Sequence[Any]]) -> tuple[list[Scene | None], list[str]]:

@@ -11,12 +11,13 @@ from os import PathLike
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, ValidationError
+from pydantic import Field, PlainValidator, ValidationError
 
 from leblanc.scene.faults import SceneFault, SceneFaults, field_path, shown
 from leblanc.scene.load import read_scene, read_toml
+from leblanc.scene.part import Conflict, Part, allowed_at, faults_of
 from leblanc.scene.paths import Keys, keys_of, rule_at
-from leblanc.scene.rules import OneOf, Quantity, Refused, Table, Text, Whole
+from leblanc.scene.rules import Quantity, Refused, Text, one_of, whole
 from leblanc.scene.scene import Exciter, Scene, scene_from_table
 from leblanc.studies.sweep.distributions import (
     KINDS,
@@ -47,17 +48,32 @@ class Varying:
         raise Refused(self.allowed)
 
 
-class StudyTable(Table):
-    """The whole file."""
+class Study(Part):
+    """The content of a study file: many scenes that differ in a few values."""
 
-    scene: Annotated[str, BeforeValidator(Text(4000))]
-    method: Annotated[str, BeforeValidator(OneOf(METHODS))]
-    samples: Annotated[int | None, BeforeValidator(Whole(1, MAX_SAMPLES))] = None
-    seed: Annotated[int, BeforeValidator(Whole(0, MAX_SEED))] = 0
-    vary: Annotated[dict[str, Any], BeforeValidator(Varying())]
+    scene: Annotated[str, PlainValidator(Text(4000))] = Field(
+        description="file of the base, its path counts from the study's"
+    )
+    method: Annotated[str, one_of(*METHODS)] = Field(description="how the scenes are chosen")
+    samples: Annotated[int | None, whole(1, MAX_SAMPLES)] = Field(
+        None, description="how many, a power of two for sobol; left out for a grid"
+    )
+    seed: Annotated[int, whole(0, MAX_SEED)] = Field(0, description="of the random numbers")
+    vary: Annotated[dict[str, Any], PlainValidator(Varying())] = Field(
+        description="fields of the scene by their paths, each with one distribution"
+    )
+
+    @classmethod
+    def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """A grid has the number of its samples by its levels."""
+        method = values.get("method")
+        if method == "grid" and "samples" in given:
+            yield Conflict(("samples",), "left out where method is grid")
+        elif method not in (None, "grid") and "samples" not in given:
+            yield Conflict(("samples",), f"given: {allowed_at(cls.model_fields['samples'])}")
 
 
-def check_study(table: Mapping[str, Any], file: str) -> StudyTable:
+def check_study(table: Mapping[str, Any], file: str) -> Study:
     """Every value of a study but the varied fields, which need the scene, checked.
 
     Parameters
@@ -72,47 +88,10 @@ def check_study(table: Mapping[str, Any], file: str) -> StudyTable:
     if "rotor" in table and "vary" not in table:
         text = "a study with the keys scene, method and [vary]; this is a scene, which `leblanc run` answers"
         raise SceneFaults([SceneFault(file, "", None, text)])
-    faults: list[SceneFault] = []
-    checked = None
     try:
-        checked = StudyTable.model_validate(table)
+        return Study.model_validate(table)
     except ValidationError as error:
-        faults.extend(_broken_rules(error, file))
-    faults.extend(_samples(table, file))
-    if checked is None or faults:
-        raise SceneFaults(faults)
-    return checked
-
-
-def _broken_rules(error: ValidationError, file: str) -> Iterator[SceneFault]:
-    """One fault for each broken rule."""
-    for item in error.errors(include_url=False):
-        cause = item.get("ctx", {}).get("error")
-        value = None if item["type"] == "missing" else shown(item["input"])
-        if item["type"] == "extra_forbidden":
-            allowed = "left out or spelled as one of: " + ", ".join(StudyTable.model_fields)
-        elif isinstance(cause, Refused):
-            allowed = cause.allowed
-        else:
-            allowed = f"given: {_rule(str(item['loc'][0]))}"
-        yield SceneFault(file, field_path(item["loc"]), value, allowed)
-
-
-def _samples(table: Mapping[str, Any], file: str) -> Iterator[SceneFault]:
-    """The number of samples, which a grid has by its levels."""
-    method = table.get("method")
-    if method == "grid" and "samples" in table:
-        yield SceneFault(file, "samples", shown(table["samples"]), "left out where method is grid")
-    elif method in METHODS and method != "grid" and "samples" not in table:
-        yield SceneFault(file, "samples", None, f"given: {_rule('samples')}")
-
-
-def _rule(name: str) -> str:
-    """The rule of a field in words."""
-    for rule in StudyTable.model_fields[name].metadata:
-        if isinstance(rule, BeforeValidator):
-            return str(getattr(rule.func, "allowed", ""))
-    return ""
+        raise SceneFaults(faults_of(error, file, Study)) from error
 
 
 _MOST_PERMUTED = 50_000_000  # numbers of a Latin hypercube, which is made as a whole
@@ -253,7 +232,7 @@ def _fields(
         where: tuple[str, ...] = ("vary", path)
         value: object = None
         try:
-            rule = rule_at(scene, path)
+            rule = rule_at(Scene, scene, path)
             kind = _kind(given, method)
             where, value = (*where, kind), given[kind]
             distribution = read_distribution(kind, value, rule)

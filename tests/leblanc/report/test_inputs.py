@@ -5,17 +5,16 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from leblanc.report.inputs import Inputs, aim_rows, scene_inputs
-from leblanc.scene.optimise import Aim
-from leblanc.scene.scene import scene_from_table
-from leblanc.scene.tables import TABLES
-from meshes.chamber import Chamber
+from leblanc.scene.chambers import Chamber
+from leblanc.scene.optimise import Optimisation
+from leblanc.scene.paths import tables_of
+from leblanc.scene.scene import Scene, scene_from_table
 from meshes.chamber_section import chamber_section
 from meshes.section import Section
 from tests.oracles.pages import printed
@@ -129,7 +128,7 @@ def test_the_full_scene_has_every_key_there_is(kind: str) -> None:
     """So that a key that comes new is not forgotten in the report."""
     given = set(leaves(full(kind))) | set(leaves(full(kind, motor=True)))
     pattern = {".".join("*" if part.isdecimal() else part for part in path.split(".")) for path in given}
-    for place, model in TABLES[kind].items():
+    for place, model in tables_of(Scene, kind).items():
         if place[-1:] == ("friction",) or place[-2:] == ("optimise", "duty"):
             continue
         for key in model.model_fields:
@@ -172,11 +171,11 @@ def test_a_section_of_its_own_is_named_and_measured() -> None:
     mesh = Section(points, np.array([[0, 1, 2], [0, 2, 3]]))
     scene = scene_from_table(full("jeffcott") | {"assumed": ["chambers.0.height"]})
     shape = chamber_section("square <1>.msh", mesh)
-    chamber = Chamber(shape.farthest, 0.02, section=shape)
-    fills = (replace(scene.chambers[0], chamber=chamber),)
+    round_one = scene.chambers[0]
+    chambers = (Chamber(section=shape, height=0.02, liquid=round_one.liquid, volume=round_one.volume),)
     for name, marked in (("section", 2), ("section_unit", 2), ("section_size", 1), ("height", 0)):
         path = f"chambers.0.{name}"
-        inputs = scene_inputs(replace(scene, chambers=fills, assumed=(path,)))
+        inputs = scene_inputs(scene.altered(chambers=chambers, assumed=(path,)))
         (row,) = [row for one in inputs.tables if "section" in one.head for row in one.rows]
         far = printed(math.sqrt(32.0) * 10.0)
         assert [cell.text for cell in row] == ["1", "square <1>.msh", "64", far, "as in the file"]
@@ -254,13 +253,14 @@ def test_an_aim_from_the_command_line_is_not_marked_as_the_scene_s() -> None:
     table["assumed"] = ["optimise.deflection", "optimise.clearance"]
     scene = scene_from_table(table)
     assert scene.optimise is not None
-    other = Aim(**{**vars(scene.optimise), "deflection": 2e-3})
+    assert scene.optimise is not None
+    other = scene.optimise.altered(deflection=2e-3)
     marked = {cell.path: cell for cell in scene_inputs(scene, other).cells if "optimise" in cell.path}
     assert marked["optimise.deflection"].text == "2 mm" and not marked["optimise.deflection"].assumed
     assert marked["optimise.clearance"].assumed
 
 
 def test_an_aim_says_what_is_not_its_default() -> None:
-    assert aim_rows(Aim()) == [("Objective", "working_speed", "objective")]
-    duty = tuple((float(k), 1.0) for k in range(1, 9))
-    assert "8 speeds from" in {name: text for _, text, name in aim_rows(Aim(duty=duty))}["duty"]
+    assert aim_rows(Optimisation()) == [("Objective", "working_speed", "objective")]
+    duty = [{"speed": float(k), "weight": 1.0} for k in range(1, 9)]
+    assert "8 speeds from" in {name: text for _, text, name in aim_rows(Optimisation(duty=duty))}["duty"]

@@ -191,7 +191,7 @@ def optimum() -> OptimumRecord:
 def test_optimum_numbers() -> None:
     record = optimum()
     (row,) = report_optimise.volumes(record).rows
-    (form,), (fill,) = record.covering, record.scene.chambers
+    (form,), (fill,) = record.covering, record.scene.fills
     expected = [
         record.volume[0] * 1e6, 100.0 * record.volume[0] / fill.chamber.capacity, form.deflection * 1e3,
         form.optimal_volume * 1e6, 100.0 * form.share, form.full_volume * 1e6,

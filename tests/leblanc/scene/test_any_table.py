@@ -11,9 +11,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from leblanc.scene import tables as scene_table
 from leblanc.scene.faults import SceneFaults
-from leblanc.scene.scene import scene_from_table
+from leblanc.scene.part import parts_of
+from leblanc.scene.paths import tables_of
+from leblanc.scene.scene import Exciter, Scene, scene_from_table
 from tests.leblanc.scene.test_scene import TEXT
 
 VALUES = st.one_of(
@@ -45,8 +46,8 @@ KEYS = st.one_of(
         sorted(
             {
                 key
-                for kind in scene_table.TABLES.values()
-                for table in kind.values()
+                for kind in parts_of(Scene.model_fields["rotor"])
+                for table in tables_of(Scene, kind).values()
                 for key in table.model_fields
             }
         )
@@ -88,5 +89,6 @@ def test_any_value_in_a_good_scene_is_taken_or_named(path: tuple[str, str], valu
     except SceneFaults as error:
         assert all(fault.field.startswith(path[0]) for fault in error.faults)
         return
-    numbers = [entry for entry in asdict(scene.rotor).values() if isinstance(entry, float)]
+    assert not isinstance(scene.rotor, Exciter)
+    numbers = [entry for entry in asdict(scene.rotor.machine()).values() if isinstance(entry, float)]
     assert all(map(math.isfinite, numbers))

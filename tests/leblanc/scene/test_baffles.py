@@ -49,8 +49,8 @@ def scene(baffles: dict[str, Any] | None = None, **more: Any) -> Scene:
 
 
 def test_the_keys_of_baffles_reach_the_chamber() -> None:
-    assert scene(LOW).chambers[0].chamber.baffles == Baffles(3, 0.097, 0.0, math.radians(10.0))
-    assert scene().chambers[0].chamber.baffles is None
+    assert scene(LOW).fills[0].chamber.baffles == Baffles(3, 0.097, 0.0, math.radians(10.0))
+    assert scene().fills[0].chamber.baffles is None
     assert scene().digest != scene(LOW).digest != scene(CUT).digest
 
 
@@ -86,7 +86,7 @@ def test_baffles_that_the_liquid_can_pass_change_no_steady_answer() -> None:
 def test_compartments_add_less_mass() -> None:
     record = run_scene(scene(CUT))
     fill, rotor = record.response, jeffcott(scene(CUT))
-    added = scene(CUT).chambers[0].added_mass
+    added = scene(CUT).fills[0].added_mass
     speed = fill.speed
     # The law is a straight line: the response of a heavier rotor [theory: rotor, eq. 2].
     stiffness = rotor.stiffness - (rotor.mass + added) * speed**2 + 1j * rotor.damping * speed
@@ -95,7 +95,7 @@ def test_compartments_add_less_mass() -> None:
     assert record.error_estimate is not None
     assert np.isnan(record.error_estimate).all()
     assert not np.isfinite(record.error_estimate).any()
-    assert added < 0.5 * scene(CUT).chambers[0].full_mass
+    assert added < 0.5 * scene(CUT).fills[0].full_mass
 
 
 def test_many_scenes_at_once_are_those_alone() -> None:
@@ -175,7 +175,7 @@ def drawn(folder: Path, **more: Any) -> dict[str, Any]:
 
 def test_a_section_from_a_file(tmp_path: Path) -> None:
     machine = scene_from_table(drawn(tmp_path))
-    record, fill = run_scene(machine), machine.chambers[0]
+    record, fill = run_scene(machine), machine.fills[0]
     assert fill.chamber.radius == pytest.approx(0.102, rel=1e-9)
     assert (
         "Chamber 1: section",
@@ -238,7 +238,7 @@ def test_a_section_from_a_drawing(tmp_path: Path) -> None:
     circle_drawing(tmp_path / "circle.dxf")
     chamber = {"section": str(tmp_path / "circle.dxf"), "height": 0.02, "volume": 2e-4, "liquid": "water"}
     machine = scene_from_table(BASE | {"chambers": [chamber]})
-    shape = machine.chambers[0].chamber.section
+    shape = machine.fills[0].chamber.section
     assert shape is not None and shape.cell_size == pytest.approx(3e-3, rel=1e-3)
     # Parabolas of 3 mm on a circle of 150 mm.
     assert shape.farthest == pytest.approx(0.15, rel=1e-6)

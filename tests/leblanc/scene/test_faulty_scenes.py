@@ -160,8 +160,8 @@ CASES = (
     case('name = "Rig"', 'name = "\\u0007"', "name", "printable"),
     case('["rotor.mass"]', '"rotor.mass"', "assumed", "a list", "field paths"),
     case('["rotor.mass"]', "[3]", "assumed.0", "= 3", "text"),
-    case("[[chambers]]", "[chambers]", "chambers", "{...}", "a list of 1 to 1000", "[[chambers]]"),
-    case(CHAMBER, CHAMBER * 1001, "chambers", "[...]", "1 to 1000"),
+    case("[[chambers]]", "[chambers]", "chambers", "{...}", "a list of 0 to 1000", "[[chambers]]"),
+    case(CHAMBER, CHAMBER * 1001, "chambers", "[...]", "0 to 1000"),
     case(GOOD[GOOD.index("[speeds]") : GOOD.index("[model]")], "[[speeds]]\n", "speeds", "a table of start"),
     # a word that is not known
     case('"jeffcott"', '"top"', "rotor.kind", '"top"', "one of: jeffcott, two_plane, tub, exciter"),

@@ -9,9 +9,11 @@ from typing import Any
 import pytest
 
 from leblanc.scene.machine import dry_rotor, jeffcott
-from leblanc.scene.rotors import ExciterBalls
-from leblanc.scene.scene import Exciter, Motor, Runup, Scene, TubRotor, TwoPlaneRotor, scene_from_table
+from leblanc.scene.rotors import Balls
+from leblanc.scene.runup import Motor
+from leblanc.scene.scene import Exciter, Runup, Scene, TubRotor, TwoPlaneRotor, scene_from_table
 from meshes.errors import InputError
+from solvers.rotor.exciter.machine import Exciter as Machine
 from solvers.rotor.tub import Mount, Tub
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from tests.leblanc.scene.test_scene import TEXT
@@ -103,7 +105,7 @@ def test_two_plane() -> None:
         (Support(-0.35, 4e4, 80.0), Support(0.3, 0.0, 0.0)),
         (PlaneUnbalance(-0.2, 1.5e-3), PlaneUnbalance(0.25, 1.2e-3, -math.pi / 2)),
     )
-    assert rotor == TwoPlaneRotor("two_plane", expected, "vertical")
+    assert isinstance(rotor, TwoPlaneRotor) and rotor.machine() == expected and rotor.axis == "vertical"
     assert dry_rotor(read(TWO_PLANE)) == expected and read(TWO_PLANE).chambers == ()
 
 
@@ -126,7 +128,8 @@ def test_tub() -> None:
         drum_position=(0.001, 0.09, 0.0),
         unbalance_position=0.06,
     )
-    assert read(TUB).rotor == TubRotor("tub", expected, "horizontal")
+    rotor = read(TUB).rotor
+    assert isinstance(rotor, TubRotor) and rotor.machine() == expected and rotor.axis == "horizontal"
     plain = TUB.replace('unbalance_position = "60 mm"\n', "").replace(
         'drum_position = ["1 mm", "90 mm", 0]\n', ""
     )
@@ -136,14 +139,17 @@ def test_tub() -> None:
 
 
 def test_exciter() -> None:
-    balls = ExciterBalls(2, 0.325, "ball", 0.0, 0.0735, 0.03)
+    balls = Balls(count=2, mass=0.325, kind="ball", track_radius=0.0735, damping=0.03)
     rotor = read(EXCITER).rotor
     assert isinstance(rotor, Exciter)
-    assert rotor == Exciter("exciter", 90.0, 145083.0, 150.0, 0.0105, balls)
+    assert rotor == Exciter(
+        kind="exciter", platform_mass=90.0, stiffness=145083.0, damping=150.0, unbalance=0.0105, balls=balls
+    )
+    assert rotor.machine() == Machine(90.0, 145083.0, 150.0, 0.0105, 2, 0.325, 7.0 / 5.0, 0.0735, 0.03)
     assert rotor.axis == "horizontal"
     pendulum = read(EXCITER.replace('kind = "ball"', 'pendulum_inertia = "1e-4 kg*m^2"')).rotor
     assert isinstance(pendulum, Exciter)
-    assert (pendulum.balls.kind, pendulum.balls.pendulum_inertia) == ("pendulum", 1e-4)
+    assert (pendulum.balls.name, pendulum.balls.pendulum_inertia) == ("pendulum", 1e-4)
     with pytest.raises(InputError, match=r"rotor\.kind"):
         dry_rotor(read(EXCITER))
 
@@ -155,8 +161,10 @@ def test_the_planar_rotor_alone_is_a_jeffcott() -> None:
 
 
 def test_motor() -> None:
-    motor = Motor(0.5, (0.0, 1000.0 * math.pi / 30.0, 200.0), (20.0, 10.0, -1.0))
-    assert read(TUB + MOTOR).runup == Runup(5.0, 100.0, None, 14.0, 128, False, True, 500, motor)
+    motor = Motor(inertia=0.5, speeds=(0.0, 1000.0 * math.pi / 30.0, 200.0), torques=(20.0, 10.0, -1.0))
+    assert read(TUB + MOTOR).runup == Runup(
+        start=5.0, stop=100.0, duration=14.0, dispersion=True, samples=500, motor=motor
+    )
 
 
 @pytest.mark.parametrize("text", [TWO_PLANE, TUB, EXCITER, TUB + MOTOR])

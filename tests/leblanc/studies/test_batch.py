@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -23,8 +23,8 @@ COUNT = 23
 def scene(name: str, share: float = 1.0) -> Scene:
     """An example at a few speeds, with a share of its liquid."""
     found = load_scene(EXAMPLES / f"{name}.toml")
-    chambers = tuple(replace(fill, volume=share * fill.volume) for fill in found.chambers)
-    return replace(found, chambers=chambers, speeds=replace(found.speeds, count=COUNT))
+    chambers = tuple(one.holding(share * one.volume) for one in found.chambers)
+    return found.altered(chambers=chambers, speeds=found.speeds.altered(count=COUNT))
 
 
 def outputs(record: StudyRecord) -> dict[str, np.ndarray]:
@@ -58,9 +58,9 @@ def mixed() -> list[Scene]:
     return [
         scene("tub"),
         scene("horizontal_rig"),
-        replace(rig, model=replace(rig.model, liquid="statics", friction=Friction("linear", 3.0))),
+        rig.altered(model=rig.model.altered(liquid="statics", friction=Friction("linear", 3.0))),
         scene("vertical_rig", 0.4),
-        replace(asked, model=replace(asked.model, liquid="linear")),
+        asked.altered(model=asked.model.altered(liquid="linear")),
         scene("washing_machine", 0.0),
         scene("runup"),
     ]
@@ -124,7 +124,7 @@ def test_order_is_kept() -> None:
         ([], "scenes"),
         ([scene("runup"), load_scene(EXAMPLES / "runup.toml")], "scenes"),
         ([scene("vibratory_table")], "rotor.kind"),
-        ([replace(scene("runup"), model=Model("kdv", Friction("none", 0.0)))], "model.liquid"),
+        ([scene("runup").altered(model=Model(liquid="kdv", friction="none"))], "model.liquid"),
     ],
 )
 def test_what_cannot_be_answered_is_said(scenes: list[Scene], field: str) -> None:

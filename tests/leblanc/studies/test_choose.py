@@ -31,7 +31,7 @@ EXAMPLES = sorted(
 
 
 def asked(machine: Scene, liquid: str, tolerance: float = 0.01) -> Scene:
-    return replace(machine, model=replace(machine.model, liquid=liquid, tolerance=tolerance))
+    return machine.altered(model=machine.model.altered(liquid=liquid, tolerance=tolerance))
 
 
 def strong(unbalance: float = 6e-3) -> Scene:
@@ -117,7 +117,7 @@ def test_all_scenes_at_once_are_each_one_alone() -> None:
 def test_mixed_models() -> None:
     """Each speed is answered by its own model, whatever its neighbours take."""
     machine = strong()
-    rotor, fills, speed = jeffcott(machine), machine.chambers, machine.speed_array()
+    rotor, fills, speed = jeffcott(machine), machine.fills, machine.speed_array()
     gravity = axial_gravity(machine)
     models = np.where(np.arange(speed.size) % 3 == 0, "linear", "statics")
     mixed = response(rotor, fills, speed, gravity, [model_named(name) for name in models.tolist()])
@@ -135,8 +135,8 @@ def test_mixed_models_of_a_tilting_rotor() -> None:
     machine = load_scene("examples/two_plane_rig.toml")
     rotor, speed = dry_rotor(machine), machine.speed_array()[::40]
     models = np.where(np.arange(speed.size) % 2 == 0, "linear", "statics")
-    mixed = response(rotor, machine.chambers, speed, 0.0, [model_named(name) for name in models.tolist()])
-    linear = response(rotor, machine.chambers, speed, 0.0, LINEAR)
+    mixed = response(rotor, machine.fills, speed, 0.0, [model_named(name) for name in models.tolist()])
+    linear = response(rotor, machine.fills, speed, 0.0, LINEAR)
     assert mixed.model.tolist() == models.tolist() and mixed.position == linear.position
     np.testing.assert_allclose(mixed.coordinates[::2], linear.coordinates[::2], rtol=1e-12)
 

@@ -16,7 +16,6 @@ from leblanc.studies.exciter import (
     answer_exciter,
     describe_exciter,
     exciter_json,
-    machine_of,
     run_exciter,
 )
 from meshes.errors import InputError
@@ -65,10 +64,10 @@ def test_units() -> None:
     assert drag_torque * q == pytest.approx(eaten, rel=1e-9)
 
 
-@kills("leblanc.studies.exciter:machine_of", "rolling=rolling", "rolling=rolling + 1.0")
+@kills("leblanc.scene.rotors:Exciter._machine", "rolling=rolling", "rolling=rolling + 1.0")
 def test_the_worked_table() -> None:
     """Of the worked table: the source's numbers, loaded [YF17, section 5.2], and its scene."""
-    machine = machine_of(load_scene(ROOT / "examples" / "vibratory_table.toml").rotor)  # type: ignore[arg-type]
+    machine = load_scene(ROOT / "examples" / "vibratory_table.toml").rotor.machine()  # type: ignore[arg-type]
     assert machine.whole_mass == pytest.approx(90.75, rel=1e-12)
     assert machine.natural_frequency / (2 * math.pi) == pytest.approx(6.36, abs=5e-3)
     assert machine.length == pytest.approx(0.5264e-3, abs=5e-8)
@@ -95,7 +94,7 @@ def test_the_start_of_a_pendulum_is_its_own_inertia() -> None:
         },
         "speeds": {"start": 10.0, "stop": 20.0, "count": 2},
     }
-    machine = machine_of(scene_from_table(table).rotor)  # type: ignore[arg-type]
+    machine = scene_from_table(table).rotor.machine()  # type: ignore[arg-type]
     assert machine.rolling == pytest.approx(2.0, rel=1e-12) and machine.ball_count == 3
 
 

@@ -73,7 +73,7 @@ def test_a_horizontal_axis_needs_capture() -> None:
     """The liquid of a horizontal axis is captured where Omega^2 a exceeds g; a vertical axis needs none."""
     lying = choose(scene())
     assert lying.captured_from is not None
-    surface = scene().chambers[0].surface_radius
+    surface = scene().fills[0].surface_radius
     assert lying.captured_from == pytest.approx(math.sqrt(9.81 / surface))
     speed = scene().speed_array()
     np.testing.assert_array_equal(lying.in_range, speed > lying.captured_from)

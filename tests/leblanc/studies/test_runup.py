@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -210,7 +209,7 @@ def _chamber(volume: float, **more: Any) -> dict[str, Any]:
 
 @kills(
     "leblanc.studies.runup:steady_response",
-    "response(jeffcott(scene), scene.chambers, passed",
+    "response(jeffcott(scene), scene.fills, passed",
     "response(jeffcott(scene), (), passed",
 )
 def test_steady() -> None:
@@ -230,8 +229,8 @@ def test_steady_response() -> None:
 
 @kills(
     "leblanc.studies.runup:whirl_bands",
-    "unstable_bands(rotor, [scene.chambers], passed, friction)",
-    "unstable_bands(rotor, [scene.chambers], passed, (1, 1.0))",
+    "unstable_bands(rotor, [scene.fills], passed, friction)",
+    "unstable_bands(rotor, [scene.fills], passed, (1, 1.0))",
 )
 def test_bands() -> None:
     """Edges of the unstable band of an undamped rotor with m_f = 0.1 M and h0 = 0.1 R, in its frequencies."""
@@ -309,7 +308,7 @@ def history_of(count: int, layers: int, **changes: Any) -> RunupHistory:
 def test_gravity_across() -> None:
     """The liquid itself must turn faster than sqrt(g/a), whatever the drum does, and must be captured."""
     machine = lying()
-    fill = machine.chambers[0]
+    fill = machine.fills[0]
     needed = math.sqrt(machine.gravity / fill.surface_radius)
     assert held_from(machine, fill) == pytest.approx(needed, rel=1e-12)
     lag = np.array([-100.0, -(100.0 - 0.99 * needed), -(100.0 - 1.01 * needed), 0.0, 100.0])
@@ -337,7 +336,7 @@ def test_gravity_along() -> None:
     # A low and nearly full chamber is covered at once: there Omega^2 a > g decides, a being 0.1 m.
     low = scene(chambers=[_chamber(math.pi * 1e-3 * (0.25**2 - 0.1**2), height=1e-3)])
     speed = np.array([0.99, 1.01]) * math.sqrt(low.gravity / 0.1)
-    assert held_from(low, low.chambers[0]) == pytest.approx(math.sqrt(low.gravity / 0.1), rel=1e-9)
+    assert held_from(low, low.fills[0]) == pytest.approx(math.sqrt(low.gravity / 0.1), rel=1e-9)
     good, words = judged(low, history_of(2, 1, speed=speed))
     assert not good.any()  # such a layer is too deep at any speed
     assert any("deeper than 0.3" in text for text in words)
@@ -361,7 +360,7 @@ def test_where_the_layer_is_a_fair_picture() -> None:
 
 def test_gravity_captures_and_drops_the_liquid() -> None:
     """Up through the speed of capture and back: both are told, and nothing below it is in range."""
-    needed = math.sqrt(9.81 / lying().chambers[0].surface_radius)
+    needed = math.sqrt(9.81 / lying().fills[0].surface_radius)
     ramp = {"start": 0.8 * needed, "stop": 4.0 * needed, "rate": 40.0, "duration": 0.6, "back": True}
     machine = lying(runup=ramp)
     found = runup_scene(machine, check=False)
@@ -512,8 +511,8 @@ def made_up(history: RunupHistory, machine: Scene | None = None) -> RunupRecord:
         in_range=good,
         steady=None,
         bands=((50.0, 60.0),),
-        chambers=tuple(map(runup_module._chamber, machine.chambers)),
-        planes=tuple(fill.chamber.plane for fill in machine.chambers),
+        chambers=tuple(map(runup_module._chamber, machine.fills)),
+        planes=tuple(fill.chamber.plane for fill in machine.fills),
         notes=notes,
     )
 
@@ -523,7 +522,7 @@ def test_figures_of_dull_histories(layers: int) -> None:
     """Nothing moves, nothing turns faster, no chamber: there is a figure all the same."""
     none = {"deflection": np.zeros((20, max(layers, 1)), dtype=complex)}
     chambers = [_chamber(1e-4, radius=0.2 - 0.01 * j) for j in range(layers)]
-    machine = lying(chambers=chambers) if layers else replace(lying(), chambers=())
+    machine = lying(chambers=chambers) if layers else lying().altered(chambers=())
     record = made_up(history_of(20, layers, **none), machine)
     for draw in (figures.speed_figure, figures.time_figure, figures.energy_figure):
         draw(record).canvas.draw()
@@ -737,15 +736,15 @@ def test_an_interrupted_run_leaves_its_files(tmp_path: Path, monkeypatch: pytest
 def test_liquid_model() -> None:
     """Long waves unless the scene asks for linear layers; what has no time is refused."""
     for asked, taken in (("auto", "long_wave"), ("long_wave", "long_wave"), ("linear", "linear")):
-        machine = replace(scene(), model=replace(scene().model, liquid=asked))
+        machine = scene().altered(model=scene().model.altered(liquid=asked))
         assert liquid_model(machine) == taken
     for asked in ("statics", "kdv", "fem"):
         with pytest.raises(InputError, match="liquid"):
-            liquid_model(replace(scene(), model=replace(scene().model, liquid=asked)))
+            liquid_model(scene().altered(model=scene().model.altered(liquid=asked)))
 
 
 def test_linear_waves_out_of_their_range_are_told() -> None:
-    linear = replace(scene(), model=replace(scene().model, liquid="linear"))
+    linear = scene().altered(model=scene().model.altered(liquid="linear"))
     fill = linear.chambers[0]
     depth = np.array([[1.2], [1.5]]) * fill.depth
     good, words = judged(linear, history_of(2, 1, depth_max=depth, depth_min=2.0 * fill.depth - depth))

@@ -39,8 +39,8 @@ def test_words() -> None:
 
 @kills(
     "leblanc.studies.run:self_excited",
-    "unstable_bands(rotor, [scene.chambers], speed, friction, growth[None])",
-    "unstable_bands(rotor, [scene.chambers[:1]], speed, friction)",
+    "unstable_bands(rotor, [scene.fills], speed, friction, growth[None])",
+    "unstable_bands(rotor, [scene.fills[:1]], speed, friction)",
 )
 def test_rig() -> None:
     """The horizontal rig whirls just above its critical speed, slower than it spins."""
@@ -53,5 +53,5 @@ def test_rig() -> None:
     assert np.all(whirl.whirl_speed[grows] < speed[grows])
     # Refined edges: growth there is its slope, some 0.1 in a unit of speed, times 1e-8 of the speed.
     scene = load_scene("examples/horizontal_rig.toml")
-    at_edges, _ = asynchronous_growth(dry_rotor(scene), scene.chambers, [low, high], Friction("stokes"))
+    at_edges, _ = asynchronous_growth(dry_rotor(scene), scene.fills, [low, high], Friction("stokes"))
     assert np.all(np.abs(at_edges) < 1e-6)

@@ -47,7 +47,7 @@ def small(name: str = "washing_machine", **changes: object) -> StabilityRecord:
 def test_fills() -> None:
     """The volumes keep their ratios, add up, and end where the first chamber is full."""
     for name in ("horizontal_rig", "vertical_rig"):
-        chambers = scene(name).chambers
+        chambers = scene(name).fills
         rows = fills_over_volume(chambers, 5)
         totals = [sum(fill.volume for fill in fills) for fills in rows]
         assert totals[0] == 0.0
@@ -58,7 +58,7 @@ def test_fills() -> None:
         fullest = max(fill.volume / fill.chamber.capacity for fill in rows[-1])
         assert fullest == pytest.approx(1.0, rel=1e-12)
         assert sum(fill.volume for fill in fills_over_volume(chambers, 3, 1e-5)[-1]) == pytest.approx(1e-5)
-    empty = tuple(replace(fill, volume=0.0) for fill in scene("horizontal_rig").chambers)
+    empty = tuple(replace(fill, volume=0.0) for fill in scene("horizontal_rig").fills)
     for fill in fills_over_volume(empty, 2)[-1]:
         assert fill.volume == pytest.approx(fill.chamber.capacity)
 
@@ -72,7 +72,7 @@ def test_record() -> None:
     ):
         record, machine = small(name, friction=law), scene(name)
         rotor = dry_rotor(machine)
-        rows = fills_over_volume(machine.chambers, 9)
+        rows = fills_over_volume(machine.fills, 9)
         np.testing.assert_allclose(record.volume, [sum(f.volume for f in fills) for fills in rows])
         for k in (0, 3, 8):
             growth, whirl = asynchronous_growth(rotor, rows[k], record.speed, pair)
@@ -85,12 +85,12 @@ def test_record() -> None:
 def test_range() -> None:
     """Held by the centrifugal field: a level axis from the capture speed, an upright one from covering."""
     record, machine = small(friction=Friction("none", 0.0)), scene()
-    for k, fills in enumerate(fills_over_volume(machine.chambers, 9)):
+    for k, fills in enumerate(fills_over_volume(machine.fills, 9)):
         free = 0 < k < 8
         captured = math.sqrt(9.81 / fills[0].surface_radius) if free else 0.0
         assert np.array_equal(record.in_range[k], record.speed > captured)
     record, machine = small("vertical_rig", friction=Friction("none", 0.0)), scene("vertical_rig")
-    for k, fills in enumerate(fills_over_volume(machine.chambers, 9)):
+    for k, fills in enumerate(fills_over_volume(machine.fills, 9)):
         covered = max(covering_speed(fill, 9.81) for fill in fills)
         assert np.array_equal(record.in_range[k], record.speed > covered)
 
@@ -101,7 +101,7 @@ def test_thin_layers() -> None:
     """With laminar friction a film thinner than five thicknesses of the wall layer is out of range."""
     record, machine = small(), scene()
     held = small(friction=Friction("none", 0.0)).in_range
-    for k, fills in enumerate(fills_over_volume(machine.chambers, 9)[1:8], start=1):
+    for k, fills in enumerate(fills_over_volume(machine.fills, 9)[1:8], start=1):
         slip = np.abs(record.whirl_speed[k] - record.speed)
         thick = np.sqrt(2.0 * fills[0].liquid.viscosity / slip) > 0.2 * fills[0].depth
         assert np.array_equal(record.in_range[k], held[k] & ~thick)
@@ -187,7 +187,7 @@ def test_defaults_are_the_study_s() -> None:
 
 def test_a_range_of_one_speed_is_refused() -> None:
     machine = scene()
-    still = replace(machine, speeds=replace(machine.speeds, stop=machine.speeds.start, count=1))
+    still = machine.altered(speeds=machine.speeds.altered(stop=machine.speeds.start, count=1))
     with pytest.raises(InputError, match=r"speeds\.stop"):
         map_scene(still)
 

@@ -6,7 +6,6 @@ Sides of a turn/180 and less replace arcs by chords: of a layer between two circ
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -313,7 +312,7 @@ def test_sections(check: Any, tmp_path: Path) -> None:
 
 
 def test_a_film_over_the_speeds_has_bodies_in_every_frame() -> None:
-    scene = replace(scene_of(**CLOSED), speeds=Speeds(5.0, 150.0, 3))
+    scene = scene_of(**CLOSED).altered(speeds=Speeds(start=5.0, stop=150.0, count=3))
     sight = look_at(scene)
     scale = choose_scale(sight.fills, sight.deflection, sight.speed, sight.gravity)
     film = sweep_film(sight, scale, 3)

@@ -121,7 +121,7 @@ def test_spin_and_unbalance() -> None:
         mark = complex(across(picture, "unbalance")[0]) - centre
         # On the wall, along the real axis.
         assert mark.imag == pytest.approx(0.0, abs=1e-9)
-        assert mark.real == pytest.approx(max(f.chamber.radius for f in scene(name).chambers) * 1e3)
+        assert mark.real == pytest.approx(max(f.chamber.radius for f in scene(name).fills) * 1e3)
 
 
 @kills("leblanc.studies.shapes:_lean", "(high - low) / np.ptp(planes)", "(low - high) / np.ptp(planes)")
@@ -142,7 +142,7 @@ def test_lean_of_one_chamber() -> None:
     # second one empty, at another plane.
     tub = scene("tub")
     one = look_at(tub, 40.0)
-    ring = tub.chambers[0]
+    ring = tub.fills[0]
     far = replace(ring, chamber=replace(ring.chamber, plane=ring.chamber.plane - 0.2), volume=0.0)
     two = look_at(replace(tub, chambers=(ring, far)), 40.0)
     assert abs(one.lean[0]) > 0.0
@@ -185,7 +185,7 @@ def test_scale_bar() -> None:
 
 def test_mode() -> None:
     machine = scene("centrifuge")
-    fill_ = machine.chambers[0]
+    fill_ = machine.fills[0]
     log = math.log(fill_.chamber.radius / fill_.surface_radius)
     for number in (1, 2, 3):
         mode = solve_mode(machine, number)
@@ -276,7 +276,7 @@ def test_a_plotter_shows_what_was_put_in_last() -> None:
 
 
 def short_film() -> Film:
-    machine = replace(scene("runup"), speeds=Speeds(15.0, 30.0, 3))
+    machine = scene("runup").altered(speeds=Speeds(start=15.0, stop=30.0, count=3))
     return sweep_film(look_at(machine), Scale(), 3)
 
 

@@ -275,7 +275,7 @@ def test_tilting_rotors() -> None:
             system = replace(system, unbalance=system.unbalance * math.exp(rng.uniform(-5.0, 1.0)))
             fills = [
                 replace(one, volume=one.chamber.capacity * math.exp(rng.uniform(-6.0, -0.1)))
-                for one in scene.chambers
+                for one in scene.fills
             ]
             speed = np.sort(rng.uniform(scene.speeds.start, scene.speeds.stop, 5))
             gravity, place = axial_gravity(scene), fills[0].chamber.plane

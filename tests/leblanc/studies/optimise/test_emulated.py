@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from leblanc.cli import main
-from leblanc.scene.optimise import Aim
+from leblanc.scene.optimise import Optimisation
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.studies.batch import answer_scenes
 from leblanc.studies.optimise.answers import with_volumes
@@ -31,10 +31,10 @@ def swept(folder: Path) -> tuple[Scene, Path]:
 def test_search(tmp_path: Path) -> None:
     """What the search finds by the emulator is as good, by the solvers, as its error allows."""
     scene, store = swept(tmp_path)
-    emulator = emulated_vibration(store, scene, Aim())
+    emulator = emulated_vibration(store, scene, Optimisation())
     assert emulator.chambers == (1, 0)  # the order of the study
-    quick = optimise_scene(scene, aim=Aim(), front=False, emulator=emulator)
-    true = optimise_scene(scene, aim=Aim(), front=False)
+    quick = optimise_scene(scene, aim=Optimisation(), front=False, emulator=emulator)
+    true = optimise_scene(scene, aim=Optimisation(), front=False)
     assert quick.emulated is not None and quick.notes[0] == quick.emulated.words()
     again = answer_scenes([with_volumes(scene, quick.volume)]).amplitude[0, -1]
     # The value told is that of the solvers.
@@ -50,7 +50,7 @@ def test_search(tmp_path: Path) -> None:
 def test_bounds(tmp_path: Path) -> None:
     """Inside both the bounds asked for and the samples; a chamber that was not varied keeps its volume."""
     scene, store = swept(tmp_path)
-    whole = emulated_vibration(store, scene, Aim())
+    whole = emulated_vibration(store, scene, Optimisation())
     low, high = whole.inside(np.zeros(2), np.full(2, 1e-5), np.full(2, 1e-5))
     assert np.all(low > 0.9e-6) and np.all(high == 1e-5)
     with pytest.raises(InputError, match="meet the samples") as caught:
@@ -64,18 +64,18 @@ def test_bounds(tmp_path: Path) -> None:
 def test_what_does_not_fit_is_said(tmp_path: Path) -> None:
     scene, store = swept(tmp_path)
     with pytest.raises(InputError, match="this very scene"):
-        emulated_vibration(store, replace(scene, gravity=9.8), Aim())
-    for aim in (Aim(objective="mean"), Aim(working_speed=100.0)):
+        emulated_vibration(store, scene.altered(gravity=9.8), Optimisation())
+    for aim in (Optimisation(objective="mean"), Optimisation(working_speed=100.0)):
         with pytest.raises(InputError) as caught:
             emulated_vibration(store, scene, aim)
         assert caught.value.field == "--objective"
-    emulated_vibration(store, scene, Aim(objective="peak"))
+    emulated_vibration(store, scene, Optimisation(objective="peak"))
     more = SMOOTH_FILLS + '"rotor.mass" = { uniform = [3.9, 4.1] }\n'
     folder = tmp_path / "more"
     folder.mkdir()
     run_sweep(study_in(folder, more), folder, workers=0)
     with pytest.raises(InputError, match="nothing else"):
-        emulated_vibration(folder / "sweep.zarr", load_scene(folder / "scene.toml"), Aim())
+        emulated_vibration(folder / "sweep.zarr", load_scene(folder / "scene.toml"), Optimisation())
 
 
 def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

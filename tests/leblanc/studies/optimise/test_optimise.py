@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from fluid.fill import Fill
 from fluid.liquid import known_liquid
-from leblanc.scene.optimise import Aim
+from leblanc.scene.optimise import Optimisation
 from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.studies.optimise.answers import FilledMachine
 from leblanc.studies.optimise.closed_form import (
@@ -135,10 +135,8 @@ def test_full_volume_over_the_box(share: float, slender: float, speed: float) ->
 
 def rig(volumes: tuple[float, ...] = (0.0, 0.0)) -> Scene:
     scene = load_scene(EXAMPLES / "horizontal_rig.toml")
-    fills = (
-        Fill(one.chamber, one.liquid, volume) for one, volume in zip(scene.chambers, volumes, strict=True)
-    )
-    return replace(scene, chambers=tuple(fills), speeds=Speeds(50.0, 200.0, 61))
+    filled = (one.holding(volume) for one, volume in zip(scene.chambers, volumes, strict=True))
+    return scene.altered(chambers=tuple(filled), speeds=Speeds(start=50.0, stop=200.0, count=61))
 
 
 @kills(
@@ -150,7 +148,7 @@ def test_mean() -> None:
     """Shares of 3 and 1 of what `run` finds at two speeds."""
     volumes = (4e-6, 1e-6)
     each = [
-        float(run_scene(replace(rig(volumes), speeds=Speeds(w, w, 1), model=_statics(rig()))).amplitude[0])
+        float(run_scene(rig(volumes).altered(speeds=Speeds.at(w), model=_statics(rig()))).amplitude[0])
         for w in (90.0, 150.0)
     ]
     mean = AtSpeed(FilledMachine(rig()), np.array([90.0, 150.0]), np.array([3.0, 1.0]))
@@ -184,14 +182,14 @@ def test_excess() -> None:
 
 
 def _statics(scene: Scene):  # type: ignore[no-untyped-def]
-    return replace(scene.model, liquid="statics")
+    return scene.model.altered(liquid="statics")
 
 
 def test_peak() -> None:
     """The peak found among a few speeds is that of all of them, and so is the best of several volumes."""
     for seed in (3, 8, 13):
         scene = random_scene(seed, 1, 61)
-        capacity = scene.chambers[0].chamber.capacity
+        capacity = scene.fills[0].chamber.capacity
         volumes = np.array([[0.0], [3e-4], [3e-3], [0.03], [0.3], [0.99]]) * capacity
         every = amplitudes(scene, volumes).max(axis=1)
         peak = PeakOver(FilledMachine(scene), scene.speeds)
@@ -208,8 +206,8 @@ def test_peak() -> None:
 
 @kills(
     "leblanc.studies.optimise.conditions:_in_circumstance",
-    "liquid_at(fill.liquid, one.temperature), 0.0",
-    "fill.liquid, 0.0",
+    "liquid=liquid_at(chamber.liquid, one.temperature), volume",
+    "liquid=chamber.liquid, volume",
 )
 @kills(
     "leblanc.studies.optimise.conditions:Robust.exact", "self.quantile, axis=0", "1.0 - self.quantile, axis=0"
@@ -232,16 +230,16 @@ def test_robust() -> None:
         assert one.temperature is not None
         liquid = replace(WATER, name="other", density=density[one.temperature])
         held = 4e-4 * WATER.density / liquid.density
-        rotor = replace(scene.rotor, unbalance=one.unbalance)  # type: ignore[type-var]
-        fills = (Fill(scene.chambers[0].chamber, liquid, held),)
-        speeds = Speeds(100.0, 100.0, 1)
-        own = replace(scene, rotor=rotor, chambers=fills, speeds=speeds, model=_statics(scene))
+        rotor = scene.rotor.altered(unbalance=one.unbalance)
+        fills = (scene.chambers[0].altered(liquid=liquid, volume=held),)
+        speeds = Speeds.at(100.0)
+        own = scene.altered(rotor=rotor, chambers=fills, speeds=speeds, model=_statics(scene))
         found.append(float(run_scene(own).amplitude[0]))
     worst = Robust(scene, 100.0, around, 1.0)
     # The densities are given with five digits; the amplitude depends on them through the added mass.
     assert worst.exact(volume)[0] == pytest.approx(max(found), rel=1e-4)
     assert Robust(scene, 100.0, around, 0.5).exact(volume)[0] == pytest.approx(sorted(found)[4], rel=1e-4)
-    full = scene.chambers[0].chamber.capacity
+    full = scene.fills[0].chamber.capacity
     assert worst.fullest(np.array([[full]]))[0] == pytest.approx(WATER.density / 983.20, rel=1e-4)
 
 
@@ -255,7 +253,7 @@ def test_growth() -> None:
     from leblanc.studies.run import self_excited
 
     volumes = (20e-6, 15e-6)
-    scene = replace(rig(volumes), speeds=Speeds(100.0, 200.0, 21))
+    scene = rig(volumes).altered(speeds=Speeds(start=100.0, stop=200.0, count=21))
     exact = float(self_excited(scene).growth.max())
     found = growth(rig(), np.array([volumes]), scene.speed_array())
     assert found[0] == pytest.approx(exact, rel=1e-9)
@@ -318,10 +316,10 @@ def test_special_case_of_a_given_deflection() -> None:
     """Through the whole optimiser: the volume is the closed form's, which stands beside it."""
     scene = load_scene(EXAMPLES / "runup.toml")
     for speed in (40.0, 100.0):
-        best = optimise_scene(scene, aim=Aim(deflection=2e-3, working_speed=speed))
+        best = optimise_scene(scene, aim=Optimisation(deflection=2e-3, working_speed=speed))
         assert best.volume[0] == pytest.approx(best.covering[0].optimal_volume, rel=1e-9)
         assert best.feasible
-    flat = optimise_scene(load_scene(EXAMPLES / "horizontal_rig.toml"), aim=Aim(deflection=5e-4))
+    flat = optimise_scene(load_scene(EXAMPLES / "horizontal_rig.toml"), aim=Optimisation(deflection=5e-4))
     for volume, form in zip(flat.volume, flat.covering, strict=True):
         assert volume == pytest.approx(form.optimal_volume, rel=1e-9)
 
@@ -343,14 +341,14 @@ def test_the_best_volume_is_self_consistent() -> None:
 def test_constraints_bind() -> None:
     scene = load_scene(EXAMPLES / "washing_machine.toml")
     free = optimise_scene(scene, front=False)
-    dry = optimise_scene(scene, aim=Aim(dry_patch=False), front=False)
+    dry = optimise_scene(scene, aim=Optimisation(dry_patch=False), front=False)
     assert dry.feasible and dry.constraints["dry_patch"].value == 0.0
     assert dry.volume[0] >= dry.covering[0].optimal_volume * (1.0 - 1e-6)
-    bound = Aim(volumes=((1e-5, 5e-5),))
+    bound = Optimisation(volumes=((1e-5, 5e-5),))
     held = optimise_scene(scene, aim=bound, front=False)
     # The more the better up to the closed form; a hair of the amplitude, 1e-6, is some 3e-5 of this volume.
     assert held.volume[0] == pytest.approx(5e-5, rel=1e-4)
-    calm = optimise_scene(scene, aim=Aim(stability_margin=0.05), front=False)
+    calm = optimise_scene(scene, aim=Optimisation(stability_margin=0.05), front=False)
     assert calm.feasible and calm.growth <= -0.05
     assert calm.volume[0] < free.volume[0]
     assert free.growth > -0.05
@@ -359,7 +357,7 @@ def test_constraints_bind() -> None:
 def test_nothing_allowed_is_said() -> None:
     """No volume brings the amplitude below a hundredth of what the added mass allows."""
     scene = load_scene(EXAMPLES / "runup.toml")
-    best = optimise_scene(scene, aim=Aim("least_mass", vibration_limit=2e-5), front=False)
+    best = optimise_scene(scene, aim=Optimisation(objective="least_mass", vibration_limit=2e-5), front=False)
     assert not best.feasible
     assert not best.constraints["vibration"].satisfied
     # The least violation is the least amplitude.
@@ -368,8 +366,10 @@ def test_nothing_allowed_is_said() -> None:
 
 def test_clearance_binds() -> None:
     """The peak on the way sets the volume where the working speed alone would be content with less."""
-    scene = replace(load_scene(EXAMPLES / "washing_machine.toml"), speeds=Speeds(6.0, 105.0, 67))
-    best = optimise_scene(scene, aim=Aim(clearance=8.0e-3), front=False)
+    scene = load_scene(EXAMPLES / "washing_machine.toml").altered(
+        speeds=Speeds(start=6.0, stop=105.0, count=67)
+    )
+    best = optimise_scene(scene, aim=Optimisation(clearance=8.0e-3), front=False)
     free = optimise_scene(scene, front=False)
     assert best.feasible
     assert best.constraints["clearance"].value <= 8.0e-3
@@ -400,12 +400,12 @@ def test_what_does_not_fit_is_refused() -> None:
     tub = load_scene(EXAMPLES / "tub.toml")
     table = load_scene(EXAMPLES / "vibratory_table.toml")
     for one, aim, field in (
-        (scene, Aim("best"), "objective"),
-        (scene, Aim(volumes=((0.0, 1.0), (0.0, 1.0))), "optimise.volumes"),
-        (scene, Aim(volumes=((1.0, 2.0),)), "optimise.volumes.0"),
-        (replace(scene, chambers=()), Aim(), "chambers"),
-        (tub, Aim("robust"), "rotor.kind"),
-        (table, Aim(), "chambers"),
+        (scene, Optimisation().altered(objective="best"), "objective"),
+        (scene, Optimisation(volumes=((0.0, 1.0), (0.0, 1.0))), "optimise.volumes"),
+        (scene, Optimisation(volumes=((1.0, 2.0),)), "optimise.volumes.0"),
+        (scene.altered(chambers=()), Optimisation(), "chambers"),
+        (tub, Optimisation(objective="robust"), "rotor.kind"),
+        (table, Optimisation(), "chambers"),
     ):
         with pytest.raises(InputError, match=field):
             optimise_scene(one, aim=aim, front=False)

@@ -11,7 +11,7 @@ import pytest
 from leblanc.cli import main
 from leblanc.scene.faults import SceneFaults
 from leblanc.scene.paths import keys_of, rule_at, with_values
-from leblanc.scene.scene import scene_from_table
+from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.studies.sweep.study import load_sweep
 from tests.oracles.sweeps import SCENE, STUDY, study_in, write_study
 
@@ -212,7 +212,7 @@ def test_every_number_of_an_example_can_vary(name: str) -> None:
     assert len(found) > 10
     for path, value in found:
         if path != "rotor.kind":
-            rule_at(table, path)(value)
+            rule_at(Scene, table, path)(value)
 
 
 def _leaves(value: object, path: str = "") -> list[tuple[str, object]]:

@@ -45,7 +45,7 @@ def run_all(folder: Path, study: str = STUDY) -> Path:
 # -- scenes --------------------------------------------------------------------------------------------------
 
 
-@kills("leblanc.studies.sweep.scenes:scene_maker", "fills[k] = _fill", "fills[0] = _fill")
+@kills("leblanc.studies.sweep.scenes:scene_maker", "parts[k] = Chamber", "parts[0] = Chamber")
 @kills("leblanc.studies.sweep.scenes:scene_maker", 'if ("rotor",) in touched:', "if not touched:")
 def test_sampled_scenes_are_those_of_the_whole_table() -> None:
     """A scene made by parts is the one that the whole table gives."""
@@ -60,7 +60,7 @@ def test_sampled_scenes_are_those_of_the_whole_table() -> None:
         changes = [(keys_of(path), value) for path, value in values.items()]
         whole = scene_from_table(with_values(table, changes))
         made = scene_maker(table, [keys for keys, _ in changes])([value for _, value in changes])
-        assert made == replace(whole, source=made.source, assumed=made.assumed, runup=made.runup)
+        assert made == whole.altered(source=made.source, assumed=made.assumed, runup=made.runup)
 
 
 @given(mass=st.floats(-1.0, 10.0), volume=st.floats(-1e-5, 6e-4))

@@ -1,0 +1,83 @@
+"""The scenes that come with the package."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from leblanc.scene.faults import meant
+from leblanc.scene.load import read_toml
+from leblanc.scene.scene import Scene, load_scene
+from meshes.errors import InputError
+
+_COMMENT = re.compile(r"#\s*(.+)")
+
+
+def _folder() -> Path:
+    """In the package as it is installed, beside it in a checkout."""
+    package = Path(__file__).parents[1]
+    inside = package / "examples"
+    return inside if inside.is_dir() else package.parent / "examples"
+
+
+def example_names() -> tuple[str, ...]:
+    """Names of the scenes, and of the studies as "studies/NAME"."""
+    found = [*_folder().glob("*.toml"), *_folder().glob("studies/*.toml")]
+    return tuple(sorted(path.relative_to(_folder()).with_suffix("").as_posix() for path in found))
+
+
+def example_path(name: str) -> Path:
+    """File of a scene or study that comes with the package.
+
+    Parameters
+    ----------
+    name : of `example_names`
+
+    Raises
+    ------
+    InputError : there is none of that name
+
+    Examples
+    --------
+    >>> example_path("tub").name
+    'tub.toml'
+    """
+    names = example_names()
+    if name not in names:
+        raise InputError("example", name, f"one of: {', '.join(names)}{meant(name, names)}")
+    return _folder() / f"{name}.toml"
+
+
+def example(name: str) -> Scene:
+    """Scene that comes with the package.
+
+    Parameters
+    ----------
+    name : of `example_names`; not that of a study
+
+    Raises
+    ------
+    InputError : there is none of that name
+    SceneFaults : it is a study
+
+    Examples
+    --------
+    >>> example("tub").rotor.kind
+    'tub'
+    """
+    return load_scene(example_path(name))
+
+
+def example_title(name: str) -> str:
+    """What an example is, on one line: the name in its file, or its first comment.
+
+    Parameters
+    ----------
+    name : of `example_names`
+    """
+    path = example_path(name)
+    title = read_toml(path).get("name")
+    if isinstance(title, str):
+        return title
+    comment = _COMMENT.match(path.read_text(encoding="utf-8"))
+    return comment[1] if comment else ""
