@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
-FRONT = "study.cli"  # module with main(arguments) -> exit code
+FRONT = "leblanc.cli"  # module with main(arguments) -> exit code
 
 
 @dataclass(frozen=True)
