@@ -22,7 +22,7 @@ Imports = Mapping[tuple[str, str], int]
 Node = str | tuple[str, int]
 
 # Lengths in hundredths of an inch; the picture is meant to be shown one pixel each.
-WIDTH, LEFT, RIGHT, FOOT = 1000.0, 112.0, 24.0, 44.0
+WIDTH, LEFT, RIGHT, FOOT = 1000.0, 112.0, 24.0, 24.0
 BOX, GAP, BAND, APART = 38.0, 44.0, 16.0, 24.0  # a box, between rows, a band beyond its boxes, between bands
 # Least room beside a stream and beside a box, and how many times that may become where there is more.
 BESIDE_STREAM, BESIDE_BOX, LOOSEST = 4.0, 7.0, 3.0
@@ -167,7 +167,7 @@ def plan(rooms: Rooms) -> Plan:
             rows[k].append((room, k))
     links = _links(rows, downward, level)
     rows = _untangled(rows, links)
-    solid = np.array([sum(map(_breadth_of, row)) for row in rows])
+    solid = np.array([sum(map(breadth_of, row)) for row in rows])
     gaps = np.array([sum(map(_gap, row)) for row in rows])
     width = max(WIDTH, LEFT + RIGHT + float(np.max(solid + gaps)))
     loose = min(LOOSEST, float(np.min((width - LEFT - RIGHT - solid) / gaps)))
@@ -225,7 +225,7 @@ def _crossings(upper: Sequence[Node], lower: Sequence[Node], below: Mapping[Node
     return sum(a < c and b > d for a, b in ends for c, d in ends)
 
 
-def _breadth_of(node: Node) -> float:
+def breadth_of(node: Node) -> float:
     """Width of a box; a stream has none that matters."""
     return max(NARROWEST, _length(label(node)) + MARGIN) if isinstance(node, str) else 0.0
 
@@ -236,7 +236,9 @@ def _length(text: str) -> float:
     from matplotlib.font_manager import FontProperties
     from matplotlib.textpath import TextToPath
 
-    width, _, _ = TextToPath().get_text_width_height_descent(text, FontProperties(FONT, size=NAME), False)
+    width, _, _ = TextToPath().get_text_width_height_descent(
+        text, FontProperties(family=FONT, size=NAME), False
+    )
     return float(width) * 100.0 / 72.0
 
 
@@ -262,7 +264,7 @@ def _spread(
         pull = (1.0, 3.0, 9.0)[isinstance(high, tuple) + isinstance(low, tuple)]
         joined.setdefault(high, []).append((low, pull))
         joined.setdefault(low, []).append((high, pull))
-    halves = {node: 0.5 * (_breadth_of(node) + loose * _gap(node)) for row in rows for node in row}
+    halves = {node: 0.5 * (breadth_of(node) + loose * _gap(node)) for row in rows for node in row}
     # Distances from the first of a row where all stand close, and where the first may stand.
     close = [np.cumsum([0.0, *(halves[a] + halves[b] for a, b in pairwise(row))]) for row in rows]
     low = [LEFT + halves[row[0]] for row in rows]
@@ -294,27 +296,37 @@ def draw_rooms(graph: Rooms, path: Path) -> tuple[Path, Path]:
     The two files
     """
     import matplotlib
+
+    files = path.with_suffix(".png"), path.with_suffix(".svg")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with matplotlib.rc_context({"font.family": FONT, "svg.hashsalt": "rooms"}):  # the same files every time
+        drawn = figure(graph)
+        drawn.savefig(files[0], dpi=DOTS, metadata={"Software": None})
+        drawn.savefig(files[1], metadata={"Date": None, "Creator": "leblanc"})
+    return files
+
+
+def figure(graph: Rooms) -> Any:
+    """The figure of rooms.
+
+    Parameters
+    ----------
+    graph : rooms and their imports
+    """
     from matplotlib.figure import Figure
 
     placed = plan(graph)
     heights, bands, total = _heights(placed.packages)
-    files = path.with_suffix(".png"), path.with_suffix(".svg")
-    with matplotlib.rc_context():
-        matplotlib.rcdefaults()
-        matplotlib.rcParams["svg.hashsalt"] = "rooms"  # the same file every time
-        figure = Figure(figsize=(placed.width / 100.0, total / 100.0), facecolor="white")
-        axes = figure.add_axes((0, 0, 1, 1), xlim=(0, placed.width), ylim=(total, 0))
-        axes.set_axis_off()
-        tints = dict(zip(dict.fromkeys(reversed(placed.packages)), 3 * COLOURS, strict=False))
-        _draw_bands(axes, graph, bands, placed.width, tints)
-        _draw_streams(axes, graph, placed, heights, tints)
-        _draw_boxes(axes, graph, placed, heights, tints)
-        _draw_against(axes, placed, heights)
-        _draw_key(axes, total, bool(placed.against))
-        path.parent.mkdir(parents=True, exist_ok=True)
-        figure.savefig(files[0], dpi=DOTS, metadata={"Software": None})
-        figure.savefig(files[1], metadata={"Date": None, "Creator": "leblanc"})
-    return files
+    drawn = Figure(figsize=(placed.width / 100.0, total / 100.0), facecolor="white")
+    axes = drawn.add_axes((0, 0, 1, 1), xlim=(0, placed.width), ylim=(total, 0))
+    axes.set_axis_off()
+    tints = dict(zip(dict.fromkeys(reversed(placed.packages)), 3 * COLOURS, strict=False))
+    _draw_bands(axes, graph, bands, placed.width, tints)
+    _draw_streams(axes, graph, placed, heights, tints)
+    _draw_boxes(axes, graph, placed, heights, tints)
+    _draw_against(axes, placed, heights)
+    _draw_key(axes, total, bool(placed.against))
+    return drawn
 
 
 def _heights(packages: Sequence[str]) -> tuple[list[float], dict[str, tuple[float, float]], float]:
@@ -412,7 +424,7 @@ def _ports(graph: Rooms, placed: Plan) -> dict[tuple[str, str], float]:
     for room in graph.sizes:
         out = [b for a, b in graph.imports if a == room and level[room] < level[b]]
         out.sort(key=lambda b: (placed.places.get((b, level[room] + 1), placed.places[b]), b))
-        step = min(12.0, (_breadth_of(room) - 20.0) / max(1, len(out) - 1))
+        step = min(12.0, (breadth_of(room) - 20.0) / max(1, len(out) - 1))
         for k, imported in enumerate(out):
             found[room, imported] = placed.places[room] + step * (k - 0.5 * (len(out) - 1))
     return found
@@ -450,7 +462,7 @@ def _draw_boxes(
 
     for row, top in zip(placed.rows, heights, strict=True):
         for room in (node for node in row if isinstance(node, str)):
-            x, half, colour = placed.places[room], 0.5 * _breadth_of(room), tints[_package(room)]
+            x, half, colour = placed.places[room], 0.5 * breadth_of(room), tints[_package(room)]
             axes.add_patch(
                 FancyBboxPatch(
                     (x - half, top),
@@ -475,7 +487,7 @@ def _draw_against(axes: Any, placed: Plan, heights: Sequence[float]) -> None:
     level = {node: k for k, row in enumerate(placed.rows) for node in row}
     for importer, imported in placed.against:
         ends = [
-            (placed.places[room] + 0.5 * _breadth_of(room), heights[level[room]] + share * BOX)
+            (placed.places[room] + 0.5 * breadth_of(room), heights[level[room]] + share * BOX)
             for room, share in ((importer, 0.3), (imported, 0.7))
         ]
         axes.add_patch(
