@@ -210,7 +210,7 @@ liquid = "water"
     (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
     one = load_scene(tmp_path / "scene.toml")
     assert one.digest == load_scene(tmp_path / "scene.toml").digest
-    assert one.chambers[0].chamber.section is not None
+    assert one.fills[0].chamber.section is not None
 
 
 @pytest.mark.parametrize(
@@ -223,7 +223,7 @@ liquid = "water"
             {"section": "none.dxf"},
             "must be the path of a mesh file of the section, .msh, .vtu or .xdmf, or of",
         ),
-        ({"radius": 0.1}, "chambers.0.radius = 0.1: must be left out where chambers.0.section is given"),
+        ({"radius": 0.1}, "chambers.0.radius = 0.1: must be left out where section is given"),
         ({"baffles": {"count": 3}}, "chambers.0.baffles"),
         ({"volume": 1.0}, "chambers.0.volume = 1.0: must be at most what the chamber holds"),
     ],
@@ -245,7 +245,7 @@ def test_a_section_from_a_drawing(tmp_path: Path) -> None:
     finer = scene_from_table(
         BASE | {"chambers": [chamber | {"section_size": "2 mm", "section_unit": "2 mm"}]}
     )
-    other = finer.chambers[0].chamber.section
+    other = finer.fills[0].chamber.section
     assert other is not None and other.cell_size == 2e-3 and other.farthest == pytest.approx(0.3, rel=1e-6)
     assert set(run_scene(machine).response.model) == {"fem"}
 
