@@ -24,9 +24,9 @@ Every key that a scene file or a study file may have. This page is made from the
 (`docs/_ext/scene_keys.py`); [howto/machine](howto/machine.md) shows scenes, [sweep](sweep.md) studies.
 
 A quantity is a plain number in the SI unit that stands here, or a text with a unit, `"65 mm"`; see
-[units](howto/units.md). A key without a default must be given. Where a meaning ends with "or" and another key,
-exactly one of the two must be given. `leblanc new` writes a scene to start from, `leblanc new --list` lists the
-examples.
+[units](howto/units.md). A key without a default must be given. Where a meaning ends with "or" and another
+key, exactly one of the two must be given. `leblanc new` writes a scene to start from, and
+`leblanc new --list` lists the examples.
 """
 _COLUMNS = ("Key", "Unit", "Allowed", "Default", "Meaning")
 

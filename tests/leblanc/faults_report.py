@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from tests.faults import Fault
 from tests.leblanc.test_report import check_comparisons, check_ranges, check_warnings
-from tests.leblanc.test_report_inputs import check_units, check_units_of_other_rotors
 from tests.leblanc.test_report_kinds import (
     check_events,
     check_exciter_numbers,
@@ -23,36 +22,6 @@ RUN, MAP, BEST, UP, TABLE = (
 
 FAULTS: tuple[Fault, ...] = (
     Fault("leblanc.text.numbers", "rpm[change[1::2] - 1]", "rpm[change[1::2]]", check_ranges),
-    # The inputs.
-    Fault(
-        "leblanc.report.inputs",
-        "number(machine.natural_frequency * RPM)",
-        "number(machine.natural_frequency)",
-        check_units,
-    ),
-    Fault(
-        "leblanc.report.inputs", "degrees(heavy.angle)", "radians(heavy.angle)", check_units_of_other_rotors
-    ),
-    Fault(
-        "leblanc.report.inputs", "number(one.damping),", "number(one.stiffness),", check_units_of_other_rotors
-    ),
-    Fault("leblanc.report.inputs", "balls.mass * 1e3", "balls.mass", check_units_of_other_rotors),
-    Fault("leblanc.report.inputs", "length * MM", "length", check_units_of_other_rotors),
-    Fault("leblanc.report.inputs", "size * 1e6", "size * 1e3", check_units),
-    Fault("leblanc.report.inputs", "number(speed * RPM)} rpm (", "number(speed)} rpm (", check_units),
-    Fault("leblanc.report.inputs", "fill.volume * ML", "fill.volume", check_units),
-    Fault("leblanc.report.inputs", "one.inner_radius * MM", "one.radius * MM", check_units),
-    Fault("leblanc.report.inputs", "100.0 * model.tolerance", "model.tolerance", check_units),
-    Fault("leblanc.report.inputs", "one.wall_gap * MM", "one.tip_radius * MM", check_units),
-    Fault(
-        "leblanc.report.inputs",
-        "at {number(speed * RPM)} rpm",
-        "at {number(speed)} rpm",
-        check_units_of_other_rotors,
-    ),
-    Fault("leblanc.report.inputs", "value * RPM", "value", check_units),
-    Fault("leblanc.report.inputs", "value * MM", "value", check_units),
-    Fault("leblanc.report.inputs", "low * ML", "high * ML", check_units),
     # The response.
     Fault(RUN, "number(with_liquid / without) if", "number(without / with_liquid) if", check_comparisons),
     Fault(
