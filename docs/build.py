@@ -22,6 +22,7 @@ sys.path[:0] = [str(_HERE), str(_HERE / "_ext")]
 import api_pages  # noqa: E402 - beside this file
 import console  # noqa: E402
 import figures  # noqa: E402
+import scene_keys  # noqa: E402
 
 NOTEBOOKS = ROOT / "validation" / "notebooks"
 # Pages whose commands are run.
@@ -44,6 +45,7 @@ def gather(source: Path, quick: bool) -> None:
     for name in ("references.bib", "CHANGELOG.md", "CITATION.cff"):
         shutil.copyfile(ROOT / name, source.parent / name)
     api_pages.write(source / "api")
+    scene_keys.write(source)
     drawn = ROOT / "out" / "figures"
     if not quick:
         if figures.draw_all(figures.RECIPES, drawn, check=True):

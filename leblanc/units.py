@@ -51,6 +51,7 @@ RPM = 60.0 / (2.0 * math.pi)  # revolutions per minute in one rad/s
 MM = 1e3  # millimetres in one metre
 ML = 1e6  # millilitres in one cubic metre
 LITRE = 1e3  # litres in one cubic metre
+NOT_FOUND, MINUS = "not found", "\N{MINUS SIGN}"  # as printed
 
 NUMBER = Dimension("pure number", "", "0.1")
 LENGTH = Dimension("length", "m", "65 mm")
@@ -115,6 +116,19 @@ _DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d")
 _TURNS_A_MINUTE = re.compile(r"(?:RPM|Rpm|(?:rev|r|U)\s*/\s*min)")  # as nameplates have it
 _SIGN = re.compile(r"\s*(\*\*|[*/^])\s*")
 _HERTZ = re.compile(r"(?<![A-Za-z])([A-Za-z]*?)(?:Hz|hertz)(?![A-Za-z])")
+
+
+def number(value: float) -> str:
+    """Value to four digits for print, without zeros at the end."""
+    if not math.isfinite(value):
+        return NOT_FOUND if math.isnan(value) else "infinite"
+    if value == 0.0:
+        return "0"
+    exponent = math.floor(math.log10(abs(value)))
+    if not -4 <= exponent < 6:
+        return f"{value:.3e}".replace("-", MINUS)
+    text = f"{value:.{max(0, 3 - exponent)}f}"
+    return (text.rstrip("0").rstrip(".") if "." in text else text).replace("-", MINUS)
 
 
 def parse(value: object, dimension: Dimension, field: str = "value") -> float:

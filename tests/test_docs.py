@@ -157,6 +157,29 @@ def test_every_public_module_is_in_the_reference(tmp_path: Path) -> None:
     assert all(f"api/{name}" in (DOCS / "api.md").read_text(encoding="utf-8") for name in pages.PACKAGES)
 
 
+def test_the_page_of_keys_is_up_to_date() -> None:
+    """`python docs/_ext/scene_keys.py` writes it."""
+    keys = _module("scene_keys", "docs/_ext")
+    assert (DOCS / keys.NAME).read_text(encoding="utf-8") == keys.page()
+
+
+def test_every_key_has_its_line_and_a_meaning() -> None:
+    from leblanc.scene.paths import tables_of
+    from leblanc.scene.scene import Scene
+    from leblanc.studies.sweep.distributions import FORMS, KINDS
+    from leblanc.studies.sweep.study import Study
+
+    keys = _module("scene_keys", "docs/_ext")
+    text = (DOCS / keys.NAME).read_text(encoding="utf-8")
+    parts = {part for kind in keys.ROTORS for part in tables_of(Scene, kind).values()} | {Study}
+    for part in parts:
+        for name, field in part.model_fields.items():
+            assert field.description and "\n" not in field.description, (part, name)
+            assert f"| `{name}` |" in text and field.description in text, (part, name)
+    assert FORMS.keys() == KINDS.keys()
+    assert all(form in text for form, _ in FORMS.values())
+
+
 def test_equation_numbers_are_unique_on_a_page() -> None:
     for page in (DOCS / "theory").glob("*.md"):
         tags = re.findall(r"\\tag\{(\w+)\}", page.read_text(encoding="utf-8"))

@@ -135,16 +135,21 @@ def _rule_of(field: Any, rest: Keys, place: str) -> Any:
         return rule
     if isinstance(rest[0], int) and isinstance(rule, Several):
         return rule.each
-    entry = _entry_rule(field.annotation)
+    entry = entry_rule(field.annotation)
     if isinstance(rest[0], int) and isinstance(rule, Entries) and entry is not None:
         return entry
     raise Refused(f"the path of a field; {place} has no {rest[0]}")
 
 
-def _entry_rule(annotation: Any) -> Any:
-    """Rule of the entries of a list, from its type; None if they are tables."""
+def entry_rule(annotation: Any) -> Any:
+    """Rule of the entries of a list, from its type; None if they are tables or there is no list.
+
+    Parameters
+    ----------
+    annotation : of the field
+    """
     if get_origin(annotation) is not tuple:
-        inside = [found for one in get_args(annotation) if (found := _entry_rule(one)) is not None]
+        inside = [found for one in get_args(annotation) if (found := entry_rule(one)) is not None]
         return inside[0] if inside else None
     entry = get_args(annotation)[0]
     if get_origin(entry) is not Annotated:

@@ -1,9 +1,12 @@
-"""The rotor of a scene, a class for each kind; `machine()` is the solvers' rotor without liquid."""
+"""The rotor of a scene, a class for each kind.
+
+`machine()` is the solvers' rotor without liquid; `rows()` and `tables()` are what it says, for readers.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
@@ -11,6 +14,7 @@ from pydantic import Field, PlainValidator
 
 from leblanc import units
 from leblanc.scene.part import Conflict, Part
+from leblanc.scene.rows import Row, RowTable, Value, degrees, mm, row, three, unbalance
 from leblanc.scene.rules import (
     DAMPING,
     POSITION,
@@ -32,6 +36,7 @@ from leblanc.scene.rules import (
     quantity,
     whole,
 )
+from leblanc.units import MM, RPM, number
 
 if TYPE_CHECKING:
     from solvers.rotor.exciter.machine import Exciter as ExciterMachine
@@ -46,6 +51,11 @@ _Three = tuple[float, float, float]
 
 _AXIS = "horizontal: gravity lies across the axis; vertical: along it"
 _WITHOUT = "of the rotor without the liquid"
+
+
+def _kind(rotor: AnyRotor) -> Row:
+    """Kind and axis."""
+    return row("Rotor", f"{rotor.kind}, {rotor.axis} axis", "rotor.axis", "rotor.kind")
 
 
 class JeffcottRotor(Part):
@@ -86,6 +96,25 @@ class JeffcottRotor(Part):
     def machine(self) -> Jeffcott:
         """The rotor without liquid: K = M omega^2 and C = 2 zeta sqrt(K M) where omega and zeta are given."""
         return self._machine
+
+    def rows(self) -> list[Row]:
+        """What it says, for readers."""
+        machine = self.machine()
+        speed, ratio = f"{number(machine.natural_frequency * RPM)} rpm", number(machine.damping_ratio)
+        stiffness, damping = f"{number(machine.stiffness)} N/m", f"{number(machine.damping)} N s/m"
+        return [
+            _kind(self),
+            row("Mass", f"{number(self.mass)} kg", "rotor.mass"),
+            row("Critical speed, dry", speed, "rotor.critical_speed", "rotor.stiffness"),
+            row("Stiffness", stiffness, "rotor.stiffness", "rotor.critical_speed"),
+            row("Damping ratio", ratio, "rotor.damping_ratio", "rotor.damping"),
+            row("Damping", damping, "rotor.damping", "rotor.damping_ratio"),
+            row("Unbalance", unbalance(self.unbalance), "rotor.unbalance"),
+        ]
+
+    def tables(self) -> list[RowTable]:
+        """It has no parts."""
+        return []
 
 
 class Support(Part):
@@ -156,6 +185,41 @@ class TwoPlaneRotor(Part):
         """The rotor without liquid."""
         return self._machine
 
+    def rows(self) -> list[Row]:
+        """What it says once, for readers."""
+        across, about = f"{number(self.transverse_inertia)} kg m²", f"{number(self.polar_inertia)} kg m²"
+        return [
+            _kind(self),
+            row("Mass", f"{number(self.mass)} kg", "rotor.mass"),
+            row("Inertia across the axis", across, "rotor.transverse_inertia"),
+            row("Inertia about the axis", about, "rotor.polar_inertia"),
+        ]
+
+    def tables(self) -> list[RowTable]:
+        """Its supports and unbalances, for readers."""
+        supports = tuple(
+            (
+                Value(f"{k + 1}"),
+                Value(number(one.position * MM), (f"rotor.supports.{k}.position",)),
+                Value(number(one.stiffness), (f"rotor.supports.{k}.stiffness",)),
+                Value(number(one.damping), (f"rotor.supports.{k}.damping",)),
+            )
+            for k, one in enumerate(self.supports)
+        )
+        unbalances = tuple(
+            (
+                Value(f"{k + 1}"),
+                Value(number(one.position * MM), (f"rotor.unbalances.{k}.position",)),
+                Value(number(one.size * 1e6), (f"rotor.unbalances.{k}.size",)),
+                Value(degrees(one.angle), (f"rotor.unbalances.{k}.angle",)),
+            )
+            for k, one in enumerate(self.unbalances)
+        )
+        found = [RowTable(("Support", "at (mm)", "stiffness (N/m)", "damping (N s/m)"), supports)]
+        if unbalances:
+            found.append(RowTable(("Unbalance", "at (mm)", "size (g mm)", "angle (deg)"), unbalances))
+        return found
+
 
 _DIRECTION = entries(3, 3, "pure numbers, along x, y, z")
 
@@ -194,6 +258,24 @@ class _Mounted(Part):
             return Mount(self.position, along_axes=value)
         assert self.direction is not None
         return Mount(self.position, coefficient=value, direction=self.direction)
+
+    def values(self, at: str) -> tuple[Value, ...]:
+        """Place, size and direction, for readers.
+
+        Parameters
+        ----------
+        at : its path in the scene
+        """
+        size = getattr(self, self.COEFFICIENT)
+        text = f"({three(size)})" if isinstance(size, tuple) else number(size)
+        way = Value("along x, y, z")
+        if self.direction is not None:
+            way = Value(f"({three(self.direction)})", (f"{at}.direction",))
+        return (
+            Value(f"({three(self.position, MM)})", (f"{at}.position",)),
+            Value(text, (f"{at}.{self.COEFFICIENT}",)),
+            way,
+        )
 
 
 class Spring(_Mounted):
@@ -261,6 +343,38 @@ class TubRotor(Part):
         """Tub and drum without liquid."""
         return self._machine
 
+    def rows(self) -> list[Row]:
+        """What it says once, for readers."""
+        about, across = number(self.drum_polar_inertia), number(self.drum_transverse_inertia)
+        heavy = self.drum_position[1] if self.unbalance_position is None else self.unbalance_position
+        return [
+            _kind(self),
+            row("Tub mass", f"{number(self.tub_mass)} kg", "rotor.tub_mass"),
+            row("Drum mass", f"{number(self.drum_mass)} kg", "rotor.drum_mass"),
+            row("Tub inertias x, y, z", f"{three(self.tub_inertia)} kg m²", "rotor.tub_inertia"),
+            row("Drum inertia about its axis", f"{about} kg m²", "rotor.drum_polar_inertia"),
+            row("Drum inertia across it", f"{across} kg m²", "rotor.drum_transverse_inertia"),
+            row("Drum's centre", f"({three(self.drum_position, MM)}) mm", "rotor.drum_position"),
+            row("Unbalance", unbalance(self.unbalance), "rotor.unbalance"),
+            row("Unbalance at y", mm(heavy), "rotor.unbalance_position"),
+        ]
+
+    def tables(self) -> list[RowTable]:
+        """Its springs and dampers, for readers."""
+        mounts: tuple[tuple[str, str, Sequence[_Mounted]], ...] = (
+            ("Spring", "N/m", self.springs),
+            ("Damper", "N s/m", self.dampers),
+        )
+        found = []
+        for name, unit, parts in mounts:
+            lines = tuple(
+                (Value(f"{k + 1}"), *one.values(f"rotor.{name.lower()}s.{k}")) for k, one in enumerate(parts)
+            )
+            if lines:
+                head = (name, "at x, y, z (mm)", f"{parts[0].COEFFICIENT} ({unit})", "direction")
+                found.append(RowTable(head, lines))
+        return found
+
 
 class Balls(Part):
     """The balls, rollers or pendulums of an exciter."""
@@ -321,6 +435,32 @@ class Exciter(Part):
     def machine(self) -> ExciterMachine:
         """Platform, shaft and balls."""
         return self._machine
+
+    def rows(self) -> list[Row]:
+        """What it says, for readers."""
+        balls = self.balls
+        what = "rotor.balls.pendulum_inertia" if balls.kind is None else "rotor.balls.kind"
+        found = [
+            row("Rotor", "exciter", "rotor.kind"),
+            row("Platform mass", f"{number(self.platform_mass)} kg", "rotor.platform_mass"),
+            row("Stiffness", f"{number(self.stiffness)} N/m", "rotor.stiffness"),
+            row("Damping", f"{number(self.damping)} N s/m", "rotor.damping"),
+            row("Unbalance of the shaft", unbalance(self.unbalance), "rotor.unbalance"),
+            Row(
+                "In the track",
+                (Value(f"{balls.count}", ("rotor.balls.count",)), Value(f"{balls.name}s", (what,))),
+            ),
+            row("Mass of each", f"{number(balls.mass * 1e3)} g", "rotor.balls.mass"),
+            row("Radius of the track", mm(balls.track_radius), "rotor.balls.track_radius"),
+            row("Damping along it", f"{number(balls.damping)} N s/m", "rotor.balls.damping"),
+        ]
+        if balls.pendulum_inertia is not None:
+            found.append(row("Inertia of each", f"{number(balls.pendulum_inertia)} kg m²", what))
+        return found
+
+    def tables(self) -> list[RowTable]:
+        """Its balls are all alike."""
+        return []
 
 
 AnyRotor = JeffcottRotor | TwoPlaneRotor | TubRotor | Exciter

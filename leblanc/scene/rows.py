@@ -1,52 +1,150 @@
-"""What a scene says, as reports list it: label, value with its unit, field path."""
+"""What a scene says, as a reader sees it: rows and tables of values in the units that engineers use."""
 
 from __future__ import annotations
 
 import math
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
-from leblanc.scene.machine import dry_rotor
-from leblanc.scene.scene import Scene
-from leblanc.units import ML, MM, RPM
+from leblanc.units import MM, RPM, number
 from meshes.baffles import Baffles
-from solvers.rotor.jeffcott import Jeffcott
-from solvers.rotor.tub import Mount, Tub
-from solvers.rotor.two_plane import TwoPlane
 
-Row = tuple[str, str, str]
+_UNIT = re.compile(r"(.*?)(?: \((.*)\))?")
 
 
-def input_rows(scene: Scene) -> tuple[Row, ...]:
-    """Label, value with its unit and field path of what the scene says.
+@dataclass(frozen=True)
+class Value:
+    """One value as printed.
 
-    Raises
-    ------
-    InputError : the scene is that of an exciter
+    Parameters
+    ----------
+    text : the value, with its unit unless a table's head has it
+    paths : its own in the scene, then those of values that it is worked out from; none for a label
+    assumed : no source gives it
     """
-    machine = dry_rotor(scene)
-    if isinstance(machine, TwoPlane):
-        rows = _two_plane(machine)
-    else:
-        rows = _tub(machine) if isinstance(machine, Tub) else _jeffcott(machine)
-    rows.append(("Axis", scene.rotor.axis, "rotor.axis"))
-    for k, fill in enumerate(scene.fills):
-        label, chamber = f"Chamber {k + 1}", fill.chamber
-        inner = f", inner radius {chamber.inner_radius * MM:.4g} mm" if chamber.inner_radius > 0.0 else ""
-        wall = (f"{label}: radius", f"{chamber.radius * MM:.4g} mm{inner}", f"chambers.{k}.radius")
-        if chamber.section is not None:
-            reach = f"{chamber.section.name}, up to {chamber.radius * MM:.4g} mm from the axis"
-            wall = (f"{label}: section", reach, f"chambers.{k}.section")
-        rows += [
-            wall,
-            (f"{label}: height", f"{chamber.height * MM:.4g} mm", f"chambers.{k}.height"),
-            (f"{label}: liquid", f"{fill.volume * ML:.4g} ml of {fill.liquid.name}", f"chambers.{k}.volume"),
-        ]
-        if chamber.baffles is not None:
-            rows.append((f"{label}: baffles", baffle_words(chamber.baffles), f"chambers.{k}.baffles"))
-        if not isinstance(machine, Jeffcott):
-            rows.append((f"{label}: plane", f"{chamber.plane * MM:.4g} mm", f"chambers.{k}.plane"))
-    speeds = scene.speeds
-    span = f"{speeds.start * RPM:.4g} to {speeds.stop * RPM:.4g} rpm, {speeds.count} speeds"
-    return (*rows, ("Speeds", span, "speeds"))
+
+    text: str
+    paths: tuple[str, ...] = ()
+    assumed: bool = False
+
+    @property
+    def path(self) -> str:
+        """Its own path; empty for a label."""
+        return self.paths[0] if self.paths else ""
+
+    def marked(self, assumed: Sequence[str]) -> Value:
+        """The value with its mark; one that is worked out is as doubtful as what it comes from.
+
+        Parameters
+        ----------
+        assumed : paths in the scene, of values or of whole tables
+        """
+        doubtful = any(
+            own == path or own.startswith(f"{path}.") or path.startswith(f"{own}.")
+            for own in self.paths
+            for path in assumed
+        )
+        return replace(self, assumed=doubtful)
+
+
+@dataclass(frozen=True)
+class Row:
+    """One value under one label, or a few that belong together."""
+
+    label: str
+    values: tuple[Value, ...]
+
+    @property
+    def path(self) -> str:
+        """That of its first value."""
+        return self.values[0].path
+
+
+@dataclass(frozen=True)
+class RowTable:
+    """Values of parts that there may be several of.
+
+    Parameters
+    ----------
+    head : what a part is called, then a name for each column with its unit in brackets
+    rows : the number of each part, then its values
+    """
+
+    head: tuple[str, ...]
+    rows: tuple[tuple[Value, ...], ...]
+
+    def single(self) -> Iterator[Row]:
+        """Each value as a row of its own, with its unit."""
+        for part, *values in self.rows:
+            for name, value in zip(self.head[1:], values, strict=True):
+                found = _UNIT.fullmatch(name)
+                assert found is not None
+                text = f"{value.text} {found[2]}" if found[2] else value.text
+                if value.paths:
+                    yield Row(f"{self.head[0]} {part.text}: {found[1]}", (replace(value, text=text),))
+
+
+def row(label: str, text: str, *paths: str) -> Row:
+    """A row of one value.
+
+    Parameters
+    ----------
+    label : what it is
+    text, paths : as in `Value`
+    """
+    return Row(label, (Value(text, paths),))
+
+
+def rpm(speed: float) -> str:
+    """A speed in both units.
+
+    Parameters
+    ----------
+    speed : rad/s
+    """
+    return f"{number(speed * RPM)} rpm ({number(speed)} rad/s)"
+
+
+def mm(length: float) -> str:
+    """A length.
+
+    Parameters
+    ----------
+    length : m
+    """
+    return f"{number(length * MM)} mm"
+
+
+def unbalance(size: float) -> str:
+    """Mass times its distance from the axis.
+
+    Parameters
+    ----------
+    size : kg m
+    """
+    return f"{number(size * 1e6)} g mm"
+
+
+def three(values: Sequence[float], unit: float = 1.0) -> str:
+    """Three values along x, y, z.
+
+    Parameters
+    ----------
+    values : SI
+    unit : how many of the shown unit one SI unit is
+    """
+    return ", ".join(number(float(f"{value * unit:.10g}")) for value in values)
+
+
+def degrees(angle: float) -> str:
+    """An angle.
+
+    Parameters
+    ----------
+    angle : rad
+    """
+    return number(math.degrees(angle))
 
 
 def baffle_words(baffles: Baffles) -> str:
@@ -59,67 +157,3 @@ def baffle_words(baffles: Baffles) -> str:
     inner = f"{baffles.tip_radius * MM:.4g} mm from the axis" if baffles.tip_radius > 0.0 else "the axis"
     outer = f"{baffles.wall_gap * MM:.4g} mm off the wall" if baffles.wall_gap > 0.0 else "the wall"
     return f"{baffles.count}, from {outer} to {inner}"
-
-
-def _jeffcott(rotor: Jeffcott) -> list[Row]:
-    frequency = rotor.natural_frequency
-    return [
-        ("Rotor mass", f"{rotor.mass:.4g} kg", "rotor.mass"),
-        ("Support stiffness", f"{rotor.stiffness:.4g} N/m", "rotor.stiffness"),
-        (
-            "Critical speed without liquid",
-            f"{frequency * RPM:.4g} rpm ({frequency:.4g} rad/s)",
-            "rotor.critical_speed",
-        ),
-        ("Support damping", f"{rotor.damping:.4g} N s/m", "rotor.damping"),
-        ("Damping ratio", f"{rotor.damping_ratio:.4g}", "rotor.damping_ratio"),
-        ("Unbalance", f"{rotor.unbalance * 1e6:.4g} g mm", "rotor.unbalance"),
-    ]
-
-
-def _two_plane(rotor: TwoPlane) -> list[Row]:
-    rows = [
-        ("Rotor mass", f"{rotor.mass:.4g} kg", "rotor.mass"),
-        ("Inertia across the axis", f"{rotor.transverse_inertia:.4g} kg m²", "rotor.transverse_inertia"),
-        ("Inertia about the axis", f"{rotor.polar_inertia:.4g} kg m²", "rotor.polar_inertia"),
-    ]
-    for k, support in enumerate(rotor.supports):
-        what = f"{support.stiffness:.4g} N/m, {support.damping:.4g} N s/m"
-        rows.append((f"Support at {support.position * MM:.4g} mm", what, f"rotor.supports.{k}"))
-    for k, one in enumerate(rotor.unbalances):
-        what = f"{one.size * 1e6:.4g} g mm, {math.degrees(one.angle):.4g} deg"
-        rows.append((f"Unbalance at {one.position * MM:.4g} mm", what, f"rotor.unbalances.{k}"))
-    return rows
-
-
-def _tub(rotor: Tub) -> list[Row]:
-    inertia = ", ".join(f"{one:.4g}" for one in rotor.tub_inertia)
-    drum = f"{rotor.drum_polar_inertia:.4g}, {rotor.drum_transverse_inertia:.4g} kg m²"
-    heavy = rotor.unbalance_position
-    y = rotor.drum_position[1] if heavy is None else heavy
-    rows = [
-        ("Tub mass", f"{rotor.tub_mass:.4g} kg", "rotor.tub_mass"),
-        ("Drum mass", f"{rotor.drum_mass:.4g} kg", "rotor.drum_mass"),
-        ("Tub inertias x, y, z", f"{inertia} kg m²", "rotor.tub_inertia"),
-        ("Drum inertias along, across", drum, "rotor.drum_polar_inertia"),
-        ("Drum's centre", f"{_place(rotor.drum_position)}", "rotor.drum_position"),
-        ("Unbalance", f"{rotor.unbalance * 1e6:.6g} g mm", "rotor.unbalance"),
-        ("Unbalance at y", f"{y * MM:.4g} mm", "rotor.unbalance_position"),
-    ]
-    for k, one in enumerate(rotor.springs):
-        rows.append((f"Spring at {_place(one.position)}", _strength(one, "N/m"), f"rotor.springs.{k}"))
-    for k, one in enumerate(rotor.dampers):
-        rows.append((f"Damper at {_place(one.position)}", _strength(one, "N s/m"), f"rotor.dampers.{k}"))
-    return rows
-
-
-def _place(position: tuple[float, float, float]) -> str:
-    return "(" + ", ".join(f"{one * MM:.4g}" for one in position) + ") mm"
-
-
-def _strength(mount: Mount, unit: str) -> str:
-    """Along its direction, or along the axes."""
-    if mount.coefficient > 0.0:
-        way = ", ".join(f"{one:.3g}" for one in mount.direction)
-        return f"{mount.coefficient:.4g} {unit} along ({way})"
-    return "(" + ", ".join(f"{one:.4g}" for one in mount.along_axes) + f") {unit}"

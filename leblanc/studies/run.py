@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from leblanc.results.record import ChamberRecord, ModeRecord, Motion, SelfExcited, StudyRecord
+from leblanc.scene.inputs import input_rows
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.machine import jeffcott as jeffcott
-from leblanc.scene.rows import input_rows
 from leblanc.scene.scene import JeffcottRotor, Scene, TubRotor
 from leblanc.studies.choose import Choice, axial_gravity, choose
 from leblanc.studies.whirl_map import small_whirl_friction

@@ -13,13 +13,14 @@ from fluid.friction import Friction
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
 from leblanc.results.record import ChamberRecord, phase
+from leblanc.scene.inputs import runup_rows
 from leblanc.scene.machine import dry_rotor, jeffcott, require_clear
 from leblanc.scene.scene import JeffcottRotor, Runup, Scene
 from leblanc.studies.choose import across_gravity as across_gravity  # of a run-up, asked for with it
 from leblanc.studies.choose import axial_gravity
 from leblanc.studies.validity import RANGES
 from leblanc.text.models import percent
-from leblanc.text.runup import Bands, describe_inputs, describe_run
+from leblanc.text.runup import Bands, describe_run
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.runup.drive import Drive, Motor, Ramp
@@ -321,7 +322,7 @@ def runup_scene(
         source=scene.source,
         assumed=scene.assumed,
         digest=scene.digest,
-        inputs=describe_inputs(scene, plan, numerics),
+        inputs=runup_rows(scene, numerics.cells, numerics.dispersion),
         kind=scene.rotor.kind,
         axis=scene.rotor.axis,
         friction=law,

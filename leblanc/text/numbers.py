@@ -2,28 +2,15 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
+from leblanc.units import MINUS as MINUS
+from leblanc.units import NOT_FOUND as NOT_FOUND
 from leblanc.units import RPM
+from leblanc.units import number as number
 
 MOST_RANGES = 4  # listed one by one
-NOT_FOUND, MINUS = "not found", "\N{MINUS SIGN}"
-
-
-def number(value: float) -> str:
-    """Value to four digits for print, without zeros at the end."""
-    if not math.isfinite(value):
-        return NOT_FOUND if math.isnan(value) else "infinite"
-    if value == 0.0:
-        return "0"
-    exponent = math.floor(math.log10(abs(value)))
-    if not -4 <= exponent < 6:
-        return f"{value:.3e}".replace("-", MINUS)
-    text = f"{value:.{max(0, 3 - exponent)}f}"
-    return (text.rstrip("0").rstrip(".") if "." in text else text).replace("-", MINUS)
 
 
 def ranges(speed: NDArray[np.float64], mask: NDArray[np.bool_]) -> str:

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from fluid.friction import Friction
 from leblanc.friction import friction_words
 from leblanc.results.record import peak
-from leblanc.units import ML, MM, RPM
+from leblanc.units import MM, RPM
 
 if TYPE_CHECKING:
-    from leblanc.scene.scene import Runup, Scene
+    from leblanc.scene.scene import Scene
     from solvers.runup.runup import RunupHistory, RunupNumerics
     from solvers.synchronous.response import Response
 
@@ -22,33 +22,6 @@ Bands = tuple[tuple[float, float], ...]
 
 CLOSURE = 1e-3  # of the work: what the energy balance may leave
 ERROR = 0.02  # of the largest amplitude: an error estimate to speak of
-
-
-def describe_inputs(scene: Scene, plan: Runup, numerics: RunupNumerics) -> tuple[tuple[str, str, str], ...]:
-    """Label, value with its unit and field path of what a run-up takes from its scene."""
-    rows = [
-        ("Rotor", f"{scene.rotor.kind}, {scene.rotor.axis} axis", "rotor"),
-        ("Start", f"{plan.start:.4g} rad/s ({plan.start * RPM:.4g} rpm)", "runup.start"),
-    ]
-    if plan.motor is None:
-        rate = plan.rate or math.nan
-        rows += [
-            ("Stop", f"{plan.stop:.4g} rad/s ({plan.stop * RPM:.4g} rpm)", "runup.stop"),
-            ("Rate", f"{rate:.4g} rad/s^2, {'up and back' if plan.back else 'up'}", "runup.rate"),
-        ]
-    else:
-        points = f"{len(plan.motor.speeds)} points of its torque curve"
-        rows.append(("Motor", f"{plan.motor.inertia:.4g} kg m^2, {points}", "runup.motor"))
-    rows += [
-        ("Duration", f"{plan.duration:.4g} s", "runup.duration"),
-        ("Cells round each wall", f"{numerics.cells}", "runup.cells"),
-        ("Dispersion", "with" if numerics.dispersion else "without", "runup.dispersion"),
-        ("Liquid friction", friction_words(scene.model.friction), "model.friction"),
-    ]
-    for k, fill in enumerate(scene.fills):
-        text = f"{fill.volume * ML:.4g} ml of {fill.liquid.name} in R {fill.chamber.radius * MM:.4g} mm"
-        rows.append((f"Chamber {k + 1}", text, f"chambers.{k}.volume"))
-    return tuple(rows)
 
 
 def model_words(model: str, numerics: RunupNumerics) -> str:

@@ -7,9 +7,11 @@ import math
 from html.parser import HTMLParser
 from pathlib import Path
 
-from leblanc.report.inputs import Entry, Inputs, Marker
+from leblanc.report.inputs import Entry, Inputs
 from leblanc.report.page import About
-from leblanc.results.record import StudyRecord
+from leblanc.report.parts import Cell
+from leblanc.results.record import StudyRecord, one_line
+from leblanc.scene.rows import Value
 
 VOID = {"meta", "img", "br"}
 ONLY_IN = {"tr": {"thead", "tbody"}, "td": {"tr"}, "th": {"tr"}, "dt": {"div"}, "dd": {"div"}, "li": {"ul"}}
@@ -138,8 +140,10 @@ def check_rules(page: Page, text: str) -> None:
 
 def about_record(record: StudyRecord) -> About:
     """What a report of a made-up record is about: the record's own list of inputs."""
-    mark = Marker(record.assumed)
-    entries = tuple(Entry(label, (mark.cell(value, path),)) for label, value, path in record.inputs)
+    values = [(label, Value(text, (path,)).marked(record.assumed)) for label, text, path in record.inputs]
+    entries = tuple(
+        Entry(label, (Cell(one_line(one.text), one.assumed, path=one.path),)) for label, one in values
+    )
     paths = [path for _, _, path in record.inputs]
     elsewhere = tuple(
         one for one in record.assumed if not any(path == one or path.startswith(f"{one}.") for path in paths)

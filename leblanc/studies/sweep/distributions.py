@@ -182,4 +182,19 @@ KINDS: dict[str, Callable[[Any, Any], Distribution]] = {
     "linspace": _linspace,
 }
 
+# How a study file writes each, and what it means.
+FORMS: dict[str, tuple[str, str]] = {
+    "uniform": ("{ uniform = [low, high] }", "evenly spread between the two"),
+    "normal": ("{ normal = [mean, deviation] }", "Gauss's bell with that mean and standard deviation"),
+    "lognormal": (
+        "{ lognormal = [median, factor] }",
+        "two thirds within that factor of the median",
+    ),
+    "choice": ("{ choice = [a, b, ...] }", "each as likely; the only one for words; in a grid all of them"),
+    "linspace": (
+        "{ linspace = [first, last, count] }",
+        "evenly spaced, with both ends; only in a grid",
+    ),
+}
+
 REFUSALS = (Refused, InputError)

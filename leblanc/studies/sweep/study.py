@@ -56,7 +56,7 @@ class Study(Part):
     )
     method: Annotated[str, one_of(*METHODS)] = Field(description="how the scenes are chosen")
     samples: Annotated[int | None, whole(1, MAX_SAMPLES)] = Field(
-        None, description="how many, a power of two for sobol; left out for a grid"
+        None, description="how many scenes, points of the design for saltelli; left out for a grid"
     )
     seed: Annotated[int, whole(0, MAX_SEED)] = Field(0, description="of the random numbers")
     vary: Annotated[dict[str, Any], PlainValidator(Varying())] = Field(

@@ -10,10 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from leblanc.report.inputs import Inputs, aim_rows, scene_inputs
+from leblanc.report.inputs import Inputs, scene_inputs
 from leblanc.scene.chambers import Chamber
+from leblanc.scene.inputs import optimise_rows
 from leblanc.scene.optimise import Optimisation
 from leblanc.scene.paths import tables_of
+from leblanc.scene.rows import row
 from leblanc.scene.scene import Scene, scene_from_table
 from meshes.chamber_section import chamber_section
 from meshes.section import Section
@@ -253,7 +255,6 @@ def test_an_aim_from_the_command_line_is_not_marked_as_the_scene_s() -> None:
     table["assumed"] = ["optimise.deflection", "optimise.clearance"]
     scene = scene_from_table(table)
     assert scene.optimise is not None
-    assert scene.optimise is not None
     other = scene.optimise.altered(deflection=2e-3)
     marked = {cell.path: cell for cell in scene_inputs(scene, other).cells if "optimise" in cell.path}
     assert marked["optimise.deflection"].text == "2 mm" and not marked["optimise.deflection"].assumed
@@ -261,6 +262,9 @@ def test_an_aim_from_the_command_line_is_not_marked_as_the_scene_s() -> None:
 
 
 def test_an_aim_says_what_is_not_its_default() -> None:
-    assert aim_rows(Optimisation()) == [("Objective", "working_speed", "objective")]
+    assert optimise_rows(Optimisation()) == [row("Objective", "working_speed", "optimise.objective")]
     duty = [{"speed": float(k), "weight": 1.0} for k in range(1, 9)]
-    assert "8 speeds from" in {name: text for _, text, name in aim_rows(Optimisation(duty=duty))}["duty"]
+    (text,) = [
+        one.values[0].text for one in optimise_rows(Optimisation(duty=duty)) if one.path == "optimise.duty"
+    ]
+    assert "8 speeds from" in text

@@ -745,7 +745,7 @@ def test_liquid_model() -> None:
 
 def test_linear_waves_out_of_their_range_are_told() -> None:
     linear = scene().altered(model=scene().model.altered(liquid="linear"))
-    fill = linear.chambers[0]
+    fill = linear.fills[0]
     depth = np.array([[1.2], [1.5]]) * fill.depth
     good, words = judged(linear, history_of(2, 1, depth_max=depth, depth_min=2.0 * fill.depth - depth))
     assert good.tolist() == [True, False] and any("linear theory" in one for one in words)

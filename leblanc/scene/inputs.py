@@ -1,0 +1,290 @@
+"""All that a scene says, for readers: rows, tables of its parts, each value marked that no source gives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from fluid.fill import Fill
+from fluid.liquid import KNOWN_LIQUIDS
+from leblanc.friction import friction_words
+from leblanc.scene.faults import one_line
+from leblanc.scene.optimise import Optimisation
+from leblanc.scene.rotors import JeffcottRotor
+from leblanc.scene.rows import Row, RowTable, Value, degrees, mm, row, rpm
+from leblanc.scene.runup import Runup
+from leblanc.scene.scene import Scene
+from leblanc.units import MINUS, ML, MM, RPM, number
+from meshes.baffles import Baffles
+from meshes.chamber_section import ChamberSection
+
+MOST = 6  # speeds of a duty cycle or of a motor's curve that are listed one by one
+
+_CHAMBERS = (
+    "Chamber",
+    "radius (mm)",
+    "inner radius (mm)",
+    "height (mm)",
+    "plane (mm)",
+    "volume (ml)",
+    "liquid",
+)
+_BAFFLES = ("Chamber", "baffles", "tips at (mm)", "gap at the wall (mm)", "first at (deg)")
+_SECTIONS = ("Chamber", "section", "area (cm²)", "farthest wall (mm)", "cells at the wall (mm)")
+
+
+@dataclass(frozen=True)
+class SceneInputs:
+    """What a scene says.
+
+    Parameters
+    ----------
+    rows : single values
+    tables : of what there may be several of: chambers, supports, springs
+    """
+
+    rows: tuple[Row, ...]
+    tables: tuple[RowTable, ...]
+
+
+def inputs_of(scene: Scene, optimise: Optimisation | None = None) -> SceneInputs:
+    """Everything that a scene says.
+
+    Parameters
+    ----------
+    scene : the scene
+    optimise : what the liquid is chosen for, in place of the scene's; what differs from it is not marked
+    """
+    rows = [
+        *scene.rotor.rows(),
+        row("Gravity", f"{number(scene.gravity)} m/s²", "gravity"),
+        *_study(scene),
+        *(() if scene.runup is None else _runup(scene.runup)),
+    ]
+    marked = [Row(one.label, tuple(value.marked(scene.assumed) for value in one.values)) for one in rows]
+    wanted = scene.optimise if optimise is None else optimise
+    if wanted is not None:
+        marked += _optimise(wanted, scene)
+    tables = [
+        RowTable(one.head, tuple(tuple(v.marked(scene.assumed) for v in line) for line in one.rows))
+        for one in (*scene.rotor.tables(), *_chambers(scene))
+    ]
+    return SceneInputs(tuple(marked), tuple(tables))
+
+
+def input_rows(
+    scene: Scene, roots: tuple[str, ...] = ("rotor", "chambers", "speeds")
+) -> tuple[tuple[str, str, str], ...]:
+    """Label, value with its unit and field path of each value of some tables, as data files keep them.
+
+    Parameters
+    ----------
+    scene : the scene
+    roots : tables and keys of the scene, or parts of them, in their order
+    """
+    found = inputs_of(scene)
+    single = [*found.rows, *(one for table in found.tables for one in table.single())]
+    return tuple(
+        (one.label, one_line(" ".join(value.text for value in one.values)).replace(MINUS, "-"), one.path)
+        for root in roots
+        for one in single
+        if one.path == root or one.path.startswith(f"{root}.")
+    )
+
+
+def runup_rows(scene: Scene, cells: int, dispersion: bool) -> tuple[tuple[str, str, str], ...]:
+    """Label, value with its unit and field path of what a run-up takes from its scene.
+
+    Parameters
+    ----------
+    scene : the scene, with a run-up
+    cells : of each layer, in place of the scene's
+    dispersion : in place of the scene's
+    """
+    assert scene.runup is not None
+    taken = scene.altered(runup=scene.runup.altered(cells=cells, dispersion=dispersion))
+    return input_rows(taken, ("rotor", "runup", "model.friction", "chambers"))
+
+
+def _chambers(scene: Scene) -> Iterator[RowTable]:
+    """Sizes and fill; the plane along the axis where some chamber has one."""
+    head, rows = list(_CHAMBERS), [_chamber(fill, k) for k, fill in enumerate(scene.fills)]
+    if isinstance(scene.rotor, JeffcottRotor) and all(fill.chamber.plane == 0.0 for fill in scene.fills):
+        del head[4]
+        rows = [(*line[:4], *line[5:]) for line in rows]
+    baffles = [(k, fill.chamber.baffles) for k, fill in enumerate(scene.fills)]
+    sections = [(k, fill.chamber.section) for k, fill in enumerate(scene.fills)]
+    for titles, lines in (
+        (tuple(head), rows),
+        (_BAFFLES, [_baffle(one, k) for k, one in baffles if one is not None]),
+        (_SECTIONS, [_section(one, k) for k, one in sections if one is not None]),
+    ):
+        if lines:
+            yield RowTable(titles, tuple(lines))
+
+
+def _chamber(fill: Fill, k: int) -> tuple[Value, ...]:
+    chamber, at, name = fill.chamber, f"chambers.{k}", fill.liquid.name
+    if KNOWN_LIQUIDS.get(name) != fill.liquid:
+        density, viscosity = number(fill.liquid.density), number(fill.liquid.viscosity * 1e6)
+        name = f"{name}, {density} kg/m³, {viscosity} mm²/s"
+    wall = (
+        Value(number(chamber.radius * MM), (f"{at}.radius",)),
+        Value(number(chamber.inner_radius * MM), (f"{at}.inner_radius",)),
+    )
+    if chamber.section is not None:
+        wall = Value("see section"), Value("")
+    return (
+        Value(f"{k + 1}"),
+        *wall,
+        Value(number(chamber.height * MM), (f"{at}.height",)),
+        Value(number(chamber.plane * MM), (f"{at}.plane",)),
+        Value(number(fill.volume * ML), (f"{at}.volume",)),
+        Value(name, (f"{at}.liquid",)),
+    )
+
+
+def _section(section: ChamberSection, k: int) -> tuple[Value, ...]:
+    path, unit, size = (f"chambers.{k}.section{end}" for end in ("", "_unit", "_size"))
+    cells = "as in the file" if section.cell_size is None else number(section.cell_size * MM)
+    return (
+        Value(f"{k + 1}"),
+        Value(section.name, (path,)),
+        Value(number(section.area * 1e4), (path, unit)),
+        Value(number(section.farthest * MM), (unit, path)),
+        Value(cells, (size,)),
+    )
+
+
+def _baffle(baffles: Baffles, k: int) -> tuple[Value, ...]:
+    at = f"chambers.{k}.baffles"
+    return (
+        Value(f"{k + 1}"),
+        Value(f"{baffles.count}", (f"{at}.count",)),
+        Value(number(baffles.tip_radius * MM), (f"{at}.tip_radius",)),
+        Value(number(baffles.wall_gap * MM), (f"{at}.wall_gap",)),
+        Value(degrees(baffles.first_angle), (f"{at}.first_angle",)),
+    )
+
+
+def _study(scene: Scene) -> list[Row]:
+    """Speeds and models."""
+    speeds, model = scene.speeds, scene.model
+    several = "" if speeds.count == 1 else "s"
+    return [
+        Row(
+            "Speeds",
+            (
+                Value(number(speeds.start * RPM), ("speeds.start",)),
+                Value(f"to {number(speeds.stop * RPM)} rpm", ("speeds.stop",)),
+                Value(f"at {speeds.count} speed{several}", ("speeds.count",)),
+            ),
+        ),
+        row("Liquid model", model.liquid, "model.liquid"),
+        row("Liquid friction", friction_words(model.friction), "model.friction"),
+        row("Tolerance", f"{number(100.0 * model.tolerance)} %", "model.tolerance"),
+    ]
+
+
+def _runup(plan: Runup) -> list[Row]:
+    found = [
+        row("Run-up from", rpm(plan.start), "runup.start"),
+        row("Run-up to", rpm(plan.stop), "runup.stop"),
+    ]
+    if plan.rate is not None:
+        found.append(row("Run-up rate", f"{number(plan.rate)} rad/s²", "runup.rate"))
+    if plan.motor is not None:
+        motor = plan.motor
+        points = [
+            f"{number(torque)} N m at {number(speed * RPM)} rpm"
+            for speed, torque in zip(motor.speeds, motor.torques, strict=True)
+        ]
+        curve = ", ".join(points if len(points) <= MOST else [points[0], "...", points[-1]])
+        more = f" ({len(points)} points)" if len(points) > MOST else ""
+        found += [
+            row("Inertia on the motor", f"{number(motor.inertia)} kg m²", "runup.motor.inertia"),
+            row("Motor's torque", f"{curve}{more}", "runup.motor.torques", "runup.motor.speeds"),
+        ]
+    return [
+        *found,
+        row("Run-up lasts", f"{number(plan.duration)} s", "runup.duration"),
+        row("Run-up then", "down again" if plan.back else "held", "runup.back"),
+        row("Run-up cells", f"{plan.cells} round each wall", "runup.cells"),
+        row("Run-up dispersion", "with" if plan.dispersion else "without", "runup.dispersion"),
+        row("Run-up samples", f"{plan.samples}", "runup.samples"),
+    ]
+
+
+# -- what the liquid is chosen for ---------------------------------------------------------------------------
+
+_DEFAULT = Optimisation()
+
+
+def optimise_rows(wanted: Optimisation) -> list[Row]:
+    """What is said beyond the defaults; the objective always.
+
+    Parameters
+    ----------
+    wanted : what the liquid is chosen for
+    """
+    said = [row("Objective", wanted.objective, "optimise.objective")]
+    for name, label, text in (
+        ("working_speed", "Working speed", _speed(wanted.working_speed)),
+        ("steady", "Peak", "of the steady response"),
+        ("duty", "Duty cycle", _duty(wanted)),
+        ("vibration_limit", "Vibration limit", _length(wanted.vibration_limit)),
+        ("limit_at", "Limit holds at", f"{wanted.limit_at.replace('_', ' ')} speeds"),
+        ("deflection", "Deflection given", _length(wanted.deflection)),
+        ("unbalance", "Unbalance range", _range(wanted.unbalance, 1e6, "g mm")),
+        ("temperature", "Temperature range", _range(wanted.temperature, 1.0, "K")),
+        ("quantile", "Quantile", number(wanted.quantile)),
+        ("samples", "Samples of the ranges", f"{wanted.samples}"),
+        ("seed", "Seed", f"{wanted.seed}"),
+        ("dry_patch", "Dry wall", "not allowed at the working speed"),
+        ("stability_margin", "Stability margin", _rate(wanted.stability_margin)),
+        ("operating", "Operating speeds", _range(wanted.operating, RPM, "rpm")),
+        ("clearance", "Clearance", _length(wanted.clearance)),
+        ("volumes", "Volumes", _volumes(wanted)),
+    ):
+        if getattr(wanted, name) != getattr(_DEFAULT, name):
+            said.append(row(label, text, f"optimise.{name}"))
+    return said
+
+
+def _optimise(wanted: Optimisation, scene: Scene) -> list[Row]:
+    """What is wanted; a value that is not the scene's own is not marked."""
+    own = [] if scene.optimise is None else optimise_rows(scene.optimise)
+    return [
+        Row(one.label, tuple(value.marked(scene.assumed) for value in one.values)) if one in own else one
+        for one in optimise_rows(wanted)
+    ]
+
+
+def _speed(value: float | None) -> str:
+    return "" if value is None else f"{number(value * RPM)} rpm"
+
+
+def _length(value: float | None) -> str:
+    return "" if value is None else mm(value)
+
+
+def _rate(value: float | None) -> str:
+    return "" if value is None else f"at least {number(value)} 1/s"
+
+
+def _range(ends: tuple[float, float] | None, unit: float, name: str) -> str:
+    return "" if ends is None else f"{number(ends[0] * unit)} to {number(ends[1] * unit)} {name}"
+
+
+def _duty(wanted: Optimisation) -> str:
+    parts = [f"{number(point.speed * RPM)} rpm (weight {number(point.weight)})" for point in wanted.duty]
+    if len(parts) <= MOST:
+        return ", ".join(parts)
+    return f"{len(parts)} speeds from {parts[0]} to {parts[-1]}"
+
+
+def _volumes(wanted: Optimisation) -> str:
+    return ", ".join(
+        f"chamber {k + 1} {number(low * ML)} to {number(high * ML)} ml"
+        for k, (low, high) in enumerate(wanted.volumes)
+    )
