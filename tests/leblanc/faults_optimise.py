@@ -72,8 +72,8 @@ FAULTS: tuple[Fault, ...] = (
     ),
     Fault(
         "leblanc.studies.optimise.constraints",
-        "growth_map(system, rows, speed, friction)[0].max(axis=1)",
-        "growth_map(system, rows, speed, friction)[0].min(axis=1)",
+        "growth_map(rotor, rows, speed, friction)[0].max(axis=1)",
+        "growth_map(rotor, rows, speed, friction)[0].min(axis=1)",
         oracle.check_growth,
     ),
     Fault(
@@ -118,5 +118,5 @@ FAULTS: tuple[Fault, ...] = (
         "moved / cost[i], moved / cost[j]",
         searching.check_valley,
     ),
-    Fault("solvers.search", "low + t[:, None] * one", "low + t[:, None] + 0.0 * one", searching.check_edge),
+    Fault("solvers.search", "low + t[:, None] * ray", "low + t[:, None] + 0.0 * ray", searching.check_edge),
 )

@@ -68,8 +68,8 @@ FAULTS: tuple[Fault, ...] = (
     ),
     Fault(
         "leblanc.studies.runup",
-        "unstable_bands(system, [scene.chambers], passed, friction)",
-        "unstable_bands(system, [scene.chambers], passed, (1, 1.0))",
+        "unstable_bands(rotor, [scene.chambers], passed, friction)",
+        "unstable_bands(rotor, [scene.chambers], passed, (1, 1.0))",
         oracle.check_bands,
     ),
     Fault(

@@ -12,8 +12,8 @@ FAULTS: tuple[Fault, ...] = (
     Fault("leblanc.studies.run", "{high * RPM:.5g} rpm", "{high:.5g} rpm", oracle.check_words),
     Fault(
         "leblanc.studies.run",
-        "unstable_bands(system, [scene.chambers], speed, friction, growth[None])",
-        "unstable_bands(system, [scene.chambers], speed, (0, 0.0), growth[None])",
+        "unstable_bands(rotor, [scene.chambers], speed, friction, growth[None])",
+        "unstable_bands(rotor, [scene.chambers], speed, (0, 0.0), growth[None])",
         oracle.check_rig,
     ),
 )

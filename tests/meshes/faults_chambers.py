@@ -104,8 +104,8 @@ FAULTS: tuple[Fault, ...] = (
     ),
     Fault(
         "meshes.rings.sectors",
-        "middle = 0.5 * (r[one] + r[other])",
-        "middle = 0.49 * (r[one] + r[other])",
+        "middle = 0.5 * (r[tail] + r[head])",
+        "middle = 0.49 * (r[tail] + r[head])",
         refused(check_sector_area),
     ),
     Fault(

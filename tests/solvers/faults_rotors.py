@@ -31,7 +31,12 @@ FAULTS: tuple[Fault, ...] = (
         two_plane.check_gyroscopic_splitting,
     ),
     Fault(TWO_PLANE, "np.array([1.0, -1j])", "np.array([1.0, 1j])", two_plane.check_long_shaft),
-    Fault(TWO_PLANE, "cmath.exp(1j * one.angle)", "cmath.exp(-1j * one.angle)", two_plane.check_long_shaft),
+    Fault(
+        TWO_PLANE,
+        "cmath.exp(1j * unbalanced.angle)",
+        "cmath.exp(-1j * unbalanced.angle)",
+        two_plane.check_long_shaft,
+    ),
     Fault(
         TWO_PLANE,
         "[self.mass, self.mass, inertia, inertia]",

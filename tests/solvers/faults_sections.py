@@ -31,7 +31,7 @@ FAULTS: tuple[Fault, ...] = (
         oracle.check_all_compartments,
     ),
     Fault(
-        "solvers.synchronous.coupled",
+        "solvers.synchronous.backward",
         "whole = layer.density * layer.liquid.enclosed_area",
         "whole = fill.full_mass * 1.0",
         oracle.check_section_added_mass,
@@ -71,7 +71,9 @@ FAULTS: tuple[Fault, ...] = (
     Fault(DRUM, "[-pull.T, surface]", "[pull.T, surface]", oracle.check_clear_whirl),
     Fault(DRUM, "damping + 1.5 * drag", "damping - 15.0 * drag", oracle.check_clear_whirl),
     Fault(DRUM, "drag = np.sqrt(at)", "drag = np.sqrt(-at)", oracle.check_clear_whirl),
-    Fault(STANDING, "twist - one.density * turn", "twist + one.density * turn", oracle.check_two_frames),
+    Fault(
+        STANDING, "twist - circle.density * turn", "twist + circle.density * turn", oracle.check_two_frames
+    ),
     Fault(
         STANDING,
         "spread - unit - 2.0 * turn @ twist",
@@ -80,16 +82,16 @@ FAULTS: tuple[Fault, ...] = (
     ),
     Fault(
         STANDING,
-        "- one.rate * one.density * spin * turn",
-        "+ one.rate * one.density * spin * turn",
+        "- circle.rate * circle.density * spin * turn",
+        "+ circle.rate * circle.density * spin * turn",
         oracle.check_two_frames,
     ),
     Fault(STANDING, "for way in (-1j, 1j):", "for way in (1j, -1j):", oracle.check_two_frames),
-    Fault(STANDING, "-0.5j * (one[0] - one[1])", "0.5j * (one[0] - one[1])", oracle.check_two_frames),
+    Fault(STANDING, "-0.5j * (pair[0] - pair[1])", "0.5j * (pair[0] - pair[1])", oracle.check_two_frames),
     Fault(
         STANDING,
-        "pull = -one.density",
-        "pull = one.density * 0.5",
+        "pull = -circle.density",
+        "pull = circle.density * 0.5",
         oracle.check_layer_as_in_the_standing_system,
     ),
 )
