@@ -92,7 +92,9 @@ class Chambers:
     @classmethod
     def of(cls, chambers: Sequence[Chamber]) -> Chambers:
         """Arrays of some chambers."""
-        sizes = np.array([(one.radius, one.height, one.inner_radius) for one in chambers]).reshape(-1, 3)
+        sizes = np.array(
+            [(chamber.radius, chamber.height, chamber.inner_radius) for chamber in chambers]
+        ).reshape(-1, 3)
         return cls(*np.ascontiguousarray(sizes.T))
 
     def at(self, which: NDArray[np.intp]) -> Chambers:

@@ -222,16 +222,16 @@ def _uneven(points: Array, cells: Indices) -> tuple[Finding, ...]:
     ends = np.sort(cells[:, sides].reshape(-1, 2), axis=1)
     order = np.lexsort(ends.T)
     same = np.all(ends[order[1:]] == ends[order[:-1]], axis=1)
-    one, other = order[:-1][same] // len(sides), order[1:][same] // len(sides)
+    first, other = order[:-1][same] // len(sides), order[1:][same] // len(sides)
     area = np.abs(cell_areas(points, cells))
-    ratio = np.maximum(area[one], area[other]) / np.maximum(np.minimum(area[one], area[other]), 1e-300)
+    ratio = np.maximum(area[first], area[other]) / np.maximum(np.minimum(area[first], area[other]), 1e-300)
     if not len(ratio) or ratio.max() <= _JUMP:
         return ()
     worst = int(np.argmax(ratio))
     return (
         Finding(
             f"neighbours differ {ratio[worst]:.0f} times in area",
-            _place(points[cells[one[worst]]].mean(axis=0)),
+            _place(points[cells[first[worst]]].mean(axis=0)),
             "a smaller growth from cell to cell",
         ),
     )

@@ -189,13 +189,13 @@ def _outermost(points: Array, body_of_node: Indices, wall: Indices, piece: Indic
     np.maximum.at(radius, piece, np.hypot(*points[wall[:, 0]].T))
     body[piece] = body_of_node[wall[:, 0]]
     fixed = np.zeros(count, dtype=bool)
-    for one in np.unique(body):
-        here = np.flatnonzero(body == one)
+    for label in np.unique(body):
+        here = np.flatnonzero(body == label)
         fixed[here[np.argmax(radius[here])]] = True
     return fixed
 
 
-def _components(one: Indices, other: Indices, nodes: int) -> Indices:
+def _components(first: Indices, other: Indices, nodes: int) -> Indices:
     """Number of the component of each node under pairs that belong together."""
-    links = coo_array((np.ones(one.size), (one, other)), shape=(nodes, nodes))
+    links = coo_array((np.ones(first.size), (first, other)), shape=(nodes, nodes))
     return np.asarray(connected_components(links, directed=False)[1], dtype=np.int64)

@@ -156,12 +156,12 @@ def liquid_link(fill: Fill, spin: ArrayLike, friction: Friction = NO_FRICTION) -
         raise InputError("volume", fill.volume, "above 0 and less than full: a full chamber is a point mass")
     if layer.stokes != 0.0:
         raise InputError("friction", "stokes", "none or linear; the laminar one depends on the frequency")
-    none, one = np.zeros(omega.shape), np.ones(omega.shape)
+    none, ones = np.zeros(omega.shape), np.ones(omega.shape)
     inertia = layer.mass * (1.0 + layer.layer_tanh) / (1.0 - layer.layer_tanh)
     damping = 2.0 * layer.mass * layer.rate / (1.0 - layer.layer_tanh)
     return Coefficients(
-        mass=_isotropic(inertia * one, none),
-        damping=_isotropic(damping * one, 4.0 * inertia * omega),
+        mass=_isotropic(inertia * ones, none),
+        damping=_isotropic(damping * ones, 4.0 * inertia * omega),
         stiffness=_isotropic(-2.0 * inertia * np.square(omega), damping * omega),
     )
 

@@ -127,8 +127,8 @@ def _tetrahedra(triangles: Indices, number: Indices, empty: NDArray[np.bool_], l
         for prism in _PRISM:
             where = [(c, 2 * (layer + up)) for c, up in prism]
             nodes = [number[column[:, c], level] for c, level in where]
-            for one, other in _EDGES:
-                (c, low), (d, high) = where[one], where[other]
+            for first, other in _EDGES:
+                (c, low), (d, high) = where[first], where[other]
                 # The level of a column without depth is that of the other end.
                 start = np.where(empty[column[:, c]], high, low)
                 end = np.where(empty[column[:, d]], start, high)
@@ -219,9 +219,9 @@ def body_integrals(body: Body) -> BodyIntegrals:
 
 def _shapes(p: Array, q: Array, count: int) -> tuple[Array, Array, Array]:
     """Shape functions of a triangle of 3 or 6 nodes and their slopes, each of shape (count, K)."""
-    r, one, none = 1.0 - p - q, np.ones_like(p), np.zeros_like(p)
+    r, ones, none = 1.0 - p - q, np.ones_like(p), np.zeros_like(p)
     if count == 3:
-        return np.stack([r, p, q]), np.stack([-one, one, none]), np.stack([-one, none, one])
+        return np.stack([r, p, q]), np.stack([-ones, ones, none]), np.stack([-ones, none, ones])
     shape = np.stack([r * (2 * r - 1), p * (2 * p - 1), q * (2 * q - 1), 4 * r * p, 4 * p * q, 4 * q * r])
     slope_p = np.stack([1 - 4 * r, 4 * p - 1, none, 4 * (r - p), 4 * q, -4 * q])
     slope_q = np.stack([1 - 4 * r, none, 4 * q - 1, -4 * p, 4 * p, 4 * (r - q)])

@@ -58,8 +58,8 @@ def closed_loops(path: str | Path, ends: Indices, places: Array) -> list[list[in
         state = "open" if degree[worst] == 1 else "branching"
         raise InputError("path", str(path), f"a drawing of closed outlines; one is {state} at ({x:g}, {y:g})")
     at: list[list[int]] = [[] for _ in places]
-    for k, (one, other) in enumerate(ends):
-        at[one].append(k)
+    for k, (first, other) in enumerate(ends):
+        at[first].append(k)
         at[other].append(k)
     left, loops = set(range(len(ends))), []
     while left:
@@ -69,8 +69,8 @@ def closed_loops(path: str | Path, ends: Indices, places: Array) -> list[list[in
         while following := [k for k in at[place] if k in left]:
             loop.append(following[0])
             left.remove(loop[-1])
-            one, other = ends[loop[-1]]
-            place = other if place == one else one
+            first, other = ends[loop[-1]]
+            place = other if place == first else first
         loops.append(loop)
     return loops
 

@@ -21,6 +21,8 @@ from meshes.quality import cell_areas
 from meshes.rings.slits import open_slits
 from meshes.section import Section
 
+SUFFIXES = (".msh", ".vtu", ".xdmf")
+
 # Names of cells in files by their nodes: in the plane, along sides and in space.
 PLANE = {3: "triangle", 6: "triangle6", 4: "quad", 9: "quad9"}
 LINES = {2: "line", 3: "line3"}
@@ -215,9 +217,6 @@ def name_walls(
 def _pairs(ends: Indices) -> Indices:
     """One number for each pair of nodes, in either order."""
     return np.asarray(np.min(ends, axis=1) * np.int64(2**31) + np.max(ends, axis=1))
-
-
-SUFFIXES = (".msh", ".vtu", ".xdmf")
 
 
 def read_section(path: str | Path, scale: float = 1.0) -> Section:

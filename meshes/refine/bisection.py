@@ -123,12 +123,18 @@ def bisect(points: Array, triangles: Indices, marked: NDArray[np.bool_]) -> tupl
 
 def _quarter_nodes(points: Array, edges: Indices, marked: NDArray[np.bool_]) -> tuple[Array, Indices]:
     """New nodes at a quarter and at three quarters of each marked edge, from its lower end."""
-    low, high, middle = points[edges[marked]].transpose(1, 0, 2)
+    made = _at_quarters(points, edges[marked])
+    quarters = np.full((len(edges), 2), -1, dtype=np.int64)
+    quarters[marked] = len(points) + np.arange(len(made)).reshape(-1, 2)
+    return np.concatenate([points, made]), quarters
+
+
+def _at_quarters(points: Array, edges: Indices) -> Array:
+    """Points at a quarter and at three quarters of each quadratic edge, in turn, shape (2 E, 2)."""
+    low, high, middle = points[edges].transpose(1, 0, 2)
     quarter = 0.375 * low + 0.75 * middle - 0.125 * high
     three = 0.375 * high + 0.75 * middle - 0.125 * low
-    quarters = np.full((len(edges), 2), -1, dtype=np.int64)
-    quarters[marked] = len(points) + np.arange(2 * len(low)).reshape(-1, 2)
-    return np.concatenate([points, np.stack([quarter, three], axis=1).reshape(-1, 2)]), quarters
+    return np.stack([quarter, three], axis=1).reshape(-1, 2)
 
 
 def _halve(
@@ -208,24 +214,20 @@ def straightened(liquid: LiquidSection) -> LiquidSection:
 def _quartered(points: Array, cells: Indices) -> tuple[Array, Indices]:
     """Points, with new ones at the end, and the four parts of each triangle."""
     number, edges = edge_numbers(cells)
-    low, high, middle = points[edges].transpose(1, 0, 2)
-    quarter = 0.375 * low + 0.75 * middle - 0.125 * high
-    three = 0.375 * high + 0.75 * middle - 0.125 * low
     inside = np.einsum("ji,mix->mjx", _INNER, points[cells])
     first = len(points)
     forward = cells[:, :3] < np.roll(cells[:, :3], -1, axis=1)
     near = first + 2 * number + ~forward  # the start of each edge
     far = first + 2 * number + forward
     p, q, r, pq, qr, rp = cells.T
-    one, two, three_ = (first + 2 * len(edges) + np.arange(3 * len(cells)).reshape(-1, 3)).T
+    across_q, across_r, across_p = (first + 2 * len(edges) + np.arange(3 * len(cells)).reshape(-1, 3)).T
     parts = [
-        [p, pq, rp, near[:, 0], three_, far[:, 2]],
-        [pq, q, qr, far[:, 0], near[:, 1], one],
-        [rp, qr, r, two, far[:, 1], near[:, 2]],
-        [pq, qr, rp, one, two, three_],
+        [p, pq, rp, near[:, 0], across_p, far[:, 2]],
+        [pq, q, qr, far[:, 0], near[:, 1], across_q],
+        [rp, qr, r, across_r, far[:, 1], near[:, 2]],
+        [pq, qr, rp, across_q, across_r, across_p],
     ]
-    made = np.stack([quarter, three], axis=1).reshape(-1, 2)
     return (
-        np.concatenate([points, made, inside.reshape(-1, 2)]),
+        np.concatenate([points, _at_quarters(points, edges), inside.reshape(-1, 2)]),
         np.concatenate([np.stack(part, axis=1) for part in parts]).astype(np.int64),
     )

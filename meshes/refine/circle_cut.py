@@ -22,6 +22,9 @@ _SMOOTH = 0.02
 # Vertices nearer than this fraction of the radius are on the circle.
 _ON_CIRCLE = 1e-12
 
+# Rounds of halving where cells come out folded, and how fast edges may grow from there.
+_ROUNDS, _SLOPE = 12, 0.25
+
 
 @dataclass(frozen=True)
 class Circle:
@@ -161,10 +164,10 @@ def _slides(
 def _turning(points: Array, walls: Indices) -> Array:
     """Angle by which the wall turns at each vertex with two wall edges, rad; pi at others."""
     tangents = np.zeros((len(points), 2))
-    for one, other in ((0, 1), (1, 0)):
-        start, end, middle = points[walls[:, one]], points[walls[:, other]], points[walls[:, 2]]
+    for first, other in ((0, 1), (1, 0)):
+        start, end, middle = points[walls[:, first]], points[walls[:, other]], points[walls[:, 2]]
         leaving = 4.0 * middle - 3.0 * start - end
-        np.add.at(tangents, walls[:, one], leaving / np.hypot(*leaving.T)[:, None])
+        np.add.at(tangents, walls[:, first], leaving / np.hypot(*leaving.T)[:, None])
     # Opposite unit vectors add to nothing if the wall is straight: the sum is 2 sin(turn / 2) long.
     half = 0.5 * np.hypot(*tangents.T)
     return np.where(half > 0.0, 2.0 * np.arcsin(np.minimum(half, 1.0)), 0.0)
@@ -243,8 +246,8 @@ def _cut_corners(
     arc, diagonal = len(points) + np.arange(2 * n).reshape(2, n)
     # The shorter diagonal of the quadrilateral p, b, c, q.
     from_p = np.hypot(*(points[p] - points[c]).T) <= np.hypot(*(points[q] - points[b]).T)
-    one, other = np.where(from_p, p, b), np.where(from_p, c, q)
-    points = np.concatenate([points, 0.5 * (points[p] + points[q]), 0.5 * (points[one] + points[other])])
+    near, other = np.where(from_p, p, b), np.where(from_p, c, q)
+    points = np.concatenate([points, 0.5 * (points[p] + points[q]), 0.5 * (points[near] + points[other])])
     pa, pb, qc, qa = (
         _part(cuts, ab, a, b),
         _part(cuts, ab, b, a),
@@ -284,10 +287,6 @@ def _bend_onto(points: Array, triangles: Indices, outside: NDArray[np.bool_], ci
     bent = points.copy()
     bent[middle] = circle.project(0.5 * (points[edges[:, 0]] + points[edges[:, 1]]))[found.all(axis=0)]
     return bent
-
-
-# Rounds of halving where cells come out folded, and how fast edges may grow from there.
-_ROUNDS, _SLOPE = 12, 0.25
 
 
 def cut_along(

@@ -92,12 +92,12 @@ def sector(
         return Section(points, triangles)
     ends = np.sort(triangles[:, EDGES[:, :2]].reshape(-1, 2), axis=1)
     edges, number = np.unique(ends, axis=0, return_inverse=True)
-    one, other = edges.T
-    middle = 0.5 * (r[one] + r[other]), 0.5 * (theta[one] + theta[other])
+    tail, head = edges.T
+    middle = 0.5 * (r[tail] + r[head]), 0.5 * (theta[tail] + theta[head])
     bent = np.stack([middle[0] * np.cos(middle[1]), middle[0] * np.sin(middle[1])], axis=1)
     # Edges follow the polar coordinates, which keeps thin layers unfolded, except towards the axis.
-    near_axis = np.minimum(r[one], r[other]) < 0.5 * np.maximum(r[one], r[other])
-    middles = np.where(near_axis[:, None], 0.5 * (points[one] + points[other]), bent)
+    near_axis = np.minimum(r[tail], r[head]) < 0.5 * np.maximum(r[tail], r[head])
+    middles = np.where(near_axis[:, None], 0.5 * (points[tail] + points[head]), bent)
     midside = len(points) + number.reshape(-1, 3)
     return Section(np.concatenate([points, middles]), np.concatenate([triangles, midside], axis=1))
 

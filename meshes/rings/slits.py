@@ -42,19 +42,19 @@ def open_slits(points: Array, cells: Indices, slits: Indices) -> tuple[Array, In
     ends = np.sort(nodes[:, :2], axis=1)
     order = np.lexsort((ends[:, 1], ends[:, 0]))
     twin = np.all(ends[order[1:]] == ends[order[:-1]], axis=1)
-    one, other = order[:-1][twin], order[1:][twin]
-    key, wanted = _key(ends[one]), np.unique(_key(np.sort(slits, axis=1)))
+    side, other_side = order[:-1][twin], order[1:][twin]
+    key, wanted = _key(ends[side]), np.unique(_key(np.sort(slits, axis=1)))
     cut = np.isin(key, wanted)
     if np.count_nonzero(cut) != len(wanted):
         raise InputError("slits", np.shape(slits), "sides with a cell on either hand")
-    kept, kept_other = one[~cut], other[~cut]
+    kept, kept_other = side[~cut], other_side[~cut]
     # Neighbours run along their common side in opposite directions.
     width = sides.shape[1]
     turned = [1, 0, 2][:width]
     first, second = places[kept].ravel(), places[kept_other][:, turned].ravel()
     links = coo_array((np.ones(first.size), (first, second)), shape=(cells.size, cells.size))
     count, group = connected_components(links, directed=False)
-    return _numbered(points, cells, np.asarray(group), int(count), ends[one[cut]])
+    return _numbered(points, cells, np.asarray(group), int(count), ends[side[cut]])
 
 
 def _numbered(

@@ -82,10 +82,10 @@ def campbell(system: RotorSystem, spin: ArrayLike) -> Campbell:
     )
 
 
-def _likeness(system: RotorSystem, one: NDArray[np.complex128], other: NDArray[np.complex128]) -> Array:
+def _likeness(system: RotorSystem, first: NDArray[np.complex128], other: NDArray[np.complex128]) -> Array:
     """Modal assurance |a^H M b|^2/(a^H M a b^H M b) of the columns of two tables, shape (n, n)."""
-    cross = np.abs(np.conj(one).T @ system.mass @ other) ** 2
-    sizes = [np.einsum("ik,ij,jk->k", np.conj(x), system.mass, x).real for x in (one, other)]
+    cross = np.abs(np.conj(first).T @ system.mass @ other) ** 2
+    sizes = [np.einsum("ik,ij,jk->k", np.conj(x), system.mass, x).real for x in (first, other)]
     return np.asarray(cross / (sizes[0][:, None] * sizes[1]))
 
 

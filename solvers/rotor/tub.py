@@ -45,8 +45,8 @@ class Mount:
         if not math.hypot(*self.direction) > 0.0:
             raise InputError("direction", self.direction, "not all three 0")
         require_not_negative("coefficient", self.coefficient)
-        for one in self.along_axes:
-            require_not_negative("along_axes", one)
+        for coefficient in self.along_axes:
+            require_not_negative("along_axes", coefficient)
 
     def matrix(self) -> Array:
         """J^T c J, its share in the stiffness or damping matrix, shape (6, 6)."""
@@ -93,8 +93,8 @@ class Tub:
 
     def __post_init__(self) -> None:
         require_positive("tub_mass", self.tub_mass)
-        for one in self.tub_inertia:
-            require_positive("tub_inertia", one)
+        for inertia in self.tub_inertia:
+            require_positive("tub_inertia", inertia)
         for field in ("drum_mass", "drum_polar_inertia", "drum_transverse_inertia", "unbalance"):
             require_not_negative(field, getattr(self, field))
         if not all(map(math.isfinite, (*self.drum_position, self.unbalance_position or 0.0))):
@@ -121,9 +121,9 @@ class Tub:
         return RotorSystem(
             coordinates=("x", "y", "z", "alpha", "beta", "gamma"),
             mass=inertia,
-            damping=sum((one.matrix() for one in self.dampers), none),
+            damping=sum((damper.matrix() for damper in self.dampers), none),
             gyroscopic=gyroscopic,
-            stiffness=sum((one.matrix() for one in self.springs), none),
+            stiffness=sum((spring.matrix() for spring in self.springs), none),
             unbalance=self.unbalance * (centre + heavy * lean).T @ np.array([1.0, -1j]),
             centre=centre,
             lean=lean,

@@ -108,9 +108,9 @@ class TwoPlane:
             damping += support.damping * axis.T @ axis
         gyroscopic[2, 3], gyroscopic[3, 2] = self.polar_inertia, -self.polar_inertia
         unbalance = np.zeros(4, dtype=complex)
-        for one in self.unbalances:
-            turning = one.size * cmath.exp(1j * one.angle) * np.array([1.0, -1j])
-            unbalance += _axis(one.position).T @ turning
+        for unbalanced in self.unbalances:
+            turning = unbalanced.size * cmath.exp(1j * unbalanced.angle) * np.array([1.0, -1j])
+            unbalance += _axis(unbalanced.position).T @ turning
         inertia = self.transverse_inertia
         return RotorSystem(
             coordinates=("x", "y", "alpha", "beta"),

@@ -107,12 +107,12 @@ class Balancing:
         """
         if self.possible[index]:
             return f"yes: the rotor is long and {self.speed[index]:.6g} rad/s is above {self.above:.6g} rad/s"
-        failed = [one for one in self.conditions if not one.satisfied[index]]
+        failed = [condition for condition in self.conditions if not condition.satisfied[index]]
         reasons = [
-            f"{one.name} fails at every speed"
-            if math.isinf(one.above)
-            else f"{one.name} only above {one.above:.6g} rad/s"
-            for one in failed
+            f"{condition.name} fails at every speed"
+            if math.isinf(condition.above)
+            else f"{condition.name} only above {condition.above:.6g} rad/s"
+            for condition in failed
         ]
         return "no: " + "; ".join(reasons)
 
@@ -152,9 +152,9 @@ def dynamic_balancing(rotor: RigidRotor, speed: ArrayLike) -> Balancing:
     )
     return Balancing(
         speed=spin,
-        possible=np.logical_and.reduce([one.satisfied for one in conditions]),
+        possible=np.logical_and.reduce([condition.satisfied for condition in conditions]),
         conditions=conditions,
-        above=max(one.above for one in conditions),
+        above=max(condition.above for condition in conditions),
         resonances=_distinct((*tilts[0], *tilts[1])),
         long=a > c and b > c,
     )
@@ -172,8 +172,8 @@ def of_two_planes(rotor: TwoPlane, added_mass: float = 0.0) -> RigidRotor:
     return RigidRotor(
         mass=rotor.mass + added_mass,
         inertia=(across, across, along),
-        stiffness=tuple(one.stiffness for one in rotor.supports),
-        position=tuple(one.position for one in rotor.supports),
+        stiffness=tuple(support.stiffness for support in rotor.supports),
+        position=tuple(support.position for support in rotor.supports),
     )
 
 

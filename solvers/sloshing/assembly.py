@@ -126,7 +126,7 @@ def gradients(section: LiquidSection) -> tuple[csr_array, csr_array]:
     slopes = np.stack([np.asarray(field[0].grad)[:, :, 0] for field in basis.basis], axis=1)
     shape = (cells, len(section.points))
     along_x, along_y = (
-        csr_array(coo_array((one.ravel(), (row, node.ravel())), shape=shape)) for one in slopes
+        csr_array(coo_array((slope.ravel(), (row, node.ravel())), shape=shape)) for slope in slopes
     )
     return along_x, along_y
 

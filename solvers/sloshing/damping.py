@@ -131,7 +131,7 @@ def baffle_edges(section: LiquidSection) -> Array:
     before[wall[:, 1]] = np.arange(len(wall))
     last = before[wall[:, 0]]
     joined = np.flatnonzero(last >= 0)
-    one, other = leaving[joined], arriving[last[joined]]
-    size = np.sqrt(np.square(one).sum(axis=1) * np.square(other).sum(axis=1))
-    back = np.sum(one * other, axis=1) < _BACK * size
+    first, other = leaving[joined], arriving[last[joined]]
+    size = np.sqrt(np.square(first).sum(axis=1) * np.square(other).sum(axis=1))
+    back = np.sum(first * other, axis=1) < _BACK * size
     return np.asarray(points[wall[joined[back], 0]])

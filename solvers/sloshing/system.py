@@ -116,7 +116,7 @@ def condense(section: LiquidSection) -> LiquidSystem:
     """
     unknown, count = _unknowns(section)
     reduce = _selection(unknown, count)
-    k, c, b = (reduce.T @ one @ reduce for one in (stiffness(section), *surface_forms(section)))
+    k, c, b = (reduce.T @ form @ reduce for form in (stiffness(section), *surface_forms(section)))
     on_surface = np.zeros(count, dtype=bool)
     touched = unknown[section.surface.ravel()]
     on_surface[touched[touched >= 0]] = True
@@ -128,8 +128,8 @@ def condense(section: LiquidSection) -> LiquidSystem:
     moment = _moment(section) @ reduce
     submerged = np.count_nonzero(~section.fixed_piece) - np.count_nonzero(_piercing(section))
     inertia, gyration, surface = (
-        basis.T @ one @ basis
-        for one in (schur, *(m[outside][:, outside].toarray() for m in map(csr_array, (c, b))))
+        basis.T @ matrix @ basis
+        for matrix in (schur, *(m[outside][:, outside].toarray() for m in map(csr_array, (c, b))))
     )
     return LiquidSystem(
         section=section,
@@ -278,5 +278,5 @@ def _enclosed_area(section: LiquidSection) -> float:
     return liquid - _area(section.points, section.surface) - across
 
 
-def _cross(one: Array, other: Array) -> Array:
-    return np.asarray(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])
+def _cross(first: Array, other: Array) -> Array:
+    return np.asarray(first[:, 0] * other[:, 1] - first[:, 1] * other[:, 0])

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from fluid.moments import Moments
 from meshes.arrays import Array
 from meshes.chamber import Chamber, Chambers
-from solvers.statics import wall as wall_arc
+from solvers.statics import wall
 
 AnyChamber = Chamber | Chambers  # one for all states, or one for each
 
@@ -49,11 +49,11 @@ def _over_walls(
     """Integrals of the outer wall less those of the inner one, scaled by R^power h."""
     shape = walls[0].eps.shape
     total = np.zeros((len(powers), walls[0].eps.size))
-    for wall in walls:
-        radius, height = np.asarray(wall.radius, dtype=float), wall.height
-        sizes = [wall.sign * radius**power * height for power in powers]
-        scales = np.stack([np.broadcast_to(one, shape).ravel() for one in sizes])
-        eps, steep, zeta = wall.eps.ravel(), wall.steep.ravel(), wall.zeta.ravel()
+    for cylinder in walls:
+        radius, height = np.asarray(cylinder.radius, dtype=float), cylinder.height
+        sizes = [cylinder.sign * radius**power * height for power in powers]
+        scales = np.stack([np.broadcast_to(scale, shape).ravel() for scale in sizes])
+        eps, steep, zeta = cylinder.eps.ravel(), cylinder.steep.ravel(), cylinder.zeta.ravel()
         # Some hundred nodes a state: a few hundred states at once stay in the processor's cache.
         for start in range(0, eps.size, _CHUNK):
             part = slice(start, start + _CHUNK)
@@ -62,7 +62,7 @@ def _over_walls(
 
 
 def _all_moments(eps: Array, steep: Array, zeta: Array) -> tuple[Array, ...]:
-    m = wall_arc.integrate(eps, steep, zeta)
+    m = wall.integrate(eps, steep, zeta)
     return m.volume, m.x, m.z, m.xx, m.yy, m.zz, m.xz
 
 
@@ -99,7 +99,7 @@ def volume_and_plan(chamber: AnyChamber, e: Array, steep: Array, zeta: Array) ->
 
     Parameters and shapes as for `moments`.
     """
-    volume, plan = _over_walls(wall_arc.volume_and_plan, (2, 2), *_walls(chamber, e, steep, zeta))
+    volume, plan = _over_walls(wall.volume_and_plan, (2, 2), *_walls(chamber, e, steep, zeta))
     return volume, plan
 
 
@@ -109,7 +109,7 @@ def plan_moments(chamber: AnyChamber, e: Array, steep: Array, zeta: Array) -> tu
     Parameters and shapes as for `moments`; the plan's area, first and second moment along the deflection are
     beta-fold, so that they stay finite as the surface becomes a cylinder [theory: statics, eq. 17].
     """
-    return _over_walls(wall_arc.unbalance, (3, 0, 1, 2), *_walls(chamber, e, steep, zeta))
+    return _over_walls(wall.unbalance, (3, 0, 1, 2), *_walls(chamber, e, steep, zeta))
 
 
 def same_shape(*values: ArrayLike) -> tuple[Array, ...]:

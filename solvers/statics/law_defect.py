@@ -118,41 +118,43 @@ def defect_bound(surfaces: Surfaces, deflection: Array) -> Array:
     return np.asarray(surfaces.unit * bound)
 
 
-def _moved_moment(one: Surfaces, eps: Array) -> Array:
+def _moved_moment(surfaces: Surfaces, eps: Array) -> Array:
     """First moment of the moved air over rho R^3 h, bounded from above; shape (n,)."""
-    target = np.pi * (1.0 - one.inner - one.filled)
+    target = np.pi * (1.0 - surfaces.inner - surfaces.filled)
     # What the sums below leave to rounding, or to taking the surface as a cylinder.
-    slack = np.where(one.steep > _CYLINDER, 0.1 * one.steep**-1.5 / np.sqrt(eps), 1e-15 * one.steep)
-    floor = one.floor.copy()
+    slack = np.where(
+        surfaces.steep > _CYLINDER, 0.1 * surfaces.steep**-1.5 / np.sqrt(eps), 1e-15 * surfaces.steep
+    )
+    floor = surfaces.floor.copy()
     best = np.full(eps.shape, np.inf)
     for step in range(_STEPS + 1):
-        volume, moment = _air(one, floor, eps)
+        volume, moment = _air(surfaces, floor, eps)
         missing = target - volume
         # No air lies farther out along the deflection than the chamber does.
         best = np.minimum(best, moment + np.abs(missing) * (1.0 + eps) + slack)
         if step < _STEPS:
-            plan = _plan(one, floor, eps)
+            plan = _plan(surfaces, floor, eps)
             floor = floor + np.divide(missing, plan, out=np.zeros_like(plan), where=plan > 0.0)
     return np.asarray(np.maximum(best, 0.0))
 
 
-def _air(one: Surfaces, floor: Array, eps: Array) -> tuple[Array, Array]:
+def _air(surfaces: Surfaces, floor: Array, eps: Array) -> tuple[Array, Array]:
     """Volume of the air over R^2 h, and the moment that it takes from the full chamber, over R^3 h."""
-    inner = np.sqrt(one.inner)
-    volume, moment = _under(one, floor, eps, np.ones_like(eps))
+    inner = np.sqrt(surfaces.inner)
+    volume, moment = _under(surfaces, floor, eps, np.ones_like(eps))
     rows = np.flatnonzero(inner > 0.0)
     if rows.size:
         wall = inner[rows]
-        held, pushed = _under(one.at(rows), floor[rows], eps[rows], wall)
+        held, pushed = _under(surfaces.at(rows), floor[rows], eps[rows], wall)
         volume[rows] -= held
         moment[rows] += np.pi * np.square(wall) * eps[rows] - pushed
     return volume, moment
 
 
-def _under(one: Surfaces, floor: Array, eps: Array, wall: Array) -> tuple[Array, Array]:
+def _under(surfaces: Surfaces, floor: Array, eps: Array, wall: Array) -> tuple[Array, Array]:
     """Volume and first moment of the air inside a cylinder of radius `wall` [theory: statics, eq. 7]."""
-    ring = 1.0 / one.steep
-    flat = one.steep > _CYLINDER
+    ring = 1.0 / surfaces.steep
+    flat = surfaces.steep > _CYLINDER
     high = np.maximum(floor + np.where(flat, 0.5 * ring, ring), 0.0)
     top = lens_moments(np.sqrt(high) / wall, 1.0, eps / wall)
     area, x = np.square(wall) * top.area, wall**3 * top.x
@@ -161,7 +163,7 @@ def _under(one: Surfaces, floor: Array, eps: Array, wall: Array) -> tuple[Array,
     if rows.size:
         q, low = wall[rows], np.maximum(floor[rows], 0.0)
         bottom = lens_moments(np.sqrt(low) / q, 1.0, eps[rows] / q)
-        b, s = one.steep[rows], high[rows]
+        b, s = surfaces.steep[rows], high[rows]
         polar = q**4 * (top.polar[rows] - bottom.polar)
         x_polar = q**5 * (top.x_polar[rows] - bottom.x_polar)
         volume[rows] = b * (s * area[rows] - low * q**2 * bottom.area - polar)
@@ -169,11 +171,11 @@ def _under(one: Surfaces, floor: Array, eps: Array, wall: Array) -> tuple[Array,
     return volume, moment
 
 
-def _plan(one: Surfaces, floor: Array, eps: Array) -> Array:
+def _plan(surfaces: Surfaces, floor: Array, eps: Array) -> Array:
     """About B times the area of the surface's plan: how the air grows with the floor's squared radius."""
-    low, high = np.maximum(floor, 0.0), np.maximum(floor + 1.0 / one.steep, 0.0)
-    angles = [_inside(s, 1.0, eps) - _inside(s, one.inner, eps) for s in (low, 0.5 * (low + high), high)]
-    share = np.minimum(one.steep * (high - low), 1.0)
+    low, high = np.maximum(floor, 0.0), np.maximum(floor + 1.0 / surfaces.steep, 0.0)
+    angles = [_inside(s, 1.0, eps) - _inside(s, surfaces.inner, eps) for s in (low, 0.5 * (low + high), high)]
+    share = np.minimum(surfaces.steep * (high - low), 1.0)
     return np.asarray(share * (angles[0] + 4.0 * angles[1] + angles[2]) / 6.0)
 
 

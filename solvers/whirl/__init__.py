@@ -1,1 +1,5 @@
-"""Self-excited whirl: growth, whirl speed and the edges of its bands of speed [theory: whirl]."""
+"""Self-excited whirl [theory: whirl].
+
+`growth` is the entry: growth and whirl speed of the mode that grows most, for any rotor, fills and friction;
+`edges` refines its bands of speed. `planar`, `system`, `laminar` and `sections` find the modes.
+"""

@@ -94,8 +94,8 @@ def laminar_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -
 def _groups(system: RotorSystem, layers: Sequence[Placed]) -> list[tuple[list[int], int]]:
     """Equal layers, and in how many independent ways they move with the rotor."""
     found: dict[tuple[float, float, float], list[int]] = {}
-    for j, (_, one) in enumerate(layers):
-        found.setdefault((one.layer_tanh, one.rate, one.stokes), []).append(j)
+    for j, (_, layer) in enumerate(layers):
+        found.setdefault((layer.layer_tanh, layer.rate, layer.stokes), []).append(j)
     ranks = []
     for members in found.values():
         along = np.array([_CIRCLES[0] @ system.at(layers[j][0]) for j in members])

@@ -104,9 +104,9 @@ def planar_modes(problem: PlanarProblem) -> Modes:
     with ThreadPoolExecutor(max_workers=min(_THREADS, os.cpu_count() or 1)) as pool:
         parts = list(pool.map(_chunk, chunks))
     return Modes(
-        np.concatenate([one.slip for one in parts], axis=1),
-        np.concatenate([one.rounding for one in parts], axis=1),
-        np.concatenate([one.converged for one in parts]),
+        np.concatenate([part.slip for part in parts], axis=1),
+        np.concatenate([part.rounding for part in parts], axis=1),
+        np.concatenate([part.converged for part in parts]),
     )
 
 

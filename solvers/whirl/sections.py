@@ -1,8 +1,9 @@
-"""Self-excited whirl of any rotor whose chambers have baffles, in the standing frame.
+"""Whirl of rotors whose chambers have baffles in the liquid or a section of their own.
 
-A rotor that stands on unlike springs has constant coefficients in the standing frame only, the liquid there
-only if it answers alike in all directions: with three baffles or more. Its motions then come in circles, one
-complex coordinate each.
+Such liquid has constant coefficients in the frame of the drum, where a planar rotor is solved. A rotor that
+tilts or stands on unlike springs has them in the standing frame only, the liquid there only if it answers
+alike in all directions: with three baffles or more. Its motions then come in circles, one complex coordinate
+each. In both frames the modes that grow most are followed with laminar friction of their own frequency.
 """
 
 from __future__ import annotations
@@ -22,11 +23,15 @@ from solvers.rotor.system import RotorSystem
 from solvers.sloshing.reduced import KEPT, ReducedLiquid, SectionLayer, spanned
 from solvers.whirl.system import CoupledMatrices, SystemModes, linear_modes
 
-_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])  # a quarter turn with the spin
-SLOW = 0.3  # frequency of slow waves over the spin
+Placed = tuple[float, SectionLayer]
+
+_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])  # a quarter turn with the spin: multiplies by i
+_ALIKE = 1e-3  # of the answer, that may go in the other sense: what an uneven mesh makes of even walls
+_DISTINCT = 1e-7  # of an answer that must stand across the others
+_SLOW = 0.3  # frequency of slow waves over the spin
 _FOLLOWED = 6  # modes at a speed whose laminar friction is computed at their own frequency
 _STEPS = 30
-_HAIR = 3e-14 * (1.0 + 1.0j)
+_BESIDE = 3e-14 * (1.0 + 1.0j)
 _SETTLED = 1e-12  # relative step at which a mode is found
 _RESOLVED = 1e-11  # of the frequencies, below which growth is rounding
 
@@ -57,15 +62,15 @@ def drum_matrices(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array)
     layers : of its chambers
     speed : Omega, rad/s, shape (n,)
     """
-    heavy = rotor.mass + sum(one.density * one.liquid.liquid_area for one in layers)
-    pull = -np.hstack([np.zeros((2, 0)), *(one.density * one.liquid.moment for one in layers)])
+    heavy = rotor.mass + sum(layer.density * layer.liquid.liquid_area for layer in layers)
+    pull = -np.hstack([np.zeros((2, 0)), *(layer.density * layer.liquid.moment for layer in layers)])
 
     def parts(name: str) -> Array:
-        return np.asarray(block_diag(*(one.density * getattr(one.liquid, name) for one in layers)))
+        return np.asarray(block_diag(*(layer.density * getattr(layer.liquid, name) for layer in layers)))
 
     inertia, gyration, surface = parts("inertia"), parts("gyration"), parts("surface")
-    rate = block_diag(*(one.density * one.rate * one.liquid.inertia for one in layers))
-    laminar = block_diag(np.zeros((2, 2)), *(one.density * one.laminar for one in layers))
+    rate = block_diag(*(layer.density * layer.rate * layer.liquid.inertia for layer in layers))
+    laminar = block_diag(np.zeros((2, 2)), *(layer.density * layer.laminar for layer in layers))
     spin = speed[:, None, None]
     mass = np.block([[heavy * np.eye(2), pull], [pull.T, inertia]])
     twist = np.block([[heavy * _TURN, _TURN @ pull], [pull.T @ _TURN, gyration]])
@@ -98,7 +103,7 @@ def drum_modes(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) ->
     circles = _circles(layers)
     if not np.any(system.laminar):
         return linear_modes(CoupledMatrices(system.mass, system.damping, system.stiffness), circles)
-    first = system.damping + np.sqrt(0.5 * SLOW * speed)[:, None, None] * system.laminar
+    first = system.damping + np.sqrt(0.5 * _SLOW * speed)[:, None, None] * system.laminar
     started = roots(CoupledMatrices(system.mass, first, system.stiffness))
     damping, stiffness = system.damping[:, None], system.stiffness[:, None]
 
@@ -128,7 +133,7 @@ class MostGrowing:
 
     Parameters
     ----------
-    started : lambda with friction at the frequency of slow waves, `SLOW` of the spin, shape (n, m)
+    started : lambda with friction at the frequency of slow waves, `_SLOW` of the spin, shape (n, m)
     slip : frequency of each over the drum, rad/s, 0 or above, shape (n, m)
     circles : displacements that tell the sense of a whirl, in pairs across the axis, shape (2 c, N)
     terms : T(lambda) and its derivative at points of shape (n, f), shape (n, f, N, N)
@@ -150,7 +155,7 @@ def most_growing(search: MostGrowing, speed: Array) -> SystemModes:
     """
     root = search.started
     # Fast modes have more friction than that of slow waves, in proportion to the root of their frequency.
-    more = np.sqrt(np.maximum(search.slip / (SLOW * speed[:, None]), 1.0))
+    more = np.sqrt(np.maximum(search.slip / (_SLOW * speed[:, None]), 1.0))
     rate = np.where(root.real < 0.0, root.real * more, root.real)
     oscillating = np.where(root.imag > 1e-9 * speed[:, None], rate, -np.inf)
     most = np.argsort(-oscillating, axis=1)[:, :_FOLLOWED]
@@ -164,7 +169,7 @@ def most_growing(search: MostGrowing, speed: Array) -> SystemModes:
 
 def _circles(layers: Sequence[SectionLayer]) -> Array:
     """Displacement of the axis and of each layer's centre, in pairs across the axis."""
-    shifts = [one.liquid.moment / one.liquid.liquid_area for one in layers]
+    shifts = [layer.liquid.moment / layer.liquid.liquid_area for layer in layers]
     return np.asarray(block_diag(np.eye(2), *shifts))
 
 
@@ -195,9 +200,9 @@ def _followed(
     shape = np.broadcast_to(np.ones(size, dtype=complex) + 0.1j * np.arange(size), (*root.shape, size)).copy()
     found = np.zeros(root.shape, dtype=bool)
     for _ in range(_STEPS):
-        # A mode met to rounding makes the matrix singular to rounding, which is wanted; a hair away it is
+        # A mode met to rounding makes the matrix singular to rounding, which is wanted; so little away it is
         # never exactly so.
-        near = root * (1.0 + _HAIR)
+        near = root * (1.0 + _BESIDE)
         matrix, slope = terms(near)
         solved = np.linalg.solve(matrix, slope @ shape[..., None])[..., 0]
         anchor = np.argmax(np.abs(solved), axis=-1)[..., None]
@@ -209,13 +214,6 @@ def _followed(
         if found.all():
             break
     return root, shape, found
-
-
-Placed = tuple[float, SectionLayer]
-
-_ALIKE = 1e-3  # of the answer, that may go in the other sense: what an uneven mesh makes of even walls
-_DISTINCT = 1e-7  # of an answer that must stand across the others
-_QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])  # multiplies by i
 
 
 @dataclass(frozen=True, eq=False)
@@ -289,11 +287,11 @@ def _require_alike(liquid: ReducedLiquid, circle: CircleLayer) -> None:
     sum_xy, difference = matrix[:, 0, 0] + matrix[:, 1, 1], matrix[:, 0, 0] - matrix[:, 1, 1]
     turned = 0.5 * (sum_xy - 1j * (matrix[:, 0, 1] - matrix[:, 1, 0]))
     counter = 0.5 * (difference + 1j * (matrix[:, 0, 1] + matrix[:, 1, 0]))
-    one = np.eye(len(circle.moment))
+    unit = np.eye(len(circle.moment))
     at = s[:, None, None]
-    motion = -np.square(at) * one + 2j * at * circle.gyration + circle.surface
+    motion = -np.square(at) * unit + 2j * at * circle.gyration + circle.surface
     answer = np.linalg.solve(
-        motion, np.broadcast_to(circle.moment.conj()[:, None], (s.size, one.shape[0], 1))
+        motion, np.broadcast_to(circle.moment.conj()[:, None], (s.size, unit.shape[0], 1))
     )
     off = np.abs((circle.moment @ answer)[..., 0] - turned) + np.abs(counter)
     if (off > _ALIKE * np.abs(turned).max()).any():
@@ -330,28 +328,29 @@ def standing_matrices(system: RotorSystem, layers: Sequence[Placed], speed: Arra
     """
     count, spin = len(system.coordinates), speed[:, None, None]
     circles = [(plane, circle_layer(layer)) for plane, layer in layers]
-    size = count + 2 * sum(len(one.moment) for _, one in circles)
+    size = count + 2 * sum(len(circle.moment) for _, circle in circles)
     mass, laminar, quarter = np.zeros((3, size, size))
     damping, stiffness = np.zeros((2, speed.size, size, size))
     mass[:count, :count] = system.mass
     damping[:, :count, :count] = system.damping + spin * system.gyroscopic
     stiffness[:, :count, :count] = system.stiffness
     first = count
-    for plane, one in circles:
-        m, at = len(one.moment), system.at(plane)
+    for plane, circle in circles:
+        m, at = len(circle.moment), system.at(plane)
         own = slice(first, first + 2 * m)
         first += 2 * m
-        pull = -one.density * at.T @ _real(one.moment[None])
-        turn, unit = _real(1j * np.eye(m)), one.density * np.eye(2 * m)
-        mass[:count, :count] += one.density * one.liquid_area * at.T @ at
+        pull = -circle.density * at.T @ _real(circle.moment[None])
+        turn, unit = _real(1j * np.eye(m)), circle.density * np.eye(2 * m)
+        mass[:count, :count] += circle.density * circle.liquid_area * at.T @ at
         mass[:count, own], mass[own, :count], mass[own, own] = pull, pull.T, unit
         # d/dt - i Omega takes the place of d/dt in what the liquid does in the drum.
-        twist, spread = one.density * _real(one.gyration), one.density * _real(one.surface)
-        damping[:, own, own] = 2.0 * spin * (twist - one.density * turn) + one.rate * unit
+        twist, spread = circle.density * _real(circle.gyration), circle.density * _real(circle.surface)
+        damping[:, own, own] = 2.0 * spin * (twist - circle.density * turn) + circle.rate * unit
         stiffness[:, own, own] = (
-            np.square(spin) * (spread - unit - 2.0 * turn @ twist) - one.rate * one.density * spin * turn
+            np.square(spin) * (spread - unit - 2.0 * turn @ twist)
+            - circle.rate * circle.density * spin * turn
         )
-        laminar[own, own], quarter[own, own] = one.density * _real(one.laminar), turn
+        laminar[own, own], quarter[own, own] = circle.density * _real(circle.laminar), turn
     return StandingMatrices(mass, damping, stiffness, laminar, quarter)
 
 
@@ -370,7 +369,7 @@ def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) 
     circles = np.concatenate([rows, own])
     if not np.any(found.laminar):
         return linear_modes(CoupledMatrices(found.mass, found.damping, found.stiffness), circles)
-    drag = np.sqrt(0.5 * SLOW * speed)[:, None, None] * found.laminar
+    drag = np.sqrt(0.5 * _SLOW * speed)[:, None, None] * found.laminar
     slipping = -speed[:, None, None] * found.quarter @ drag
     started = roots(CoupledMatrices(found.mass, found.damping + drag, found.stiffness + slipping))
     # Of the two circles of a mode the one with the spin, which slips less.
@@ -383,12 +382,12 @@ def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) 
         power, slope = [], []
         for way in (-1j, 1j):
             slip = at + way * spin
-            one = np.sqrt(slip)
-            power.append(slip * one)
-            slope.append(1.5 * one)
+            root_slip = np.sqrt(slip)
+            power.append(slip * root_slip)
+            slope.append(1.5 * root_slip)
         mean, half = (
-            (0.5 * (one[0] + one[1]) for one in (power, slope)),
-            (-0.5j * (one[0] - one[1]) for one in (power, slope)),
+            (0.5 * (pair[0] + pair[1]) for pair in (power, slope)),
+            (-0.5j * (pair[0] - pair[1]) for pair in (power, slope)),
         )
         turned = found.quarter @ found.laminar
         shear, change = (u * found.laminar + v * turned for u, v in zip(mean, half, strict=True))
@@ -401,5 +400,5 @@ def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) 
 
 def _real(matrix: Any) -> Array:
     """A complex matrix over real and imaginary parts, shape (r, m) to (2 r, 2 m)."""
-    made = np.kron(matrix.real, np.eye(2)) + np.kron(matrix.imag, _QUARTER)
+    made = np.kron(matrix.real, np.eye(2)) + np.kron(matrix.imag, _TURN)
     return np.asarray(made)

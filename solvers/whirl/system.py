@@ -51,15 +51,15 @@ def coupled_matrices(
     mass[:count, :count] = system.mass
     damping[:, :count, :count] = system.damping + spin * system.gyroscopic
     stiffness[:, :count, :count] = system.stiffness
-    turn, one = np.array([[0.0, 1.0], [-1.0, 0.0]]), np.eye(2)
+    turn, unit = np.array([[0.0, 1.0], [-1.0, 0.0]]), np.eye(2)
     for j, (plane, layer) in enumerate(layers):
         own, at = slice(count + 2 * j, count + 2 * j + 2), system.at(plane)
         t, rate, inertia = layer.layer_tanh, layer.rate, layer.mass / (0.5 * (1.0 - layer.layer_tanh))
         mass[:count, :count] += layer.mass * at.T @ at
         mass[own, :count], mass[:count, own] = layer.mass * at, layer.mass * at.T
-        mass[own, own] = inertia * one
-        damping[:, own, own] = inertia * (rate * one + 2.0 * (1.0 + t) * spin * turn)
-        stiffness[:, own, own] = inertia * (rate * spin * turn - (1.0 + t) * np.square(spin) * one)
+        mass[own, own] = inertia * unit
+        damping[:, own, own] = inertia * (rate * unit + 2.0 * (1.0 + t) * spin * turn)
+        stiffness[:, own, own] = inertia * (rate * spin * turn - (1.0 + t) * np.square(spin) * unit)
     return CoupledMatrices(mass, damping, stiffness)
 
 
@@ -95,7 +95,7 @@ def linear_modes(matrices: CoupledMatrices, circles: Array) -> SystemModes:
     """
     root = np.linalg.cholesky(matrices.mass)
     inverse = np.linalg.inv(root)
-    stiffness, damping = (inverse @ one @ inverse.T for one in (matrices.stiffness, matrices.damping))
+    stiffness, damping = (inverse @ matrix @ inverse.T for matrix in (matrices.stiffness, matrices.damping))
     size = root.shape[0]
     unit = np.sqrt(np.abs(stiffness).max(axis=(1, 2)))
     unit = np.maximum(unit, np.abs(damping).max(axis=(1, 2)) * 1e-3)[:, None, None]

@@ -61,7 +61,7 @@ def test_global() -> None:
         assert solve(free(two), 1).objective == pytest.approx(0.5, rel=1e-4)
 
 
-@kills("solvers.search:_along_rays", "low + t[:, None] * one", "low + t[:, None] + 0.0 * one")
+@kills("solvers.search:_along_rays", "low + t[:, None] * ray", "low + t[:, None] + 0.0 * ray")
 def test_edge() -> None:
     """Least cost where 3 sqrt(x) + 2 sqrt(y) + sqrt(z) >= 1.5: by Lagrange (1.5 (3, 2, 1)/14)^2."""
     weights = np.array([3.0, 2.0, 1.0])

@@ -244,7 +244,7 @@ def _audit(record: Array, system: RotorSystem, axes: Array, balls: Array, gravit
     """Largest gap between the work done and the change of energy, over what was turned over till the end."""
     if not np.isfinite(record).all():
         return math.inf
-    held = np.array([energy(one, system.mass, system.stiffness, axes, balls, gravity) for one in record])
+    held = np.array([energy(state, system.mass, system.stiffness, axes, balls, gravity) for state in record])
     gap, scale = float(np.max(np.abs(held - held[0] - record[:, -2]))), float(record[-1, -1])
     return gap / scale if scale > 0.0 else gap
 

@@ -157,14 +157,14 @@ class Exciter:
 
     def system(self) -> RotorSystem:
         """Platform and unbalance without the balls, which moves along the second direction only."""
-        one = np.ones((1, 1))
+        unit = np.ones((1, 1))
         across = np.array([[0.0], [1.0]])
         return RotorSystem(
             coordinates=("y",),
-            mass=self.platform_mass * one,
-            damping=self.damping * one,
-            gyroscopic=0.0 * one,
-            stiffness=self.stiffness * one,
+            mass=self.platform_mass * unit,
+            damping=self.damping * unit,
+            gyroscopic=0.0 * unit,
+            stiffness=self.stiffness * unit,
             unbalance=np.array([-1j * self.unbalance], dtype=complex),
             centre=across,
             lean=0.0 * across,

@@ -247,7 +247,7 @@ def critical_speeds(
     workers : threads; the compiled steps run side by side
     """
     with ThreadPoolExecutor(max_workers=workers) as pool:
-        found = pool.map(lambda one: critical_speed(one, balls, start).holds, machines)
+        found = pool.map(lambda machine: critical_speed(machine, balls, start).holds, machines)
     return np.array(list(found))
 
 

@@ -70,8 +70,8 @@ def test_straight_parts_of_straight_triangles() -> None:
     assert straight.sum() > 100 and bends[1][straight].max() < 1e-12
 
 
-@kills("meshes.refine.bisection:_quartered", "0.375 * low + 0.75", "0.5 * low + 0.625")
-@kills("meshes.refine.bisection:_quartered", "0.375 * high + 0.75", "0.5 * high + 0.625")
+@kills("meshes.refine.bisection:_at_quarters", "0.375 * low + 0.75", "0.5 * low + 0.625")
+@kills("meshes.refine.bisection:_at_quarters", "0.375 * high + 0.75", "0.5 * high + 0.625")
 def test_walls_keep_their_shape() -> None:
     """Every new node of a wall lies on the parabola of the side it came from."""
     liquid = liquid_outside(disc(0.2, 24, order=2), 0.14, order=2)

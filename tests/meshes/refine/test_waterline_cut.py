@@ -210,7 +210,7 @@ def test_a_thin_layer() -> None:
 
 
 @kills(
-    "meshes.refine.bisection:_quarter_nodes",
+    "meshes.refine.bisection:_at_quarters",
     "0.375 * low + 0.75 * middle - 0.125 * high",
     "0.375 * low + 0.625 * middle",
 )

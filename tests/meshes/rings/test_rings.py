@@ -191,7 +191,7 @@ def test_slits_that_open_nothing_are_refused(slits: list[list[int]]) -> None:
 
 
 @kills(
-    "meshes.rings.sectors:sector", "middle = 0.5 * (r[one] + r[other])", "middle = 0.49 * (r[one] + r[other])"
+    "meshes.rings.sectors:sector", "middle = 0.5 * (r[tail] + r[head])", "middle = 0.49 * (r[tail] + r[head])"
 )
 def test_sector_area() -> None:
     """Chords and parabolas of both walls, as in `grid_area`; the sides are rays."""

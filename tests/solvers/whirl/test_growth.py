@@ -83,7 +83,7 @@ def wolf(mu: float, depth: float, zeta: float, spin: float, rate: float) -> np.n
     "layer.mass / (0.5 * (1.0 - layer.layer_tanh))",
     "layer.mass / (0.5 * (1.0 + layer.layer_tanh))",
 )
-@kills("solvers.whirl.system:coupled_matrices", "rate * one + 2.0", "rate * one - 2.0")
+@kills("solvers.whirl.system:coupled_matrices", "rate * unit + 2.0", "rate * unit - 2.0")
 def test_characteristic_equation() -> None:
     """Growth and whirl speed of the fastest of the polynomial's roots."""
     spins = np.array([30.0, 95.0, 128.0, 160.0, 400.0])
@@ -280,8 +280,8 @@ def test_energy() -> None:
 @kills("solvers.whirl.system:coupled_matrices", "rate * spin * turn - (1.0", "-rate * spin * turn - (1.0")
 @kills(
     "solvers.whirl.system:coupled_matrices",
-    "- (1.0 + t) * np.square(spin) * one",
-    "- (1.0 - t) * np.square(spin) * one",
+    "- (1.0 + t) * np.square(spin) * unit",
+    "- (1.0 - t) * np.square(spin) * unit",
 )
 def test_synchronous() -> None:
     """Driven by an unbalance the same equations give the synchronous response while the wall is wet."""

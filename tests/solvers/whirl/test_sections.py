@@ -288,7 +288,11 @@ def test_whirl_without_baffles_is_the_known_one() -> None:
         np.testing.assert_allclose(drum_growth(CLEAR, friction), exact, atol=1e-9 * SPIN[-1])
 
 
-@kills("solvers.whirl.sections:standing_matrices", "twist - one.density * turn", "twist + one.density * turn")
+@kills(
+    "solvers.whirl.sections:standing_matrices",
+    "twist - circle.density * turn",
+    "twist + circle.density * turn",
+)
 @kills(
     "solvers.whirl.sections:standing_matrices",
     "spread - unit - 2.0 * turn @ twist",
@@ -296,11 +300,11 @@ def test_whirl_without_baffles_is_the_known_one() -> None:
 )
 @kills(
     "solvers.whirl.sections:standing_matrices",
-    "- one.rate * one.density * spin * turn",
-    "+ one.rate * one.density * spin * turn",
+    "- circle.rate * circle.density * spin * turn",
+    "+ circle.rate * circle.density * spin * turn",
 )
 @kills("solvers.whirl.sections:standing_modes", "for way in (-1j, 1j):", "for way in (1j, -1j):")
-@kills("solvers.whirl.sections:standing_modes", "-0.5j * (one[0] - one[1])", "0.5j * (one[0] - one[1])")
+@kills("solvers.whirl.sections:standing_modes", "-0.5j * (pair[0] - pair[1])", "0.5j * (pair[0] - pair[1])")
 def test_drum_frame_and_standing_frame_agree() -> None:
     """Real motions in the drum's frame and circles in the standing one are one machine."""
     for fill in (HALF, FULL, FREE):
@@ -313,7 +317,7 @@ def test_drum_frame_and_standing_frame_agree() -> None:
             np.testing.assert_allclose(modes.root.real.max(axis=1), drum_growth(fill, friction), atol=1e-6)
 
 
-@kills("solvers.whirl.sections:standing_matrices", "pull = -one.density", "pull = one.density * 0.5")
+@kills("solvers.whirl.sections:standing_matrices", "pull = -circle.density", "pull = circle.density * 0.5")
 def test_any_rotor_with_a_clear_ring_is_the_known_one() -> None:
     """A rotor of two planes: circles of a clear ring give what the known coupled matrices do."""
     fill = replace(CLEAR, chamber=replace(CLEAR.chamber, plane=0.07))
