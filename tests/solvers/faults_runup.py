@@ -6,10 +6,9 @@ from tests.faults import Fault
 from tests.solvers.runup import test_linear as linear
 from tests.solvers.runup import test_runup as oracle
 
-RUN, SET, READ, FILL = (
-    f"solvers.{name}" for name in ("runup", "coupled_machine", "coupled_reading", "coupled_fill")
+RUN, SET, FILL, DRIVE, LINEAR = (
+    f"solvers.runup.{name}" for name in ("runup", "long_wave", "chamber", "drive", "linear")
 )
-DRIVE, LINEAR = "solvers.runup.drive", "solvers.runup.linear"
 FAULTS: tuple[Fault, ...] = (
     Fault(
         DRIVE, "self.start + self.rate * rise", "self.start + 0.9 * self.rate * rise", oracle.check_capture
@@ -21,34 +20,32 @@ FAULTS: tuple[Fault, ...] = (
     Fault(RUN, "self.gravity + self.captured", "self.gravity - self.captured", oracle.check_capture),
     Fault(RUN, "cells = numerics.cells // 2", "cells = numerics.cells", oracle.check_error_estimate),
     Fault(SET, "plane.T @ momentum * (not kept)", "plane.T @ momentum * kept", oracle.check_switch),
-    Fault(SET, "_RELEASE * machine.capture", "machine.capture", oracle.check_capture),
-    Fault(SET, "1.2 * machine.spin", "1.4 * machine.spin", oracle.check_switch),
-    Fault(
-        SET, "-machine.spin * np.square(machine.area[anew])", "0.0 * machine.area[anew]", oracle.check_switch
-    ),
+    Fault(SET, "RELEASE * self.capture", "self.capture", oracle.check_capture),
+    Fault(SET, "_AGAIN * self.spin", "1.4 * self.spin", oracle.check_switch),
+    Fault(SET, "-self.spin * np.square(self.area[anew])", "0.0 * self.area[anew]", oracle.check_switch),
     Fault(
         SET,
-        "mass += layer[MASS] * plane.T @ plane",
-        "mass -= layer[MASS] * plane.T @ plane",
+        "mass += weight * plane.T @ plane",
+        "mass -= weight * plane.T @ plane",
         oracle.check_switch,
     ),
-    Fault(READ, "(1.0 + surface + np.square(surface)) / 3.0", "(1.0 + surface) / 2.0", oracle.check_reading),
-    Fault(READ, "1j * (lever @ angles[1])", "1j * (lever @ angles[0])", oracle.check_reading),
+    Fault(SET, "(1.0 + surface + np.square(surface)) / 3.0", "(1.0 + surface) / 2.0", oracle.check_reading),
+    Fault(SET, "1j * (lever @ angles[1])", "1j * (lever @ angles[0])", oracle.check_reading),
     Fault(
-        READ,
-        "velocity += machine.spin * machine.area",
-        "velocity -= machine.spin * machine.area",
+        SET,
+        "velocity += self.spin * self.area",
+        "velocity -= self.spin * self.area",
         oracle.check_reading,
     ),
-    Fault(READ, "1.0 - surface.max(axis=1", "1.0 - surface.min(axis=1", oracle.check_reading),
+    Fault(SET, "1.0 - surface.max(axis=1", "1.0 - surface.min(axis=1", oracle.check_reading),
     Fault(FILL, "gravity / fill.surface_radius", "gravity / fill.chamber.radius * 0.5", oracle.check_capture),
-    Fault(LINEAR, "lost += machine.masses[j]", "lost -= machine.masses[j]", linear.check_switch),
-    Fault(LINEAR, "0.98 * machine.capture", "machine.capture", linear.check_capture),
+    Fault(LINEAR, "lost += self.masses[j]", "lost -= self.masses[j]", linear.check_switch),
+    Fault(LINEAR, "RELEASE * self.capture", "self.capture", linear.check_capture),
     Fault(LINEAR, "1j * m.place[n + 1 :: 2]", "-1j * m.place[n + 1 :: 2]", linear.check_steady),
     Fault(
         LINEAR,
-        "(m.layers[:, 1] - 1.0) * np.abs(offset)",
-        "m.layers[:, 1] * np.abs(offset)",
+        "(m.layers.curvature - 1.0) * np.abs(offset)",
+        "m.layers.curvature * np.abs(offset)",
         linear.check_depth,
     ),
 )
