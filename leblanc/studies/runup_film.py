@@ -67,8 +67,8 @@ def film(scene: Scene, record: RunupRecord, frames: int = FRAMES) -> Reel:
     if not 2 <= frames <= MOST_FRAMES:
         raise InputError("frames", frames, f"from 2 to {MOST_FRAMES}")
     drive, end = drive_of(planned(scene)), float(record.history.time[-1])
-    # As many samples as frames or a multiple of them: each frame is then at its own time.
-    samples = -(-record.numerics.samples // (frames - 1)) * (frames - 1) + 1
+    # A multiple of the frames: each frame is then at its own time, if the run comes to its end.
+    samples = -(-(record.numerics.samples - 1) // (frames - 1)) * (frames - 1) + 1
     history = run_up(
         dry_rotor(scene).system(),
         scene.chambers,

@@ -530,3 +530,45 @@ def test_wrong_motors_are_refused(change: dict[str, object]) -> None:
 def test_unknown_friction_is_refused() -> None:
     with pytest.raises(InputError, match="friction"):
         run_up(ROTOR.system(), [layer(5e-4)], RAMP, Friction("honey"))
+
+
+# --- pictures of the layers ---
+
+
+@pytest.mark.parametrize("model", ["long_wave", "linear"])
+def test_snapshots_are_of_the_run_itself(model: str) -> None:
+    """They change nothing, stand at recorded times, hold all of the liquid and reach its depths."""
+    ramp = Ramp(20.0, 40.0, 20.0, 1.0)
+    rotor, fills, friction = ROTOR.system(), [layer(5e-4)], Friction("linear", 3.0)
+    plain = run_up(rotor, fills, ramp, friction, 0.0, BRIEF, model=model)
+    found = run_up(rotor, fills, ramp, friction, 0.0, BRIEF, model=model, snapshots=np.linspace(0.0, 1.0, 5))
+    np.testing.assert_array_equal(found.deflection, plain.deflection)
+    assert plain.snapshots is None
+    kept = found.snapshots
+    assert kept is not None
+    assert kept.depth.shape == (5, 1, 32)
+    # Half a step between two samples at most.
+    np.testing.assert_allclose(found.time[kept.sample], np.linspace(0.0, 1.0, 5), atol=0.5 / 49)
+    np.testing.assert_allclose(
+        kept.theta, np.mod(2.0 * np.pi * (np.arange(32) + 0.5) / 32 + np.pi, 2 * np.pi) - np.pi
+    )
+    crest = kept.depth[:, 0].max(axis=1)
+    if model == "long_wave":
+        np.testing.assert_allclose(crest, found.depth_max[kept.sample, 0], rtol=1e-12)
+        area = CHAMBER.radius * kept.depth[:, 0] - 0.5 * kept.depth[:, 0] ** 2
+        np.testing.assert_allclose(area.mean(axis=1) * 2.0 * np.pi * CHAMBER.height, 5e-4, rtol=1e-12)
+    else:
+        # The crest of a cosine is within half a cell of some middle.
+        rise, seen = found.depth_max[kept.sample, 0] - fills[0].depth, crest - fills[0].depth
+        assert np.all(seen <= rise * (1.0 + 1e-9))
+        assert np.all(seen >= rise * math.cos(math.pi / 32) * (1.0 - 1e-9))
+        # It stands where the liquid's centre of mass does, in the drum.
+        place = found.offset[kept.sample[-1], 0] * np.exp(-1j * found.angle[kept.sample[-1]])
+        top = kept.theta[kept.depth[-1, 0].argmax()]
+        assert abs(np.angle(np.exp(1j * top) / place)) <= math.pi / 32 * (1.0 + 1e-9)
+
+
+def test_every_outcome_but_the_end_has_a_reason() -> None:
+    assert [bool(outcome.message) for outcome in Outcome] == [
+        outcome is not Outcome.DONE for outcome in Outcome
+    ]
