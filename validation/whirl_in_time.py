@@ -13,6 +13,7 @@ from fluid.friction import Friction
 from meshes.errors import InputError, require_positive
 from solvers.rotor.system import RotorSystem
 from solvers.runup.long_wave import couple
+from solvers.runup.machine import Outcome
 from solvers.runup.runup import RunupNumerics
 
 _SAMPLES = 800
@@ -67,13 +68,13 @@ def whirl_in_time(
     plane = machine.machine.planes[0]
     # The coordinates that move the first axis along its first direction, as little as may be.
     kick = np.linalg.pinv(plane) @ np.array([_SMALL * depth, 0.0])
-    machine.state.rotor[: kick.size] = kick
+    machine.state.place[: kick.size] = kick
     time = np.linspace(0.0, duration, _SAMPLES + 1)
     deflection = np.empty(_SAMPLES, dtype=complex)
     for k, stop in enumerate(time[1:].tolist()):
-        if machine.advance(stop, 0.0, numerics.courant, 10**9) != 0:
+        if machine.advance(stop, 0.0, numerics.courant, 10**9) != Outcome.DONE:
             return WhirlInTime(math.nan, math.nan, False)
-        deflection[k] = complex(*(plane @ machine.state.rotor[: kick.size]))
+        deflection[k] = complex(*(plane @ machine.state.place[: kick.size]))
     last = slice(_SAMPLES // 2, None)
     modulus = np.abs(deflection[last])
     if modulus.min() <= 0.0:

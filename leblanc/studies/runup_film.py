@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from itertools import pairwise
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,13 +11,10 @@ from leblanc.scene.scene import Scene
 from leblanc.studies.runup import RunupRecord, drive_of, liquid_model, planned
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError
-from solvers.runup.drive import Drive, Ramp, torque_curve
-from solvers.runup.long_wave import Coupled, couple, reading, switch
-from solvers.runup.runup import RunupNumerics
+from solvers.runup.runup import run_up
 
 FRAMES = 180  # of a film
 MOST_FRAMES = 2000
-_MOST = 200_000_000  # steps between two frames
 
 
 @dataclass(frozen=True)
@@ -70,57 +66,28 @@ def film(scene: Scene, record: RunupRecord, frames: int = FRAMES) -> Reel:
     """
     if not 2 <= frames <= MOST_FRAMES:
         raise InputError("frames", frames, f"from 2 to {MOST_FRAMES}")
-    drive, numerics = drive_of(planned(scene)), record.numerics
-    system, law = dry_rotor(scene).system(), record.friction
-    start = float(drive.corners()[1, 0])
-    machine = couple(system, scene.fills, start, law, record.gravity, numerics.cells, numerics.dispersion)
-    machine.drive(torque_curve(drive), 0.0 if isinstance(drive, Ramp) else drive.inertia)
-    wanted = np.linspace(0.0, float(record.history.time[-1]), frames)
-    rows = [_frame(machine)]
-    for begin, end in pairwise(wanted.tolist()):
-        if not _advance(machine, drive, begin, end, numerics):
-            break
-        rows.append(_frame(machine))
-    table = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-    return Reel(**table, theta=np.arctan2(machine.machine.angles[1], machine.machine.angles[0]))
-
-
-def _advance(machine: Coupled, drive: Drive, begin: float, end: float, numerics: RunupNumerics) -> bool:
-    """From one frame to the next, with a stop at each corner of the ramp; whether it got there.
-
-    Liquid is caught and let go at ten times in between.
-    """
-    corners = drive.corners()
-    within = corners[0][(corners[0] > begin) & (corners[0] < end)]
-    stops = np.unique(np.concatenate((np.linspace(begin, end, 11)[1:], within)))
-    for stop in stops.tolist():
-        switch(machine)
-        middle = 0.5 * (machine.time + stop)
-        rate = float(_rate(drive, middle)) if isinstance(drive, Ramp) else 0.0
-        if machine.advance(stop, rate, numerics.courant, _MOST) != 0:
-            return False
-    return True
-
-
-def _rate(drive: Ramp, time: float) -> float:
-    """Rate of change of the spin at a time between two corners, rad/s^2."""
-    corners = drive.corners()
-    k = int(np.clip(np.searchsorted(corners[0], time) - 1, 0, corners.shape[1] - 2))
-    return float((corners[1, k + 1] - corners[1, k]) / (corners[0, k + 1] - corners[0, k]))
-
-
-def _frame(machine: Coupled) -> dict[str, object]:
-    """One frame, by the names of `Reel`."""
-    now = reading(machine)
-    turn = np.exp(-1j * now["angle"])
-    radius = np.array([[fill.chamber.radius] for fill in machine.fills]).reshape(-1, 1)
-    depth = radius * (1.0 - np.sqrt(np.maximum(1.0 - 2.0 * machine.area, 0.0)))
-    return {
-        "time": now["time"],
-        "speed": now["speed"],
-        "deflection": now["deflection"] * turn,
-        "amplitude": abs(now["deflection"][0]),
-        "depth": np.where(machine.active[:, None], depth, np.nan),
+    drive, end = drive_of(planned(scene)), float(record.history.time[-1])
+    # A multiple of the frames: each frame is then at its own time, if the run comes to its end.
+    samples = -(-(record.numerics.samples - 1) // (frames - 1)) * (frames - 1) + 1
+    history = run_up(
+        dry_rotor(scene).system(),
+        scene.fills,
+        drive,
+        record.friction,
+        record.gravity,
+        replace(record.numerics, samples=samples, companion=False),
+        snapshots=np.linspace(0.0, end, frames),
+    )
+    shots = history.snapshots
+    assert shots is not None
+    turn = np.exp(-1j * history.angle[shots.sample])
+    return Reel(
+        time=history.time[shots.sample],
+        speed=history.speed[shots.sample],
+        deflection=history.deflection[shots.sample] * turn[:, None],
+        amplitude=history.amplitude[shots.sample],
+        theta=shots.theta,
+        depth=shots.depth,
         # Gravity points against the first direction.
-        "pool": float(np.angle(-turn)),
-    }
+        pool=np.angle(-turn),
+    )

@@ -3,14 +3,52 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from fluid.fill import Fill
 from fluid.friction import Friction, FrictionLaw
 from fluid.waves import free_wave_frequencies
 
+# A layer is let go at this share of the spin speed that captures it, lest it be caught and let go in turns.
+RELEASE = 0.98
 
-def layer_properties(fill: Fill, friction: Friction, dispersion: bool) -> tuple[float, ...]:
-    """Row of `Machine.layers`."""
+
+def mean_area(fill: Fill) -> float:
+    """Liquid area per radian over R^2."""
+    return fill.volume / (2.0 * math.pi * fill.chamber.height * fill.chamber.radius**2)
+
+
+class LayerProperties(NamedTuple):
+    """What the steps know of a layer, in the order of the record LAYER of `solvers.runup.state`.
+
+    Parameters
+    ----------
+    radius : of the wall R, m
+    weight : rho h_c, kg/m^2
+    mass : kg
+    law, coefficient : of the friction: number of the law; k, 1/s, Stokes' over the root of the spin, or c_f
+    lid : 2 R/h_c under Stokes' friction, otherwise 0
+    spread : square of L for the dispersive term, 0 without it
+    """
+
+    radius: float
+    weight: float
+    mass: float
+    law: int
+    coefficient: float
+    lid: float
+    spread: float
+
+
+def layer_properties(fill: Fill, friction: Friction, dispersion: bool) -> LayerProperties:
+    """What the steps know of a chamber's layer.
+
+    Parameters
+    ----------
+    fill : chamber and liquid
+    friction : on the walls; the laminar law takes the frequency of the slower free wave
+    dispersion : add the finite depth's dispersion
+    """
     chamber = fill.chamber
     log = math.log(chamber.radius / fill.surface_radius) if fill.surface_radius > 0.0 else math.inf
     # Of unit spin: the coefficient goes with the root of it.
@@ -19,7 +57,7 @@ def layer_properties(fill: Fill, friction: Friction, dispersion: bool) -> tuple[
     lid = 2.0 * chamber.radius / chamber.height if friction.law is FrictionLaw.STOKES and slip > 0.0 else 0.0
     weight = fill.liquid.density * chamber.height
     spread = log**2 if dispersion and log < math.inf else 0.0
-    return chamber.radius, weight, fill.mass, float(law), coefficient, lid, spread
+    return LayerProperties(chamber.radius, weight, fill.mass, law, coefficient, lid, spread)
 
 
 def layer_capture(fill: Fill, gravity: float) -> float:

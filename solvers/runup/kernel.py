@@ -17,32 +17,7 @@ from fluid.friction import STOKES
 from solvers.layer.face_flux import COMPILED, DRY, NEAREST, faded_velocity, log_of_surface
 from solvers.layer.finite_volume import GHOSTS, WORK, ring_rates
 from solvers.layer.step import calm, copy, correct, predict, surface_radius, wall_friction
-from solvers.runup.state import (
-    BORES,
-    DISAGREED,
-    DRIVE,
-    ENERGY,
-    FLOW,
-    FRICTION,
-    GRAVITY,
-    HEAT,
-    INERTIA,
-    LAW,
-    LAYER_STEPS,
-    LOSS,
-    MASS,
-    MISSED,
-    MOMENT,
-    MOTOR,
-    PROFILE,
-    RADIUS,
-    SPINNING,
-    STEPS,
-    SUPPORT,
-    TORQUE,
-    UNBALANCE,
-    WEIGHT,
-)
+from solvers.runup.machine import Outcome
 
 _jit: Any = njit(**COMPILED)
 _unwrapped: Any = njit(**(COMPILED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
@@ -90,25 +65,24 @@ def motor_torque(curve, spin):
 @_jit
 def relative_momentum(measures, layer, spin, cosine, sine, out):
     """Momentum of a layer relative to its axis, in the standing frame [theory: coupling, eq. 3]."""
-    scale = layer[WEIGHT] * layer[RADIUS] ** 3
-    x = measures[FLOW] - spin * measures[MOMENT + 1]
-    y = measures[FLOW + 1] + spin * measures[MOMENT]
+    scale = layer.weight * layer.radius**3
+    x = measures.flow_x - spin * measures.moment_y
+    y = measures.flow_y + spin * measures.moment_x
     out[0], out[1] = scale * (x * cosine - y * sine), scale * (x * sine + y * cosine)
 
 
 @_jit
 def flow_inertia(measures, layer, c, s, out):
     """Inertia of a layer's flow under a body force, in the standing frame [theory: coupling, eq. 4]."""
-    scale = layer[WEIGHT] * layer[RADIUS] ** 2
-    xx, xy, yy = scale * measures[INERTIA], scale * measures[INERTIA + 1], scale * measures[INERTIA + 2]
+    scale = layer.weight * layer.radius**2
+    xx, xy, yy = scale * measures.xx, scale * measures.xy, scale * measures.yy
     out[0] = c * c * xx - 2.0 * c * s * xy + s * s * yy
     out[1] = c * s * (xx - yy) + (c * c - s * s) * xy
     out[2] = s * s * xx + 2.0 * c * s * xy + c * c * yy
 
 
 # Courant number beyond which a step is taken again.
-LARGEST = 1.0
-DONE, TOO_LONG, AT_AXIS = 0, 1, 2
+_LARGEST = 1.0
 
 
 def layer_scratch(layers: int, cells: int) -> NDArray[np.float64]:
@@ -118,13 +92,12 @@ def layer_scratch(layers: int, cells: int) -> NDArray[np.float64]:
 
 @_jit
 def measure(area, q, spin, angles, spare, out):
-    """Fill `out` with a layer's measures, shape (MEASURES,) [theory: coupling, eq. 2, 4 and 7]."""
+    """Fill `out`, a record MEASURES, for a layer [theory: coupling, eq. 2, 4 and 7]."""
     n = area.size
     step = 2.0 * np.pi / n
     across, along, log = spare[WORK, :n], spare[WORK + 1, :n], spare[WORK + 2, :n]
     flow = spare[WORK + 3, :n]
-    for k in range(out.size):
-        out[k] = 0.0
+    moment_x, moment_y, spinning, energy = 0.0, 0.0, 0.0, 0.0
     for i in range(n):
         r = np.maximum(surface_radius(area[i]), NEAREST)
         u = faded_velocity(area[i], q[i], spin)
@@ -132,19 +105,22 @@ def measure(area, q, spin, angles, spare, out):
         across[i], along[i] = r * angles[0, i], r * angles[1, i]
         flow[i] = u * log[i]
         lever = (1.0 - r) * (1.0 + r + r * r) / 3.0
-        out[MOMENT] += lever * angles[0, i] * step
-        out[MOMENT + 1] += lever * angles[1, i] * step
+        moment_x += lever * angles[0, i] * step
+        moment_y += lever * angles[1, i] * step
         whole = area[i] * (1.0 - area[i])
-        out[SPINNING] += (spin * whole + u * area[i]) * step
-        out[ENERGY] += (0.5 * spin * spin * whole + spin * u * area[i] + 0.5 * u * u * log[i]) * step
+        spinning += (spin * whole + u * area[i]) * step
+        energy += (0.5 * spin * spin * whole + spin * u * area[i] + 0.5 * u * u * log[i]) * step
+    flow_x, flow_y, xx, xy, yy = 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(n):
         after, before = i + 1 if i + 1 < n else 0, i - 1
         x, y = 0.5 * (across[after] - across[before]), 0.5 * (along[after] - along[before])
-        out[FLOW] += flow[i] * x
-        out[FLOW + 1] += flow[i] * y
-        out[INERTIA] += log[i] * x * x / step
-        out[INERTIA + 1] += log[i] * x * y / step
-        out[INERTIA + 2] += log[i] * y * y / step
+        flow_x += flow[i] * x
+        flow_y += flow[i] * y
+        xx += log[i] * x * x / step
+        xy += log[i] * x * y / step
+        yy += log[i] * y * y / step
+    out.moment_x, out.moment_y, out.spinning, out.energy = moment_x, moment_y, spinning, energy
+    out.flow_x, out.flow_y, out.xx, out.xy, out.yy = flow_x, flow_y, xx, xy, yy
 
 
 @_unwrapped
@@ -185,7 +161,7 @@ def _power(area, q, spin, euler, x, y, angles, rate_a, gains, dt):
         rate_x += r * angles[0, i] * rate_a[i] * step
         rate_y += r * angles[1, i] * rate_a[i] * step
         u, log = faded_velocity(area[i], q[i], spin), log_of_surface(area[i], r)
-        gains[MISSED] -= dt * step * euler * u * (area[i] - log * (1.0 - area[i]))
+        gains.missed -= dt * step * euler * u * (area[i] - log * (1.0 - area[i]))
     return x * (rate_x - spin * moment_y) + y * (rate_y + spin * moment_x)
 
 
@@ -198,71 +174,70 @@ def _work(area, q, before, spin, step, gains):
             continue
         r = np.maximum(surface_radius(a), NEAREST)
         u, v = faded_velocity(a, before[i], spin), faded_velocity(a, q[i], spin)
-        gains[TORQUE] += a * (v - u) * step
-        gains[HEAT] += 0.5 * log_of_surface(a, r) * (u * u - v * v) * step
+        gains.torque += a * (v - u) * step
+        gains.heat += 0.5 * log_of_surface(a, r) * (u * u - v * v) * step
 
 
 @_unwrapped
-def layer_step(area, q, spins, push, rub, dt, angles, spare, gains):
+def layer_step(area, q, spins, force, layer, coefficient, dt, angles, spare, gains):
     """Advance a layer by one time step, in place; a step that fails leaves nothing to go on with.
 
     Parameters
     ----------
     area, q : state, shape (n,)
     spins : spin at the beginning and at the end
-    push : body force over R in the drum frame at the beginning (two parts) and at the end (two)
-    rub : friction law, coefficient, lid, square of the layer's L for dispersion (0 without it)
+    force : body force over R in the drum frame at the beginning (two parts) and at the end (two)
+    layer : its record LAYER
+    coefficient : of its friction at these spins
     dt : time step
     angles : cosine and sine at the cells' middles and at their left faces, shape (4, n)
     spare : scratch of this layer, from `layer_scratch`
-    gains : results, shape (GAINS,)
+    gains : results, a record GAINS
 
     Returns
     -------
-    DONE, TOO_LONG or AT_AXIS; and the largest speed met
+    Outcome.DONE, Outcome.TOO_LONG or Outcome.AT_AXIS; and the largest speed met
     """
     n = area.size
     step, euler = 2.0 * np.pi / n, (spins[1] - spins[0]) / dt
-    law, coefficient, lid, spread = int(rub[0]), rub[1], rub[2], rub[3]
+    law, lid, spread = layer.law, layer.lid, layer.spread
     pull_cell, pull_face = spare[WORK, :n], spare[WORK + 1, :n]
     rate_a, rate_q = spare[WORK + 4, :n], spare[WORK + 5, :n]
     next_a, next_q, before = spare[WORK + 6, :n], spare[WORK + 7, :n], spare[WORK + 8, :n]
-    for k in range(gains.size):
-        gains[k] = 0.0
+    gains.torque, gains.heat, gains.loss, gains.missed = 0.0, 0.0, 0.0, 0.0
     copy(q, before)
     wall_friction(area, q, spins[0], law, coefficient, lid, 0.5 * dt)
     _work(area, q, before, spins[0], step, gains)
     copy(area, next_a)
     copy(q, next_q)
-    gains[LOSS] = _energy(area, q, spins[0])
+    gains.loss = _energy(area, q, spins[0])
     fastest = 0.0
     for stage in range(2):
-        spin, x, y = spins[stage], push[2 * stage], push[2 * stage + 1]
+        spin, x, y = spins[stage], force[2 * stage], force[2 * stage + 1]
         _pull(x, y, angles, pull_cell, pull_face)
         speed = ring_rates(
             next_a, next_q, spin, euler, pull_cell, pull_face, step, dt, spread, spare, rate_a, rate_q
         )
         if not speed < np.inf:
-            return AT_AXIS, speed
+            return Outcome.AT_AXIS, speed
         fastest = max(fastest, speed)
-        if dt * fastest > LARGEST * step:
-            return TOO_LONG, fastest
+        if dt * fastest > _LARGEST * step:
+            return Outcome.TOO_LONG, fastest
         done = _power(next_a, next_q, spin, euler, x, y, angles, rate_a, gains, 0.5 * dt)
-        gains[LOSS] += 0.5 * dt * done
+        gains.loss += 0.5 * dt * done
         if stage == 0:
             if not predict(area, q, rate_a, rate_q, dt, next_a, next_q):
-                return AT_AXIS, fastest
+                return Outcome.AT_AXIS, fastest
         else:
             correct(area, q, rate_a, rate_q, dt, next_a, next_q)
             calm(area, q, spin)
-    gains[LOSS] -= _energy(area, q, spins[1]) + gains[MISSED]
+    gains.loss -= _energy(area, q, spins[1]) + gains.missed
     copy(q, before)
     wall_friction(area, q, spins[1], law, coefficient, lid, 0.5 * dt)
     _work(area, q, before, spins[1], step, gains)
-    return DONE, fastest
+    return Outcome.DONE, fastest
 
 
-RAN_OUT, NOT_COUPLED, STOPPED = 3, 4, 5
 # A step is done once two estimates of the mean accelerations differ by this, relative to the largest. Where
 # the drying edge of a layer makes them jump, the guess follows by halves after a few rounds; after the last
 # the step is shortened, and the shortest may pass with what is left. Momentum is handed over all the same.
@@ -272,28 +247,28 @@ _AGREED, _PASSABLE, _STRAIGHT, _ROUNDS, _SHORTEST = 1e-6, 1e-2, 5, 12, 1.0 / 32.
 @_inner
 def _move_layers(machine, state, room, dt):
     """All layers through one step under the guessed accelerations; what went wrong, the fastest wave."""
-    fastest, spins, turn, push, rub = 0.0, room.spins, room.turn, room.push, room.rub
+    fastest, spins, turn, force = 0.0, room.spins, room.turn, room.force
     copy(room.area, state.area)
     copy(room.momentum, state.momentum)
     for j in range(machine.layers.shape[0]):
         layer = machine.layers[j]
-        x = (machine.gravity[0] - room.guess[j, 0]) / layer[RADIUS]
-        y = (machine.gravity[1] - room.guess[j, 1]) / layer[RADIUS]
+        x = (machine.gravity[0] - room.guess[j, 0]) / layer.radius
+        y = (machine.gravity[1] - room.guess[j, 1]) / layer.radius
         for end in range(2):
             cosine, sine = turn[2 * end], turn[2 * end + 1]
-            push[2 * end], push[2 * end + 1] = x * cosine + y * sine, y * cosine - x * sine
-        copy(layer[LAW:], rub)
-        if layer[LAW] == STOKES:
+            force[2 * end], force[2 * end + 1] = x * cosine + y * sine, y * cosine - x * sine
+        coefficient = layer.coefficient
+        if layer.law == STOKES:
             # Stokes' friction at the frequency of a free wave goes with the root of the spin.
-            rub[1] *= np.sqrt(0.5 * (spins[0] + spins[1]))
+            coefficient *= np.sqrt(0.5 * (spins[0] + spins[1]))
         status, speed = layer_step(
-            *(state.area[j], state.momentum[j], spins, push, rub, dt, machine.angles, room.spare[j]),
-            room.gains[j],
+            *(state.area[j], state.momentum[j], spins, force, layer, coefficient, dt, machine.angles),
+            *(room.spare[j], room.gains[j]),
         )
         fastest = max(fastest, speed)
-        if status != DONE:
+        if status != Outcome.DONE:
             return status, fastest
-    return DONE, fastest
+    return Outcome.DONE, fastest
 
 
 @_unwrapped
@@ -324,10 +299,10 @@ def _move_rotor(machine, state, room, dt):
             damping = machine.matrices[1, i, k] + spin * machine.matrices[2, i, k]
             stiffness = machine.matrices[3, i, k]
             left[i, k] = machine.matrices[0, i, k] + 0.5 * dt * damping + 0.25 * dt * dt * stiffness
-            x, v = state.rotor[k], state.rotor[n + k]
+            x, v = state.place[k], state.rate[k]
             change[i] -= dt * (damping * v + stiffness * (x + 0.5 * dt * v))
     for j in range(machine.layers.shape[0]):
-        mass, b, guess = machine.layers[j, MASS], machine.planes[j], room.guess[j]
+        mass, b, guess = machine.layers[j].mass, machine.planes[j], room.guess[j]
         xx, xy, yy = room.inertia[j, 0], room.inertia[j, 1], room.inertia[j, 2]
         given_x = room.after[j, 0] - room.before[j, 0] + dt * (xx * guess[0] + xy * guess[1])
         given_y = room.after[j, 1] - room.before[j, 1] + dt * (xy * guess[0] + yy * guess[1])
@@ -350,17 +325,17 @@ def _disagreement(machine, room, dt):
                 total += machine.planes[j, i, k] * room.change[k]
             room.found[j, i] = total / dt
             gap = max(gap, abs(room.found[j, i] - room.guess[j, i]))
-            size = max(size, abs(room.found[j, i]), 1e-6 * spin * spin * machine.layers[j, RADIUS])
+            size = max(size, abs(room.found[j, i]), 1e-6 * spin * spin * machine.layers[j].radius)
     return gap, size
 
 
 @_unwrapped
 def _spin_after(machine, state, room, dt):
     """Spin at the end of the step: on its ramp, or by the motor [theory: coupling, eq. 6]."""
-    n = room.change.size
-    spin = state.rotor[2 * n]
+    n, shaft = room.change.size, state.shaft[0]
+    spin = shaft.spin
     if machine.curve.shape[1] == 0:
-        return spin + machine.drive[0] * dt
+        return spin + shaft.rate * dt
     load = 0.0
     for i in range(n):
         middle = (
@@ -368,64 +343,64 @@ def _spin_after(machine, state, room, dt):
         )
         load -= room.change[i] * middle.imag
     for j in range(machine.layers.shape[0]):
-        load += machine.layers[j, WEIGHT] * machine.layers[j, RADIUS] ** 4 * room.gains[j, TORQUE]
+        layer = machine.layers[j]
+        load += layer.weight * layer.radius**4 * room.gains[j].torque
     after = spin
     for _ in range(4):
-        after = spin + (dt * motor_torque(machine.curve, 0.5 * (spin + after)) - load) / machine.drive[1]
+        after = spin + (dt * motor_torque(machine.curve, 0.5 * (spin + after)) - load) / shaft.inertia
     return after
 
 
 @_unwrapped
 def _tally(machine, state, room, dt):
     """Add one step's work and losses [theory: coupling, eq. 9-10]."""
-    sums, n = state.sums, room.change.size
+    sums, n = state.sums[0], room.change.size
     spin = 0.5 * (room.spins[0] + room.spins[1])
     for i in range(n):
-        mean = state.rotor[n + i] + 0.5 * room.change[i]
-        sums[UNBALANCE] -= room.swing[i] * mean
+        mean = state.rate[i] + 0.5 * room.change[i]
+        sums.unbalance -= room.swing[i] * mean
         for k in range(n):
-            sums[SUPPORT] += (
-                dt * mean * machine.matrices[1, i, k] * (state.rotor[n + k] + 0.5 * room.change[k])
-            )
+            sums.support += dt * mean * machine.matrices[1, i, k] * (state.rate[k] + 0.5 * room.change[k])
     for j in range(machine.layers.shape[0]):
-        scale = machine.layers[j, WEIGHT] * machine.layers[j, RADIUS] ** 4
-        sums[DRIVE] += spin * scale * room.gains[j, TORQUE]
+        layer, gains = machine.layers[j], room.gains[j]
+        scale = layer.weight * layer.radius**4
+        sums.drive += spin * scale * gains.torque
         for i in range(2):
-            sums[GRAVITY] += 0.5 * dt * machine.gravity[i] * (room.before[j, i] + room.after[j, i])
-        sums[FRICTION] += scale * room.gains[j, HEAT]
-        sums[BORES] += scale * room.gains[j, LOSS]
-        sums[PROFILE] += scale * room.gains[j, MISSED]
+            sums.gravity += 0.5 * dt * machine.gravity[i] * (room.before[j, i] + room.after[j, i])
+        sums.friction += scale * gains.heat
+        sums.bores += scale * gains.loss
+        sums.profile += scale * gains.missed
     if machine.curve.shape[1] > 0:
-        sums[MOTOR] += dt * spin * motor_torque(machine.curve, spin)
+        sums.motor += dt * spin * motor_torque(machine.curve, spin)
 
 
 @_inner
 def _couple(machine, state, room, dt):
     """One step tried until rotor and layers agree; what went wrong, the fastest wave, what is left."""
-    n = room.change.size
-    spin, angle, fastest = state.rotor[2 * n], state.rotor[2 * n + 1], 0.0
+    shaft = state.shaft[0]
+    spin, angle, fastest = shaft.spin, shaft.angle, 0.0
     room.spins[0], room.spins[1] = spin, spin
     if machine.curve.shape[1] == 0:
-        room.spins[1] = spin + machine.drive[0] * dt
+        room.spins[1] = spin + shaft.rate * dt
     left = 0.0
     for tried in range(_ROUNDS):
         turned = angle + 0.5 * (spin + room.spins[1]) * dt
         room.turn[0], room.turn[1] = np.cos(angle), np.sin(angle)
         room.turn[2], room.turn[3] = np.cos(turned), np.sin(turned)
         status, fastest = _move_layers(machine, state, room, dt)
-        if status != DONE:
+        if status != Outcome.DONE:
             return status, fastest, 0.0
         _measure_layers(machine, state, room)
         _move_rotor(machine, state, room, dt)
-        state.sums[LAYER_STEPS] += machine.layers.shape[0]
+        state.sums[0].layer_steps += machine.layers.shape[0]
         gap, size = _disagreement(machine, room, dt)
         left = gap / max(size, 1e-300)
         after = _spin_after(machine, state, room, dt)
         if after <= 0.0:
-            return STOPPED, fastest, left
+            return Outcome.STOPPED, fastest, left
         left = max(left, abs(after - room.spins[1]) / spin)
         if left <= _AGREED:
-            return DONE, fastest, left
+            return Outcome.DONE, fastest, left
         if tried == _ROUNDS - 1:
             break
         share = 1.0 if tried < _STRAIGHT else 0.5
@@ -433,37 +408,35 @@ def _couple(machine, state, room, dt):
             for i in range(2):
                 room.guess[j, i] += share * (room.found[j, i] - room.guess[j, i])
         room.spins[1] = after
-    return NOT_COUPLED, fastest, left
+    return Outcome.NOT_COUPLED, fastest, left
 
 
 @_unwrapped
 def _guess(state, room, dt):
     """Mean accelerations of the step to come, on a line through the last two steps'."""
-    count = room.guess.shape[0]
-    last, first = state.memory[count, 0], state.memory[count, 1]
-    ahead = min((dt + last) / max(last + first, 1e-300), 2.0)
-    for j in range(count):
+    pace = state.pace[0]
+    ahead = min((dt + pace.last) / max(pace.last + pace.before, 1e-300), 2.0)
+    for j in range(room.guess.shape[0]):
         for i in range(2):
-            here = state.memory[j, i]
-            room.guess[j, i] = here + ahead * (here - state.memory[j, 2 + i])
+            here = state.push[j, 0, i]
+            room.guess[j, i] = here + ahead * (here - state.push[j, 1, i])
 
 
 @_unwrapped
 def _accept(state, room, dt, fastest):
     """Make the step's end the state."""
-    n, count = room.change.size, room.guess.shape[0]
-    for i in range(n):
-        state.rotor[i] += dt * (state.rotor[n + i] + 0.5 * room.change[i])
-        state.rotor[n + i] += room.change[i]
-    state.rotor[2 * n + 1] += 0.5 * (room.spins[0] + room.spins[1]) * dt
-    state.rotor[2 * n] = room.spins[1]
-    for j in range(count):
+    shaft, pace = state.shaft[0], state.pace[0]
+    for i in range(room.change.size):
+        state.place[i] += dt * (state.rate[i] + 0.5 * room.change[i])
+        state.rate[i] += room.change[i]
+    shaft.angle += 0.5 * (room.spins[0] + room.spins[1]) * dt
+    shaft.spin = room.spins[1]
+    for j in range(room.guess.shape[0]):
         for i in range(2):
-            state.memory[j, 2 + i] = state.memory[j, i]
-            state.memory[j, i] = room.found[j, i]
-    copy(room.end, room.begin)
-    last = state.memory[count]
-    last[1], last[0], last[2], last[3] = last[0], dt, fastest, min(1.0, 1.5 * last[3])
+            state.push[j, 1, i] = state.push[j, 0, i]
+            state.push[j, 0, i] = room.found[j, i]
+        room.begin[j] = room.end[j]
+    pace.before, pace.last, pace.fastest, pace.share = pace.last, dt, fastest, min(1.0, 1.5 * pace.share)
 
 
 @_jit
@@ -479,24 +452,21 @@ def advance(machine, state, room, stop, courant, most):
 
     Returns
     -------
-    DONE, AT_AXIS of `solvers.runup.kernel`, RAN_OUT, NOT_COUPLED (the accelerations did not agree in steps
-    of a thousandth) or STOPPED (the motor stands)
+    Outcome.DONE, AT_AXIS, RAN_OUT, NOT_COUPLED (the accelerations did not agree in the shortest steps) or
+    STOPPED (the motor stands)
     """
-    n, count = room.change.size, room.guess.shape[0]
-    cell, last, taken = 2.0 * np.pi / machine.angles.shape[1], state.memory[count], 0
-    for j in range(count):
-        measure(
-            *(state.area[j], state.momentum[j], state.rotor[2 * n], machine.angles, room.spare[j]),
-            room.begin[j],
-        )
-    while state.rotor[2 * n + 2] < stop:
-        if state.rotor[2 * n] <= 0.0:
-            return STOPPED
+    shaft, pace, sums = state.shaft[0], state.pace[0], state.sums[0]
+    cell, taken = 2.0 * np.pi / machine.angles.shape[1], 0
+    for j in range(room.guess.shape[0]):
+        measure(state.area[j], state.momentum[j], shaft.spin, machine.angles, room.spare[j], room.begin[j])
+    while shaft.time < stop:
+        if shaft.spin <= 0.0:
+            return Outcome.STOPPED
         if taken >= most:
-            return RAN_OUT
+            return Outcome.RAN_OUT
         taken += 1
-        left = stop - state.rotor[2 * n + 2]
-        dt = last[3] * courant * cell / max(1.1 * last[2], state.rotor[2 * n])
+        left = stop - shaft.time
+        dt = pace.share * courant * cell / max(1.1 * pace.fastest, shaft.spin)
         # The last two steps share what is left, so that none is a sliver.
         if dt >= left:
             dt = left
@@ -506,20 +476,20 @@ def advance(machine, state, room, stop, courant, most):
         copy(state.momentum, room.momentum)
         _guess(state, room, dt)
         status, fastest, gap = _couple(machine, state, room, dt)
-        if status == NOT_COUPLED and last[3] <= _SHORTEST and gap <= _PASSABLE:
-            status = DONE
-        if status == TOO_LONG or (status == NOT_COUPLED and last[3] > _SHORTEST):
+        if status == Outcome.NOT_COUPLED and pace.share <= _SHORTEST and gap <= _PASSABLE:
+            status = Outcome.DONE
+        if status == Outcome.TOO_LONG or (status == Outcome.NOT_COUPLED and pace.share > _SHORTEST):
             copy(room.area, state.area)
             copy(room.momentum, state.momentum)
-            last[2], last[3] = max(last[2], fastest), 0.5 * last[3]
+            pace.fastest, pace.share = max(pace.fastest, fastest), 0.5 * pace.share
             continue
-        if status != DONE:
+        if status != Outcome.DONE:
             copy(room.area, state.area)
             copy(room.momentum, state.momentum)
             return status
         _tally(machine, state, room, dt)
         _accept(state, room, dt, fastest)
-        state.rotor[2 * n + 2] = stop if dt == left else state.rotor[2 * n + 2] + dt
-        state.sums[STEPS] += 1.0
-        state.sums[DISAGREED] = max(state.sums[DISAGREED], gap)
-    return DONE
+        shaft.time = stop if dt == left else shaft.time + dt
+        sums.steps += 1.0
+        sums.disagreement = max(sums.disagreement, gap)
+    return Outcome.DONE

@@ -14,13 +14,15 @@ from numpy.typing import NDArray
 from meshes.arrays import Array
 from solvers.layer.face_flux import COMPILED
 from solvers.runup.kernel import motor_torque, solve
-from solvers.runup.state import DRIVE, FRICTION, GRAVITY, MOTOR, STEPS, SUPPORT, UNBALANCE
+from solvers.runup.machine import Outcome
+from solvers.runup.state import Record
 
 _jit: Any = njit(**COMPILED)
 
-
-# Columns of a layer: mass, curvature, friction rate, power of the spin that it goes with, moment of inertia.
-MASS, CURVATURE, RATE, POWER, INERTIA = range(5)
+# Of a layer: mass, curvature, friction rate, power of the spin that it goes with, moment of inertia.
+LINEAR_LAYER = np.dtype(
+    [(name, np.float64) for name in ("mass", "curvature", "rate", "power", "inertia")], align=True
+)
 
 
 class LinearMachine(NamedTuple):
@@ -31,31 +33,29 @@ class LinearMachine(NamedTuple):
     matrices : M, C, G, K of the rotor, shape (4, n, n)
     unbalance : U, complex, shape (n,)
     planes : displacement of each layer's axis for unit coordinates, shape (l, 2, n)
-    layers : properties, shape (l, 5)
+    layers : records LINEAR_LAYER, shape (l,)
     active : 1 for a layer, 0 for liquid that moves with the drum as a mass, shape (l,)
     gravity : across the axis, shape (2,)
-    drive : rate of the spin, moment of inertia with a motor, shape (2,)
     curve : the motor's, shape (2, k)
     place, rate : rotor's coordinates and the layers' offsets, two parts each, and their rates, shape (N,)
-    turning : spin, angle, time, shape (3,)
+    shaft : record SHAFT of `solvers.runup.state`, shape (1,)
     carried : rotation of each layer as a whole, rad/s, shape (l,)
-    sums : tallies of `solvers.runup.state`
+    sums : record SUMS, shape (1,)
     left, change, swing : scratch, shapes (N, N), (N,), (n,)
     """
 
     matrices: Array
     unbalance: NDArray[np.complex128]
     planes: Array
-    layers: Array
+    layers: Record
     active: Array
     gravity: Array
-    drive: Array
     curve: Array
     place: Array
     rate: Array
-    turning: Array
+    shaft: Record
     carried: Array
-    sums: Array
+    sums: Record
     left: Array
     change: Array
     swing: Array
@@ -65,8 +65,9 @@ class LinearMachine(NamedTuple):
 def _assemble(m, j, spin, before, after, dt):
     """Rows and columns of a layer [theory: coupling, eq. 11]."""
     n = m.unbalance.size
-    mass, kappa, b = m.layers[j, MASS], m.layers[j, CURVATURE], m.planes[j]
-    friction = m.layers[j, RATE] * spin ** m.layers[j, POWER] * (1.0 + kappa)
+    layer, b = m.layers[j], m.planes[j]
+    mass, kappa = layer.mass, layer.curvature
+    friction = layer.rate * spin**layer.power * (1.0 + kappa)
     whole = 0.5 * (before + after)
     for i in range(n):
         for k in range(n):
@@ -113,24 +114,26 @@ def _carry(m, j, spin, spins, dt):
     """Rotation of a layer as a whole at the end of the step: wall friction takes it to the drum's."""
     if m.active[j] == 0.0:
         return spins[1]
-    share = 0.5 * dt * m.layers[j, RATE] * spin ** m.layers[j, POWER]
+    layer = m.layers[j]
+    share = 0.5 * dt * layer.rate * spin**layer.power
     return (m.carried[j] * (1.0 - share) + share * (spins[0] + spins[1])) / (1.0 + share)
 
 
 @_jit
 def _tally(m, spin, spins, dt):
     """Add one step's works and heats, then make its end the state [theory: coupling, eq. 13]."""
-    n = m.unbalance.size
+    n, sums = m.unbalance.size, m.sums[0]
     for i in range(n):
         mean = m.rate[i] + 0.5 * m.change[i]
-        m.sums[UNBALANCE] -= m.swing[i] * mean
+        sums.unbalance -= m.swing[i] * mean
         for k in range(n):
-            m.sums[SUPPORT] += dt * mean * m.matrices[1, i, k] * (m.rate[k] + 0.5 * m.change[k])
+            sums.support += dt * mean * m.matrices[1, i, k] * (m.rate[k] + 0.5 * m.change[k])
     for j in range(m.layers.shape[0]):
         if m.active[j] == 0.0:
             continue
-        mass, kappa, row = m.layers[j, MASS], m.layers[j, CURVATURE], n + 2 * j
-        rate = m.layers[j, RATE] * spin ** m.layers[j, POWER]
+        layer, row = m.layers[j], n + 2 * j
+        mass, kappa = layer.mass, layer.curvature
+        rate = layer.rate * spin**layer.power
         after = _carry(m, j, spin, spins, dt)
         whole, gained = 0.5 * (m.carried[j] + after), after - m.carried[j]
         u, v = m.rate[row] + 0.5 * m.change[row], m.rate[row + 1] + 0.5 * m.change[row + 1]
@@ -138,13 +141,13 @@ def _tally(m, spin, spins, dt):
         # Velocity relative to the liquid that turns as a whole.
         p, q = u + whole * y, v - whole * x
         drag = mass * rate * (1.0 + kappa)
-        m.sums[FRICTION] += dt * (drag * (p * p + q * q) + m.layers[j, INERTIA] * rate * (spin - whole) ** 2)
-        m.sums[DRIVE] -= dt * drag * whole * (x * q - y * p)
-        m.sums[DRIVE] += 2.0 * mass * kappa * gained * (x * v - y * u - whole * (x * x + y * y))
-        m.sums[DRIVE] += m.layers[j, INERTIA] * spin * gained
-        m.sums[GRAVITY] += dt * mass * (m.gravity[0] * u + m.gravity[1] * v)
+        sums.friction += dt * (drag * (p * p + q * q) + layer.inertia * rate * (spin - whole) ** 2)
+        sums.drive -= dt * drag * whole * (x * q - y * p)
+        sums.drive += 2.0 * mass * kappa * gained * (x * v - y * u - whole * (x * x + y * y))
+        sums.drive += layer.inertia * spin * gained
+        sums.gravity += dt * mass * (m.gravity[0] * u + m.gravity[1] * v)
     if m.curve.shape[1] > 0:
-        m.sums[MOTOR] += dt * spin * motor_torque(m.curve, spin)
+        sums.motor += dt * spin * motor_torque(m.curve, spin)
 
 
 @_jit
@@ -160,26 +163,26 @@ def advance_linear(m, stop, angle_step, most):
 
     Returns
     -------
-    0, or 3 where the steps ran out, or 5 where the motor stands
+    Outcome.DONE, RAN_OUT, or STOPPED where the motor stands
     """
-    n, spins, taken = m.unbalance.size, (0.0, 0.0), 0
-    while m.turning[2] < stop:
-        before = m.turning[0]
+    n, spins, taken, shaft = m.unbalance.size, (0.0, 0.0), 0, m.shaft[0]
+    while shaft.time < stop:
+        before = shaft.spin
         if before <= 0.0:
-            return 5
+            return Outcome.STOPPED
         if taken >= most:
-            return 3
+            return Outcome.RAN_OUT
         taken += 1
-        left = stop - m.turning[2]
+        left = stop - shaft.time
         dt = min(angle_step / before, left)
         if left > dt > 0.5 * left:
             dt = 0.5 * left
-        after = before + (m.drive[0] * dt if m.curve.shape[1] == 0 else 0.0)
+        after = before + (shaft.rate * dt if m.curve.shape[1] == 0 else 0.0)
         rounds = 1 if m.curve.shape[1] == 0 else 6
         for _ in range(rounds):
             spin = 0.5 * (before + after)
-            first = complex(np.cos(m.turning[1]), np.sin(m.turning[1]))
-            turned = m.turning[1] + spin * dt
+            first = complex(np.cos(shaft.angle), np.sin(shaft.angle))
+            turned = shaft.angle + spin * dt
             last = complex(np.cos(turned), np.sin(turned))
             spins = (before, after)
             for i in range(m.change.size):
@@ -195,10 +198,10 @@ def advance_linear(m, stop, angle_step, most):
                     load -= m.change[i] * (0.5 * m.unbalance[i] * (first + last)).imag
                 for j in range(m.layers.shape[0]):
                     gained = _carry(m, j, spin, spins, dt) - m.carried[j]
-                    load += m.layers[j, INERTIA] * gained * m.active[j]
-                after = before + (dt * motor_torque(m.curve, spin) - load) / m.drive[1]
+                    load += m.layers[j].inertia * gained * m.active[j]
+                after = before + (dt * motor_torque(m.curve, spin) - load) / shaft.inertia
                 if after <= 0.0:
-                    return 5
+                    return Outcome.STOPPED
         spin = 0.5 * (before + spins[1])
         _tally(m, spin, spins, dt)
         for j in range(m.layers.shape[0]):
@@ -206,7 +209,7 @@ def advance_linear(m, stop, angle_step, most):
         for i in range(m.change.size):
             m.place[i] += dt * (m.rate[i] + 0.5 * m.change[i])
             m.rate[i] += m.change[i]
-        m.turning[0], m.turning[1] = spins[1], m.turning[1] + spin * dt
-        m.turning[2] = stop if dt == left else m.turning[2] + dt
-        m.sums[STEPS] += 1.0
-    return 0
+        shaft.spin, shaft.angle = spins[1], shaft.angle + spin * dt
+        shaft.time = stop if dt == left else shaft.time + dt
+        m.sums[0].steps += 1.0
+    return Outcome.DONE

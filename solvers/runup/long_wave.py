@@ -5,32 +5,43 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.friction import Friction
-from meshes.arrays import Array
+from meshes.arrays import Array, Flags
 from meshes.errors import require_not_negative
 from solvers.layer.loads import ring
 from solvers.rotor.system import RotorSystem
-from solvers.runup.chamber import layer_capture, layer_properties, pool_offset
-from solvers.runup.state import ENERGY, GAINS, MASS, MEASURES, RADIUS, TALLIES, WEIGHT, Machine, Room, State
+from solvers.runup.chamber import RELEASE, layer_capture, layer_properties, mean_area, pool_offset
+from solvers.runup.machine import Outcome, Reading
+from solvers.runup.state import (
+    GAINS,
+    LAYER,
+    MEASURES,
+    PACE,
+    SHAFT,
+    SUMS,
+    Machine,
+    Record,
+    Room,
+    State,
+    records,
+)
 
-# A layer is let go at this share of the spin speed that captures it, lest it be caught and let go in turns.
-_RELEASE = 0.98
+# A layer that gravity has thrown down is caught again at a speed higher by this factor.
+_AGAIN = 1.2
 
 
 @dataclass
 class Coupled:
-    """A rotor with chambers at one moment.
+    """A rotor with long-wave layers at one moment, a `solvers.runup.machine.RunupMachine`.
 
     Parameters
     ----------
     system, fills : what it is made from
-    layers : properties of each chamber's layer, shape (l, 7)
+    layers : properties of each chamber's layer, records LAYER, shape (l,)
     capture : speed above which each rides with the drum as a layer, rad/s, inf for a solid mass, shape (l,)
     pool : offset of the centre of mass of liquid that is no layer, along the first direction, m, shape (l,)
     area, momentum : of all layers, shape (l, c)
@@ -40,12 +51,12 @@ class Coupled:
 
     system: RotorSystem
     fills: tuple[Fill, ...]
-    layers: Array
+    layers: Record
     capture: Array
     pool: Array
     area: Array
     momentum: Array
-    active: NDArray[np.bool_]
+    active: Flags
     machine: Machine
     state: State
     room: Room
@@ -53,64 +64,65 @@ class Coupled:
     @property
     def time(self) -> float:
         """Time, s."""
-        return float(self.state.rotor[-1])
+        return float(self.state.shaft[0].time)
 
     @property
     def spin(self) -> float:
         """Spin speed, rad/s."""
-        return float(self.state.rotor[-3])
-
-    @property
-    def held_by_spin(self) -> bool:
-        """Gravity acts across the axis, and some liquid rides with the drum against it."""
-        return bool(self.machine.gravity.any() and self.active.any())
+        return float(self.state.shaft[0].spin)
 
     @property
     def masses(self) -> Array:
         """Mass of the liquid in each chamber, kg, shape (l,)."""
-        return self.layers[:, MASS].copy()
+        return np.array(self.layers.mass)
 
     @property
-    def sums(self) -> Array:
-        """Tallies of `solvers.runup.state`."""
-        return self.state.sums
+    def sums(self) -> np.record:
+        """Record SUMS of `solvers.runup.state`."""
+        found: np.record = self.state.sums[0]
+        return found
+
+    @property
+    def theta(self) -> Array:
+        """Angle of the cells' middles from the drum's zero mark, rad, shape (c,)."""
+        return np.asarray(np.arctan2(self.machine.angles[1], self.machine.angles[0]))
 
     def drive(self, curve: Array, inertia: float) -> None:
         """Set a motor's torque curve and moment of inertia; an empty curve leaves the spin to its ramp."""
         self.machine = self.machine._replace(curve=curve)
-        self.machine.drive[1] = inertia
+        self.state.shaft[0].inertia = inertia
 
-    def advance(self, stop: float, rate: float, courant: float, most: int) -> int:
-        """Advance to a time; status of `solvers.runup.kernel.advance`."""
+    def advance(self, stop: float, rate: float, courant: float, most: int) -> Outcome:
+        """Advance to a time while the spin changes at a rate, in at most so many steps."""
         from solvers.runup.kernel import advance
 
-        self.machine.drive[0] = rate
-        status = int(advance(self.machine, self.state, self.room, stop, courant, most))
+        self.state.shaft[0].rate = rate
+        outcome = Outcome(advance(self.machine, self.state, self.room, stop, courant, most))
         self.area[self.active], self.momentum[self.active] = self.state.area, self.state.momentum
-        return status
+        return outcome
 
     def energy(self) -> float:
         """Kinetic and elastic energy of rotor and liquid, J [theory: coupling, eq. 9]."""
-        n = len(self.system.coordinates)
-        x, v = self.state.rotor[:n], self.state.rotor[n : 2 * n]
+        x, v = self.state.place, self.state.rate
         total = 0.5 * (v @ self.machine.matrices[0] @ v + x @ self.machine.matrices[3] @ x)
         for layer, plane, measures, momentum in self.measured():
             rate = plane @ v
-            total += 0.5 * layer[MASS] * rate @ rate + momentum @ rate
-            total += layer[WEIGHT] * layer[RADIUS] ** 4 * measures[ENERGY]
+            total += 0.5 * layer.mass * rate @ rate + momentum @ rate
+            total += layer.weight * layer.radius**4 * measures.energy
         return float(total)
 
-    def measured(self) -> list[tuple[Array, Array, Array, Array]]:
+    def measured(self) -> list[tuple[np.record, Array, np.record, Array]]:
         """Properties, plane, measures and relative momentum of each layer."""
         from solvers.runup.kernel import measure, relative_momentum
 
-        cosine, sine = math.cos(self.state.rotor[-2]), math.sin(self.state.rotor[-2])
+        shaft = self.state.shaft[0]
+        cosine, sine = math.cos(shaft.angle), math.sin(shaft.angle)
         found = []
-        for j, layer in enumerate(self.machine.layers):
-            measures, momentum = np.zeros(MEASURES), np.zeros(2)
+        for j in range(self.machine.layers.size):
+            layer, measures, momentum = self.machine.layers[j], records(MEASURES)[0], np.zeros(2)
             spare, angles = self.room.spare[j], self.machine.angles
-            measure(self.state.area[j], self.state.momentum[j], self.spin, angles, spare, measures)
-            relative_momentum(measures, layer, self.spin, cosine, sine, momentum)
+            measure(self.state.area[j], self.state.momentum[j], shaft.spin, angles, spare, measures)
+            relative_momentum(measures, layer, shaft.spin, cosine, sine, momentum)
             found.append((layer, self.machine.planes[j], measures, momentum))
         return found
 
@@ -119,9 +131,107 @@ class Coupled:
         errors = [0.0]
         for j, fill in enumerate(self.fills):
             if self.active[j]:
-                mean = fill.volume / (2.0 * math.pi * fill.chamber.height * fill.chamber.radius**2)
-                errors.append(abs(float(self.area[j].mean()) / mean - 1.0))
+                errors.append(abs(float(self.area[j].mean()) / mean_area(fill) - 1.0))
         return max(errors)
+
+    def switch(self) -> float:
+        """Catch the liquid that can ride with the drum by now, let go what cannot; energy brought in, J.
+
+        Caught liquid is a uniform layer at rest in the drum; liquid let go lies at the bottom. The momentum
+        of rotor and liquid stays.
+        """
+        limit = np.where(self.active, RELEASE * self.capture, self.capture)
+        return self._rearrange(self.spin > limit)
+
+    def fall(self, outcome: Outcome) -> float | None:
+        """Let the deepest layer fall to the bottom where gravity has won; energy brought in, J.
+
+        It is caught again at a speed higher by a fifth. None where the outcome has another reason.
+        """
+        thrown = outcome in (Outcome.AT_AXIS, Outcome.NOT_COUPLED)
+        if not (thrown and self.machine.gravity.any() and self.active.any()):
+            return None
+        deepest = int(np.argmax(np.where(self.active, self.area.max(axis=1), -1.0)))
+        wanted = self.active.copy()
+        wanted[deepest] = False
+        self.capture[deepest] = _AGAIN * self.spin
+        return self._rearrange(wanted)
+
+    def _rearrange(self, wanted: Flags) -> float:
+        """Make the wanted layers the active ones; energy brought in, J."""
+        if np.array_equal(wanted, self.active):
+            return 0.0
+        before, lost = self.energy(), np.zeros(self.state.rate.size)
+        for (_, plane, _, momentum), kept in zip(self.measured(), wanted[self.active], strict=True):
+            lost += plane.T @ momentum * (not kept)
+        mean = self.area.mean(axis=1, keepdims=True)
+        anew = wanted != self.active
+        self.area[anew] = mean[anew]
+        self.momentum[anew] = -self.spin * np.square(self.area[anew])
+        self.active = wanted
+        self._assemble()
+        whole = self.machine.matrices[0].copy()
+        for mass, plane in zip(self.machine.layers.mass, self.machine.planes, strict=True):
+            whole += mass * plane.T @ plane
+        self.state.rate[:] += np.linalg.solve(whole, lost)
+        return self.energy() - before
+
+    def _assemble(self) -> None:
+        """Make machine, state and room anew for the active layers, the other liquid being masses."""
+        old, active = self.state, self.active
+        planes, mass = self._planes(), self.system.mass.copy()
+        for weight, plane, moving in zip(self.layers.mass, planes, active, strict=True):
+            if not moving:
+                mass += weight * plane.T @ plane
+        matrices = [mass, self.system.damping, self.system.gyroscopic, self.system.stiffness]
+        self.machine = self.machine._replace(
+            matrices=np.stack(matrices).astype(float), planes=planes[active], layers=self.layers[active]
+        )
+        count, cells = int(active.sum()), self.area.shape[1]
+        self.state = old._replace(
+            area=self.area[active],
+            momentum=self.momentum[active],
+            push=np.zeros((count, 2, 2)),
+            pace=_fresh_pace(),
+        )
+        self.room = _room(old.place.size, count, cells)
+
+    def _planes(self) -> Array:
+        """Displacement of each chamber's axis for unit coordinates, shape (l, 2, n)."""
+        planes = np.array([self.system.at(fill.chamber.plane) for fill in self.fills])
+        return planes.reshape(len(self.fills), 2, len(self.system.coordinates))
+
+    def read(self) -> Reading:
+        """The moment as the history keeps it."""
+        x, angle = self.state.place.copy(), float(self.state.shaft[0].angle)
+        turn = complex(math.cos(angle), math.sin(angle))
+        planes = list(self._planes()) or [self.system.centre]
+        surface = np.sqrt(np.maximum(1.0 - 2.0 * self.area, 0.0))
+        lever = (1.0 - surface) * (1.0 + surface + np.square(surface)) / 3.0
+        whole = np.maximum(self.area.sum(axis=1), 1e-300)
+        angles, radius = self.machine.angles, self.layers.radius
+        moved = radius * (lever @ angles[0] + 1j * (lever @ angles[1])) / whole * turn
+        velocity = np.divide(self.momentum, self.area, out=np.zeros_like(surface), where=self.area > 0.0)
+        velocity += self.spin * self.area
+        flow = velocity * -np.log(np.maximum(surface, 1e-300))
+        nothing = np.full(len(self.fills), np.nan)
+        return Reading(
+            time=self.time,
+            speed=self.spin,
+            angle=angle,
+            coordinates=x,
+            deflection=np.array([complex(*(plane @ x)) for plane in planes]),
+            offset=np.where(self.active, moved, self.pool),
+            captured=self.active.copy(),
+            depth_min=np.where(self.active, radius * (1.0 - surface.max(axis=1, initial=0.0)), nothing),
+            depth_max=np.where(self.active, radius * (1.0 - surface.min(axis=1, initial=1.0)), nothing),
+            mean_rotation=np.where(self.active, flow.sum(axis=1) / whole, 0.0),
+        )
+
+    def depth(self) -> Array:
+        """Depth of the layers cell by cell, m, nan where the liquid is none, shape (l, c)."""
+        surface = np.sqrt(np.maximum(1.0 - 2.0 * self.area, 0.0))
+        return np.where(self.active[:, None], self.layers.radius[:, None] * (1.0 - surface), np.nan)
 
 
 def couple(
@@ -146,55 +256,53 @@ def couple(
     InputError : a negative gravity
     """
     require_not_negative("gravity", gravity)
-    layers = np.array([layer_properties(fill, friction, dispersion) for fill in fills]).reshape(len(fills), 7)
+    n, count = len(system.coordinates), len(fills)
+    layers = records(LAYER, count)
+    for j, fill in enumerate(fills):
+        layers[j] = layer_properties(fill, friction, dispersion)
     capture = np.array([layer_capture(fill, gravity) for fill in fills])
-    mean = [fill.volume / (2.0 * math.pi * fill.chamber.height * fill.chamber.radius**2) for fill in fills]
-    area = np.repeat(np.array(mean).reshape(-1, 1), cells, axis=1)
-    n = len(system.coordinates)
-    rotor = np.zeros(2 * n + 3)
-    rotor[2 * n] = spin
-    whole: dict[str, Any] = {
-        "system": system,
-        "fills": tuple(fills),
-        "layers": layers,
-        "capture": capture,
-        "pool": np.array([pool_offset(fill) if gravity > 0.0 else 0.0 for fill in fills]),
-        "area": area,
-        "momentum": -spin * np.square(area),
-        "active": capture < spin,
-    }
-    drive = (np.array([-gravity, 0.0]), ring(cells), np.zeros(2), np.zeros((2, 0)))
-    machine, state, scratch = _parts(**whole, rotor=rotor, sums=np.zeros(TALLIES), drive=drive)
-    return Coupled(**whole, machine=machine, state=state, room=scratch)
+    area = np.repeat(np.array([mean_area(fill) for fill in fills]).reshape(-1, 1), cells, axis=1)
+    shaft = records(SHAFT)
+    shaft[0].spin = spin
+    found = Coupled(
+        system=system,
+        fills=tuple(fills),
+        layers=layers,
+        capture=capture,
+        pool=np.array([pool_offset(fill) if gravity > 0.0 else 0.0 for fill in fills]),
+        area=area,
+        momentum=-spin * np.square(area),
+        active=capture < spin,
+        machine=Machine(
+            matrices=np.zeros((4, n, n)),
+            unbalance=system.unbalance.astype(complex),
+            planes=np.zeros((0, 2, n)),
+            layers=layers[:0],
+            gravity=np.array([-gravity, 0.0]),
+            angles=ring(cells),
+            curve=np.zeros((2, 0)),
+        ),
+        state=State(
+            place=np.zeros(n),
+            rate=np.zeros(n),
+            shaft=shaft,
+            area=area[:0],
+            momentum=area[:0],
+            push=np.zeros((0, 2, 2)),
+            pace=_fresh_pace(),
+            sums=records(SUMS),
+        ),
+        room=_room(n, 0, cells),
+    )
+    found._assemble()
+    return found
 
 
-def _parts(
-    *,
-    system: RotorSystem,
-    fills: tuple[Fill, ...],
-    layers: Array,
-    area: Array,
-    momentum: Array,
-    active: NDArray[np.bool_],
-    rotor: Array,
-    sums: Array,
-    drive: tuple[Array, Array, Array, Array],
-    **_: object,
-) -> tuple[Machine, State, Room]:
-    """Machine of the active layers, the other liquid being masses."""
-    planes = np.array([system.at(fill.chamber.plane) for fill in fills])
-    n, count = len(system.coordinates), int(active.sum())
-    planes = planes.reshape(len(fills), 2, n)
-    mass = system.mass.copy()
-    for layer, plane, moving in zip(layers, planes, active, strict=True):
-        if not moving:
-            mass += layer[MASS] * plane.T @ plane
-    matrices = np.stack([mass, system.damping, system.gyroscopic, system.stiffness]).astype(float)
-    machine = Machine(matrices, system.unbalance.astype(complex), planes[active], layers[active], *drive)
-    memory = np.zeros((count + 1, 4))
-    memory[count, 3] = 1.0
-    cells = area.shape[1]
-    return machine, State(rotor, area[active], momentum[active], memory, sums), _room(n, count, cells)
+def _fresh_pace() -> Record:
+    """Pace of a machine that has made no step yet."""
+    pace = records(PACE)
+    pace[0].share = 1.0
+    return pace
 
 
 def _room(coordinates: int, layers: int, cells: int) -> Room:
@@ -202,108 +310,22 @@ def _room(coordinates: int, layers: int, cells: int) -> Room:
     from solvers.runup.kernel import layer_scratch
 
     n, count = coordinates, layers
-    pairs, few = (count, 2), (4,)
     return Room(
         area=np.zeros((count, cells)),
         momentum=np.zeros((count, cells)),
-        begin=np.zeros((count, MEASURES)),
-        end=np.zeros((count, MEASURES)),
-        gains=np.zeros((count, GAINS)),
+        begin=records(MEASURES, count),
+        end=records(MEASURES, count),
+        gains=records(GAINS, count),
         inertia=np.zeros((count, 3)),
-        before=np.zeros(pairs),
-        after=np.zeros(pairs),
-        guess=np.zeros(pairs),
-        found=np.zeros(pairs),
+        before=np.zeros((count, 2)),
+        after=np.zeros((count, 2)),
+        guess=np.zeros((count, 2)),
+        found=np.zeros((count, 2)),
         change=np.zeros(n),
         swing=np.zeros(n),
         left=np.zeros((n, n)),
         spins=np.zeros(2),
-        turn=np.zeros(few),
-        push=np.zeros(few),
-        rub=np.zeros(few),
+        turn=np.zeros(4),
+        force=np.zeros(4),
         spare=layer_scratch(count, cells),
     )
-
-
-def switch(machine: Coupled) -> float:
-    """Catch the liquid that can ride with the drum by now, let go what cannot; energy brought in, J.
-
-    Caught liquid is a uniform layer at rest in the drum; liquid let go lies at the bottom. The momentum of
-    rotor and liquid stays.
-    """
-    limit = np.where(machine.active, _RELEASE * machine.capture, machine.capture)
-    return _rearrange(machine, machine.spin > limit)
-
-
-def fall(machine: Coupled) -> float:
-    """Let the deepest layer fall to the bottom before its time; energy brought in, J.
-
-    It is caught again at a speed higher by a fifth.
-    """
-    deepest = int(np.argmax(np.where(machine.active, machine.area.max(axis=1), -1.0)))
-    wanted = machine.active.copy()
-    wanted[deepest] = False
-    machine.capture[deepest] = 1.2 * machine.spin
-    return _rearrange(machine, wanted)
-
-
-def _rearrange(machine: Coupled, wanted: NDArray[np.bool_]) -> float:
-    """Make the wanted layers the active ones; energy brought in, J."""
-    if np.array_equal(wanted, machine.active):
-        return 0.0
-    before = machine.energy()
-    n = len(machine.system.coordinates)
-    lost = np.zeros(n)
-    for (_, plane, _, momentum), kept in zip(machine.measured(), wanted[machine.active], strict=True):
-        lost += plane.T @ momentum * (not kept)
-    mean = machine.area.mean(axis=1, keepdims=True)
-    anew = wanted != machine.active
-    machine.area[anew] = mean[anew]
-    machine.momentum[anew] = -machine.spin * np.square(machine.area[anew])
-    machine.active = wanted
-    old = machine.machine
-    machine.machine, machine.state, machine.room = _parts(
-        system=machine.system,
-        fills=machine.fills,
-        layers=machine.layers,
-        area=machine.area,
-        momentum=machine.momentum,
-        active=wanted,
-        rotor=machine.state.rotor,
-        sums=machine.state.sums,
-        drive=(old.gravity, old.angles, old.drive, old.curve),
-    )
-    whole = machine.machine.matrices[0].copy()
-    for layer, plane in zip(machine.machine.layers, machine.machine.planes, strict=True):
-        whole += layer[MASS] * plane.T @ plane
-    machine.state.rotor[n : 2 * n] += np.linalg.solve(whole, lost)
-    return machine.energy() - before
-
-
-def reading(machine: Coupled) -> dict[str, Any]:
-    """What `solvers.runup.runup.RunupHistory` records of a moment, by its names."""
-    n, count = len(machine.system.coordinates), len(machine.fills)
-    x, angle = machine.state.rotor[:n].copy(), float(machine.state.rotor[-2])
-    turn = complex(math.cos(angle), math.sin(angle))
-    planes = [machine.system.at(fill.chamber.plane) for fill in machine.fills] or [machine.system.centre]
-    surface = np.sqrt(np.maximum(1.0 - 2.0 * machine.area, 0.0))
-    lever = (1.0 - surface) * (1.0 + surface + np.square(surface)) / 3.0
-    whole = np.maximum(machine.area.sum(axis=1), 1e-300)
-    angles, radius = machine.machine.angles, machine.layers[:, RADIUS]
-    moved = radius * (lever @ angles[0] + 1j * (lever @ angles[1])) / whole * turn
-    velocity = np.divide(machine.momentum, machine.area, out=np.zeros_like(surface), where=machine.area > 0.0)
-    velocity += machine.spin * machine.area
-    flow = velocity * -np.log(np.maximum(surface, 1e-300))
-    nothing = np.full(count, np.nan)
-    return {
-        "time": machine.time,
-        "speed": machine.spin,
-        "angle": angle,
-        "coordinates": x,
-        "deflection": np.array([complex(*(plane @ x)) for plane in planes]),
-        "offset": np.where(machine.active, moved, machine.pool),
-        "captured": machine.active.copy(),
-        "depth_min": np.where(machine.active, radius * (1.0 - surface.max(axis=1, initial=0.0)), nothing),
-        "depth_max": np.where(machine.active, radius * (1.0 - surface.min(axis=1, initial=1.0)), nothing),
-        "mean_rotation": np.where(machine.active, flow.sum(axis=1) / whole, 0.0),
-    }

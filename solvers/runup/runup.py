@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from types import MappingProxyType
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
 from fluid.friction import NO_FRICTION, Friction
@@ -15,30 +16,13 @@ from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.rotor.system import RotorSystem
 from solvers.runup.drive import Drive, Ramp, torque_curve
-from solvers.runup.linear import LinearCoupled, couple_linear, read_linear, switch_linear
-from solvers.runup.long_wave import Coupled, couple, fall, reading, switch
-from solvers.runup.state import (
-    BORES,
-    DISAGREED,
-    DRIVE,
-    FRICTION,
-    GRAVITY,
-    LAYER_STEPS,
-    MOTOR,
-    PROFILE,
-    STEPS,
-    SUPPORT,
-    UNBALANCE,
-)
+from solvers.runup.linear import couple_linear
+from solvers.runup.long_wave import couple
+from solvers.runup.machine import LayerSnapshots, Outcome, Reading, RunupMachine, RunupModel
 
 _MOST = 200_000_000  # steps between two samples
-_THROWN = _AT_AXIS, _NOT_COUPLED = 2, 4
-_REASONS = {
-    _AT_AXIS: "the surface of a layer came to the axis",
-    3: "the time steps ran out",
-    _NOT_COUPLED: "rotor and layers did not agree in the shortest steps",
-    5: "the motor stands",
-}
+# The liquid models by the names that users give them.
+MODELS: Mapping[str, RunupModel] = MappingProxyType({"long_wave": couple, "linear": couple_linear})
 
 
 @dataclass(frozen=True)
@@ -135,6 +119,7 @@ class RunupHistory:
     disagreement : largest relative difference left between the accelerations of rotor and layers
     converged : it came to the end
     reason : why not, or empty
+    snapshots : of the layers, cell by cell, at the times asked for; None where none were
     """
 
     time: Array
@@ -156,6 +141,7 @@ class RunupHistory:
     disagreement: float
     converged: bool
     reason: str
+    snapshots: LayerSnapshots | None = None
 
     @property
     def amplitude(self) -> Array:
@@ -180,6 +166,7 @@ def run_up(
     numerics: RunupNumerics | None = None,
     progress: Callable[[float], None] | None = None,
     model: str = "long_wave",
+    snapshots: ArrayLike = (),
 ) -> RunupHistory:
     """Run a rotor with liquid layers through its speeds; at first liquid and rotor are at rest in the drum.
 
@@ -194,6 +181,8 @@ def run_up(
     numerics : resolution
     progress : called with the share of the time that is done
     model : of the liquid: "long_wave", or "linear" for small waves at a hundredth of the cost
+    snapshots : times at which the layers are kept cell by cell, s, each at the recorded time next to it; they
+        change nothing in the run, so that a film needs no second one
 
     Returns
     -------
@@ -202,20 +191,33 @@ def run_up(
     Raises
     ------
     InputError : a value out of its range
+
+    Examples
+    --------
+    Pictures of the layers, from the run itself; angles are in the drum, fewer where the run ended early:
+
+        history = run_up(system, fills, drive, snapshots=np.linspace(0.0, 14.0, 180))
+        kept = history.snapshots
+        time, depth = history.time[kept.sample], kept.depth  # (f,), (f, l, c)
+        seen = np.exp(-1j * history.angle[kept.sample])[:, None]
+        deflection = history.deflection[kept.sample] * seen  # in the drum's frame, (f, l)
     """
     numerics = numerics or RunupNumerics()
     if model not in MODELS:
         raise InputError("model", model, "one of " + ", ".join(MODELS))
-    build = MODELS[model][0]
     start = drive.corners()[1, 0]
-    machine = build(system, fills, start, friction, gravity, numerics.cells, numerics.dispersion)
+
+    def machine(cells: int) -> RunupMachine:
+        return MODELS[model](system, fills, start, friction, gravity, cells, numerics.dispersion)
+
     share = 0.8 if numerics.companion else 1.0
-    history = _march(machine, model, drive, numerics, lambda part: progress and progress(share * part))
+    wanted = np.asarray(snapshots, dtype=float)
+    whole = machine(numerics.cells)
+    history = _march(whole, drive, numerics, lambda part: progress and progress(share * part), wanted)
     if not numerics.companion or not history.converged or numerics.cells < 16:
         return history
     cells = numerics.cells // 2
-    coarse = build(system, fills, start, friction, gravity, cells, numerics.dispersion)
-    other = _march(coarse, model, drive, replace(numerics, cells=cells), lambda _: None)
+    other = _march(machine(cells), drive, replace(numerics, cells=cells), lambda _: None, np.empty(0))
     if progress:
         progress(1.0)
     if not other.converged:
@@ -237,66 +239,66 @@ def _times(drive: Drive, samples: int) -> tuple[Array, Array]:
     return time, rate
 
 
-# Of each model: what makes its machine, what catches and lets go its liquid, what reads it.
-MODELS: dict[str, tuple[Callable[..., Any], Callable[[Any], float], Callable[[Any], dict[str, Any]]]] = {
-    "long_wave": (couple, switch, reading),
-    "linear": (couple_linear, switch_linear, read_linear),
-}
-
-
 def _march(
-    machine: Coupled | LinearCoupled,
-    model: str,
+    machine: RunupMachine,
     drive: Drive,
     numerics: RunupNumerics,
     progress: Callable[[float], object],
+    snapshots: Array,
 ) -> RunupHistory:
     """The run itself, sample by sample."""
     time, rate = _times(drive, numerics.samples)
     machine.drive(torque_curve(drive), 0.0 if isinstance(drive, Ramp) else drive.inertia)
     energy, captured, reason = machine.energy(), 0.0, ""
-    _, catch, read = MODELS[model]
-    rows = [read(machine)]
+    wanted = np.unique([np.abs(time - moment).argmin() for moment in snapshots]).astype(np.intp)
+    readings, depths = [machine.read()], [machine.depth()] if 0 in wanted else []
     for k, stop in enumerate(time[1:].tolist()):
         try:
-            captured += catch(machine)
-            status = machine.advance(stop, float(rate[k]), numerics.courant, _MOST)
-            while isinstance(machine, Coupled) and status in _THROWN and machine.held_by_spin:
-                # Gravity has won: what is thrown about so much lies at the bottom.
-                captured += fall(machine)
-                status = machine.advance(stop, float(rate[k]), numerics.courant, _MOST)
-            reason = _REASONS.get(status, "")
+            captured += machine.switch()
+            outcome, brought = _advance(machine, stop, float(rate[k]), numerics.courant)
+            captured += brought
+            reason = outcome.message
         except KeyboardInterrupt:
             reason = "interrupted"
         if reason:
             reason = f"{reason} at {machine.time:.6g} s, {machine.spin:.6g} rad/s"
             break
-        rows.append(read(machine))
+        readings.append(machine.read())
+        if k + 1 in wanted:
+            depths.append(machine.depth())
         if k % 64 == 0:
             progress((k + 1) / rate.size)
     sums = machine.sums
     audit = EnergyAudit(
-        unbalance=float(sums[UNBALANCE]),
-        drive=float(sums[DRIVE]),
-        gravity=float(sums[GRAVITY]),
         captured=captured,
         change=machine.energy() - energy,
-        support=float(sums[SUPPORT]),
-        friction=float(sums[FRICTION]),
-        bores=float(sums[BORES]),
-        profile=float(sums[PROFILE]),
-        motor=float(sums[MOTOR]),
+        **{name: float(sums[name]) for name in _WORKS},
     )
-    table = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    kept = LayerSnapshots(wanted[: len(depths)], machine.theta, np.array(depths)) if wanted.size else None
     return RunupHistory(
-        **table,
+        **{field.name: np.array([getattr(r, field.name) for r in readings]) for field in fields(Reading)},
         layer_mass=machine.masses,
         mass_error=machine.mass_error(),
         error_estimate=math.nan,
         audit=audit,
-        steps=int(sums[STEPS]),
-        layer_steps=int(sums[LAYER_STEPS]),
-        disagreement=float(sums[DISAGREED]),
+        steps=int(sums.steps),
+        layer_steps=int(sums.layer_steps),
+        disagreement=float(sums.disagreement),
         converged=not reason,
         reason=reason,
+        snapshots=kept,
     )
+
+
+_WORKS = ("unbalance", "drive", "gravity", "support", "friction", "bores", "profile", "motor")
+
+
+def _advance(machine: RunupMachine, stop: float, rate: float, courant: float) -> tuple[Outcome, float]:
+    """Advance to a time, letting liquid fall where gravity has won; the energy that this brought in, J."""
+    brought = 0.0
+    while True:
+        outcome = machine.advance(stop, rate, courant, _MOST)
+        fallen = machine.fall(outcome)
+        if fallen is None:
+            return outcome, brought
+        brought += fallen

@@ -1,29 +1,63 @@
-"""What the coupled time steps work on: the machine, its state, and room for the steps. SI units."""
+"""What the coupled time steps work on: the machine, its state, and room for the steps. SI units.
+
+Numbers that change one by one stand in records, which Python and compiled code name alike: arrays of numpy's
+structured types, of length 1 where there is one of a kind.
+"""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshes.arrays import Array
 
-# Columns of a layer's properties: R, rho h_c, mass, friction law, its coefficient (linear: k, 1/s; Stokes:
-# over the root of the spin; quadratic: a number), 2 R/h_c or 0, square of L for dispersion or 0.
-RADIUS, WEIGHT, MASS, LAW, RUBBING, LID, SPREAD = range(7)
+# A `numpy.recarray`; its stubs forget the fields of what is picked from it.
+Record = Any
+
+
+def _floats(*names: str) -> np.dtype[Any]:
+    return np.dtype([(name, np.float64) for name in names], align=True)
+
+
+# What `solvers.runup.chamber.LayerProperties` says of a layer.
+LAYER = np.dtype(
+    [
+        ("radius", np.float64),
+        ("weight", np.float64),
+        ("mass", np.float64),
+        ("law", np.int64),
+        ("coefficient", np.float64),
+        ("lid", np.float64),
+        ("spread", np.float64),
+    ],
+    align=True,
+)
+# What a layer is measured by: moment and its rate of change by the flow, inertia of the flow, angular
+# momentum and energy in the frame that does not turn [theory: coupling, eq. 2, 4 and 7].
+MEASURES = _floats("moment_x", "moment_y", "flow_x", "flow_y", "xx", "xy", "yy", "spinning", "energy")
+# What a layer's step adds up: impulse of the wall's torque, heat by friction, loss in bores and by the
+# scheme, energy that the flow's profile misses.
+GAINS = _floats("torque", "heat", "loss", "missed")
+# The rotation: speed, angle turned, time; rate of change of the speed on its ramp, moment of inertia about
+# the axis with a motor.
+SHAFT = _floats("spin", "angle", "time", "rate", "inertia")
+# Lengths of the last two steps, the fastest wave, and by what the next step is shortened.
+PACE = _floats("last", "before", "fastest", "share")
 # What is summed up over time [theory: coupling, eq. 9-10]: work of the unbalance, of the drive on the liquid,
 # of gravity; heat in the supports and by wall friction, loss in bores and by the scheme, what the assumed
 # profile of the flow misses while the spin changes; work of the motor; steps, layer steps, largest
 # disagreement left.
-UNBALANCE, DRIVE, GRAVITY, SUPPORT, FRICTION, BORES, PROFILE, MOTOR, STEPS, LAYER_STEPS, DISAGREED = range(11)
-TALLIES = 11
-# What a layer is measured by: moment and its rate of change by the flow (two parts each), inertia of the flow
-# (xx, xy, yy), angular momentum and energy in the frame that does not turn.
-MOMENT, FLOW, INERTIA, SPINNING, ENERGY, MEASURES = 0, 2, 4, 7, 8, 9
-# What a layer's step adds up: impulse of the wall's torque, heat by friction, loss in bores and by the
-# scheme, energy that the flow's profile misses.
-TORQUE, HEAT, LOSS, MISSED, GAINS = range(5)
+SUMS = _floats(
+    *("unbalance", "drive", "gravity", "support", "friction", "bores", "profile", "motor"),
+    *("steps", "layer_steps", "disagreement"),
+)
+
+
+def records(kind: np.dtype[Any], count: int = 1) -> Record:
+    """So many records of zeros."""
+    return np.zeros(count, kind).view(np.recarray)
 
 
 class Machine(NamedTuple):
@@ -34,20 +68,18 @@ class Machine(NamedTuple):
     matrices : M, C, G, K, shape (4, n, n)
     unbalance : U, complex, shape (n,)
     planes : in-plane displacement of each layer's axis for unit coordinates, shape (l, 2, n)
-    layers : their properties, shape (l, 7)
+    layers : records LAYER, shape (l,)
     gravity : acceleration across the axis, shape (2,)
     angles : cosine and sine at the cells' middles and at their left faces, shape (4, c)
-    drive : rate of change of the spin on its ramp, moment of inertia about the axis with a motor, shape (2,)
     curve : the motor's speeds and torques, shape (2, k); k = 0 for a ramp
     """
 
     matrices: Array
     unbalance: NDArray[np.complex128]
     planes: Array
-    layers: Array
+    layers: Record
     gravity: Array
     angles: Array
-    drive: Array
     curve: Array
 
 
@@ -56,28 +88,48 @@ class State(NamedTuple):
 
     Parameters
     ----------
-    rotor : coordinates, velocities, spin, angle, time, shape (2 n + 3,)
+    place, rate : of the coordinates, shape (n,)
+    shaft : record SHAFT, shape (1,)
     area, momentum : A/R^2 and q/R^2 of the layers' cells, shape (l, c)
-    memory : mean accelerations of the axes over the last two steps, two parts each; in the last row the
-        lengths of these steps, the fastest wave, and by what the next step is shortened, shape (l + 1, 4)
-    sums : tallies, shape (TALLIES,)
+    push : mean accelerations of the axes over the last step and over the one before, shape (l, 2, 2)
+    pace : record PACE, shape (1,)
+    sums : record SUMS, shape (1,)
     """
 
-    rotor: Array
+    place: Array
+    rate: Array
+    shaft: Record
     area: Array
     momentum: Array
-    memory: Array
-    sums: Array
+    push: Array
+    pace: Record
+    sums: Record
 
 
 class Room(NamedTuple):
-    """Scratch of the steps, made by `solvers.runup.long_wave`."""
+    """Scratch of the steps, made by `solvers.runup.long_wave`.
+
+    Parameters
+    ----------
+    area, momentum : the layers at the beginning of the step, shape (l, c)
+    begin, end : records MEASURES of the layers at both ends, shape (l,)
+    gains : records GAINS of the layers, shape (l,)
+    inertia : of the layers' flows (xx, xy, yy), shape (l, 3)
+    before, after : the layers' momenta relative to their axes at both ends, shape (l, 2)
+    guess, found : mean accelerations of the axes put in and come out, shape (l, 2)
+    change, swing : of the velocities over the step; of the unbalance's momentum, shape (n,)
+    left : matrix of the rotor's equations, shape (n, n)
+    spins : at both ends, shape (2,)
+    turn : cosine and sine of the angle turned at both ends, shape (4,)
+    force : body force over R in the drum frame at both ends, two parts each, shape (4,)
+    spare : scratch of `solvers.runup.kernel.layer_step`, shape (l, ...)
+    """
 
     area: Array
     momentum: Array
-    begin: Array
-    end: Array
-    gains: Array
+    begin: Record
+    end: Record
+    gains: Record
     inertia: Array
     before: Array
     after: Array
@@ -88,6 +140,5 @@ class Room(NamedTuple):
     left: Array
     spins: Array
     turn: Array
-    push: Array
-    rub: Array
+    force: Array
     spare: Array

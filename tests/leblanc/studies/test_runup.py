@@ -531,16 +531,11 @@ def test_figures_of_dull_histories(layers: int) -> None:
 # --- film ------------------------------------------------------------------------------------------------
 
 
-@kills("leblanc.studies.runup_film:_frame", "turn = np.exp(-1j", "turn = np.exp(1j")
+@kills("leblanc.studies.runup_film:film", "turn = np.exp(-1j", "turn = np.exp(1j")
 @kills(
-    "leblanc.studies.runup_film:_frame",
-    "1.0 - np.sqrt(np.maximum(1.0 - 2.0 * machine.area",
-    "1.0 - np.sqrt(np.maximum(1.0 - machine.area",
-)
-@kills(
-    "leblanc.studies.runup_film:_rate",
-    "corners[1, k + 1] - corners[1, k]",
-    "corners[1, k] - corners[1, k + 1]",
+    "solvers.runup.long_wave:Coupled.depth",
+    "np.maximum(1.0 - 2.0 * self.area, 0.0)",
+    "np.maximum(1.0 - self.area, 0.0)",
 )
 def test_film() -> None:
     """The frames hold the record's deflections in the drum frame and all of the liquid."""
@@ -566,7 +561,7 @@ def shoelace(edge: np.ndarray) -> float:
     'scene.gravity if scene.rotor.axis == "horizontal"',
     'scene.gravity if scene.rotor.axis == "vertical"',
 )
-@kills("leblanc.studies.runup_film:_frame", "np.angle(-turn)", "np.angle(turn)")
+@kills("leblanc.studies.runup_film:film", "np.angle(-turn)", "np.angle(turn)")
 def test_pool() -> None:
     """Liquid at the bottom: its outline holds its volume, and its middle points down as the drum turns."""
     machine = lying(runup={"start": 1.0, "stop": 3.0, "rate": 4.0, "duration": 0.5})

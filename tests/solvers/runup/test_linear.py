@@ -15,9 +15,9 @@ from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.drive import Motor, Ramp
-from solvers.runup.linear import couple_linear, read_linear, switch_linear
+from solvers.runup.linear import couple_linear
+from solvers.runup.machine import Outcome
 from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
-from solvers.runup.state import DRIVE, FRICTION, GRAVITY, SUPPORT, UNBALANCE
 from solvers.synchronous.response import response
 from solvers.whirl.growth import asynchronous_growth
 from tests.mutants import kills
@@ -68,7 +68,7 @@ def grown(spin: float, rate: float, duration: float) -> tuple[complex, complex]:
     machine.machine.place[0] = 1e-6
     times, seen = np.linspace(0.0, duration, 801)[1:], []
     for stop in times.tolist():
-        assert machine.advance(stop, 0.0, 0.8, 10**7) == 0
+        assert machine.advance(stop, 0.0, 0.8, 10**7) == Outcome.DONE
         seen.append(complex(*machine.machine.place[:2]))
     last = slice(400, None)
     growth = np.polyfit(times[last], np.log(np.abs(seen))[last], 1)[0]
@@ -85,7 +85,7 @@ def test_growth_is_that_of_the_characteristic_equation(spin: float, rate: float,
     assert abs(found.imag) == pytest.approx(abs(wanted.imag), rel=1e-3)
 
 
-@kills("solvers.runup.linear:read_linear", "1j * m.place[n + 1 :: 2]", "-1j * m.place[n + 1 :: 2]")
+@kills("solvers.runup.linear:LinearCoupled._offset", "1j * m.place[n + 1 :: 2]", "-1j * m.place[n + 1 :: 2]")
 def test_hold_comes_to_the_steady_response() -> None:
     """Held at a speed, the synchronous response with the mass of a full drum."""
     drive = Ramp(59.9, 60.0, 1.0, 6.0)
@@ -108,10 +108,10 @@ def test_energy_closes_with_the_step() -> None:
         machine = couple_linear(rotor.system(), [FILL], 30.0, Friction("linear", 2.0), 3.0, cells, False)
         machine.machine.rate[:2] = 0.05, -0.02
         before = machine.energy()
-        assert machine.advance(1.0, 20.0, 0.8, 10**6) == 0
+        assert machine.advance(1.0, 20.0, 0.8, 10**6) == Outcome.DONE
         s = machine.sums
-        gained = s[UNBALANCE] + s[DRIVE] + s[GRAVITY] - s[SUPPORT] - s[FRICTION]
-        left.append(abs(gained - (machine.energy() - before)) / s[UNBALANCE])
+        gained = s.unbalance + s.drive + s.gravity - s.support - s.friction
+        left.append(abs(gained - (machine.energy() - before)) / s.unbalance)
     assert left[1] < 1e-3
     assert 3.0 < left[0] / left[1] < 5.0
 
@@ -130,7 +130,7 @@ def test_motor() -> None:
     assert history.mean_rotation.min() < -1.0
 
 
-@kills("solvers.runup.linear:switch_linear", "0.98 * machine.capture", "machine.capture")
+@kills("solvers.runup.linear:LinearCoupled.switch", "RELEASE * self.capture", "self.capture")
 def test_capture() -> None:
     """Caught at sqrt(g/a) and let go below; momentum and energy are kept account of."""
     drive = Ramp(3.0, 20.0, 4.0, 5.0, back=True)
@@ -143,7 +143,7 @@ def test_capture() -> None:
     assert history.audit.closure < 1e-3
 
 
-@kills("solvers.runup.linear:switch_linear", "lost += machine.masses[j]", "lost -= machine.masses[j]")
+@kills("solvers.runup.linear:LinearCoupled.switch", "lost += self.masses[j]", "lost -= self.masses[j]")
 def test_switching_keeps_the_momentum() -> None:
     """Rotor and liquid keep their momentum when a layer is let go."""
     machine = couple_linear(ROTOR.system(), [FILL], 20.0, Friction("linear", 1.0), 9.81, 64, False)
@@ -151,29 +151,29 @@ def test_switching_keeps_the_momentum() -> None:
     before = MASS * machine.machine.rate[:2] + FILL.mass * (
         machine.machine.rate[:2] + machine.machine.rate[2:4]
     )
-    machine.machine.turning[0] = 2.0
+    machine.machine.shaft[0].spin = 2.0
     energy = machine.energy()
-    brought = switch_linear(machine)
+    brought = machine.switch()
     assert not machine.machine.active.any()
     np.testing.assert_allclose((MASS + FILL.mass) * machine.machine.rate[:2], before, rtol=1e-12)
     assert machine.energy() - energy == pytest.approx(brought, rel=1e-12)
 
 
 @kills(
-    "solvers.runup.linear:read_linear",
-    "(m.layers[:, 1] - 1.0) * np.abs(offset)",
-    "m.layers[:, 1] * np.abs(offset)",
+    "solvers.runup.linear:LinearCoupled.read",
+    "(m.layers.curvature - 1.0) * np.abs(offset)",
+    "m.layers.curvature * np.abs(offset)",
 )
 def test_depths() -> None:
     """A surface shifted by xi moves the liquid's moment by pi a^2 h xi: the offset gives the depths."""
     machine = couple_linear(ROTOR.system(), [FILL], 20.0, Friction(), 0.0, 64, False)
     machine.machine.place[2:4] = 3e-3, 4e-3
-    found = read_linear(machine)
+    found = machine.read()
     inner = FILL.surface_radius
     shift = 5e-3 * FILL.volume / (math.pi * inner**2 * 0.04)
-    assert found["depth_max"][0] == pytest.approx(FILL.depth + shift, rel=1e-12)
-    assert found["depth_min"][0] == pytest.approx(FILL.depth - shift, rel=1e-12)
-    assert found["offset"][0] == 3e-3 + 4e-3j
+    assert found.depth_max[0] == pytest.approx(FILL.depth + shift, rel=1e-12)
+    assert found.depth_min[0] == pytest.approx(FILL.depth - shift, rel=1e-12)
+    assert found.offset[0] == 3e-3 + 4e-3j
 
 
 def test_stiff_empty_full_and_many() -> None:

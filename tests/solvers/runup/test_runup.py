@@ -16,9 +16,9 @@ from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.drive import Motor, Ramp
-from solvers.runup.long_wave import couple, fall, reading, switch
+from solvers.runup.long_wave import couple
+from solvers.runup.machine import Outcome
 from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
-from solvers.runup.state import DRIVE, FRICTION, GRAVITY, SUPPORT, UNBALANCE
 from solvers.synchronous.response import response
 from tests.mutants import kills
 from validation.whirl_in_time import whirl_in_time
@@ -88,17 +88,17 @@ def test_momentum_is_handed_over_to_rounding() -> None:
     """Without support and unbalance the momentum of rotor and liquid stays, whatever the waves do."""
     free = Jeffcott(3.0, 1e-15, 0.0, 0.0)
     machine = couple(free.system(), [layer(8e-4)], 20.0, Friction(), 0.0, 32, False)
-    machine.state.rotor[2:4] = 0.05, -0.02
+    machine.state.rate[:] = 0.05, -0.02
 
     def momentum() -> np.ndarray:
-        velocity = machine.state.rotor[2:4]
+        velocity = machine.state.rate[:]
         total = free.mass * velocity
         for one, plane, _, relative in machine.measured():
-            total = total + plane.T @ (one[2] * plane @ velocity + relative)
+            total = total + plane.T @ (one.mass * plane @ velocity + relative)
         return total
 
     before = momentum()
-    assert machine.advance(0.4, 3.0, 0.8, 10**6) == 0
+    assert machine.advance(0.4, 3.0, 0.8, 10**6) == Outcome.DONE
     # Rounding of some 100 steps.
     np.testing.assert_allclose(momentum(), before, rtol=0.0, atol=1e-12 * np.abs(before).max())
 
@@ -109,14 +109,14 @@ def test_energy_closes_with_the_mesh() -> None:
     left = []
     for cells in (32, 64):
         machine = couple(rotor.system(), [layer(8e-4)], 30.0, Friction("quadratic", 0.02), 0.3, cells, False)
-        machine.state.rotor[2:4] = 0.02, -0.01
+        machine.state.rate[:] = 0.02, -0.01
         energy = machine.energy()
-        assert machine.advance(0.3, 4.0, 0.4, 10**6) == 0
+        assert machine.advance(0.3, 4.0, 0.4, 10**6) == Outcome.DONE
         sums = machine.sums
-        gained = sums[UNBALANCE] + sums[DRIVE] + sums[GRAVITY]
-        remainder = gained - sums[SUPPORT] - sums[FRICTION] - (machine.energy() - energy)
+        gained = sums.unbalance + sums.drive + sums.gravity
+        remainder = gained - sums.support - sums.friction - (machine.energy() - energy)
         # The scheme's own loss and the profile's miss are left out: they too go down with the mesh.
-        left.append(abs(remainder) / sums[UNBALANCE])
+        left.append(abs(remainder) / sums.unbalance)
     assert left[0] < 0.05
     assert left[1] < 0.4 * left[0]
 
@@ -125,10 +125,10 @@ def test_energy_of_a_free_machine_only_falls() -> None:
     """No damping, no friction, no unbalance: what bores and the scheme take is all that is lost."""
     free = Jeffcott(3.0, 3.0 * 15.0**2, 0.0, 0.0)
     machine = couple(free.system(), [layer(8e-4)], 30.0, Friction(), 0.0, 128, False)
-    machine.state.rotor[0] = 2e-3
+    machine.state.place[0] = 2e-3
     reference = couple(free.system(), [layer(8e-4)], 30.0, Friction(), 0.0, 128, False).energy()
     before = machine.energy() - reference
-    assert machine.advance(2.0, 0.0, 0.8, 10**6) == 0
+    assert machine.advance(2.0, 0.0, 0.8, 10**6) == Outcome.DONE
     after = machine.energy() - reference
     # The rest of the second order: the scheme may give back what rounding and Heun's method miss.
     assert 0.98 * before < after <= before * (1.0 + 1e-4)
@@ -266,60 +266,60 @@ def test_weak_motor_hangs_at_the_resonance() -> None:
     assert spins["strong"].max() > 2.0 * NATURAL
 
 
-@kills("solvers.runup.long_wave:_rearrange", "plane.T @ momentum * (not kept)", "plane.T @ momentum * kept")
-@kills("solvers.runup.long_wave:fall", "1.2 * machine.spin", "1.4 * machine.spin")
+@kills("solvers.runup.long_wave:Coupled._rearrange", "plane.T @ momentum * (not kept)", "plane.T @ momentum * kept")
+@kills("solvers.runup.long_wave:Coupled.fall", "_AGAIN * self.spin", "1.4 * self.spin")
 @kills(
-    "solvers.runup.long_wave:_rearrange",
-    "-machine.spin * np.square(machine.area[anew])",
-    "0.0 * machine.area[anew]",
+    "solvers.runup.long_wave:Coupled._rearrange",
+    "-self.spin * np.square(self.area[anew])",
+    "0.0 * self.area[anew]",
 )
 @kills(
-    "solvers.runup.long_wave:_parts",
-    "mass += layer[MASS] * plane.T @ plane",
-    "mass -= layer[MASS] * plane.T @ plane",
+    "solvers.runup.long_wave:Coupled._assemble",
+    "mass += weight * plane.T @ plane",
+    "mass -= weight * plane.T @ plane",
 )
 def test_switching_keeps_the_momentum() -> None:
     """Rotor and liquid keep their momentum when a layer is let go, fallen or caught again."""
-    for change in (switch, fall):
+    for change in ("switch", "fall"):
         machine = couple(ROTOR.system(), [layer(2e-3)], 20.0, Friction("linear", 3.0), 9.81, 32, False)
-        machine.state.rotor[2:4] = 0.3, -0.2
-        assert machine.advance(0.2, -20.0, 0.8, 10**6) == 0
+        machine.state.rate[:] = 0.3, -0.2
+        assert machine.advance(0.2, -20.0, 0.8, 10**6) == Outcome.DONE
         total = 2.0
-        before = MASS * machine.state.rotor[2:4] + total * machine.state.rotor[2:4]
+        before = MASS * machine.state.rate[:] + total * machine.state.rate[:]
         (_, _, _, relative) = machine.measured()[0]
         # What is at stake is no rounding: the layer moves in its drum.
         assert np.abs(relative).max() > 1e-2 * np.abs(before).max()
         energy = machine.energy()
-        machine.state.rotor[4] = 2.0 if change is switch else machine.spin
-        if change is switch:
+        machine.state.shaft[0].spin = 2.0 if change == "switch" else machine.spin
+        if change == "switch":
             energy = machine.energy()
             (_, _, _, relative) = machine.measured()[0]
-        brought = change(machine)
+        brought = machine.switch() if change == "switch" else machine.fall(Outcome.AT_AXIS)
         assert not machine.active.any()
-        after = (MASS + total) * machine.state.rotor[2:4]
+        after = (MASS + total) * machine.state.rate[:]
         np.testing.assert_allclose(after, before + relative, rtol=1e-12)
         assert machine.energy() - energy == pytest.approx(brought, rel=1e-9)
         fallen = machine.spin
-        velocity = machine.state.rotor[2:4].copy()
-        machine.state.rotor[4] = 1.25 * fallen if change is fall else 20.0
-        switch(machine)
+        velocity = machine.state.rate[:].copy()
+        machine.state.shaft[0].spin = 1.25 * fallen if change == "fall" else 20.0
+        machine.switch()
         assert machine.active.all()
         # Caught liquid is at rest in the drum: no momentum of its own.
-        np.testing.assert_allclose(machine.state.rotor[2:4], velocity, rtol=1e-12)
+        np.testing.assert_allclose(machine.state.rate[:], velocity, rtol=1e-12)
         np.testing.assert_allclose(machine.measured()[0][3], 0.0, atol=1e-9)
-        assert abs(reading(machine)["mean_rotation"][0]) < 1e-12 * machine.spin
+        assert abs(machine.read().mean_rotation[0]) < 1e-12 * machine.spin
 
 
 @kills(
-    "solvers.runup.long_wave:reading", "(1.0 + surface + np.square(surface)) / 3.0", "(1.0 + surface) / 2.0"
+    "solvers.runup.long_wave:Coupled.read", "(1.0 + surface + np.square(surface)) / 3.0", "(1.0 + surface) / 2.0"
 )
-@kills("solvers.runup.long_wave:reading", "1j * (lever @ angles[1])", "1j * (lever @ angles[0])")
+@kills("solvers.runup.long_wave:Coupled.read", "1j * (lever @ angles[1])", "1j * (lever @ angles[0])")
 @kills(
-    "solvers.runup.long_wave:reading",
-    "velocity += machine.spin * machine.area",
-    "velocity -= machine.spin * machine.area",
+    "solvers.runup.long_wave:Coupled.read",
+    "velocity += self.spin * self.area",
+    "velocity -= self.spin * self.area",
 )
-@kills("solvers.runup.long_wave:reading", "1.0 - surface.max(axis=1", "1.0 - surface.min(axis=1")
+@kills("solvers.runup.long_wave:Coupled.read", "1.0 - surface.max(axis=1", "1.0 - surface.min(axis=1")
 def test_reading() -> None:
     """Offset, depths and rotation of a layer that is known."""
     machine = couple(ROTOR.system(), [layer(2e-3)], 20.0, Friction(), 0.0, 64, False)
@@ -327,19 +327,19 @@ def test_reading() -> None:
     mean = float(machine.area[0, 0])
     machine.area[0] = mean * (1.0 + 0.1 * np.cos(theta - 0.5))
     machine.momentum[0] = machine.area[0] * (1.5 - 20.0 * machine.area[0])
-    machine.state.rotor[:2] = 1e-3, 2e-3
-    machine.state.rotor[5] = 0.7
-    found = reading(machine)
+    machine.state.place[:] = 1e-3, 2e-3
+    machine.state.shaft[0].angle = 0.7
+    found = machine.read()
     surface = 0.25 * np.sqrt(1.0 - 2.0 * machine.area[0])
     lever = np.sum((0.25**3 - surface**3) / 3.0 * np.exp(1j * theta))
     offset = lever / np.sum((0.25**2 - surface**2) / 2.0) * np.exp(0.7j)
-    assert found["offset"][0] == pytest.approx(offset, rel=1e-12)
-    assert found["deflection"][0] == 1e-3 + 2e-3j
-    assert found["depth_max"][0] == pytest.approx(0.25 - surface.min(), rel=1e-12)
-    assert found["depth_min"][0] == pytest.approx(0.25 - surface.max(), rel=1e-12)
+    assert found.offset[0] == pytest.approx(offset, rel=1e-12)
+    assert found.deflection[0] == 1e-3 + 2e-3j
+    assert found.depth_max[0] == pytest.approx(0.25 - surface.min(), rel=1e-12)
+    assert found.depth_min[0] == pytest.approx(0.25 - surface.max(), rel=1e-12)
     # 1.5 rad/s at the wall; over the depth, by L/A, a little more.
     log = np.log(0.25 / surface)
-    assert found["mean_rotation"][0] == pytest.approx(1.5 * log.sum() / machine.area[0].sum(), rel=1e-12)
+    assert found.mean_rotation[0] == pytest.approx(1.5 * log.sum() / machine.area[0].sum(), rel=1e-12)
 
 
 @kills(
@@ -352,7 +352,7 @@ def test_reading() -> None:
     "self.gravity + self.captured",
     "self.gravity - self.captured",
 )
-@kills("solvers.runup.long_wave:switch", "_RELEASE * machine.capture", "machine.capture")
+@kills("solvers.runup.long_wave:Coupled.switch", "RELEASE * self.capture", "self.capture")
 @kills(
     "solvers.runup.chamber:layer_capture",
     "gravity / fill.surface_radius",
@@ -538,3 +538,45 @@ def test_wrong_motors_are_refused(change: dict[str, object]) -> None:
 def test_unknown_friction_is_refused() -> None:
     with pytest.raises(InputError, match="friction"):
         run_up(ROTOR.system(), [layer(5e-4)], RAMP, Friction("honey"))
+
+
+# --- pictures of the layers ---
+
+
+@pytest.mark.parametrize("model", ["long_wave", "linear"])
+def test_snapshots_are_of_the_run_itself(model: str) -> None:
+    """They change nothing, stand at recorded times, hold all of the liquid and reach its depths."""
+    ramp = Ramp(20.0, 40.0, 20.0, 1.0)
+    rotor, fills, friction = ROTOR.system(), [layer(5e-4)], Friction("linear", 3.0)
+    plain = run_up(rotor, fills, ramp, friction, 0.0, BRIEF, model=model)
+    found = run_up(rotor, fills, ramp, friction, 0.0, BRIEF, model=model, snapshots=np.linspace(0.0, 1.0, 5))
+    np.testing.assert_array_equal(found.deflection, plain.deflection)
+    assert plain.snapshots is None
+    kept = found.snapshots
+    assert kept is not None
+    assert kept.depth.shape == (5, 1, 32)
+    # Half a step between two samples at most.
+    np.testing.assert_allclose(found.time[kept.sample], np.linspace(0.0, 1.0, 5), atol=0.5 / 49)
+    np.testing.assert_allclose(
+        kept.theta, np.mod(2.0 * np.pi * (np.arange(32) + 0.5) / 32 + np.pi, 2 * np.pi) - np.pi
+    )
+    crest = kept.depth[:, 0].max(axis=1)
+    if model == "long_wave":
+        np.testing.assert_allclose(crest, found.depth_max[kept.sample, 0], rtol=1e-12)
+        area = CHAMBER.radius * kept.depth[:, 0] - 0.5 * kept.depth[:, 0] ** 2
+        np.testing.assert_allclose(area.mean(axis=1) * 2.0 * np.pi * CHAMBER.height, 5e-4, rtol=1e-12)
+    else:
+        # The crest of a cosine is within half a cell of some middle.
+        rise, seen = found.depth_max[kept.sample, 0] - fills[0].depth, crest - fills[0].depth
+        assert np.all(seen <= rise * (1.0 + 1e-9))
+        assert np.all(seen >= rise * math.cos(math.pi / 32) * (1.0 - 1e-9))
+        # It stands where the liquid's centre of mass does, in the drum.
+        place = found.offset[kept.sample[-1], 0] * np.exp(-1j * found.angle[kept.sample[-1]])
+        top = kept.theta[kept.depth[-1, 0].argmax()]
+        assert abs(np.angle(np.exp(1j * top) / place)) <= math.pi / 32 * (1.0 + 1e-9)
+
+
+def test_every_outcome_but_the_end_has_a_reason() -> None:
+    assert [bool(outcome.message) for outcome in Outcome] == [
+        outcome is not Outcome.DONE for outcome in Outcome
+    ]

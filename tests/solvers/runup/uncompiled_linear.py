@@ -13,7 +13,7 @@ from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.linear import LinearCoupled, couple_linear
-from solvers.runup.state import DRIVE, FRICTION, GRAVITY, MOTOR, SUPPORT, UNBALANCE
+from solvers.runup.machine import Outcome
 from solvers.whirl.growth import asynchronous_growth
 from tests.mutants import kills
 
@@ -43,8 +43,8 @@ def machine(cells: int, friction: float = 2.0, gravity: float = 0.0) -> LinearCo
 @kills("solvers.runup.linear_kernel:_tally", "(x * q - y * p)", "(x * p + y * q)")
 @kills(
     "solvers.runup.linear:LinearCoupled.energy",
-    "0.5 * layer[INERTIA] * m.carried",
-    "layer[INERTIA] * m.carried",
+    "0.5 * layer.inertia * m.carried",
+    "layer.inertia * m.carried",
 )
 def test_energy() -> None:
     """The balance closes with the square of the step, spin and friction changing things."""
@@ -52,10 +52,10 @@ def test_energy() -> None:
     for cells in (32, 64):
         found = machine(cells, gravity=3.0)
         before = found.energy()
-        assert found.advance(0.3, 20.0, 0.8, 10**5) == 0
+        assert found.advance(0.3, 20.0, 0.8, 10**5) == Outcome.DONE
         s = found.sums
-        gained = s[UNBALANCE] + s[DRIVE] + s[GRAVITY] - s[SUPPORT] - s[FRICTION]
-        left.append(abs(gained - (found.energy() - before)) / abs(s[UNBALANCE]))
+        gained = s.unbalance + s.drive + s.gravity - s.support - s.friction
+        left.append(abs(gained - (found.energy() - before)) / abs(s.unbalance))
     assert left[1] < 5e-3
     assert left[1] < 0.4 * left[0]
 
@@ -84,7 +84,7 @@ def test_growth() -> None:
         seen = []
         times = np.linspace(0.0, 3.0, 61)[1:]
         for stop in times.tolist():
-            assert found.advance(stop, 0.0, 0.8, 10**5) == 0
+            assert found.advance(stop, 0.0, 0.8, 10**5) == Outcome.DONE
             seen.append(complex(*found.machine.place[:2]))
         growth = np.polyfit(times[40:], np.log(np.abs(seen))[40:], 1)[0]
         wanted, _ = asynchronous_growth(free, [FILL], [22.0], Friction("linear", rate))
@@ -93,14 +93,14 @@ def test_growth() -> None:
 
 @kills(
     "solvers.runup.linear_kernel:_tally",
-    "m.sums[UNBALANCE] -= m.swing[i] * mean",
-    "m.sums[UNBALANCE] += m.swing[i] * mean",
+    "sums.unbalance -= m.swing[i] * mean",
+    "sums.unbalance += m.swing[i] * mean",
 )
 @kills("solvers.runup.linear_kernel:_tally", "u + whole * y, v - whole * x", "u - whole * y, v + whole * x")
 @kills(
     "solvers.runup.linear_kernel:_tally",
-    "m.layers[j, INERTIA] * spin * gained",
-    "m.layers[j, INERTIA] * whole * gained",
+    "layer.inertia * spin * gained",
+    "layer.inertia * whole * gained",
 )
 @kills("solvers.runup.linear_kernel:_tally", "m.gravity[0] * u + m.gravity[1] * v", "m.gravity[0] * v")
 @kills("solvers.runup.linear_kernel:_tally", "(spin - whole) ** 2", "(spin - whole)")
@@ -110,14 +110,14 @@ def test_tallies() -> None:
     rows, times = [], np.linspace(0.0, 0.2, 81)
     for stop in times.tolist():
         if stop > 0.0:
-            assert found.advance(stop, 20.0, 0.8, 10**5) == 0
+            assert found.advance(stop, 20.0, 0.8, 10**5) == Outcome.DONE
         m = found.machine
-        v, d, turn = m.rate[:2], m.rate[2:4], np.exp(1j * m.turning[1])
+        v, d, turn = m.rate[:2], m.rate[2:4], np.exp(1j * m.shaft[0].angle)
         force = ((found.spin**2 - 20j) * found.system.unbalance * turn).real
         offset, whole = complex(*m.place[2:4]), m.carried[0]
         slip = complex(*d) - 1j * whole * offset
-        kappa, inertia = m.layers[0, 1], m.layers[0, 4]
-        k = m.layers[0, 2]
+        kappa, inertia = m.layers[0].curvature, m.layers[0].inertia
+        k = m.layers[0].rate
         heat = 2.0 * k * (1.0 + kappa) * abs(slip) ** 2 + inertia * k * (found.spin - whole) ** 2
         gained = k * (found.spin - whole)
         wave = -2.0 * k * (1.0 + kappa) * (np.conj(1j * whole * offset) * slip).real
@@ -126,17 +126,17 @@ def test_tallies() -> None:
         weight = 2.0 * float(m.gravity @ d)
         rows.append((force @ v, v @ found.system.damping @ v, weight, heat, drive))
     wanted = np.trapezoid(np.array(rows).T, times)
-    for name, value in zip((UNBALANCE, SUPPORT, GRAVITY, FRICTION, DRIVE), wanted, strict=True):
+    for name, value in zip(("unbalance", "support", "gravity", "friction", "drive"), wanted, strict=True):
         assert found.sums[name] == pytest.approx(value, rel=1e-2, abs=1e-5)
 
 
 @kills("solvers.runup.linear_kernel:advance_linear", "load -= m.change[i]", "load += m.change[i]")
 @kills(
     "solvers.runup.linear_kernel:advance_linear",
-    "load += m.layers[j, INERTIA] * gained",
-    "load -= m.layers[j, INERTIA] * gained",
+    "load += m.layers[j].inertia * gained",
+    "load -= m.layers[j].inertia * gained",
 )
-@kills("solvers.runup.linear_kernel:_tally", "m.sums[MOTOR] += dt * spin", "m.sums[MOTOR] += dt")
+@kills("solvers.runup.linear_kernel:_tally", "sums.motor += dt * spin", "sums.motor += dt")
 def test_motor() -> None:
     """Torque of the motor, less what spins the liquid and what the unbalance takes."""
     found = couple_linear(
@@ -147,22 +147,22 @@ def test_motor() -> None:
     m = found.machine
 
     def momentum() -> float:
-        turn = np.exp(1j * m.turning[1])
+        turn = np.exp(1j * m.shaft[0].angle)
         cross = m.rate[:2] @ (1j * found.system.unbalance * turn).real
-        return float(0.05 * found.spin + m.layers[0, 4] * m.carried[0] + cross)
+        return float(0.05 * found.spin + m.layers[0].inertia * m.carried[0] + cross)
 
     before, rows, times = momentum(), [], np.linspace(0.0, 0.1, 41)
     for stop in times.tolist():
         if stop > 0.0:
-            assert found.advance(stop, 0.0, 0.8, 10**5) == 0
+            assert found.advance(stop, 0.0, 0.8, 10**5) == Outcome.DONE
             m = found.machine
-        turn = np.exp(1j * m.turning[1])
+        turn = np.exp(1j * m.shaft[0].angle)
         swung = -found.spin * m.rate[:2] @ (found.system.unbalance * turn).real
         torque = float(np.interp(found.spin, [0.0, 80.0], [6.0, 0.0]))
         rows.append((torque + swung, torque * found.spin))
     push, work = np.trapezoid(np.array(rows).T, times)
     assert momentum() - before == pytest.approx(push, rel=5e-3)
-    assert found.sums[MOTOR] == pytest.approx(work, rel=1e-3)
+    assert found.sums.motor == pytest.approx(work, rel=1e-3)
 
 
 @kills("solvers.runup.linear:_layer", "chamber.radius**4 * area * (1.0 - area)", "chamber.radius**4 * area")
@@ -170,8 +170,8 @@ def test_inertia() -> None:
     """Moment of inertia of the layer, and the squared ratio of the radii."""
     layer = couple_linear(ROTOR.system(), [FILL], 30.0, Friction(), 0.0, 8, False).machine.layers[0]
     inner = FILL.surface_radius
-    assert layer[4] == pytest.approx(0.5 * FILL.mass * (0.25**2 + inner**2), rel=1e-12)
-    assert layer[1] == pytest.approx((0.25 / inner) ** 2, rel=1e-12)
+    assert layer.inertia == pytest.approx(0.5 * FILL.mass * (0.25**2 + inner**2), rel=1e-12)
+    assert layer.curvature == pytest.approx((0.25 / inner) ** 2, rel=1e-12)
 
 
 STEP, SET = "solvers.runup.linear_kernel", "solvers.runup.linear"

@@ -18,26 +18,8 @@ from solvers.rotor.system import RotorSystem
 from solvers.runup import kernel as coupled_layer
 from solvers.runup import kernel as coupled_parts
 from solvers.runup.long_wave import Coupled, couple
-from solvers.runup.state import (
-    BORES,
-    DRIVE,
-    ENERGY,
-    FLOW,
-    FRICTION,
-    GAINS,
-    GRAVITY,
-    HEAT,
-    INERTIA,
-    LOSS,
-    MEASURES,
-    MOMENT,
-    MOTOR,
-    PROFILE,
-    SPINNING,
-    SUPPORT,
-    TORQUE,
-    UNBALANCE,
-)
+from solvers.runup.machine import Outcome
+from solvers.runup.state import GAINS, LAYER, MEASURES, records
 from tests.mutants import kills
 
 SPIN, TURNED = 2.0, 0.4
@@ -51,8 +33,8 @@ def state(n: int) -> tuple[np.ndarray, np.ndarray]:
     return area, velocity * area - SPIN * area**2
 
 
-def measured(area: np.ndarray, q: np.ndarray) -> np.ndarray:
-    out = np.zeros(MEASURES)
+def measured(area: np.ndarray, q: np.ndarray) -> np.record:
+    out = records(MEASURES)[0]
     spare = coupled_layer.layer_scratch(1, area.size)[0]
     coupled_layer.measure(area, q, SPIN, ring(area.size), spare, out)
     return out
@@ -75,8 +57,8 @@ def rates(area: np.ndarray, q: np.ndarray, push: complex = 0j) -> tuple[np.ndarr
 )
 @kills(
     "solvers.runup.kernel:measure",
-    "out[MOMENT + 1] += lever * angles[1, i]",
-    "out[MOMENT + 1] += lever * angles[0, i]",
+    "moment_y += lever * angles[1, i] * step\n        whole",
+    "moment_y += lever * angles[0, i] * step\n        whole",
 )
 @kills("solvers.runup.kernel:measure", "whole = area[i] * (1.0 - area[i])", "whole = area[i]")
 @kills("solvers.runup.kernel:measure", "0.5 * spin * spin * whole", "spin * spin * whole")
@@ -85,10 +67,8 @@ def rates(area: np.ndarray, q: np.ndarray, push: complex = 0j) -> tuple[np.ndarr
     "spin * u * area[i] + 0.5 * u * u * log[i]) * step",
     "spin * u * area[i] + 0.5 * u * u * area[i]) * step",
 )
-@kills("solvers.runup.kernel:measure", "out[FLOW] += flow[i] * x", "out[FLOW] -= flow[i] * x")
-@kills(
-    "solvers.runup.kernel:measure", "out[INERTIA + 1] += log[i] * x * y", "out[INERTIA + 1] -= log[i] * x * y"
-)
+@kills("solvers.runup.kernel:measure", "flow_x += flow[i] * x", "flow_x -= flow[i] * x")
+@kills("solvers.runup.kernel:measure", "xy += log[i] * x * y", "xy -= log[i] * x * y")
 def test_measures() -> None:
     """Moment, angular momentum and energy by quadrature over the depth; rates of change by the volumes'."""
     n = 96
@@ -103,33 +83,35 @@ def test_measures() -> None:
     # Cells hold means of a smooth state: rectangles are exact to rounding.
     moment = np.sum(each * radius**2 * np.exp(1j * theta))
     turning = SPIN * radius + u / radius
-    assert complex(*out[MOMENT : MOMENT + 2]) == pytest.approx(moment, rel=1e-10)
-    assert out[SPINNING] == pytest.approx(np.sum(each * radius**2 * turning), rel=1e-10)
-    assert out[ENERGY] == pytest.approx(np.sum(each * radius * 0.5 * turning**2), rel=1e-10)
+    assert complex(out.moment_x, out.moment_y) == pytest.approx(moment, rel=1e-10)
+    assert out.spinning == pytest.approx(np.sum(each * radius**2 * turning), rel=1e-10)
+    assert out.energy == pytest.approx(np.sum(each * radius * 0.5 * turning**2), rel=1e-10)
     d_area, d_q = rates(area, q)
     moved = np.sum(surface * np.exp(1j * theta) * d_area) * 2.0 * np.pi / n
     # Second order: some (2 pi/96)^2 of the size.
-    assert complex(*out[FLOW : FLOW + 2]) == pytest.approx(moved, abs=1e-2 * abs(moved))
+    assert complex(out.flow_x, out.flow_y) == pytest.approx(moved, abs=1e-2 * abs(moved))
     # Inertia: how a push changes the flow's rate.
     tiny = 1e-4
     for push in (1.0, 1.0j):
         pushed = rates(area, q, tiny * push)[1]
         later = measured(area, q + (pushed - d_q))
-        flow = complex(*(later - out)[FLOW : FLOW + 2]) / tiny
-        xx, xy, yy = out[INERTIA : INERTIA + 3]
+        flow = complex(later.flow_x - out.flow_x, later.flow_y - out.flow_y) / tiny
+        xx, xy, yy = out.xx, out.xy, out.yy
         wanted = xx * push.real + xy * push.imag + 1j * (xy * push.real + yy * push.imag)
         assert abs(flow - wanted) < 2e-2 * abs(wanted)
 
 
-def layer_run(law: float, push: complex, n: int = 32) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def layer_run(law: int, push: complex, n: int = 32) -> tuple[np.ndarray, np.ndarray, np.record]:
     area, q = state(n)
-    gains, spare = np.zeros(GAINS), coupled_layer.layer_scratch(1, n)[0]
+    gains, spare = records(GAINS)[0], coupled_layer.layer_scratch(1, n)[0]
     there = push * np.exp(-1j * SPIN * 0.02)
+    layer = records(LAYER)[0]
+    layer.law, layer.coefficient = law, 0.5
     status, _ = coupled_layer.layer_step(
         *(area, q, np.array([SPIN, SPIN]), np.array([push.real, push.imag, there.real, there.imag])),
-        *(np.array([law, 0.5, 0.0, 0.0]), 0.02, ring(n), spare, gains),
+        *(layer, layer.coefficient, 0.02, ring(n), spare, gains),
     )
-    assert status == coupled_layer.DONE
+    assert status == Outcome.DONE
     return area, q, gains
 
 
@@ -139,11 +121,11 @@ def layer_run(law: float, push: complex, n: int = 32) -> tuple[np.ndarray, np.nd
     "turning = spin * area[i] * (spin",
 )
 @kills("solvers.runup.kernel:_power", "rate_y + spin * moment_x", "rate_y - spin * moment_x")
-@kills("solvers.runup.kernel:_work", "gains[TORQUE] += a * (v - u)", "gains[TORQUE] += (v - u)")
+@kills("solvers.runup.kernel:_work", "gains.torque += a * (v - u)", "gains.torque += (v - u)")
 @kills(
     "solvers.runup.kernel:_work",
-    "gains[HEAT] += 0.5 * log_of_surface(a, r)",
-    "gains[HEAT] += log_of_surface(a, r)",
+    "gains.heat += 0.5 * log_of_surface(a, r)",
+    "gains.heat += log_of_surface(a, r)",
 )
 @kills(
     "solvers.runup.kernel:layer_step",
@@ -152,35 +134,34 @@ def layer_run(law: float, push: complex, n: int = 32) -> tuple[np.ndarray, np.nd
 )
 @kills(
     "solvers.runup.kernel:layer_step",
-    "gains[LOSS] -= _energy(area, q, spins[1]) + gains[MISSED]",
-    "gains[LOSS] += _energy(area, q, spins[1])",
+    "gains.loss -= _energy(area, q, spins[1]) + gains.missed",
+    "gains.loss += _energy(area, q, spins[1])",
 )
 def test_layer_gains() -> None:
     """Wall torque and heat are what the angular momentum and the energy lose; the rest is small."""
     push = 0.3 + 0.2j
-    for law in (0.0, 1.0):
+    for law in (0, 1):
         area, q, gains = layer_run(law, push)
         before, after = measured(*state(32)), measured(area, q)
-        change = after - before
         # The push's torque about the axis, by the mean moment, and its work.
         middle = push * np.exp(-1j * SPIN * 0.01)
-        moment = 0.5 * complex(*(before + after)[MOMENT : MOMENT + 2])
-        flow = 0.5 * complex(*(before + after)[FLOW : FLOW + 2])
+        moment = 0.5 * complex(before.moment_x + after.moment_x, before.moment_y + after.moment_y)
+        flow = 0.5 * complex(before.flow_x + after.flow_x, before.flow_y + after.flow_y)
         torque = (moment.conjugate() * middle).imag * 0.02
         work = (middle.conjugate() * (flow + 1j * SPIN * moment)).real * 0.02
         # Means of the ends for means over the step, and the volumes' own error at 32 cells.
-        assert change[SPINNING] - torque == pytest.approx(gains[TORQUE], abs=1e-5)
-        left = work + SPIN * gains[TORQUE] - gains[HEAT] - gains[LOSS] - change[ENERGY]
+        assert after.spinning - before.spinning - torque == pytest.approx(gains.torque, abs=1e-5)
+        left = work + SPIN * gains.torque - gains.heat - gains.loss - (after.energy - before.energy)
         assert abs(left) < 1e-5
-        assert abs(gains[LOSS]) < 1e-4
-        assert (gains[HEAT] > 1e-4) == (law > 0.0)
-        if law > 0.0:
+        assert abs(gains.loss) < 1e-4
+        assert (gains.heat > 1e-4) == (law > 0)
+        if law > 0:
             velocity = q / area + SPIN * area
             shear = 0.5 * (1.0 - np.sqrt(1.0 - 2.0 * area)) * velocity
-            assert -gains[TORQUE] == pytest.approx(np.sum(shear) * 2.0 * np.pi / 32 * 0.02, rel=0.02)
+            assert -gains.torque == pytest.approx(np.sum(shear) * 2.0 * np.pi / 32 * 0.02, rel=0.02)
             log = -0.5 * np.log(1.0 - 2.0 * area)
             heat = np.sum(shear * velocity * log / area) * 2.0 * np.pi / 32 * 0.02
-            assert gains[HEAT] == pytest.approx(heat, rel=0.02)
+            assert gains.heat == pytest.approx(heat, rel=0.02)
 
 
 @kills("solvers.layer.step:calm", "most = FASTEST * abs(spin) * a", "most = FASTEST * abs(spin)")
@@ -198,16 +179,17 @@ def test_calm() -> None:
 def machine(cells: int, gravity: float = 0.0, rate: float = 0.5) -> Coupled:
     rotor = Jeffcott(3.0, 3.0 * 15.0**2, 6.0, 4e-3)
     found = couple(rotor.system(), [FILL], 30.0, Friction("linear", rate), gravity, cells, False)
-    found.state.rotor[:4] = 2e-3, -1e-3, 0.05, 0.02
+    found.state.place[:] = 2e-3, -1e-3
+    found.state.rate[:] = 0.05, 0.02
     return found
 
 
 def momentum(found: Coupled) -> np.ndarray:
-    velocity = found.state.rotor[2:4]
+    velocity = found.state.rate[:]
     total = found.system.mass @ velocity
     for one, plane, _, relative in found.measured():
-        total = total + plane.T @ (one[2] * plane @ velocity + relative)
-    turn = np.exp(1j * found.state.rotor[5])
+        total = total + plane.T @ (one.mass * plane @ velocity + relative)
+    turn = np.exp(1j * found.state.shaft[0].angle)
     return total + (1j * found.spin * found.system.unbalance * turn).real
 
 
@@ -224,22 +206,20 @@ def momentum(found: Coupled) -> np.ndarray:
 @kills("solvers.runup.kernel:_move_rotor", "change[i] -= b[0, i] * given_x", "change[i] += b[0, i] * given_x")
 @kills(
     "solvers.runup.kernel:_accept",
-    "state.rotor[2 * n + 1] += 0.5 * (room.spins[0] + room.spins[1]) * dt",
-    "state.rotor[2 * n + 1] += room.spins[1] * dt",
+    "shaft.angle += 0.5 * (room.spins[0] + room.spins[1]) * dt",
+    "shaft.angle += room.spins[1] * dt",
 )
 def test_momentum() -> None:
     """Momentum of a machine without support stays to rounding: rotor, liquid and unbalance."""
     rotor = Jeffcott(3.0, 1e-15, 0.0, 4e-3)
     free = couple(rotor.system(), [FILL], 30.0, Friction("linear", 0.5), 0.0, 12, False)
-    free.state.rotor[2:4] = 0.05, 0.02
+    free.state.rate[:] = 0.05, 0.02
     before = momentum(free)
-    assert free.advance(0.05, 20.0, 0.4, 1000) == 0
+    assert free.advance(0.05, 20.0, 0.4, 1000) == Outcome.DONE
     np.testing.assert_allclose(momentum(free), before, atol=1e-13)
 
 
-@kills(
-    "solvers.runup.kernel:relative_momentum", "- spin * measures[MOMENT + 1]", "+ spin * measures[MOMENT + 1]"
-)
+@kills("solvers.runup.kernel:relative_momentum", "- spin * measures.moment_y", "+ spin * measures.moment_y")
 @kills(
     "solvers.runup.kernel:relative_momentum",
     "scale * (x * sine + y * cosine)",
@@ -255,31 +235,31 @@ def test_momentum() -> None:
     "x * cosine + y * sine, y * cosine - x * sine",
     "x * cosine - y * sine, y * cosine + x * sine",
 )
-@kills("solvers.runup.kernel:_tally", "sums[DRIVE] += spin * scale", "sums[DRIVE] -= spin * scale")
-@kills("solvers.runup.kernel:_tally", "sums[FRICTION] += scale", "sums[FRICTION] -= scale")
-@kills("solvers.runup.long_wave:Coupled.energy", "0.5 * layer[MASS] * rate @ rate + momentum", "momentum")
+@kills("solvers.runup.kernel:_tally", "sums.drive += spin * scale", "sums.drive -= spin * scale")
+@kills("solvers.runup.kernel:_tally", "sums.friction += scale", "sums.friction -= scale")
+@kills("solvers.runup.long_wave:Coupled.energy", "0.5 * layer.mass * rate @ rate + momentum", "momentum")
 def test_energy() -> None:
     """The remainder of the energy balance goes down with the square of the step and the cell."""
     left = []
     for cells in (12, 24):
         found = machine(cells, 0.5)
         before = found.energy()
-        assert found.advance(0.15, 20.0, 0.3, 1000) == 0
+        assert found.advance(0.15, 20.0, 0.3, 1000) == Outcome.DONE
         s = found.sums
-        gained = s[UNBALANCE] + s[DRIVE] + s[GRAVITY]
-        lost = s[SUPPORT] + s[FRICTION] + s[BORES] + s[PROFILE]
-        left.append(abs(gained - lost - (found.energy() - before)) / abs(s[UNBALANCE]))
+        gained = s.unbalance + s.drive + s.gravity
+        lost = s.support + s.friction + s.bores + s.profile
+        left.append(abs(gained - lost - (found.energy() - before)) / abs(s.unbalance))
     assert left[1] < 2e-2
     assert left[1] < 0.35 * left[0]
 
 
-@kills("solvers.runup.kernel:_power", "gains[MISSED] -= dt", "gains[MISSED] += dt")
+@kills("solvers.runup.kernel:_power", "gains.missed -= dt", "gains.missed += dt")
 @kills(
     "solvers.runup.kernel:_tally",
-    "sums[UNBALANCE] -= room.swing[i] * mean",
-    "sums[UNBALANCE] += room.swing[i] * mean",
+    "sums.unbalance -= room.swing[i] * mean",
+    "sums.unbalance += room.swing[i] * mean",
 )
-@kills("solvers.runup.kernel:_tally", "sums[GRAVITY] += 0.5 * dt", "sums[GRAVITY] += dt")
+@kills("solvers.runup.kernel:_tally", "sums.gravity += 0.5 * dt", "sums.gravity += dt")
 @kills(
     "solvers.runup.kernel:_tally", "dt * mean * machine.matrices[1, i, k]", "mean * machine.matrices[1, i, k]"
 )
@@ -290,35 +270,35 @@ def test_tallies() -> None:
     rows = []
     for stop in times:
         if stop > 0.0:
-            assert found.advance(stop, 20.0, 0.4, 1000) == 0
-        v, angle = found.state.rotor[2:4].copy(), found.state.rotor[5]
+            assert found.advance(stop, 20.0, 0.4, 1000) == Outcome.DONE
+        v, angle = found.state.rate[:].copy(), found.state.shaft[0].angle
         force = ((found.spin**2 - 20j) * found.system.unbalance * np.exp(1j * angle)).real
         relative = found.measured()[0][3]
         rows.append((force @ v, v @ found.system.damping @ v, found.machine.gravity @ relative))
     wanted = np.trapezoid(np.array(rows).T, times)
     s = found.sums
-    for name, value in zip((UNBALANCE, SUPPORT, GRAVITY), wanted, strict=True):
+    for name, value in zip(("unbalance", "support", "gravity"), wanted, strict=True):
         # The trapezium over 41 points of a turn of a third.
         assert s[name] == pytest.approx(value, rel=5e-3, abs=1e-6)
     # The drive lifts the liquid's angular momentum against what the accelerations take.
-    assert s[FRICTION] > 0.0
-    assert s[PROFILE] < 0.0
+    assert s.friction > 0.0
+    assert s.profile < 0.0
 
 
-@kills("solvers.runup.kernel:layer_step", "push[2 * stage], push[2 * stage + 1]", "push[0], push[1]")
+@kills("solvers.runup.kernel:layer_step", "force[2 * stage], force[2 * stage + 1]", "force[0], force[1]")
 @kills("solvers.runup.kernel:_move_rotor", "stiffness * (x + 0.5 * dt * v)", "stiffness * x")
 @kills(
     "solvers.runup.kernel:_accept",
-    "dt * (state.rotor[n + i] + 0.5 * room.change[i])",
-    "dt * state.rotor[n + i]",
+    "dt * (state.rate[i] + 0.5 * room.change[i])",
+    "dt * state.rate[i]",
 )
 def test_order() -> None:
     """Halving the step leaves a quarter of the error."""
     ends = []
     for courant in (0.4, 0.2, 0.1):
         found = machine(12)
-        assert found.advance(0.1, 20.0, courant, 4000) == 0
-        ends.append(complex(*found.state.rotor[:2]))
+        assert found.advance(0.1, 20.0, courant, 4000) == Outcome.DONE
+        ends.append(complex(*found.state.place[:]))
     ratio = abs(ends[0] - ends[1]) / abs(ends[1] - ends[2])
     assert 3.0 < ratio < 5.5
 
@@ -332,13 +312,13 @@ def test_gyroscope() -> None:
         ("a", "b"), one, 0.0 * one, 0.5 * cross, 9.0 * one, np.zeros(2, dtype=complex), one, 0.0 * one
     )
     found = couple(system, [], 4.0, Friction(), 0.0, 400, False)
-    found.state.rotor[0] = 1.0
-    assert found.advance(0.5, 0.0, 0.8, 1000) == 0
+    found.state.place[0] = 1.0
+    assert found.advance(0.5, 0.0, 0.8, 1000) == Outcome.DONE
     # z'' - 2i z' + 9 z = 0 with Omega G = 2: z'' + 2 (y', -x') + 9 z = 0.
     roots = np.roots([1.0, -2j, 9.0])
     weights = np.linalg.solve(np.array([[1.0, 1.0], roots]), np.array([1.0, 0.0]))
     wanted = weights @ np.exp(roots * 0.5)
-    assert complex(*found.state.rotor[:2]) == pytest.approx(wanted, abs=2e-4)
+    assert complex(*found.state.place[:]) == pytest.approx(wanted, abs=2e-4)
     # The trapezium keeps the energy of what has no damping.
     assert found.energy() == pytest.approx(4.5, rel=1e-12)
 
@@ -350,23 +330,24 @@ def test_gyroscope() -> None:
 )
 @kills(
     "solvers.runup.kernel:_spin_after",
-    "machine.layers[j, RADIUS] ** 4 * room.gains[j, TORQUE]",
-    "machine.layers[j, RADIUS] ** 3 * room.gains[j, TORQUE]",
+    "layer.radius**4 * room.gains[j].torque",
+    "layer.radius**3 * room.gains[j].torque",
 )
 @kills("solvers.runup.kernel:_spin_after", "0.5 * (spin + after)) - load", "0.5 * (spin + after)) + load")
-@kills("solvers.runup.kernel:_tally", "sums[MOTOR] += dt * spin", "sums[MOTOR] += dt")
+@kills("solvers.runup.kernel:_tally", "sums.motor += dt * spin", "sums.motor += dt")
 def test_motor() -> None:
     """The motor's torque goes into the spin, less what the unbalance and the liquid take."""
     rotor = Jeffcott(3.0, 3.0 * 15.0**2, 6.0, 0.05)
     found = couple(rotor.system(), [FILL], 30.0, Friction("linear", 0.5), 0.0, 12, False)
-    found.state.rotor[:4] = 2e-3, -1e-3, 0.05, 0.02
+    found.state.place[:] = 2e-3, -1e-3
+    found.state.rate[:] = 0.05, 0.02
     curve = np.array([[0.0, 40.0, 80.0], [6.0, 2.0, 0.0]])
     found.drive(curve, 0.05)
     wall = 1000.0 * 0.04 * 0.25**4
 
     def turning() -> float:
         """Spin's own momentum, with the unbalance's share and the liquid's."""
-        v, angle = found.state.rotor[2:4], found.state.rotor[5]
+        v, angle = found.state.rate[:], found.state.shaft[0].angle
         cross = v @ (1j * found.system.unbalance * np.exp(1j * angle)).real
         return 0.05 * found.spin + cross
 
@@ -375,8 +356,8 @@ def test_motor() -> None:
     times = np.linspace(0.0, 0.05, 41)
     for stop in times:
         if stop > 0.0:
-            assert found.advance(stop, 0.0, 0.2, 2000) == 0
-        v, angle = found.state.rotor[2:4], found.state.rotor[5]
+            assert found.advance(stop, 0.0, 0.2, 2000) == Outcome.DONE
+        v, angle = found.state.rate[:], found.state.shaft[0].angle
         # d/dt of the share: v' . Re(iU e) and v . Re(-Omega U e); the latter is no torque.
         forces.append(-found.spin * v @ (found.system.unbalance * np.exp(1j * angle)).real)
         surface = np.sqrt(1.0 - 2.0 * found.area[0])
@@ -387,28 +368,28 @@ def test_motor() -> None:
     wanted = np.trapezoid(torque + np.array(forces) - np.array(walls), times)
     assert turning() - before == pytest.approx(wanted, rel=2e-3)
     work = np.trapezoid(torque * np.array(spins), times)
-    assert found.sums[MOTOR] == pytest.approx(work, rel=1e-4)
+    assert found.sums.motor == pytest.approx(work, rel=1e-4)
 
 
-@kills("solvers.runup.long_wave:couple", "(np.array([-gravity, 0.0])", "(np.array([gravity, 0.0])")
+@kills("solvers.runup.long_wave:couple", "np.array([-gravity, 0.0])", "np.array([gravity, 0.0])")
 def test_gravity() -> None:
     """The rotor held, liquid let go is pulled against the first direction by its flow's inertia."""
     rotor = Jeffcott(3.0, 1e15, 0.0, 0.0)
     found = couple(rotor.system(), [FILL], 30.0, Friction(), 0.5, 24, False)
-    found.state.rotor[5] = TURNED
-    inertia = found.measured()[0][2][INERTIA] * 40.0 * 0.25**2
-    assert found.advance(0.001, 0.0, 0.8, 100) == 0
+    found.state.shaft[0].angle = TURNED
+    inertia = found.measured()[0][2].xx * 40.0 * 0.25**2
+    assert found.advance(0.001, 0.0, 0.8, 100) == Outcome.DONE
     relative = found.measured()[0][3]
     # In a millisecond the drum turns by 0.03: waves and turning take that much of it.
     assert relative[0] == pytest.approx(-0.5 * 0.001 * inertia, rel=0.05)
     assert abs(relative[1]) < 0.1 * abs(relative[0])
 
 
-@kills("solvers.runup.kernel:_move_layers", "rub[1] *= np.sqrt(", "rub[1] *= (")
+@kills("solvers.runup.kernel:_move_layers", "coefficient *= np.sqrt(", "coefficient *= (")
 @kills(
     "solvers.runup.long_wave:couple",
-    '"momentum": -spin * np.square(area)',
-    '"momentum": spin * np.square(area)',
+    "momentum=-spin * np.square(area)",
+    "momentum=spin * np.square(area)",
 )
 @kills(
     "solvers.runup.chamber:layer_properties",
@@ -423,7 +404,7 @@ def test_stokes() -> None:
     found = couple(rotor.system(), [viscous], 30.0, Friction("stokes"), 0.0, 8, False)
     found.momentum[0] += 0.2 * found.area[0]
     found.state.momentum[:] = found.momentum
-    assert found.advance(0.2, 0.0, 0.8, 1000) == 0
+    assert found.advance(0.2, 0.0, 0.8, 1000) == Outcome.DONE
     velocity = found.momentum[0] / found.area[0] + 30.0 * found.area[0]
     log = math.log(0.25 / viscous.surface_radius)
     t = math.tanh(log)
@@ -440,8 +421,8 @@ def test_stokes() -> None:
 )
 @kills(
     "solvers.runup.kernel:flow_inertia",
-    "scale = layer[WEIGHT] * layer[RADIUS] ** 2",
-    "scale = layer[WEIGHT] * layer[RADIUS] ** 3",
+    "scale = layer.weight * layer.radius**2",
+    "scale = layer.weight * layer.radius**4",
 )
 @kills("solvers.runup.kernel:solve", "factor = matrix[i, k] / matrix[k, k]", "factor = matrix[i, k]")
 @kills(
@@ -459,14 +440,15 @@ def test_small_parts() -> None:
     curve = np.array([[1.0, 2.0, 5.0], [3.0, 4.0, -2.0]])
     for spin in (0.5, 1.0, 1.7, 3.0, 5.0, 7.0):
         assert coupled_parts.motor_torque(curve, spin) == pytest.approx(np.interp(spin, *curve))
-    measures = np.zeros(MEASURES)
-    measures[INERTIA : INERTIA + 3] = 2.0, 0.7, 1.0
+    measures, layer = records(MEASURES)[0], records(LAYER)[0]
+    measures.xx, measures.xy, measures.yy = 2.0, 0.7, 1.0
+    layer.radius, layer.weight = 0.5, 3.0
     turn = np.array([[math.cos(0.6), -math.sin(0.6)], [math.sin(0.6), math.cos(0.6)]])
     whole = turn @ np.array([[2.0, 0.7], [0.7, 1.0]]) @ turn.T
     out = np.zeros(3)
-    coupled_parts.flow_inertia(measures, np.array([0.5, 3.0]), math.cos(0.6), math.sin(0.6), out)
+    coupled_parts.flow_inertia(measures, layer, math.cos(0.6), math.sin(0.6), out)
     np.testing.assert_allclose(out, 3.0 * 0.25 * np.array([whole[0, 0], whole[0, 1], whole[1, 1]]))
 
 
-LAYER, STEP, PARTS = "solvers.runup.kernel", "solvers.runup.kernel", "solvers.runup.kernel"
+KERNEL, STEP, PARTS = "solvers.runup.kernel", "solvers.runup.kernel", "solvers.runup.kernel"
 STAGES, SET, OF_FILL = "solvers.layer.step", "solvers.runup.long_wave", "solvers.runup.chamber"
