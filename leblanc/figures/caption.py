@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from leblanc.results.record import StudyRecord, models_used, one_line
+from leblanc.results.provenance import one_line
+from leblanc.results.record import StudyRecord, models_used
 
 
 def caption(record: StudyRecord, text: str) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from leblanc.figures.page import Figure, FigureFiles, Frame, lay_out, number, save, style
-from leblanc.results.record import one_line
+from leblanc.results.provenance import one_line
 from leblanc.studies.exciter import ExciterRecord
 from leblanc.units import MM, RPM
 

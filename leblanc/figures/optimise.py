@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from leblanc.figures.page import RIGHT, WIDTH, Figure, FigureFiles, Frame, lay_out, number, save, style
-from leblanc.results.record import one_line
+from leblanc.results.provenance import one_line
 from leblanc.units import MM, RPM
 from meshes.arrays import Array
 

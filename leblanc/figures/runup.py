@@ -12,7 +12,7 @@ from leblanc.figures.curves import gapped, joined, lag_degrees, link, spans, wid
 from leblanc.figures.over_speed import DRY, SHADE, UNSTABLE, WET
 from leblanc.figures.page import WIDTH, Figure, FigureFiles, Frame, lay_out, number, save, style
 from leblanc.friction import friction_words
-from leblanc.results.record import one_line
+from leblanc.results.provenance import one_line
 from leblanc.studies.runup import RunupRecord
 from leblanc.text.runup import model_words, switches
 from leblanc.units import MM, RPM

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from leblanc.figures.page import RIGHT, WIDTH, Figure, Frame, lay_out, number, style
 from leblanc.figures.page import save as save  # a figure is drawn and written together
-from leblanc.results.record import one_line
+from leblanc.results.provenance import one_line
 from leblanc.units import ML, RPM
 from meshes.arrays import Array
 

@@ -10,7 +10,7 @@ from fluid.fill import Fill
 from fluid.liquid import KNOWN_LIQUIDS
 from leblanc.friction import friction_words
 from leblanc.report.parts import Cell, Table
-from leblanc.results.record import one_line
+from leblanc.results.provenance import one_line
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.optimise import Aim
 from leblanc.scene.scene import Exciter, Rotor, Runup, Scene

@@ -13,7 +13,7 @@ from typing import Any
 from leblanc.report.inputs import Inputs, scene_inputs
 from leblanc.report.parts import Table, table
 from leblanc.results.netcdf import replacing
-from leblanc.results.record import one_line
+from leblanc.results.provenance import one_line
 from leblanc.scene.optimise import Aim
 from leblanc.scene.scene import Scene
 from leblanc.text.models import ModelSpan, described, error_words, speeds_words

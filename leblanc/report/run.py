@@ -13,7 +13,8 @@ import numpy as np
 from leblanc.report.layout import figure_width
 from leblanc.report.page import About, models, notes, why, write_page
 from leblanc.report.parts import Cell, Table, picture, table
-from leblanc.results.record import StudyRecord, models_used, one_line, peak
+from leblanc.results.provenance import one_line
+from leblanc.results.record import StudyRecord, models_used, peak
 from leblanc.scene.scene import Scene
 from leblanc.studies.choose import choose
 from leblanc.text.models import ModelSpan, fidelity_notes, model_spans

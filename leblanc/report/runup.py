@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from leblanc.report.page import About, models, notes, write_page
 from leblanc.report.parts import Cell, Table, picture, table
-from leblanc.results.record import one_line, peak
+from leblanc.results.provenance import one_line
+from leblanc.results.record import peak
 from leblanc.studies.runup import RunupRecord
 from leblanc.text.models import percent
 from leblanc.text.numbers import MOST_RANGES, number

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
-from importlib import metadata
 
 import numpy as np
 from numpy.typing import NDArray
@@ -206,22 +205,6 @@ def phase(deflection: NDArray[np.complex128]) -> Array:
     angle = np.angle(deflection)
     angle = np.where(angle <= -math.pi, math.pi, angle)
     return np.where(deflection == 0.0, 0.0, angle)
-
-
-def one_line(text: str) -> str:
-    """Text without line breaks and control characters, which files and figures cannot carry."""
-    return " ".join("".join(c if c.isprintable() else " " for c in text).split())
-
-
-def versions() -> dict[str, str]:
-    """Versions of this package and of the libraries its numbers come from."""
-    found = {}
-    for package in ("leblanc", "numpy", "scipy"):
-        try:
-            found[package] = metadata.version(package)
-        except metadata.PackageNotFoundError:  # run from a source tree that was never installed
-            found[package] = "not installed"
-    return found
 
 
 def models_used(response: Response) -> tuple[str, ...]:

@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 
 from leblanc.results.netcdf import dataset, flags
 from leblanc.results.netcdf import variable as var
-from leblanc.results.record import (
-    ChamberRecord as ChamberRecord,  # a record and its files are asked for together
-)
+from leblanc.results.provenance import one_line, versions
+from leblanc.results.record import ChamberRecord as ChamberRecord
 from leblanc.results.record import StudyRecord as StudyRecord
-from leblanc.results.record import models_used, one_line, phase, versions
+from leblanc.results.record import models_used, phase
 
 if TYPE_CHECKING:
     from leblanc.results.netcdf import Dataset, Variable

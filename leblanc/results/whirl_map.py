@@ -9,7 +9,7 @@ import numpy as np
 
 from leblanc.results.netcdf import dataset, flags, write_dataset
 from leblanc.results.netcdf import variable as var
-from leblanc.results.record import one_line, versions
+from leblanc.results.provenance import one_line, versions
 from leblanc.studies.whirl_map import StabilityRecord
 
 

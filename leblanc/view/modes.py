@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from fluid.fill import Fill
-from leblanc.results.record import one_line
+from leblanc.results.provenance import one_line
 from leblanc.scene.scene import Scene
 from leblanc.studies.choose import across_gravity
 from leblanc.units import RPM

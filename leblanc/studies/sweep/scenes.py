@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from fluid.fill import Fill
-from leblanc.scene.faults import SceneFaults, one_line
+from leblanc.scene.faults import SceneFaults, escaped
 from leblanc.scene.paths import Keys, with_values
 from leblanc.scene.rotors import ROTORS, rotor_from_table
 from leblanc.scene.rules import Quantity, Table
@@ -104,4 +104,4 @@ def make_scenes(make: Maker, rows: Iterable[Sequence[Any]]) -> tuple[list[Scene 
 
 
 def _without_file(line: str, file: str) -> str:
-    return line.removeprefix(f"{one_line(file)}: ")
+    return line.removeprefix(f"{escaped(file)}: ")
