@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fluid.fill import Fill
-from leblanc.results.record import StudyRecord
+from leblanc.results.response import RunResult
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import Rotor, Scene, Speeds
-from leblanc.studies.choose import axial_gravity, choose
+from leblanc.studies.choose import choose
+from leblanc.studies.prepare import axial_gravity
 from leblanc.studies.run import run_scene
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError
@@ -37,7 +38,7 @@ class Sight:
     lean : slope of the axis along itself, rad, shape (s,)
     """
 
-    record: StudyRecord
+    record: RunResult
     fills: tuple[Fill, ...]
     places: tuple[float, ...]
     moved: bool
@@ -87,7 +88,7 @@ def look_at(scene: Scene, speed: float | None = None) -> Sight:
     )
 
 
-def _lean(scene: Scene, record: StudyRecord) -> Complex:
+def _lean(scene: Scene, record: RunResult) -> Complex:
     """Slope of the axis, from its forward part at two places of the rigid rotor."""
     if isinstance(scene.rotor, Rotor):
         return np.zeros(record.response.speed.shape, dtype=complex)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.friction import Friction, friction_words
-from leblanc.results.record import peak
+from leblanc.results.response import peak
 from leblanc.units import ML, MM, RPM
 
 if TYPE_CHECKING:

@@ -103,7 +103,7 @@ FAULTS: tuple[Fault, ...] = (
         choice.check_missed,
     ),
     Fault(
-        "leblanc.studies.choose",
+        "leblanc.studies.prepare",
         'scene.rotor.axis == "horizontal"',
         'scene.rotor.axis == "vertical"',
         choice.check_missed,

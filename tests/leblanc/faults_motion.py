@@ -7,13 +7,13 @@ from tests.leblanc import test_motion_run as oracle
 
 FAULTS: tuple[Fault, ...] = (
     Fault(
-        "leblanc.results.record",
+        "leblanc.results.response",
         "np.abs(self.motion.backward)\n",
         "-np.abs(self.motion.backward)\n",
         oracle.check_amplitude_of_an_ellipse,
     ),
     Fault(
-        "leblanc.results.record",
+        "leblanc.results.response",
         "np.abs(self.motion.backward_dry)\n",
         "0.5 * np.abs(self.motion.backward_dry)\n",
         oracle.check_amplitude_of_an_ellipse,

@@ -3,23 +3,17 @@
 from __future__ import annotations
 
 from tests.faults import Fault
-from tests.leblanc.test_report import check_comparisons, check_ranges, check_warnings
+from tests.leblanc.test_report import check_ranges
 from tests.leblanc.test_report_inputs import check_units, check_units_of_other_rotors
 from tests.leblanc.test_report_kinds import (
     check_events,
-    check_exciter_numbers,
-    check_exciter_warnings,
-    check_map_numbers,
-    check_map_warnings,
     check_optimum_numbers,
     check_optimum_warnings,
     check_runup_numbers,
     check_runup_warnings,
 )
 
-RUN, MAP, BEST, UP, TABLE = (
-    f"study.report_{name}" for name in ("run", "map", "optimise", "runup", "exciter")
-)
+BEST, UP = "leblanc.report.optimise", "leblanc.report.runup"
 
 FAULTS: tuple[Fault, ...] = (
     Fault("leblanc.text.numbers", "rpm[change[1::2] - 1]", "rpm[change[1::2]]", check_ranges),
@@ -53,48 +47,6 @@ FAULTS: tuple[Fault, ...] = (
     Fault("leblanc.report.inputs", "value * RPM", "value", check_units),
     Fault("leblanc.report.inputs", "value * MM", "value", check_units),
     Fault("leblanc.report.inputs", "low * ML", "high * ML", check_units),
-    # The response.
-    Fault(RUN, "number(with_liquid / without) if", "number(without / with_liquid) if", check_comparisons),
-    Fault(
-        RUN,
-        "number(with_liquid * MM), number(without * MM)",
-        "number(without * MM), number(with_liquid * MM)",
-        check_comparisons,
-    ),
-    Fault(RUN, "number(with_liquid * RPM)", "number(without * RPM)", check_comparisons),
-    Fault(RUN, "math.degrees(r.liquid_angle[-1])", "math.degrees(-r.liquid_angle[-1])", check_comparisons),
-    Fault(RUN, "r.liquid_offset[-1] * MM", "r.liquid_offset[-1]", check_comparisons),
-    Fault(RUN, "record.liquid_mass * 1e3", "record.liquid_mass * 1e6", check_comparisons),
-    Fault(RUN, "ranges(r.speed, ~r.converged)", "ranges(r.speed, r.converged)", check_warnings),
-    Fault(RUN, "bool((~r.in_range).any())", "bool(r.in_range.any())", check_warnings),
-    Fault(RUN, "r.speed <= record.capture_speed", "r.speed >= record.capture_speed", check_warnings),
-    Fault(RUN, "~(record.error_estimate <= tolerance)", "record.error_estimate > tolerance", check_warnings),
-    Fault(RUN, "bool(r.dry_patch.any())", "bool(r.dry_patch.all())", check_warnings),
-    Fault(RUN, "bool((~r.stable).any())", "False", check_warnings),
-    Fault(RUN, "{low * RPM:.5g} to {high * RPM:.5g}", "{low:.5g} to {high:.5g}", check_warnings),
-    Fault(RUN, "np.isinf(record.amplitude)", "np.isnan(record.amplitude)", check_warnings),
-    # The map.
-    Fault(
-        MAP, "record.whirl_speed[row, column]) / speed", "record.whirl_speed[row, column])", check_map_numbers
-    ),
-    Fault(MAP, "np.nanargmax(growth)", "np.nanargmin(growth)", check_map_numbers),
-    Fault(
-        MAP,
-        "np.count_nonzero(unstable)) / size",
-        "np.count_nonzero(unstable)) / growth.shape[0]",
-        check_map_numbers,
-    ),
-    Fault(MAP, "float(np.nanmax(growth))", "float(np.nanmin(growth))", check_map_numbers),
-    Fault(MAP, "band_words(record.edges[k])", "band_words(record.edges[-1 - k])", check_map_numbers),
-    Fault(MAP, "float(record.volume[k]) * ML", "float(record.volume[k])", check_map_numbers),
-    Fault(
-        MAP,
-        "np.isnan(record.growth), ~record.in_range",
-        "np.isnan(record.growth), record.in_range",
-        check_map_warnings,
-    ),
-    Fault(MAP, "out & (record.growth > 0.0)", "out & (record.growth < 0.0)", check_map_warnings),
-    Fault(MAP, "bool(record.scene_edges)", "False", check_map_warnings),
     # The optimum.
     Fault(
         BEST,
@@ -149,17 +101,4 @@ FAULTS: tuple[Fault, ...] = (
     Fault(
         UP, "'captured' if caught else 'falls back'", "'falls back' if caught else 'captured'", check_events
     ),
-    # The exciter.
-    Fault(
-        TABLE,
-        "first, through, last = record.characteristic",
-        "first, last, through = record.characteristic",
-        check_exciter_numbers,
-    ),
-    Fault(TABLE, "number(speed * RPM)} rpm", "number(speed)} rpm", check_exciter_numbers),
-    Fault(TABLE, "float(record.slow[-1]) * MM", "float(record.fast[-1]) * MM", check_exciter_numbers),
-    Fault(TABLE, "one.stuck_speed * RPM", "one.speed * RPM", check_exciter_numbers),
-    Fault(TABLE, "beyond = ~record.dual_frequency", "beyond = record.dual_frequency", check_exciter_warnings),
-    Fault(TABLE, "if not one.converged]", "if not one.holds]", check_exciter_warnings),
-    Fault(TABLE, "outside = not math", "outside = math", check_exciter_warnings),
 )

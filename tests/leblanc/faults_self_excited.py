@@ -6,14 +6,13 @@ from tests.faults import Fault
 from tests.leblanc import test_self_excited as oracle
 
 FAULTS: tuple[Fault, ...] = (
-    Fault("leblanc.studies.run", "found.growth > 0.0)", "found.growth >= 0.0)", oracle.check_stable),
-    Fault("leblanc.studies.run", "stable & ~(found", "stable | ~(found", oracle.check_stable),
-    Fault("leblanc.studies.run", "np.argmax(found.growth)", "np.argmin(found.growth)", oracle.check_words),
-    Fault("leblanc.studies.run", "{high * RPM:.5g} rpm", "{high:.5g} rpm", oracle.check_words),
+    Fault("leblanc.results.motion", "self.growth > 0.0)", "self.growth >= 0.0)", oracle.check_stable),
+    Fault("leblanc.results.motion", "stable & ~(self", "stable | ~(self", oracle.check_stable),
+    Fault("leblanc.results.run_notes", "np.argmax(whirl", "np.argmin(whirl", oracle.check_words),
     Fault(
         "leblanc.studies.run",
-        "unstable_bands(system, [scene.chambers], speed, friction, growth[None])",
-        "unstable_bands(system, [scene.chambers], speed, (0, 0.0), growth[None])",
+        "filled, speed, machine.friction, known)",
+        "filled, speed, (0, 0.0), known)",
         oracle.check_rig,
     ),
 )

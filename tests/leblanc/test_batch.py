@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from leblanc.friction import Friction
-from leblanc.results.record import StudyRecord, phase
+from leblanc.results.response import RunResult, phase
 from leblanc.scene.scene import Model, Scene, load_scene
 from leblanc.studies.batch import Answers, answer_scenes
 from leblanc.studies.run import run_scene
@@ -26,7 +26,7 @@ def scene(name: str, share: float = 1.0) -> Scene:
     return replace(found, chambers=chambers, speeds=replace(found.speeds, count=COUNT))
 
 
-def outputs(record: StudyRecord) -> dict[str, np.ndarray]:
+def outputs(record: RunResult) -> dict[str, np.ndarray]:
     """What `run` says, under the names of the answers."""
     one, whirl = record.response, record.whirl
     assert whirl is not None

@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from fluid.friction import STOKES
-from leblanc.results.record import SelfExcited
+from leblanc.results.motion import SelfExcited
+from leblanc.results.run_notes import self_excited as note_of
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import load_scene
-from leblanc.studies.run import describe_whirl, self_excited, stable_with
+from leblanc.studies.prepare import prepare
+from leblanc.studies.run import self_excited
 from solvers.whirl.growth import asynchronous_growth
 
 
@@ -19,22 +21,22 @@ def found(growth: list[float], bands: tuple[tuple[float, float], ...]) -> SelfEx
 def check_stable() -> None:
     """Growing whirls take stability away, and give none back."""
     whirl = found([-1.0, 0.0, 0.5], ((80.0, 90.0),))
-    stable = stable_with(whirl, np.array([True, False, True]))
+    stable = whirl.leaves_stable(np.array([True, False, True]))
     np.testing.assert_array_equal(stable, [True, False, False])
-    np.testing.assert_array_equal(stable_with(whirl, np.ones(3, dtype=bool)), [True, True, False])
+    np.testing.assert_array_equal(whirl.leaves_stable(np.ones(3, dtype=bool)), [True, True, False])
 
 
 def check_words() -> None:
     """Edges and the fastest whirl in rpm."""
-    text = describe_whirl(found([-1.0, 0.25, 0.5], ((20.0 * np.pi, 30.0 * np.pi),)))
+    text = note_of(found([-1.0, 0.25, 0.5], ((20.0 * np.pi, 30.0 * np.pi),))).text
     assert "600 to 900 rpm" in text and "668.5 rpm" in text and "0.5 1/s" in text
-    assert describe_whirl(found([-1.0, -1.0, 0.0], ())).startswith("No whirl")
-    assert "not found" in describe_whirl(found([np.nan, 0.0, 0.0], ()))
+    assert note_of(found([-1.0, -1.0, 0.0], ())).text.startswith("No whirl")
+    assert "not found" in note_of(found([np.nan, 0.0, 0.0], ())).text
 
 
 def check_rig() -> None:
     """The horizontal rig whirls just above its critical speed, slower than it spins."""
-    whirl = self_excited(load_scene("examples/horizontal_rig.toml"))
+    whirl = self_excited(prepare(load_scene("examples/horizontal_rig.toml")))
     ((low, high),) = whirl.bands
     speed = load_scene("examples/horizontal_rig.toml").speed_array()
     grows = whirl.growth > 0.0

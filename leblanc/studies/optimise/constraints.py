@@ -14,7 +14,7 @@ from leblanc.scene.scene import Scene
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.conditions import Robust
 from leblanc.studies.optimise.objectives import PeakOver, Vibration
-from leblanc.studies.whirl_map import solver_friction
+from leblanc.studies.prepare import solver_friction
 from meshes.arrays import Array
 from solvers.search import Judgement
 from solvers.whirl.growth import growth_map
