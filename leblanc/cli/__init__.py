@@ -17,7 +17,7 @@ from typer.main import get_command
 
 from leblanc.cli import explain, layer, map, modes, new, optimise, run, runup, sweep, view, volume
 from leblanc.cli.output import say
-from leblanc.scene.faults import NotConverged, SceneFaults, one_line
+from leblanc.scene.faults import NotConverged, SceneFaults, escaped
 from meshes.errors import InputError
 
 DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED, INTERRUPTED = 0, 1, 2, 3, 130
@@ -55,7 +55,7 @@ def exit_code(action: Callable[[], object]) -> int:
         say(str(error))
         return NOT_CONVERGED if isinstance(error, NotConverged) else WRONG_INPUT
     except InputError as error:
-        say(one_line(f"leblanc: {error}"))
+        say(escaped(f"leblanc: {error}"))
         return WRONG_INPUT
     except _UsageError as error:
         say(_usage(error))
@@ -64,7 +64,7 @@ def exit_code(action: Callable[[], object]) -> int:
         _drop_stdout()
         return UNREAD
     except OSError as error:
-        say(one_line(f"{error.filename or 'leblanc'}: {error.strerror or error}"))
+        say(escaped(f"{error.filename or 'leblanc'}: {error.strerror or error}"))
         _drop_stdout()
         return WRONG_INPUT
     except KeyboardInterrupt:
@@ -78,7 +78,7 @@ def _usage(error: BaseException) -> str:
     """One line for a wrong command line."""
     context = getattr(error, "ctx", None)
     message = " ".join(str(getattr(error, "format_message", error.__str__)()).split())
-    return one_line(f"leblanc: {message} See: {context.command_path if context else 'leblanc'} --help")
+    return escaped(f"leblanc: {message} See: {context.command_path if context else 'leblanc'} --help")
 
 
 def _drop_stdout() -> None:

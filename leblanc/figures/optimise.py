@@ -8,8 +8,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from leblanc.figures.page import RIGHT, WIDTH, Figure, FigureFiles, Frame, lay_out, number, save, style
-from leblanc.results.record import one_line
+from leblanc.figures.page import (
+    RIGHT,
+    WIDTH,
+    Caption,
+    Figure,
+    FigureFiles,
+    Frame,
+    lay_out,
+    number,
+    save,
+    style,
+)
+from leblanc.results.provenance import one_line
 from leblanc.units import MM, RPM
 from meshes.arrays import Array
 
@@ -275,7 +286,7 @@ def _short(value: float) -> float:
     return float(f"{value:.3g}")
 
 
-def _caption(record: OptimumRecord, text: str, forms: bool = True) -> str:
+def _caption(record: OptimumRecord, text: str, forms: bool = True) -> Caption:
     """What is shown, the scene, what was asked for."""
     scene = record.scene
     assumed = ", ".join(one_line(one) for one in scene.assumed) or "nothing"
@@ -283,9 +294,11 @@ def _caption(record: OptimumRecord, text: str, forms: bool = True) -> str:
     vibration = record.meaning if record.unit == "m" else "the amplitude that is limited"
     what = record.constraints["vibration"].text if "vibration" in record.constraints else vibration
     at = f"Closed forms at the deflection of the best point at {record.working_speed * RPM:.4g} rpm. "
-    words = (
+    shown = (
         f"{text}Vibration: {what}. Objective: {record.objective}. {at if forms and record.covering else ''}"
+    )
+    origin = (
         f"{notes} Scene: {one_line(scene.name)}. Friction of the liquid: {scene.model.friction.law}. "
         f"Assumed: {assumed}."
     )
-    return " ".join(words.split())
+    return Caption(" ".join(shown.split()), " ".join(origin.split()))

@@ -10,9 +10,9 @@ import numpy as np
 
 from leblanc.figures.curves import gapped, joined, lag_degrees, link, spans, widened
 from leblanc.figures.over_speed import DRY, SHADE, UNSTABLE, WET
-from leblanc.figures.page import WIDTH, Figure, FigureFiles, Frame, lay_out, number, save, style
+from leblanc.figures.page import WIDTH, Caption, Figure, FigureFiles, Frame, lay_out, number, save, style
 from leblanc.friction import friction_words
-from leblanc.results.record import one_line
+from leblanc.results.provenance import one_line
 from leblanc.studies.runup import RunupRecord
 from leblanc.text.runup import model_words, switches
 from leblanc.units import MM, RPM
@@ -288,14 +288,15 @@ def _joule(value: float) -> str:
     return f"{value:.3g}".replace("-", "\N{MINUS SIGN}")
 
 
-def caption(record: RunupRecord, text: str) -> str:
+def caption(record: RunupRecord, text: str) -> Caption:
     """What a figure shows, the scene, model, friction, resolution, error and what is assumed."""
     h, numerics = record.history, record.numerics
     error = "not estimated" if math.isnan(h.error_estimate) else f"{h.error_estimate:.1%} of the largest"
     assumed = ", ".join(map(one_line, record.assumed)) or "nothing"
     stopped = "" if h.converged else f" Stopped: {one_line(h.reason)}."
-    return (
-        f"{text}{stopped} Scene: {one_line(record.name)}, {record.axis} axis. Liquid model: "
+    return Caption(
+        f"{text}{stopped}",
+        f"Scene: {one_line(record.name)}, {record.axis} axis. Liquid model: "
         f"{model_words(record.model, numerics)}; liquid friction: "
-        f"{friction_words(record.friction)}. Error of the amplitude: {error}. Assumed: {assumed}."
+        f"{friction_words(record.friction)}. Error of the amplitude: {error}. Assumed: {assumed}.",
     )

@@ -13,7 +13,7 @@ from leblanc.figures import wave
 from leblanc.figures.page import FILM_DPI, RIGHT, WIDTH, Figure, Frame, lay_out, number, style, write_film
 from leblanc.figures.runup import caption
 from leblanc.figures.section import rounded_down
-from leblanc.results.record import ChamberRecord
+from leblanc.results.chamber import FilledChamber
 from leblanc.studies.runup import RunupRecord
 from leblanc.studies.runup_film import Reel
 from leblanc.units import MM, RPM
@@ -100,7 +100,7 @@ def _describe(reel: Reel, factor: float, left_out: int) -> str:
     return f"{text} One second of the film is {step * FRAME_RATE:.2g} s."
 
 
-def drawings(chambers: tuple[ChamberRecord, ...], planes: tuple[float, ...]) -> list[list[int]]:
+def drawings(chambers: tuple[FilledChamber, ...], planes: tuple[float, ...]) -> list[list[int]]:
     """Chambers that share a drawing because they lie inside one another in one plane, by their indices."""
     groups: list[list[int]] = []
     for j in sorted(range(len(chambers)), key=lambda j: -chambers[j].radius):
@@ -178,7 +178,7 @@ def _points(edge: Any) -> Array:
     return np.stack([edge.real, edge.imag], axis=1)
 
 
-def liquid_shape(chamber: ChamberRecord, reel: Reel, index: int, j: int, factor: float) -> tuple[Any, Any]:
+def liquid_shape(chamber: FilledChamber, reel: Reel, index: int, j: int, factor: float) -> tuple[Any, Any]:
     """Closed outline of the liquid in a chamber and its free surface, about the chamber's centre, mm.
 
     Parameters
@@ -197,7 +197,7 @@ def liquid_shape(chamber: ChamberRecord, reel: Reel, index: int, j: int, factor:
     return arc, arc[[0, -1]]
 
 
-def pool_angle(chamber: ChamberRecord) -> float:
+def pool_angle(chamber: FilledChamber) -> float:
     """Half the angle of the circular segment that liquid at the bottom of a chamber fills, rad; 0 to pi.
 
     A segment of half angle a has the area R^2 (a - sin a cos a); an inner wall is left out.

@@ -11,7 +11,7 @@ import numpy as np
 from leblanc.figures import wave
 from leblanc.figures.over_speed import STRIP
 from leblanc.figures.wave import WaveRecord
-from leblanc.results.record import one_line
+from leblanc.results.provenance import one_line
 from leblanc.units import MM, RPM
 from meshes.arrays import Array
 

@@ -13,12 +13,12 @@ import numpy as np
 from leblanc.report.page import About, models, notes, why, write_page
 from leblanc.report.parts import Cell, Table, picture, table
 from leblanc.report.run import checks as response_checks
-from leblanc.results.record import StudyRecord
+from leblanc.results.choice import ModelSpan, model_spans
+from leblanc.results.response import RunResult
 from leblanc.studies.choose import choose
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.optimise import OptimumRecord
 from leblanc.studies.run import run_scene
-from leblanc.text.models import ModelSpan, model_spans
 from leblanc.text.numbers import number
 from leblanc.text.optimum import shown
 from leblanc.units import ML, MM, RPM
@@ -145,7 +145,7 @@ def front(record: OptimumRecord) -> Table:
     return table("", (of, "volumes (ml)", "vibration (mm)", "stability margin (1/s)"), rows)
 
 
-def checks(record: OptimumRecord, response: StudyRecord | None) -> Table:
+def checks(record: OptimumRecord, response: RunResult | None) -> Table:
     """Where the answer is not what it seems: the volumes by themselves, and the machine with them."""
     exceeded = [name.replace("_", " ") for name, one in record.constraints.items() if not one.satisfied]
     growing = record.growth > 0.0
@@ -158,7 +158,7 @@ def checks(record: OptimumRecord, response: StudyRecord | None) -> Table:
         ),
     ]
     if response is not None:
-        rows += response_checks(response, record.scene.model.tolerance).rows
+        rows += response_checks(response).rows
     return table("", ("Limits of the answer", "with the best volumes, at"), rows)
 
 
@@ -199,7 +199,7 @@ def write_optimise_report(
         "front": front(record),
         "checks": checks(record, response),
         "paste": paste,
-        "pictures": [picture(one, alts.get(one.name, one.title), record.notes) for one in figures],
+        "pictures": [picture(one, alts.get(one.name, "")) for one in figures],
         "why": why(spans) if spans else None,
         "models": models(names),
         "reason": f"{ONE_MODEL} {RUN_UP if in_time else ''}".strip(),

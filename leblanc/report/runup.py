@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 
 from leblanc.report.page import About, models, notes, write_page
 from leblanc.report.parts import Cell, Table, picture, table
-from leblanc.results.record import one_line, peak
+from leblanc.results.notes import percent
+from leblanc.results.provenance import one_line
+from leblanc.results.response import peak
 from leblanc.studies.runup import RunupRecord
-from leblanc.text.models import percent
 from leblanc.text.numbers import MOST_RANGES, number
 from leblanc.text.runup import CLOSURE, ERROR, model_words, switches
 from leblanc.units import MM, RPM
@@ -238,7 +239,7 @@ def write_runup_report(record: RunupRecord, what: About, figures: Sequence[Figur
         "checks": checks(record),
         "events": events(record),
         "balance": [picture(one, alts[one.name]) for one in figures if one.name == BALANCE],
-        "pictures": [picture(one, alts.get(one.name, one.title)) for one in figures if one.name != BALANCE],
+        "pictures": [picture(one, alts.get(one.name, "")) for one in figures if one.name != BALANCE],
         "why": why(record),
         "models": models((record.model,)),
         "remarks": [line for line in notes(record.notes) if not any(part in line for part in REPEATED)],

@@ -10,7 +10,7 @@ import numpy as np
 
 from leblanc.results.netcdf import dataset, flags, write_dataset
 from leblanc.results.netcdf import variable as var
-from leblanc.results.record import one_line, versions
+from leblanc.results.provenance import one_line, versions
 from leblanc.studies.optimise.closed_form import Covering
 from leblanc.studies.optimise.front import Front
 from leblanc.studies.optimise.optimise import OptimumRecord

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from leblanc.friction import friction_words
 from leblanc.results.netcdf import dataset, flags, variable, write_dataset
-from leblanc.results.record import one_line, versions
+from leblanc.results.provenance import one_line, versions
 from leblanc.studies.runup import RunupRecord
 
 Values = NDArray[Any]

@@ -30,9 +30,9 @@ class SceneFault:
     allowed: str
 
     def __str__(self) -> str:
-        where = one_line(self.file) + (f": {self.field}" if self.field else "")
+        where = escaped(self.file) + (f": {self.field}" if self.field else "")
         given = "" if self.value is None else f" = {self.value}"
-        return f"{where}{given}: must be {one_line(self.allowed)}"
+        return f"{where}{given}: must be {escaped(self.allowed)}"
 
 
 class SceneFaults(ValueError):  # noqa: N818 - the faults of one scene, all of them
@@ -82,7 +82,7 @@ def shown(value: object) -> str:
         text = "[...]" if value else "[]"
     else:
         text = str(value)
-    text = one_line(text)
+    text = escaped(text)
     return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
 
 
@@ -100,7 +100,7 @@ def meant(given: object, words: Iterable[str]) -> str:
     return f"; did you mean {found[0]}?" if found and found[0] != given else ""
 
 
-def one_line(text: str) -> str:
+def escaped(text: str) -> str:
     """The text with line breaks and other invisible characters written as escapes."""
     return "".join(
         letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in text

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from fluid.fill import Fill
 from fluid.liquid import KNOWN_LIQUIDS
 from leblanc.friction import friction_words
-from leblanc.scene.faults import one_line
+from leblanc.scene.faults import escaped
 from leblanc.scene.optimise import Optimisation
 from leblanc.scene.rotors import JeffcottRotor
 from leblanc.scene.rows import Row, RowTable, Value, degrees, mm, row, rpm
@@ -85,7 +85,7 @@ def input_rows(
     found = inputs_of(scene)
     single = [*found.rows, *(one for table in found.tables for one in table.single())]
     return tuple(
-        (one.label, one_line(" ".join(value.text for value in one.values)).replace(MINUS, "-"), one.path)
+        (one.label, escaped(" ".join(value.text for value in one.values)).replace(MINUS, "-"), one.path)
         for root in roots
         for one in single
         if one.path == root or one.path.startswith(f"{root}.")

@@ -12,14 +12,15 @@ from fluid.fill import Fill
 from fluid.friction import Friction
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
-from leblanc.results.record import ChamberRecord, phase
+from leblanc.results.chamber import FilledChamber
+from leblanc.results.notes import percent
+from leblanc.results.response import phase
 from leblanc.scene.inputs import runup_rows
 from leblanc.scene.machine import dry_rotor, jeffcott, require_clear
 from leblanc.scene.scene import JeffcottRotor, Runup, Scene
-from leblanc.studies.choose import across_gravity as across_gravity  # of a run-up, asked for with it
-from leblanc.studies.choose import axial_gravity
+from leblanc.studies.prepare import across_gravity as across_gravity
+from leblanc.studies.prepare import axial_gravity
 from leblanc.studies.validity import RANGES
-from leblanc.text.models import percent
 from leblanc.text.runup import Bands, describe_run
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
@@ -255,7 +256,7 @@ class RunupRecord:
     in_range: Flags
     steady: Response | None
     bands: Bands
-    chambers: tuple[ChamberRecord, ...]
+    chambers: tuple[FilledChamber, ...]
     planes: tuple[float, ...]
     notes: tuple[str, ...]
     model_reason: str = ""
@@ -433,6 +434,6 @@ def turn_mean(values: Complex, angle: Array) -> Complex:
     return np.asarray((until(middle + half) - until(middle - half)) / (2.0 * half))
 
 
-def _chamber(fill: Fill) -> ChamberRecord:
+def _chamber(fill: Fill) -> FilledChamber:
     one, name = fill.chamber, fill.liquid.name
-    return ChamberRecord(one.radius, one.inner_radius, one.height, fill.volume, name, fill.surface_radius)
+    return FilledChamber(one.radius, one.inner_radius, one.height, fill.volume, name, fill.surface_radius)

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from fluid.fill import Fill
-from leblanc.results.record import StudyRecord
+from leblanc.results.response import RunResult
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds
-from leblanc.studies.choose import axial_gravity, choose
+from leblanc.studies.choose import choose, liquid_models
+from leblanc.studies.prepare import axial_gravity
 from leblanc.studies.run import run_scene
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError
@@ -37,7 +38,7 @@ class Sight:
     lean : slope of the axis along itself, rad, shape (s,)
     """
 
-    record: StudyRecord
+    record: RunResult
     fills: tuple[Fill, ...]
     places: tuple[float, ...]
     moved: bool
@@ -85,7 +86,7 @@ def look_at(scene: Scene, speed: float | None = None) -> Sight:
     return Sight(record, scene.fills, places, moved, axial_gravity(scene), deflection, _lean(scene, record))
 
 
-def _lean(scene: Scene, record: StudyRecord) -> Complex:
+def _lean(scene: Scene, record: RunResult) -> Complex:
     """Slope of the axis, from its forward part at two places of the rigid rotor."""
     if isinstance(scene.rotor, JeffcottRotor):
         return np.zeros(record.response.speed.shape, dtype=complex)
@@ -96,7 +97,7 @@ def _lean(scene: Scene, record: StudyRecord) -> Complex:
         known = np.isfinite(low) & np.isfinite(high)
         low, high = np.where(known, low, np.nan), np.where(known, high, np.nan)
         return np.asarray((high - low) / np.ptp(planes))
-    rotor, models = dry_rotor(scene), choose(scene).liquid_models
+    rotor, models = dry_rotor(scene), liquid_models(choose(scene))
     found = response(rotor, scene.fills, scene.speed_array(), axial_gravity(scene), models)
     system = rotor.system()
     low, high = (orbit(system, found.coordinates, place).forward for place in (-0.5, 0.5))

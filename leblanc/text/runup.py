@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from fluid.friction import Friction
 from leblanc.friction import friction_words
-from leblanc.results.record import peak
+from leblanc.results.response import peak
 from leblanc.units import MM, RPM
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from leblanc.figures.section import rounded_down
-from leblanc.results.record import one_line
+from leblanc.results.provenance import one_line
 from leblanc.scene.scene import Exciter, Scene
 from leblanc.units import MM, RPM
 from leblanc.view.parts import NO_CELLS, Label, Picture, Piece, bar_length, circle, line

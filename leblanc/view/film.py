@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from leblanc.results.netcdf import replacing
-from leblanc.results.record import one_line
+from leblanc.results.provenance import one_line
 from leblanc.studies.shapes import Sight
 from leblanc.units import MM, RPM
 from leblanc.view.parts import Instant, Picture, Stage

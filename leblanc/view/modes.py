@@ -9,9 +9,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from fluid.fill import Fill
-from leblanc.results.record import one_line
+from leblanc.results.provenance import one_line
 from leblanc.scene.scene import Scene
-from leblanc.studies.choose import across_gravity
+from leblanc.studies.prepare import across_gravity
 from leblanc.units import RPM
 from leblanc.view.bodies import LiquidBodies
 from leblanc.view.film import Film

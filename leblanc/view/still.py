@@ -9,7 +9,7 @@ import numpy as np
 
 from fluid.fill import Fill
 from leblanc.figures.caption import zero_of
-from leblanc.results.record import one_line
+from leblanc.results.provenance import one_line
 from leblanc.studies.shapes import Sight
 from leblanc.units import MM, RPM
 from leblanc.view.bodies import LiquidBodies, bodies_at_rest, is_cut, wall_is_dry

@@ -10,7 +10,8 @@ from pathlib import Path
 from leblanc.report.inputs import Entry, Inputs
 from leblanc.report.page import About
 from leblanc.report.parts import Cell
-from leblanc.results.record import StudyRecord, one_line
+from leblanc.results.record import one_line
+from leblanc.results.response import RunResult
 from leblanc.scene.rows import Value
 
 VOID = {"meta", "img", "br"}
@@ -138,7 +139,7 @@ def check_rules(page: Page, text: str) -> None:
     assert "None" not in page.all_text.split()
 
 
-def about_record(record: StudyRecord) -> About:
+def about_record(record: RunResult) -> About:
     """What a report of a made-up record is about: the record's own list of inputs."""
     values = [(label, Value(text, (path,)).marked(record.assumed)) for label, text, path in record.inputs]
     entries = tuple(

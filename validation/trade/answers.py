@@ -10,7 +10,8 @@ from pydantic import Field
 
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import Exciter, Scene
-from leblanc.studies.choose import across_gravity, axial_gravity, choose
+from leblanc.studies.choose import choose, liquid_models
+from leblanc.studies.prepare import across_gravity, axial_gravity
 from leblanc.studies.runup import RunupChoice, chosen_run, drive_of, judged, planned
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
@@ -115,7 +116,7 @@ def chosen_models(scene: Scene, model: str) -> tuple[list[LiquidModel], Flags]:
     model : "auto" or a name
     """
     choice = choose(scene.altered(model=scene.model.altered(liquid=model)))
-    return choice.liquid_models, choice.in_range
+    return liquid_models(choice), choice.in_range
 
 
 def answer(scene: Scene, case: Case) -> Answer:

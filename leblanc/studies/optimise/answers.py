@@ -10,7 +10,7 @@ import numpy as np
 from leblanc.scene.machine import jeffcott
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds
 from leblanc.studies.batch import answer_scenes
-from leblanc.studies.choose import axial_gravity
+from leblanc.studies.prepare import axial_gravity
 from meshes.arrays import Array, Flags
 from solvers.synchronous.models import model_named
 from solvers.synchronous.response import machine_responses

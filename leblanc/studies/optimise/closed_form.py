@@ -9,8 +9,8 @@ import numpy as np
 
 from fluid.fill import Fill
 from leblanc.scene.scene import Scene
-from leblanc.studies.choose import axial_gravity
 from leblanc.studies.optimise.constraints import Verdict
+from leblanc.studies.prepare import axial_gravity
 from leblanc.units import MM, RPM
 from meshes.arrays import Array
 from meshes.chamber import Chamber

@@ -12,7 +12,6 @@ from fluid.whirl import is_full
 from leblanc.scene.machine import require_clear
 from leblanc.scene.optimise import Optimisation
 from leblanc.scene.scene import Scene, Speeds
-from leblanc.studies.choose import axial_gravity
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.closed_form import (
     Covering,
@@ -28,6 +27,7 @@ from leblanc.studies.optimise.front import Front, front_around
 from leblanc.studies.optimise.judge import Goal, goal_of, growth_speeds
 from leblanc.studies.optimise.objectives import RunupPeak
 from leblanc.studies.optimise.search import best_volumes, bounds_of, judged_again, on_all_cells
+from leblanc.studies.prepare import axial_gravity
 from leblanc.studies.validity import RANGES
 from leblanc.units import RPM
 from meshes.arrays import Array

@@ -11,10 +11,10 @@ import numpy as np
 from leblanc.scene.machine import jeffcott
 from leblanc.scene.optimise import Optimisation
 from leblanc.scene.scene import JeffcottRotor, Scene
-from leblanc.studies.choose import axial_gravity
 from leblanc.studies.optimise.closed_form import covering
 from leblanc.studies.optimise.judge import Goal
 from leblanc.studies.optimise.objectives import PeakOver, RunupPeak
+from leblanc.studies.prepare import axial_gravity
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.search import Found, Judgement, SearchPlan, search

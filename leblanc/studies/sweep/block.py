@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.record import versions
-from leblanc.scene.faults import one_line
+from leblanc.results.provenance import versions
+from leblanc.scene.faults import escaped
 from leblanc.scene.paths import Keys
 from leblanc.scene.scene import Scene
 from leblanc.studies.sweep.outputs import DONE, FAILED, NOT_CONVERGED, OUTPUTS, blank, values_of
@@ -126,4 +126,4 @@ def _answer(scenes: Sequence[Scene]) -> list[tuple[int, Answers | str]]:
 def reason_of(error: Exception) -> str:
     """An error in words that are the same each time."""
     said = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
-    return _ADDRESS.sub("0x...", one_line(said))[:_LONGEST]
+    return _ADDRESS.sub("0x...", escaped(said))[:_LONGEST]

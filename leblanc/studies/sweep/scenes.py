@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from leblanc.scene.chambers import Chamber
-from leblanc.scene.faults import SceneFaults, one_line
+from leblanc.scene.faults import SceneFaults, escaped
 from leblanc.scene.part import Part, rule_of
 from leblanc.scene.paths import Keys, tables_of, with_values
 from leblanc.scene.rules import Quantity
@@ -97,4 +97,4 @@ def make_scenes(make: Maker, rows: Iterable[Sequence[Any]]) -> tuple[list[Scene 
 
 
 def _without_file(line: str, file: str) -> str:
-    return line.removeprefix(f"{one_line(file)}: ")
+    return line.removeprefix(f"{escaped(file)}: ")

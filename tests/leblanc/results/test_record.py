@@ -39,7 +39,7 @@ def test_peak_is_the_largest() -> None:
 
 @kills("leblanc.results.response:_finite", "[values.real, values.imag]", "[values.imag, values.real]")
 @kills(
-    "leblanc.results.response:run_json",
+    "leblanc.results.response:RunResult.to_json",
     '"liquid_angle": _finite(r.liquid_angle)',
     '"liquid_angle": _finite(-r.liquid_angle)',
 )

@@ -266,7 +266,11 @@ def test_weak_motor_hangs_at_the_resonance() -> None:
     assert spins["strong"].max() > 2.0 * NATURAL
 
 
-@kills("solvers.runup.long_wave:Coupled._rearrange", "plane.T @ momentum * (not kept)", "plane.T @ momentum * kept")
+@kills(
+    "solvers.runup.long_wave:Coupled._rearrange",
+    "plane.T @ momentum * (not kept)",
+    "plane.T @ momentum * kept",
+)
 @kills("solvers.runup.long_wave:Coupled.fall", "_AGAIN * self.spin", "1.4 * self.spin")
 @kills(
     "solvers.runup.long_wave:Coupled._rearrange",
@@ -311,7 +315,9 @@ def test_switching_keeps_the_momentum() -> None:
 
 
 @kills(
-    "solvers.runup.long_wave:Coupled.read", "(1.0 + surface + np.square(surface)) / 3.0", "(1.0 + surface) / 2.0"
+    "solvers.runup.long_wave:Coupled.read",
+    "(1.0 + surface + np.square(surface)) / 3.0",
+    "(1.0 + surface) / 2.0",
 )
 @kills("solvers.runup.long_wave:Coupled.read", "1j * (lever @ angles[1])", "1j * (lever @ angles[0])")
 @kills(
