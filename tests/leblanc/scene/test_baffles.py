@@ -244,7 +244,7 @@ def test_a_section_from_a_drawing(tmp_path: Path) -> None:
 
 
 def test_a_chamber_has_a_wall() -> None:
-    with pytest.raises(SceneFaults, match=r"chambers\.0\.radius: must be given: .* or chambers\.0\.section"):
+    with pytest.raises(SceneFaults, match=r"chambers\.0\.radius: must be given: .* or section"):
         scene_from_table(BASE | {"chambers": [{"height": 0.02, "volume": 1e-5, "liquid": "water"}]})
 
 

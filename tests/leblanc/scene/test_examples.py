@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 import math
+import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from leblanc.cli import main
 from leblanc.scene import scene as scene_module
+from leblanc.scene.examples import example, example_names, example_path, example_title
+from leblanc.scene.load import read_toml
 from leblanc.scene.machine import jeffcott
 from leblanc.scene.scene import Scene, load_scene
+from leblanc.studies.sweep.study import load_sweep
+from meshes.errors import InputError
 
 RPM = math.pi / 30.0
 ROOT = Path(scene_module.__file__).parents[2]
-EXAMPLES = sorted((ROOT / "examples").glob("*.toml"))
+SCENES = [name for name in example_names() if not name.startswith("studies/")]
+EXAMPLES = [example_path(name) for name in SCENES]
 
 
 @pytest.mark.parametrize(
@@ -81,3 +88,46 @@ def test_the_washing_machine_follows_from_the_table() -> None:
     assert rotor.stiffness == pytest.approx(2 * 6000.0 * math.sin(spring) ** 2, rel=1e-4)  # five digits
     assert rotor.damping == pytest.approx(2 * 175.0 * math.sin(damper) ** 2, rel=1e-4)
     assert rotor.unbalance == pytest.approx(12.5 * 14.8e-3)
+
+
+def test_examples_by_name() -> None:
+    assert {"studies/fill_grid", "runup", "tub"} <= set(example_names())
+    assert all(example_path(name).is_file() and example_title(name) for name in example_names())
+    for name in SCENES:
+        assert example(name).digest == load_scene(example_path(name)).digest
+    with pytest.raises(InputError, match=r"did you mean tub\?"):
+        example_path("tubb")
+
+
+@pytest.mark.parametrize("name", example_names())
+def test_new_writes_an_example(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "--example", name]) == 0
+    written = tmp_path / f"{Path(name).name}.toml"
+    said = capsys.readouterr().err
+    if name in SCENES:
+        assert written.read_bytes() == example_path(name).read_bytes()
+        assert f"leblanc run {written.name}" in said
+        return
+    # A study looks for its scene beside it, and says how to get it there.
+    scene = read_toml(written)["scene"]
+    assert f"leblanc new --example {Path(scene).stem}; leblanc sweep {written.name}" in said
+    assert main(["new", "--example", Path(scene).stem]) == 0
+    assert load_sweep(written).digest == load_sweep(example_path(name)).digest
+
+
+def test_new_lists_the_examples(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["new", "--list"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == list(example_names())
+    assert main(["new", "--example", "tbu"]) == 2
+    assert "must be one of: centrifuge" in capsys.readouterr().err
+
+
+def test_the_wheel_carries_the_examples() -> None:
+    """They stand beside the packages and are installed inside one."""
+    wheel = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["hatch"]["build"]
+    assert wheel["targets"]["wheel"]["force-include"]["examples"] == "leblanc/examples"
+    assert example_path("tub").parent in (ROOT / "examples", ROOT / "leblanc" / "examples")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -142,9 +141,9 @@ def test_lean_of_one_chamber() -> None:
     # second one empty, at another plane.
     tub = scene("tub")
     one = look_at(tub, 40.0)
-    ring = tub.fills[0]
-    far = replace(ring, chamber=replace(ring.chamber, plane=ring.chamber.plane - 0.2), volume=0.0)
-    two = look_at(replace(tub, chambers=(ring, far)), 40.0)
+    ring = tub.chambers[0]
+    far = ring.altered(plane=ring.plane - 0.2, volume=0.0)
+    two = look_at(tub.altered(chambers=(ring, far)), 40.0)
     assert abs(one.lean[0]) > 0.0
     assert complex(one.lean[0]) == pytest.approx(complex(two.lean[0]), rel=1e-6)
 
