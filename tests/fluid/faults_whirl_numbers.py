@@ -12,5 +12,10 @@ FAULTS: tuple[Fault, ...] = (
     Fault(MODULE, "2.0 * viscosity", "viscosity", oracle.check_numbers),
     Fault(MODULE, "abs(pair[0] - pair[1])", "abs(pair[0] + pair[1])", oracle.check_numbers),
     Fault(MODULE, "spin**2 * surface / gravity", "spin**2 * radius / gravity", oracle.check_numbers),
-    Fault(MODULE, "spin * radius**2", "spin * depth**2", oracle.check_numbers),
+    Fault(
+        MODULE,
+        "spin * radius**2 / viscosity if viscosity else",
+        "spin * depth**2 / viscosity if viscosity else",
+        oracle.check_numbers,
+    ),
 )

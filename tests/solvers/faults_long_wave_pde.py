@@ -28,8 +28,8 @@ FAULTS: tuple[Fault, ...] = (
     _terms("d_q -= _shear", "d_q += _shear"),
     _terms("* held * u", "* u"),
     # the solver's own steps
-    _terms("whirl.slip,\n        whirl.ramp", "-whirl.slip,\n        whirl.ramp", oracle.check_history),
-    _terms("whirl.gravity / radius,", "whirl.gravity,", oracle.check_history),
+    _terms("slip=whirl.slip", "slip=-whirl.slip", oracle.check_history),
+    _terms("weight=whirl.gravity / radius", "weight=whirl.gravity", oracle.check_history),
     _terms("_lid(terms), _spread(terms, a))", "0.0, _spread(terms, a))", oracle.check_history),
     _terms("layer_log(a.mean())) ** 2", "layer_log(a.mean()))", oracle.check_history),
     # readings

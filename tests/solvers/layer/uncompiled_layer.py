@@ -13,6 +13,7 @@ from fluid import long_wave as lw
 from solvers.layer import face_flux, finite_volume
 from solvers.layer import loads as layer_loads
 from solvers.layer import step as forced_layer
+from solvers.layer.records import LOADS, Drive, LayerOutcome, Wall, records
 from tests.faults import Fault, seeded
 
 SPIN, PULL, TURNED = 1.0, 0.1, 0.4
@@ -208,16 +209,18 @@ def run(
     q: np.ndarray,
     length: float,
     drive: tuple[float, ...] = (0.0, 0.0, 0.0, 1.0, 0.0),
-    rub: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0),
+    rub: tuple[float, ...] = (0, 0.0, 0.0, 0.0),
     courant: float = 0.45,
 ) -> np.ndarray:
-    n, sums = area.size, np.empty(9)
-    spare, whole = forced_layer.scratch(n), (*drive, SPIN)
+    n, sums = area.size, records(LOADS)
+    spare, whole, wall = forced_layer.scratch(n), Drive(*drive, SPIN), Wall(*rub)
     first = layer_loads.offset(area, whole, angles(n), 0.0)
-    steps = forced_layer.advance(area, q, 0.0, length, whole, rub, angles(n), courant, 10**6, spare, sums)
-    assert steps > 0
+    outcome, steps = forced_layer.advance(
+        *(area, q, 0.0, length, whole, wall, angles(n), courant, 10**6, spare, sums)
+    )
+    assert outcome == LayerOutcome.DONE and steps > 0
     last = layer_loads.offset(area, whole, angles(n), length)
-    return layer_loads.means(sums, length, 2 * np.pi * area.mean(), drive[3], (first, last))
+    return layer_loads.means(sums[0], length, 2 * np.pi * area.mean(), drive[3], (first, last))
 
 
 def check_steps() -> None:
@@ -234,10 +237,10 @@ def check_steps() -> None:
 
 def check_friction() -> None:
     """A layer that turns as a whole slows down as each law says."""
-    for law, kept in ((1.0, np.exp(-0.3 * 0.2)), (3.0, 1 / (1 + 0.3 * 0.05 / 0.08 * 0.2))):
+    for law, kept in ((1, np.exp(-0.3 * 0.2)), (3, 1 / (1 + 0.3 * 0.05 / 0.08 * 0.2))):
         area = np.full(8, 0.08)
         q = 0.05 * area - SPIN * area**2
-        coefficient = 0.3 * (0.08 / (1 - np.sqrt(0.84)) if law == 1.0 else 1.0)
+        coefficient = 0.3 * (0.08 / (1 - np.sqrt(0.84)) if law == 1 else 1.0)
         run(area, q, 0.2, rub=(law, coefficient, 0.0, 0.0))
         np.testing.assert_allclose((q + SPIN * area**2) / area, 0.05 * kept, rtol=1e-10)
 
@@ -272,7 +275,7 @@ def check_offset() -> None:
     n, amplitude, radius, time = 32, 0.1, 0.8, 0.7
     theta = middles(n) - 0.9
     surface = np.sqrt(radius**2 - (amplitude * np.sin(theta)) ** 2) - amplitude * np.cos(theta)
-    found = layer_loads.offset(0.5 * (1 - surface**2), (0.0, 0.3, 0.0, 1.0, 0.0, SPIN), angles(n), time)
+    found = layer_loads.offset(0.5 * (1 - surface**2), Drive(0.0, 0.3, 0.0, 1.0, 0.0, SPIN), angles(n), time)
     # The missing disc lies at -amplitude along 0.9.
     exact = amplitude * radius**2 / (1 - radius**2) * np.exp(1j * (0.9 - 0.3 * time))
     assert abs(found - exact) < 1e-12
@@ -286,14 +289,14 @@ def check_drive() -> None:
         grown = part - np.sin(2 * np.pi * part) / (2 * np.pi)
         force = 0.01 * whirl**2 * grown * np.exp(1j * slip * time) - 1j * weight * np.exp(-1j * SPIN * time)
         cell, face, ring = np.empty(5), np.empty(5), angles(5)
-        x, y = forced_layer._whirl(time, (0.01, slip, ramp, whirl, weight, SPIN), ring, cell, face)
+        x, y = forced_layer._whirl(time, Drive(0.01, slip, ramp, whirl, weight, SPIN), ring, cell, face)
         assert abs(complex(x, y) - force) < 1e-15
         np.testing.assert_allclose(cell, (force * np.exp(-1j * middles(5))).real, atol=1e-15)
         np.testing.assert_allclose(face, (force * np.exp(-1j * (middles(5) - np.pi / 5))).real, atol=1e-15)
 
 
 FACES, VOLUMES = "solvers.layer.face_flux", "solvers.layer.finite_volume"
-STEPS, LOADS, STAGES = "solvers.layer.step", "solvers.layer.loads", "solvers.layer.step"
+STEPS, MEANS, STAGES = "solvers.layer.step", "solvers.layer.loads", "solvers.layer.step"
 FAULTS = (
     Fault(FACES, "16.0 * z * total", "8.0 * z * total", check_logarithm),
     Fault(FACES, "+ 1.0 / 13.0", "+ 1.0 / 12.0", check_logarithm),
@@ -331,18 +334,28 @@ FAULTS = (
     Fault(VOLUMES, "(1.0 - kept) * (flow[face]", "0.0 * (flow[face]", check_drain),
     Fault(STAGES, "np.exp(-rate * dt)", "np.exp(-2.0 * rate * dt)", check_friction),
     Fault(STAGES, "1.0 / (1.0 + rate * dt)", "1.0 - 2.0 * rate * dt", check_friction),
-    Fault(STEPS, "amplitude * whirl * whirl * grown", "amplitude * whirl * grown", check_drive),
+    Fault(
+        STEPS,
+        "drive.amplitude * drive.whirl * drive.whirl * grown",
+        "drive.amplitude * drive.whirl * grown",
+        check_drive,
+    ),
     Fault(STEPS, "time / ramp - np.sin", "time / ramp + np.sin", check_drive),
-    Fault(STEPS, "- weight * np.cos(spin * time)", "+ weight * np.cos(spin * time)", check_drive),
+    Fault(
+        STEPS,
+        "- drive.weight * np.cos(drive.spin * time)",
+        "+ drive.weight * np.cos(drive.spin * time)",
+        check_drive,
+    ),
     Fault(STEPS, "y * angles[1, i]", "x * angles[1, i]", check_drive),
     Fault(STEPS, "y * angles[3, i]", "y * angles[1, i]", check_drive),
     Fault(STAGES, "0.5 * (q[i] + next_q[i] + dt * rate_q[i])", "next_q[i]", check_steps),
     Fault(STEPS, "time + dt if stage == 2 else time", "time", check_steps),
-    Fault(LOADS, "- 2j * whirl_speed * drift", "- 1j * whirl_speed * drift", check_force),
-    Fault(LOADS, "+ whirl_speed**2 * moved", "- whirl_speed**2 * moved", check_force),
-    Fault(LOADS, "(1.0 + surface + surface * surface) / 3.0", "(1.0 + surface) / 2.0", check_offset),
-    Fault(LOADS, "lever @ angles[1])", "lever @ angles[0])", check_offset),
-    Fault(LOADS, "-1j * drive[1] * time", "1j * drive[1] * time", check_offset),
+    Fault(MEANS, "- 2j * whirl_speed * drift", "- 1j * whirl_speed * drift", check_force),
+    Fault(MEANS, "+ whirl_speed**2 * moved", "- whirl_speed**2 * moved", check_force),
+    Fault(MEANS, "(1.0 + surface + surface * surface) / 3.0", "(1.0 + surface) / 2.0", check_offset),
+    Fault(MEANS, "lever @ angles[1])", "lever @ angles[0])", check_offset),
+    Fault(MEANS, "-1j * drive.slip * time", "1j * drive.slip * time", check_offset),
     Fault(STEPS, "moment_y += lever[i] * angles[1, i]", "moment_y += lever[i] * angles[0, i]", check_force),
     Fault(
         STEPS, "force_y += pressure[i] * angles[1, i]", "force_y -= pressure[i] * angles[1, i]", check_force

@@ -13,13 +13,14 @@ from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers.layer import finite_volume
 from solvers.layer.loads import ring
+from solvers.layer.records import records
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.runup import kernel as coupled_layer
 from solvers.runup import kernel as coupled_parts
 from solvers.runup.long_wave import Coupled, couple
 from solvers.runup.machine import Outcome
-from solvers.runup.state import GAINS, LAYER, MEASURES, records
+from solvers.runup.state import GAINS, LAYER, MEASURES
 from tests.faults import Fault, seeded
 
 SPIN, TURNED = 2.0, 0.4
