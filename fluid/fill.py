@@ -145,11 +145,11 @@ class Fills:
     def of(cls, fills: Sequence[Fill]) -> Fills:
         """Arrays of some fills."""
         return cls(
-            Chambers.of([one.chamber for one in fills]),
-            np.array([one.liquid.density for one in fills]),
-            np.array([one.volume for one in fills]),
-            np.array([one.added_mass if one.volume > 0.0 else 0.0 for one in fills]),
-            np.array([one.depth for one in fills]),
+            Chambers.of([fill.chamber for fill in fills]),
+            np.array([fill.liquid.density for fill in fills]),
+            np.array([fill.volume for fill in fills]),
+            np.array([fill.added_mass if fill.volume > 0.0 else 0.0 for fill in fills]),
+            np.array([fill.depth for fill in fills]),
         )
 
     @classmethod
@@ -163,9 +163,9 @@ class Fills:
         walls = [part.chamber for part in parts]
         return cls(
             Chambers(
-                np.concatenate([one.radius for one in walls]),
-                np.concatenate([one.height for one in walls]),
-                np.concatenate([one.inner_radius for one in walls]),
+                np.concatenate([wall.radius for wall in walls]),
+                np.concatenate([wall.height for wall in walls]),
+                np.concatenate([wall.inner_radius for wall in walls]),
             ),
             np.concatenate([part.density for part in parts]),
             np.concatenate([part.volume for part in parts]),
@@ -176,7 +176,7 @@ class Fills:
     def at(self, which: NDArray[np.intp]) -> Fills:
         """Those at some indices, in their order, shape (m,)."""
         arrays = (self.density, self.volume, self.added_mass, self.depth)
-        return Fills(self.chamber.at(which), *(one[which] for one in arrays))
+        return Fills(self.chamber.at(which), *(array[which] for array in arrays))
 
     @property
     def mass(self) -> Array:

@@ -1,4 +1,4 @@
-"""Dimensionless numbers of a layer whose drum whirls."""
+"""Dimensionless numbers of a layer: in a drum that spins, and under a whirl of its axis."""
 
 from __future__ import annotations
 

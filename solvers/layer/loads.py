@@ -12,8 +12,7 @@ from functools import lru_cache
 import numpy as np
 
 from meshes.arrays import Array, Complex
-
-Drive = tuple[float, float, float, float, float, float]
+from solvers.layer.records import Drive, Record
 
 
 @lru_cache(maxsize=16)
@@ -36,17 +35,17 @@ def offset(area: Array, drive: Drive, angles: Array, time: float) -> complex:
     surface = np.sqrt(np.maximum(1.0 - 2.0 * area, 0.0))
     lever = (1.0 - surface) * (1.0 + surface + surface * surface) / 3.0
     found = complex(lever @ angles[0], lever @ angles[1]) / float(area.sum())
-    return found * cmath.exp(-1j * drive[1] * time)
+    return found * cmath.exp(-1j * drive.slip * time)
 
 
 def means(
-    sums: Array, length: float, mass: float, whirl_speed: float, offsets: tuple[complex, complex]
+    sums: Record, length: float, mass: float, whirl_speed: float, offsets: tuple[complex, complex]
 ) -> Complex:
     """Means over a time [theory: long_wave, eq. 7].
 
     Parameters
     ----------
-    sums : as `solvers.layer.step.advance` fills them, shape (9,)
+    sums : a record LOADS of `solvers.layer.records`
     length : of the time
     mass : of the liquid, over rho h_c R^2
     whirl_speed : omega_w
@@ -57,9 +56,11 @@ def means(
     Force by the liquid's momentum and offset, turning, least and largest depth, force by the pressure on the
     wall, shape (6,); forces are over rho h_c R^3
     """
-    pressure, moved, push = (complex(sums[k], sums[k + 1]) / length for k in (0, 2, 7))
+    pressure = complex(sums.force_x, sums.force_y) / length
+    moved = complex(sums.offset_x, sums.offset_y) / length
+    push = complex(sums.push_x, sums.push_y) / length
     drift = (offsets[1] - offsets[0]) / length
     # The liquid as a whole: what pushes it, the centripetal and the Coriolis part.
     inertia = mass * (push + whirl_speed**2 * moved - 2j * whirl_speed * drift)
-    turning, least, largest = sums[4:7] / length
-    return np.array([inertia, moved, turning, least, largest, pressure], dtype=np.complex128)
+    rest = sums.turning / length, sums.depth_min / length, sums.depth_max / length
+    return np.array([inertia, moved, *rest, pressure], dtype=np.complex128)

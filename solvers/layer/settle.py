@@ -155,11 +155,11 @@ def _history(layer: MovingLayer, rows: list[Complex]) -> LayerHistory:
     """Means in SI units, and the layer as it stands in the frame of the deflection."""
     whirl, radius = layer.whirl, layer.fill.chamber.radius
     table = np.array(rows, dtype=np.complex128).reshape(len(rows), 6)
-    amplitude, slip, _, speed, _, _ = layer.drive
-    scale = math.pi * amplitude * speed**2 or math.inf
+    drive = layer.drive
+    scale = math.pi * drive.amplitude * drive.whirl**2 or math.inf
     n = layer.area.size
     middle = 2.0 * math.pi * (np.arange(n) + 0.5) / n
-    theta = np.mod(middle - slip * layer.time + math.pi, 2.0 * math.pi) - math.pi
+    theta = np.mod(middle - drive.slip * layer.time + math.pi, 2.0 * math.pi) - math.pi
     order = np.argsort(theta)
     wanted = layer.fill.volume / (layer.fill.chamber.height * radius**2)
     force, moved, turning, least, largest, pressure = table.T

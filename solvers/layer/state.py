@@ -14,8 +14,9 @@ from fluid.fill import Fill
 from fluid.friction import QUADRATIC, Friction
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError
-from solvers.layer.loads import Drive, means, offset, ring
+from solvers.layer.loads import means, offset, ring
 from solvers.layer.prescribed import Numerics, Whirl
+from solvers.layer.records import LOADS, Drive, LayerOutcome, Wall, records
 
 _COURANT = 0.8
 _STEPS = 20_000_000  # in one whirl period
@@ -29,7 +30,7 @@ class MovingLayer:
     ----------
     fill, whirl : what it is made from
     area, momentum : A and q, shape (n,)
-    drive, rub, angles, scratch : as for `solvers.layer.step.advance`
+    drive, wall, angles, scratch : as for `solvers.layer.step.advance`
     time : how far it has come
     reason : why it went no further, or empty
     """
@@ -39,7 +40,7 @@ class MovingLayer:
     area: Array
     momentum: Array
     drive: Drive
-    rub: tuple[float, float, float, float]
+    wall: Wall
     angles: Array
     scratch: Array
     time: float = 0.0
@@ -47,30 +48,30 @@ class MovingLayer:
 
     def periods(self, count: float) -> Complex | None:
         """Advance by whirl periods; `solvers.layer.loads.means` over them, or None with a `reason`."""
-        from solvers.layer.step import AT_AXIS, advance
+        from solvers.layer.step import advance
 
         length = self.whirl.period * self.whirl.spin * count
-        first, sums = offset(self.area, self.drive, self.angles, self.time), np.empty(9)
-        steps = advance(
+        first, sums = offset(self.area, self.drive, self.angles, self.time), records(LOADS)
+        outcome, _ = advance(
             self.area,
             self.momentum,
             self.time,
             self.time + length,
             self.drive,
-            self.rub,
+            self.wall,
             self.angles,
             _COURANT,
             _STEPS,
             self.scratch,
             sums,
         )
-        if steps < 0:
-            self.reason = "the surface came to the axis" if steps == AT_AXIS else "the time steps ran out"
+        if outcome != LayerOutcome.DONE:
+            self.reason = LayerOutcome(outcome).message
             return None
         self.time += length
         last = offset(self.area, self.drive, self.angles, self.time)
         mass = 2.0 * math.pi * float(self.area.mean())
-        return means(sums, length, mass, self.drive[3], (first, last))
+        return means(sums[0], length, mass, self.drive.whirl, (first, last))
 
 
 def start(fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics) -> MovingLayer:
@@ -101,15 +102,15 @@ def start(fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics) -> M
         whirl=whirl,
         area=area,
         momentum=-np.square(area),
-        drive=(
-            whirl.amplitude / radius,
-            whirl.slip / spin,
-            whirl.ramp * spin,
-            whirl.speed / spin,
-            whirl.gravity / (radius * spin**2),
-            1.0,
+        drive=Drive(
+            amplitude=whirl.amplitude / radius,
+            slip=whirl.slip / spin,
+            ramp=whirl.ramp * spin,
+            whirl=whirl.speed / spin,
+            weight=whirl.gravity / (radius * spin**2),
+            spin=1.0,
         ),
-        rub=(float(law), scaled, 2.0 * radius / chamber.height, log**2 if numerics.dispersion else 0.0),
+        wall=Wall(law, scaled, 2.0 * radius / chamber.height, log**2 if numerics.dispersion else 0.0),
         angles=ring(n),
         scratch=scratch(n),
     )
@@ -117,7 +118,7 @@ def start(fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics) -> M
 
 def settle_statics(layer: MovingLayer) -> None:
     """Equilibrium of the liquid under a synchronous whirl: a circle about the rotation axis, cell by cell."""
-    amplitude, whole = layer.drive[0], float(layer.area.sum())
+    amplitude, whole = layer.drive.amplitude, float(layer.area.sum())
     cosine, sine = layer.angles[0], layer.angles[1]
 
     def cells(squared: float) -> Array:

@@ -1,7 +1,8 @@
-"""A finite-volume layer driven by a prescribed whirl: time steps, friction, and the loads on the drum.
+"""Time steps of a finite-volume layer: their parts, and a layer's way under a prescribed whirl.
 
-Steps are those of `solvers.layer.step`. Lengths over R, times in the unit of the spin given. Compiled by
-numba with its cache on disk.
+Heun's method in two stages between two exact half steps of friction [theory: long_wave, eq. 11]. The coupled
+machine takes the parts and puts its own forces to them. Lengths over R, times in the unit of the spin given.
+Compiled by numba with its cache on disk.
 """
 
 from __future__ import annotations
@@ -15,14 +16,18 @@ from numpy.typing import NDArray
 from fluid import friction, long_wave
 from solvers.layer.face_flux import COMPILED, DRY, NEAREST, faded_velocity, log_of_surface
 from solvers.layer.finite_volume import FULL, GHOSTS, WORK, ring_rates
+from solvers.layer.records import LayerOutcome
 
 _jit: Any = njit(**COMPILED)
 
+# Courant number beyond which a step is taken again.
+LARGEST = 1.0
 # Films thinner than this (area over R^2) are held back, at this multiple of the spin.
 FILM, FASTEST = 1e-5, 4.0
 
 surface_radius = _jit(long_wave.free_surface_radius)
 _damping = _jit(friction.damping_rate)
+_wall = _jit(long_wave.wall_pressure)
 
 
 @_jit
@@ -85,11 +90,12 @@ def correct(area, q, rate_a, rate_q, dt, next_a, next_q):
         q[i] = 0.5 * (q[i] + next_q[i] + dt * rate_q[i])
 
 
-_wall = _jit(long_wave.wall_pressure)
-
-RAN_OUT, AT_AXIS = -1, -2
-# Courant number beyond which a step is taken again.
-_LARGEST = 1.0
+@_jit
+def pull(x, y, angles, pull_cell, pull_face):
+    """Radial part of a uniform body force at cells and faces."""
+    for i in range(pull_cell.size):
+        pull_cell[i] = x * angles[0, i] + y * angles[1, i]
+        pull_face[i] = x * angles[2, i] + y * angles[3, i]
 
 
 def scratch(cells: int) -> NDArray[np.float64]:
@@ -104,16 +110,14 @@ def _whirl(time, drive, angles, pull_cell, pull_face):
     The amplitude grows as tau - sin(2 pi tau)/(2 pi), tau = time/ramp; its rate of change is left out of the
     acceleration [theory: long_wave, eq. 8]. Fills its radial part at cells and faces; returns its parts.
     """
-    amplitude, slip, ramp, whirl, weight, spin = drive
+    slip, ramp = drive.slip, drive.ramp
     grown = 1.0
     if time < ramp:
         grown = time / ramp - np.sin(2.0 * np.pi * time / ramp) / (2.0 * np.pi)
-    push = amplitude * whirl * whirl * grown
-    x = push * np.cos(slip * time) - weight * np.sin(spin * time)
-    y = push * np.sin(slip * time) - weight * np.cos(spin * time)
-    for i in range(pull_cell.size):
-        pull_cell[i] = x * angles[0, i] + y * angles[1, i]
-        pull_face[i] = x * angles[2, i] + y * angles[3, i]
+    push = drive.amplitude * drive.whirl * drive.whirl * grown
+    x = push * np.cos(slip * time) - drive.weight * np.sin(drive.spin * time)
+    y = push * np.sin(slip * time) - drive.weight * np.cos(drive.spin * time)
+    pull(x, y, angles, pull_cell, pull_face)
     return x, y
 
 
@@ -130,7 +134,7 @@ def _cell_loads(area, q, spin, pull, pressure, lever, turning):
 
 @_jit
 def _tally(area, q, spin, pull, angles, work, cosine, sine, share, sums):
-    """Add a time's share of the loads to the sums of `advance`.
+    """Add a time's share of the loads to the record of `advance`.
 
     Forces and offsets are turned into the frame of the deflection, at an angle of this cosine and sine.
     """
@@ -148,46 +152,41 @@ def _tally(area, q, spin, pull, angles, work, cosine, sine, share, sums):
         turned += turning[i]
         least, largest = min(least, area[i]), max(largest, area[i])
     part, step = share / total, share * 2.0 * np.pi / n
-    sums[0] += (force_x * cosine + force_y * sine) * step
-    sums[1] += (force_y * cosine - force_x * sine) * step
-    sums[2] += (moment_x * cosine + moment_y * sine) * part
-    sums[3] += (moment_y * cosine - moment_x * sine) * part
-    sums[4] += turned * part
-    sums[5] += (1.0 - surface_radius(least)) * share
-    sums[6] += (1.0 - surface_radius(largest)) * share
+    sums.force_x += (force_x * cosine + force_y * sine) * step
+    sums.force_y += (force_y * cosine - force_x * sine) * step
+    sums.offset_x += (moment_x * cosine + moment_y * sine) * part
+    sums.offset_y += (moment_y * cosine - moment_x * sine) * part
+    sums.turning += turned * part
+    sums.depth_min += (1.0 - surface_radius(least)) * share
+    sums.depth_max += (1.0 - surface_radius(largest)) * share
 
 
 @_jit
-def advance(area, q, start, stop, drive, rub, angles, courant, most, spare, sums):
+def advance(area, q, start, stop, drive, wall, angles, courant, most, spare, loads):
     """Advance a layer under a prescribed whirl and integrate its loads over time.
 
     Parameters
     ----------
     area, q : state, changed in place, shape (n,)
     start, stop : times
-    drive : amplitude, slip (whirl seen from the drum), ramp time, whirl speed, weight, spin
-    rub : friction law, coefficient, lid, square of the layer's L for dispersion (0 without it)
+    drive, wall : `solvers.layer.records`'s
     angles : cosine and sine at the cells' middles and at their left faces, shape (4, n)
     courant : Courant number
     most : most steps
     spare : as from `scratch`, whose rows are reused
-    sums : results, shape (9,), integrals over the time: force by the pressure on the wall over rho h_c R^3
-        (two parts), offset (two), turning, least and largest depth, body force (two); two parts are along the
-        deflection and 90 deg ahead of it [theory: long_wave, eq. 7]
+    loads : results, record LOADS, shape (1,): the first one is added to
 
     Returns
     -------
-    steps tried, or RAN_OUT where they did, or AT_AXIS where the surface came to the axis
+    LayerOutcome, and the steps tried
     """
     n = area.size
     step = 2.0 * np.pi / n
-    slip, spin = drive[1], drive[5]
-    law, coefficient, lid, spread = int(rub[0]), rub[1], rub[2], rub[3]
+    slip, spin, sums = drive.slip, drive.spin, loads[0]
+    law, coefficient, lid, spread = wall.law, wall.coefficient, wall.lid, wall.spread
     pull_cell, pull_face = spare[WORK, :n], spare[WORK + 1, :n]
     rate_a, rate_q = spare[WORK + 2, :n], spare[WORK + 3, :n]
     next_a, next_q, begin_q = spare[WORK + 4, :n], spare[WORK + 5, :n], spare[WORK + 6, :n]
-    for k in range(sums.size):
-        sums[k] = 0.0
     time, steps, dt, fastest = start, 0, 0.0, 0.0
     # 0: only the largest speed is asked for; 1 and 2: the two stages of Heun's method.
     stage = 0
@@ -207,10 +206,10 @@ def advance(area, q, start, stop, drive, rub, angles, courant, most, spare, sums
             next_a, next_q, spin, 0.0, pull_cell, pull_face, step, limit, spread, spare, rate_a, rate_q
         )
         if steps >= most:
-            return RAN_OUT
+            return LayerOutcome.RAN_OUT, steps
         if not fastest < np.inf:
-            return AT_AXIS
-        if stage > 0 and dt * fastest > _LARGEST * step:
+            return LayerOutcome.AT_AXIS, steps
+        if stage > 0 and dt * fastest > LARGEST * step:
             # A film has run faster than the step allows: once more, shorter.
             for i in range(n):
                 q[i] = begin_q[i]
@@ -219,16 +218,16 @@ def advance(area, q, start, stop, drive, rub, angles, courant, most, spare, sums
             continue
         if stage == 1:
             if not predict(area, q, rate_a, rate_q, dt, next_a, next_q):
-                return AT_AXIS
+                return LayerOutcome.AT_AXIS, steps
         elif stage == 2:
             x, y = _whirl(time, drive, angles, pull_cell, pull_face)
             cosine, sine = np.cos(slip * time), np.sin(slip * time)
             _tally(area, begin_q, spin, pull_cell, angles, spare, cosine, sine, dt, sums)
-            sums[7] += (x * cosine + y * sine) * dt
-            sums[8] += (y * cosine - x * sine) * dt
+            sums.push_x += (x * cosine + y * sine) * dt
+            sums.push_y += (y * cosine - x * sine) * dt
             correct(area, q, rate_a, rate_q, dt, next_a, next_q)
             wall_friction(area, q, spin, law, coefficient, lid, 0.5 * dt)
             time += dt
             steps += 1
         stage = 2 if stage == 1 else 1
-    return steps
+    return LayerOutcome.DONE, steps

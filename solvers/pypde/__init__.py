@@ -1,1 +1,50 @@
-"""The waves as py-pde equations, and their steppers as py-pde solvers."""
+"""The waves as py-pde equations, and their steppers as py-pde solvers; its trackers and storages serve both.
+
+`AnnularLongWavePDE` is the nonlinear layer, `KdvBurgersPDE` the waves of one family; both live on a `circle`.
+Importing an equation registers its solver, "finite_volume" or "exponential", and takes py-pde's seconds: the
+names below are fetched when they are used.
+
+Settle a layer under a whirl on py-pde:
+
+    from solvers.pypde import AnnularLongWavePDE, circle
+
+    equation = AnnularLongWavePDE(fill, whirl, friction=friction, dispersion=True)
+    state = equation.start(circle(256))
+    state = equation.solve(state, 3.0, solver="finite_volume")
+    equation.force(state, 3.0), equation.offset(state)
+
+and waves of one family, whose field is the liquid area above its mean:
+
+    from pde import ScalarField
+    from solvers.pypde import KdvBurgersPDE, circle
+
+    equation = KdvBurgersPDE(family, damping=0.1, forcing=q, whirl_speed=s)
+    equation.solve(ScalarField(circle(256)), 3.0, solver="exponential")
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from solvers.pypde.long_wave import AnnularLongWavePDE, FiniteVolumeSolver
+    from solvers.pypde.one_family import ExponentialSolver, KdvBurgersPDE, SplitPDE, circle
+
+__all__ = [
+    "AnnularLongWavePDE",
+    "ExponentialSolver",
+    "FiniteVolumeSolver",
+    "KdvBurgersPDE",
+    "SplitPDE",
+    "circle",
+]
+_HOMES = {"AnnularLongWavePDE": "long_wave", "FiniteVolumeSolver": "long_wave"}
+
+
+def __getattr__(name: str) -> Any:
+    """Fetch a name when it is used."""
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    home = importlib.import_module(f"{__name__}.{_HOMES.get(name, 'one_family')}")
+    return getattr(home, name)

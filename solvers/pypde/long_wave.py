@@ -24,6 +24,7 @@ from fluid.friction import NO_FRICTION, Friction
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.layer.prescribed import Whirl
+from solvers.layer.records import LayerOutcome
 from solvers.pypde import readings
 from solvers.pypde import terms as layer
 from solvers.pypde.terms import LongWaveTerms
@@ -256,10 +257,11 @@ class FiniteVolumeSolver(SolverBase):  # type: ignore[no-untyped-call]
         self.info |= {"courant": self.courant, "status": "finished"}
 
         def advance(state: Any, start: float, stop: float) -> float:
-            area, momentum, steps = layer.march(self.terms, *_parts(state), start, stop, self.courant)
-            if steps < 0:
+            found = layer.march(self.terms, *_parts(state), start, stop, self.courant)
+            area, momentum, outcome, steps = found
+            if outcome is not LayerOutcome.DONE:
                 self.info["status"] = "lost"
-                raise ConvergenceError(f"{_LOST} between t = {start:g} s and {stop:g} s")
+                raise ConvergenceError(f"{outcome.message} between t = {start:g} s and {stop:g} s")
             state.data[0], state.data[1] = area, momentum
             self.info["steps"] += steps
             return stop

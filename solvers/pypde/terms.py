@@ -22,6 +22,7 @@ from solvers.layer.face_flux import DRY, THIN
 from solvers.layer.finite_volume import FULL, GHOSTS, WORK, rates
 from solvers.layer.loads import ring
 from solvers.layer.prescribed import Whirl
+from solvers.layer.records import LOADS, Drive, LayerOutcome, Wall, records
 from solvers.layer.step import advance, scratch
 
 _STEPS = 20_000_000  # from one time to the next
@@ -123,7 +124,7 @@ def layer_rates(terms: LongWaveTerms, area: Array, momentum: Array, time: float)
 
 def march(
     terms: LongWaveTerms, area: Array, momentum: Array, start: float, stop: float, courant: float
-) -> tuple[Array, Array, int]:
+) -> tuple[Array, Array, LayerOutcome, int]:
     """Advance a layer by Heun steps in which no cell falls below zero, at a constant spin.
 
     Parameters
@@ -135,8 +136,7 @@ def march(
 
     Returns
     -------
-    A and q at the stop, and the number of steps; -1 where the surface came to the axis on the way or
-    there were more than 20 million steps
+    A and q at the stop, how it ended, and the number of steps, 20 million at most
 
     Raises
     ------
@@ -150,17 +150,17 @@ def march(
     whirl, radius, n = terms.whirl, terms.fill.chamber.radius, area.size
     a, q = scaled(terms, area, momentum)
     law, coefficient = terms.drag()
-    drive = (
-        whirl.amplitude / radius,
-        whirl.slip,
-        whirl.ramp,
-        whirl.speed,
-        whirl.gravity / radius,
-        whirl.spin,
+    drive = Drive(
+        amplitude=whirl.amplitude / radius,
+        slip=whirl.slip,
+        ramp=whirl.ramp,
+        whirl=whirl.speed,
+        weight=whirl.gravity / radius,
+        spin=whirl.spin,
     )
-    rub = (float(law), coefficient, _lid(terms), _spread(terms, a))
-    steps = advance(a, q, start, stop, drive, rub, ring(n), courant, _STEPS, scratch(n), np.empty(9))
-    return a * radius**2, q * radius**4, int(steps)
+    wall, loads = Wall(law, coefficient, _lid(terms), _spread(terms, a)), records(LOADS)
+    outcome, steps = advance(a, q, start, stop, drive, wall, ring(n), courant, _STEPS, scratch(n), loads)
+    return a * radius**2, q * radius**4, LayerOutcome(outcome), int(steps)
 
 
 def require_constant_spin(terms: LongWaveTerms) -> None:

@@ -78,7 +78,7 @@ class Motor:
             require_positive(name, getattr(self, name))
         if len(self.speeds) < 2 or len(self.speeds) != len(self.torques):
             raise InputError("motor.torques", len(self.torques), "one for each of at least two speeds")
-        if not all(math.isfinite(one) for one in (*self.speeds, *self.torques)):
+        if not all(math.isfinite(value) for value in (*self.speeds, *self.torques)):
             raise InputError("motor.torques", self.torques, "finite numbers")
         if any(after <= before for before, after in zip(self.speeds, self.speeds[1:], strict=False)):
             raise InputError("motor.speeds", self.speeds, "ascending")

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from fluid.friction import STOKES
 from solvers.layer.face_flux import COMPILED, DRY, NEAREST, faded_velocity, log_of_surface
 from solvers.layer.finite_volume import GHOSTS, WORK, ring_rates
-from solvers.layer.step import calm, copy, correct, predict, surface_radius, wall_friction
+from solvers.layer.step import LARGEST, calm, copy, correct, predict, pull, surface_radius, wall_friction
 from solvers.runup.machine import Outcome
 
 _jit: Any = njit(**COMPILED)
@@ -81,10 +81,6 @@ def flow_inertia(measures, layer, c, s, out):
     out[2] = s * s * xx + 2.0 * c * s * xy + c * c * yy
 
 
-# Courant number beyond which a step is taken again.
-_LARGEST = 1.0
-
-
 def layer_scratch(layers: int, cells: int) -> NDArray[np.float64]:
     """Scratch that `layer_step` wants for each of so many layers."""
     return np.zeros((layers, WORK + 9, cells + 2 * GHOSTS))
@@ -121,14 +117,6 @@ def measure(area, q, spin, angles, spare, out):
         yy += log[i] * y * y / step
     out.moment_x, out.moment_y, out.spinning, out.energy = moment_x, moment_y, spinning, energy
     out.flow_x, out.flow_y, out.xx, out.xy, out.yy = flow_x, flow_y, xx, xy, yy
-
-
-@_unwrapped
-def _pull(x, y, angles, pull_cell, pull_face):
-    """Radial part of a uniform body force at cells and faces."""
-    for i in range(pull_cell.size):
-        pull_cell[i] = x * angles[0, i] + y * angles[1, i]
-        pull_face[i] = x * angles[2, i] + y * angles[3, i]
 
 
 @_unwrapped
@@ -214,14 +202,14 @@ def layer_step(area, q, spins, force, layer, coefficient, dt, angles, spare, gai
     fastest = 0.0
     for stage in range(2):
         spin, x, y = spins[stage], force[2 * stage], force[2 * stage + 1]
-        _pull(x, y, angles, pull_cell, pull_face)
+        pull(x, y, angles, pull_cell, pull_face)
         speed = ring_rates(
             next_a, next_q, spin, euler, pull_cell, pull_face, step, dt, spread, spare, rate_a, rate_q
         )
         if not speed < np.inf:
             return Outcome.AT_AXIS, speed
         fastest = max(fastest, speed)
-        if dt * fastest > _LARGEST * step:
+        if dt * fastest > LARGEST * step:
             return Outcome.TOO_LONG, fastest
         done = _power(next_a, next_q, spin, euler, x, y, angles, rate_a, gains, 0.5 * dt)
         gains.loss += 0.5 * dt * done

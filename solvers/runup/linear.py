@@ -14,10 +14,11 @@ from fluid.friction import Friction, FrictionLaw, damping_rate
 from meshes.arrays import Array
 from meshes.errors import require_not_negative
 from solvers.layer.loads import ring
+from solvers.layer.records import records
 from solvers.rotor.system import RotorSystem
 from solvers.runup.chamber import RELEASE, layer_capture, layer_properties, mean_area, pool_offset
 from solvers.runup.machine import Outcome, Reading
-from solvers.runup.state import SHAFT, SUMS, records
+from solvers.runup.state import SHAFT, SUMS
 
 if TYPE_CHECKING:
     from solvers.runup.linear_kernel import LinearMachine

@@ -13,16 +13,14 @@ from numpy.typing import NDArray
 
 from meshes.arrays import Array
 from solvers.layer.face_flux import COMPILED
+from solvers.layer.records import Record, floats
 from solvers.runup.kernel import motor_torque, solve
 from solvers.runup.machine import Outcome
-from solvers.runup.state import Record
 
 _jit: Any = njit(**COMPILED)
 
 # Of a layer: mass, curvature, friction rate, power of the spin that it goes with, moment of inertia.
-LINEAR_LAYER = np.dtype(
-    [(name, np.float64) for name in ("mass", "curvature", "rate", "power", "inertia")], align=True
-)
+LINEAR_LAYER = floats("mass", "curvature", "rate", "power", "inertia")
 
 
 class LinearMachine(NamedTuple):

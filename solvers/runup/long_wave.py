@@ -13,6 +13,7 @@ from fluid.friction import Friction
 from meshes.arrays import Array, Flags
 from meshes.errors import require_not_negative
 from solvers.layer.loads import ring
+from solvers.layer.records import Record, records
 from solvers.rotor.system import RotorSystem
 from solvers.runup.chamber import RELEASE, layer_capture, layer_properties, mean_area, pool_offset
 from solvers.runup.machine import Outcome, Reading
@@ -24,10 +25,8 @@ from solvers.runup.state import (
     SHAFT,
     SUMS,
     Machine,
-    Record,
     Room,
     State,
-    records,
 )
 
 # A layer that gravity has thrown down is caught again at a speed higher by this factor.

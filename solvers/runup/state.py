@@ -1,25 +1,17 @@
 """What the coupled time steps work on: the machine, its state, and room for the steps. SI units.
 
-Numbers that change one by one stand in records, which Python and compiled code name alike: arrays of numpy's
-structured types, of length 1 where there is one of a kind.
+Numbers that change one by one stand in records, see `solvers.layer.records`.
 """
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshes.arrays import Array
-
-# A `numpy.recarray`; its stubs forget the fields of what is picked from it.
-Record = Any
-
-
-def _floats(*names: str) -> np.dtype[Any]:
-    return np.dtype([(name, np.float64) for name in names], align=True)
-
+from solvers.layer.records import Record, floats
 
 # What `solvers.runup.chamber.LayerProperties` says of a layer.
 LAYER = np.dtype(
@@ -36,28 +28,23 @@ LAYER = np.dtype(
 )
 # What a layer is measured by: moment and its rate of change by the flow, inertia of the flow, angular
 # momentum and energy in the frame that does not turn [theory: coupling, eq. 2, 4 and 7].
-MEASURES = _floats("moment_x", "moment_y", "flow_x", "flow_y", "xx", "xy", "yy", "spinning", "energy")
+MEASURES = floats("moment_x", "moment_y", "flow_x", "flow_y", "xx", "xy", "yy", "spinning", "energy")
 # What a layer's step adds up: impulse of the wall's torque, heat by friction, loss in bores and by the
 # scheme, energy that the flow's profile misses.
-GAINS = _floats("torque", "heat", "loss", "missed")
+GAINS = floats("torque", "heat", "loss", "missed")
 # The rotation: speed, angle turned, time; rate of change of the speed on its ramp, moment of inertia about
 # the axis with a motor.
-SHAFT = _floats("spin", "angle", "time", "rate", "inertia")
+SHAFT = floats("spin", "angle", "time", "rate", "inertia")
 # Lengths of the last two steps, the fastest wave, and by what the next step is shortened.
-PACE = _floats("last", "before", "fastest", "share")
+PACE = floats("last", "before", "fastest", "share")
 # What is summed up over time [theory: coupling, eq. 9-10]: work of the unbalance, of the drive on the liquid,
 # of gravity; heat in the supports and by wall friction, loss in bores and by the scheme, what the assumed
 # profile of the flow misses while the spin changes; work of the motor; steps, layer steps, largest
 # disagreement left.
-SUMS = _floats(
+SUMS = floats(
     *("unbalance", "drive", "gravity", "support", "friction", "bores", "profile", "motor"),
     *("steps", "layer_steps", "disagreement"),
 )
-
-
-def records(kind: np.dtype[Any], count: int = 1) -> Record:
-    """So many records of zeros."""
-    return np.zeros(count, kind).view(np.recarray)
 
 
 class Machine(NamedTuple):

@@ -1,4 +1,8 @@
-"""All steady waves at a row of whirl speeds that one continuation connects."""
+"""Steady waves over the whirl speed: their curve through its folds, their stability, all answers at a speed.
+
+`follow` traces one curve of steady waves, `growth_rates` tells which of them last, `respond` collects the
+waves at given speeds from the curves that pass them.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +22,14 @@ from solvers.waves.path import Pace, Path, march, segment
 from solvers.waves.periodic import solve
 
 MOST_CURVE_POINTS = 2 * (DENSE_MODES + 1)
+# Steps along a curve, in units of the scaled wave and speed.
 _LONGEST, _SHORTEST = 0.5, 1e-7
+# Two answers at a speed that differ by less, relative to their modes, are the same one.
+_SAME = 1e-6
+# A passage is looked for this far beyond both ends of its segment, and counts as real below this.
+_EDGE = 1e-9
+# Coefficients of the scaled speed along a segment that are only rounding.
+_FLAT = 1e-14
 
 
 @dataclass(frozen=True)
@@ -153,12 +164,6 @@ def growth(wave: SteadyWave) -> float:
     return float(growth_rates(wave)[0].real)
 
 
-_SAME = 1e-6
-_EDGE = 1e-9
-# Coefficients of the scaled speed along a segment that are only rounding.
-_FLAT = 1e-14
-
-
 @dataclass(frozen=True)
 class Response:
     """All steady waves found at each of a row of whirl speeds.
@@ -266,7 +271,7 @@ def _crossings(curve: Array, row: Array) -> list[tuple[int, Array]]:
     ]
 
 
-def _alike(one: SteadyWave, other: SteadyWave) -> bool:
-    common = min(one.modes.size, other.modes.size)
-    gap = np.linalg.norm(one.modes[:common] - other.modes[:common])
-    return bool(gap <= _SAME * np.linalg.norm(one.modes))
+def _alike(wave: SteadyWave, other: SteadyWave) -> bool:
+    common = min(wave.modes.size, other.modes.size)
+    gap = np.linalg.norm(wave.modes[:common] - other.modes[:common])
+    return bool(gap <= _SAME * np.linalg.norm(wave.modes))

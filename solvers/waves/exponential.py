@@ -72,20 +72,23 @@ def phi_functions(z: Complex) -> tuple[Complex, Complex, Complex]:
     near = np.abs(z) < 1.0
     # The quotients cancel near 0; there the Taylor series takes over.
     small, large = np.where(near, z, 0.0), np.where(near, 1.0, z)
-    one = np.expm1(large) / large
-    two = (one - 1.0) / large
-    three = (two - 0.5) / large
+    phi_1 = np.expm1(large) / large
+    phi_2 = (phi_1 - 1.0) / large
+    phi_3 = (phi_2 - 0.5) / large
     series = [np.zeros_like(small) for _ in range(3)]
     for j in reversed(range(_TERMS)):
         series = [s * small + 1.0 / math.factorial(j + k) for k, s in enumerate(series, start=1)]
-    first, second, third = (np.where(near, s, f) for s, f in zip(series, (one, two, three), strict=True))
-    return first, second, third
+    return (
+        np.where(near, series[0], phi_1),
+        np.where(near, series[1], phi_2),
+        np.where(near, series[2], phi_3),
+    )
 
 
 def _end_weights(z: Complex) -> tuple[Complex, ...]:
     """Weights of N in the result, exact for N quadratic in time [theory: steppers, eq. 4]."""
-    one, two, three = phi_functions(z)
-    return one - 3.0 * two + 4.0 * three, 2.0 * two - 4.0 * three, 4.0 * three - two
+    phi_1, phi_2, phi_3 = phi_functions(z)
+    return phi_1 - 3.0 * phi_2 + 4.0 * phi_3, 2.0 * phi_2 - 4.0 * phi_3, 4.0 * phi_3 - phi_2
 
 
 def _cox_matthews(z: Complex) -> tuple[Complex, ...]:
@@ -103,8 +106,8 @@ def _krogstad(z: Complex) -> tuple[Complex, ...]:
 def _integrating_factor(z: Complex) -> tuple[Complex, ...]:
     """Classical Runge-Kutta for e^{-L t} v [theory: steppers, eq. 7]."""
     half: Complex = np.asarray(np.exp(0.5 * z), dtype=complex)
-    one = np.ones_like(z)
-    return 0.5 * half, 0.0 * one, 0.5 * one, 0.0 * one, half, half * half / 6.0, half / 3.0, one / 6.0
+    unit = np.ones_like(z)
+    return 0.5 * half, 0.0 * unit, 0.5 * unit, 0.0 * unit, half, half * half / 6.0, half / 3.0, unit / 6.0
 
 
 METHODS = {

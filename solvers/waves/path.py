@@ -137,13 +137,13 @@ def _with_modes(point: PathPoint, modes: int) -> PathPoint:
     return PathPoint(here, ahead, point.corrections, point.error)
 
 
-def segment(one: Array, other: Array, leaving: Array, arriving: Array) -> tuple[Array, float]:
+def segment(begin: Array, end: Array, leaving: Array, arriving: Array) -> tuple[Array, float]:
     """Cubic between two points with their tangents, and the length of the curve there.
 
     Coefficients of u^0 ... u^3, from u = 0 to 1.
     """
-    modes = max(one.size, other.size) // 2
-    a, b, start, stop = (widened(x, modes) for x in (one, other, leaving, arriving))
+    modes = max(begin.size, end.size) // 2
+    a, b, start, stop = (widened(x, modes) for x in (begin, end, leaving, arriving))
     chord = b - a
     # An arc is longer than its chord, by a twelfth of what the tangents turn.
     arc = math.sqrt(dot(chord, chord)) * (1.0 + (1.0 - dot(start, stop)) / 12.0)
@@ -184,9 +184,9 @@ def _modes_for(point: Array, fewest: int, most_tail: float) -> int:
     return v.size
 
 
-def dot(one: Array, other: Array) -> float:
+def dot(a: Array, b: Array) -> float:
     """Inner product of (wave, parameter): the mean square of the wave plus that of the parameter."""
-    return float(2.0 * (one[:-1] @ other[:-1]) + one[-1] * other[-1])
+    return float(2.0 * (a[:-1] @ b[:-1]) + a[-1] * b[-1])
 
 
 def widened(point: Array, modes: int) -> Array:

@@ -40,7 +40,11 @@ def scene(**rotor: object) -> Scene:
 
 
 @kills("fluid.numbers:layer_numbers", "np.square(spin) * surface / gravity", "spin * surface / gravity")
-@kills("fluid.numbers:layer_numbers", "spin * radius**2 / viscosity", "spin * radius / viscosity")
+@kills(
+    "fluid.numbers:layer_numbers",
+    "spin * radius**2 / viscosity if viscosity > 0.0",
+    "spin * radius / viscosity if viscosity > 0.0",
+)
 @kills(
     "fluid.numbers:layer_numbers", "np.sqrt(viscosity / spin) / fill.depth", "viscosity / spin / fill.depth"
 )

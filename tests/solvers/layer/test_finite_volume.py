@@ -11,6 +11,7 @@ import pytest
 from fluid import long_wave as lw
 from solvers.layer.face_flux import DRY
 from solvers.layer.finite_volume import GHOSTS, WORK, rates, solve_ring
+from solvers.layer.records import LOADS, Drive, LayerOutcome, Wall, records
 from solvers.layer.step import advance, scratch
 
 SPIN = 1.0
@@ -31,10 +32,12 @@ def circle(n: int, amplitude: float, radius: float) -> tuple[np.ndarray, np.ndar
 
 
 def run(
-    area: np.ndarray, q: np.ndarray, length: float, drive=(0.0, 0.0, 0.0, 1.0, 0.0), rub=(0.0, 0.0, 0.0, 0.0)
+    area: np.ndarray, q: np.ndarray, length: float, drive=(0.0, 0.0, 0.0, 1.0, 0.0), rub=(0, 0.0, 0.0, 0.0)
 ):  # type: ignore[no-untyped-def]
-    n, sums = area.size, np.empty(9)
-    return advance(area, q, 0.0, length, (*drive, SPIN), rub, angles(n), 0.8, 10**9, scratch(n), sums)
+    n, sums, whole = area.size, records(LOADS), Drive(*drive, SPIN)
+    outcome, steps = advance(area, q, 0.0, length, whole, Wall(*rub), angles(n), 0.8, 10**9, scratch(n), sums)
+    assert outcome == LayerOutcome.DONE
+    return steps
 
 
 def test_equilibria() -> None:
@@ -56,7 +59,7 @@ def test_a_million_steps_lose_no_mass() -> None:
     before, taken = area.sum(), 0
     while taken < 1_000_000:
         # Strong asynchronous whirl with a dry patch and bores.
-        steps = run(area, q, 20000.0, (0.1, -0.24, 100.0, 0.76, 0.0), (1.0, 0.02, 0.0, 0.0))
+        steps = run(area, q, 20000.0, (0.1, -0.24, 100.0, 0.76, 0.0), (1, 0.02, 0.0, 0.0))
         assert steps > 0
         taken += steps
         assert area.min() >= 0.0
@@ -121,7 +124,7 @@ def test_a_bore_under_a_whirl_leaves_no_ripples() -> None:
         area = np.full(n, 0.095)
         q = -SPIN * area**2
         drive = (0.005, -0.2356, 24.0, 0.7644, 0.0)
-        assert run(area, q, 600.0, drive, (1.0, 0.025, 0.0, 0.0)) > 0
+        assert run(area, q, 600.0, drive, (1, 0.025, 0.0, 0.0)) > 0
         assert np.abs(np.diff(area)).max() > 0.2 * np.ptp(area)
         variation = np.abs(np.diff(np.append(area, area[0]))).sum()
         assert variation == pytest.approx(2.0 * np.ptp(area), rel=1e-9)
@@ -197,9 +200,9 @@ def test_friction() -> None:
     n, area0, u0 = 32, 0.08, 0.05
     depth = 1.0 - math.sqrt(1.0 - 2.0 * area0)
     for law, coefficient, lid, kept in (
-        (1.0, 0.3, 0.0, math.exp(-0.3 * depth / area0 * 2.0)),
-        (2.0, 0.004, 5.0, math.exp(-0.004 * (1 + 5.0 * depth) / area0 * 2.0)),
-        (3.0, 0.5, 0.0, 1.0 / (1.0 + 0.5 * u0 / area0 * 2.0)),
+        (1, 0.3, 0.0, math.exp(-0.3 * depth / area0 * 2.0)),
+        (2, 0.004, 5.0, math.exp(-0.004 * (1 + 5.0 * depth) / area0 * 2.0)),
+        (3, 0.5, 0.0, 1.0 / (1.0 + 0.5 * u0 / area0 * 2.0)),
     ):
         area = np.full(n, area0)
         q = u0 * area - SPIN * area**2

@@ -12,6 +12,7 @@ from fluid import long_wave as lw
 from solvers.layer import face_flux, finite_volume
 from solvers.layer import loads as layer_loads
 from solvers.layer import step as forced_layer
+from solvers.layer.records import LOADS, Drive, LayerOutcome, Wall, records
 from tests.mutants import kills
 
 SPIN, PULL, TURNED = 1.0, 0.1, 0.4
@@ -247,16 +248,18 @@ def run(
     q: np.ndarray,
     length: float,
     drive: tuple[float, ...] = (0.0, 0.0, 0.0, 1.0, 0.0),
-    rub: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0),
+    rub: tuple[float, ...] = (0, 0.0, 0.0, 0.0),
     courant: float = 0.45,
 ) -> np.ndarray:
-    n, sums = area.size, np.empty(9)
-    spare, whole = forced_layer.scratch(n), (*drive, SPIN)
+    n, sums = area.size, records(LOADS)
+    spare, whole, wall = forced_layer.scratch(n), Drive(*drive, SPIN), Wall(*rub)
     first = layer_loads.offset(area, whole, angles(n), 0.0)
-    steps = forced_layer.advance(area, q, 0.0, length, whole, rub, angles(n), courant, 10**6, spare, sums)
-    assert steps > 0
+    outcome, steps = forced_layer.advance(
+        *(area, q, 0.0, length, whole, wall, angles(n), courant, 10**6, spare, sums)
+    )
+    assert outcome == LayerOutcome.DONE and steps > 0
     last = layer_loads.offset(area, whole, angles(n), length)
-    return layer_loads.means(sums, length, 2 * np.pi * area.mean(), drive[3], (first, last))
+    return layer_loads.means(sums[0], length, 2 * np.pi * area.mean(), drive[3], (first, last))
 
 
 @kills("solvers.layer.step:correct", "0.5 * (q[i] + next_q[i] + dt * rate_q[i])", "next_q[i]")
@@ -277,10 +280,10 @@ def test_steps() -> None:
 @kills("solvers.layer.step:wall_friction", "1.0 / (1.0 + rate * dt)", "1.0 - 2.0 * rate * dt")
 def test_friction() -> None:
     """A layer that turns as a whole slows down as each law says."""
-    for law, kept in ((1.0, np.exp(-0.3 * 0.2)), (3.0, 1 / (1 + 0.3 * 0.05 / 0.08 * 0.2))):
+    for law, kept in ((1, np.exp(-0.3 * 0.2)), (3, 1 / (1 + 0.3 * 0.05 / 0.08 * 0.2))):
         area = np.full(8, 0.08)
         q = 0.05 * area - SPIN * area**2
-        coefficient = 0.3 * (0.08 / (1 - np.sqrt(0.84)) if law == 1.0 else 1.0)
+        coefficient = 0.3 * (0.08 / (1 - np.sqrt(0.84)) if law == 1 else 1.0)
         run(area, q, 0.2, rub=(law, coefficient, 0.0, 0.0))
         np.testing.assert_allclose((q + SPIN * area**2) / area, 0.05 * kept, rtol=1e-10)
 
@@ -334,23 +337,31 @@ def test_synchronous() -> None:
 
 @kills("solvers.layer.loads:offset", "(1.0 + surface + surface * surface) / 3.0", "(1.0 + surface) / 2.0")
 @kills("solvers.layer.loads:offset", "lever @ angles[1])", "lever @ angles[0])")
-@kills("solvers.layer.loads:offset", "-1j * drive[1] * time", "1j * drive[1] * time")
+@kills("solvers.layer.loads:offset", "-1j * drive.slip * time", "1j * drive.slip * time")
 def test_offset() -> None:
     """A wet circle about a point is a full disc less one about that point, seen from the deflection."""
     n, amplitude, radius, time = 32, 0.1, 0.8, 0.7
     theta = middles(n) - 0.9
     surface = np.sqrt(radius**2 - (amplitude * np.sin(theta)) ** 2) - amplitude * np.cos(theta)
-    found = layer_loads.offset(0.5 * (1 - surface**2), (0.0, 0.3, 0.0, 1.0, 0.0, SPIN), angles(n), time)
+    found = layer_loads.offset(0.5 * (1 - surface**2), Drive(0.0, 0.3, 0.0, 1.0, 0.0, SPIN), angles(n), time)
     # The missing disc lies at -amplitude along 0.9.
     exact = amplitude * radius**2 / (1 - radius**2) * np.exp(1j * (0.9 - 0.3 * time))
     assert abs(found - exact) < 1e-12
 
 
-@kills("solvers.layer.step:_whirl", "amplitude * whirl * whirl * grown", "amplitude * whirl * grown")
+@kills(
+    "solvers.layer.step:_whirl",
+    "drive.amplitude * drive.whirl * drive.whirl * grown",
+    "drive.amplitude * drive.whirl * grown",
+)
 @kills("solvers.layer.step:_whirl", "time / ramp - np.sin", "time / ramp + np.sin")
-@kills("solvers.layer.step:_whirl", "- weight * np.cos(spin * time)", "+ weight * np.cos(spin * time)")
-@kills("solvers.layer.step:_whirl", "y * angles[1, i]", "x * angles[1, i]")
-@kills("solvers.layer.step:_whirl", "y * angles[3, i]", "y * angles[1, i]")
+@kills(
+    "solvers.layer.step:_whirl",
+    "- drive.weight * np.cos(drive.spin * time)",
+    "+ drive.weight * np.cos(drive.spin * time)",
+)
+@kills("solvers.layer.step:pull", "y * angles[1, i]", "x * angles[1, i]")
+@kills("solvers.layer.step:pull", "y * angles[3, i]", "y * angles[1, i]")
 def test_drive() -> None:
     """The ramp's growth, the push against the axis' acceleration, gravity downwards as the drum sees it."""
     slip, ramp, whirl, weight = -0.5, 3.0, 0.6, 0.2
@@ -359,11 +370,7 @@ def test_drive() -> None:
         grown = part - np.sin(2 * np.pi * part) / (2 * np.pi)
         force = 0.01 * whirl**2 * grown * np.exp(1j * slip * time) - 1j * weight * np.exp(-1j * SPIN * time)
         cell, face, ring = np.empty(5), np.empty(5), angles(5)
-        x, y = forced_layer._whirl(time, (0.01, slip, ramp, whirl, weight, SPIN), ring, cell, face)
+        x, y = forced_layer._whirl(time, Drive(0.01, slip, ramp, whirl, weight, SPIN), ring, cell, face)
         assert abs(complex(x, y) - force) < 1e-15
         np.testing.assert_allclose(cell, (force * np.exp(-1j * middles(5))).real, atol=1e-15)
         np.testing.assert_allclose(face, (force * np.exp(-1j * (middles(5) - np.pi / 5))).real, atol=1e-15)
-
-
-FACES, VOLUMES = "solvers.layer.face_flux", "solvers.layer.finite_volume"
-STEPS, LOADS, STAGES = "solvers.layer.step", "solvers.layer.loads", "solvers.layer.step"

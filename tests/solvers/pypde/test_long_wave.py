@@ -539,8 +539,8 @@ def test_manufactured_solution_with_linear_friction() -> None:
     check_manufactured()
 
 
-@kills("solvers.pypde.terms:march", "whirl.slip,\n        whirl.ramp", "-whirl.slip,\n        whirl.ramp")
-@kills("solvers.pypde.terms:march", "whirl.gravity / radius,", "whirl.gravity,")
+@kills("solvers.pypde.terms:march", "slip=whirl.slip", "slip=-whirl.slip")
+@kills("solvers.pypde.terms:march", "weight=whirl.gravity / radius", "weight=whirl.gravity")
 @kills("solvers.pypde.terms:march", "_lid(terms), _spread(terms, a))", "0.0, _spread(terms, a))")
 @kills("solvers.pypde.terms:_spread", "layer_log(a.mean())) ** 2", "layer_log(a.mean()))")
 def test_history_with_stokes_friction() -> None:

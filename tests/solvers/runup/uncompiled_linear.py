@@ -172,6 +172,3 @@ def test_inertia() -> None:
     inner = FILL.surface_radius
     assert layer.inertia == pytest.approx(0.5 * FILL.mass * (0.25**2 + inner**2), rel=1e-12)
     assert layer.curvature == pytest.approx((0.25 / inner) ** 2, rel=1e-12)
-
-
-STEP, SET = "solvers.runup.linear_kernel", "solvers.runup.linear"

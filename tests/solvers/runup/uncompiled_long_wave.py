@@ -13,13 +13,14 @@ from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers.layer import finite_volume
 from solvers.layer.loads import ring
+from solvers.layer.records import records
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.runup import kernel as coupled_layer
 from solvers.runup import kernel as coupled_parts
 from solvers.runup.long_wave import Coupled, couple
 from solvers.runup.machine import Outcome
-from solvers.runup.state import GAINS, LAYER, MEASURES, records
+from solvers.runup.state import GAINS, LAYER, MEASURES
 from tests.mutants import kills
 
 SPIN, TURNED = 2.0, 0.4
@@ -448,7 +449,3 @@ def test_small_parts() -> None:
     out = np.zeros(3)
     coupled_parts.flow_inertia(measures, layer, math.cos(0.6), math.sin(0.6), out)
     np.testing.assert_allclose(out, 3.0 * 0.25 * np.array([whole[0, 0], whole[0, 1], whole[1, 1]]))
-
-
-KERNEL, STEP, PARTS = "solvers.runup.kernel", "solvers.runup.kernel", "solvers.runup.kernel"
-STAGES, SET, OF_FILL = "solvers.layer.step", "solvers.runup.long_wave", "solvers.runup.chamber"

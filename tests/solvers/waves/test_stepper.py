@@ -130,7 +130,7 @@ def test_without_linear_part_it_is_the_classical_runge_kutta_method(method: str)
     assert done.spectrum[0] == pytest.approx(want, rel=1e-14)
 
 
-@kills("solvers.waves.exponential:phi_functions", "(two - 0.5) / large", "(two - 1.0) / large")
+@kills("solvers.waves.exponential:phi_functions", "(phi_2 - 0.5) / large", "(phi_2 - 1.0) / large")
 @kills("solvers.waves.exponential:phi_functions", "math.factorial(j + k)", "math.factorial(j)")
 def test_phi_functions() -> None:
     radii = np.array([0.0, 1e-9, 1e-3, 0.3, 0.999, 1.001, 3.0, 40.0, 500.0])
@@ -303,9 +303,11 @@ def test_a_rest_that_depends_on_time_alone_is_followed() -> None:
 
 
 @kills(
-    "solvers.waves.exponential:_end_weights", "one - 3.0 * two + 4.0 * three", "one - 3.0 * two + 2.0 * three"
+    "solvers.waves.exponential:_end_weights",
+    "phi_1 - 3.0 * phi_2 + 4.0 * phi_3",
+    "phi_1 - 3.0 * phi_2 + 2.0 * phi_3",
 )
-@kills("solvers.waves.exponential:_end_weights", "4.0 * three - two", "4.0 * three + two")
+@kills("solvers.waves.exponential:_end_weights", "4.0 * phi_3 - phi_2", "4.0 * phi_3 + phi_2")
 @kills(
     "solvers.waves.exponential:_cox_matthews", "0.5 * half * np.expm1(0.5 * z)", "half * np.expm1(0.5 * z)"
 )

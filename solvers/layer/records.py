@@ -1,0 +1,82 @@
+"""Named records that Python and compiled code share: what drives a layer, its loads, how its way ended.
+
+Numbers that change one by one stand in arrays of numpy's structured types, of length 1 where there is one of
+a kind; what stays is a tuple with names. Lengths over R, times in the unit of the spin.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import Any, NamedTuple
+
+import numpy as np
+
+# A `numpy.recarray`; its stubs forget the fields of what is picked from it.
+Record = Any
+
+
+def floats(*names: str) -> np.dtype[Any]:
+    """Structured type of floats with these names."""
+    return np.dtype([(name, np.float64) for name in names], align=True)
+
+
+def records(kind: np.dtype[Any], count: int = 1) -> Record:
+    """So many records of zeros."""
+    return np.zeros(count, kind).view(np.recarray)
+
+
+class Drive(NamedTuple):
+    """A prescribed whirl as the steps take it [theory: long_wave, eq. 8].
+
+    Parameters
+    ----------
+    amplitude : of the axis
+    slip : whirl speed seen from the drum
+    ramp : time over which the amplitude grows
+    whirl : whirl speed in space
+    weight : gravity across the axis
+    spin : Omega
+    """
+
+    amplitude: float
+    slip: float
+    ramp: float
+    whirl: float
+    weight: float
+    spin: float
+
+
+class Wall(NamedTuple):
+    """What the wall does to a layer.
+
+    Parameters
+    ----------
+    law, coefficient : of the friction, as from `fluid.friction.Friction.at`; rates in the unit of the spin
+    lid : 2 R/h_c, floor and lid under Stokes' friction
+    spread : square of the layer's L for the dispersive term, 0 without it
+    """
+
+    law: int
+    coefficient: float
+    lid: float
+    spread: float
+
+
+# Integrals over time: force by the pressure on the wall over rho h_c R^3, offset, turning, least and largest
+# depth, body force; x is along the deflection, y 90 deg ahead of it [theory: long_wave, eq. 7].
+LOADS = floats(
+    *("force_x", "force_y", "offset_x", "offset_y", "turning", "depth_min", "depth_max", "push_x", "push_y")
+)
+
+
+class LayerOutcome(IntEnum):
+    """How a layer's way through a time ended; compiled code knows it as well."""
+
+    DONE = 0
+    RAN_OUT = 1
+    AT_AXIS = 2
+
+    @property
+    def message(self) -> str:
+        """Why it went no further; empty where it came to its end."""
+        return ("", "the time steps ran out", "the surface came to the axis")[self]
