@@ -64,6 +64,43 @@ def _public(body: list[ast.stmt]) -> list[ast.FunctionDef | ast.ClassDef]:
     return found
 
 
+def test_no_folder_is_a_corridor() -> None:
+    """About a dozen modules a folder; validation has a file a case. The figures still have to be sorted."""
+    most = {"leblanc/figures": 19}
+    wide = {}
+    for name in ("meshes", "fluid", "solvers", "leblanc"):
+        for folder in {path.parent for path in (ROOT / name).rglob("*.py")}:
+            count = sum(path.name != "__init__.py" for path in folder.glob("*.py"))
+            if count > most.get(str(folder.relative_to(ROOT)), 14):
+                wide[str(folder.relative_to(ROOT))] = count
+    assert not wide
+
+
+def test_types_of_arrays_are_named_in_one_place() -> None:
+    """What meshes/arrays.py names has no second name."""
+
+    def named(path: Path) -> dict[str, str]:
+        """Names that a module gives to types of arrays, by their definition."""
+        found = {}
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            target = node.targets[0] if isinstance(node, ast.Assign) else getattr(node, "target", None)
+            value = getattr(node, "value", None)
+            if isinstance(target, ast.Name) and isinstance(value, ast.Subscript):
+                found[ast.unparse(value).removeprefix("npt.")] = target.id
+        return found
+
+    arrays = ROOT / "meshes" / "arrays.py"
+    assert "NDArray[np.float64]" in named(arrays)
+    twice = [
+        f"{path.relative_to(ROOT)}: {name}"
+        for path in _sources()
+        if path != arrays
+        for definition, name in named(path).items()
+        if definition in named(arrays)
+    ]
+    assert not twice
+
+
 def test_every_public_function_is_documented() -> None:
     bare = []
     for path in _sources():

@@ -6,13 +6,11 @@ from dataclasses import dataclass
 from itertools import combinations, pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from leblanc.results.response import RunResult, phase
 from leblanc.units import MM, RPM
-from meshes.arrays import Array, Flags
+from meshes.arrays import Array, Complex, Flags, Index
 
-Indices = NDArray[np.intp]
 Span = tuple[float, float]
 
 COLUMNS = 1500  # more than a printed page resolves
@@ -47,8 +45,8 @@ class Curves:
     stable: Flags
     branches: Array
     branch_stable: Flags
-    chain: Indices
-    reported: Indices
+    chain: Index
+    reported: Index
     dry_patch: list[Span]
     out_of_range: list[Span]
     not_converged: list[Span]
@@ -70,7 +68,7 @@ def lag_degrees(angle: Array, size: Array) -> Array:
     return np.where(size > 0.0, degrees, np.nan)
 
 
-def thin(curves: Array, columns: int) -> Indices:
+def thin(curves: Array, columns: int) -> Index:
     """Points that keep the look of all curves: ends, peaks and troughs of each column of the drawing.
 
     Parameters
@@ -118,7 +116,7 @@ def spans(x: Array, mask: Flags, limits: Span) -> list[Span]:
     return list(zip(left.tolist(), right.tolist(), strict=True))
 
 
-def link(branches: NDArray[np.complex128]) -> Indices:
+def link(branches: Complex) -> Index:
     """Number the continuous curves that a table of branches is made of.
 
     Branches are listed by rising amplitude, so a branch changes its column where a fold begins or ends. The
@@ -150,7 +148,7 @@ def link(branches: NDArray[np.complex128]) -> Indices:
     return chain
 
 
-def _matched(before: NDArray[np.complex128], now: NDArray[np.complex128]) -> tuple[Indices, Indices]:
+def _matched(before: Complex, now: Complex) -> tuple[Index, Index]:
     """Places in two ordered lists that belong together: all of the shorter one, moved as little as can be."""
     if len(before) > len(now):
         new, old = _matched(now, before)
@@ -161,18 +159,16 @@ def _matched(before: NDArray[np.complex128], now: NDArray[np.complex128]) -> tup
     return rows, np.array(best, dtype=np.intp)
 
 
-def _bounded(deflection: NDArray[np.complex128]) -> NDArray[np.complex128]:
+def _bounded(deflection: Complex) -> Complex:
     """Deflections with nan in place of the infinite ones, which no axis can hold."""
     return np.where(np.isfinite(deflection), deflection, complex(np.nan, np.nan))
 
 
-def _reported(
-    branches: NDArray[np.complex128], deflection: NDArray[np.complex128], chain: Indices
-) -> Indices:
+def _reported(branches: Complex, deflection: Complex, chain: Index) -> Index:
     """Curve on which the deflection reported lies, -1 where it lies on none, shape (p,)."""
     distance = np.abs(branches - deflection[:, None])
     on_it = distance <= 1e-6 * np.abs(deflection)[:, None]
-    number: Indices = np.max(np.where(on_it, chain, -1), axis=1, initial=-1)
+    number: Index = np.max(np.where(on_it, chain, -1), axis=1, initial=-1)
     return number
 
 

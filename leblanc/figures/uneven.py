@@ -9,15 +9,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from leblanc.results.chamber import FilledChamber
-from meshes.arrays import Array
+from meshes.arrays import Array, Complex
 from meshes.baffles import Baffles
 from meshes.chamber_section import ChamberSection
 from meshes.liquid_section import free_sides
-
-Ends = NDArray[np.complex128]
 
 RAYS = 721
 BISECTIONS = 60  # from the radius down to rounding
@@ -101,7 +98,7 @@ def _wall(chamber: FilledChamber, angle: Array) -> Array:
     return _outermost(nodes[:, :-1].ravel(), nodes[:, 1:].ravel(), angle)
 
 
-def _outermost(start: Ends, stop: Ends, angle: Array) -> Array:
+def _outermost(start: Complex, stop: Complex, angle: Array) -> Array:
     """Distance along each ray of the outermost of many straight sides, given by their ends x + i y, m."""
     turn = np.exp(-1j * angle)[:, None]
     one, other = start * turn, stop * turn

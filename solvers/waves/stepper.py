@@ -13,13 +13,11 @@ from functools import lru_cache
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshes.arrays import Array
+from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_positive
 from solvers.waves.exponential import Weights, find_method, step_weights
 
-Spectrum = NDArray[np.complex128]
 Status = Literal["finished", "step too small", "too many steps", "diverged"]
 
 # Greatest mean departure of a cubic from its parabola, 1/32 of its third divided difference, over b4 = 1/6.
@@ -43,15 +41,15 @@ class Split:
         field changes slowly allows longer steps
     """
 
-    symbol: Spectrum
-    nonlinear: Callable[[Spectrum, float], Spectrum]
+    symbol: Complex
+    nonlinear: Callable[[Complex, float], Complex]
     frame: float = 0.0
 
 
 class _Past(NamedTuple):
     """N at the start of the step before, brought to its end, and the length of that step."""
 
-    rest: Spectrum
+    rest: Complex
     step: float
 
 
@@ -93,7 +91,7 @@ class Advance:
     largest_error : of a step taken, estimated, over the field, both root mean squares
     """
 
-    spectrum: Spectrum
+    spectrum: Complex
     time: float
     status: Status
     steps: int
@@ -103,7 +101,7 @@ class Advance:
     largest_error: float
 
 
-def to_spectrum(values: Array) -> Spectrum:
+def to_spectrum(values: Array) -> Complex:
     """Fourier coefficients of a real field on evenly spaced points.
 
     Parameters
@@ -121,7 +119,7 @@ def to_spectrum(values: Array) -> Spectrum:
     return np.asarray(spectrum)
 
 
-def squared(spectrum: Spectrum, points: int) -> Spectrum:
+def squared(spectrum: Complex, points: int) -> Complex:
     """Spectrum of the square of a real field, free of aliases [theory: steppers, eq. 8].
 
     Parameters
@@ -141,8 +139,8 @@ def squared(spectrum: Spectrum, points: int) -> Spectrum:
 
 
 def _step(
-    split: Split, w: Weights, v: Spectrum, n1: Spectrum, t: float, h: float, past: _Past | None
-) -> tuple[Spectrum, Spectrum, float]:
+    split: Split, w: Weights, v: Complex, n1: Complex, t: float, h: float, past: _Past | None
+) -> tuple[Complex, Complex, float]:
     """Field and N at the end of a step, and its error over the field [theory: steppers, eq. 3, 10]."""
     middle, carried = w.half * v, w.full * v
     n2 = split.nonlinear(middle + w.a21 * n1, t + 0.5 * h)
@@ -161,7 +159,7 @@ def _step(
 
 
 def advance_fixed(
-    split: Split, spectrum: Spectrum, span: tuple[float, float], steps: int, method: str
+    split: Split, spectrum: Complex, span: tuple[float, float], steps: int, method: str
 ) -> Advance:
     """Advance a field by equal steps.
 
@@ -200,7 +198,7 @@ def advance_fixed(
 
 
 def advance_adaptive(
-    split: Split, spectrum: Spectrum, span: tuple[float, float], control: Control, method: str
+    split: Split, spectrum: Complex, span: tuple[float, float], control: Control, method: str
 ) -> Advance:
     """Advance a field by steps as long as the tolerance allows; the last one ends at the end of the span.
 
@@ -261,12 +259,12 @@ def _growth(error: float, before: float) -> float:
     return min(_GROW, max(_SHRINK, wanted))
 
 
-def _nothing_past(spectrum: Spectrum) -> _Past:
+def _nothing_past(spectrum: Complex) -> _Past:
     """A past so far away that it says nothing."""
     return _Past(np.zeros_like(spectrum), math.inf)
 
 
-def _relative(difference: Spectrum, v: Spectrum, end: Spectrum) -> float:
+def _relative(difference: Complex, v: Complex, end: Complex) -> float:
     """Root mean square of an error over that of the field; infinite where either is not finite."""
     error, size = _norm(difference), max(_norm(v), _norm(end))
     if not (math.isfinite(error) and math.isfinite(size)):
@@ -274,13 +272,13 @@ def _relative(difference: Spectrum, v: Spectrum, end: Spectrum) -> float:
     return error / size if size > 0.0 else 0.0
 
 
-def _norm(spectrum: Spectrum) -> float:
+def _norm(spectrum: Complex) -> float:
     """Root of the sum of squares over all modes, each but the mean standing for its conjugate too."""
     power = np.square(spectrum.real) + np.square(spectrum.imag)
     return math.sqrt(2.0 * float(power.sum()) - float(power[0]))
 
 
-def _first_step(v: Spectrum, n: Spectrum, span: float) -> float:
+def _first_step(v: Complex, n: Complex, span: float) -> float:
     """A hundredth of the time in which N alone would renew the field, at most a tenth of the span."""
     size, rate = _norm(v), _norm(n)
     return min(0.1 * span, 0.01 * size / rate) if size > 0.0 and rate > 0.0 else 1e-3 * span

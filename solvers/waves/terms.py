@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from fluid.kdv import KdvCoefficients, wave_frequency
+from meshes.arrays import Complex
 from meshes.errors import InputError, require_not_negative
-from solvers.waves.stepper import Spectrum, Split, squared
+from solvers.waves.stepper import Split, squared
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,7 @@ def wave_split(terms: WaveTerms, points: int, first_angle: float = 0.0) -> Split
     # -q sin(theta - s t) = Re(i q e^{i (theta - s t)}), as scaled by the transform.
     push = 0.5j * terms.forcing * points * np.exp(1j * first_angle)
 
-    def nonlinear(spectrum: Spectrum, t: float) -> Spectrum:
+    def nonlinear(spectrum: Complex, t: float) -> Complex:
         rate = steepen * squared(spectrum, points)
         rate[1] += push * np.exp(-1j * terms.whirl_speed * t)
         return np.asarray(rate)

@@ -29,7 +29,10 @@ def test_lags_stay_in_one_piece() -> None:
 def test_curves_have_their_units() -> None:
     """60 rpm are 2 pi rad/s, 1 m is 1000 mm; speeds may come in any order."""
     record = rig(41)
-    backwards = {name: getattr(record.response, name)[::-1] for name in vars(record.response)}
+    backwards = {
+        name: value[::-1] if isinstance(value, np.ndarray) else value
+        for name, value in vars(record.response).items()
+    }
     r = record.response
     drawn = curves.prepare(replace(record, response=type(r)(**backwards)))
     np.testing.assert_allclose(drawn.rpm, r.speed * 60.0 / (2.0 * math.pi), rtol=1e-15)

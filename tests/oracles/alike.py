@@ -1,0 +1,79 @@
+"""Two answers that must be alike: what each number of an answer measures, and how near it must be."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Any
+
+import numpy as np
+
+from tests.oracles.commands import numbers
+from tests.oracles.machines import LENGTH, MASS, RATIO, SPEED, TIME, factor
+
+# Exponents of length, mass and time of what the commands answer, by key.
+ANSWERED: dict[str, tuple[int, int, int]] = {
+    # run
+    "speed": SPEED, "amplitude": LENGTH, "amplitude_dry": LENGTH, "liquid_offset": LENGTH,
+    "dry_patch": RATIO, "stable": RATIO, "in_range": RATIO, "converged": RATIO,
+    "deflection": LENGTH, "branches": LENGTH, "branch_stable": RATIO, "liquid_mass": MASS,
+    "critical_speed_dry": SPEED, "critical_speed_wet": SPEED, "capture_speed": SPEED, "error_estimate": RATIO,
+    "growth": SPEED, "whirl_speed": SPEED, "whirl_bands": SPEED, "position": LENGTH, "backward": LENGTH,
+    "chamber_deflection": LENGTH, "natural_frequency": SPEED, "natural_damping_ratio": RATIO,
+    # map
+    "volume": (3, 0, 0), "edges": SPEED, "scene_volume": (3, 0, 0), "scene_edges": SPEED,
+    # volume
+    "optimal_volume": (3, 0, 0), "optimal_volume_fem": (3, 0, 0), "fem_error": RATIO,
+    "printed_eq18": (3, 0, 0), "corrected_eq18": (3, 0, 0), "surface_constant": LENGTH,
+    "unbalance_volume": (4, 0, 0), "unbalance_volume_fem": (4, 0, 0), "case": RATIO,
+    # layer
+    "force_ratio": RATIO, "offset": LENGTH, "mass_error": RATIO, "mean_rotation": SPEED, "theta": RATIO,
+    "depth": LENGTH,
+    # modes
+    "frequency": SPEED, "exact": SPEED, "damping": SPEED,
+    # runup
+    "time": TIME, "liquid_offset_mean": LENGTH, "depth_max": LENGTH, "depth_min": LENGTH,
+    "captured": RATIO,
+    # optimise
+    "value": LENGTH, "baseline": LENGTH, "feasible": RATIO,
+}  # fmt: skip
+
+# Numbers near zero are judged beside these.
+_BESIDE = {"backward": "deflection", "offset": "depth", "mean_rotation": "speed"}
+# Angles, each of a length: where that is nothing but rounding so is the angle.
+_ANGLES = {"phase": "amplitude", "liquid_angle": "liquid_offset", "liquid_angle_mean": "liquid_offset_mean"}
+# Rounding of a conserved sum: it is near zero, whatever the machine.
+_ROUNDING = ("mass_error",)
+
+
+def assert_alike(
+    found: dict[str, Any],
+    answer: dict[str, Any],
+    tolerance: float,
+    scales: tuple[float, float, float] = (1.0, 1.0, 1.0),
+    without: Collection[str] = (),
+) -> None:
+    """Every number of `answer`, scaled, stands in `found`, within `tolerance` of the largest of its kind."""
+    compared = [key for key in ANSWERED if key not in without and not isinstance(answer.get(key, ""), str)]
+    assert compared
+    for key in compared:
+        expected, number = numbers(answer[key]).astype(float), numbers(found[key]).astype(float)
+        expected = expected * factor(ANSWERED[key], scales)
+        assert number.shape == expected.shape, key
+        beside = numbers(answer.get(_BESIDE.get(key, key), answer[key])).astype(float)
+        sizes = np.abs(beside[np.isfinite(beside)])
+        largest = factor(ANSWERED[key], scales) * max(sizes.flat, default=0.0)
+        within = 1e-12 if key in _ROUNDING else tolerance * largest
+        np.testing.assert_allclose(number, expected, rtol=0.0, atol=within, err_msg=key)
+    for angle, length in _ANGLES.items():
+        if angle in answer and angle not in without:
+            expected = _complex(answer, angle, length) * factor(LENGTH, scales)
+            within = tolerance * np.nanmax(np.abs(expected))
+            number = _complex(found, angle, length)
+            np.testing.assert_allclose(number, expected, rtol=0.0, atol=within, err_msg=angle)
+    for key in ("model", "state"):
+        assert found.get(key) == answer.get(key)
+
+
+def _complex(answer: dict[str, Any], angle: str, length: str) -> np.ndarray:
+    """A length and its angle as one complex number."""
+    return numbers(answer[length]).astype(float) * np.exp(1j * numbers(answer[angle]).astype(float))

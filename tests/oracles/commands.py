@@ -1,0 +1,62 @@
+"""What the commands answer, as the JSON that scripts rely on, without their figures and reports."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+from typing import Any
+
+import numpy as np
+
+from leblanc.cli import main
+from leblanc.results.optimum import optimum_json
+from leblanc.results.response import run_json
+from leblanc.results.runup import runup_json
+from leblanc.results.whirl_map import map_json
+from leblanc.scene.scene import scene_from_table
+from leblanc.studies.optimise.optimise import optimise_scene
+from leblanc.studies.run import run_scene
+from leblanc.studies.runup import runup_scene
+from leblanc.studies.whirl_map import map_scene
+
+Answer = dict[str, Any]
+
+
+def run(table: dict[str, Any]) -> Answer:
+    return run_json(run_scene(scene_from_table(table)))
+
+
+def whirl_map(table: dict[str, Any], volumes: int = 4, speeds: int = 5) -> Answer:
+    return map_json(map_scene(scene_from_table(table), volumes, speeds))
+
+
+def optimum(table: dict[str, Any]) -> Answer:
+    return optimum_json(optimise_scene(scene_from_table(table), front=False))
+
+
+def runup(table: dict[str, Any]) -> Answer:
+    return runup_json(runup_scene(scene_from_table(table), check=False))
+
+
+def by_options(command: str, options: dict[str, Any]) -> Answer:
+    """A command that takes all it needs as options: layer, modes, volume."""
+    words = [command, "--json"]
+    for name, value in options.items():
+        words.append(f"--{name}")
+        if value is not True:
+            words.append(value if isinstance(value, str) else repr(value))
+    out, said = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(said):
+        code = main(words)
+    assert code == 0, said.getvalue()
+    return json.loads(out.getvalue())  # type: ignore[no-any-return]
+
+
+def numbers(values: Any) -> np.ndarray:
+    """Nested lists as an array, in one row where they differ in length; null is not a number."""
+    if isinstance(values, list | tuple):
+        parts = [numbers(one) for one in values]
+        even = len({part.shape for part in parts}) <= 1
+        return np.array(parts) if even else np.concatenate([part.ravel() for part in parts])
+    return np.array(np.nan if values is None else values)
