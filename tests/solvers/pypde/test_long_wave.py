@@ -438,7 +438,6 @@ def test_the_equation_can_be_copied() -> None:
 @pytest.mark.parametrize(
     ("change", "field"),
     [
-        ({"friction": (7, 0.0)}, "friction"),
         ({"spin_rate": math.inf}, "spin_rate"),
     ],
 )
