@@ -34,12 +34,12 @@ from leblanc.figures.page import (
 from leblanc.figures.page import FigureFiles as FigureFiles  # what a caller of this package needs
 from leblanc.figures.page import save as save
 from leblanc.figures.page import style as style
-from leblanc.figures.wave import WaveHistory, WaveRecord
+from leblanc.results.layer import Wave, WaveFrames
 from leblanc.results.record import StudyRecord
 from leblanc.units import MM, RPM
 
 Draw = Callable[[Axes, Curves, StudyRecord], None]
-DrawTime = Callable[[Axes, WaveRecord, WaveHistory], None]
+DrawTime = Callable[[Axes, Wave, WaveFrames], None]
 
 SPEED_FRAME = Frame(left=0.72, top=0.46, between=0.12, below=0.42)
 CHAMBER_FRAME = Frame(left=0.15, top=0.26, between=0.6, below=0.36)
@@ -120,7 +120,7 @@ def campbell_figure(record: StudyRecord) -> Figure:
     return figure
 
 
-def wave_figure(record: WaveRecord) -> Figure:
+def wave_figure(record: Wave) -> Figure:
     """The layer seen along the axis and its depth around the wall, in the frame of the deflection."""
     deepest = float(np.max(record.depth))
     factor = wave.depth_factor(record, max(deepest, record.mean_depth))
@@ -140,9 +140,9 @@ def wave_figure(record: WaveRecord) -> Figure:
     return figure
 
 
-def history_figure(record: WaveRecord, history: WaveHistory) -> Figure:
+def history_figure(record: Wave, history: WaveFrames) -> Figure:
     """Force, mean rotation and depths over time; the first two only if the history has periods."""
-    wave.require_room(record, history)
+    record.require_room(history)
     panels: list[tuple[float, DrawTime]] = [(1.2, wave_time.draw_depths)]
     text = "Largest and smallest depth around the wall."
     if history.period_time is not None:
@@ -172,7 +172,7 @@ def history_figure(record: WaveRecord, history: WaveHistory) -> Figure:
 
 
 def animate(
-    record: WaveRecord, history: WaveHistory, path: Path, drawn: Callable[[int, int], None] | None = None
+    record: Wave, history: WaveFrames, path: Path, drawn: Callable[[int, int], None] | None = None
 ) -> int:
     """Write the film of a wave, in the frame of the drum.
 
@@ -194,12 +194,12 @@ def animate(
     InputError : another kind of file, an .mp4 without an ffmpeg, a layer deeper than the wall's radius
     """
     require_film(path)
-    wave.require_room(record, history)
+    record.require_room(history)
     frames = wave.frames(record, history).tolist()
     return write_film(lambda: _film(record, history), frames, wave.FRAME_RATE, path, drawn)
 
 
-def _film(record: WaveRecord, history: WaveHistory) -> tuple[Figure, Callable[[int], None]]:
+def _film(record: Wave, history: WaveFrames) -> tuple[Figure, Callable[[int], None]]:
     """Figure of a film and what sets it to the time of an index."""
     with style():
         figure = Figure()

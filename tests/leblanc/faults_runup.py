@@ -7,19 +7,19 @@ from tests.leblanc import test_runup as oracle
 
 FAULTS: tuple[Fault, ...] = (
     Fault(
-        "leblanc.studies.runup",
+        "leblanc.results.runup",
         "self.history.deflection[:, 0] * np.exp(-1j * self.history.angle)",
         "self.history.deflection[:, 0] * np.exp(1j * self.history.angle)",
         oracle.check_dry_run,
     ),
     Fault(
-        "leblanc.studies.runup",
+        "leblanc.results.runup",
         "math.pi * np.maximum(1.0, np.ceil(",
         "math.pi * np.maximum(0.5, 0.5 * np.ceil(",
         oracle.check_turn_mean,
     ),
-    Fault("leblanc.studies.runup", "/ (2.0 * half))", "/ half)", oracle.check_turn_mean),
-    Fault("leblanc.studies.runup", "0.5 * (values[1:] + values[:-1])", "values[1:]", oracle.check_lines),
+    Fault("leblanc.results.runup", "/ (2.0 * half))", "/ half)", oracle.check_turn_mean),
+    Fault("leblanc.results.runup", "0.5 * (values[1:] + values[:-1])", "values[1:]", oracle.check_lines),
     Fault(
         "leblanc.studies.runup",
         "history.speed + history.mean_rotation[:, k]",
@@ -78,22 +78,22 @@ FAULTS: tuple[Fault, ...] = (
         '"liquid_angle": -np.angle(position)',
         oracle.check_json,
     ),
-    Fault("leblanc.studies.runup_film", "turn = np.exp(-1j", "turn = np.exp(1j", oracle.check_film),
-    Fault("leblanc.studies.runup_film", "np.angle(-turn)", "np.angle(turn)", oracle.check_pool),
+    Fault("leblanc.studies.runup_frames", "turn = np.exp(-1j", "turn = np.exp(1j", oracle.check_film),
+    Fault("leblanc.studies.runup_frames", "np.angle(-turn)", "np.angle(turn)", oracle.check_pool),
     Fault(
-        "leblanc.studies.runup_film",
+        "leblanc.studies.runup_frames",
         "1.0 - np.sqrt(np.maximum(1.0 - 2.0 * machine.area",
         "1.0 - np.sqrt(np.maximum(1.0 - machine.area",
         oracle.check_film,
     ),
     Fault(
-        "leblanc.studies.runup_film",
+        "leblanc.studies.runup_frames",
         "corners[1, k + 1] - corners[1, k]",
         "corners[1, k] - corners[1, k + 1]",
         oracle.check_film,
     ),
     Fault(
-        "leblanc.figures.runup_film",
+        "leblanc.results.drawing",
         "half - math.sin(half) * math.cos(half)",
         "half + math.sin(half) * math.cos(half)",
         oracle.check_pool,

@@ -24,8 +24,8 @@ def section_modes() -> None:
         uneven.check_modes_of_a_section(Path(folder))
 
 
-_SURFACES, _SCALE, _MARKS, _MODES = (f"study.view_{name}" for name in ("surfaces", "scale", "marks", "modes"))
-_BODIES, _WALLS, _SCENE = (f"study.view_{name}" for name in ("bodies", "walls", "scene"))
+_SURFACES, _SCALE, _BODIES = (f"leblanc.studies.shapes.{name}" for name in ("layer", "scale", "bodies"))
+_MARKS, _MODES, _WALLS, _SCENE = (f"leblanc.view.{name}" for name in ("parts", "modes", "walls", "scene"))
 
 FAULTS: tuple[Fault, ...] = (
     Fault(_SURFACES, "farthest**2 - (float(", "farthest**2 + (float(", shapes.check_volume),
@@ -43,7 +43,7 @@ FAULTS: tuple[Fault, ...] = (
         "chord(chamber.radius, -deflection, angle)",
         shapes.check_centre_of_mass,
     ),
-    Fault(_SURFACES, "np.cross(b, c))) / 6.0", "np.cross(b, c))) / 3.0", shapes.check_volume),
+    Fault("leblanc.results.shapes", "np.cross(b, c))) / 6.0", "np.cross(b, c))) / 3.0", shapes.check_volume),
     Fault(
         _SURFACES,
         "chamber.radius - depth[order]",
@@ -52,7 +52,7 @@ FAULTS: tuple[Fault, ...] = (
     ),
     Fault(_SURFACES, "np.divide(level - start", "np.divide(level + start", shapes.check_layer_and_pool),
     Fault(
-        _SURFACES,
+        "leblanc.results.drawing",
         "half - math.sin(half) * math.cos(half)",
         "half + math.sin(half) * math.cos(half)",
         shapes.check_layer_and_pool,
@@ -79,7 +79,10 @@ FAULTS: tuple[Fault, ...] = (
     Fault(_SCALE, "CLEAR * float(here.min())", "2.0 * float(here.min())", scale.check_wet_stays_wet),
     Fault(_SCALE, "return Scale(both, both)", "return Scale(1.0, both)", scale.check_dry_stays_dry),
     Fault(
-        "leblanc.view.still", "scale.deflection * found if", "found if", picture.check_liquid_fills_its_walls
+        "leblanc.studies.shapes.machine",
+        "scale.deflection * found if",
+        "found if",
+        picture.check_liquid_fills_its_walls,
     ),
     Fault(
         "leblanc.view.scene",
@@ -113,19 +116,19 @@ FAULTS: tuple[Fault, ...] = (
     ),
     Fault(_MARKS, "half, away = 0.5 * bar_length", "half, away = bar_length", picture.check_scale_bar),
     Fault(
-        "leblanc.studies.shapes",
+        "leblanc.studies.shapes.machine",
         "(high - low) / np.ptp(planes)",
         "(low - high) / np.ptp(planes)",
         picture.check_axis_of_the_drum,
     ),
     Fault(
-        "leblanc.studies.shapes",
+        "leblanc.studies.shapes.machine",
         "for place in (-0.5, 0.5)",
         "for place in (0.5, -0.5)",
         picture.check_lean_of_one_chamber,
     ),
     Fault(
-        "leblanc.studies.shapes",
+        "leblanc.studies.shapes.machine",
         "behind -= height",
         "behind -= 0.0 * height - behind",
         picture.check_chambers_apart,
@@ -196,7 +199,7 @@ FAULTS: tuple[Fault, ...] = (
     ),
     Fault(_MODES, "np.sqrt(1.0 + 2.0 * moved / away)", "(1.0 + 2.0 * moved / away)", section_modes),
     Fault(
-        _MODES,
+        "leblanc.studies.shapes.modes",
         "share[wall], share[surface] = 0.0, 1.0",
         "share[wall], share[surface] = 1.0, 1.0",
         section_modes,

@@ -192,7 +192,7 @@ def check_run_up_choice() -> None:
     record = runup_scene(tame, cells=64)
     # By the model below the tolerance, by the steps of 64 cells about as much again.
     assert record.model == "linear" and record.model_error <= 2.0 * tame.model.tolerance
-    assert "within the tolerance" in record.model_reason and record.model_reason in record.notes[0]
+    assert "within the tolerance" in record.model_reason and record.model_reason in record.notes[0].text
     other = runup_scene(asked(tame, "long_wave"), cells=64, check=False)
     a, b = record.history.amplitude, other.history.amplitude
     assert np.abs(a - b).max() <= record.model_error * b.max()

@@ -22,12 +22,13 @@ from leblanc.report import optimise as report_optimise
 from leblanc.report import runup as report_runup
 from leblanc.report import whirl_map as report_map
 from leblanc.report.page import about
+from leblanc.results.runup import RunupResult
 from leblanc.scene.scene import scene_from_table
 from leblanc.studies.exciter import ExciterRecord, exciter_json, run_exciter
 from leblanc.studies.optimise.constraints import Verdict
 from leblanc.studies.optimise.optimise import OptimumRecord, optimise_scene
 from leblanc.studies.run import run_scene
-from leblanc.studies.runup import RunupRecord, runup_scene
+from leblanc.studies.runup import runup_scene
 from leblanc.studies.whirl_map import StabilityRecord, map_scene
 from leblanc.text.models import MODELS
 from tests.leblanc.pages import Page, printed, read_page
@@ -306,7 +307,7 @@ def test_a_given_deflection_has_its_report() -> None:
 
 
 @cache
-def run() -> RunupRecord:
+def run() -> RunupResult:
     """Up and down, lying, so that its liquid is captured and let go."""
     return runup_scene(lying(runup={"start": 3.0, "stop": 30.0, "rate": 20.0, "back": True, "duration": 2.0}))
 
@@ -357,7 +358,7 @@ def check_runup_numbers() -> None:
     )
 
 
-def calm_run() -> RunupRecord:
+def calm_run() -> RunupResult:
     record = run()
     h = record.history
     all_the_time = np.ones_like(h.captured)
@@ -377,7 +378,7 @@ def check_runup_warnings() -> None:
     part[10:20] = True
     where = f"{h.time[10]:.3g} to {h.time[19]:.3g} s"
 
-    def with_history(**changes: Any) -> RunupRecord:
+    def with_history(**changes: Any) -> RunupResult:
         return replace(record, history=replace(h, **changes))
 
     audit = replace(h.audit, unbalance=1.0, support=0.99)

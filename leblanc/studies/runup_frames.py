@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
+from leblanc.results.runup import RunupFrames
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import Scene
-from leblanc.studies.runup import RunupRecord, drive_of, liquid_model, planned
-from meshes.arrays import Array, Complex
+from leblanc.studies.choose import across_gravity
+from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.runup.drive import Drive, Ramp, torque_curve
 from solvers.runup.long_wave import Coupled, couple, reading, switch
@@ -21,29 +21,6 @@ MOST_FRAMES = 2000
 _MOST = 200_000_000  # steps between two frames
 
 
-@dataclass(frozen=True)
-class Reel:
-    """What the frames of a film show; f frames, l chambers, c cells, everything in the drum frame.
-
-    Parameters
-    ----------
-    time, speed : s and rad/s, shape (f,)
-    deflection : complex, of each chamber's axis, m, shape (f, l)
-    amplitude : of the first of them, m, shape (f,)
-    theta : angle from the drum's zero mark of the cells, rad, shape (c,)
-    depth : of the layers, m, nan where the liquid is none, shape (f, l, c)
-    pool : angle of liquid that lies at the bottom, rad, shape (f,)
-    """
-
-    time: Array
-    speed: Array
-    deflection: Complex
-    amplitude: Array
-    theta: Array
-    depth: Array
-    pool: Array
-
-
 def require_layers(scene: Scene) -> None:
     """A film shows the layers cell by cell.
 
@@ -51,38 +28,46 @@ def require_layers(scene: Scene) -> None:
     ------
     InputError : the scene's liquid model has no cells
     """
-    if liquid_model(scene) == "linear":
+    if scene.model.liquid == "linear":
         raise InputError("model.liquid", "linear", "auto or long_wave for a film")
 
 
-def film(scene: Scene, record: RunupRecord, frames: int = FRAMES) -> Reel:
-    """Run a scene's run-up again and keep the layers [theory: coupling].
-
-    Parameters
-    ----------
-    scene : the machine
-    record : its run-up, whose end is the film's end
-    frames : how many times are kept, at least 2
+def require_frames(frames: int) -> None:
+    """A number of frames that a film can have.
 
     Raises
     ------
-    InputError : too few frames or too many
+    InputError : too few or too many
     """
     if not 2 <= frames <= MOST_FRAMES:
         raise InputError("frames", frames, f"from 2 to {MOST_FRAMES}")
-    drive, numerics = drive_of(planned(scene)), record.numerics
-    system, law = dry_rotor(scene).system(), (record.friction.law, record.friction.coefficient)
-    start = float(drive.corners()[1, 0])
-    machine = couple(system, scene.chambers, start, law, record.gravity, numerics.cells, numerics.dispersion)
+
+
+def runup_frames(scene: Scene, drive: Drive, numerics: RunupNumerics, time: Array) -> RunupFrames:
+    """The layers of a run-up at some times [theory: coupling].
+
+    Parameters
+    ----------
+    scene : the machine; its layers are long waves
+    drive, numerics : as in `solvers.runup.runup.run_up`
+    time : rising, the first one 0, s, shape (f,)
+
+    Returns
+    -------
+    RunupFrames; fewer where the run did not come to its end
+    """
+    law, start = scene.model.friction, float(drive.corners()[1, 0])
+    system, friction = dry_rotor(scene).system(), (law.law, law.coefficient)
+    gravity = across_gravity(scene)
+    machine = couple(system, scene.chambers, start, friction, gravity, numerics.cells, numerics.dispersion)
     machine.drive(torque_curve(drive), 0.0 if isinstance(drive, Ramp) else drive.inertia)
-    wanted = np.linspace(0.0, float(record.history.time[-1]), frames)
     rows = [_frame(machine)]
-    for begin, end in pairwise(wanted.tolist()):
+    for begin, end in pairwise(time.tolist()):
         if not _advance(machine, drive, begin, end, numerics):
             break
         rows.append(_frame(machine))
     table = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-    return Reel(**table, theta=np.arctan2(machine.machine.angles[1], machine.machine.angles[0]))
+    return RunupFrames(**table, theta=np.arctan2(machine.machine.angles[1], machine.machine.angles[0]))
 
 
 def _advance(machine: Coupled, drive: Drive, begin: float, end: float, numerics: RunupNumerics) -> bool:
@@ -110,7 +95,7 @@ def _rate(drive: Ramp, time: float) -> float:
 
 
 def _frame(machine: Coupled) -> dict[str, object]:
-    """One frame, by the names of `Reel`."""
+    """One frame, by the names of `RunupFrames`."""
     now = reading(machine)
     turn = np.exp(-1j * now["angle"])
     radius = np.array([[fill.chamber.radius] for fill in machine.fills]).reshape(-1, 1)
