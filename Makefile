@@ -17,7 +17,7 @@ test-slow: $(BIN)/.installed-test
 test-ross:
 	$(PYTHON) -m venv .venv-ross
 	.venv-ross/bin/python -m pip install --quiet --editable ".[test,ross]"
-	.venv-ross/bin/python -m pytest tests/solvers/test_ross_element.py
+	.venv-ross/bin/python -m pytest tests/solvers/test_ross.py
 
 lint: $(BIN)/.installed-lint
 	$(BIN)/ruff check .

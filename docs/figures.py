@@ -91,7 +91,7 @@ RECIPES = (
     _example("optimise", "runup", optimise_objective="objective"),
     _example("optimise", "washing_machine", "--objective", "peak", "--steady", optimise_front="front"),
     Recipe(
-        ("validation.tub_figures",),
+        ("validation.figures.tub",),
         (
             "tub_fig4_vertical",
             "tub_fig5_longitudinal",
@@ -101,11 +101,11 @@ RECIPES = (
             "tub_fig9_dampers_turned",
         ),
     ),
-    Recipe(("validation.two_plane_figures",), ("two_plane_balls",)),
-    Recipe(("validation.weak_motor",), ("runup_weak_motor",)),
-    Recipe(("validation.runup_lag",), ("runup_lag",)),
+    Recipe(("validation.figures.two_plane",), ("two_plane_balls",)),
+    Recipe(("validation.cases.weak_motor",), ("runup_weak_motor",)),
+    Recipe(("validation.figures.runup_lag",), ("runup_lag",)),
     Recipe(
-        ("validation.kept_figures",),
+        ("validation.figures.kept",),
         (
             "trade_runup",
             "trade_horizontal_rig",
@@ -143,10 +143,10 @@ RECIPES = (
         ("modes_baffles",),
         {"modes_baffles": "modes"},
     ),
-    Recipe(("validation.baffle_figures",), ("whirl_baffles",)),
-    Recipe(("validation.runup_trends",), ("runup_trends",), minutes=True),
+    Recipe(("validation.figures.baffles",), ("whirl_baffles",)),
+    Recipe(("validation.figures.runup_trends",), ("runup_trends",), minutes=True),
     Recipe(
-        ("validation.exciter_figures",),
+        ("validation.figures.exciter",),
         ("exciter_table", "exciter_start", "exciter_regression"),
         minutes=True,
     ),

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import LINEAR
+from fluid.friction import Friction, FrictionLaw
 from fluid.liquid import known_liquid
 from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
 from leblanc.units import RPM
@@ -34,7 +34,7 @@ UNBALANCE = 5e-4  # kg m
 CHAMBER = Chamber(radius=0.12, height=0.03)
 # A layer of a tenth of the radius; friction as of a chamber with baffles, 1/s.
 FILL = Fill(CHAMBER, known_liquid("water"), 0.19 * CHAMBER.capacity)
-FRICTION = (LINEAR, 6.0)
+FRICTION = Friction(FrictionLaw.LINEAR, 6.0)
 SPEEDS = np.linspace(50.0, 650.0, 301)  # rad/s
 SPINS = np.linspace(50.0, 650.0, 121)  # of the modes, rad/s
 BLUE, ORANGE = "#0072B2", "#D55E00"
@@ -249,7 +249,7 @@ def caption(model: Jeffcott) -> str:
         f"Flexible rotor of ROSS, shaft of 40 mm, {model.mass:.1f} kg modal mass at the drum in mid-span. "
         f"Liquid balancer: {1e3 * FILL.volume:.3f} l of water, R = {1e3 * CHAMBER.radius:.0f} mm, mean depth "
         f"{1e3 * FILL.depth:.0f} mm. Unbalance {1e6 * UNBALANCE:.0f} g mm. Linear theory of the layer, "
-        f"friction {FRICTION[1]:g} 1/s. Reduced: the Jeffcott rotor of the first bending mode. "
+        f"friction {FRICTION.coefficient:g} 1/s. Reduced: the Jeffcott rotor of the first bending mode. "
         "All values assumed."
     )
 

@@ -1,20 +1,85 @@
-"""Wall friction laws of a thin layer: rate at which the liquid's motion relative to the drum dies out.
+"""Friction of the liquid on its walls: laws for a thin layer, and the laminar layers under an oscillation.
 
-Lengths in units of the wall radius. The wall shear is tau/rho = k h u [theory: long_wave, eq. 9].
+The laws are in lengths of the wall radius; the wall shear is tau/rho = k h u [theory: long_wave, eq. 9].
+Outside the laminar layers the flow is plane, irrotational and free of divergence, with frequency sigma in the
+frame of the drum. These layers are thin beside the liquid.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from enum import StrEnum
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from meshes.arrays import Array
+from meshes.errors import InputError, require_not_negative
 
-NONE, LINEAR, STOKES, QUADRATIC = 0, 1, 2, 3
-# The laws by the names that users give them.
-LAWS = {"none": NONE, "linear": LINEAR, "stokes": STOKES, "quadratic": QUADRATIC}
+
+class FrictionLaw(StrEnum):
+    """How the wall's shear grows with the liquid's velocity in the drum, by the names that users give."""
+
+    NONE = "none"
+    LINEAR = "linear"
+    STOKES = "stokes"
+    QUADRATIC = "quadratic"
+
+    @property
+    def number(self) -> int:
+        """Place among the laws: compiled code knows them by it."""
+        return list(FrictionLaw).index(self)
+
+
+# The numbers of the laws, which compiled code compares.
+NONE, LINEAR, STOKES, QUADRATIC = (law.number for law in FrictionLaw)
+
+
+@dataclass(frozen=True)
+class Friction:
+    """Friction of the liquid on its chamber.
+
+    Parameters
+    ----------
+    law : a `FrictionLaw` or its name
+    coefficient : k for the linear law, 1/s; c_f for the quadratic one, a number; 0 for the others. Stokes'
+        (laminar) law takes the liquid's viscosity and the frequency of the motion, see `at`.
+
+    Raises
+    ------
+    InputError : no such law, a coefficient that is negative or not finite
+
+    Examples
+    --------
+    >>> Friction(FrictionLaw.LINEAR, 0.5).at(1e-6, 30.0, 0.25)
+    (1, 0.5)
+    """
+
+    law: FrictionLaw = FrictionLaw.NONE
+    coefficient: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.law not in list(FrictionLaw):
+            raise InputError("friction", self.law, "one of " + ", ".join(FrictionLaw))
+        require_not_negative("friction", self.coefficient)
+        object.__setattr__(self, "law", FrictionLaw(self.law))
+
+    def at(self, viscosity: float, frequency: float, radius: float) -> tuple[int, float]:
+        """Law and coefficient as `damping_rate` and compiled code take them [theory: long_wave, eq. 10].
+
+        Parameters
+        ----------
+        viscosity : of the liquid, nu, m^2/s
+        frequency : of the motion seen from the drum, s, rad/s; only the laminar law depends on it
+        radius : of the wall R, m
+        """
+        if self.law is not FrictionLaw.STOKES:
+            return self.law.number, self.coefficient
+        return self.law.number, float(stokes_coefficient(viscosity, frequency)) / radius
+
+
+NO_FRICTION = Friction()
 
 
 def damping_rate(law: int, coefficient: float, lid: float, depth: Any, area: Any, velocity: Any) -> Any:
@@ -24,18 +89,18 @@ def damping_rate(law: int, coefficient: float, lid: float, depth: Any, area: Any
 
     Parameters
     ----------
-    law : NONE, LINEAR, STOKES or QUADRATIC
-    coefficient : k for LINEAR, 1/s; sqrt(nu |s|/2)/R for STOKES, 1/s; c_f for QUADRATIC
-    lid : 2 R/h_c, floor and lid for STOKES; 0 without them
+    law : number of the `FrictionLaw`
+    coefficient : k of the linear law, 1/s; sqrt(nu |s|/2)/R of Stokes', 1/s; c_f of the quadratic one
+    lid : 2 R/h_c, floor and lid for Stokes' law; 0 without them
     depth : h/R
     area : A/R^2 > 0
     velocity : u, in units that make c_f |u| a rate
     """
-    if law == 1:
+    if law == LINEAR:
         return coefficient * depth / area
-    if law == 2:
+    if law == STOKES:
         return coefficient * (1.0 + lid * depth) / area
-    if law == 3:
+    if law == QUADRATIC:
         return coefficient * np.abs(velocity) / area
     return 0.0 * area
 
@@ -50,3 +115,75 @@ def stokes_coefficient(viscosity: ArrayLike, frequency: ArrayLike) -> Array:
     """
     squared = 0.5 * np.asarray(viscosity, dtype=float) * np.abs(np.asarray(frequency, dtype=float))
     return np.asarray(np.sqrt(squared))
+
+
+def layer_thickness(viscosity: ArrayLike, frequency: ArrayLike) -> Array:
+    """Thickness of an oscillating layer, sqrt(2 nu/|sigma|), m [theory: sloshing, eq. 19].
+
+    Parameters
+    ----------
+    viscosity : nu, m^2/s, shape (...,)
+    frequency : sigma, rad/s, not 0, shape (...,)
+    """
+    return np.asarray(np.sqrt(2.0 * np.asarray(viscosity, dtype=float) / np.abs(frequency)))
+
+
+def plate_drags(viscosity: ArrayLike, frequency: ArrayLike, spin: ArrayLike) -> tuple[Array, Array]:
+    """Shear over velocity on floor and lid for the two circles of an oscillation e^{-i sigma t}, m/s.
+
+    sqrt(nu |2 Omega - sigma|/2) for the circle that goes round as e^{-i sigma t} and sqrt(nu |2 Omega +
+    sigma|/2) for the other [theory: sloshing, eq. 21].
+
+    Parameters
+    ----------
+    viscosity : nu, m^2/s, shape (...,)
+    frequency : sigma in the frame of the drum, rad/s, shape (...,)
+    spin : Omega, rad/s; 0 for the plain layers without Coriolis force, shape (...,)
+    """
+    sigma, twice = np.asarray(frequency, dtype=float), 2.0 * np.asarray(spin, dtype=float)
+    return stokes_coefficient(viscosity, twice - sigma), stokes_coefficient(viscosity, twice + sigma)
+
+
+def edge_weight(distance: ArrayLike, thickness: ArrayLike) -> Array:
+    """Share of the squared outer velocity that counts near the edge of a thin baffle, d/(d + delta).
+
+    The outer velocity grows as d^(-1/2) towards the edge and its square has no integral. A layer cannot
+    follow it nearer than its own thickness [theory: sloshing, eq. 23].
+
+    Parameters
+    ----------
+    distance : d from the edge, m, shape (...,); inf without an edge
+    thickness : delta of the layer, m, above 0, shape (...,)
+    """
+    return np.asarray(1.0 / (1.0 + np.asarray(thickness, dtype=float) / np.asarray(distance, dtype=float)))
+
+
+def decay_rate(
+    wall: ArrayLike,
+    kinetic: ArrayLike,
+    sense: ArrayLike,
+    potential: ArrayLike,
+    height: float,
+    drags: tuple[ArrayLike, ArrayLike, ArrayLike],
+) -> Array:
+    """Rate at which the amplitude of a mode decays: loss of energy over twice the energy.
+
+    [g w + (g_1 (k + c) + g_2 (k - c))/h]/(k + b) [theory: sloshing, eq. 22].
+
+    Parameters
+    ----------
+    wall : w = oint |d psi/dn|^2 ds on all walls, m^3/s^2, shape (...,)
+    kinetic : k = int |grad psi|^2, m^4/s^2, shape (...,)
+    sense : c = Im oint psi* psi_theta dtheta on the free surface, m^4/s^2, shape (...,)
+    potential : b = (Omega/sigma)^2 oint |psi_theta|^2 dtheta, m^4/s^2, shape (...,)
+    height : of the chamber, m; inf leaves floor and lid out
+    drags : g on the walls; g_1 and g_2 of `plate_drags`, m/s, shape (...,)
+
+    Returns
+    -------
+    1/s, shape (...,)
+    """
+    g, first, second = (np.asarray(drag, dtype=float) for drag in drags)
+    k, c = np.asarray(kinetic, dtype=float), np.asarray(sense, dtype=float)
+    lost = g * wall + (first * (k + c) + second * (k - c)) / height
+    return np.asarray(lost / (k + potential))

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fluid.fill import FULL, Fill
-from fluid.friction import LINEAR, STOKES, damping_rate
+from fluid.friction import LINEAR, STOKES, Friction, FrictionLaw, damping_rate
 from meshes.arrays import Array, Complex
 
 
@@ -36,7 +36,7 @@ class Layer:
     stokes: float
 
 
-def plane_layer(fill: Fill, friction: tuple[int, float]) -> Layer | None:
+def plane_layer(fill: Fill, friction: Friction) -> Layer | None:
     """Layer of a fill under a law of friction; None without liquid or without a free surface.
 
     Quadratic friction damps in proportion to the motion, so it is no friction to an infinitesimal whirl.
@@ -44,7 +44,7 @@ def plane_layer(fill: Fill, friction: tuple[int, float]) -> Layer | None:
     Parameters
     ----------
     fill : chamber and liquid
-    friction : law of `fluid.friction` and its coefficient; the laminar law takes the liquid's viscosity
+    friction : the laminar law takes the liquid's viscosity
     """
     radius = fill.chamber.radius
     if fill.volume == 0.0 or is_full(fill):
@@ -53,9 +53,9 @@ def plane_layer(fill: Fill, friction: tuple[int, float]) -> Layer | None:
     film = fill.volume / (math.pi * fill.chamber.height) / radius**2
     rate, stokes = 0.0, 0.0
     depth, area, lid = fill.depth / radius, 0.5 * film, 2.0 * radius / fill.chamber.height
-    if friction[0] == LINEAR:
-        rate = float(damping_rate(LINEAR, friction[1], 0.0, depth, area, 0.0))
-    elif friction[0] == STOKES:
+    if friction.law is FrictionLaw.LINEAR:
+        rate = float(damping_rate(LINEAR, friction.coefficient, 0.0, depth, area, 0.0))
+    elif friction.law is FrictionLaw.STOKES:
         shear = math.sqrt(fill.liquid.viscosity) / radius
         stokes = float(damping_rate(STOKES, shear, lid, depth, area, 0.0))
     return Layer(fill.mass, film / (2.0 - film), rate, stokes)

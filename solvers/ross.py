@@ -19,17 +19,14 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import make_interp_spline
 
 from fluid.fill import Fill
-from fluid.friction import NONE
+from fluid.friction import NO_FRICTION, Friction
 from fluid.whirl import offset_with_friction, plane_layer, stokes_rate, wave_function
 from meshes.arrays import Array, Complex
-from meshes.errors import InputError, require_not_negative
+from meshes.errors import InputError
 
 if TYPE_CHECKING:
     from ross import BearingElement, PointMass
 
-Friction = tuple[int, float]
-
-NO_FRICTION: Friction = (NONE, 0.0)
 # Axial frequency of the liquid between the chamber's ends, over the highest spin: out of every analysis' way.
 _AXIAL = 10.0
 _ROTATION = np.array([[0.0, 1.0], [-1.0, 0.0]])  # as a matrix, what -i is to x + i y
@@ -77,7 +74,7 @@ def dynamic_stiffness(
     fill : chamber and liquid
     spin : Omega, rad/s, shape (...,)
     whirl_speed : omega in the standing frame, rad/s, negative against the spin, shape (...,)
-    friction : law of `fluid.friction` and its coefficient; a quadratic one is none to a small whirl
+    friction : a quadratic one is none to a small whirl
 
     Returns
     -------
@@ -85,10 +82,9 @@ def dynamic_stiffness(
 
     Raises
     ------
-    InputError : a speed that is not finite, a negative friction, a whirl at a free wave without friction
+    InputError : a speed that is not finite, a whirl at a free wave without friction
     """
     omega, w = np.broadcast_arrays(_finite("spin", spin), _finite("whirl_speed", whirl_speed))
-    require_not_negative("friction", friction[1])
     layer = plane_layer(fill, friction)
     if layer is None:
         return np.asarray(-fill.mass * np.square(w), dtype=complex)
@@ -152,10 +148,9 @@ def liquid_link(fill: Fill, spin: ArrayLike, friction: Friction = NO_FRICTION) -
 
     Raises
     ------
-    InputError : a chamber without a free surface, a spin that is not finite, another or a negative friction
+    InputError : a chamber without a free surface, a spin that is not finite, another friction
     """
     omega = np.atleast_1d(_finite("spin", spin))
-    require_not_negative("friction", friction[1])
     layer = plane_layer(fill, friction)
     if layer is None:
         raise InputError("volume", fill.volume, "above 0 and less than full: a full chamber is a point mass")

@@ -360,7 +360,7 @@ def test_kept_measurements_are_those_that_the_page_tables(tmp_path: Path) -> Non
 
 
 def test_kept_comparisons_are_read_as_they_were_written() -> None:
-    from validation.kept_figures import PICTURED, kept_trade
+    from validation.figures.kept import PICTURED, kept_trade
     from validation.trade import kept
     from validation.trade.results import trade_json
 

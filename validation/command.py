@@ -9,7 +9,7 @@ import typer
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from validation.case import Case
+    from validation.cases.case import Case
 
 GROUPS = (
     *("errata", "optimal_volume", "vector_model", "horizontal_rig", "vertical_rig", "layer", "whirl", "tub"),
@@ -59,14 +59,14 @@ def all_cases(group: str | None = None) -> list[Case]:
 
 def _group(name: str) -> Callable[[], list[Case]]:
     """The function that computes a group."""
-    from validation import (
+    from validation.cases import (
         errata,
         exciter,
         fill_sweep,
         horizontal_rig,
         layer,
         optimal_volume,
-        runup_given,
+        runup,
         tub,
         two_plane,
         vector_model,
@@ -85,7 +85,7 @@ def _group(name: str) -> Callable[[], list[Case]]:
         "tub": tub.cases,
         "two_plane": two_plane.cases,
         "exciter": exciter.cases,
-        "runup": runup_given.cases,
+        "runup": runup.cases,
         "fill_sweep": fill_sweep.cases,
     }[name]
 

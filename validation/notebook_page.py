@@ -11,7 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, get_args
 
-from validation.case import Case, Value, Verdict
+from validation.cases.case import Case, Value, Verdict
 
 if TYPE_CHECKING:
     from leblanc.figures.page import Figure

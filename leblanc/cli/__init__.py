@@ -40,6 +40,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     -------
     exit code: 0 done, 1 nobody reads the output, 2 wrong input, 3 a solver did not converge, 130 interrupted
     """
+    # A user's own pickle.py in the current folder is not for the processes that are started from here.
+    os.environ.setdefault("PYTHONSAFEPATH", "1")
     given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
     return exit_code(lambda: get_command(app).main(given, prog_name="leblanc", standalone_mode=False))
 

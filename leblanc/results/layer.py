@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from leblanc.friction import Friction
 from leblanc.results.base import Result
 from leblanc.results.netcdf import dataset, variable
 from leblanc.results.notes import Note, NoteCode, texts
@@ -24,7 +23,6 @@ from solvers.layer.prescribed import LayerHistory
 if TYPE_CHECKING:
     from leblanc.results.netcdf import Dataset
 
-NO_FRICTION = Friction("none", 0.0)
 FEWEST = 3  # angles of a wave
 SLACK = 1e-9  # rounding of a depth, over the radius
 _POINTS = 360

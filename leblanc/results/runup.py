@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.friction import Friction, friction_words
+from fluid.friction import Friction
+from leblanc.friction import friction_words
 from leblanc.results.base import Result
 from leblanc.results.netcdf import dataset, flags, variable, write_dataset
 from leblanc.results.notes import Note, texts

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from leblanc.friction import Friction, friction_words
+from fluid.friction import Friction
+from leblanc.friction import friction_words
 from leblanc.results.notes import Note, NoteCode, percent
 from leblanc.results.record import peak
 from leblanc.units import MM, RPM

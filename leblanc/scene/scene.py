@@ -10,7 +10,7 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 from fluid.fill import Fill
-from leblanc.friction import Friction
+from fluid.friction import Friction
 from leblanc.scene.load import check_table, read_scene
 from leblanc.scene.optimise import Aim, aim_of
 from leblanc.scene.rotors import AnyRotor, rotor_from_table

@@ -14,7 +14,6 @@ from leblanc.scene.machine import jeffcott
 from leblanc.scene.scene import Rotor, Scene
 from leblanc.studies.choose import axial_gravity, choose_all
 from leblanc.studies.run import run_scene
-from leblanc.studies.whirl_map import solver_friction
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.synchronous.planar import machine_responses
@@ -101,7 +100,7 @@ def _planar(scenes: Sequence[Scene]) -> Answers:
     choices = choose_all(scenes)
     speed = np.stack([scene.speed_array() for scene in scenes]).ravel()
     owner = np.repeat(np.arange(len(scenes)), shape[1])
-    frictions = [solver_friction(scene.model.friction) for scene in scenes]
+    frictions = [scene.model.friction for scene in scenes]
     growth, whirl_speed = machines_growth(machines, frictions, owner, speed)
     model = np.concatenate([choice.models for choice in choices])
     found: dict[str, Any] = {

@@ -10,11 +10,9 @@ import numpy as np
 
 from fluid import kdv, waves
 from fluid.fill import Fill
-from fluid.friction import damping_rate
-from leblanc.friction import Friction
+from fluid.friction import NO_FRICTION, Friction, damping_rate
 from leblanc.results import layer as notes_of
 from leblanc.results.layer import (
-    NO_FRICTION,
     LayerCase,
     LayerPeriodsResult,
     LayerResult,
@@ -29,7 +27,7 @@ from leblanc.studies.validity import judge
 from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.layer.prescribed import LayerHistory, Numerics, Whirl
-from solvers.layer.settle import film, friction_law, settle, simulate
+from solvers.layer.settle import film, settle, simulate
 from solvers.statics.hydrostatics import equilibrium
 
 MOST_CELLS = 600  # around; the matrices of the free surface are dense
@@ -145,8 +143,7 @@ def layer_history(
     if model != "long_wave":
         raise InputError("--model", model, "long_wave where a --duration is given")
     whirl = Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity)
-    law = friction_law(friction.law, friction.coefficient, fill, whirl)
-    history = simulate(fill, whirl, duration, law, numerics)
+    history = simulate(fill, whirl, duration, friction, numerics)
     validity = long_wave_validity(fill, whirl, history)
     return LayerPeriodsResult(
         _case(fill, whirl, model), history, long_wave_notes(fill, history, validity), validity
@@ -192,10 +189,9 @@ def _film_from_rest(
     fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics, duration: float
 ) -> WaveFrames:
     """Long waves from rest."""
-    law = friction_law(friction.law, friction.coefficient, fill, whirl)
     # Eight pictures at least while the deflection turns once, and enough for a smooth film.
     frames = int(np.clip(8.0 * duration / whirl.period, 120, 2000))
-    shots = film(fill, whirl, frames, duration / whirl.period, law, numerics)
+    shots = film(fill, whirl, frames, duration / whirl.period, friction, numerics)
     return WaveFrames(time=shots.time, theta=shots.theta, depth=shots.depth, deflection=shots.deflection)
 
 
@@ -219,7 +215,7 @@ def steady_film(answer: LayerResult, whirl: Whirl, duration: float) -> WaveFrame
 def long_wave_answer(fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics) -> LayerResult:
     """Nonlinear long waves, settled [theory: long_wave, eq. 4]."""
     chamber, surface = fill.chamber, fill.surface_radius
-    history = settle(fill, whirl, friction_law(friction.law, friction.coefficient, fill, whirl), numerics)
+    history = settle(fill, whirl, friction, numerics)
     answered = history.force_ratio.size > 0
     validity = long_wave_validity(fill, whirl, history)
     notes = long_wave_notes(fill, history, validity)
@@ -325,7 +321,7 @@ def _friction_rate(fill: Fill, whirl: Whirl, friction: Friction) -> float:
     if friction.law == "quadratic":
         raise InputError("--friction", friction.law, "none, stokes or linear for one family of waves")
     radius = fill.chamber.radius
-    law, coefficient = friction_law(friction.law, friction.coefficient, fill, whirl)
+    law, coefficient = friction.at(fill.liquid.viscosity, whirl.slip, radius)
     area = fill.volume / (2.0 * math.pi * fill.chamber.height * radius**2)
     lid = 2.0 * radius / fill.chamber.height
     return float(damping_rate(law, coefficient, lid, fill.depth / radius, area, 0.0))

@@ -14,7 +14,7 @@ from leblanc.scene.machine import jeffcott as jeffcott
 from leblanc.scene.rows import input_rows
 from leblanc.scene.scene import Rotor, Scene, TubRotor
 from leblanc.studies.choose import Choice, axial_gravity, choose
-from leblanc.studies.whirl_map import small_whirl_friction, solver_friction
+from leblanc.studies.whirl_map import small_whirl_friction
 from leblanc.text.models import fidelity_notes
 from leblanc.units import ML, MM, RPM
 from meshes.arrays import Complex
@@ -44,7 +44,7 @@ def self_excited(scene: Scene) -> SelfExcited:
     scene : the machine; its friction acts in the liquid
     """
     system, speed = dry_rotor(scene).system(), scene.speed_array()
-    friction = solver_friction(scene.model.friction)
+    friction = scene.model.friction
     growth, whirl_speed = asynchronous_growth(system, scene.chambers, speed, friction)
     bands: tuple[tuple[float, float], ...] = ()
     if speed[-1] > speed[0]:

@@ -23,7 +23,6 @@ from leblanc.studies.choose import across_gravity as across_gravity  # of a run-
 from leblanc.studies.choose import axial_gravity
 from leblanc.studies.runup_frames import require_frames, require_layers, runup_frames
 from leblanc.studies.validity import RANGES
-from leblanc.studies.whirl_map import solver_friction
 from leblanc.units import ML, MM, RPM
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
@@ -140,8 +139,7 @@ def chosen_run(
     InputError : the scene asks for a model that does not go through time
     """
     model, tolerance = liquid_model(scene), scene.model.tolerance
-    system, law = dry_rotor(scene).system(), scene.model.friction
-    friction = (law.law, law.coefficient)
+    system, friction = dry_rotor(scene).system(), scene.model.friction
 
     def run(name: str, resolved: RunupNumerics, report: Progress) -> RunupHistory:
         return run_up(system, scene.chambers, drive, friction, gravity, resolved, report, name)
@@ -375,7 +373,7 @@ def whirl_bands(scene: Scene, speed: Array) -> Bands:
     passed = _passed(speed, BAND_SPEEDS)
     if not scene.chambers or passed.size == 0:
         return ()
-    system, friction = dry_rotor(scene).system(), solver_friction(scene.model.friction)
+    system, friction = dry_rotor(scene).system(), scene.model.friction
     return unstable_bands(system, [scene.chambers], passed, friction)[0]
 
 

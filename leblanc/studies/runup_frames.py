@@ -56,8 +56,8 @@ def runup_frames(scene: Scene, drive: Drive, numerics: RunupNumerics, time: Arra
     -------
     RunupFrames; fewer where the run did not come to its end
     """
-    law, start = scene.model.friction, float(drive.corners()[1, 0])
-    system, friction = dry_rotor(scene).system(), (law.law, law.coefficient)
+    start = float(drive.corners()[1, 0])
+    system, friction = dry_rotor(scene).system(), scene.model.friction
     gravity = across_gravity(scene)
     machine = couple(system, scene.chambers, start, friction, gravity, numerics.cells, numerics.dispersion)
     machine.drive(torque_curve(drive), 0.0 if isinstance(drive, Ramp) else drive.inertia)

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import LAWS
+from fluid.friction import Friction
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
-from leblanc.friction import Friction, friction_words
+from leblanc.friction import friction_words
 from leblanc.scene.machine import dry_rotor, jeffcott
 from leblanc.scene.scene import Rotor, Scene
 from leblanc.studies.validity import RANGES
@@ -88,16 +88,16 @@ def map_scene(
     _check(scene, volumes, speeds)
     law = scene.model.friction if friction is None else friction
     speed = np.linspace(scene.speeds.start, scene.speeds.stop, speeds)
-    system, pair = dry_rotor(scene).system(), solver_friction(law)
+    system = dry_rotor(scene).system()
     rows = fills_over_volume(scene.chambers, volumes, max_volume)
     parts = []
     for first in range(0, volumes, _AT_ONCE):
-        parts.append(growth_map(system, rows[first : first + _AT_ONCE], speed, pair))
+        parts.append(growth_map(system, rows[first : first + _AT_ONCE], speed, law))
         if progress is not None:
             progress(min(first + _AT_ONCE, volumes), volumes)
     growth, whirl_speed = (np.concatenate([one[k] for one in parts]) for k in (0, 1))
-    edges = unstable_bands(system, rows, speed, pair, growth)
-    (own,) = unstable_bands(system, [scene.chambers], speed, pair)
+    edges = unstable_bands(system, rows, speed, law, growth)
+    (own,) = unstable_bands(system, [scene.chambers], speed, law)
     held = np.array([_held(scene, fills, speed) for fills in rows])
     pairs = zip(rows, whirl_speed - speed, strict=True)
     thin = np.array([_thin_layers(fills, slip) for fills, slip in pairs]) | (law.law != "stokes")
@@ -128,11 +128,6 @@ def _check(scene: Scene, volumes: int, speeds: int) -> None:
         raise InputError("speeds.stop", scene.speeds.stop, "above speeds.start for a map")
     if not scene.chambers:
         raise InputError("chambers", "none", "at least one for a map over volume")
-
-
-def solver_friction(friction: Friction) -> tuple[int, float]:
-    """Law and coefficient as the solvers take them."""
-    return LAWS[friction.law], friction.coefficient
 
 
 def small_whirl_friction(friction: Friction) -> str:

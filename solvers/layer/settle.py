@@ -11,9 +11,9 @@ from dataclasses import replace
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import LAWS, NONE, STOKES, stokes_coefficient
+from fluid.friction import NO_FRICTION, Friction, FrictionLaw
 from meshes.arrays import Complex
-from meshes.errors import InputError, require_positive
+from meshes.errors import require_positive
 from solvers.layer.prescribed import LayerFilm, LayerHistory, Numerics, Whirl
 from solvers.layer.state import MovingLayer, depth, settle_statics, start
 
@@ -26,7 +26,7 @@ def simulate(
     fill: Fill,
     whirl: Whirl,
     duration: float,
-    friction: tuple[int, float] = (NONE, 0.0),
+    friction: Friction = NO_FRICTION,
     numerics: Numerics | None = None,
 ) -> LayerHistory:
     """Layer from rest in the drum, uniform, whirl period by whirl period.
@@ -36,7 +36,7 @@ def simulate(
     fill : chamber and liquid, with some liquid and a free surface
     whirl : what drives it
     duration : s; whole periods within it are answered, at least one
-    friction : law of `fluid.friction` and coefficient: k, 1/s, or c_f
+    friction : on the wall; the laminar law takes the frequency of the whirl seen from the drum
     numerics : resolution
 
     Returns
@@ -62,7 +62,7 @@ def simulate(
 def settle(
     fill: Fill,
     whirl: Whirl,
-    friction: tuple[int, float] = (NONE, 0.0),
+    friction: Friction = NO_FRICTION,
     numerics: Numerics | None = None,
 ) -> LayerHistory:
     """Layer whose force no longer changes from one stretch of whirl periods to the next.
@@ -93,7 +93,7 @@ def settle(
         if layer.periods(math.ceil(whirl.ramp / whirl.period)) is None:
             return _history(layer, [])
     # Without friction free waves never die: the means carry what little the ramp has stirred.
-    settled = _SETTLED if friction[0] != NONE else 10.0 * _SETTLED
+    settled = 10.0 * _SETTLED if friction.law is FrictionLaw.NONE else _SETTLED
     rows: list[Complex] = []
     total = 0
     while total < _PERIODS and layer.time < _TURNS:
@@ -115,7 +115,7 @@ def film(
     whirl: Whirl,
     frames: int,
     periods: float,
-    friction: tuple[int, float] = (NONE, 0.0),
+    friction: Friction = NO_FRICTION,
     numerics: Numerics | None = None,
 ) -> LayerFilm:
     """Layer from rest in the drum, as pictures at equal intervals.
@@ -149,21 +149,6 @@ def film(
         depth=np.array(layers),
         deflection=np.asarray(whirl.amplitude * grown * np.exp(1j * whirl.slip * moments), dtype=complex),
     )
-
-
-def friction_law(law: str, coefficient: float, fill: Fill, whirl: Whirl) -> tuple[int, float]:
-    """Law and coefficient for `simulate`; Stokes' follows from the whirl [theory: long_wave, eq. 10].
-
-    Raises
-    ------
-    InputError : no such law
-    """
-    if law not in LAWS:
-        raise InputError("friction", law, "one of " + ", ".join(LAWS))
-    if law == "stokes":
-        shear = float(stokes_coefficient(fill.liquid.viscosity, whirl.slip))
-        return STOKES, shear / fill.chamber.radius
-    return LAWS[law], coefficient
 
 
 def _history(layer: MovingLayer, rows: list[Complex]) -> LayerHistory:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import QUADRATIC
+from fluid.friction import QUADRATIC, Friction
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError
 from solvers.layer.loads import Drive, means, offset, ring
@@ -73,7 +73,7 @@ class MovingLayer:
         return means(sums, length, mass, self.drive[3], (first, last))
 
 
-def start(fill: Fill, whirl: Whirl, friction: tuple[int, float], numerics: Numerics) -> MovingLayer:
+def start(fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics) -> MovingLayer:
     """Uniform layer at rest in the drum.
 
     Parameters
@@ -93,7 +93,7 @@ def start(fill: Fill, whirl: Whirl, friction: tuple[int, float], numerics: Numer
     n = numerics.cells
     area = np.full(n, fill.volume / (2.0 * math.pi * chamber.height * radius**2))
     log = -0.5 * math.log1p(-2.0 * area[0])
-    law, coefficient = friction
+    law, coefficient = friction.at(fill.liquid.viscosity, whirl.slip, radius)
     # The quadratic coefficient is a pure number, the others are rates.
     scaled = coefficient if law == QUADRATIC else coefficient / spin
     return MovingLayer(

@@ -36,7 +36,7 @@ def copy(source, target):
 @_jit
 def wall_friction(area, q, spin, law, coefficient, lid, dt):
     """Friction alone over a time dt: an exact decay of the velocity, cell by cell."""
-    if law == 0:
+    if law == friction.NONE:
         return
     for i in range(area.size):
         a = area[i]
@@ -47,7 +47,7 @@ def wall_friction(area, q, spin, law, coefficient, lid, dt):
         depth = 1.0 - surface_radius(a)
         rate = _damping(law, coefficient, lid, depth, a, moved / a)
         # Quadratic friction: du/dt = -c |u| u has the hyperbola as its solution, the others the exponential.
-        kept = 1.0 / (1.0 + rate * dt) if law == 3 else np.exp(-rate * dt)
+        kept = 1.0 / (1.0 + rate * dt) if law == friction.QUADRATIC else np.exp(-rate * dt)
         q[i] = moved * kept - spin * a * a
 
 

@@ -20,7 +20,7 @@ from pde.pdes.base import PDEBase
 from pde.solvers.base import ConvergenceError, SolverBase
 
 from fluid.fill import Fill
-from fluid.friction import NONE
+from fluid.friction import NO_FRICTION, Friction
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.layer.prescribed import Whirl
@@ -45,7 +45,7 @@ class AnnularLongWavePDE(PDEBase):  # type: ignore[no-untyped-call]
 
     Raises
     ------
-    InputError : an unknown law, a negative coefficient, a rate that is not finite
+    InputError : a rate that is not finite
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class AnnularLongWavePDE(PDEBase):  # type: ignore[no-untyped-call]
         fill: Fill,
         whirl: Whirl,
         *,
-        friction: tuple[int, float] = (NONE, 0.0),
+        friction: Friction = NO_FRICTION,
         dispersion: bool = False,
         spin_rate: float = 0.0,
     ) -> None:

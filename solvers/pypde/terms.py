@@ -13,8 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fluid import friction, long_wave
+from fluid import long_wave
 from fluid.fill import Fill
+from fluid.friction import NO_FRICTION, Friction, damping_rate
 from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative
 from solvers.layer.face_flux import DRY, THIN
@@ -34,28 +35,28 @@ class LongWaveTerms:
     ----------
     fill : chamber and liquid; the volume is that of the uniform layer
     whirl : of the drum's axis, at a constant speed in space, and gravity; its spin is that at time 0
-    friction : law of `fluid.friction` and coefficient, as from `solvers.layer.settle.friction_law`
+    friction : on the wall; the laminar law takes the frequency of the whirl seen from the drum at time 0
     dispersion : add the finite depth's dispersion [theory: long_wave, eq. 12]
     spin_rate : rate of change of the spin, rad/s^2
 
     Raises
     ------
-    InputError : an unknown law, a negative coefficient, a rate that is not finite
+    InputError : a rate that is not finite
     """
 
     fill: Fill
     whirl: Whirl
-    friction: tuple[int, float] = (friction.NONE, 0.0)
+    friction: Friction = NO_FRICTION
     dispersion: bool = False
     spin_rate: float = 0.0
 
     def __post_init__(self) -> None:
-        law, coefficient = self.friction
-        if law not in (friction.NONE, friction.LINEAR, friction.STOKES, friction.QUADRATIC):
-            raise InputError("friction", law, "a law of `fluid.friction`")
-        require_not_negative("friction coefficient", coefficient)
         if not math.isfinite(self.spin_rate):
             raise InputError("spin_rate", self.spin_rate, "a finite number")
+
+    def drag(self) -> tuple[int, float]:
+        """Law and coefficient of the friction as `fluid.friction.damping_rate` takes them."""
+        return self.friction.at(self.fill.liquid.viscosity, self.whirl.slip, self.fill.chamber.radius)
 
     def spin(self, time: float) -> float:
         """Omega at a time, rad/s.
@@ -148,7 +149,7 @@ def march(
         raise InputError("area", float(area.min()), "0 or above in each cell")
     whirl, radius, n = terms.whirl, terms.fill.chamber.radius, area.size
     a, q = scaled(terms, area, momentum)
-    law, coefficient = terms.friction
+    law, coefficient = terms.drag()
     drive = (
         whirl.amplitude / radius,
         whirl.slip,
@@ -214,9 +215,9 @@ def _lid(terms: LongWaveTerms) -> float:
 
 def _shear(terms: LongWaveTerms, a: Array, q: Array, spin: float) -> Array:
     """tau/rho of the wall friction, lengths over R [theory: long_wave, eq. 9]."""
-    law, coefficient = terms.friction
+    law, coefficient = terms.drag()
     shear, wet = np.zeros_like(a), a > DRY
     u, held = faded_velocity(a, q, spin)[wet], a[wet]
     depth = 2.0 * held / (1.0 + long_wave.free_surface_radius(held))
-    shear[wet] = friction.damping_rate(law, coefficient, _lid(terms), depth, held, u) * held * u
+    shear[wet] = damping_rate(law, coefficient, _lid(terms), depth, held, u) * held * u
     return shear

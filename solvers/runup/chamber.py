@@ -5,22 +5,21 @@ from __future__ import annotations
 import math
 
 from fluid.fill import Fill
-from fluid.friction import LAWS, stokes_coefficient
+from fluid.friction import Friction, FrictionLaw
 from fluid.waves import free_wave_frequencies
 
 
-def layer_properties(fill: Fill, friction: tuple[str, float], dispersion: bool) -> tuple[float, ...]:
+def layer_properties(fill: Fill, friction: Friction, dispersion: bool) -> tuple[float, ...]:
     """Row of `Machine.layers`."""
-    chamber, (name, coefficient) = fill.chamber, friction
+    chamber = fill.chamber
     log = math.log(chamber.radius / fill.surface_radius) if fill.surface_radius > 0.0 else math.inf
-    lid = 0.0
-    if name == "stokes" and 0.0 < log < math.inf:
-        slip = abs(float(free_wave_frequencies(1, log, 1.0)[1]))
-        coefficient = float(stokes_coefficient(fill.liquid.viscosity, slip)) / chamber.radius
-        lid = 2.0 * chamber.radius / chamber.height
+    # Of unit spin: the coefficient goes with the root of it.
+    slip = abs(float(free_wave_frequencies(1, log, 1.0)[1])) if 0.0 < log < math.inf else 0.0
+    law, coefficient = friction.at(fill.liquid.viscosity, slip, chamber.radius)
+    lid = 2.0 * chamber.radius / chamber.height if friction.law is FrictionLaw.STOKES and slip > 0.0 else 0.0
     weight = fill.liquid.density * chamber.height
     spread = log**2 if dispersion and log < math.inf else 0.0
-    return chamber.radius, weight, fill.mass, float(LAWS[name]), coefficient, lid, spread
+    return chamber.radius, weight, fill.mass, float(law), coefficient, lid, spread
 
 
 def layer_capture(fill: Fill, gravity: float) -> float:

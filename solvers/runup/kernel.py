@@ -13,6 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from fluid.friction import STOKES
 from solvers.layer.face_flux import COMPILED, DRY, NEAREST, faded_velocity, log_of_surface
 from solvers.layer.finite_volume import GHOSTS, WORK, ring_rates
 from solvers.layer.step import calm, copy, correct, predict, surface_radius, wall_friction
@@ -282,7 +283,7 @@ def _move_layers(machine, state, room, dt):
             cosine, sine = turn[2 * end], turn[2 * end + 1]
             push[2 * end], push[2 * end + 1] = x * cosine + y * sine, y * cosine - x * sine
         copy(layer[LAW:], rub)
-        if layer[LAW] == 2.0:
+        if layer[LAW] == STOKES:
             # Stokes' friction at the frequency of a free wave goes with the root of the spin.
             rub[1] *= np.sqrt(0.5 * (spins[0] + spins[1]))
         status, speed = layer_step(

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import LAWS, STOKES, damping_rate
+from fluid.friction import Friction, FrictionLaw, damping_rate
 from meshes.arrays import Array
-from meshes.errors import InputError, require_not_negative
+from meshes.errors import require_not_negative
 from solvers.rotor.system import RotorSystem
 from solvers.runup.chamber import layer_capture, layer_properties, pool_offset
 from solvers.runup.state import LAW, LID, RUBBING, TALLIES
@@ -101,7 +101,7 @@ def couple_linear(
     system: RotorSystem,
     fills: Sequence[Fill],
     spin: float,
-    friction: tuple[str, float],
+    friction: Friction,
     gravity: float,
     cells: int,
     dispersion: bool,
@@ -113,14 +113,11 @@ def couple_linear(
 
     Raises
     ------
-    InputError : no such friction, a negative gravity
+    InputError : a negative gravity
     """
     from solvers.runup.linear_kernel import LinearMachine
 
     require_not_negative("gravity", gravity)
-    if friction[0] not in LAWS:
-        raise InputError("friction", friction[0], "one of " + ", ".join(LAWS))
-    require_not_negative("friction", friction[1])
     n, count = len(system.coordinates), len(fills)
     capture = np.array([layer_capture(fill, gravity) for fill in fills])
     size = n + 2 * count
@@ -146,7 +143,7 @@ def couple_linear(
     return LinearCoupled(system, tuple(fills), capture, pool, 2.0 * math.pi / cells, machine)
 
 
-def _layer(fill: Fill, friction: tuple[str, float]) -> tuple[float, ...]:
+def _layer(fill: Fill, friction: Friction) -> tuple[float, ...]:
     """Row of `LinearMachine.layers`; the quadratic law has no friction to offer a small motion."""
     chamber = fill.chamber
     if fill.surface_radius <= 0.0:
@@ -158,7 +155,7 @@ def _layer(fill: Fill, friction: tuple[str, float]) -> tuple[float, ...]:
     law, rate = int(row[LAW]), 0.0
     if area > 0.0:
         rate = float(damping_rate(law, row[RUBBING], row[LID], fill.depth / chamber.radius, area, 0.0))
-    return fill.mass, kappa, rate, 0.5 if law == STOKES else 0.0, inertia
+    return fill.mass, kappa, rate, 0.5 if friction.law is FrictionLaw.STOKES else 0.0, inertia
 
 
 def switch_linear(machine: LinearCoupled) -> float:

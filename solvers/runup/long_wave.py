@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from fluid.friction import LAWS
+from fluid.friction import Friction
 from meshes.arrays import Array
-from meshes.errors import InputError, require_not_negative
+from meshes.errors import require_not_negative
 from solvers.layer.loads import ring
 from solvers.rotor.system import RotorSystem
 from solvers.runup.chamber import layer_capture, layer_properties, pool_offset
@@ -128,7 +128,7 @@ def couple(
     system: RotorSystem,
     fills: Sequence[Fill],
     spin: float,
-    friction: tuple[str, float],
+    friction: Friction,
     gravity: float,
     cells: int,
     dispersion: bool,
@@ -143,12 +143,9 @@ def couple(
 
     Raises
     ------
-    InputError : no such friction, a negative gravity
+    InputError : a negative gravity
     """
     require_not_negative("gravity", gravity)
-    if friction[0] not in LAWS:
-        raise InputError("friction", friction[0], "one of " + ", ".join(LAWS))
-    require_not_negative("friction", friction[1])
     layers = np.array([layer_properties(fill, friction, dispersion) for fill in fills]).reshape(len(fills), 7)
     capture = np.array([layer_capture(fill, gravity) for fill in fills])
     mean = [fill.volume / (2.0 * math.pi * fill.chamber.height * fill.chamber.radius**2) for fill in fills]

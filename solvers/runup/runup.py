@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from fluid.fill import Fill
+from fluid.friction import NO_FRICTION, Friction
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.rotor.system import RotorSystem
@@ -174,7 +175,7 @@ def run_up(
     system: RotorSystem,
     fills: Sequence[Fill],
     drive: Drive,
-    friction: tuple[str, float] = ("none", 0.0),
+    friction: Friction = NO_FRICTION,
     gravity: float = 0.0,
     numerics: RunupNumerics | None = None,
     progress: Callable[[float], None] | None = None,
@@ -187,8 +188,7 @@ def run_up(
     system : the dry rotor
     fills : its chambers with their liquid; empty ones do nothing, full ones are a solid mass
     drive : ramp or motor
-    friction : law (none, linear, stokes, quadratic) and coefficient; stokes takes the frequency of the slower
-        free wave
+    friction : on the walls, none by default; the laminar law takes the frequency of the slower free wave
     gravity : across the axis, against the first direction, m/s^2; below its speed of capture the liquid lies
         at the bottom and moves with the drum as a mass
     numerics : resolution

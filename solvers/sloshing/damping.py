@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 
-from fluid.friction import stokes_coefficient
-from fluid.wall_layer import decay_rate, edge_weight, layer_thickness, plate_drags
+from fluid.friction import decay_rate, edge_weight, layer_thickness, plate_drags, stokes_coefficient
 from meshes.arrays import Array, Complex
 from meshes.errors import require_not_negative, require_positive
 from meshes.liquid_section import LiquidSection

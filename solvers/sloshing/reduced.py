@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike
 from scipy.linalg import cholesky, solve_triangular
 
 from fluid.fill import Fill
-from fluid.friction import STOKES
-from fluid.wall_layer import layer_thickness
+from fluid.friction import Friction, FrictionLaw, layer_thickness
 from fluid.whirl import is_full, plane_layer
 from meshes.arrays import Array, Complex
 from meshes.baffles import Baffles
@@ -146,8 +145,6 @@ def spanned(vectors: Any, distinct: float = _DISTINCT) -> Any:
     return np.stack(kept, axis=1)
 
 
-Friction = tuple[int, float]
-
 # Slip at which the thickness of the layer at edges is taken, rad/s: twice as thick a layer changes the drag
 # by some per cent.
 _SLIP = 10.0
@@ -179,11 +176,11 @@ def section_layer(fill: Fill, friction: Friction) -> SectionLayer | None:
     Parameters
     ----------
     fill : chamber and liquid
-    friction : law of `fluid.friction` and its coefficient; the quadratic law does not act on small whirls
+    friction : the quadratic law does not act on small whirls
     """
     if fill.volume == 0.0 or is_full(fill):
         return None
-    chamber, law = fill.chamber, friction[0]
+    chamber, stokes = fill.chamber, friction.law is FrictionLaw.STOKES
     density = fill.liquid.density * chamber.height
     plain = plane_layer(_clear(fill), friction)
     assert plain is not None
@@ -191,10 +188,10 @@ def section_layer(fill: Fill, friction: Friction) -> SectionLayer | None:
         liquid = clear_ring(chamber.radius, fill.surface_radius)
         return SectionLayer(density, liquid, plain.rate, plain.stokes * liquid.inertia)
     # Of a fluid layer of that thickness at the edges of baffles.
-    cut = float(layer_thickness(fill.liquid.viscosity, _SLIP)) if law == STOKES else 0.0
+    cut = float(layer_thickness(fill.liquid.viscosity, _SLIP)) if stokes else 0.0
     liquid, drag = _of_section(fill, cut) if chamber.baffles is None else _of_baffles(fill, cut)
     laminar = np.zeros_like(drag)
-    if law == STOKES:
+    if stokes:
         # Walls and baffles; then floor and lid, which drag on all of the liquid.
         plates = 2.0 / chamber.height * liquid.inertia
         laminar = math.sqrt(fill.liquid.viscosity) * (drag + plates)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fluid.fill import Fill, Fills
-from fluid.friction import NONE
+from fluid.friction import NO_FRICTION
 from fluid.waves import force_ratio
 from meshes.arrays import Array, Complex, Flags, Index
 from meshes.errors import InputError
@@ -165,7 +165,7 @@ def backward_mass(fill: Fill) -> float:
     if full or fill.surface_radius == 0.0:
         return fill.mass
     if fill.uneven:
-        layer = section_layer(fill, (NONE, 0.0))
+        layer = section_layer(fill, NO_FRICTION)
         assert layer is not None
         whole = layer.density * layer.liquid.enclosed_area
         return whole * float(layer.liquid.force_ratio([-2.0])[0])

@@ -9,11 +9,11 @@ from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike, NDArray
 
 from fluid.fill import Fill
-from fluid.friction import NONE
+from fluid.friction import NO_FRICTION, Friction
 from fluid.whirl import Layer, neutral_stiffness
 from meshes.arrays import Array, Index
 from solvers.rotor.system import RotorSystem
-from solvers.whirl.growth import Friction, growth_at, planar, planar_layers
+from solvers.whirl.growth import growth_at, planar, planar_layers
 
 Bands = tuple[tuple[float, float], ...]
 
@@ -27,7 +27,7 @@ def unstable_bands(
     system: RotorSystem,
     rows: Sequence[Sequence[Fill]],
     speed: ArrayLike,
-    friction: Friction = (NONE, 0.0),
+    friction: Friction = NO_FRICTION,
     growth: Array | None = None,
 ) -> tuple[Bands, ...]:
     """Bands of speed in which some whirl grows, their edges refined.
@@ -122,7 +122,7 @@ def _seeds(system: RotorSystem, fills: Sequence[Fill], first: float, last: float
     rotor = planar(system)
     if rotor is None:
         return np.empty(0)
-    mass, layers = planar_layers(rotor.mass, fills, (NONE, 0.0))
+    mass, layers = planar_layers(rotor.mass, fills, NO_FRICTION)
     if not 0 < len(layers) <= _MOST_SEEDED:
         return np.empty(0)
     edges = undamped_edges(mass, rotor.stiffness, layers)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
-from fluid.friction import NONE
+from fluid.friction import NO_FRICTION, Friction
 from fluid.whirl import Layer, is_full, plane_layer
 from meshes.arrays import Array, Complex, Index
 from meshes.errors import InputError
@@ -22,14 +22,12 @@ from solvers.whirl.planar import PlanarProblem, planar_modes
 from solvers.whirl.sections import drum_modes, standing_modes
 from solvers.whirl.system import SystemModes, circles_of, coupled_matrices, linear_modes
 
-Friction = tuple[int, float]
-
 MOST_LAYERS = 50
 _ALIKE = 1e-9  # relative; layers that differ by less are one
 
 
 def asynchronous_growth(
-    system: RotorSystem, fills: Sequence[Fill], speed: ArrayLike, friction: Friction = (NONE, 0.0)
+    system: RotorSystem, fills: Sequence[Fill], speed: ArrayLike, friction: Friction = NO_FRICTION
 ) -> tuple[Array, Array]:
     """Growth of the fastest growing whirl of a rotor with liquid in its chambers [theory: whirl, eq. 7].
 
@@ -38,7 +36,7 @@ def asynchronous_growth(
     system : the dry rotor
     fills : its chambers with their liquid, any number
     speed : spin speeds Omega, rad/s, shape (n,), above 0
-    friction : law of `fluid.friction` and coefficient; the laminar law takes each liquid's viscosity, the
+    friction : the laminar law takes each liquid's viscosity, the
         quadratic one does not act on an infinitesimal whirl
 
     Returns
@@ -66,7 +64,7 @@ def asynchronous_growth(
 
 
 def growth_map(
-    system: RotorSystem, rows: Sequence[Sequence[Fill]], speed: ArrayLike, friction: Friction = (NONE, 0.0)
+    system: RotorSystem, rows: Sequence[Sequence[Fill]], speed: ArrayLike, friction: Friction = NO_FRICTION
 ) -> tuple[Array, Array]:
     """Growth over speed for each of several sets of fills.
 
@@ -91,7 +89,7 @@ def growth_at(
     rows: Sequence[Sequence[Fill]],
     row: Index,
     speed: Array,
-    friction: Friction = (NONE, 0.0),
+    friction: Friction = NO_FRICTION,
 ) -> tuple[Array, Array]:
     """Growth at points (row, speed), as `growth_map`.
 
@@ -118,7 +116,7 @@ def growth_at(
 
 
 def system_modes(
-    system: RotorSystem, fills: Sequence[Fill], speed: Array, friction: Friction = (NONE, 0.0)
+    system: RotorSystem, fills: Sequence[Fill], speed: Array, friction: Friction = NO_FRICTION
 ) -> SystemModes:
     """All whirl modes of any rotor with its fills [theory: whirl, eq. 7].
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fluid.fill import Fill
+from fluid.friction import Friction
 from meshes.errors import InputError, require_positive
 from solvers.rotor.system import RotorSystem
 from solvers.runup.long_wave import couple
@@ -39,7 +40,7 @@ def whirl_in_time(
     system: RotorSystem,
     fills: Sequence[Fill],
     spin: float,
-    friction: tuple[str, float],
+    friction: Friction,
     duration: float,
     numerics: RunupNumerics | None = None,
 ) -> WhirlInTime:

@@ -15,6 +15,7 @@ from numpy.polynomial import chebyshev
 from fluid.exact import burgers_sawtooth, burgers_shock, cnoidal_wave, solitary_wave
 from fluid.kdv import KdvCoefficients, coefficients
 from meshes.errors import InputError
+from tests.mutants import kills
 
 PROGRADE = coefficients(0.15, 0.135, 40.0, 1)
 RETROGRADE = coefficients(0.15, 0.135, 40.0, -1)
@@ -92,7 +93,7 @@ def test_height_and_mean_are_those_asked_for(c: KdvCoefficients, crests: int, sh
     assert eta[0] - eta[120] == pytest.approx(height, rel=1e-12)
 
 
-def assert_matches_mpmath() -> None:
+def test_cnoidal_wave_matches_mpmath() -> None:
     """Profile and speed against elliptic functions in 40 digits, also where 1 - m is below rounding."""
     with mpmath.workdps(40):
         for sharpness, crests in ((0.1, 1), (1.0, 1), (2.3, 1), (2.5, 1), (7.0, 1), (9.0, 2)):
@@ -121,10 +122,6 @@ def assert_matches_mpmath() -> None:
             assert wave.speed == pytest.approx(float(speed), rel=1e-13)
 
 
-def test_cnoidal_wave_matches_mpmath() -> None:
-    assert_matches_mpmath()
-
-
 @pytest.mark.parametrize("c", FAMILIES)
 def test_low_cnoidal_wave_is_a_linear_wave(c: KdvCoefficients) -> None:
     sharpness, crests = 1e-4, 3
@@ -148,7 +145,9 @@ def test_high_cnoidal_wave_is_a_solitary_wave(c: KdvCoefficients) -> None:
     assert wave.sharpness == pytest.approx(single.sharpness, rel=1e-13)
 
 
-def assert_solitary() -> None:
+@kills("fluid.exact:solitary_wave", "(level + height / 3.0)", "(level + height / 2.0)")
+@kills("fluid.exact:solitary_wave", "-height * math.tanh", "-0.5 * height * math.tanh")
+def test_solitary_wave() -> None:
     """Amplitude, width and speed: u = 2 k^2 sech^2 k(x - 4 k^2 t) solves u_t + 6 u u_x + u_xxx = 0."""
     k = 1.3
     wave = solitary_wave(PLAIN, 2.0 * k**2)
@@ -163,10 +162,6 @@ def assert_solitary() -> None:
     assert np.mean(lowered.profile(theta)) == pytest.approx(0.0, abs=1e-6)
     # A level carries the wave along.
     assert lowered.speed - wave.speed == pytest.approx(6.0 * lowered.level, rel=1e-12)
-
-
-def test_solitary_wave() -> None:
-    assert_solitary()
 
 
 def test_taller_prograde_humps_run_faster_and_retrograde_ones_too() -> None:
@@ -255,3 +250,33 @@ def test_bad_input_is_named() -> None:
         burgers_sawtooth(PLAIN, 0.0, 1.0, 0.0)
     with pytest.raises(InputError, match="age"):
         burgers_sawtooth(PLAIN, 0.1, [1.0, 0.0], 0.0)
+
+
+@kills("fluid.exact:_sharpness_squared", "height / (12.0 * c.dispersion)", "height / (6.0 * c.dispersion)")
+@kills("fluid.exact:cnoidal_wave", "sharpness**2 * (m - m1)", "sharpness**2 * (m1 - m)")
+@kills("fluid.exact:cnoidal_wave", "level + 4.0 * c.disp", "level + 2.0 * c.disp")
+@kills("fluid.exact:_mean_square_cn", "mean -= weight", "mean += weight")
+@kills("fluid.exact:TravellingWave.profile", "- scale / k", "+ scale / k")
+def test_cnoidal_waves_of_three_shapes() -> None:
+    for sharpness, crests in ((1.0, 1), (2.2, 2), (6.0, 1)):
+        assert_travels(PROGRADE, sharpness, crests, 0.2)
+
+
+@kills("fluid.exact:burgers_shock", "-0.5 * drop * np.tanh", "0.5 * drop * np.tanh")
+@kills("fluid.exact:burgers_shock", "/ (4.0 * viscosity))", "/ (2.0 * viscosity))")
+def test_shock_of_plain_coefficients() -> None:
+    assert_shock(PLAIN)
+
+
+@kills(
+    "fluid.exact:burgers_sawtooth",
+    "/ (4.0 * viscosity * old[..., None])",
+    "/ (2.0 * viscosity * old[..., None])",
+)
+@kills(
+    "fluid.exact:burgers_sawtooth",
+    "mean_distance / (c.steepening * old)",
+    "-mean_distance / (c.steepening * old)",
+)
+def test_sawtooth_of_plain_coefficients() -> None:
+    assert_sawtooth(PLAIN, 0.5, 1.0)

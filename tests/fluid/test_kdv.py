@@ -22,6 +22,7 @@ from fluid.kdv import (
     wave_frequency,
 )
 from meshes.errors import InputError
+from tests.mutants import kills
 
 CASES = [(0.15, 0.135, 40.0), (0.2, 0.199, 90.0), (1.0, 0.3, 3.0)]
 FAMILIES = (1, -1)
@@ -123,7 +124,9 @@ def friction_is_projected(radius: float, surface: float, spin: float, family: in
     assert float(decay(c, k)) == pytest.approx(-rate, rel=1e-7)
 
 
-def synchronous_whirl_is_static() -> None:
+@kills("fluid.kdv:force_ratio", "(1.0 + np.asarray(liquid_offset", "(1.0 - np.asarray(liquid_offset")
+@kills("fluid.kdv:force_ratio", "2.0 * c.mean_area / c.radius**2", "c.mean_area / c.radius**2")
+def test_synchronous_whirl_is_static() -> None:
     """At s = 0 both families together displace the layer as statics does, and the force is m_f omega^2 w0."""
     radius, surface, spin, w0 = 0.15, 0.135, 40.0, 1e-4
     kappa = (radius / surface) ** 2
@@ -141,7 +144,9 @@ def synchronous_whirl_is_static() -> None:
     assert share[1] * (kappa - 1.0) == pytest.approx(0.6544, abs=1e-4)
 
 
-def moment_of_the_layer() -> None:
+@kills("fluid.kdv:offset", "eta * np.exp(1j * angle)", "eta * np.exp(-1j * angle)")
+@kills("fluid.kdv:offset", "c.surface_radius / c.mean_area * first", "c.radius / c.mean_area * first")
+def test_moment_of_the_layer() -> None:
     """The offset is the first moment of the liquid, here by quadrature over the layer."""
     c = coefficients(0.15, 0.135, 40.0, -1)
     xi = 2.0 * np.pi * np.arange(64) / 64
@@ -183,7 +188,8 @@ def convention_maps(name: str, family: int) -> None:
             assert abs(left - right) < mpf(10) ** -13 * abs(left)
 
 
-def frequency_solves_the_equation() -> None:
+@kills("fluid.kdv:wave_frequency", "n * (c.linear_speed - c.dispersion", "n * (c.linear_speed + c.dispersion")
+def test_frequency_solves_the_equation() -> None:
     """eta ~ exp(i n theta - i omega t) solves eta_t + lambda0 eta_theta + delta eta_3theta = 0."""
     for family in FAMILIES:
         c = coefficients(0.15, 0.135, 40.0, family)
@@ -207,7 +213,6 @@ def test_coefficients_follow_from_the_long_wave_equations(
 @pytest.mark.parametrize("case", CASES)
 def test_both_families_add_up(case: tuple[float, float, float]) -> None:
     families_add_up(*case)
-    synchronous_whirl_is_static()
 
 
 def test_printed_figures() -> None:
@@ -245,7 +250,6 @@ def test_families_share_what_they_must(ratio: float, spin: float, radius: float)
 
 @pytest.mark.parametrize("family", FAMILIES)
 def test_dispersion_of_both_kinds(family: int) -> None:
-    frequency_solves_the_equation()
     c = coefficients(0.15, 0.135, 40.0, family)
     n = np.arange(-5, 6)
     for whitham in (False, True):
@@ -278,7 +282,6 @@ def test_force_near_resonance_is_that_of_the_exact_theory() -> None:
     assert left_out == pytest.approx(0.0527, abs=2e-3)
     d = complex(offset(c, eta))
     assert d.real / w0 == pytest.approx(float(waves.offset_ratio(kappa, whirl / spin)), rel=1.5 * left_out)
-    moment_of_the_layer()
     got = complex(force_ratio(c, d, w0)).real - (1.0 - 1.0 / kappa)
     exact = float(waves.force_ratio(kappa, whirl / spin)) - (1.0 - 1.0 / kappa)
     assert got == pytest.approx(exact, rel=1.5 * left_out)
@@ -311,3 +314,40 @@ def test_bad_input_is_named(field: str, call: Callable[[], object]) -> None:
     with pytest.raises(InputError) as caught:
         call()
     assert caught.value.field == field
+
+
+@kills("fluid.kdv:coefficients", "root = math.sqrt(log * (log + 1.0))", "root = math.sqrt(log)")
+@kills("fluid.kdv:coefficients", "(2.0 * log + 1.0) / (2.0 * root)", "(2.0 * log + 1.0) / root")
+@kills("fluid.kdv:coefficients", "-1.0 / (4.0 * root**2 * (1.0 + swing))", "1.0 - 2.0 * swing")
+@kills("fluid.kdv:coefficients", "3.0 * spin / surface_radius**2", "3.0 * spin / radius**2")
+@kills("fluid.kdv:coefficients", "3.0 * spin / surface_radius**2", "1.5 * spin / surface_radius**2")
+@kills("fluid.kdv:coefficients", "log + root if family == 1", "root if family == 1")
+@kills("fluid.kdv:coefficients", "-log / (log + root)", "log / (log + root)")
+def test_steepening_of_both_families() -> None:
+    for family in FAMILIES:
+        steepening_matches(0.15, 0.135, 40.0, family)
+
+
+@kills("fluid.kdv:coefficients", "spin * log**3 / 3.0 * share", "spin * log**3 / 6.0 * share")
+@kills("fluid.kdv:coefficients", "spin * log**3 / 3.0 * share", "-spin * log**3 / 3.0 * share")
+def test_dispersion_of_the_prograde_family() -> None:
+    dispersion_matches(0.15, 0.135, 40.0, 1)
+
+
+@kills("fluid.kdv:coefficients", "coupling=family * log", "coupling=log")
+@kills("fluid.kdv:coefficients", "log * surface_radius / (2.0", "log * radius / (2.0")
+def test_resonance_of_the_retrograde_family() -> None:
+    resonance_is_projected(0.15, 0.135, 40.0, -1)
+    families_add_up(0.15, 0.135, 40.0)
+
+
+@kills("fluid.kdv:decay", "k * abs(c.linear_speed) /", "k * abs(c.other_speed) /")
+def test_friction_of_the_prograde_family() -> None:
+    friction_is_projected(0.15, 0.135, 40.0, 1)
+
+
+@kills("fluid.kdv:rescaling", "c.steepening * angle / steepening", "c.steepening / steepening")
+@kills("fluid.kdv:rescaling", "np.cbrt(dispersion / c", "np.cbrt(c.dispersion / c")
+def test_conventions_of_dedalus() -> None:
+    for family in FAMILIES:
+        convention_maps("dedalus", family)

@@ -7,13 +7,17 @@ import numpy as np
 from fluid import friction
 from fluid import long_wave as lw
 from fluid.waves import free_wave_frequencies
+from tests.mutants import kills
 
 AREA = np.array([0.001, 0.05, 0.15, 0.3, 0.45])
 VELOCITY = np.array([0.1, -0.05, 0.2, -0.3, 0.05])
 SPIN = 1.3
 
 
-def check_speeds() -> None:
+@kills("fluid.long_wave:layer_log", "-0.5 * np.log1p", "-np.log1p")
+@kills("fluid.long_wave:wave_celerity", "turning + carried, np.sqrt", "turning - carried, np.sqrt")
+@kills("fluid.long_wave:wave_celerity", "log * whole * whole", "log * spin * spin")
+def test_speeds() -> None:
     """Characteristic speeds are the eigenvalues of the flux Jacobian of (A, u)."""
     step = 1e-6
     for area, velocity in zip(AREA, VELOCITY, strict=True):
@@ -36,11 +40,17 @@ def check_speeds() -> None:
         )
 
 
-def test_speeds() -> None:
-    check_speeds()
-
-
-def check_forms() -> None:
+@kills("fluid.long_wave:mass_flux", "return velocity * log\n", "return velocity * log * 1.01\n")
+@kills(
+    "fluid.long_wave:momentum_flux",
+    "(log + area / (surface * surface))",
+    "(log - area / (surface * surface))",
+)
+@kills("fluid.long_wave:pressure_force", "/ 3.0 - surface * area", "/ 3.0 + surface * area")
+@kills(
+    "fluid.long_wave:bernoulli", "2.0 * spin * log * velocity - surface", "spin * log * velocity - surface"
+)
+def test_forms() -> None:
     """q_t from the momentum form is the product rule of the Bernoulli form where the flow is smooth."""
     n = 256
     theta = 2 * np.pi * np.arange(n) / n
@@ -61,11 +71,9 @@ def check_forms() -> None:
     np.testing.assert_allclose(by_momentum, by_bernoulli, atol=1e-13)
 
 
-def test_forms() -> None:
-    check_forms()
-
-
-def check_circles() -> None:
+@kills("fluid.long_wave:static_head", "- surface * pull", "+ surface * pull")
+@kills("fluid.long_wave:surface_at_head", "(square - 2.0 * head)", "(square - head)")
+def test_circles() -> None:
     """The head of a circle about the rotation axis is constant, and gives the circle back."""
     theta = np.linspace(-np.pi, np.pi, 50)
     for amplitude in (0.01, 0.3):
@@ -78,11 +86,7 @@ def check_circles() -> None:
         np.testing.assert_allclose(lw.surface_at_head(head, SPIN, pull[wet]), surface[wet], rtol=1e-13)
 
 
-def test_circles() -> None:
-    check_circles()
-
-
-def check_linear_waves() -> None:
+def test_linear_waves() -> None:
     """Long waves are the exact free waves as n L -> 0, and with the rational dispersion for n L up to 1."""
     depth = 1e-4
     area = depth * (1 - depth / 2)
@@ -100,11 +104,10 @@ def check_linear_waves() -> None:
     assert 5.8 < np.log2(error[1] / error[0]) < 6.1
 
 
-def test_linear_waves() -> None:
-    check_linear_waves()
-
-
-def check_friction_rates() -> None:
+@kills("fluid.friction:damping_rate", "(1.0 + lid * depth)", "(1.0 + lid)")
+@kills("fluid.friction:damping_rate", "np.abs(velocity) / area", "velocity / area")
+@kills("fluid.friction:stokes_coefficient", "0.5 * np.asarray(viscosity", "2.0 * np.asarray(viscosity")
+def test_friction_rates() -> None:
     """tau R/(rho u A) of each law, and the Stokes layer's k with floor and lid."""
     depth, area, velocity = 0.2, 0.18, -0.3
     assert friction.damping_rate(friction.NONE, 9.0, 9.0, depth, area, velocity) == 0.0
@@ -117,7 +120,3 @@ def check_friction_rates() -> None:
         friction.damping_rate(friction.QUADRATIC, 0.1, 0.0, depth, area, velocity), 0.1 * 0.3 / 0.18
     )
     np.testing.assert_allclose(friction.stokes_coefficient(2e-6, [-9.0, 9.0]), 3e-3)
-
-
-def test_friction_rates() -> None:
-    check_friction_rates()

@@ -20,6 +20,7 @@ from fluid.printed import (
 )
 from meshes.chamber import Chamber
 from meshes.errors import InputError
+from tests.mutants import kills
 
 G = 9.81
 EPS = np.finfo(float).eps
@@ -50,7 +51,12 @@ def liquid_by_heights(chamber: Chamber, printed_constant: float, e: float, speed
     return chamber.capacity - air
 
 
-def assert_volume_by_heights() -> None:
+@kills(
+    "fluid.printed:liquid_volume_by_lens",
+    "(level * float(lens.area) - beta",
+    "(level * float(lens.area) + beta",
+)
+def test_volume_by_lens_is_the_sum_over_heights() -> None:
     for chamber, speed in ((WIDE, 20.0), (WIDE, 90.0), (SMALL, 100.0)):
         beta = steepness(speed)
         for e in (0.001, 0.3 * chamber.radius, 1.2 * chamber.radius):
@@ -62,10 +68,6 @@ def assert_volume_by_heights() -> None:
                 # Rounding: beta times the lens's moments, of the order beta (R + e)^4, against each other.
                 slack = 100 * EPS * beta * (chamber.radius + e) ** 4 + 1e-11 * chamber.capacity
                 assert abs(got - liquid_by_heights(chamber, c, e, speed)) <= slack
-
-
-def test_volume_by_lens_is_the_sum_over_heights() -> None:
-    assert_volume_by_heights()
 
 
 @settings(max_examples=60)
@@ -84,7 +86,12 @@ def test_eq_17_is_exact_while_the_surface_is_clear_of_the_wall(
     assert got == pytest.approx(volume, rel=0, abs=100 * EPS * beta * WIDE.radius**4)
 
 
-def assert_eq_17() -> None:
+@kills(
+    "fluid.printed:surface_constant_as_printed",
+    "return beta * chamber.radius**2 - beta * volume / area",
+    "return beta * chamber.radius**2 + beta * volume / area",
+)
+def test_eq_17() -> None:
     c = surface_constant_as_printed(WIDE, 2e-3, 40.0, G)
     assert liquid_volume_by_lens(WIDE, c, 0.004, 40.0, G) == pytest.approx(2e-3, rel=1e-11)
 
@@ -110,7 +117,12 @@ def test_optimal_volume(chamber: Chamber, speed: float, e: float, millilitres: f
     assert optimal_volume_by_lens(chamber, e, speed, G) == pytest.approx(millilitres * 1e-6, rel=0, abs=slack)
 
 
-def assert_optimal_volume() -> None:
+@kills(
+    "fluid.printed:dry_radius_as_printed",
+    "return chamber.radius - eccentricity",
+    "return chamber.radius + eccentricity",
+)
+def test_optimal_volume_of_one_chamber() -> None:
     chamber, speed, e, millilitres = OPTIMAL[0]
     assert optimal_volume_by_lens(chamber, e, speed, G) == pytest.approx(millilitres * 1e-6, rel=1e-8)
 
@@ -129,7 +141,8 @@ def test_eq_18_as_printed_is_litres_off() -> None:
     assert optimal_volume_as_printed(WIDE, 1e-3, 90.0, G) == pytest.approx(2.040, rel=1e-3)
 
 
-def assert_corrected_eq_18() -> None:
+@kills("fluid.printed:_disc_volume", "s**2 * (far - near) ** 2 / 16.0", "s**2 * (far - near) ** 2 / 8.0")
+def test_corrected_eq_18() -> None:
     """Chamber minus the air over a round lid section of diameter s and the dry disc on the floor."""
     R, h, e, speed = WIDE.radius, WIDE.height, 0.003, 90.0
     beta = steepness(speed)
@@ -151,7 +164,6 @@ def assert_corrected_eq_18() -> None:
 
 
 def test_corrected_eq_18_integrates_the_disc_it_names() -> None:
-    assert_corrected_eq_18()
     assert optimal_volume_disc_corrected(WIDE, 1e-3, 90.0, G) * 1e6 == pytest.approx(56.7, abs=0.05)
 
 
@@ -165,7 +177,9 @@ def wall_cut(fraction: float, e: float, speed: float) -> float:
     return steepness(speed) * radius**2
 
 
-def assert_frozen_angle() -> None:
+@kills("fluid.printed:dry_volume_frozen_angle", "kite = h * root / (2.0 * beta)", "kite = h * root / beta")
+@kills("fluid.printed:dry_volume_frozen_angle", "beta * (e**2 - R**2))", "beta * (R**2 - e**2))")
+def test_repaired_eq_20_is_exact_for_a_steep_surface() -> None:
     """For a surface that rises steeply the angles hardly change with height, and eq. 20 repaired is exact."""
     e, speed = 0.05, 4000.0
     for fraction in (0.2, 0.5, 0.8):
@@ -175,10 +189,6 @@ def assert_frozen_angle() -> None:
         # dA = alpha d(rho^2): with alpha frozen the error is of second order in the rise of rho^2 over the
         # height, h (h/beta)^2/6 times d(alpha)/d(rho^2) < 100/m^2, 1e-14 m^3; the rest is rounding.
         assert repaired == pytest.approx(exact, rel=0, abs=1e-14 + 100 * EPS * steepness(speed) * 0.25**4)
-
-
-def test_repaired_eq_20_is_exact_for_a_steep_surface() -> None:
-    assert_frozen_angle()
 
 
 def test_repaired_eq_20_near_the_exact_volume() -> None:
@@ -192,7 +202,8 @@ def test_eq_20_as_printed_is_not_a_volume() -> None:
     assert dry_volume_as_printed(WIDE, wall_cut(0.3, 0.003, 90.0), 0.003, 90.0, G) < 0.0
 
 
-def assert_eq_20_as_printed() -> None:
+@kills("fluid.printed:dry_volume_as_printed", "kite = h * chord / (4.0", "kite = h * math.sqrt(chord) / (4.0")
+def test_eq_20_as_printed() -> None:
     """Term by term, at the radius where the arccosine is a right angle less its known rest."""
     e, speed = 0.003, 90.0
     beta, R, h = steepness(speed), WIDE.radius, WIDE.height
@@ -207,26 +218,19 @@ def assert_eq_20_as_printed() -> None:
     assert dry_volume_as_printed(WIDE, c, e, speed, G) == pytest.approx(np.pi * R**2 * h - bracket, rel=1e-6)
 
 
-def test_eq_20_as_printed() -> None:
-    assert_eq_20_as_printed()
-
-
 def test_eq_25_as_printed_holds_for_equal_unbalances() -> None:
     for lag in (0.2, 0.9, 1.5):
         assert liquid_angle_as_printed(lag, 1.0) == pytest.approx(np.pi, abs=1e-7)
 
 
-def assert_eq_25_as_printed() -> None:
+@kills("fluid.printed:liquid_angle_as_printed", "(square - ratio**2)", "(square - ratio)")
+def test_eq_25_as_printed() -> None:
     lag, k = 0.6, 0.8
     alpha = liquid_angle_as_printed(lag, k)
     # The printed statement solved for the radicand: nothing of the code's form is used.
     root = -np.cos(alpha) - np.sin(lag) ** 2
     assert root**2 == pytest.approx(np.cos(lag) ** 2 * (k**2 - np.sin(lag) ** 2), rel=1e-12)
     assert root > 0.0
-
-
-def test_eq_25_as_printed() -> None:
-    assert_eq_25_as_printed()
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from scipy import optimize
 from fluid.upright import free_surface_term, upright_margin
 from meshes.chamber import Chamber
 from meshes.errors import InputError
+from tests.mutants import kills
 
 G = 9.81
 RHO = 998.0
@@ -133,11 +134,23 @@ def test_margin_is_the_second_derivative_of_the_energy(name: str) -> None:
     assert_second_variation(BOWLS[name])
 
 
-def assert_wall_only() -> None:
+@kills(
+    "fluid.upright:free_surface_term",
+    "integral = np.sum(np.square(stiffening)",
+    "integral = np.sum((stiffening)",
+)
+@kills("fluid.upright:free_surface_term", "axis=-1) / 4.0", "axis=-1) / 2.0")
+@kills("fluid.upright:upright_margin", "- m * gravity * height - a", "+ m * gravity * height - a")
+def test_wall_only() -> None:
     assert_second_variation(BOWLS["surface on the wall only"])
 
 
-def assert_floor_to_lid() -> None:
+@kills(
+    "fluid.upright:_waterlines",
+    "for level in (0.0, chamber.height):",
+    "for level in (0.0, 2.0 * chamber.height):",
+)
+def test_floor_to_lid() -> None:
     assert_second_variation(BOWLS["surface from floor to lid"])
 
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy import linalg
 
 from fluid.fill import Fill
-from fluid.friction import LINEAR, NONE, QUADRATIC, STOKES, stokes_coefficient
+from fluid.friction import Friction, stokes_coefficient
 from fluid.liquid import Liquid
 from fluid.waves import force_ratio, free_wave_frequencies, offset_ratio
 from fluid.whirl import (
@@ -27,6 +27,7 @@ from fluid.whirl import (
 )
 from meshes.chamber import Chamber
 from tests.fluid.test_waves import POINTS, layer_system
+from tests.mutants import kills
 
 RADIUS, SPIN = 0.15, 40.0
 WATER = Liquid("water", 1000.0, 1e-6)
@@ -44,7 +45,12 @@ def dragged(a: float, rate: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return static + drag, inertia, forcing
 
 
-def check_offset() -> None:
+@kills("fluid.whirl:wave_function", "- 2.0 * t * omega - 1j", "+ 2.0 * t * omega - 1j")
+@kills("fluid.whirl:wave_function", "- 1j * np.asarray(rate)) - t", "+ 1j * np.asarray(rate)) - t")
+@kills("fluid.whirl:wave_function", "np.asarray(rate)) - t * np.square", "np.asarray(rate)) + t * np.square")
+@kills("fluid.whirl:offset_with_friction", "share = 0.5 * (1.0 - np", "share = 0.5 * (1.0 + np")
+@kills("fluid.whirl:offset_with_friction", "-share * np.square(omega)", "share * np.square(omega)")
+def test_offset() -> None:
     """Against the equations of motion on Chebyshev points, nothing assumed irrotational."""
     for a in (0.135, 0.1, 0.03):
         for rate in (0.0, 3.0, 60.0):
@@ -58,11 +64,13 @@ def check_offset() -> None:
                 np.testing.assert_allclose(found, wanted, rtol=1e-7)
 
 
-def test_offset() -> None:
-    check_offset()
-
-
-def check_free_waves() -> None:
+@kills("fluid.whirl:damped_waves", "t * omega + 0.5j", "t * omega + 1.0j")
+@kills(
+    "fluid.whirl:damped_waves",
+    "np.square(centre) + t * np.square(omega)",
+    "np.square(centre) - t * np.square(omega)",
+)
+def test_free_waves() -> None:
     """Eigenvalues of the collocated equations; their decay k/2 in a thin layer."""
     for a, rate in ((0.135, 3.0), (0.1, 8.0), (0.05, 60.0)):
         static, inertia, _ = dragged(a, rate)
@@ -80,11 +88,9 @@ def check_free_waves() -> None:
     np.testing.assert_allclose([forward, backward], expected, rtol=1e-14)
 
 
-def test_free_waves() -> None:
-    check_free_waves()
-
-
-def check_frictionless() -> None:
+@kills("fluid.whirl:force_with_friction", "filled = 2.0 * t / (1.0 + t)", "filled = t / (1.0 + t)")
+@kills("fluid.whirl:force_with_friction", "filled * (1.0 + offset_with", "filled * (1.0 - offset_with")
+def test_frictionless() -> None:
     """The formulas of the inviscid theory."""
     ratio = np.array([-0.5, 0.3, 0.9, 1.0, 1.7])
     for kappa in (1.01, 1.3, 9.0):
@@ -93,10 +99,6 @@ def check_frictionless() -> None:
         np.testing.assert_allclose(force, force_ratio(kappa, ratio), rtol=1e-12, atol=1e-13)
         offset = offset_with_friction(t, SPIN, ratio * SPIN, 0.0)
         np.testing.assert_allclose(offset, offset_ratio(kappa, ratio), rtol=1e-12)
-
-
-def test_frictionless() -> None:
-    check_frictionless()
 
 
 @given(
@@ -117,19 +119,23 @@ def test_force_is_newtons_law(kappa: float, ratio: float, growth: float, rate: f
     assert abs(force_with_friction(t, 1.0, omega, rate) - numerator / d) <= slack + 1e-9 * abs(numerator / d)
 
 
-def check_laws() -> None:
+@kills("fluid.whirl:plane_layer", "0.5 * film, 2.0 * radius", "1.0 * film, 2.0 * radius")
+@kills("fluid.whirl:plane_layer", "2.0 * radius / fill.chamber.height", "1.0 * radius / fill.chamber.height")
+@kills("fluid.whirl:plane_layer", "math.sqrt(fill.liquid.viscosity)", "fill.liquid.viscosity")
+@kills("fluid.whirl:plane_layer", "film / (2.0 - film)", "film / (2.0 + film)")
+def test_laws() -> None:
     """Torque of the shear over the angular momentum of the liquid, law by law [theory: long_wave]."""
     chamber = Chamber(RADIUS, 0.02)
     for share in (1e-9, 0.1, 0.6):
         fill = Fill(chamber, WATER, share * chamber.capacity)
         a, depth = fill.surface_radius, fill.depth
         area = 0.5 * share * RADIUS**2
-        layer = plane_layer(fill, (LINEAR, 0.7))
+        layer = plane_layer(fill, Friction("linear", 0.7))
         assert layer is not None
         assert layer.rate == pytest.approx(0.7 * depth * RADIUS / area, rel=1e-12)
         assert layer.layer_tanh == pytest.approx(share / (2.0 - share), rel=1e-12)
         assert layer.mass == pytest.approx(1000.0 * fill.volume)
-        layer = plane_layer(fill, (STOKES, 0.0))
+        layer = plane_layer(fill, Friction("stokes"))
         assert layer is not None and layer.rate == 0.0
         for slip in (7.0, -7.0):
             k = float(stokes_coefficient(1e-6, slip)) * (1.0 / depth + 2.0 / chamber.height)
@@ -137,16 +143,13 @@ def check_laws() -> None:
             assert drag.real == pytest.approx(2.0 * RADIUS / (RADIUS + a) * k, rel=1e-9)
             # Inertia: -i k s has the real part k_i s, of the sign of s^2.
             assert drag.imag == pytest.approx(math.copysign(drag.real, slip), rel=1e-12)
-    for law in ((NONE, 0.0), (QUADRATIC, 0.3)):
+    for law in (Friction(), Friction("quadratic", 0.3)):
         layer = plane_layer(fill, law)
         assert layer is not None and layer.rate == layer.stokes == 0.0
 
 
-def test_laws() -> None:
-    check_laws()
-
-
-def check_wall_layer() -> None:
+@kills("fluid.whirl:stokes_rate", "np.sqrt(1j * np.asarray(slip", "np.sqrt(-1j * np.asarray(slip")
+def test_wall_layer() -> None:
     """Shear of a growing oscillation on a wall: u_t = nu u_yy + U_t on a fine grid."""
     nu, points = 1e-3, 6000
     for slip in (3.0 - 0.4j, -2.0 - 0.1j, 1.0 + 0.3j):
@@ -166,11 +169,9 @@ def check_wall_layer() -> None:
         assert complex(stokes_rate(math.sqrt(nu), slip)) == pytest.approx(shear, rel=1e-4)
 
 
-def test_wall_layer() -> None:
-    check_wall_layer()
-
-
-def check_neutral_stiffness() -> None:
+@kills("fluid.whirl:neutral_stiffness", "total + own * (1.0 + offset", "total + own * (1.0 - offset")
+@kills("fluid.whirl:neutral_stiffness", "np.square(r) * total", "r * total")
+def test_neutral_stiffness() -> None:
     """K - (M + m_f G) omega^2 = 0 for the rotor without damping."""
     r = np.array([-1.5, -0.3, 0.4, 0.8, 1.0, 2.5])
     kappa, full = np.array([1.2, 4.0]), np.array([0.3, 0.8])
@@ -179,11 +180,9 @@ def check_neutral_stiffness() -> None:
     np.testing.assert_allclose(neutral_stiffness(r, 2.0, liquid, t), wanted, rtol=1e-12)
 
 
-def test_neutral_stiffness() -> None:
-    check_neutral_stiffness()
-
-
-def check_covering_speed() -> None:
+@kills("fluid.whirl:covering_speed", "min(outer, inner)", "max(outer, inner)")
+@kills("fluid.whirl:covering_speed", "gravity * chamber.height / min", "2.0 * gravity * chamber.height / min")
+def test_covering_speed() -> None:
     """There the paraboloid of the liquid's volume runs through the lid's rim or the inner wall's foot."""
     chamber = Chamber(0.2, 0.05, 0.1)
     for share in (0.02, 0.3, 0.7, 0.95):
@@ -197,13 +196,9 @@ def check_covering_speed() -> None:
     assert covering_speed(fill, 0.0) == covering_speed(Fill(chamber, WATER, 0.0), 9.81) == 0.0
 
 
-def test_covering_speed() -> None:
-    check_covering_speed()
-
-
 def test_no_layer_without_liquid_or_surface() -> None:
     for chamber in (Chamber(0.1, 0.02), Chamber(0.1, 0.02, 0.04)):
-        assert plane_layer(Fill(chamber, WATER, 0.0), (NONE, 0.0)) is None
+        assert plane_layer(Fill(chamber, WATER, 0.0), Friction()) is None
         full = Fill(chamber, WATER, chamber.capacity)
-        assert is_full(full) and plane_layer(full, (NONE, 0.0)) is None
+        assert is_full(full) and plane_layer(full, Friction()) is None
         assert not is_full(Fill(chamber, WATER, 0.999 * chamber.capacity))

@@ -10,6 +10,7 @@ from fluid.fill import Fill
 from fluid.liquid import Liquid
 from fluid.numbers import whirl_numbers
 from meshes.chamber import Chamber
+from tests.mutants import kills
 
 R, A, H, SPIN = 0.15, 0.135, 0.01, 40.0
 
@@ -18,7 +19,12 @@ def fill(viscosity: float = 1e-6, surface: float = A) -> Fill:
     return Fill(Chamber(R, H), Liquid("test", 1000.0, viscosity), math.pi * (R**2 - surface**2) * H)
 
 
-def check_numbers() -> None:
+@kills("fluid.numbers:whirl_numbers", "whirl_speed - spin", "whirl_speed + spin")
+@kills("fluid.numbers:whirl_numbers", "2.0 * viscosity", "viscosity")
+@kills("fluid.numbers:whirl_numbers", "abs(pair[0] - pair[1])", "abs(pair[0] + pair[1])")
+@kills("fluid.numbers:whirl_numbers", "spin**2 * surface / gravity", "spin**2 * radius / gravity")
+@kills("fluid.numbers:whirl_numbers", "spin * radius**2", "spin * depth**2")
+def test_numbers() -> None:
     """At a free wave the detuning is none and the Froude number one; halfway between the two it is a half."""
     log = math.log(R / A)
     thick = math.tanh(log)
@@ -37,10 +43,6 @@ def check_numbers() -> None:
     four = whirl_numbers(fill(4e-6), SPIN, SPIN + back, 1.5e-3, 9.81)
     assert four.wall_layer == pytest.approx(2 * at.wall_layer, rel=1e-12)
     assert at.wall_layer * 0.1 * R == pytest.approx(math.sqrt(2e-6 / abs(back)), rel=1e-9)
-
-
-def test_numbers() -> None:
-    check_numbers()
 
 
 def test_limits() -> None:

@@ -14,6 +14,7 @@ from meshes.errors import InputError
 from meshes.findings import mesh_findings, points_across, points_per_wave, wave_error, wave_findings
 from meshes.rings.triangles import ring
 from meshes.section import Section, disc
+from tests.mutants import kills
 
 
 def discrete_error(points: int, order: int) -> float:
@@ -37,7 +38,9 @@ def discrete_error(points: int, order: int) -> float:
     return float(squares[1] - 1.0)
 
 
-def check_wave_error() -> None:
+@kills("meshes.findings:wave_error", "step**2 / 12.0", "step**2 / 24.0")
+@kills("meshes.findings:wave_error", "step**4 / 720.0", "step**4 / 360.0")
+def test_wave_error() -> None:
     """The leading term of the error, the next smaller by the square of a step over ten or so."""
     for order, points in ((1, 20), (1, 40), (2, 16), (2, 32)):
         step = 2 * math.pi * order / points
@@ -45,14 +48,16 @@ def check_wave_error() -> None:
     assert wave_error(2.0, 1) < 1.0 == wave_error(1.0, 1)
 
 
-def check_points_per_wave() -> None:
+@kills("meshes.findings:points_per_wave", "liquid.order * 2.0 * math.pi / (mode", "2.0 * math.pi / (mode")
+def test_points_per_wave() -> None:
     for segments in (24, 60):
         for order in (1, 2):
             mesh = ring(0.15, 0.135, segments, order=order)
             assert points_per_wave(mesh, 3) == pytest.approx(segments * order / 3, rel=1e-12)
 
 
-def check_points_across() -> None:
+@kills("meshes.findings:points_across", "liquid.surface_radius / mode)", "liquid.surface_radius * mode)")
+def test_points_across() -> None:
     """Rows of a ring; to a depth a/n for short waves, to the edge of a baffle where that is nearer."""
     mesh = ring(0.2, 0.1, 24, order=2, layers=5)
     rows = np.unique(np.round(np.hypot(*mesh.points.T), 9))
@@ -63,18 +68,6 @@ def check_points_across() -> None:
         points_across(ring(0.2, 0.1, 24, order=1, layers=1), 1)[0] == 3
     )  # the least between two marks is two
     assert points_across(ring(0.2, 0.1, 24, baffles=Baffles(4)), 1)[0] > 1
-
-
-def test_wave_error() -> None:
-    check_wave_error()
-
-
-def test_points_per_wave() -> None:
-    check_points_per_wave()
-
-
-def test_points_across() -> None:
-    check_points_across()
 
 
 def test_a_good_mesh_has_no_findings() -> None:

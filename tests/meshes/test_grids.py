@@ -22,7 +22,7 @@ from tests.meshes.test_liquid_section import INNER, ring_of
 pyvista = pytest.importorskip("pyvista")
 
 
-def check_plane_grids() -> None:
+def test_plane_grids() -> None:
     """VTK integrates quadratic triangles as straight pieces, finer ones of them exactly enough."""
     for order, kind in ((1, 5), (2, 22)):
         section = disc(0.2, 32, order=order)
@@ -43,7 +43,7 @@ def check_plane_grids() -> None:
         assert made.compute_cell_sizes()["Area"].sum() == pytest.approx(exact, rel=lost)
 
 
-def check_bodies() -> None:
+def test_bodies() -> None:
     for order, kind in ((1, 10), (2, 24)):
         for body in (
             paraboloid_body(disc(0.2, 48, order=order), 0.05, 20.0, -0.2, axis=(-0.02, 0.0), order=order),
@@ -56,14 +56,6 @@ def check_bodies() -> None:
             assert sizes.min() > 0.0
             lost = {1: 1e-10, 2: 2e-3}[order]
             assert sizes.sum() == pytest.approx(body_integrals(body).volume, rel=lost)
-
-
-def test_plane_grids() -> None:
-    check_plane_grids()
-
-
-def test_bodies() -> None:
-    check_bodies()
 
 
 def test_boundaries() -> None:

@@ -12,6 +12,7 @@ from meshes.errors import InputError
 from meshes.liquid_section import LiquidSection, free_sides, liquid_section
 from meshes.rings.triangles import ring
 from meshes.section import disc
+from tests.mutants import kills
 
 INNER, OUTER, AROUND = 0.6, 1.0, 12
 
@@ -42,7 +43,12 @@ def turn_of(mesh: LiquidSection, sides: np.ndarray) -> float:
     return float(np.sum(np.arctan2(xa * yb - ya * xb, xa * xb + ya * yb)))
 
 
-def check_sides() -> None:
+@kills(
+    "meshes.liquid_section:_surface_and_wall",
+    "start[:, 0] * end[:, 1] < start[:, 1] * end[:, 0]",
+    "start[:, 0] * end[:, 1] > start[:, 1] * end[:, 0]",
+)
+def test_sides() -> None:
     """The wall runs around counter-clockwise, the surface clockwise, each with the liquid on its left."""
     for nodes in (3, 6, 4, 9):
         mesh = liquid_section(*ring_of(nodes), INNER)
@@ -54,7 +60,8 @@ def check_sides() -> None:
         assert list(mesh.fixed_piece) == [True]
 
 
-def check_pieces() -> None:
+@kills("meshes.liquid_section:_outermost", "here[np.argmax(radius[here])]", "here[np.argmin(radius[here])]")
+def test_pieces() -> None:
     """A baffle that touches nothing is a piece of its own, an attached one is part of the outer wall.
 
     By hand: three full baffles make three bodies with a wall each; three that leave a gap at the wall, or
@@ -73,14 +80,6 @@ def check_pieces() -> None:
         for piece, fixed in enumerate(mesh.fixed_piece):
             reach = radius[mesh.wall[mesh.wall_piece == piece]].max()
             assert (reach > OUTER * (1 - 1e-12)) == fixed
-
-
-def test_sides() -> None:
-    check_sides()
-
-
-def test_pieces() -> None:
-    check_pieces()
 
 
 def test_two_bodies_have_a_fixed_wall_each() -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from meshes.quality import assess, cell_areas, edge_polynomials, jacobians, triangle_areas
+from tests.mutants import kills
 
 ONE = np.array([[0, 1, 2]])
 EQUILATERAL = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, math.sqrt(0.75)]])
@@ -17,7 +18,8 @@ BENT = np.array([[0, 0], [1, 0], [0, 1], [0.5, 0], [math.sqrt(0.5), math.sqrt(0.
 SIX = np.array([[0, 1, 2, 3, 4, 5]])
 
 
-def check_equilateral() -> None:
+@kills("meshes.quality:aspect_ratios", "0.25 * np.sqrt(3.0) * longest", "0.5 * np.sqrt(3.0) * longest")
+def test_equilateral() -> None:
     quality = assess(EQUILATERAL, ONE)
     assert quality.worst_angle == pytest.approx(math.pi / 3, rel=1e-14)
     assert quality.aspect_ratio == pytest.approx(1.0, rel=1e-14)
@@ -25,14 +27,17 @@ def check_equilateral() -> None:
     assert quality.inverted == 0
 
 
-def check_parabola_area() -> None:
+@kills("meshes.quality:cell_areas", "cross(c1, c2) / 3.0", "cross(c1, c2) / 2.0")
+@kills("meshes.quality:edge_polynomials", "bend = 2.0 * (start + end)", "bend = (start + end)")
+def test_parabola_area() -> None:
     """A parabolic bulge holds 2/3 of sagitta times chord; its middle tangent is parallel to the chord."""
     sagitta = 1.0 - math.sqrt(0.5)
     area = triangle_areas(BENT, SIX)
     assert area[0] == pytest.approx(0.5 + 2 / 3 * sagitta * math.sqrt(2), rel=1e-14)
 
 
-def check_parabola_angle() -> None:
+@kills("meshes.quality:vertex_angles", "np.roll(c1 + 2.0 * c2, 1", "np.roll(c1 + c2, 1")
+def test_parabola_angle() -> None:
     """The end tangent of a parabolic arc rises above the chord by 4 sagitta over chord."""
     rise = math.atan(4 * (1 - math.sqrt(0.5)) / math.sqrt(2))
     # 90 degrees at the corner is worst by 30 degrees; the bent corners have 45 degrees and the rise.
@@ -46,7 +51,8 @@ def check_parabola_angle() -> None:
         assert assess(hollow, SIX).worst_angle == pytest.approx(angle, rel=1e-13)
 
 
-def check_jacobian_at_the_nodes() -> None:
+@kills("meshes.quality:jacobians", "(xp * yq - xq * yp)", "(xp * yq + xq * yp)")
+def test_jacobian() -> None:
     """det of the map by central differences of the map itself, which is quadratic: exact but for rounding."""
     points = BENT + 0.03 * np.sin(np.arange(12.0)).reshape(6, 2)
 
@@ -61,19 +67,6 @@ def check_jacobian_at_the_nodes() -> None:
         dq = position(p, q + 0.5) - position(p, q - 0.5)
         expected.append(dp[0] * dq[1] - dp[1] * dq[0])
     assert np.allclose(jacobians(points, SIX)[0], expected, rtol=0, atol=1e-13)
-
-
-def test_equilateral() -> None:
-    check_equilateral()
-
-
-def test_parabola() -> None:
-    check_parabola_area()
-    check_parabola_angle()
-
-
-def test_jacobian() -> None:
-    check_jacobian_at_the_nodes()
 
 
 def test_needle() -> None:
@@ -109,7 +102,13 @@ def test_midside_nodes_on_the_chords_leave_edges_straight() -> None:
     assert triangle_areas(straight, SIX)[0] == pytest.approx(math.sqrt(3) / 4, abs=1e-12)
 
 
-def check_quadrilaterals() -> None:
+@kills(
+    "meshes.quality:_square_slopes",
+    "slopes, number = np.stack([4.0 * t - 3.0",
+    "slopes, number = np.stack([4.0 * t - 2.0",
+)
+@kills("meshes.quality:_square_slopes", "along_q = values[i]", "along_q = values[j]")
+def test_quadrilaterals() -> None:
     """Area, Jacobian, angle and aspect ratio of quadrilaterals, straight and mapped."""
     rhombus = np.array([[0.0, 0.0], [2.0, 0.0], [3.0, 1.0], [1.0, 1.0]])
     four = np.array([[0, 1, 2, 3]])
@@ -138,10 +137,6 @@ def check_quadrilaterals() -> None:
     # Integrated by Simpson's rule on its 7 x 7 points, exact for cubics: the area again.
     weights = np.array([1, 4, 2, 4, 2, 4, 1]) / 18
     assert weights @ jacobian @ weights == pytest.approx(3 * sector, rel=1e-12)
-
-
-def test_quadrilaterals() -> None:
-    check_quadrilaterals()
 
 
 def test_a_dart_is_inverted() -> None:

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from meshes.errors import InputError
 from meshes.quality import EDGES, assess
 from meshes.section import Section, annulus, disc, section_area
+from tests.mutants import kills
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 
@@ -24,14 +25,20 @@ def wall_edges(section: Section) -> np.ndarray:
     return np.asarray(edges[index[count == 1]])
 
 
-def check_polygon_area() -> None:
+@kills("meshes.section:annulus", "points = [radii[j] * np", "points = [radii[j] ** 2 * np")
+def test_polygon_area() -> None:
     for segments in (8, 31, 64):
         section = disc(0.2, segments)
         polygon = 0.5 * segments * 0.2**2 * math.sin(2 * math.pi / segments)
         assert section_area(section) == pytest.approx(polygon, rel=1e-13)
 
 
-def check_quadratic_wall() -> None:
+@kills(
+    "meshes.section:_quadratic",
+    "middles[curved] = 0.5 * (ra + rb) * along",
+    "middles[curved] = np.sqrt(ra * rb * np.sum(along**2, axis=1)[:, None] / 4.0) * along",
+)
+def test_quadratic_wall() -> None:
     """Every wall node on its circle; the area lacks b^4/30, b half the angle of an edge.
 
     The parabola through the ends and the middle of an arc runs inside it by (1 - cos b)^2 t^2 (1 - t^2)/2 of
@@ -49,14 +56,6 @@ def check_quadratic_wall() -> None:
     half = math.pi / 48
     lack = 1.0 - section_area(disc(1.0, 48, order=2)) / math.pi
     assert lack == pytest.approx(half**4 / 30, rel=half**2)
-
-
-def test_polygon_area() -> None:
-    check_polygon_area()
-
-
-def test_quadratic_wall() -> None:
-    check_quadratic_wall()
 
 
 @pytest.mark.parametrize(("order", "expected"), [(1, 2.0), (2, 4.0)])

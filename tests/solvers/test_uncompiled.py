@@ -12,7 +12,9 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.mark.parametrize("name", ["uncompiled_faults", "uncompiled_coupled", "uncompiled_linear"])
+@pytest.mark.parametrize(
+    "name", ["layer/uncompiled_layer", "runup/uncompiled_long_wave", "runup/uncompiled_linear"]
+)
 def test_compiled_lines_are_held_by_oracles(name: str) -> None:
     chosen = [f"tests/solvers/{name}.py", "-q", "-n", "0", "-p", "no:cacheprovider"]
     done = subprocess.run(

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.mutants import kills
 from validation.benchmarks import layers, ours, peer_pypde, report, table, timing
 from validation.benchmarks.__main__ import PEERS
 from validation.benchmarks.growth import Growth
@@ -150,7 +151,8 @@ def test_what_is_written(tmp_path: Path) -> None:
     json.dumps(results.versions)
 
 
-def check_distance() -> None:
+@kills("validation.benchmarks.problems:spectrum", "np.exp(-1j * first *", "np.exp(1j * first *")
+def test_distance() -> None:
     """Modes from anywhere on the circle; what one wave lacks counts."""
     theta = 0.3 + 2.0 * np.pi * np.arange(32) / 32
     modes = spectrum(1.0 + np.cos(theta) + 0.5 * np.sin(3.0 * theta), 0.3)
@@ -158,7 +160,8 @@ def check_distance() -> None:
     assert distance(modes[:2], modes) == pytest.approx(0.25 / math.hypot(0.5, 0.25))
 
 
-def check_errors_fall() -> None:
+@kills("validation.benchmarks.ours:_run", "done, problem.c.linear_speed", "done, -problem.c.linear_speed")
+def test_errors_fall() -> None:
     """Newton's wave and the stepper's come to the converged and to the exact one; both from rest and free."""
     problem = steady_problem()
     errors = [
@@ -175,7 +178,13 @@ def check_errors_fall() -> None:
     assert ends[1] < 0.1 * ends[0] and ends[1] < 1e-5
 
 
-def check_layer_problem() -> None:
+@kills(
+    "validation.benchmarks.layers:offset",
+    "np.power(1.0 - 2.0 * area, 1.5)",
+    "np.power(1.0 - 2.0 * area, 0.5)",
+)
+@kills("validation.benchmarks.layers:_integral", "+ turns * sums[-1]", "")
+def test_layer_problem() -> None:
     """A shifted profile has the offset and the error of its shift; a finer grid is nearer to a fine one."""
     theta = 2.0 * np.pi * (np.arange(256) + 0.5) / 256
     small = 1e-3
@@ -200,7 +209,13 @@ def check_layer_problem() -> None:
     assert errors[1] < 0.5 * errors[0] and errors[2] < 0.5 * errors[1]
 
 
-def check_force() -> None:
+@kills("validation.benchmarks.layers:LayerProblem.force", "grown * cmath.exp(1j *", "grown * cmath.exp(-1j *")
+@kills(
+    "validation.benchmarks.layers:LayerProblem.force",
+    "/ (2.0 * math.pi)\n        size",
+    "/ math.pi\n        size",
+)
+def test_force() -> None:
     """The body force of the peers is the axis' acceleration turned round: its size, sense and ramp."""
     problem = layers.LayerProblem(1)
     whirl = problem.whirl
@@ -212,7 +227,8 @@ def check_force() -> None:
     assert problem.force(0.25 * whirl.ramp * 40.0) == pytest.approx(early)
 
 
-def check_equation_of_py_pde() -> None:
+@kills("validation.benchmarks.peer_pypde:constants", '"c": problem.drift', '"c": -problem.drift - 1.0')
+def test_equation_of_py_pde() -> None:
     """The text that py-pde is given, evaluated by hand, leaves the steady wave where it is."""
     problem = steady_problem()
     n = np.arange(1, problem.exact.size + 1)
@@ -228,14 +244,6 @@ def check_equation_of_py_pde() -> None:
     left = eval(text, {"u": u} | names | consts)
     # The wave's 511 points of derivative multiply rounding and the tail; 1e-8 of the largest term.
     assert np.max(np.abs(left)) < 1e-8 * np.max(np.abs(consts["a"] * u * first))
-
-
-@pytest.mark.parametrize(
-    "check",
-    [check_distance, check_errors_fall, check_layer_problem, check_force, check_equation_of_py_pde],
-)
-def test_problems(check) -> None:  # type: ignore[no-untyped-def]
-    check()
 
 
 def test_family_is_the_retrograde_one() -> None:

@@ -11,8 +11,8 @@ from leblanc.cli import main
 from leblanc.scene.scene import load_scene
 from leblanc.studies.run import jeffcott
 from meshes.errors import InputError
+from validation.cases.scenes import horizontal_rig, horizontal_rotor, vertical_rig, vertical_rotor
 from validation.command import GROUPS, all_cases
-from validation.scenes import horizontal_rig, horizontal_rotor, vertical_rig, vertical_rotor
 
 
 def test_every_group_has_cases() -> None:

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from solvers.rotor.exciter.motion import RANGES
-from validation import exciter, two_plane, two_plane_figures
-from validation.exciter_figures import Comparison, compare, sample, table
+from validation.cases import exciter, two_plane
+from validation.figures import two_plane as two_plane_figures
+from validation.figures.exciter import Comparison, compare, sample, table
 
 
 def test_cases_of_the_exciter() -> None:

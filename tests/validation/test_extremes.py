@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from validation.extremes import Extreme, extremes, outcome
+from validation.extremes.waves import Extreme, extremes, outcome
 
 CASES = list(extremes("long_wave"))
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from validation.fill_sweep import cases, model_curves
-from validation.scenes import data
+from validation.cases.fill_sweep import cases, model_curves
+from validation.cases.scenes import data
 
 
 def test_the_measured_sweep_has_the_shape_that_is_claimed() -> None:

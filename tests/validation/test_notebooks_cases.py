@@ -13,21 +13,17 @@ from leblanc.scene.machine import jeffcott
 from leblanc.studies.choose import axial_gravity
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.planar import synchronous_response
-from validation import (
-    errata,
-    fill_optimum,
-    layer,
-    rig_figures,
-    runup_given,
-    tub,
-    volume_figures,
-    whirl_figures,
-)
-from validation.case import Case, compare
-from validation.layer_figures import bore_summary
+from tests.mutants import kills
+from validation.cases import errata, fill_optimum, layer, tub
+from validation.cases import runup as runup_given
+from validation.cases.case import Case, compare
+from validation.cases.runup import GIVEN, Point
+from validation.cases.scenes import data
+from validation.figures import rigs as rig_figures
+from validation.figures import volume as volume_figures
+from validation.figures import whirl as whirl_figures
+from validation.figures.layer import bore_summary
 from validation.notebook_page import case_table, example, from_markdown, picture, verdicts
-from validation.runup_trends import GIVEN, Point
-from validation.scenes import data
 from validation.trade import again, kept, names
 from validation.trade.answers import Case as TradeCase
 from validation.trade.cases import Question, response_question
@@ -110,7 +106,13 @@ def test_growth_in_time_lies_on_its_lines() -> None:
     assert picture(axes.figure).png.startswith(b"\x89PNG")
 
 
-def check_summary() -> None:
+@kills(
+    "validation.figures.layer:bore_summary",
+    "1e3 * (depth - np.array(run[key]))",
+    "depth - np.array(run[key])",
+)
+@kills("validation.figures.layer:bore_summary", "np.argmax(np.abs(one))", "np.argmin(np.abs(one))")
+def test_summary() -> None:
     """Signs and units: the model with dispersion is millimetres too high, that with friction turns least."""
     found = bore_summary()
     flow, plain, dispersed = found["computed flow"], found["long waves"], found["with dispersion"]
@@ -124,11 +126,11 @@ def check_summary() -> None:
     assert plain[2] < found["with both"][2] < 0.0
 
 
-def test_summary() -> None:
-    check_summary()
-
-
-def check_closed_forms() -> None:
+@kills("validation.cases.fill_optimum:closed_forms", "rotor.mass + fill.full_mass", "rotor.mass + fill.mass")
+@kills("validation.cases.fill_optimum:closed_forms", "rotor.damping * speed", "rotor.damping")
+@kills("validation.cases.fill_optimum:closed_forms", "rotor.unbalance * speed**2", "rotor.unbalance * speed")
+@kills("validation.cases.fill_optimum:closed_forms", "form.full_volume", "form.optimal_volume")
+def test_closed_forms() -> None:
     """The amplitude is the solver's with ample liquid; the volume is the edge of the full unbalance."""
     for name in ("runup", "washing_machine"):
         scene = example(name)
@@ -147,15 +149,12 @@ def check_closed_forms() -> None:
             assert (abs(moment / full - 1.0) < 1e-9) == reached
 
 
-def test_closed_forms() -> None:
-    check_closed_forms()
-
-
 def test_the_search_finds_the_closed_forms() -> None:
     assert {case.verdict for case in fill_optimum.cases()} == {"agrees"}
 
 
-def check_measured_amplitude() -> None:
+@kills("validation.cases.tub:_measured", "1800e-6 /", "1800e-3 /")
+def test_measured_amplitude() -> None:
     """As one mass on its springs, which the errata work out: 0.0805 mm at the worst speed for 1800 g mm."""
     case = next(one for one in tub.cases() if one.name == "tub/measured-amplitude")
     single = next(one for one in errata.cases() if one.name == "errata/dg-section-4-peak")
@@ -163,10 +162,6 @@ def check_measured_amplitude() -> None:
     # The springs' sideways share, 2 %, is not in the single mass; two digits are told.
     assert most == pytest.approx(1e3 * float(single.computed), rel=0.07)  # type: ignore[arg-type]
     assert case.verdict == "differs"
-
-
-def test_measured_amplitude() -> None:
-    check_measured_amplitude()
 
 
 @pytest.mark.parametrize(("share", "verdict"), [(1.005, "agrees"), (1.02, "differs")])
@@ -178,7 +173,7 @@ def test_run_up_given(share: float, verdict: str) -> None:
         moved = peak * share * 1e-3, speed * share
         return Point(volume, friction, *moved, math.nan, end * share * 1e-3, 0.0, math.nan, True)
 
-    with mock.patch("validation.runup_given.run", run):
+    with mock.patch("validation.cases.runup.run", run):
         assert [case.verdict for case in runup_given.cases()] == [verdict] * 9
 
 

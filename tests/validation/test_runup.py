@@ -12,15 +12,17 @@ import numpy as np
 import pytest
 
 from fluid.fill import Fill
-from validation import runup_lag, runup_trends
-from validation.scenes import horizontal_rig
+from tests.mutants import kills
+from validation.cases import runup
+from validation.cases.scenes import horizontal_rig
+from validation.figures import runup_lag, runup_trends
 
 RPM = math.pi / 30.0
 
 
 def given_figures(row: tuple[float, ...], cells: int, tolerance: float) -> None:
     volume, rate, peak, speed, end = row
-    found = runup_trends.run(volume, rate, cells)
+    found = runup.run(volume, rate, cells)
     assert found.converged
     # The figures given have three or four digits; the friction laws differ by 1.6 % in their rate.
     assert found.peak * 1e3 == pytest.approx(peak, rel=tolerance)
@@ -30,48 +32,53 @@ def given_figures(row: tuple[float, ...], cells: int, tolerance: float) -> None:
 
 
 def test_the_run_up_without_liquid() -> None:
-    given_figures(runup_trends.GIVEN[0], 64, 1e-3 + 0.05 / 22.4)  # three digits
+    given_figures(runup.GIVEN[0], 64, 1e-3 + 0.05 / 22.4)  # three digits
 
 
 def test_the_run_up_with_strong_friction() -> None:
-    given_figures(runup_trends.GIVEN[2], 64, 0.01)
+    given_figures(runup.GIVEN[2], 64, 0.01)
 
 
 @pytest.mark.slow
 def test_the_run_up_with_weak_friction() -> None:
-    given_figures(runup_trends.GIVEN[1], 128, 0.01)
+    given_figures(runup.GIVEN[1], 128, 0.01)
 
 
-def check_best_volume() -> None:
+@kills(
+    "validation.cases.runup:best_volume",
+    "optimal_volume(CHAMBER, deflection, RAMP.stop, _GRAVITY)",
+    "optimal_volume(CHAMBER, deflection, RAMP.start, _GRAVITY)",
+)
+def test_best_volume() -> None:
     """The fast-spin limit pi h_c (R^2 - (R - e)^2), less at most what the paraboloid leans back."""
     e, radius, height = 2.78e-3, 0.25, 0.04
     limit = math.pi * height * (radius**2 - (radius - e) ** 2)
     # Its radius squared grows by 2 g z/Omega^2; where it meets the wall no air comes with it.
     lean = math.pi * height * 9.81 * height / 100.0**2
-    assert limit - lean < runup_trends.best_volume(e) < limit - 0.5 * lean
+    assert limit - lean < runup.best_volume(e) < limit - 0.5 * lean
 
 
-def test_best_volume() -> None:
-    check_best_volume()
-
-
-def check_steady_end() -> None:
+@kills(
+    "validation.cases.runup:steady_end", "fills, [RAMP.stop], _GRAVITY", "fills[:0], [RAMP.stop], _GRAVITY"
+)
+def test_steady_end() -> None:
     """Beyond the volume that covers the wall the liquid is the added mass m_f; below, it does less."""
-    wall = runup_trends.CHAMBER
-    full = Fill(wall, runup_trends.known_liquid("water"), 1e-3).full_mass
+    wall = runup.CHAMBER
+    full = Fill(wall, runup.known_liquid("water"), 1e-3).full_mass
     impedance = 30.0 * 25.0**2 - (30.0 + full) * 1e4 + 1j * 2.0 * 0.06 * 30.0 * 25.0 * 100.0
     wet = 0.1 * 1e4 / abs(impedance)
-    thin, thick, thicker = runup_trends.steady_end([0.05e-3, 0.5e-3, 1e-3])
+    thin, thick, thicker = runup.steady_end([0.05e-3, 0.5e-3, 1e-3])
     assert thick == pytest.approx(wet, rel=1e-9)
     assert thicker == pytest.approx(wet, rel=1e-9)
     assert thin > 1.1 * wet
 
 
-def test_steady_end() -> None:
-    check_steady_end()
-
-
-def check_orders() -> None:
+@kills(
+    "validation.figures.runup_lag:orders",
+    "/ math.log(one.rate / other.rate)",
+    "/ math.log(other.rate / one.rate)",
+)
+def test_orders() -> None:
     """Errors in proportion to a power of the rate give that power."""
     one = runup_lag.Lag(
         rate=8.0,
@@ -88,11 +95,17 @@ def check_orders() -> None:
     assert runup_lag.orders(lags) == pytest.approx([2.0, 0.5])
 
 
-def test_orders() -> None:
-    check_orders()
-
-
-def check_lag() -> None:
+@kills(
+    "validation.figures.runup_lag:lag",
+    "np.exp(-1j * exact_angle) / turn_mean(h.liquid_position",
+    "np.exp(1j * exact_angle) / turn_mean(h.liquid_position",
+)
+@kills(
+    "validation.figures.runup_lag:lag",
+    "h.deflection[:, 0] * np.exp(-1j * h.angle)",
+    "h.deflection[:, 0] * np.exp(1j * h.angle)",
+)
+def test_the_lag_of_a_known_run() -> None:
     """A run that shows the steady response, but for a tenth of the peak from half-way on."""
     time = np.linspace(0.0, 10.0, 12001)
     speed = np.linspace(runup_lag.FROM, runup_lag.TO, time.size)
@@ -120,10 +133,6 @@ def check_lag() -> None:
     assert found.angles == pytest.approx(wanted, abs=slack)
 
 
-def test_the_lag_of_a_known_run() -> None:
-    check_lag()
-
-
 @pytest.mark.slow
 def test_the_lag_is_in_proportion_to_the_rate() -> None:
     """Next to the steady response a run-up differs by terms of the first order in its rate."""
@@ -143,38 +152,39 @@ def test_the_lag_is_in_proportion_to_the_rate() -> None:
 def test_the_trends_over_volume() -> None:
     """An interior best volume for the peak; at the end nothing more once the wall is covered."""
     volumes = (0.1e-3, 0.25e-3, 0.5e-3, 1e-3, 2e-3)
-    points = runup_trends.sweep(volumes, (1.0,), cells=64, workers=1)
+    points = runup.sweep(volumes, (1.0,), cells=64, workers=1)
     assert all(one.converged for one in points)
     peaks = [one.peak for one in points]
     assert int(np.argmin(peaks)) == 2
     ends = np.array([one.end for one in points])
-    steady = runup_trends.steady_end(volumes)
+    steady = runup.steady_end(volumes)
     # What beats are left at k = 1/s after the hold of two seconds: exp(-2) of a few per cent.
     assert np.allclose(ends, steady, rtol=0.02)
     assert ends[0] > 1.04 * ends[1]
     # The peaks of the thick layers lie where whirl grows by itself, or above: it decays no faster than
     # friction lets it, at k, while the speed rises by 8 rad/s.
-    low, high = runup_trends.band(volumes, 1.0)
+    low, high = runup.band(volumes, 1.0)
     for one, first, last in zip(points[3:], low[3:], high[3:], strict=True):
-        assert first < one.peak_speed < last + runup_trends.RAMP.rate / one.friction
+        assert first < one.peak_speed < last + runup.RAMP.rate / one.friction
 
 
 def test_tables_and_figures(tmp_path: Path) -> None:
-    points = [runup_trends.run(volume, 3.0, 8) for volume in (0.2e-3, 0.5e-3)]
+    points = [runup.run(volume, 3.0, 8) for volume in (0.2e-3, 0.5e-3)]
     assert "k = 3" in runup_trends.table(points)
-    assert runup_trends.draw(points, runup_trends.run(0.0, 0.0, 8), tmp_path).stat().st_size > 10_000
+    assert runup_trends.draw(points, runup.run(0.0, 0.0, 8), tmp_path).stat().st_size > 10_000
     lags = [runup_lag.lag(rate, 0.1, cells=8) for rate in (80.0, 40.0)]
     assert "| steady response | " in runup_lag.table(lags, 0.1)
     assert runup_lag.draw(lags, 0.1, tmp_path).stat().st_size > 10_000
 
 
-def check_steady_response() -> None:
+@kills(
+    "validation.figures.runup_lag:steady",
+    "answer.deflection, -answer.liquid_angle",
+    "answer.deflection_dry, -answer.liquid_angle",
+)
+def test_steady_response_of_the_rig() -> None:
     """At 1000 rpm, the resonance, the liquid is 90 deg behind and w = U0/(2 zeta m)."""
     deflection, angle = runup_lag.steady(np.array([1000.0]) * RPM, 0.1)
     assert angle[0] == pytest.approx(0.5 * math.pi, rel=1e-9)
     mass = 4.0 + sum(fill.full_mass for fill in horizontal_rig())
     assert deflection[0] == pytest.approx(-1j * 6e-4 / (2.0 * 0.1 * mass), rel=1e-9)
-
-
-def test_steady_response_of_the_rig() -> None:
-    check_steady_response()

@@ -68,7 +68,7 @@ def test_front_and_default_are_sound(name: str, question: str) -> None:
     assert default.error <= result["tolerance"] or question == "runup" or default.model != "auto"
 
 
-def check_made_again() -> None:
+def test_made_again() -> None:
     """Two scenes: the errors of the cheap cases are the kept ones.
 
     A bound of 1e-6 of each error and 1e-11 of the answer leaves room for another order of sums.
@@ -82,10 +82,6 @@ def check_made_again() -> None:
             for label, (error, peak) in error_table(question, cheap).items():
                 assert error == pytest.approx(stored[label].error, rel=1e-6, abs=1e-11)
                 assert peak == pytest.approx(stored[label].peak_error, rel=1e-6, abs=1e-11)
-
-
-def test_made_again() -> None:
-    check_made_again()
 
 
 def test_table() -> None:

@@ -12,9 +12,10 @@ from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import load_scene
 from solvers.rotor.tub import Tub
 from solvers.rotor.vibration import critical_speeds, unbalance_response
-from validation.suspended_tub import FARTHEST, amplitude, direction, suspended_tub
-from validation.tub import cases
-from validation.tub_figures import draw, main, plots
+from tests.mutants import kills
+from validation.cases.suspended_tub import FARTHEST, amplitude, direction, suspended_tub
+from validation.cases.tub import cases
+from validation.figures.tub import draw, main, plots
 
 
 def test_verdicts() -> None:
@@ -42,7 +43,13 @@ def test_the_example_is_the_machine_of_the_cases() -> None:
         np.testing.assert_allclose(one, other, atol=2e-6 * np.abs(other).max())
 
 
-def check_direction() -> None:
+@kills(
+    "validation.cases.suspended_tub:direction",
+    "side * math.sin(turn)",
+    "side * math.cos(angle) * math.sin(turn)",
+)
+@kills("validation.cases.suspended_tub:direction", "math.sin(angle) * flat", "math.sin(angle)")
+def test_direction() -> None:
     """A unit vector, at its angle to the plane across the axis; on the other side half a turn about z."""
     for angle in (-1.2, 0.3, 1.3):
         for turn in (-0.6, 0.0, 0.8):
@@ -53,22 +60,17 @@ def check_direction() -> None:
             np.testing.assert_allclose(other, one * [-1.0, -1.0, 1.0], atol=1e-15)
 
 
-def test_direction() -> None:
-    check_direction()
-
-
-def check_static_balance() -> None:
+@kills("validation.cases.suspended_tub:direction", ", side * math.sin(turn)", ", math.sin(turn)")
+def test_static_balance() -> None:
     """Turned springs that carry the weight leave no force along the axis and none across it."""
     machine = suspended_tub(0.0, 0.0, 0.5)
     pull = sum(np.array(one.direction) for one in machine.springs if one.coefficient > 0.0)
     np.testing.assert_allclose(pull[:2], 0.0, atol=1e-15)
 
 
-def test_static_balance() -> None:
-    check_static_balance()
-
-
-def check_vertical_resonance() -> None:
+@kills("validation.cases.suspended_tub:suspended_tub", "DAMPER - known.friction", "DAMPER + known.friction")
+@kills("validation.cases.suspended_tub:suspended_tub", "SPRING - known.lateral", "SPRING + known.lateral")
+def test_vertical_resonance() -> None:
     """In the middle everything up and down is one oscillator, 2 c (sin^2 75 + lateral share) over 60.7 kg."""
     machine, speed = suspended_tub(), np.linspace(2.0, 60.0, 50)
     stiffness = 2.0 * (4800.0 * math.sin(math.radians(75.0)) ** 2 + 1200.0)
@@ -76,10 +78,6 @@ def check_vertical_resonance() -> None:
     closed = 0.185 * speed**2 / np.abs(stiffness - 60.7 * speed**2 + 1j * damping * speed)
     np.testing.assert_allclose(amplitude(machine, speed, "z"), closed, rtol=1e-12)
     assert np.min(np.abs(critical_speeds(machine.system())[0] - math.sqrt(stiffness / 60.7))) < 1e-9
-
-
-def test_vertical_resonance() -> None:
-    check_vertical_resonance()
 
 
 def test_six_figures(tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from leblanc.scene.scene import load_scene
-from validation.weak_motor import SCENE, with_and_without
+from validation.cases.weak_motor import SCENE, with_and_without
 
 
 def test_liquid_takes_a_weak_motor_through_the_resonance() -> None:

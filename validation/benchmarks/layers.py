@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fluid.friction import LINEAR
+from fluid.friction import Friction, FrictionLaw
 from meshes.arrays import Array
 from solvers.layer.prescribed import Numerics, Whirl
 from solvers.layer.settle import simulate
@@ -99,7 +99,9 @@ def answer(problem: LayerProblem, cells: int) -> Array:
     RuntimeError : the surface came to the axis
     """
     layer, whirl = fill(), problem.whirl
-    history = simulate(layer, whirl, problem.periods * whirl.period, (LINEAR, FRICTION), Numerics(cells))
+    history = simulate(
+        layer, whirl, problem.periods * whirl.period, Friction(FrictionLaw.LINEAR, FRICTION), Numerics(cells)
+    )
     if not history.converged:
         raise RuntimeError("the surface came to the axis")
     surface = 1.0 - history.depth / layer.chamber.radius

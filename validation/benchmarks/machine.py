@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import LINEAR, NONE, STOKES
+from fluid.friction import NO_FRICTION, Friction, FrictionLaw
 from fluid.liquid import Liquid
 from meshes.arrays import Array
 from meshes.chamber import Chamber
@@ -22,7 +22,7 @@ from solvers.runup.drive import Ramp
 from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
 from solvers.whirl.growth import growth_map
 from validation.benchmarks.timing import Answer, Contestant, Go, Sample, measure, one_core
-from validation.suspended_tub import suspended_tub
+from validation.cases.suspended_tub import suspended_tub
 
 _OURS = "leblanc"
 _ROTOR = Jeffcott(30.0, 30.0 * 25.0**2, 2.0 * 0.06 * 30.0 * 25.0, 0.1)
@@ -53,7 +53,7 @@ def runups(cells: tuple[int, ...] = (32, 64, 128, 256), repeats: int = 3) -> lis
 
 def _history(cells: int) -> RunupHistory:
     numerics = RunupNumerics(cells=cells, samples=_SAMPLES, companion=False)
-    return run_up(_ROTOR.system(), [_FILL], _RAMP, ("linear", 3.0), 0.0, numerics)
+    return run_up(_ROTOR.system(), [_FILL], _RAMP, Friction(FrictionLaw.LINEAR, 3.0), 0.0, numerics)
 
 
 def _gap(found: Answer, exact: Answer) -> float:
@@ -71,7 +71,7 @@ def maps(repeats: int = 3) -> list[Sample]:
     fills = [replace(_FILL, volume=part * _CHAMBER.capacity) for part in np.linspace(0.001, 0.9, _MAP)]
     system = _ROTOR.system()
 
-    def ours(friction: tuple[int, float]) -> Callable[[], Callable[[], Go]]:
+    def ours(friction: Friction) -> Callable[[], Callable[[], Go]]:
         return lambda: lambda: lambda: growth_map(system, [[one] for one in fills], speed, friction)[0]
 
     def eigenvalues() -> Callable[[], Go]:
@@ -79,13 +79,13 @@ def maps(repeats: int = 3) -> list[Sample]:
 
     exact = _by_eigenvalues(fills, speed, 3.0)
     rows = [
-        Contestant(_OURS, "linear friction", ours((LINEAR, 3.0)), size=_MAP),
+        Contestant(_OURS, "linear friction", ours(Friction(FrictionLaw.LINEAR, 3.0)), size=_MAP),
         Contestant("numpy", "eigenvalues of 160 000 matrices", eigenvalues, size=_MAP),
     ]
     found = measure(rows, lambda one: _gap(one, exact), repeats)
     others = [
-        Contestant(_OURS, "no friction", ours((NONE, 0.0)), size=_MAP),
-        Contestant(_OURS, "laminar friction", ours((STOKES, 0.0)), size=_MAP),
+        Contestant(_OURS, "no friction", ours(NO_FRICTION), size=_MAP),
+        Contestant(_OURS, "laminar friction", ours(Friction(FrictionLaw.STOKES)), size=_MAP),
     ]
     # These have no equals among the linear eigenvalue problems.
     return [*found, *measure(others, lambda one: 0.0 if np.isfinite(one).all() else math.nan, repeats)]

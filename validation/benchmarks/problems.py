@@ -12,13 +12,12 @@ from numpy.typing import ArrayLike
 from fluid import kdv
 from fluid.exact import TravellingWave, cnoidal_wave
 from fluid.fill import Fill
-from fluid.friction import damping_rate
+from fluid.friction import Friction, FrictionLaw, damping_rate
 from fluid.kdv import KdvCoefficients
 from fluid.liquid import Liquid
 from meshes.arrays import Array, Complex
 from meshes.chamber import Chamber
 from solvers.layer.prescribed import Whirl
-from solvers.layer.settle import friction_law
 from solvers.waves.modes import WaveProblem
 from solvers.waves.periodic import family_problem, solve
 from solvers.waves.stepper import Advance, Control, Split, advance_adaptive
@@ -132,7 +131,7 @@ def _forced(
 ) -> WaveProblem:
     """Forcing by q = coupling omega_w^2 w0; decay by the layer's laminar friction on wall, floor and lid."""
     layer, whirl = fill(), Whirl(SPIN, SPIN + speed, amplitude)
-    law, coefficient = friction_law("stokes", 0.0, layer, whirl)
+    law, coefficient = Friction(FrictionLaw.STOKES).at(layer.liquid.viscosity, whirl.slip, RADIUS)
     area = c.mean_area / RADIUS**2
     rate = damping_rate(law, coefficient, 2.0 * RADIUS / height, layer.depth / RADIUS, area, 0.0)
     gamma = float(kdv.decay(c, rate))

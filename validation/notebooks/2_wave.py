@@ -36,10 +36,10 @@
 #   oscillates with the whirl (Stokes), on the wall alone, since a plane flow has neither floor nor lid.
 
 # %%
-from validation import layer
-from validation.layer_figures import bore_figure, bore_summary, force_figure
+from validation.cases import layer
+from validation.cases.scenes import data
+from validation.figures.layer import bore_figure, bore_summary, force_figure
 from validation.notebook_page import Table, case_table, picture, verdicts
-from validation.scenes import data
 
 Table(("How sure the computed flow is, by its file",), ((data("openfoam_layer.json")["accuracy"],),))
 

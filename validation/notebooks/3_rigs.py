@@ -43,10 +43,11 @@ import math
 
 from leblanc.figures import amplitude_figure, liquid_figure
 from leblanc.studies.run import run_scene
-from validation import horizontal_rig, runup_lag, vector_model, vertical_rig
+from validation.cases import horizontal_rig, vector_model, vertical_rig
+from validation.cases.scenes import data
+from validation.figures import runup_lag
+from validation.figures.rigs import angle_figure
 from validation.notebook_page import Table, case_table, example, picture, verdicts
-from validation.rig_figures import angle_figure
-from validation.scenes import data
 
 # %% [markdown]
 # ## The horizontal rig

@@ -38,9 +38,9 @@
 # %%
 from leblanc.figures.stability_map import map_figure
 from leblanc.studies.whirl_map import map_scene
-from validation import whirl
+from validation.cases import whirl
+from validation.figures.whirl import growth_figure, in_time
 from validation.notebook_page import case_table, example, picture, verdicts
-from validation.whirl_figures import growth_figure, in_time
 
 # %%
 cases = whirl.cases()

@@ -37,10 +37,10 @@
 # %%
 from dataclasses import fields
 
-from validation import errata_tub, tub
+from validation.cases import errata_tub, tub
+from validation.cases.suspended_tub import Assumed
+from validation.figures.tub import draw, plots
 from validation.notebook_page import Table, case_table, picture, verdicts
-from validation.suspended_tub import Assumed
-from validation.tub_figures import draw, plots
 
 known = Assumed()
 Table(("Assumed, SI", "value"), tuple((one.name, str(getattr(known, one.name))) for one in fields(known)))

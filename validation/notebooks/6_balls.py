@@ -36,10 +36,10 @@
 #   start at the natural frequency, 0.3 rad apart. No gravity.
 
 # %%
-from validation import exciter, two_plane
-from validation.exciter_figures import machine_figure
+from validation.cases import exciter, two_plane
+from validation.figures.exciter import machine_figure
+from validation.figures.two_plane import balls_figure
 from validation.notebook_page import case_table, drawn, verdicts
-from validation.two_plane_figures import balls_figure
 
 # %% [markdown]
 # ## Two planes

@@ -40,8 +40,9 @@
 # %%
 from leblanc.figures.optimise import objective_figure
 from leblanc.studies.optimise.optimise import optimise_scene
-from validation import fill_optimum, fill_sweep, runup_given
-from validation.fill_figures import sweep_figure
+from validation.cases import fill_optimum, fill_sweep
+from validation.cases import runup as runup_given
+from validation.figures.fill_sweep import sweep_figure
 from validation.notebook_page import case_table, example, picture, verdicts
 
 # %% [markdown]

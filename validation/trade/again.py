@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from leblanc.scene.scene import load_scene
-from validation.case import Case, compare
+from validation.cases.case import Case, compare
 from validation.trade import kept, names
 from validation.trade.cases import Question, questions
 from validation.trade.judge import Comparison, Row

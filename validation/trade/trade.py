@@ -130,7 +130,7 @@ def alone(scene: Scene, case: Case) -> Run:
     """
     path = os.pathsep.join(entry or "." for entry in sys.path)
     done = subprocess.run(
-        [sys.executable, "-m", "validation.trade.child"],
+        [sys.executable, "-P", "-m", "validation.trade.child"],
         input=pickle.dumps((scene, case)),
         capture_output=True,
         env=os.environ | {"PYTHONPATH": path},

@@ -100,9 +100,8 @@ class RunupPeak(AlwaysExact):
 
         key = volumes.tobytes()
         if key not in self._known:
-            law, fills = self.scene.model.friction, with_volumes(self.scene, volumes).chambers
+            friction, fills = self.scene.model.friction, with_volumes(self.scene, volumes).chambers
             system = dry_rotor(self.scene).system()
-            friction = (law.law, law.coefficient)
             numerics, drive = self.numerics, self.drive
             run = run_up(system, fills, drive, friction, self.gravity, numerics, None, self.model)
             self._known[key] = float(run.amplitude.max()) if run.converged else math.inf

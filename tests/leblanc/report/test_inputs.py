@@ -1,0 +1,266 @@
+"""All that a scene says stands in its report, in the units that it names, assumed values marked."""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from leblanc.report.inputs import Inputs, aim_rows, scene_inputs
+from leblanc.scene.optimise import Aim
+from leblanc.scene.scene import scene_from_table
+from leblanc.scene.tables import TABLES
+from meshes.chamber import Chamber
+from meshes.chamber_section import chamber_section
+from meshes.section import Section
+from tests.oracles.pages import printed
+
+CHAMBER = {
+    "radius": "65 mm", "inner_radius": "5 mm", "height": "20 mm", "plane": "3 mm", "volume": "10 ml",
+    "liquid": {"density": 900.0, "viscosity": "2 mm^2/s"},
+    "baffles": {"count": 6, "tip_radius": "40 mm", "wall_gap": "2 mm", "first_angle": "30 deg"},
+}  # fmt: skip
+REST = {
+    "name": "full", "source": "nowhere", "gravity": 3.7, "chambers": [CHAMBER],
+    "speeds": {"start": "60 rpm", "stop": "1200 rpm", "count": 20},
+    "model": {"liquid": "linear", "friction": {"linear": "0.5 1/s"}, "tolerance": 0.02},
+    "runup": {
+        "start": "30 rpm", "stop": "900 rpm", "rate": "2 rad/s^2", "duration": "9 s", "cells": 32,
+        "back": True, "dispersion": True, "samples": 77,
+    },
+    "optimise": {
+        "objective": "robust", "working_speed": "600 rpm", "steady": True,
+        "duty": [{"speed": "300 rpm", "weight": 2}], "vibration_limit": "1.5 mm", "limit_at": "operating",
+        "deflection": "0.7 mm", "unbalance": ["1 kg*mm", "2 kg*mm"], "temperature": ["5 degC", "35 degC"],
+        "quantile": 0.9, "samples": 12, "seed": 4, "dry_patch": False, "stability_margin": "0.25 1/s",
+        "operating": ["500 rpm", "800 rpm"], "clearance": "4 mm", "volumes": [["1 ml", "20 ml"]],
+    },
+}  # fmt: skip
+MOTOR = {"inertia": "0.3 kg*m^2", "speeds": [0.0, "1200 rpm"], "torques": ["2 N*m", 0.0]}
+ROTORS: dict[str, dict[str, Any]] = {
+    "jeffcott": {
+        "kind": "jeffcott", "mass": "4 kg", "critical_speed": "1000 rpm", "damping_ratio": 0.1,
+        "unbalance": "0.6 kg*mm", "axis": "vertical",
+    },
+    "two_plane": {
+        "kind": "two_plane", "mass": "20 kg", "transverse_inertia": 0.7, "polar_inertia": 0.2,
+        "supports": [{"position": "-30 cm", "stiffness": 4e4, "damping": 80}],
+        "unbalances": [{"position": "10 cm", "size": "1.5 kg*mm", "angle": "120 deg"}], "axis": "horizontal",
+    },
+    "tub": {
+        "kind": "tub", "tub_mass": 48, "drum_mass": 12.5, "tub_inertia": [1.3, 1.5, 1.4],
+        "drum_polar_inertia": 0.32, "drum_transverse_inertia": 0.2, "drum_position": [0, "90 mm", 0],
+        "unbalance": "185 kg*mm", "unbalance_position": "80 mm",
+        "springs": [
+            {"position": ["200 mm", 0, "200 mm"], "direction": [0.26, 0, 0.97], "stiffness": 4800},
+            {"position": [0, 0.1, 0], "stiffness": [1200, 1300, 1400]},
+        ],
+        "dampers": [{"position": [0.1, 0, -0.2], "direction": [0.3, 0, -0.9], "damping": 155}],
+        "axis": "horizontal",
+    },
+    "exciter": {
+        "kind": "exciter", "platform_mass": 90.1, "stiffness": 1.4e5, "damping": 150, "unbalance": "10 kg*mm",
+        "balls": {"count": 2, "mass": "325 g", "kind": "ball", "track_radius": "90 mm", "damping": 0.03},
+    },
+}  # fmt: skip
+# One of two keys: the report shows both ways of saying the same.
+OTHER_WAY = {
+    "rotor.stiffness": "rotor.critical_speed",
+    "rotor.damping": "rotor.damping_ratio",
+    "rotor.balls.pendulum_inertia": "rotor.balls.kind",
+}
+# Checked in a test of their own.
+OTHERS = {
+    "assumed", "model.friction.quadratic", "chambers.*.section", "chambers.*.section_unit",
+    "chambers.*.section_size",
+}  # fmt: skip
+# What stands above the inputs, is their mark, or is told by the cell of another path.
+ELSEWHERE = {"name", "source", "assumed"}
+TOLD_BY = {"rotor.kind": "rotor.axis", "runup.motor.speeds": "runup.motor.torques"}
+
+
+def full(kind: str, motor: bool = False) -> dict[str, Any]:
+    """A scene with every key that such a file may have."""
+    table = copy.deepcopy(REST | {"rotor": ROTORS[kind]})
+    if motor:
+        del table["runup"]["rate"], table["runup"]["back"]
+        table["runup"]["motor"] = MOTOR
+    return table
+
+
+def leaves(value: Any, path: str = "") -> Iterator[str]:
+    """Paths of all values."""
+    if isinstance(value, dict):
+        for key, entry in value.items():
+            yield from leaves(entry, f"{path}.{key}" if path else key)
+    elif isinstance(value, list) and value and isinstance(value[0], dict):
+        for k, entry in enumerate(value):
+            yield from leaves(entry, f"{path}.{k}")
+    else:
+        yield path
+
+
+def shown(inputs: Inputs) -> set[str]:
+    return {cell.path for cell in inputs.cells if cell.path}
+
+
+def covered(path: str, paths: set[str]) -> bool:
+    """The path itself or a table that holds it has a cell."""
+    path = path if path in paths else TOLD_BY.get(path, path)
+    return any(path == one or path.startswith(f"{one}.") for one in paths)
+
+
+@pytest.mark.parametrize("kind", list(ROTORS))
+@pytest.mark.parametrize("motor", [False, True])
+def test_every_value_has_its_cell(kind: str, motor: bool) -> None:
+    table = full(kind, motor)
+    paths = shown(scene_inputs(scene_from_table(table)))
+    lost = [path for path in leaves(table) if path not in ELSEWHERE and not covered(path, paths)]
+    assert not lost
+
+
+@pytest.mark.parametrize("kind", list(ROTORS))
+def test_the_full_scene_has_every_key_there_is(kind: str) -> None:
+    """So that a key that comes new is not forgotten in the report."""
+    given = set(leaves(full(kind))) | set(leaves(full(kind, motor=True)))
+    pattern = {".".join("*" if part.isdecimal() else part for part in path.split(".")) for path in given}
+    for place, model in TABLES[kind].items():
+        if place[-1:] == ("friction",) or place[-2:] == ("optimise", "duty"):
+            continue
+        for key in model.model_fields:
+            path = ".".join((*place, key))
+            known = any(one == path or one.startswith(f"{path}.") for one in pattern)
+            other = OTHER_WAY.get(path, "")
+            assert known or other in pattern or path in OTHERS, path
+
+
+@pytest.mark.parametrize("kind", list(ROTORS))
+def test_each_assumed_value_marks_its_cell_and_no_other(kind: str) -> None:
+    table = full(kind)
+    bare = scene_inputs(scene_from_table(table))
+    assert not bare.assumed
+    derived = {
+        "rotor.critical_speed": {"rotor.stiffness"},
+        "rotor.damping_ratio": {"rotor.damping"},
+        "rotor.kind": {"rotor.axis"},
+        "runup.motor.speeds": {"runup.motor.torques"},
+    }
+    for path in leaves(table):
+        if path in ELSEWHERE:
+            continue
+        scene = scene_from_table(table | {"assumed": [path]})
+        marked = {cell.path for cell in scene_inputs(scene).cells if cell.assumed}
+        own = {one for one in shown(bare) if path == one or path.startswith(f"{one}.")}
+        assert marked == own | (derived.get(path, set()) & shown(bare)), path
+
+
+def test_an_assumed_table_marks_all_that_is_in_it() -> None:
+    scene = scene_from_table(full("two_plane") | {"assumed": ["runup", "rotor.supports.0", "chambers"]})
+    for cell in scene_inputs(scene).cells:
+        inside = cell.path.startswith(("runup.", "rotor.supports.0.", "chambers."))
+        assert cell.assumed == inside, cell
+
+
+def test_a_section_of_its_own_is_named_and_measured() -> None:
+    """A square of 8 cm, its corners 4 cm from the axis each way."""
+    points = np.array([[-4.0, -4.0], [4.0, -4.0], [4.0, 4.0], [-4.0, 4.0]]) * 1e-2
+    mesh = Section(points, np.array([[0, 1, 2], [0, 2, 3]]))
+    scene = scene_from_table(full("jeffcott") | {"assumed": ["chambers.0.height"]})
+    shape = chamber_section("square <1>.msh", mesh)
+    chamber = Chamber(shape.farthest, 0.02, section=shape)
+    fills = (replace(scene.chambers[0], chamber=chamber),)
+    for name, marked in (("section", 2), ("section_unit", 2), ("section_size", 1), ("height", 0)):
+        path = f"chambers.0.{name}"
+        inputs = scene_inputs(replace(scene, chambers=fills, assumed=(path,)))
+        (row,) = [row for one in inputs.tables if "section" in one.head for row in one.rows]
+        far = printed(math.sqrt(32.0) * 10.0)
+        assert [cell.text for cell in row] == ["1", "square <1>.msh", "64", far, "as in the file"]
+        assert sum(cell.assumed for cell in row) >= marked and any(cell.assumed for cell in inputs.cells)
+
+
+def told(inputs: Inputs) -> dict[str, str]:
+    return {cell.path: cell.text for cell in inputs.cells if cell.path}
+
+
+def number(text: str) -> float:
+    return float(text.split()[0].strip("(,").replace("\N{MINUS SIGN}", "-"))
+
+
+def test_units() -> None:
+    """Every text gives the value of the file back in the unit that stands beside it."""
+    found = told(scene_inputs(scene_from_table(full("jeffcott"))))
+    stiffness = 4.0 * (1000.0 * 2.0 * math.pi / 60.0) ** 2
+    expected = {
+        "rotor.mass": 4.0, "rotor.critical_speed": 1000.0, "rotor.stiffness": stiffness,
+        "rotor.damping_ratio": 0.1, "rotor.damping": 0.2 * math.sqrt(4.0 * stiffness),
+        "rotor.unbalance": 600.0, "gravity": 3.7, "chambers.0.radius": 65.0, "chambers.0.inner_radius": 5.0,
+        "chambers.0.height": 20.0, "chambers.0.plane": 3.0, "chambers.0.volume": 10.0,
+        "chambers.0.baffles.count": 6.0, "chambers.0.baffles.tip_radius": 40.0,
+        "chambers.0.baffles.wall_gap": 2.0, "chambers.0.baffles.first_angle": 30.0,
+        "speeds.start": 60.0, "model.tolerance": 2.0, "runup.start": 30.0, "runup.stop": 900.0,
+        "runup.rate": 2.0, "runup.duration": 9.0, "runup.cells": 32.0, "runup.samples": 77.0,
+        "optimise.working_speed": 600.0, "optimise.vibration_limit": 1.5, "optimise.deflection": 0.7,
+        "optimise.unbalance": 1000.0, "optimise.temperature": 278.15, "optimise.quantile": 0.9,
+        "optimise.operating": 500.0, "optimise.clearance": 4.0, "optimise.duty": 300.0,
+    }  # fmt: skip
+    for path, value in expected.items():
+        # Four digits are printed.
+        assert math.isclose(number(found[path]), value, rel_tol=6e-4), (path, found[path])
+    assert found["speeds.stop"] == "to 1200 rpm" and found["speeds.count"] == "at 20 speeds"
+    assert found["model.friction"] == "linear, 0.5 1/s"
+    assert found["chambers.0.liquid"] == "liquid, 900 kg/m³, 2 mm²/s"
+    assert found["optimise.volumes"] == "chamber 1 1 to 20 ml"
+    assert found["optimise.stability_margin"] == "at least 0.25 1/s"
+
+
+def test_units_of_other_rotors() -> None:
+    planes = told(scene_inputs(scene_from_table(full("two_plane", motor=True))))
+    for path, value in {
+        "rotor.transverse_inertia": 0.7, "rotor.polar_inertia": 0.2, "rotor.supports.0.position": -300.0,
+        "rotor.supports.0.stiffness": 4e4, "rotor.supports.0.damping": 80.0,
+        "rotor.unbalances.0.position": 100.0, "rotor.unbalances.0.size": 1500.0,
+        "rotor.unbalances.0.angle": 120.0, "runup.motor.inertia": 0.3,
+    }.items():  # fmt: skip
+        assert math.isclose(number(planes[path]), value, rel_tol=6e-4), path
+    assert planes["runup.motor.torques"] == "2 N m at 0 rpm, 0 N m at 1200 rpm"
+    tub = told(scene_inputs(scene_from_table(full("tub"))))
+    assert tub["rotor.springs.0.position"] == "(200, 0, 200)"
+    assert tub["rotor.springs.1.stiffness"] == "(1200, 1300, 1400)"
+    assert tub["rotor.dampers.0.damping"] == "155"
+    assert tub["rotor.drum_position"] == "(0, 90, 0) mm" and tub["rotor.unbalance_position"] == "80 mm"
+    assert tub["rotor.unbalance"] == "185000 g mm"
+    table = told(scene_inputs(scene_from_table(full("exciter"))))
+    for path, value in {
+        "rotor.platform_mass": 90.1, "rotor.stiffness": 1.4e5, "rotor.damping": 150.0,
+        "rotor.unbalance": 10000.0, "rotor.balls.count": 2.0, "rotor.balls.mass": 325.0,
+        "rotor.balls.track_radius": 90.0, "rotor.balls.damping": 0.03,
+    }.items():  # fmt: skip
+        assert math.isclose(number(table[path]), value, rel_tol=6e-4), path
+
+
+def test_values_that_the_report_does_not_need_stand_apart() -> None:
+    inputs = scene_inputs(scene_from_table(full("jeffcott")), unused=("runup", "optimise"))
+    assert {entry.cells[0].path.partition(".")[0] for entry in inputs.unused} == {"runup", "optimise"}
+    assert not any(entry.cells[0].path.startswith(("runup", "optimise")) for entry in inputs.entries)
+
+
+def test_an_aim_from_the_command_line_is_not_marked_as_the_scene_s() -> None:
+    table = full("jeffcott")
+    table["assumed"] = ["optimise.deflection", "optimise.clearance"]
+    scene = scene_from_table(table)
+    assert scene.optimise is not None
+    other = Aim(**{**vars(scene.optimise), "deflection": 2e-3})
+    marked = {cell.path: cell for cell in scene_inputs(scene, other).cells if "optimise" in cell.path}
+    assert marked["optimise.deflection"].text == "2 mm" and not marked["optimise.deflection"].assumed
+    assert marked["optimise.clearance"].assumed
+
+
+def test_an_aim_says_what_is_not_its_default() -> None:
+    assert aim_rows(Aim()) == [("Objective", "working_speed", "objective")]
+    duty = tuple((float(k), 1.0) for k in range(1, 9))
+    assert "8 speeds from" in {name: text for _, text, name in aim_rows(Aim(duty=duty))}["duty"]

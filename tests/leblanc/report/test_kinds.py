@@ -1,0 +1,572 @@
+"""The reports of `map`, `optimise`, `runup` and of an exciter: numbers of the JSON, warnings where due."""
+
+from __future__ import annotations
+
+import json
+import math
+import tomllib
+from dataclasses import dataclass, fields, replace
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+import pytest
+
+from leblanc.cli import main
+from leblanc.figures.exciter import write_exciter_figure
+from leblanc.report import exciter as report_exciter
+from leblanc.report import optimise as report_optimise
+from leblanc.report import runup as report_runup
+from leblanc.report import whirl_map as report_map
+from leblanc.report.page import about
+from leblanc.results.optimum import ConstraintValue, Feasibility, OptimumResult
+from leblanc.results.runup import RunupResult
+from leblanc.scene.scene import scene_from_table
+from leblanc.studies.exciter import ExciterRecord, exciter_json, run_exciter
+from leblanc.studies.optimise.optimise import optimise_scene
+from leblanc.studies.run import run_scene
+from leblanc.studies.runup import runup_scene
+from leblanc.studies.whirl_map import StabilityRecord, map_scene
+from leblanc.text.models import MODELS
+from tests.leblanc.studies.test_runup import lying
+from tests.leblanc.studies.test_runup import table as machine
+from tests.oracles.pages import Page, printed, read_page
+
+ROOT = Path(__file__).parents[3]
+RPM = 30.0 / math.pi
+
+
+def example(name: str, count: int, **tables: Any) -> dict[str, Any]:
+    table = tomllib.loads((ROOT / f"examples/{name}.toml").read_text(encoding="utf-8"))
+    table["speeds"]["count"] = count
+    return table | tables
+
+
+def toml(value: Any, at: str = "") -> str:
+    """A table as TOML, all of it in one line each."""
+    if isinstance(value, dict):
+        inside = ", ".join(f"{key} = {toml(entry)}" for key, entry in value.items())
+        return f"{{ {inside} }}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(toml, value)) + "]"
+    if isinstance(value, bool):
+        return str(value).lower()
+    return json.dumps(value, ensure_ascii=False)
+
+
+@dataclass(frozen=True)
+class Told:
+    """What a command prints for scripts, and its report."""
+
+    answer: dict[str, Any]
+    page: Page
+    size: int
+
+
+def told(table: dict[str, Any], command: str, report: str, *options: str, code: int = 0) -> Told:
+    """Run a command on a scene."""
+    import contextlib
+    import io
+
+    with TemporaryDirectory() as folder:
+        scene = Path(folder) / "scene.toml"
+        scene.write_text("\n".join(f"{key} = {toml(one)}" for key, one in table.items()), encoding="utf-8")
+        out = io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(io.StringIO()):
+            assert main([command, str(scene), "--json", "--out", folder, *options]) == code
+        path = Path(folder) / report
+        return Told(json.loads(out.getvalue()), read_page(path), path.stat().st_size)
+
+
+def check_command(page: Page, command: str, data: str) -> None:
+    """The page says how it was made and where its numbers are."""
+    assert any(text.startswith(f"leblanc {command} ") for text in page.of("code"))
+    assert not data or data in page.of("code")
+
+
+# --- map -------------------------------------------------------------------------------------------------
+
+
+@cache
+def small_map() -> StabilityRecord:
+    return map_scene(scene_from_table(example("horizontal_rig", 9)), 7, 40)
+
+
+def test_map_numbers(record: StabilityRecord | None = None) -> None:
+    record = small_map() if record is None else record
+    found = dict(report_map.facts(record))
+    k, j = np.unravel_index(np.argmax(record.growth), record.growth.shape)
+    speed, volume = record.speed[j] * RPM, record.volume[k] * 1e6
+    growth = printed(record.growth[k, j])
+    assert found["Fastest growth"] == f"{growth} 1/s at {printed(speed)} rpm, {printed(volume)} ml"
+    ratio = record.whirl_speed[k, j] / record.speed[j]
+    assert found["That whirl's speed in space"] == f"{printed(ratio)} of the spin"
+    share = 100.0 * (record.growth > 0.0).mean()
+    assert found["A whirl grows at"] == f"{printed(share)} % of the points"
+    assert found["Most liquid, all chambers"] == f"{printed(record.volume[-1] * 1e6)} ml"
+    for row in report_map.bands(record).rows:
+        lines = [i for i in range(record.volume.size) if printed(record.volume[i] * 1e6) == row[0].text]
+        assert len(lines) == 1
+        line = lines[0]
+        assert row[2].text == printed(record.growth[line].max())
+        edges = [f"{low * RPM:.5g} to {high * RPM:.5g}" for low, high in record.edges[line]]
+        assert row[1].text == ("; ".join(edges) or "none")
+
+
+def test_map_warnings() -> None:
+    record = small_map()
+    calm = replace(
+        record, growth=-np.ones_like(record.growth), scene_edges=(), in_range=np.ones_like(record.in_range)
+    )
+    assert not any(cell.warning for row in report_map.checks(calm).rows for cell in row)
+    some = np.zeros_like(record.in_range)
+    some[1, :7] = True
+    lost = np.where(some, np.nan, -1.0)
+    every = record.growth.size
+    for heading, text, troubled in (
+        ("Modes not found", f"7 of {every} points (2.5 %)", replace(calm, growth=lost)),
+        ("Model out of range", f"7 of {every} points (2.5 %)", replace(calm, in_range=~some)),
+        (
+            "Unstable with the scene's volume (rpm)",
+            "600 to 900",
+            replace(calm, scene_edges=((600 / RPM, 900 / RPM),)),
+        ),
+    ):
+        rows = report_map.checks(troubled).rows
+        assert [(row[0].text, row[1].text) for row in rows if row[1].warning] == [(heading, text)]
+    both = replace(calm, in_range=~some, growth=np.where(some, 1.0, -1.0))
+    marked = {row[0].text for row in report_map.checks(both).rows if row[1].warning}
+    assert marked == {"Model out of range", "Grows where out of range"}
+
+
+def test_map_report_is_the_json() -> None:
+    table = example("horizontal_rig", 9)
+    found = told(table, "map", "map.html", "--volumes", "7", "--speeds", "40", "--friction", "linear:0.2")
+    answer, page = found.answer, found.page
+    growth = np.array(answer["growth"])
+    assert page.row("Volumes by speeds") == ["7 by 40"]
+    k, j = np.unravel_index(np.argmax(growth), growth.shape)
+    at = f"{printed(answer['speed'][j] * RPM)} rpm, {printed(answer['volume'][k] * 1e6)} ml"
+    assert page.row("Fastest growth") == [f"{printed(growth[k, j])} 1/s at {at}"]
+    assert page.row("Friction of the liquid") == [answer["friction"]] == ["linear, 0.2 1/s"]
+    assert page.row("Support") == [answer["damping"]]
+    bands = "; ".join(f"{low * RPM:.5g} to {high * RPM:.5g}" for low, high in answer["scene_edges"])
+    assert page.row("Bands with the scene's 20 ml (rpm)") == [bands]
+    assert [row[2] for row in page.table("Liquid (ml)")] == [printed(max(row)) for row in growth.tolist()]
+    assert page.of("li") == answer["notes"]
+    check_command(page, "map", "map.nc")
+    assert "--volumes 7 --speeds 40 --friction linear:0.2" in page.words
+    assert found.size < 1_500_000
+
+
+def test_a_map_of_many_points_stays_light(tmp_path: Path) -> None:
+    """Many points: the picture takes the place of the drawing, or the drawing holds a picture."""
+    from leblanc.figures.stability_map import map_figure, save
+
+    scene = scene_from_table(example("horizontal_rig", 9))
+    record = map_scene(scene, 3, 3)
+    speed = np.linspace(10.0, 200.0, 500)
+    volume = np.linspace(0.0, 3e-4, 300)
+    growth = np.sin(speed / 20.0) * np.cos(volume[:, None] * 4e4)
+    edge = ((50.0, 90.0),)
+    many = replace(
+        record, speed=speed, volume=volume, growth=growth, whirl_speed=0.7 * speed + 0.0 * growth,
+        in_range=growth < 0.9, edges=(edge,) * volume.size,
+    )  # fmt: skip
+    files = save(map_figure(many), tmp_path, "map", "Map")
+    report_map.write_map_report(many, about(scene), files, tmp_path / "map.html")
+    assert (tmp_path / "map.html").stat().st_size < 3_000_000
+    assert len(read_page(tmp_path / "map.html").table("Liquid (ml)")) == report_map.LISTED
+
+
+# --- optimise --------------------------------------------------------------------------------------------
+
+
+@cache
+def optimum() -> OptimumResult:
+    return optimise_scene(scene_from_table(example("centrifuge", 9)), front=True)
+
+
+def test_optimum_numbers() -> None:
+    record = optimum()
+    (row,) = report_optimise.volumes(record).rows
+    (form,), (chamber,) = record.closed_form, record.chambers
+    expected = [
+        record.volume[0] * 1e6, 100.0 * record.volume[0] / chamber.capacity, form.deflection * 1e3,
+        form.optimal_volume * 1e6, 100.0 * form.unbalance_share, form.full_volume * 1e6,
+    ]  # fmt: skip
+    shown = [row[k].text for k in (1, 3, 4, 5, 6, 7)]
+    assert shown == ["never" if math.isinf(one) else printed(one) for one in expected]
+    (value,) = report_optimise.values(record).rows
+    assert [cell.text for cell in value[1:]] == [
+        f"{printed(record.value * 1e3)} mm", f"{printed(record.baseline * 1e3)} mm",
+        printed(record.value / record.baseline),
+    ]  # fmt: skip
+    found = dict(report_optimise.facts(record))
+    assert found["Working speed"] == f"{printed(record.working_speed * RPM)} rpm"
+    assert found["Mass of the liquid"] == f"{printed(record.mass * 1e3)} g"
+    assert found["Stability margin at the operating speeds"] == f"{printed(-record.growth)} 1/s"
+    edge = record.front
+    assert edge is not None
+    rows = report_optimise.front(record).rows
+    assert sum("(chosen)" in row[0].text for row in rows) == 1
+    for row in rows:
+        points = [k for k in range(edge.mass.size) if printed(edge.mass[k] * 1e3) == row[0].text.split()[0]]
+        mine = [
+            (
+                printed(edge.volume[k, 0] * 1e6),
+                printed(edge.vibration[k] * 1e3),
+                printed(edge.stability_margin[k]),
+            )
+            for k in points
+        ]
+        assert tuple(cell.text for cell in row[1:]) in mine
+        if "(chosen)" in row[0].text:
+            assert row[1].text == printed(record.volume[0] * 1e6)
+
+
+def test_optimum_warnings() -> None:
+    """With constraints kept and nothing growing no row is marked; each trouble marks its own."""
+    record = optimum()
+    calm = replace(
+        record,
+        growth=-1.0,
+        feasibility=Feasibility.FEASIBLE,
+        constraints={"capacity": ConstraintValue(1.0, 0.1, True, "1", "s")},
+        response=None,
+    )
+    assert not any(cell.warning for row in report_optimise.checks(calm).rows for cell in row)
+    assert not any(cell.warning for row in report_optimise.constraints(calm).rows for cell in row)
+    grows = report_optimise.checks(replace(calm, growth=0.5)).rows
+    assert [row[0].text for row in grows if row[1].warning] == ["A small whirl grows when operating"]
+    dry = {"dry_patch": ConstraintValue(0.0, 1.0, False, "1", "dry")}
+    over = replace(calm, feasibility=Feasibility.INFEASIBLE, constraints=dry)
+    rows = report_optimise.checks(over).rows
+    assert [(row[0].text, row[1].text) for row in rows if row[1].warning] == [
+        ("Constraints exceeded", "dry patch")
+    ]
+    (row,) = report_optimise.constraints(over).rows
+    assert row[3].warning and row[3].text == "exceeded" and [cell.text for cell in row[1:3]] == ["1", "0"]
+
+
+def test_optimise_report_is_the_json() -> None:
+    table = example("washing_machine", 9)
+    found = told(table, "optimise", "optimise.html", "--objective", "least_mass")
+    answer, page = found.answer, found.page
+    rows = page.table("Chamber", "best volume (ml)")
+    assert [row[1] for row in rows] == [printed(one * 1e6) for one in answer["volume"]]
+    for row, form in zip(rows, answer["closed_form"], strict=True):
+        assert row[4] == printed(form["deflection"] * 1e3)
+        assert row[5] == printed(form["optimal_volume"] * 1e6)
+        assert row[6] == printed(100.0 * form["unbalance_share"])
+        assert row[7] == ("never" if form["full_volume"] is None else printed(form["full_volume"] * 1e6))
+    mass, vibration = (
+        answer["value"] * 1e3,
+        [answer[one] * 1e3 for one in ("vibration", "vibration_baseline")],
+    )
+    assert page.row("Objective") == [f"{printed(mass)} g", "0 g", ""]
+    both = [f"{printed(one)} mm" for one in vibration]
+    assert page.row("Vibration") == [*both, printed(vibration[0] / vibration[1])]
+    assert page.row("Sets of volumes judged") == [str(answer["evaluations"])]
+    limits = {row[0].partition(":")[0]: row[1:] for row in page.table("Constraint")}
+    assert limits["vibration"][1] == f"{printed(answer['constraints']['vibration']['limit'] * 1e3)} mm"
+    assert limits["vibration"][2] == "kept" and set(limits) == {"capacity", "vibration"}
+    front = {printed(one["mass"] * 1e3): one for one in answer["pareto"]}
+    for row in page.table(next(row[0] for row in page.rows if row and row[0].startswith("Liquid (g)"))):
+        assert row[0].split()[0] in front
+    # What is said of the machine with the best volumes is what `run` says of it.
+    for chamber, volume in zip(table["chambers"], answer["volume"], strict=True):
+        chamber["volume"] = volume
+    again = run_scene(scene_from_table(table | {"model": {"liquid": "statics"}}))
+    flags = {
+        "Wall dry in part": again.response.dry_patch.any(),
+        "Answer unstable": (~again.response.stable).any(),
+        "Liquid model out of range": (~again.response.in_range).any(),
+        "A small whirl grows when operating": answer["stability_margin"] < 0.0,
+    }
+    assert {heading for heading, flag in flags.items() if flag} == page.warnings() & set(flags)
+    assert page.of("li") == list(answer["notes"])
+    assert MODELS["statics"][0] in page.words and "the scene asks for it" not in page.words.lower()
+    assert "--objective least_mass" in page.words
+    check_command(page, "optimise", "optimum.nc")
+
+
+def test_a_search_that_names_its_model_says_so() -> None:
+    scene = scene_from_table(example("washing_machine", 5, model={"liquid": "statics"}))
+    record = optimise_scene(scene, front=False)
+    assert "scene asks" in record.spans[-1].reason
+
+
+def test_a_given_deflection_has_its_report() -> None:
+    found = told(
+        example("vertical_rig", 5), "optimise", "optimise.html", "--deflection", "1 mm", "--no-front"
+    )
+    rows = found.page.table("Chamber", "best volume (ml)")
+    assert [row[1] for row in rows] == [printed(one * 1e6) for one in found.answer["volume"]]
+    assert all(row[4] == "1" for row in rows)
+    assert ("Deflection given", "1 mm") in found.page.terms
+    assert not any(row[0].startswith("Liquid (g)") for row in found.page.rows if row)
+
+
+# --- runup -----------------------------------------------------------------------------------------------
+
+
+@cache
+def run() -> RunupResult:
+    """Up and down, lying, so that its liquid is captured and let go."""
+    return runup_scene(lying(runup={"start": 3.0, "stop": 30.0, "rate": 20.0, "back": True, "duration": 2.0}))
+
+
+def test_runup_numbers() -> None:
+    record = run()
+    h = record.history
+    rows = {row[0].text: [cell.text for cell in row[1:]] for row in report_runup.moments(record).rows}
+    turn = int(np.flatnonzero(h.speed == h.speed.max())[-1])
+    up = int(np.argmax(h.amplitude[: turn + 1]))
+    down = turn + 1 + int(np.argmax(h.amplitude[turn + 1 :]))
+    for label, k in (("Largest on the way up", up), ("Largest on the way down", down), ("At the end", -1)):
+        assert rows[label] == [printed(h.amplitude[k] * 1e3), printed(h.speed[k] * RPM), printed(h.time[k])]
+    assert record.steady is not None
+    k = int(np.nanargmax(np.abs(record.steady.deflection)))
+    steady = abs(record.steady.deflection[k]) * 1e3, record.steady.speed[k] * RPM
+    assert rows["Largest of the steady response"] == [*map(printed, steady), ""]
+    audit = h.audit
+    work = max(abs(audit.unbalance), audit.support + audit.friction + audit.bores)
+    energy = {row[0].text: [cell.text for cell in row[1:]] for row in report_runup.energy(record).rows}
+    assert energy.get("+ work of the unbalance") == [
+        printed(audit.unbalance),
+        printed(100.0 * audit.unbalance / work),
+    ]
+
+    assert {label[0] for label in energy if label[0] != "="} == {"+", "\N{MINUS SIGN}"}
+
+    # What is brought in less what is used is what is left over, as the signs before the terms say.
+    def value(text: str) -> float:
+        return float(text.replace("\N{MINUS SIGN}", "-"))
+
+    total = sum(
+        value(one[0]) * (1.0 if label[0] == "+" else -1.0) for label, one in energy.items() if label[0] != "="
+    )
+    left = value(energy["= not accounted for"][0])
+    size = sum(abs(value(one[0])) for one in energy.values())
+    assert abs(total - left) < 1e-3 * size  # each term has four digits
+    assert abs(value(energy["= not accounted for"][1])) == pytest.approx(100.0 * audit.closure, rel=1e-3)
+    found = dict(report_runup.facts(record))
+    assert found["Energy not accounted for, of the work"] == f"{printed(100.0 * audit.closure)} %"
+    assert found["Error by half the cells, of the largest"] == f"{printed(100.0 * h.error_estimate)} %"
+    assert found["Largest change of a layer's mass"] == f"{printed(100.0 * h.mass_error)} %"
+    place = h.liquid_position[-1]
+    angle = printed(math.degrees(np.angle(place)))
+    assert (
+        found["Its centre of mass at the end"]
+        == f"{printed(abs(place) * 1e3)} mm off the axis at {angle} deg"
+    )
+
+
+def calm_run() -> RunupResult:
+    record = run()
+    h = record.history
+    all_the_time = np.ones_like(h.captured)
+    nothing = replace(h.audit, **{one.name: 0.0 for one in fields(h.audit)})
+    history = replace(
+        h, captured=all_the_time, depth_min=np.full_like(h.depth_min, 1e-3), mass_error=1e-12,
+        error_estimate=0.01, converged=True, audit=nothing,
+    )  # fmt: skip
+    return replace(record, history=history, in_range=np.ones_like(record.in_range), bands=())
+
+
+def test_runup_warnings() -> None:
+    record = calm_run()
+    h = record.history
+    assert not any(cell.warning for row in report_runup.checks(record).rows for cell in row)
+    part = np.zeros(h.time.size, dtype=np.bool_)
+    part[10:20] = True
+    where = f"{h.time[10]:.3g} to {h.time[19]:.3g} s"
+
+    def with_history(**changes: Any) -> RunupResult:
+        return replace(record, history=replace(h, **changes))
+
+    audit = replace(h.audit, unbalance=1.0, support=0.99)
+    for heading, text, troubled in (
+        ("Stopped before its end", "a reason", with_history(converged=False, reason="a reason")),
+        ("Liquid model out of range", where, replace(record, in_range=~part)),
+        ("Liquid not carried round", where, with_history(captured=~part[:, None])),
+        ("Liquid leaves a wall dry", where, with_history(depth_min=np.where(part, 1e-7, 1e-3)[:, None])),
+        (
+            "Self-excited whirl, linear theory",
+            "100 to 200 rpm",
+            replace(record, bands=((100 / RPM, 200 / RPM),)),
+        ),
+        ("Error above 2 % or unknown", "5 %", with_history(error_estimate=0.05)),
+        ("Error above 2 % or unknown", "not known", with_history(error_estimate=math.nan)),
+        ("Energy lost above 0.1 %", "1 %", with_history(audit=audit)),
+        ("Mass changed above 1.000e\N{MINUS SIGN}06", "0.01 %", with_history(mass_error=1e-4)),
+    ):
+        rows = report_runup.checks(troubled).rows
+        assert [(row[0].text, row[1].text) for row in rows if row[1].warning] == [(heading, text)]
+
+
+def test_events() -> None:
+    """When liquid is captured and let go, by the samples at which its state changes."""
+    record = run()
+    h = record.history
+    state = h.captured[:, 0]
+    change = [k for k in range(1, state.size) if state[k] != state[k - 1]]
+    rows = report_runup.events(record).rows
+    assert len(rows) == len(change) >= 2
+    for row, k in zip(rows, change, strict=True):
+        what = "captured" if state[k] else "falls back"
+        assert [cell.text for cell in row] == [
+            printed(h.time[k]), printed(h.speed[k] * RPM), f"chamber 1: {what}"
+        ]  # fmt: skip
+
+
+def test_runup_report_is_the_json() -> None:
+    ramp = {"start": 3.0, "stop": 30.0, "back": True, "samples": 200}
+    content = machine(rotor={"axis": "horizontal"}, runup=ramp)
+    found = told(content, "runup", "runup.html", "--cells", "32")
+    answer, page = found.answer, found.page
+    for label, name in (
+        ("Largest on the way up", "peak"), ("Largest on the way down", "peak_back"), ("At the end", "end"),
+    ):  # fmt: skip
+        one = answer[name]
+        assert page.row(label) == [
+            printed(one["amplitude"] * 1e3),
+            printed(one["speed"] * RPM),
+            printed(one["time"]),
+        ]
+    energy = answer["energy"]
+    for name, text in report_runup.TERMS.items():
+        (row,) = [row for row in page.rows if row and row[0][2:] == text]
+        assert row[1] == printed(energy[name])
+    assert page.row("= not accounted for")[0] == printed(energy["remainder"])
+    assert page.row("Error of model and steps") == [f"{printed(100.0 * answer['model_error'])} %"]
+    assert page.row("Phase of the deflection at the end") == [
+        f"{printed(math.degrees(answer['end']['phase']))} deg"
+    ]
+    assert page.row("Resolution")[0].startswith(f"32 cells, {answer['steps']} steps")
+    assert "--cells 32" in page.words
+    (why,) = page.table("Speeds (rpm)", "Model", "Estimated error", "Why")
+    assert why[1] == answer["model"] and answer["model_reason"][1:] in why[3]
+    assert MODELS[answer["model"]][0] in page.words
+    captured = np.array(answer["captured"])
+    flags = {
+        "Liquid model out of range": not all(answer["in_range"]),
+        "Self-excited whirl, linear theory": bool(answer["bands"]),
+        "Error above 2 % or unknown": not answer["error_estimate"] <= 0.02,
+        "Energy lost above 0.1 %": energy["closure"] > 1e-3,
+        "Liquid not carried round": not captured.all(),
+    }
+    assert {heading for heading, flag in flags.items() if flag} == page.warnings() & set(flags)
+    assert len(page.addresses) == 3
+    # No note is lost: it stands among the remarks, or a table says it.
+    for note in answer["notes"]:
+        assert note in page.of("li") or any(part in note for part in report_runup.REPEATED)
+    check_command(page, "runup", "runup.nc")
+
+
+def test_a_run_that_stopped_says_so(tmp_path: Path) -> None:
+    record = calm_run()
+    stopped = replace(
+        record, history=replace(record.history, converged=False, reason="the layer <left> the drum")
+    )
+    report_runup.write_runup_report(stopped, about(lying()), (), tmp_path / "runup.html")
+    page = read_page(tmp_path / "runup.html")
+    assert page.row("Stopped before its end") == ["Warning: the layer <left> the drum"]
+
+
+# --- exciter ---------------------------------------------------------------------------------------------
+
+
+@cache
+def exciter() -> ExciterRecord:
+    return run_exciter(scene_from_table(example("vibratory_table", 6)))
+
+
+def test_exciter_numbers() -> None:
+    record = exciter()
+    found = dict(report_exciter.facts(record))
+    first, through, last = (one * RPM for one in record.characteristic)
+    assert (
+        found["Natural frequency of the platform"] == f"{printed(record.machine.natural_frequency * RPM)} rpm"
+    )
+    assert found["Three stuck speeds, shaft from and to"] == f"{printed(first)} rpm to {printed(last)} rpm"
+    assert found["Slowest stuck speed at the resonance, shaft at"] == f"{printed(through)} rpm"
+    critical = found["Critical speed, up to which the balls stick"]
+    assert critical == f"{printed(record.critical * RPM)} rpm"
+    end = printed(record.speed[-1] * RPM)
+    assert found[f"Vibration with the shaft at {end} rpm"] == f"{printed(record.fast[-1] * 1e3)} mm"
+    below = replace(
+        record,
+        speed=record.speed[:3],
+        slow=record.slow[:3],
+        fast=record.fast[:3],
+        dual_frequency=record.dual_frequency[:3],
+    )
+    slow = dict(report_exciter.facts(below))[
+        f"Vibration with the balls at {printed(record.speed[2] * RPM)} rpm"
+    ]
+    assert slow == f"{printed(record.slow[2] * 1e3)} mm"
+    for row, one in zip(report_exciter.integrations(record).rows, record.checks, strict=True):
+        assert row[0].text == printed(one.speed * RPM) and row[1].text == ("stay" if one.holds else "leave")
+        if one.holds:
+            assert row[2].text == printed(one.stuck_speed * RPM)
+        if one.holds and math.isfinite(one.slow):
+            assert [row[3].text, row[4].text] == [printed(one.slow * 1e3), printed(one.fast * 1e3)]
+
+
+def test_exciter_warnings() -> None:
+    record = exciter()
+    calm = replace(record, dual_frequency=np.ones_like(record.dual_frequency))
+    assert not any(cell.warning for row in report_exciter.checks(calm).rows for cell in row)
+    lost = tuple(replace(one, converged=k != 1) for k, one in enumerate(record.checks))
+    at = f"{printed(record.checks[1].speed * RPM)} rpm"
+    beyond = f"{printed(record.speed[-1] * RPM)} rpm"
+    few = np.arange(record.speed.size) < record.speed.size - 1
+    for heading, text, troubled in (
+        ("Time integration not finite", at, replace(calm, checks=lost)),
+        ("Balls do not stick", beyond, replace(calm, dual_frequency=few)),
+        ("Regression of the source", "outside its ranges", replace(calm, printed_critical=math.nan)),
+    ):
+        rows = report_exciter.checks(troubled).rows
+        assert [(row[0].text, row[1].text) for row in rows if row[1].warning] == [(heading, text)]
+
+
+def test_exciter_report_is_the_json(tmp_path: Path) -> None:
+    record = exciter()
+    answer = json.loads(json.dumps(exciter_json(record)))
+    what = about(scene_from_table(example("vibratory_table", 6)), "leblanc run table.toml")
+    figure = write_exciter_figure(record, tmp_path)
+    report_exciter.write_exciter_report(record, what, figure, tmp_path / "summary.html")
+    page = read_page(tmp_path / "summary.html")
+    printed_critical, critical = answer["critical_speed_printed"] * RPM, answer["critical_speed"] * RPM
+    assert page.row("The same by the source's regression") == [f"{printed(printed_critical)} rpm"]
+    assert page.row("Critical speed, up to which the balls stick") == [f"{printed(critical)} rpm"]
+    for name, value in answer["dimensionless"].items():
+        if name in report_exciter.WORDS:
+            assert page.row(report_exciter.WORDS[name]) == [printed(value)]
+    assert ("Balls do not stick" in page.warnings()) == (not all(answer["dual_frequency"]))
+    assert len(page.addresses) == 1
+    check_command(page, "run", "")
+
+
+def test_reports_of_one_scene_do_not_overwrite_one_another() -> None:
+    """All commands may share the folder of a scene."""
+    names = [
+        "summary.html",
+        "map.html",
+        "optimise.html",
+        "runup.html",
+        "response.nc",
+        "map.nc",
+        "optimum.nc",
+        "runup.nc",
+    ]
+    assert len(set(names)) == len(names)
+    source = "".join(
+        (ROOT / f"leblanc/cli/{name}.py").read_text(encoding="utf-8")
+        for name in ("run", "map", "optimise", "runup")
+    )
+    assert all(f'"{name}"' in source for name in names)

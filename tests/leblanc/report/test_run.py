@@ -1,0 +1,464 @@
+"""The report of `run`: numbers of the record and of the JSON, nothing from elsewhere, warnings where due."""
+
+from __future__ import annotations
+
+import base64
+import json
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from leblanc.cli import main
+from leblanc.figures.page import FigureFiles
+from leblanc.report import page as report
+from leblanc.report import run as report_run
+from leblanc.report.layout import NARROW, WIDE
+from leblanc.report.parts import LIGHT, picture
+from leblanc.results.record import ChamberRecord, SelfExcited, StudyRecord
+from leblanc.scene.scene import load_scene
+from leblanc.studies.choose import choose
+from leblanc.text.models import MODELS, model_spans
+from leblanc.text.numbers import number, ranges
+from tests.oracles.pages import WARNING, Page, about_record, printed, read_page
+from tests.oracles.records import RPM, folded, record_of, response_of, rig
+
+ROOT = Path(__file__).parents[3]
+SVG = '<?xml version="1.0"?><svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 400 300"/>'
+PNG = b"\x89PNG\r\n\x1a\n" + bytes(100)
+
+
+@pytest.fixture
+def drawing(tmp_path: Path) -> FigureFiles:
+    return figure(tmp_path, "amplitude", SVG)
+
+
+def figure(folder: Path, name: str, svg: str, png: bytes = PNG) -> FigureFiles:
+    files = FigureFiles(name, f"Title of {name}", folder / f"{name}.png", folder / f"{name}.svg")
+    files.svg.write_text(svg, encoding="utf-8")
+    files.png.write_bytes(png)
+    return files
+
+
+def page_of(record: StudyRecord, folder: Path, figures: Sequence[FigureFiles] = (), tolerance=None) -> Page:
+    path = folder / "summary.html"
+    report_run.write_summary(record, about_record(record), figures, path, tolerance=tolerance)
+    return read_page(path)
+
+
+def test_comparisons() -> None:
+    record = rig()
+    r = record.response
+    largest, at, last, critical = report_run.comparisons(record)
+    wet, dry = np.abs(r.deflection), np.abs(r.deflection_dry)
+    # Four digits are printed.
+    close = {"rel_tol": 6e-4}
+    assert math.isclose(float(largest.wet), wet.max() * 1000.0, **close)
+    assert math.isclose(float(largest.dry), dry.max() * 1000.0, **close)
+    assert math.isclose(float(largest.ratio), wet.max() / dry.max(), **close)
+    assert math.isclose(float(at.wet), r.speed[wet.argmax()] * 30.0 / math.pi, **close)
+    assert math.isclose(float(at.dry), r.speed[dry.argmax()] * 30.0 / math.pi, **close)
+    assert math.isclose(float(last.ratio), wet[-1] / dry[-1], **close)
+    # The added mass of the chamber lowers the critical speed by the root of the masses.
+    added = 998.2 * math.pi * 0.065**2 * 0.02
+    assert math.isclose(float(critical.ratio), math.sqrt(4.0 / (4.0 + added)), **close)
+    assert critical.dry == "1000" and math.isclose(
+        float(critical.wet), 1000.0 * float(critical.ratio), **close
+    )
+    found = dict(report_run.facts(record))
+    place = found["Its centre of mass at 2000 rpm"].replace("\N{MINUS SIGN}", "-").split()
+    assert math.isclose(float(place[0]), r.liquid_offset[-1] * 1000.0, **close)
+    assert math.isclose(float(place[-2]), math.degrees(r.liquid_angle[-1]), **close)
+    assert math.isclose(float(found["Mass of the liquid"].split()[0]), record.liquid_mass * 1000.0, **close)
+
+
+def test_ranges() -> None:
+    speed = np.array([100.0, 200.0, 300.0, 400.0, 500.0, 600.0]) * RPM
+    holds = np.array([False, True, True, False, True, False])
+    assert ranges(speed, holds) == "200 to 300; 500 rpm"
+    assert ranges(speed[::-1], holds[::-1]) == "200 to 300; 500 rpm"
+    assert ranges(speed, ~holds) == "100; 400; 600 rpm"
+
+
+def quiet() -> StudyRecord:
+    """A record of which nothing is to be said."""
+    r = rig().response
+    always = np.ones(201, dtype=np.bool_)
+    whirl = SelfExcited(np.full(201, -1.0), np.zeros(201), (), "none")
+    calm = replace(r, in_range=always, dry_patch=~always, stable=always, converged=always)
+    return replace(
+        record_of(calm), capture_speed=None, whirl=whirl, error_estimate=np.full(201, 1e-5), notes=()
+    )
+
+
+def some(first: int, last: int) -> np.ndarray:
+    mask = np.zeros(201, dtype=np.bool_)
+    mask[first : last + 1] = True
+    return mask
+
+
+def troubled() -> dict[str, tuple[StudyRecord, str]]:
+    """One trouble each: heading of the check, record, speeds that it must name."""
+    record = quiet()
+    r, whirl = record.response, record.whirl
+    assert whirl is not None and record.error_estimate is not None
+    part, where = some(20, 40), "290 to 480 rpm"  # the speeds lie 9.5 rpm apart, from 100 rpm
+    infinite = np.where(some(30, 30), complex(np.inf, 0.0), r.deflection)
+    return {
+        "Not converged": (replace(record, response=replace(r, converged=~part)), where),
+        "Liquid model out of range": (replace(record, response=replace(r, in_range=~part)), where),
+        "Liquid not carried round": (
+            replace(record, capture_speed=150.0 * RPM), "100 to 147.5 rpm (below 150 rpm)"
+        ),
+        "Error above 0.1 % or unknown": (
+            replace(record, error_estimate=np.where(part, [np.nan, 0.002] * 100 + [0.002], 1e-5)), where
+        ),
+        "Wall dry in part": (replace(record, response=replace(r, dry_patch=part)), where),
+        "Answer unstable": (replace(record, response=replace(r, stable=~part)), where),
+        "Self-excited whirl": (
+            replace(record, whirl=replace(whirl, bands=((290.0 * RPM, 480.0 * RPM),))), where
+        ),
+        "Amplitude infinite": (replace(record, response=replace(r, deflection=infinite)), "385 rpm"),
+    }  # fmt: skip
+
+
+def test_warnings() -> None:
+    calm = report_run.checks(quiet(), 1e-3)
+    assert not any(cell.warning for row in calm.rows for cell in row)
+    for heading, (record, where) in troubled().items():
+        rows = report_run.checks(record, 1e-3).rows
+        assert [row[0].text for row in rows if row[1].warning] == [heading]
+        (text,) = [row[1].text for row in rows if row[0].text == heading]
+        assert text == where, heading
+        assert all(row[1].text == "none" for row in rows if row[0].text != heading)
+
+
+def test_warnings_stand_on_the_page_where_the_flags_say_so(tmp_path: Path) -> None:
+    assert page_of(quiet(), tmp_path, tolerance=1e-3).warnings() == set()
+    assert WARNING not in page_of(quiet(), tmp_path).all_text
+    for heading, (record, where) in troubled().items():
+        page = page_of(record, tmp_path, tolerance=1e-3)
+        assert page.warnings() == {heading}
+        assert page.row(heading) == [f"{WARNING} {where}"]
+
+
+def test_whirl_that_was_not_found_is_a_warning() -> None:
+    record = quiet()
+    assert record.whirl is not None
+    lost = replace(record, whirl=replace(record.whirl, growth=np.where(some(0, 1), np.nan, -1.0)))
+    (row,) = [row for row in report_run.checks(lost).rows if row[1].warning]
+    assert row[1].text == "not found at 100 to 109.5 rpm"
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "horizontal_rig",
+        "tub",
+        *(
+            pytest.param(name, marks=pytest.mark.slow)
+            for name in ("vertical_rig", "two_plane_rig", "centrifuge")
+        ),
+    ],
+)
+def test_numbers_are_those_of_the_json(name: str, tmp_path: Path, capsys) -> None:
+    assert main(["run", f"examples/{name}.toml", "--json", "--out", str(tmp_path)]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    page = read_page(tmp_path / "summary.html")
+    rpm = [speed * 30.0 / math.pi for speed in answer["speed"]]
+    wet, dry = answer["amplitude"], answer["amplitude_dry"]
+    k, j = wet.index(max(wet)), dry.index(max(dry))
+    assert page.row("Largest amplitude (mm)") == [
+        printed(x) for x in (wet[k] * 1e3, dry[j] * 1e3, wet[k] / dry[j])
+    ]
+    assert page.row("at the speed (rpm)") == [printed(rpm[k]), printed(rpm[j]), ""]
+    last = [printed(x) for x in (wet[-1] * 1e3, dry[-1] * 1e3, wet[-1] / dry[-1])]
+    assert page.row(f"Amplitude at {printed(rpm[-1])} rpm (mm)") == last
+    assert page.row("Mass of the liquid") == [f"{printed(answer['liquid_mass'] * 1e3)} g"]
+    angle, offset = math.degrees(answer["liquid_angle"][-1]), answer["liquid_offset"][-1] * 1e3
+    place = f"{printed(offset)} mm off the axis at {printed(angle)} deg"
+    assert page.row(f"Its centre of mass at {printed(rpm[-1])} rpm") == [place]
+    if "critical_speeds_wet" in answer:
+        listed = ", ".join(
+            printed(speed * 30.0 / math.pi) + (" b" if way < -0.5 else "")
+            for speed, way in answer["critical_speeds_wet"]
+        )
+        assert page.row("Critical speeds with liquid") == [f"{listed} rpm"]
+    else:
+        both = [answer["critical_speed_wet"], answer["critical_speed_dry"]]
+        both = [*(x * 30.0 / math.pi for x in both), both[0] / both[1]]
+        assert page.row("Critical speed (rpm)") == [printed(x) for x in both]
+    flags = {
+        "Not converged": not all(answer["converged"]),
+        "Liquid model out of range": not all(answer["in_range"]),
+        "Wall dry in part": any(answer["dry_patch"]),
+        "Answer unstable": not all(answer["stable"]),
+        "Self-excited whirl": bool(answer["whirl_bands"]),
+        "Liquid not carried round": (answer["capture_speed"] or 0.0) >= answer["speed"][0],
+        "Error above 0.1 % or unknown": not all(
+            x is not None and x <= 1e-3 for x in answer["error_estimate"]
+        ),
+    }
+    assert page.warnings() == {heading for heading, flag in flags.items() if flag}
+    # The models and why, as `explain` says them.
+    assert main(["explain", f"examples/{name}.toml", "--json"]) == 0
+    spans = json.loads(capsys.readouterr().out)["models"]
+    rows = page.table("Speeds (rpm)", "Model", "Estimated error", "Why")
+    assert len(rows) == len(spans)
+    for row, span in zip(rows, spans, strict=True):
+        assert row[1].split()[0] == span["model"] and ("out of range" in row[1]) != span["in_range"]
+        assert row[3].lower() == f"{span['reason'].lower()}."
+        assert row[0].split()[0] == f"{span['first'] * 30.0 / math.pi:.5g}"
+    for model in {span["model"] for span in spans}:
+        assert MODELS[model][0] in page.words
+    assert set(answer["notes"]) - set(page.of("li")) <= {
+        note for note in answer["notes"] if "tolerance" in note or note.startswith("Liquid model:")
+    }
+
+
+def test_why_gives_the_error_of_each_range() -> None:
+    scene = load_scene(ROOT / "examples/horizontal_rig.toml")
+    spans = model_spans(choose(scene), scene.speed_array())
+    rows = report.why(spans).rows
+    assert [row[2].text for row in rows] == ["not known", "about 100 % or more", "0.099 %"]
+    assert [row[0].text for row in rows] == ["100 to 128.5", "138 to 1477.5", "1487 to 2000"]
+    unbounded = report.why([replace(spans[2], error=math.inf)]).rows[0]
+    assert unbounded[2].text == "without a bound"
+
+
+def test_page_names_machine_model_notes_and_versions(tmp_path: Path) -> None:
+    record = rig()
+    page = page_of(record, tmp_path)
+    assert page.of("h1") == [record.name]
+    text = page.words
+    assert "A rotor with a horizontal axis that carries one chamber with 10 ml of water" in text
+    assert "from 100 to 2000 rpm in 201 speeds." in text
+    assert "Source: DR18, section 7.2." in text
+    assert record.notes[0] in page.of("li")
+    assert record.digest in text
+    for package, version in report.versions().items():
+        assert f"{package} {version}" in text
+    assert f"numpy {np.__version__}" in text
+    assert MODELS["statics"][0] in text
+
+
+def test_every_model_says_what_it_does_and_takes_for_granted() -> None:
+    assert set(MODELS) == {"statics", "linear", "long_wave", "kdv", "fem"}
+    assert all(len(sentences) == 2 for sentences in MODELS.values())
+
+
+def test_inputs_with_assumed_values_marked(tmp_path: Path) -> None:
+    record = replace(rig(), assumed=("rotor.mass", "chambers.0", "runup.rate"))
+    page = page_of(record, tmp_path)
+    assert [label for label, _ in page.terms] == [label for label, _, _ in record.inputs]
+    for (label, value, path), (_, shown) in zip(record.inputs, page.terms, strict=True):
+        marked = path == "rotor.mass" or path.startswith("chambers.0.")
+        assert shown == (f"{value} *" if marked else value), label
+    assert "* assumed: no source gives this value. Also assumed: runup.rate." in page.words
+    assert page.attributes.count(("span", "aria-label", "assumed")) == 5
+    assert "assumed" not in page_of(replace(record, assumed=()), tmp_path).words
+
+
+def test_several_models_each_with_its_range(tmp_path: Path) -> None:
+    r = rig().response
+    model = np.where(np.arange(201) < 100, "statics", "long_wave")
+    page = page_of(record_of(replace(r, model=model)), tmp_path)
+    assert page.table("Model", "Speeds") == [
+        ["statics", "100 to 1040 rpm"],
+        ["long_wave", "1050 to 2000 rpm"],
+    ]
+
+
+def test_remarks_come_from_the_numbers() -> None:
+    record = rig()
+    assert report_run.remarks(record) == list(record.notes)
+    assert report_run.remarks(record, record.notes) == []
+    below = replace(rig(50, 100.0, 900.0), notes=())
+    assert report_run.remarks(below) == ["The largest amplitude lies at an end of the range of speeds."]
+    r = record.response
+    doubtful = replace(record, notes=(), response=replace(r, in_range=np.zeros(201, dtype=np.bool_)))
+    assert len(report_run.remarks(doubtful)) == 2
+    lost = replace(r, deflection=np.full(201, np.nan + 0j))
+    assert report_run.remarks(replace(record, notes=(), response=lost)) == [
+        "No answer was found at any speed."
+    ]
+
+
+def test_figures_are_inside_the_page(tmp_path: Path, drawing: FigureFiles) -> None:
+    page = page_of(rig(), tmp_path, [drawing])
+    (address,) = page.addresses
+    kind, content = address.split(",")
+    assert kind == "data:image/svg+xml;base64"
+    assert base64.b64decode(content) == drawing.svg.read_bytes()
+    assert page.of("figcaption") == [] and page.of("b")[1] == "Figure 1. Title of amplitude."
+    (alt,) = page.alts
+    largest = report_run.comparisons(rig())[0]
+    assert f"largest {largest.wet} mm" in alt and f"{largest.dry} mm" in alt
+
+
+def test_heavy_drawings_are_pictures(tmp_path: Path) -> None:
+    """The smaller file counts, and only beyond what a page bears."""
+    heavy = SVG + "<!--" + "x" * LIGHT + "-->"
+    for svg, png, kind in (
+        (SVG, b"", "svg"), (heavy, PNG, "png"), (heavy, PNG + bytes(2 * LIGHT), "svg"),
+    ):  # fmt: skip
+        assert picture(figure(tmp_path, "map", svg, png), "alt").address.startswith(f"data:image/{kind}")
+
+
+def test_the_phase_stands_on_the_page_of_a_rotor_that_tilts_only(tmp_path: Path) -> None:
+    names = ["amplitude", "liquid", "phase", "chamber", "campbell"]
+    figures = [figure(tmp_path, name, SVG) for name in names]
+    assert len(page_of(rig(), tmp_path, figures[:4]).addresses) == 3
+    assert len(page_of(rig(), tmp_path, figures).addresses) == 5
+
+
+def test_captions_are_text_and_cut_from_the_picture(tmp_path: Path) -> None:
+    """The lines below the legend of a figure: as text, without the scene, and no longer shown."""
+    from leblanc import figures
+
+    record = replace(rig(41), name="A & B")
+    drawn = {
+        "amplitude": figures.amplitude_figure(record),
+        "liquid": figures.liquid_figure(record),
+        "chamber": figures.chamber_figure(record),
+    }
+    for name, one in drawn.items():
+        shown = picture(figures.save(one, tmp_path, name, "Title"), "alt")
+        lines = sorted(one.texts, key=lambda line: -line.get_position()[1])
+        caption = " ".join(line.get_text() for line in lines)
+        assert "Scene: A & B." in caption
+        assert shown.caption == caption.partition(" Scene:")[0]
+        assert shown.shape is not None
+        wide, high = 72.0 * one.get_size_inches()
+        first = high * (1.0 - lines[0].get_position()[1])
+        # Points as the file has them, to a hundredth. The tallest letters of seven points are 5.3 high: they
+        # are cut off, and no more than a line above them.
+        assert abs(shown.shape[0] - wide) < 0.02
+        assert first - 9.0 < shown.shape[1] < first - 5.3
+    assert picture(figure(tmp_path, "bare", SVG), "alt").caption == ""
+
+
+def test_notes_of_the_page_are_not_repeated_below_a_figure(tmp_path: Path) -> None:
+    line = (
+        '<g id="text_1"><!-- {} --><g style="fill: #404040" transform="translate(18 {}) scale(0.07 -0.07)">'
+    )
+    svg = (
+        SVG.replace("/>", ">")
+        + line.format("Title of x. Curves. A note", 280)
+        + line.format("that is long. Scene: y", 289)
+    )
+    shown = picture(figure(tmp_path, "x", svg), "alt", ["A note that is long."])
+    assert shown.caption == "Curves."
+
+
+def test_user_text_is_text(tmp_path: Path) -> None:
+    hostile = "<script>alert('x')</script> \"quoted\" & {{ 7 * 7 }}"
+    record = replace(
+        rig(),
+        name=hostile,
+        source=hostile,
+        notes=(hostile,),
+        assumed=(hostile,),
+        inputs=((hostile, hostile, "rotor.mass"),),
+        chambers=(ChamberRecord(0.065, 0.0, 0.02, 1e-5, hostile, 0.06),),
+    )
+    page = page_of(record, tmp_path)
+    assert "script" not in page.tags
+    assert page.of("h1") == [hostile]
+    assert page.of("li") == [hostile]
+    assert page.terms == [(hostile, hostile)]
+
+
+def test_unicode_survives_and_control_characters_do_not(tmp_path: Path) -> None:
+    name = "Ölabscheider \N{CJK UNIFIED IDEOGRAPH-6D17} \N{HEBREW LETTER ALEF} \N{SNOWMAN}"
+    page = page_of(replace(rig(), name=f"{name}\x00\x1b\n"), tmp_path)
+    assert page.of("h1") == [name]
+
+
+def test_more_text_makes_smaller_figures_and_too_much_lets_them_be(
+    tmp_path: Path, drawing: FigureFiles
+) -> None:
+    figures = [replace(drawing, name=name) for name in ("amplitude", "liquid", "chamber")]
+
+    def width(notes: int) -> float:
+        page_of(replace(rig(), notes=("A note on the limits of the model.",) * notes), tmp_path, figures)
+        text = (tmp_path / "summary.html").read_text(encoding="utf-8")
+        return float(text.split("--width: ")[1].split("mm")[0])
+
+    widths = [width(notes) for notes in range(0, 40, 4)]
+    assert widths[0] == widths[-1] == WIDE
+    shrunk = [one for one in widths if one < WIDE]
+    assert shrunk and min(shrunk) >= NARROW
+
+
+@pytest.mark.parametrize(
+    "record",
+    [
+        folded(),
+        rig(1),
+        replace(rig(), chambers=(), notes=(), assumed=(), source=""),
+        record_of(
+            replace(
+                response_of(np.linspace(1.0, 2.0, 3)),
+                deflection=np.full(3, np.nan + 0j),
+                deflection_dry=np.zeros(3, dtype=np.complex128),
+                liquid_offset=np.full(3, np.nan),
+                model=np.full(3, "a model from elsewhere"),
+            )
+        ),
+    ],
+    ids=["folded", "one speed", "bare", "nothing found"],
+)
+def test_extremes_give_a_page(record: StudyRecord, tmp_path: Path) -> None:
+    page_of(record, tmp_path)
+
+
+def test_same_record_same_page(tmp_path: Path, drawing: FigureFiles) -> None:
+    texts = []
+    for name in ("a", "b"):
+        (tmp_path / name).mkdir()
+        page_of(folded(), tmp_path / name, [drawing])
+        texts.append((tmp_path / name / "summary.html").read_bytes())
+    assert texts[0] == texts[1]
+
+
+def test_command_that_makes_it_again() -> None:
+    line = report.command_line("map", Path("my scene.toml"), ("--volumes", 5, 101), ("--speeds", 9, 9))
+    assert line == "leblanc map 'my scene.toml' --volumes 5"
+    line = report.command_line(
+        "optimise", Path("s.toml"), ("--steady", True, False), ("--limit", "1 mm", None)
+    )
+    assert line == "leblanc optimise s.toml --steady --limit '1 mm'"
+
+
+def test_the_citation_is_that_of_the_file() -> None:
+    text = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    (title,), (authors,) = (
+        re.findall(r'^title: "(.*)"$', text, re.M),
+        re.findall(r"- name: (.*)$", text, re.M),
+    )
+    assert report.citation() == f"{authors}. {title}. Version {report.versions()['leblanc']}."
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"),
+        (1000.0, "1000"),
+        (0.5, "0.5"),
+        (-1.23456, "\N{MINUS SIGN}1.235"),
+        (123456.7, "123457"),
+        (1.5e-7, "1.500e\N{MINUS SIGN}07"),
+        (2.5e9, "2.500e+09"),
+        (math.nan, "not found"),
+        (math.inf, "infinite"),
+    ],
+)
+def test_numbers_for_print(value: float, text: str) -> None:
+    assert number(value) == text
+    if math.isfinite(value):
+        assert printed(value) == text

@@ -1,0 +1,263 @@
+"""A scene whose chamber has baffles: its keys, its models, what is refused."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from leblanc.scene.faults import SceneFaults
+from leblanc.scene.load import read_toml
+from leblanc.scene.machine import jeffcott
+from leblanc.scene.scene import Scene, load_scene, scene_from_table
+from leblanc.studies.batch import answer_scenes
+from leblanc.studies.optimise.optimise import optimise_scene
+from leblanc.studies.run import run_scene
+from leblanc.studies.runup import runup_scene
+from leblanc.studies.whirl_map import map_scene
+from meshes.baffles import Baffles
+from meshes.errors import InputError
+from meshes.files.exchange import write_section
+from meshes.section import Section, disc
+from tests.leblanc.studies.test_modes import circle_drawing
+from validation.trade.trade import trade_scene
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+BASE: dict[str, Any] = {
+    "name": "Baffled",
+    "rotor": {
+        "kind": "jeffcott",
+        "mass": 4.0,
+        "critical_speed": 100.0,
+        "damping_ratio": 0.1,
+        "unbalance": 6e-5,
+        "axis": "vertical",
+    },
+    "speeds": {"start": 60.0, "stop": 200.0, "count": 15},
+}
+CHAMBER = {"radius": 0.1, "height": 0.02, "volume": 1.2e-4, "liquid": "water"}
+LOW, CUT = {"count": 3, "tip_radius": "97 mm", "first_angle": "10 deg"}, {"count": 4}
+
+
+def scene(baffles: dict[str, Any] | None = None, **more: Any) -> Scene:
+    chamber = CHAMBER if baffles is None else CHAMBER | {"baffles": baffles}
+    return scene_from_table(BASE | {"chambers": [chamber]} | more)
+
+
+def test_the_keys_of_baffles_reach_the_chamber() -> None:
+    assert scene(LOW).chambers[0].chamber.baffles == Baffles(3, 0.097, 0.0, math.radians(10.0))
+    assert scene().chambers[0].chamber.baffles is None
+    assert scene().digest != scene(LOW).digest != scene(CUT).digest
+
+
+@pytest.mark.parametrize(
+    ("baffles", "told"),
+    [
+        ({"count": 0}, "chambers.0.baffles.count = 0: must be a whole number from 1 to 360"),
+        ({"tip_radius": 0.05}, "chambers.0.baffles.count: must be given: a whole number from 1 to 360"),
+        ({"count": 3, "depth": 1}, "left out or spelled as one of: count, tip_radius, wall_gap, first_angle"),
+        ({"count": 3, "tip_radius": 0.1}, "must be a tip_radius below radius - wall_gap, 0.1 m"),
+        ({"count": 3, "tip_radius": "9 kg"}, "chambers.0.baffles.tip_radius = '9 kg': must be a length"),
+    ],
+)
+def test_wrong_baffles_are_named(baffles: dict[str, Any], told: str) -> None:
+    with pytest.raises(SceneFaults, match=r".") as caught:
+        scene(baffles)
+    assert told in str(caught.value).replace('"9 kg"', "'9 kg'")
+
+
+def test_baffles_that_the_liquid_can_pass_change_no_steady_answer() -> None:
+    clear, low = (run_scene(one) for one in (scene(), scene(LOW)))
+    np.testing.assert_array_equal(low.response.deflection, clear.response.deflection)
+    assert clear.whirl is not None
+    assert low.whirl is not None
+    assert np.abs(low.whirl.growth - clear.whirl.growth).max() > 1e-6
+    assert (
+        "Chamber 1: baffles",
+        "3, from the wall to 97 mm from the axis",
+        "chambers.0.baffles",
+    ) in low.inputs
+
+
+def test_compartments_add_less_mass() -> None:
+    record = run_scene(scene(CUT))
+    fill, rotor = record.response, jeffcott(scene(CUT))
+    added = scene(CUT).chambers[0].added_mass
+    speed = fill.speed
+    # The law is a straight line: the response of a heavier rotor [theory: rotor, eq. 2].
+    stiffness = rotor.stiffness - (rotor.mass + added) * speed**2 + 1j * rotor.damping * speed
+    np.testing.assert_allclose(fill.deflection, rotor.unbalance * speed**2 / stiffness, rtol=1e-12)
+    assert set(fill.model) == {"fem"}
+    assert record.error_estimate is not None
+    assert np.isnan(record.error_estimate).all()
+    assert not np.isfinite(record.error_estimate).any()
+    assert added < 0.5 * scene(CUT).chambers[0].full_mass
+
+
+def test_many_scenes_at_once_are_those_alone() -> None:
+    several = [scene(), scene(LOW), scene(CUT)]
+    answers = answer_scenes(several)
+    for k, one in enumerate(several):
+        record = run_scene(one)
+        np.testing.assert_allclose(answers.amplitude[k], record.amplitude, rtol=1e-12)
+        assert record.whirl is not None
+        np.testing.assert_allclose(answers.growth[k], record.whirl.growth, atol=1e-9)
+        assert answers.model[k].tolist() == record.response.model.tolist()
+
+
+def test_the_map_runs_from_empty_to_full() -> None:
+    record = map_scene(scene(LOW), 4, 5)
+    assert np.isfinite(record.growth).all()
+    # Empty and full there is nothing that could slosh.
+    assert np.all(record.growth[[0, -1]] <= 0.0)
+
+
+@pytest.mark.parametrize(
+    "action", [optimise_scene, runup_scene, trade_scene], ids=["optimise", "runup", "trade"]
+)
+def test_what_knows_no_baffles_says_so(action: Any) -> None:
+    runup = {"start": 10.0, "stop": 100.0, "rate": 10.0, "duration": 10.0, "cells": 32}
+    with pytest.raises(InputError, match=r"chambers\.0\.baffles"):
+        action(scene(LOW, runup=runup))
+
+
+def test_models_that_know_no_compartments_are_refused() -> None:
+    with pytest.raises(InputError, match="auto or fem"):
+        run_scene(scene(CUT, model={"liquid": "statics"}))
+    with pytest.raises(InputError, match="two directions"):
+        run_scene(scene({"count": 2}))
+    # One plate lets the liquid round the other way.
+    assert set(run_scene(scene({"count": 1})).response.model) <= {"linear", "statics"}
+
+
+def test_fem_of_a_clear_chamber_is_linear_theory() -> None:
+    fem, linear = (run_scene(scene(model={"liquid": name})) for name in ("fem", "linear"))
+    np.testing.assert_array_equal(fem.response.deflection, linear.response.deflection)
+    assert set(fem.response.model) == {"fem"}
+
+
+def test_a_tilting_rotor_takes_baffles_as_well() -> None:
+    table = read_toml(EXAMPLES / "two_plane_rig.toml")
+    table["chambers"][0]["baffles"] = {"count": 3, "tip_radius": "1 mm"}
+    table["speeds"]["count"] = 4
+    record = run_scene(scene_from_table(table))
+    assert set(record.response.model) == {"fem"}
+    assert record.whirl is not None
+    assert np.isfinite(record.whirl.growth).all()
+
+
+def test_a_scene_without_baffles_keeps_its_digest() -> None:
+    # The kept comparison was made before chambers could have baffles.
+    kept = json.loads(
+        (EXAMPLES.parent / "validation" / "trade" / "horizontal_rig.json").read_text(encoding="utf-8")
+    )
+    assert load_scene(EXAMPLES / "horizontal_rig.toml").digest == kept["digest"]
+
+
+def lobes(folder: Path) -> Path:
+    """Mesh file of a section whose wall waves round it six times, in millimetres."""
+    base = disc(100.0, 48, order=2)
+    angle, away = np.arctan2(base.points[:, 1], base.points[:, 0]), np.hypot(*base.points.T) / 100.0
+    stretch = 1.0 + 0.02 * np.cos(6.0 * angle) * away**4
+    file = folder / "lobes.msh"
+    write_section(Section(base.points * stretch[:, None], base.triangles), file)
+    return file
+
+
+def drawn(folder: Path, **more: Any) -> dict[str, Any]:
+    chamber = {"section": str(lobes(folder)), "section_unit": "1 mm", "height": 0.02, "volume": 1.2e-4}
+    return BASE | {"chambers": [chamber | {"liquid": "water"} | more]}
+
+
+def test_a_section_from_a_file(tmp_path: Path) -> None:
+    machine = scene_from_table(drawn(tmp_path))
+    record, fill = run_scene(machine), machine.chambers[0]
+    assert fill.chamber.radius == pytest.approx(0.102, rel=1e-9)
+    assert (
+        "Chamber 1: section",
+        "lobes.msh, up to 102 mm from the axis",
+        "chambers.0.section",
+    ) in record.inputs
+    rotor, speed = jeffcott(machine), record.response.speed
+    stiffness = rotor.stiffness - (rotor.mass + fill.added_mass) * speed**2 + 1j * rotor.damping * speed
+    np.testing.assert_allclose(record.response.deflection, rotor.unbalance * speed**2 / stiffness, rtol=1e-12)
+    assert set(record.response.model) == {"fem"}
+
+
+def test_a_scene_file_finds_the_section_beside_it(tmp_path: Path) -> None:
+    lobes(tmp_path)
+    text = """
+name = "Lobes"
+speeds = { start = 60, stop = 200, count = 3 }
+[rotor]
+kind = "jeffcott"
+mass = 4
+critical_speed = 100
+damping_ratio = 0.1
+unbalance = 1e-5
+axis = "vertical"
+[[chambers]]
+section = "lobes.msh"
+section_unit = "1 mm"
+height = "20 mm"
+volume = "120 ml"
+liquid = "water"
+"""
+    (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
+    one = load_scene(tmp_path / "scene.toml")
+    assert one.digest == load_scene(tmp_path / "scene.toml").digest
+    assert one.chambers[0].chamber.section is not None
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"section": "none.msh"}, "chambers.0.section"),
+        ({"section": 3}, "must be the path of a mesh file of the section"),
+        ({"section_size": "2 mm"}, "section_size left out for a mesh file, which has its cells"),
+        (
+            {"section": "none.dxf"},
+            "must be the path of a mesh file of the section, .msh, .vtu or .xdmf, or of",
+        ),
+        ({"radius": 0.1}, "chambers.0.radius = 0.1: must be left out where chambers.0.section is given"),
+        ({"baffles": {"count": 3}}, "chambers.0.baffles"),
+        ({"volume": 1.0}, "chambers.0.volume = 1.0: must be at most what the chamber holds"),
+    ],
+)
+def test_wrong_sections_are_named(tmp_path: Path, change: dict[str, Any], told: str) -> None:
+    with pytest.raises(SceneFaults, match=r".") as caught:
+        scene_from_table(drawn(tmp_path, **change))
+    assert told in str(caught.value)
+
+
+def test_a_section_from_a_drawing(tmp_path: Path) -> None:
+    circle_drawing(tmp_path / "circle.dxf")
+    chamber = {"section": str(tmp_path / "circle.dxf"), "height": 0.02, "volume": 2e-4, "liquid": "water"}
+    machine = scene_from_table(BASE | {"chambers": [chamber]})
+    shape = machine.chambers[0].chamber.section
+    assert shape is not None and shape.cell_size == pytest.approx(3e-3, rel=1e-3)
+    # Parabolas of 3 mm on a circle of 150 mm.
+    assert shape.farthest == pytest.approx(0.15, rel=1e-6)
+    finer = scene_from_table(
+        BASE | {"chambers": [chamber | {"section_size": "2 mm", "section_unit": "2 mm"}]}
+    )
+    other = finer.chambers[0].chamber.section
+    assert other is not None and other.cell_size == 2e-3 and other.farthest == pytest.approx(0.3, rel=1e-6)
+    assert set(run_scene(machine).response.model) == {"fem"}
+
+
+def test_a_chamber_has_a_wall() -> None:
+    with pytest.raises(SceneFaults, match=r"chambers\.0\.radius: must be given: .* or chambers\.0\.section"):
+        scene_from_table(BASE | {"chambers": [{"height": 0.02, "volume": 1e-5, "liquid": "water"}]})
+
+
+def test_a_section_off_the_axis_is_refused(tmp_path: Path) -> None:
+    base = disc(0.1, 32, order=2)
+    write_section(Section(base.points + np.array([0.005, 0.0]), base.triangles), tmp_path / "off.msh")
+    table = drawn(tmp_path, section=str(tmp_path / "off.msh"), section_unit=1.0, volume=2e-4)
+    with pytest.raises(InputError, match="balanced about the axis"):
+        run_scene(scene_from_table(table))

@@ -1,0 +1,124 @@
+"""A file that is no scene is refused in one line; many faults in one scene come all at once."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from leblanc.scene.faults import SceneFaults
+from leblanc.scene.load import MAX_BYTES
+from leblanc.scene.scene import load_scene
+from tests.leblanc.scene.test_faulty_scenes import CHAMBER, GOOD, shell
+
+FILES = {
+    "not TOML": (b"name = Rig", "valid TOML", "(at line 1, column 8)"),
+    "a comma for a point": (
+        b"name = 'x'\ngravity = 9,81  # m/s^2",
+        "line 2",
+        ": gravity = 9,81; the decimal sign",
+    ),
+    "a bare unit": (b"gravity = 981 cm/s^2", "line 1", "stands in quotes, as"),
+    "a bare word": (b"name = Rig", ": name = Rig; a text stands in quotes"),
+    "a study": (b"scene = 'rig.toml'\n[vary]", "a scene; this is a study", "leblanc sweep"),
+    "an open bracket": (b'name = "x"\n[rotor\nmass = 1', "valid TOML", "line 2"),
+    "a key twice": (b"name = 'a'\nname = 'b'", "valid TOML", "line 2"),
+    "a table twice": (b"[rotor]\n[rotor]", "valid TOML", "line 2"),
+    "half a file": (GOOD[:120].encode(), "valid TOML", "line"),
+    "JSON": (b'{"name": "x"}', "valid TOML", "line 1"),
+    "Latin letters of old": ('name = "Gerät"'.encode("latin-1"), "UTF-8", "byte 12, at line 1"),
+    "UTF-16": (GOOD.encode("utf-16"), "UTF-8", "byte 1"),
+    "bytes of no text": (bytes(range(256)), "must be"),
+    "zeros": (bytes(100), "valid TOML", "line 1"),
+    "too many digits": (b"name = " + b"1" * 5000, "valid TOML", "digits"),
+    "deep brackets": (b"name = " + b"[" * 100_000, "less deeply nested"),
+    "too long": (b"#" * (MAX_BYTES + 1), "at most 10 MB"),
+}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_a_file_that_is_no_scene(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    content, *said = FILES[name]
+    path = tmp_path / "scene.toml"
+    path.write_bytes(content)
+    (line,) = shell(path, capsys).splitlines()
+    assert line.startswith(f"{path}: must be ")
+    assert all(words in line for words in said), line
+
+
+def test_an_empty_file_lacks_everything(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "scene.toml"
+    path.touch()
+    lines = shell(path, capsys).splitlines()
+    assert [line.split(": ")[1] for line in lines] == ["name", "rotor", "chambers", "speeds"]
+
+
+def test_a_file_that_is_not_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for path in (tmp_path / "none.toml", tmp_path / ("x" * 300), tmp_path / "none" / "scene.toml"):
+        assert shell(path, capsys).startswith(f"{path}: must be a file that can be read: ")
+    assert "No such file" in shell(tmp_path / "none.toml", capsys)
+
+
+def test_a_folder_is_no_scene(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert "Is a directory" in shell(tmp_path, capsys)
+
+
+def test_a_file_that_may_not_be_read(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text(GOOD, encoding="utf-8")
+    path.chmod(0)
+    if os.access(path, os.R_OK):  # a superuser may read anything
+
+        def refuse(*_: object) -> None:
+            raise PermissionError(13, "Permission denied", str(path))
+
+        monkeypatch.setattr(Path, "open", refuse)
+    assert shell(path, capsys) == f"{path}: must be a file that can be read: Permission denied\n"
+
+
+def test_a_path_that_cannot_be() -> None:
+    with pytest.raises(SceneFaults, match="null"):
+        load_scene("scene\0.toml")
+
+
+def test_all_faults_come_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    wrong = {
+        '"4 kg"': '"-4 kg"',
+        "damping_ratio": "stiffness = 4e4\ndamping_ratio",
+        'inner_radius = "10 mm"': 'inner_radius = "70 mm"',
+        "count = 20": "count = 0\nstep = 1",
+        '"2000 rpm"': '"50 rpm"',
+        '"auto"': '"best"',
+        '["rotor.mass"]': '["rotor.mas", "name"]',
+    }
+    text = GOOD
+    for right, other in wrong.items():
+        text = text.replace(right, other)
+    # a second chamber, filled above its brim, shows that one wrong chamber does not hide another
+    text += CHAMBER.replace("10 ml", "2 l")
+    path = tmp_path / "scene.toml"
+    path.write_text(text, encoding="utf-8")
+    fields = [line.split(": ")[1].split(" = ")[0] for line in shell(path, capsys).splitlines()]
+    assert sorted(fields) == [
+        "assumed.0",
+        "chambers.0.inner_radius",
+        "chambers.1.volume",
+        "model.liquid",
+        "rotor.mass",
+        "rotor.stiffness",
+        "speeds.count",
+        "speeds.step",
+        "speeds.stop",
+    ]
+
+
+def test_names_and_values_stay_on_their_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "two\nlines.toml"
+    text = GOOD.replace('"4 kg"', '"4\\nkg\\u001b[31m"').replace("count", '"co\\nunt"')
+    path.write_text(text, encoding="utf-8")
+    printed = shell(path, capsys)
+    assert len(printed.splitlines()) == 3  # the mass, the count that is missing, the key that is not known
+    assert all(line.isprintable() for line in printed.splitlines())

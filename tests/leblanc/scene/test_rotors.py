@@ -1,0 +1,187 @@
+"""Scenes of the other kinds of rotor arrive in SI units; run-ups with a motor as well."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from typing import Any
+
+import pytest
+
+from leblanc.scene.machine import dry_rotor, jeffcott
+from leblanc.scene.rotors import ExciterBalls
+from leblanc.scene.scene import Exciter, Motor, Runup, Scene, TubRotor, TwoPlaneRotor, scene_from_table
+from meshes.errors import InputError
+from solvers.rotor.tub import Mount, Tub
+from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
+from tests.leblanc.scene.test_scene import TEXT
+
+HEAD = 'name = "x"\nspeeds = { start = 1, stop = 20, count = 5 }\n'
+
+TWO_PLANE = """
+[rotor]
+kind = "two_plane"
+mass = "20 kg"
+transverse_inertia = "0.5 kg*m^2"
+polar_inertia = "2000 kg*cm^2"
+axis = "vertical"
+[[rotor.supports]]
+position = "-350 mm"
+stiffness = "40 N/mm"
+damping = 80
+[[rotor.supports]]
+position = 0.3
+stiffness = 0
+damping = 0
+[[rotor.unbalances]]
+position = "-200 mm"
+size = "1.5 kg*mm"
+[[rotor.unbalances]]
+position = "25 cm"
+size = "1200 g*mm"
+angle = "-90 deg"
+"""
+
+TUB = """
+[rotor]
+kind = "tub"
+tub_mass = "48.2 kg"
+drum_mass = 12.5
+tub_inertia = [1.3, "1.5 kg*m^2", 1.2]
+drum_polar_inertia = 0.32
+drum_transverse_inertia = "0.2 kg*m^2"
+drum_position = ["1 mm", "90 mm", 0]
+unbalance = "0.185 kg*m"
+unbalance_position = "60 mm"
+[[rotor.springs]]
+position = ["200 mm", 0, "20 cm"]
+direction = [1, 0, 2.5]
+stiffness = "6 N/mm"
+[[rotor.springs]]
+position = [0, 0, 0]
+stiffness = ["1 N/mm", 2000, 0]
+[[rotor.dampers]]
+position = [0, 0, "-0.2 m"]
+direction = [0, 0, 1]
+damping = "175 N*s/m"
+[[rotor.dampers]]
+position = [0, 0, 0]
+damping = [1, 2, 3]
+"""
+
+EXCITER = """
+[rotor]
+kind = "exciter"
+platform_mass = "90 kg"
+stiffness = "145083 N/m"
+damping = 150
+unbalance = "10.5 kg*mm"
+balls = { count = 2, mass = "0.325 kg", kind = "ball", track_radius = "73.5 mm", damping = "0.03 N*s/m" }
+"""
+
+MOTOR = """
+[runup]
+start = "5 rad/s"
+stop = "100 rad/s"
+duration = "14 s"
+dispersion = true
+samples = 500
+motor = { inertia = "0.5 kg*m^2", speeds = [0, "1000 rpm", 200], torques = ["20 N*m", 10, -1] }
+"""
+
+
+def read(text: str) -> Scene:
+    return scene_from_table(tomllib.loads(HEAD + text))
+
+
+def test_two_plane() -> None:
+    rotor = read(TWO_PLANE).rotor
+    expected = TwoPlane(
+        20.0,
+        0.5,
+        0.2,
+        (Support(-0.35, 4e4, 80.0), Support(0.3, 0.0, 0.0)),
+        (PlaneUnbalance(-0.2, 1.5e-3), PlaneUnbalance(0.25, 1.2e-3, -math.pi / 2)),
+    )
+    assert rotor == TwoPlaneRotor("two_plane", expected, "vertical")
+    assert dry_rotor(read(TWO_PLANE)) == expected and read(TWO_PLANE).chambers == ()
+
+
+def test_tub() -> None:
+    expected = Tub(
+        tub_mass=48.2,
+        drum_mass=12.5,
+        tub_inertia=(1.3, 1.5, 1.2),
+        drum_polar_inertia=0.32,
+        drum_transverse_inertia=0.2,
+        springs=(
+            Mount((0.2, 0.0, 0.2), 6000.0, (1.0, 0.0, 2.5)),
+            Mount((0.0, 0.0, 0.0), along_axes=(1e3, 2e3, 0.0)),
+        ),
+        dampers=(
+            Mount((0.0, 0.0, -0.2), 175.0, (0.0, 0.0, 1.0)),
+            Mount((0.0, 0.0, 0.0), along_axes=(1.0, 2.0, 3.0)),
+        ),
+        unbalance=0.185,
+        drum_position=(0.001, 0.09, 0.0),
+        unbalance_position=0.06,
+    )
+    assert read(TUB).rotor == TubRotor("tub", expected, "horizontal")
+    plain = TUB.replace('unbalance_position = "60 mm"\n', "").replace(
+        'drum_position = ["1 mm", "90 mm", 0]\n', ""
+    )
+    machine = dry_rotor(read(plain))
+    assert isinstance(machine, Tub)
+    assert machine.drum_position == (0.0, 0.0, 0.0) and machine.unbalance_position is None
+
+
+def test_exciter() -> None:
+    balls = ExciterBalls(2, 0.325, "ball", 0.0, 0.0735, 0.03)
+    rotor = read(EXCITER).rotor
+    assert isinstance(rotor, Exciter)
+    assert rotor == Exciter("exciter", 90.0, 145083.0, 150.0, 0.0105, balls)
+    assert rotor.axis == "horizontal"
+    pendulum = read(EXCITER.replace('kind = "ball"', 'pendulum_inertia = "1e-4 kg*m^2"')).rotor
+    assert isinstance(pendulum, Exciter)
+    assert (pendulum.balls.kind, pendulum.balls.pendulum_inertia) == ("pendulum", 1e-4)
+    with pytest.raises(InputError, match=r"rotor\.kind"):
+        dry_rotor(read(EXCITER))
+
+
+def test_the_planar_rotor_alone_is_a_jeffcott() -> None:
+    assert jeffcott(read(TEXT[TEXT.index("[rotor]") : TEXT.index("[speeds]")])).mass == 4.0
+    with pytest.raises(InputError, match=r"rotor\.kind"):
+        jeffcott(read(TUB))
+
+
+def test_motor() -> None:
+    motor = Motor(0.5, (0.0, 1000.0 * math.pi / 30.0, 200.0), (20.0, 10.0, -1.0))
+    assert read(TUB + MOTOR).runup == Runup(5.0, 100.0, None, 14.0, 128, False, True, 500, motor)
+
+
+@pytest.mark.parametrize("text", [TWO_PLANE, TUB, EXCITER, TUB + MOTOR])
+def test_scenes_are_frozen_and_have_a_digest(text: str) -> None:
+    scene = read(text)
+    assert isinstance(hash(scene), int)
+    assert scene.digest == read(text).digest
+    # Every number of the text counts.
+    table: dict[str, Any] = tomllib.loads(HEAD + text)
+    digests = {scene.digest}
+    for place in _numbers(table["rotor"]):
+        changed: dict[str, Any] = tomllib.loads(HEAD + text)
+        holder = changed["rotor"]
+        for key in place[:-1]:
+            holder = holder[key]
+        holder[place[-1]] = holder[place[-1]] * 1.01 + 0.003
+        digests.add(scene_from_table(changed).digest)
+    assert len(digests) == len(list(_numbers(table["rotor"]))) + 1
+
+
+def _numbers(table: Any, place: tuple[Any, ...] = ()) -> Any:
+    """Paths of the plain numbers that are no counts."""
+    items = table.items() if isinstance(table, dict) else enumerate(table)
+    for key, value in items:
+        if isinstance(value, dict | list):
+            yield from _numbers(value, (*place, key))
+        elif isinstance(value, int | float) and key != "count":
+            yield (*place, key)

@@ -1,0 +1,133 @@
+"""Many scenes at once: each answer is what `run` gives for the scene alone."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fluid.friction import Friction
+from leblanc.results.record import StudyRecord, phase
+from leblanc.scene.scene import Model, Scene, load_scene
+from leblanc.studies.batch import Answers, answer_scenes
+from leblanc.studies.run import run_scene
+from meshes.errors import InputError
+from tests.mutants import kills
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+COUNT = 23
+
+
+def scene(name: str, share: float = 1.0) -> Scene:
+    """An example at a few speeds, with a share of its liquid."""
+    found = load_scene(EXAMPLES / f"{name}.toml")
+    chambers = tuple(replace(fill, volume=share * fill.volume) for fill in found.chambers)
+    return replace(found, chambers=chambers, speeds=replace(found.speeds, count=COUNT))
+
+
+def outputs(record: StudyRecord) -> dict[str, np.ndarray]:
+    """What `run` says, under the names of the answers."""
+    one, whirl = record.response, record.whirl
+    assert whirl is not None
+    shared = (
+        "speed",
+        "liquid_offset",
+        "liquid_angle",
+        "dry_patch",
+        "stable",
+        "in_range",
+        "converged",
+        "model",
+    )
+    return {name: getattr(one, name) for name in shared} | {
+        "amplitude": record.amplitude,
+        "amplitude_dry": record.amplitude_dry,
+        "phase": phase(one.deflection),
+        "growth": whirl.growth,
+        "whirl_speed": whirl.whirl_speed,
+        "error_estimate": record.error_estimate,
+    }
+
+
+def mixed() -> list[Scene]:
+    """Planar and other rotors, upright and lying, several models, frictions and numbers of chambers."""
+    asked = scene("centrifuge")
+    rig = scene("horizontal_rig", 0.3)
+    return [
+        scene("tub"),
+        scene("horizontal_rig"),
+        replace(rig, model=replace(rig.model, liquid="statics", friction=Friction("linear", 3.0))),
+        scene("vertical_rig", 0.4),
+        replace(asked, model=replace(asked.model, liquid="linear")),
+        scene("washing_machine", 0.0),
+        scene("runup"),
+    ]
+
+
+@kills(
+    "leblanc.studies.batch:_planar",
+    "gravity = np.array([axial_gravity(scene) for scene in scenes])",
+    "gravity = np.zeros(len(scenes))",
+)
+@kills("leblanc.studies.batch:_planar", "~(growth > 0.0)", "(growth == growth)")
+@kills(
+    "leblanc.studies.batch:_planar",
+    '"amplitude_dry": np.abs(one.deflection_dry)',
+    '"amplitude_dry": np.abs(one.deflection)',
+)
+@kills(
+    "leblanc.studies.batch:_planar",
+    '"phase": phase(one.deflection),\n        }',
+    '"phase": -phase(one.deflection),\n        }',
+)
+@kills(
+    "leblanc.studies.batch:_single",
+    '"amplitude": record.amplitude',
+    '"amplitude": abs(record.response.deflection)',
+)
+@kills("leblanc.studies.batch:answer_scenes", "for part in parts])[order]", "for part in parts])")
+def test_each_is_what_run_gives() -> None:
+    """Field by field, to the rounding of sums whose terms are added in another order."""
+    scenes = mixed()
+    answers = answer_scenes(scenes)
+    for k, one in enumerate(scenes):
+        for name, value in outputs(run_scene(one)).items():
+            mine = getattr(answers, name)[k]
+            if value.dtype.kind == "f":
+                # Growth is a small difference of large frequencies.
+                scale = 1e-9 * float(np.max(answers.speed[k])) if name == "growth" else 1e-18
+                np.testing.assert_allclose(mine, value, rtol=1e-9, atol=scale)
+            else:
+                np.testing.assert_array_equal(mine, value)
+    assert any(set(row) == {"linear", "statics"} for row in answers.model.tolist())
+    assert answers.dry_patch.any() and not answers.stable.all() and not answers.in_range.all()
+
+
+def test_same_scenes_same_bits() -> None:
+    first, again = answer_scenes(mixed()), answer_scenes(mixed())
+    for field in fields(Answers):
+        assert getattr(first, field.name).tobytes() == getattr(again, field.name).tobytes()
+
+
+def test_order_is_kept() -> None:
+    scenes = mixed()
+    forward, backward = answer_scenes(scenes), answer_scenes(scenes[::-1])
+    np.testing.assert_array_equal(forward.speed, backward.speed[::-1])
+    np.testing.assert_allclose(forward.amplitude, backward.amplitude[::-1], rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("scenes", "field"),
+    [
+        ([], "scenes"),
+        ([scene("runup"), load_scene(EXAMPLES / "runup.toml")], "scenes"),
+        ([scene("vibratory_table")], "rotor.kind"),
+        ([replace(scene("runup"), model=Model("kdv", Friction("none", 0.0)))], "model.liquid"),
+    ],
+)
+def test_what_cannot_be_answered_is_said(scenes: list[Scene], field: str) -> None:
+    with pytest.raises(InputError) as caught:
+        answer_scenes(scenes)
+    assert caught.value.field == field

@@ -1,0 +1,212 @@
+"""The liquid model at each speed of a scene, and of its run-up: cheapest within tolerance, and why."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from leblanc.cli import main
+from leblanc.results.response import run_json, to_dataset
+from leblanc.scene.machine import dry_rotor, jeffcott
+from leblanc.scene.scene import Scene, load_scene
+from leblanc.studies.choose import axial_gravity, choose, choose_all
+from leblanc.studies.explain import explain_scene
+from leblanc.studies.run import run_scene
+from leblanc.studies.runup import runup_outlook, runup_scene
+from leblanc.text.models import model_spans, percent
+from meshes.errors import InputError
+from solvers.synchronous.coupled import coupled_response
+from solvers.synchronous.mixed import mixed_coupled, mixed_response
+from solvers.synchronous.planar import synchronous_response
+from tests.leblanc.studies.test_explain import scene as small_scene
+from tests.leblanc.studies.test_runup import scene as upright_scene
+from tests.mutants import kills
+
+EXAMPLES = sorted(
+    path.stem for path in Path("examples").glob("*.toml") if 'kind = "exciter"' not in path.read_text()
+)
+
+
+def asked(machine: Scene, liquid: str, tolerance: float = 0.01) -> Scene:
+    return replace(machine, model=replace(machine.model, liquid=liquid, tolerance=tolerance))
+
+
+def strong(unbalance: float = 6e-3) -> Scene:
+    """An upright scene whose wall runs dry near resonance."""
+    return small_scene(axis="vertical", unbalance=unbalance)
+
+
+@kills("leblanc.studies.choose:_choice", "linear.wet & (linear.worst <= tolerance)", "linear.worst <= 9.0")
+def test_auto_is_within_its_tolerance() -> None:
+    """What `auto` takes differs from the exact equilibrium by no more than it says and no more than asked.
+
+    1e-9 stands for the solver's linear limit.
+    """
+    for tolerance in (1e-6, 0.01, 0.3):
+        machine = asked(strong(), "auto", tolerance)
+        auto, exact = run_scene(machine), run_scene(asked(machine, "statics"))
+        names = set(auto.response.model.tolist())
+        assert names == {"linear", "statics"}
+        assert auto.error_estimate is not None and (auto.error_estimate <= tolerance).all()
+        slack = auto.error_estimate + 1e-9
+        assert (np.abs(auto.amplitude - exact.amplitude) <= slack * exact.amplitude).all()
+        offset, true = auto.response.liquid_offset, exact.response.liquid_offset
+        assert (np.abs(offset - true) <= slack * true).all()
+        np.testing.assert_array_equal(auto.response.dry_patch, exact.response.dry_patch)
+        np.testing.assert_array_equal(auto.response.in_range, exact.response.in_range)
+
+
+def test_a_finer_tolerance_takes_the_exact_model_more_often() -> None:
+    counts = [np.sum(choose(asked(strong(), "auto", one)).models == "statics") for one in (1e-12, 0.01, 0.5)]
+    assert counts[0] >= counts[1] >= counts[2] and counts[0] > counts[2]
+
+
+def test_a_model_that_is_asked_for_is_taken_and_its_error_told() -> None:
+    for name in ("statics", "linear"):
+        choice = choose(asked(strong(), name))
+        assert choice.asked and set(choice.models.tolist()) == {name} and choice.model == name
+        assert set(run_scene(asked(strong(), name)).response.model.tolist()) == {name}
+    linear, auto = choose(asked(strong(), "linear")), choose(strong())
+    assert linear.error.max() > 0.5 and linear.missed.any()
+    np.testing.assert_array_equal(linear.error, auto.linear.worst)
+    notes = run_scene(asked(strong(), "linear")).notes
+    assert "the model asked for" in notes[0] and "more than the tolerance of 1 %" in notes[0]
+
+
+@kills("leblanc.studies.choose:_choice", "linear.worst, ROUNDING) + gravity", "linear.worst, ROUNDING)")
+@kills(
+    "leblanc.studies.choose:across_gravity",
+    'scene.rotor.axis == "horizontal"',
+    'scene.rotor.axis == "vertical"',
+)
+def test_where_the_tolerance_is_not_met() -> None:
+    """Across a lying axis gravity spoils slow speeds: no number below capture, a large error above it."""
+    choice = choose(small_scene())
+    speed = small_scene().speed_array()
+    assert np.isnan(choice.error[~choice.in_range]).all() and (~choice.in_range).any()
+    above = choice.error[choice.in_range]
+    assert (np.diff(choice.gravity[choice.in_range][speed[choice.in_range] > 150.0]) < 0.0).all()
+    assert above[0] > choice.tolerance > above[-1]
+    assert choice.missed[0] and not choice.missed[-1]
+    notes = run_scene(small_scene()).notes
+    assert any("more than the tolerance" in one for one in notes)
+    spans = model_spans(choice, speed)
+    kinds = [(span.in_range, span.within_tolerance) for span in spans]
+    assert kinds[0] == (False, False) and kinds[-1] == (True, True) and (True, False) in kinds
+    assert spans[0].first == speed[0] and spans[-1].last == speed[-1]
+    assert "does not ride" in spans[0].reason
+
+
+def test_all_scenes_at_once_are_each_one_alone() -> None:
+    scenes = [
+        small_scene(), strong(), load_scene("examples/two_plane_rig.toml"), asked(strong(), "linear"),
+        load_scene("examples/vertical_rig.toml"),
+    ]  # fmt: skip
+    for one, machine in zip(choose_all(scenes), scenes, strict=True):
+        alone = choose(machine)
+        np.testing.assert_array_equal(one.models, alone.models)
+        np.testing.assert_allclose(one.error, alone.error, rtol=1e-12)
+    with pytest.raises(InputError, match=r"model\.liquid"):
+        choose_all([small_scene(), asked(small_scene(), "kdv")])
+
+
+@kills("solvers.synchronous.mixed:_merged", "np.concatenate(wide)[order]", "np.concatenate(wide)")
+def test_mixed_models() -> None:
+    """Each speed is answered by its own model, whatever its neighbours take."""
+    machine = strong()
+    rotor, fills, speed = jeffcott(machine), machine.chambers, machine.speed_array()
+    gravity = axial_gravity(machine)
+    models = np.where(np.arange(speed.size) % 3 == 0, "linear", "statics")
+    mixed = mixed_response(rotor, fills, speed, gravity, models)
+    for name in ("linear", "statics"):
+        whole, rows = synchronous_response(rotor, fills, speed, gravity, name), models == name
+        np.testing.assert_allclose(mixed.deflection[rows], whole.deflection[rows], rtol=1e-12)
+        np.testing.assert_array_equal(mixed.stable[rows], whole.stable[rows])
+        count = np.isfinite(mixed.branch_deflection[rows]).sum(axis=1)
+        np.testing.assert_array_equal(count, np.isfinite(whole.branch_deflection[rows]).sum(axis=1))
+    assert mixed.model.tolist() == models.tolist()
+    np.testing.assert_array_equal(mixed.speed, speed)
+
+
+def test_mixed_models_of_a_tilting_rotor() -> None:
+    machine = load_scene("examples/two_plane_rig.toml")
+    system, speed = dry_rotor(machine).system(), machine.speed_array()[::40]
+    models = np.where(np.arange(speed.size) % 2 == 0, "linear", "statics")
+    mixed = mixed_coupled(system, machine.chambers, speed, 0.0, models)
+    linear = coupled_response(system, machine.chambers, speed, 0.0, "linear")
+    assert mixed.response.model.tolist() == models.tolist() and mixed.position == linear.position
+    np.testing.assert_allclose(mixed.coordinates[::2], linear.coordinates[::2], rtol=1e-12)
+    assert mixed.chamber_forward.shape == linear.chamber_forward.shape
+
+
+def test_the_estimate_is_written() -> None:
+    record = run_scene(small_scene())
+    found = run_json(record)["error_estimate"]
+    assert len(found) == record.response.speed.size and found[0] is None and 0.0 < found[-1] < 0.01
+    kept = to_dataset(record)["error_estimate"]
+    assert kept.attrs["units"] == "1"
+    np.testing.assert_array_equal(kept.values, record.error_estimate)
+    assert "error_estimate" not in run_json(replace(record, error_estimate=None))
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_every_example_is_explained(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """Words and numbers for each range of speeds, without gaps, and nothing that was not filled in."""
+    file = f"examples/{name}.toml"
+    assert main(["explain", file]) == 0
+    words = capsys.readouterr().out
+    assert "estimated error" in words and "next better" in words and "tolerance of 0.1 %" in words
+    assert "nan" not in words.split() and "inf" not in words.split() and "{" not in words
+    assert max(map(len, words.splitlines())) <= 140
+    assert main(["explain", file, "--json"]) == 0
+    spans = json.loads(capsys.readouterr().out)["models"]
+    speed = load_scene(file).speed_array()
+    assert spans[0]["first"] == pytest.approx(speed[0]) and spans[-1]["last"] == pytest.approx(speed[-1])
+    assert all(one["reason"] and one["better"] for one in spans)
+
+
+def test_reasons_name_what_decides() -> None:
+    """Dry walls, walls that are not covered, and a straight law each have their own words."""
+    reasons = " ".join(span.reason for span in explain_scene(strong()).models)
+    assert "times as far" in reasons and "full chambers" in reasons
+    slow = explain_scene(load_scene("examples/vertical_rig.toml")).models[0]
+    assert slow.model == "statics" and "too slow" in slow.reason and "none" in slow.better
+    lying = explain_scene(small_scene()).models[-1]
+    assert lying.model == "linear" and lying.strain < 1.0
+    assert (
+        percent(0.0042) == "0.42 %" and percent(0.0) == "rounding" and percent(3.0) == "about 100 % or more"
+    )
+
+
+def test_run_up_takes_linear_layers_while_waves_are_small() -> None:
+    """Small waves stay linear and agree with long waves as estimated; large ones are done again."""
+    mild = {"rotor": {"unbalance": 2e-3}, "model": {"friction": {"linear": "30 1/s"}, "tolerance": 0.01}}
+    tame = upright_scene(**mild)
+    record = runup_scene(tame, cells=64)
+    # By the model below the tolerance, by the steps of 64 cells about as much again.
+    assert record.model == "linear" and record.model_error <= 2.0 * tame.model.tolerance
+    assert "within the tolerance" in record.model_reason and record.model_reason in record.notes[0].text
+    other = runup_scene(asked(tame, "long_wave"), cells=64, check=False)
+    a, b = record.history.amplitude, other.history.amplitude
+    assert np.abs(a - b).max() <= record.model_error * b.max()
+    assert other.model == "long_wave" and "asks" in other.model_reason
+    wild = runup_scene(asked(upright_scene(), "auto", 0.01), check=False)
+    assert wild.model == "long_wave" and "with linear layers waves reach" in wild.model_reason
+    strict = runup_scene(asked(tame, "auto", 1e-4), check=False)
+    assert strict.model == "long_wave"
+
+
+def test_what_rules_linear_layers_out() -> None:
+    rough = upright_scene(model={"friction": {"quadratic": 0.01}})
+    assert "quadratic" in runup_outlook(rough) and runup_outlook(rough).startswith("long waves")
+    motor = load_scene("examples/weak_motor.toml")
+    assert "motor" in runup_outlook(motor) and "motor" in explain_scene(motor).runup
+    assert "linear layers first" in runup_outlook(asked(upright_scene(), "auto", 0.01))
+    assert "not known" in runup_outlook(asked(upright_scene(), "auto", 1e-3))
+    assert "as the scene asks" in runup_outlook(asked(upright_scene(), "linear"))
+    assert "statics" in runup_outlook(asked(upright_scene(), "statics"))
+    assert runup_outlook(small_scene()) == ""

@@ -1,0 +1,110 @@
+"""`leblanc explain` and the choice of the liquid model."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fluid.fill import Fill
+from fluid.liquid import Liquid
+from fluid.numbers import layer_numbers
+from leblanc.cli import main
+from leblanc.scene.scene import Scene, scene_from_table
+from leblanc.studies.choose import choose
+from leblanc.studies.explain import explain_scene
+from meshes.chamber import Chamber
+from meshes.errors import InputError
+from tests.mutants import kills
+
+RPM = math.pi / 30.0
+
+
+def table(**rotor: object) -> dict[str, object]:
+    return {
+        "name": "test",
+        "rotor": {
+            "kind": "jeffcott", "mass": 4.0, "stiffness": 4e4, "damping_ratio": 0.1, "unbalance": 6e-4,
+            "axis": "horizontal", **rotor,
+        },
+        "chambers": [{"radius": 0.065, "height": 0.02, "volume": 1e-5, "liquid": "water"}],
+        "speeds": {"start": 5.0, "stop": 200.0, "count": 40},
+    }  # fmt: skip
+
+
+def scene(**rotor: object) -> Scene:
+    return scene_from_table(table(**rotor))
+
+
+@kills("fluid.numbers:layer_numbers", "np.square(spin) * surface / gravity", "spin * surface / gravity")
+@kills("fluid.numbers:layer_numbers", "spin * radius**2 / viscosity", "spin * radius / viscosity")
+@kills(
+    "fluid.numbers:layer_numbers", "np.sqrt(viscosity / spin) / fill.depth", "viscosity / spin / fill.depth"
+)
+@kills(
+    "fluid.fill:Fill.depth",
+    "film / (self.chamber.radius + self.surface_radius)",
+    "film / (2.0 * self.chamber.radius)",
+)
+@kills(
+    "fluid.fill:Fill.surface_radius",
+    "self.chamber.radius**2 - self.volume / (math.pi",
+    "self.chamber.radius**2 - self.volume / (2.0 * math.pi",
+)
+def test_numbers() -> None:
+    """Numbers of a layer whose values are round: R = 2, a = 1.2, nu = 0.04."""
+    volume = math.pi * (4.0 - 1.44) * 0.5
+    fill = Fill(Chamber(2.0, 0.5), Liquid("oil", 900.0, 0.04), volume)
+    n = layer_numbers(fill, np.array([10.0, 100.0]), gravity=10.0, axial_gravity=10.0)
+    assert n.fill == pytest.approx(0.64)
+    assert n.relative_depth == pytest.approx(0.4)
+    assert n.curvature == pytest.approx(1.0 / 0.36)
+    np.testing.assert_allclose(n.centrifuge, [12.0, 1200.0])
+    np.testing.assert_allclose(n.steepness, [40.0, 4000.0])
+    np.testing.assert_allclose(n.reynolds, [1e3, 1e4])
+    np.testing.assert_allclose(n.skin, np.sqrt([4e-3, 4e-4]) / 0.8)
+
+
+@kills("leblanc.studies.choose:_choice", "speed > captured_from", "speed < captured_from")
+def test_a_horizontal_axis_needs_capture() -> None:
+    """The liquid of a horizontal axis is captured where Omega^2 a exceeds g; a vertical axis needs none."""
+    lying = choose(scene())
+    assert lying.captured_from is not None
+    surface = scene().chambers[0].surface_radius
+    assert lying.captured_from == pytest.approx(math.sqrt(9.81 / surface))
+    speed = scene().speed_array()
+    np.testing.assert_array_equal(lying.in_range, speed > lying.captured_from)
+    assert choose(scene(axis="vertical")).captured_from is None
+    assert choose(scene(axis="vertical")).in_range.all()
+
+
+@pytest.mark.parametrize("model", ["long_wave", "kdv"])
+def test_models_that_do_not_answer_are_refused(model: str) -> None:
+    asked = scene_from_table(table() | {"model": {"liquid": model}})
+    with pytest.raises(InputError, match=r"model\.liquid"):
+        choose(asked)
+
+
+def test_explanation() -> None:
+    answer = explain_scene(scene())
+    added = 998.2 * math.pi * 0.065**2 * 0.02
+    assert answer.critical_speed_dry == pytest.approx(100.0)
+    assert answer.critical_speed_wet == pytest.approx(math.sqrt(4e4 / (4.0 + added)), rel=1e-9)
+    assert answer.speed_ratio == pytest.approx((0.05, 2.0))
+    layer = answer.layers[0]
+    assert layer is not None and layer.added_mass_ratio == pytest.approx(added / 4.0)
+    spans = answer.models
+    assert not spans[0].in_range and all(span.in_range for span in spans[1:])
+    assert spans[0].first == 5.0 and spans[-1].last == 200.0
+
+
+def test_words_and_json(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    assert main(["explain", "examples/vertical_rig.toml"]) == 0
+    words = capsys.readouterr().out
+    assert "chamber 3" in words and "statics" in words and "kappa" in words
+    assert main(["explain", "examples/horizontal_rig.toml", "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["layers"][0]["numbers"]["relative_depth"] == pytest.approx(0.01902, rel=1e-3)

@@ -1,0 +1,191 @@
+"""`leblanc run` and `explain` for rotors that tilt: JSON, files, figures, words."""
+
+from __future__ import annotations
+
+import json
+import math
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from leblanc.cli import main
+from leblanc.figures import amplitude_figure, campbell_figure, chamber_figure
+from leblanc.figures.section import side_by_side
+from leblanc.report.run import comparisons, facts
+from leblanc.scene.machine import dry_rotor
+from leblanc.scene.scene import Scene, load_scene, scene_from_table
+from leblanc.studies.explain import explain_scene
+from leblanc.studies.run import run_scene
+from solvers.rotor.vibration import orbit, unbalance_response
+from tests.leblanc.studies.test_run import KEYS
+from tests.mutants import kills
+
+SAME = """
+name = "Two views of one rotor"
+[rotor]
+{rotor}
+[[chambers]]
+radius = 0.065
+height = 0.02
+volume = 1e-5
+liquid = "water"
+[speeds]
+start = 40
+stop = 250
+count = 40
+"""
+JEFFCOTT = 'kind = "jeffcott"\nmass = 4\nstiffness = 4e4\ndamping = 16\nunbalance = 3e-3\naxis = "horizontal"'
+AS_TWO_PLANE = """
+kind = "two_plane"
+mass = 4
+transverse_inertia = 0.05
+polar_inertia = 0.04
+axis = "horizontal"
+supports = [
+  { position = -0.2, stiffness = 2e4, damping = 8 },
+  { position = 0.2, stiffness = 2e4, damping = 8 },
+]
+unbalances = [{ position = 0, size = 3e-3 }]
+"""
+
+
+def read(rotor: str) -> Scene:
+    return scene_from_table(tomllib.loads(SAME.format(rotor=rotor)))
+
+
+@kills("leblanc.studies.run:main_critical_speeds", "int(np.argmax(size))", "int(np.argmin(size))")
+def test_one_rotor_two_ways() -> None:
+    """All in the middle plane: the record of the planar rotor, dry patches and branches included."""
+    one, other = run_scene(read(JEFFCOTT)), run_scene(read(AS_TWO_PLANE))
+    np.testing.assert_allclose(other.amplitude, one.amplitude, rtol=1e-8)
+    np.testing.assert_allclose(other.amplitude_dry, one.amplitude_dry, rtol=1e-8)
+    np.testing.assert_allclose(other.branch_amplitude, one.branch_amplitude, rtol=1e-8)
+    np.testing.assert_allclose(other.response.liquid_offset, one.response.liquid_offset, rtol=1e-8)
+    np.testing.assert_array_equal(other.response.dry_patch, one.response.dry_patch)
+    assert one.response.dry_patch.any()
+    assert other.critical_speed_dry == pytest.approx(one.critical_speed_dry, rel=1e-9)
+    assert other.critical_speed_wet == pytest.approx(one.critical_speed_wet, rel=1e-9)
+    told = explain_scene(read(JEFFCOTT)), explain_scene(read(AS_TWO_PLANE))
+    assert told[1].critical_speed_dry == pytest.approx(told[0].critical_speed_dry, rel=1e-9)
+    assert told[1].damping_ratio == pytest.approx(told[0].damping_ratio, rel=1e-2)  # at speed, not at rest
+    layers = [one.layers[0] for one in told]
+    assert layers[0] is not None and layers[1] is not None
+    assert layers[1].added_mass_ratio == pytest.approx(layers[0].added_mass_ratio, rel=1e-12)
+    assert layers[1].optimal_volume == pytest.approx(layers[0].optimal_volume, rel=1e-6)
+
+
+@kills("leblanc.studies.explain:explain_scene", "fill.added_mass / bare.mass", "fill.mass / bare.mass")
+def test_explained_mass() -> None:
+    """A full chamber of liquid over the rotor's mass; of a tub, over that of tub and drum."""
+    for name, mass, density in (("two_plane_rig", 20.0, 998.2), ("tub", 60.7, 1197.0)):
+        layer = explain_scene(load_scene(f"examples/{name}.toml")).layers[0]
+        radius, height = (0.095, 0.025) if mass == 20.0 else (0.18, 0.04)
+        assert layer is not None
+        assert layer.added_mass_ratio == pytest.approx(
+            density * math.pi * radius**2 * height / mass, rel=1e-12
+        )
+
+
+@kills(
+    "leblanc.results.record:StudyRecord.amplitude",
+    "np.abs(self.motion.backward)\n",
+    "-np.abs(self.motion.backward)\n",
+)
+@kills(
+    "leblanc.results.record:StudyRecord.amplitude_dry",
+    "np.abs(self.motion.backward_dry)\n",
+    "0.5 * np.abs(self.motion.backward_dry)\n",
+)
+def test_amplitude_of_an_ellipse() -> None:
+    """The amplitude reported is the largest radius of the path that the axis runs through."""
+    scene = load_scene("examples/tub.toml")
+    record = run_scene(replace(scene, chambers=()))
+    system = dry_rotor(scene).system()
+    answer = unbalance_response(system, scene.speed_array())
+    phase = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 2001))
+    for k in (5, 20, 100, 280):
+        first, second = np.real((system.at(0.0) @ answer[k])[:, None] * phase)
+        # A maximum missed by half a step of 3e-3 rad.
+        assert record.amplitude[k] == pytest.approx(np.hypot(first, second).max(), rel=2e-6)
+    np.testing.assert_allclose(record.amplitude, record.amplitude_dry, rtol=1e-12)
+    np.testing.assert_allclose(record.amplitude, orbit(system, answer, 0.0).amplitude, rtol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["two_plane_rig", "tub"])
+def test_examples(name: str, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    assert main(["run", f"examples/{name}.toml", "--json", "--out", str(tmp_path)]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer.keys() >= KEYS
+    speeds = len(answer["speed"])
+    assert all(len(answer[key]) == speeds for key in (*KEYS, "backward", "chamber_deflection"))
+    record = run_scene(load_scene(f"examples/{name}.toml"))
+    motion = record.motion
+    assert motion is not None
+    forward, backward = (np.array(answer[key]) @ [1.0, 1j] for key in ("deflection", "backward"))
+    np.testing.assert_allclose(answer["amplitude"], np.abs(forward) + np.abs(backward), rtol=1e-12)
+    np.testing.assert_allclose(answer["phase"], np.angle(forward), rtol=1e-12)
+    assert len(answer["natural_frequency"]) == len(motion.modes)
+    with xr.open_dataset(tmp_path / "response.nc") as data:
+        assert data["campbell_frequency"].shape == motion.campbell.frequency.shape
+        np.testing.assert_allclose(data["amplitude"], answer["amplitude"])
+        np.testing.assert_allclose(data["natural_frequency"], answer["natural_frequency"])
+    for figure in ("amplitude", "liquid", "phase", "chamber", "campbell"):
+        assert (tmp_path / f"{figure}.png").stat().st_size > 10_000
+    summary = (tmp_path / "summary.html").read_text(encoding="utf-8")
+    assert "Natural frequencies at rest" in summary and "whirl against the spin" in summary
+    compared = comparisons(record)[0]
+    # Printed with four digits.
+    assert float(compared.wet) == pytest.approx(1e3 * record.amplitude.max(), rel=1e-3)
+    listed = dict(facts(record))["Natural frequencies at rest (damping ratios)"]
+    assert float(listed.split()[0]) == pytest.approx(motion.modes[0].frequency / (2 * math.pi), rel=1e-2)
+
+
+def test_explain(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["explain", "examples/tub.toml"]) == 0
+    words = capsys.readouterr().out
+    assert "natural frequencies at rest" in words and "shift along z" in words
+    assert main(["explain", "examples/two_plane_rig.toml", "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert len(answer["modes"]) == 4 and len(answer["layers"]) == 2
+
+
+def test_chambers_in_different_planes_are_drawn_apart() -> None:
+    record = run_scene(load_scene("examples/two_plane_rig.toml"))
+    assert len(side_by_side(record.chambers)) == 2
+    texts = [text.get_text() for axes in chamber_figure(record).axes for text in (axes.title,)]
+    assert len(set(texts)) == 2
+
+
+def test_the_campbell_diagram_marks_every_crossing() -> None:
+    record = run_scene(load_scene("examples/two_plane_rig.toml"))
+    assert record.motion is not None
+    axes = campbell_figure(record).axes[0]
+    marks = [line for line in axes.lines if line.get_marker() not in ("None", None, "")]
+    drawn = np.sort(np.concatenate([line.get_xdata() for line in marks]))
+    np.testing.assert_allclose(drawn, record.motion.campbell.crossing * 30.0 / math.pi, rtol=1e-12)
+    names = {line.get_label() for line in axes.lines}
+    assert {"whirl with the spin", "whirl against the spin", "once a turn"} <= names
+
+
+def test_amplitude_figure_says_where() -> None:
+    record = run_scene(load_scene("examples/tub.toml"))
+    assert any("115 mm" in text.get_text() for text in amplitude_figure(record).texts)
+
+
+def test_an_empty_tub_and_one_without_dampers(tmp_path: Path) -> None:
+    text = Path("examples/tub.toml").read_text(encoding="utf-8")
+    dry = text[: text.index("[[chambers]]")] + text[text.index("# From below the lowest") :]
+    scene = tmp_path / "scene.toml"
+    scene.write_text(dry.replace('  "chambers.0",\n', ""), encoding="utf-8")
+    assert main(["run", str(scene), "--out", str(tmp_path / "out")]) == 0
+    free = text[: text.index("# Two dampers")] + text[text.index("[[chambers]]") :]
+    free = free.replace(
+        '  "rotor.dampers.0.position", "rotor.dampers.1.position", "rotor.dampers.2", "rotor.dampers.3",\n',
+        "",
+    )
+    scene.write_text(free, encoding="utf-8")
+    assert main(["run", str(scene), "--out", str(tmp_path / "free")]) == 0

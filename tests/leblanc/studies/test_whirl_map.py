@@ -1,0 +1,232 @@
+"""`leblanc map`: volumes, bands, range of the model, files, figure, JSON."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import h5netcdf
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+from fluid.friction import Friction
+from fluid.whirl import covering_speed
+from leblanc.cli import main
+from leblanc.cli.map import map as map_command
+from leblanc.figures.stability_map import map_figure, signed_distance
+from leblanc.results.whirl_map import write_map
+from leblanc.scene.machine import dry_rotor
+from leblanc.scene.scene import Scene, load_scene
+from leblanc.studies.whirl_map import SPEEDS, VOLUMES, StabilityRecord, fills_over_volume, map_scene
+from meshes.errors import InputError
+from solvers.whirl.growth import asynchronous_growth
+from tests.mutants import kills
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+RPM = 60.0 / (2.0 * math.pi)
+
+
+def scene(name: str = "washing_machine") -> Scene:
+    return load_scene(EXAMPLES / f"{name}.toml")
+
+
+def small(name: str = "washing_machine", **changes: object) -> StabilityRecord:
+    return map_scene(scene(name), **({"volumes": 9, "speeds": 40} | changes))  # type: ignore[arg-type]
+
+
+@kills(
+    "leblanc.studies.whirl_map:fills_over_volume",
+    "share = parts / parts.sum()",
+    "share = parts / parts.max()",
+)
+@kills("leblanc.studies.whirl_map:fills_over_volume", "np.min(capacity[wet]", "np.max(capacity[wet]")
+def test_fills() -> None:
+    """The volumes keep their ratios, add up, and end where the first chamber is full."""
+    for name in ("horizontal_rig", "vertical_rig"):
+        chambers = scene(name).chambers
+        rows = fills_over_volume(chambers, 5)
+        totals = [sum(fill.volume for fill in fills) for fills in rows]
+        assert totals[0] == 0.0
+        np.testing.assert_allclose(np.diff(totals), totals[-1] / 4.0, rtol=1e-12)
+        for fills in rows[1:]:
+            ratio = [fill.volume / one.volume for fill, one in zip(fills, chambers, strict=True)]
+            np.testing.assert_allclose(ratio, ratio[0], rtol=1e-12)
+        fullest = max(fill.volume / fill.chamber.capacity for fill in rows[-1])
+        assert fullest == pytest.approx(1.0, rel=1e-12)
+        assert sum(fill.volume for fill in fills_over_volume(chambers, 3, 1e-5)[-1]) == pytest.approx(1e-5)
+    empty = tuple(replace(fill, volume=0.0) for fill in scene("horizontal_rig").chambers)
+    for fill in fills_over_volume(empty, 2)[-1]:
+        assert fill.volume == pytest.approx(fill.chamber.capacity)
+
+
+def test_record() -> None:
+    """Each point is the growth of the scene's machine with those volumes; each band separates signs."""
+    for name, law, pair in (
+        ("horizontal_rig", Friction("stokes", 0.0), Friction("stokes")),
+        ("washing_machine", Friction("linear", 2.0), Friction("linear", 2.0)),
+        ("washing_machine", Friction("quadratic", 0.1), Friction()),
+    ):
+        record, machine = small(name, friction=law), scene(name)
+        system = dry_rotor(machine).system()
+        rows = fills_over_volume(machine.chambers, 9)
+        np.testing.assert_allclose(record.volume, [sum(f.volume for f in fills) for fills in rows])
+        for k in (0, 3, 8):
+            growth, whirl = asynchronous_growth(system, rows[k], record.speed, pair)
+            np.testing.assert_array_equal(record.growth[k], growth)
+            np.testing.assert_array_equal(record.whirl_speed[k], whirl)
+        assert np.array_equal(record.growth > 0.0, signed_distance(record) > 0.0)
+
+
+@kills("leblanc.studies.whirl_map:_held", "speed > max(needed", "speed > 2.0 * max(needed")
+def test_range() -> None:
+    """Held by the centrifugal field: a level axis from the capture speed, an upright one from covering."""
+    record, machine = small(friction=Friction("none", 0.0)), scene()
+    for k, fills in enumerate(fills_over_volume(machine.chambers, 9)):
+        free = 0 < k < 8
+        captured = math.sqrt(9.81 / fills[0].surface_radius) if free else 0.0
+        assert np.array_equal(record.in_range[k], record.speed > captured)
+    record, machine = small("vertical_rig", friction=Friction("none", 0.0)), scene("vertical_rig")
+    for k, fills in enumerate(fills_over_volume(machine.chambers, 9)):
+        covered = max(covering_speed(fill, 9.81) for fill in fills)
+        assert np.array_equal(record.in_range[k], record.speed > covered)
+
+
+@kills("leblanc.studies.whirl_map:map_scene", "zip(rows, whirl_speed - speed", "zip(rows, whirl_speed")
+@kills("leblanc.studies.whirl_map:_thin_layers", "2.0 * fill.liquid.viscosity", "fill.liquid.viscosity")
+def test_thin_layers() -> None:
+    """With laminar friction a film thinner than five thicknesses of the wall layer is out of range."""
+    record, machine = small(), scene()
+    held = small(friction=Friction("none", 0.0)).in_range
+    for k, fills in enumerate(fills_over_volume(machine.chambers, 9)[1:8], start=1):
+        slip = np.abs(record.whirl_speed[k] - record.speed)
+        thick = np.sqrt(2.0 * fills[0].liquid.viscosity / slip) > 0.2 * fills[0].depth
+        assert np.array_equal(record.in_range[k], held[k] & ~thick)
+    assert not record.in_range[1:8].all() and record.in_range.any()
+
+
+def test_notes_say_which_dampings_there_are() -> None:
+    record = small(friction=Friction("quadratic", 0.1))
+    assert any("proportion to the motion" in note for note in record.notes)
+    assert any("negative" in note for note in record.notes)
+    assert record.friction.startswith("none (") and "0.187" in record.damping
+    record = small()
+    assert "laminar" in record.friction and not any("negative" in note for note in record.notes)
+    assert "128.5" in record.notes[0] and len(record.scene_edges) == 1
+
+
+def test_other_rotors() -> None:
+    """The tub with its six degrees of freedom: bands separate signs there too."""
+    record = map_scene(scene("tub"), 3, 12, friction=Friction("linear", 0.5))
+    assert np.isfinite(record.growth).all()
+    assert np.array_equal(record.growth > 0.0, signed_distance(record) > 0.0)
+    assert record.damping == "damping as in the scene"
+
+
+def test_file(tmp_path: Path) -> None:
+    record = small("horizontal_rig")
+    write_map(record, tmp_path / "map.nc")
+    with h5netcdf.File(tmp_path / "map.nc", "r") as file:
+        np.testing.assert_array_equal(file["growth"][...], record.growth)
+        np.testing.assert_array_equal(file["in_range"][...], record.in_range)
+        assert file["growth"].dimensions == ("volume", "speed")
+        low, high = file["edge_low"][...], file["edge_high"][...]
+        for k, bands in enumerate(record.edges):
+            found = [(a, b) for a, b in zip(low[k], high[k], strict=True) if not np.isnan(a)]
+            assert found == list(bands)
+        assert file.attrs["friction"] == record.friction
+        assert file["growth"].attrs["units"] == "s-1" and file["volume"].attrs["units"] == "m3"
+
+
+def test_json_and_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    options = ["--volumes", "5", "--speeds", "30", "--max-volume", "900 ml", "--friction", "linear:0.5"]
+    command = ["map", str(EXAMPLES / "washing_machine.toml"), *options, "--out", str(tmp_path), "--json"]
+    assert main(command) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert len(found["speed"]) == 30 and found["volume"] == pytest.approx(np.linspace(0.0, 9e-4, 5).tolist())
+    for name in ("growth", "whirl_speed", "in_range"):
+        assert np.shape(found[name]) == (5, 30)
+    assert len(found["edges"]) == 5 and all(len(band) == 2 for row in found["edges"] for band in row)
+    assert found["friction"] == "linear, 0.5 1/s"
+    assert {file.name for file in tmp_path.iterdir()} == {"map.nc", "map.png", "map.svg", "map.html"}
+
+
+def test_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    command = ["map", str(EXAMPLES / "washing_machine.toml"), "--volumes", "3", "--speeds", "10"]
+    assert main([*command, "--out", str(tmp_path)]) == 0
+    printed = capsys.readouterr()
+    assert "laminar" in printed.out and "grows by itself" in printed.out
+    assert "3 volumes by 10 speeds" in printed.err
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ["--volumes", "1"],
+        ["--speeds", "5000"],
+        ["--max-volume", "9 l"],
+        ["--max-volume", "0"],
+        ["--friction", "x"],
+    ],
+)
+def test_wrong_options_are_named(
+    options: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command = ["map", str(EXAMPLES / "washing_machine.toml"), *options, "--out", str(tmp_path)]
+    assert main(command) == 2
+    assert capsys.readouterr().err.startswith(f"leblanc: {options[0]} = ")
+
+
+def test_defaults_are_the_study_s() -> None:
+    defaults = inspect.signature(map_command).parameters
+    assert (defaults["volumes"].default, defaults["speeds"].default) == (VOLUMES, SPEEDS)
+
+
+def test_a_range_of_one_speed_is_refused() -> None:
+    machine = scene()
+    still = replace(machine, speeds=replace(machine.speeds, stop=machine.speeds.start, count=1))
+    with pytest.raises(InputError, match=r"speeds\.stop"):
+        map_scene(still)
+
+
+def test_outline() -> None:
+    """The outline runs through the refined edges: the contour of the signed distance at zero does."""
+    record = small(volumes=21, speeds=200)
+    lines = [path.vertices for drawn in map_figure(record).axes[0].collections for path in drawn.get_paths()]
+    step, checked = record.speed[1] - record.speed[0], 0
+    for row, bands in enumerate(record.edges):
+        for edge in [end for low, high in bands for end in (low, high) if high - low > 4.0 * step]:
+            place = np.array([edge * RPM, record.volume[row] * 1e6])
+            # Vertices on the row of this volume; a contour keeps the digits of its line between two speeds.
+            near = min(np.min(np.hypot(*((line - place) / [1.0, 1e-3]).T)) for line in lines if line.size)
+            assert near < 1e-6 * place[0]
+            checked += 1
+    assert checked > 20
+
+
+@pytest.mark.parametrize("law", [Friction("stokes", 0.0), Friction("none", 0.0), Friction("linear", 500.0)])
+def test_figure_has_units_on_every_axis(law: Friction) -> None:
+    record = small(friction=law)
+    figure = map_figure(record)
+    FigureCanvasAgg(figure).draw()
+    panels = [axes for axes in figure.axes if axes.get_label() in ("growth", "whirl")]
+    assert [axes.get_ylabel() for axes in panels] == ["Liquid (ml)"] * 2
+    assert panels[1].get_xlabel() == "Speed (rpm)"
+    assert panels[0].child_axes[0].get_xlabel() == "Speed (rad/s)"
+    np.testing.assert_allclose(panels[0].get_xlim(), record.speed[[0, -1]] * RPM)
+    np.testing.assert_allclose(panels[0].child_axes[0].get_xlim(), record.speed[[0, -1]])
+    for bar in (axes for axes in figure.axes if axes not in panels):
+        assert bar.get_ylabel().endswith((")", ")"))
+    legend = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert "scene's volume, 600 ml" in legend
+    assert ("a whirl grows: unstable" in legend) == bool((record.growth > 0.0).any())
+
+
+def test_validation_agrees() -> None:
+    from validation.cases.whirl import cases
+
+    found = cases()
+    assert len(found) == 15 and {one.verdict for one in found} == {"agrees"}

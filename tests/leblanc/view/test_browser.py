@@ -1,0 +1,205 @@
+"""The page of `leblanc view --browser` in a headless Chromium: it shows a machine, and its slider moves it.
+
+Needs a Chromium (Debian: chromium) and the extra `browser`; skipped without.
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+import os
+import select
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from leblanc import cli
+from leblanc.cli import main
+from leblanc.view.picture import prepare_off_screen
+from meshes.errors import InputError
+from tests.oracles.browser import Browser, browser, found
+
+ROOT = Path(cli.__file__).parents[2]
+RUNUP = str(ROOT / "examples" / "runup.toml")
+PATIENCE = 60.0  # seconds until something must have happened
+
+pytest.importorskip("trame")
+pytest.importorskip("trame_vtk")
+
+
+@contextmanager
+def served(*options: str) -> Iterator[tuple[str, subprocess.Popen[str]]]:
+    """Address of the page of a process of its own, which is gone at the end."""
+    code = f"import sys; sys.path.insert(0, {str(ROOT)!r}); from leblanc.cli import main; sys.exit(main())"
+    process = subprocess.Popen(
+        [sys.executable, "-c", code, "view", RUNUP, "--browser", "--port", "0", *options],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=dict(os.environ),
+    )
+    try:
+        assert process.stdout is not None
+        ready, _, _ = select.select([process.stdout], [], [], PATIENCE)
+        assert ready, "the page does not come up"
+        said = process.stdout.readline()
+        assert said.startswith("Open http://"), process.communicate(timeout=PATIENCE)
+        yield said.split()[1], process
+    finally:
+        if process.poll() is None:
+            process.kill()
+        process.communicate()
+
+
+def wait_for(what: Callable[[], Any], words: str) -> Any:
+    """The first true value, asked for again and again until patience ends."""
+    until = time.monotonic() + PATIENCE
+    while time.monotonic() < until:
+        value = what()
+        if value:
+            return value
+    raise AssertionError(f"never: {words}")
+
+
+SIGHT = (
+    "(() => { const b = document.querySelector('.sight').getBoundingClientRect();"
+    " return [b.x, b.y, b.width, b.height]; })()"
+)
+
+
+def seen(tab: Browser, where: str = SIGHT) -> np.ndarray:
+    """Pixels of the part of the page that shows the machine."""
+    from PIL import Image
+
+    box = tab.value(where)
+    clip = dict(zip(("x", "y", "width", "height"), box, strict=True)) | {"scale": 1}
+    data = tab.ask("Page.captureScreenshot", format="png", clip=clip)["data"]
+    return np.asarray(Image.open(io.BytesIO(base64.b64decode(data))).convert("RGB")).astype(int)
+
+
+def machine(pixels: np.ndarray) -> np.ndarray:
+    """Its middle, without the words at head and foot."""
+    height = pixels.shape[0]
+    return pixels[height // 5 : 4 * height // 5]
+
+
+def move(tab: Browser, selector: str, value: str) -> None:
+    tab.value(
+        f"(() => {{ const e = document.querySelector({selector!r}); {value};"
+        " e.dispatchEvent(new Event('input', {bubbles: true}));"
+        " e.dispatchEvent(new Event('change', {bubbles: true})); return true; })()"
+    )
+
+
+def is_still(tab: Browser) -> np.ndarray | None:
+    """The picture once two looks in a row agree: the server sends a coarse image first."""
+    first = seen(tab)
+    again = seen(tab)
+    return again if np.array_equal(first, again) else None
+
+
+def test_the_slider_moves_the_liquid() -> None:
+    path = found()
+    if path is None:
+        pytest.skip("no Chromium found; Debian: apt install chromium")
+    try:
+        prepare_off_screen()
+    except InputError as error:
+        pytest.skip(str(error))
+    with served("--speed", "90 rad/s") as (address, _), browser(path) as tab:
+        tab.open(address)
+        said = "(document.querySelector('#value') || {}).textContent || ''"
+        wait_for(lambda: "(90 rad/s)" in tab.value(said), "the speed asked for is shown")
+        shown = wait_for(lambda: np.ptp(machine(seen(tab))) > 100, "a picture")
+        assert shown
+        before = wait_for(lambda: is_still(tab) is not None and [seen(tab)], "a picture at rest")[0]
+        # The machine is there, blue liquid with it, on white.
+        body = machine(before)
+        assert 0.05 < np.mean(np.any(body < 240, axis=2)) < 0.95
+        assert np.mean(body[..., 2] > body[..., 0] + 40) > 0.01
+
+        move(tab, "#speed", "e.value = 76")  # 24 rad/s: at resonance, the wall dry in part
+        wait_for(lambda: "(24 rad/s)" in tab.value(said), "the speed chosen is shown")
+        words = tab.value("document.querySelector('#words').textContent")
+        assert "dry in part" in words
+        assert "mm at" in words
+
+        def changed() -> bool:
+            now = machine(seen(tab))
+            return now.shape == body.shape and bool(np.mean(np.abs(now - body).max(axis=2) > 60) > 0.02)
+
+        wait_for(changed, "the slider moves the liquid")
+
+        # Buttons turn the machine, the box changes the factor.
+        oblique = machine(seen(tab))
+        tab.value("document.querySelectorAll('button.view')[1].click()")
+        wait_for(
+            lambda: np.mean(np.abs(machine(seen(tab)) - oblique).max(axis=2) > 60) > 0.05, "another view"
+        )
+
+        # Nothing is asked for elsewhere, and nothing goes wrong on the page.
+        own = (address, "blob:", "data:", "about:")
+        assert all(one.startswith(own) for one in tab.requests()), tab.requests()
+        assert not [one for one in tab.complaints() if "exception" in one.lower()]
+
+
+def test_a_page_without_a_server(tmp_path: Path) -> None:
+    pytest.importorskip("trame_pyvista")
+    path = found()
+    if path is None:
+        pytest.skip("no Chromium found; Debian: apt install chromium")
+    try:
+        prepare_off_screen()
+    except InputError as error:
+        pytest.skip(str(error))
+    page = tmp_path / "page.html"
+    assert main(["view", RUNUP, "--speed", "24 rad/s", "--screenshot", str(page)]) == 0
+    with browser(path) as tab:
+        tab.open(page.as_uri())
+
+        def drawn() -> bool:
+            box = "[0, 0, innerWidth, innerHeight]"
+            body = machine(seen(tab, box))
+            return bool(np.mean(body[..., 2] > body[..., 0] + 40) > 0.01)
+
+        wait_for(drawn, "blue liquid")
+        assert "dry in part" in tab.value("document.querySelector('#words').textContent")
+        assert all(one.startswith(("file:", "blob:")) for one in tab.requests()), tab.requests()
+
+
+def test_ctrl_c_ends_the_page_quietly() -> None:
+    try:
+        prepare_off_screen()
+    except InputError as error:
+        pytest.skip(str(error))
+    with served() as (_, process):
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=PATIENCE)
+        assert process.returncode == 130, said
+        assert "Traceback" not in said
+        assert said.splitlines()[-1] == "leblanc: interrupted"
+
+
+def test_a_port_that_is_taken(capsys: pytest.CaptureFixture[str]) -> None:
+    try:
+        prepare_off_screen()
+    except InputError as error:
+        pytest.skip(str(error))
+    import socket
+
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = str(taken.getsockname()[1])
+        assert main(["view", RUNUP, "--browser", "--host", "127.0.0.1", "--port", port]) == 2
+    last = capsys.readouterr().err.splitlines()[-1]
+    assert "Traceback" not in last
+    assert port in last

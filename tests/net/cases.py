@@ -1,0 +1,280 @@
+"""All commands of the net: what is typed, and what is needed for it."""
+
+from __future__ import annotations
+
+import ctypes
+import importlib.util
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from tests.net.scenes import WRONG
+
+ROTORS = (
+    *("two_plane_rig", "tub", "horizontal_rig", "vertical_rig", "washing_machine", "weak_motor"),
+    *("centrifuge", "runup"),
+)
+DOCS = ("closed_baffles", "lobes", "smallest_scene")
+COMMANDS = (
+    *("new", "explain", "run", "volume", "layer", "modes", "map", "runup", "optimise", "sweep", "trade", "view"),
+    "validate",
+)
+
+
+@dataclass(frozen=True)
+class Case:
+    """One command.
+
+    Parameters
+    ----------
+    name : of the file that keeps its answer
+    argv : what is typed behind `leblanc`
+    needs : what the machine must have, "" if nothing; a key of `MISSING`
+    measured : keys of its JSON that a machine measures, held by type
+    """
+
+    name: str
+    argv: tuple[str, ...]
+    needs: str = ""
+    measured: frozenset[str] = frozenset()
+
+
+def all_cases() -> list[Case]:
+    """Every command, those that take long first."""
+    parts = (_long, _runs, _runups, _optimums, _maps, _sweeps, _layers, _modes, _views, _words, _wrong, _cheap)
+    found = [case for part in parts for case in part()]
+    names = [case.name for case in found]
+    assert len(set(names)) == len(names), "two commands of one name"
+    return found
+
+
+def missing(need: str) -> str | None:
+    """What this machine lacks of a need, None if nothing."""
+    if need == "screen" and not _loads("libEGL.so.1"):
+        return "no libEGL"
+    if need == "cad" and not all(map(importlib.util.find_spec, ("gmsh", "ezdxf"))):
+        return "no gmsh or no ezdxf"
+    return None
+
+
+def _loads(library: str) -> bool:
+    try:
+        ctypes.CDLL(library)
+    except OSError:
+        return False
+    return True
+
+
+def _case(name: str, typed: str, **more: object) -> Case:
+    return Case(name, tuple(typed.split()), **more)  # type: ignore[arg-type]
+
+
+def _scene(name: str) -> str:
+    return f"docs/examples/{name}.toml" if name in DOCS else f"examples/{name}.toml"
+
+
+def _long() -> Iterator[Case]:
+    measured = "time spread first memory time_ratio repeats default_overhead default_dominated_by on_front"
+    yield _case(
+        "trade-smallest_scene",
+        "trade docs/examples/smallest_scene.toml --quick --repeats 2 --json --out out",
+        measured=frozenset([*measured.split(), "recommended"]),
+    )
+    for group in (
+        *("two_plane", "whirl", "layer", "runup", "fill_sweep", "exciter", "errata", "optimal_volume"),
+        *("vector_model", "horizontal_rig", "vertical_rig", "tub"),
+    ):
+        yield _case(f"validate-{group}", f"validate {group} --json")
+
+
+def _runs() -> Iterator[Case]:
+    for name in ("vibratory_table", *ROTORS, *DOCS):
+        yield _case(f"run-{name}", f"run {_scene(name)} --json --out out")
+        yield _case(f"explain-{name}", f"explain {_scene(name)} --json")
+
+
+def _runups() -> Iterator[Case]:
+    for name in ROTORS:
+        yield _case(
+            f"runup-{name}", f"runup {_scene(name)} --cells 32 --samples 201 --no-check --json --out out"
+        )
+    yield _case("runup-check", "runup small/runup.toml --samples 51 --json --out out")
+
+
+def _optimums() -> Iterator[Case]:
+    for name in (*ROTORS, *DOCS):
+        yield _case(f"optimise-{name}", f"optimise {_scene(name)} --no-front --json --out out")
+    for objective in ("peak", "mean", "least_mass", "robust"):
+        yield _case(
+            f"optimise-{objective}",
+            f"optimise small/horizontal_rig.toml --objective {objective} --steady --no-front --json --out out",
+        )
+    yield _case("optimise-front", "optimise small/centrifuge.toml --json --out out")
+    yield _case(
+        "optimise-deflection",
+        "optimise small/centrifuge.toml --deflection 1mm --objective least_mass --limit 1.5mm --json --out out",
+    )
+
+
+def _maps() -> Iterator[Case]:
+    for name in (*ROTORS, *DOCS):
+        yield _case(f"map-{name}", f"map {_scene(name)} --volumes 5 --speeds 11 --json --out out")
+    friction = "--friction linear:0.5 --max-volume 20ml"
+    yield _case(
+        "map-friction", f"map small/horizontal_rig.toml --volumes 5 --speeds 11 {friction} --json --out out"
+    )
+
+
+def _sweeps() -> Iterator[Case]:
+    for study in ("fill_grid", "uncertain_rig", "centrifuge_shares"):
+        more = " --netcdf --emulate" if study == "uncertain_rig" else ""
+        yield _case(f"sweep-{study}", f"sweep small/{study}.toml --workers 0{more} --json --out out")
+    yield _case("sweep-workers", "sweep small/centrifuge_shares.toml --workers 1 --json --out out")
+
+
+_LAYER = "layer --radius 0.15 --volume 6.7e-4 --height 0.05 --speed 40 --whirl-speed 32 --whirl-amplitude"
+_WHIRL = f"{_LAYER} 1.5e-4"
+_DRUM = _LAYER.replace("--whirl-speed 32", "--whirl-speed 40")  # at rest in the drum
+
+
+def _layers() -> Iterator[Case]:
+    steady = {
+        "statics": f"{_DRUM} 1.5e-4 --model statics",
+        "statics-dry": f"{_DRUM} 4e-2 --model statics",
+        "linear": f"{_WHIRL} --model linear",
+        "linear-large": f"{_LAYER} 1.5e-2 --model linear",
+        "brine": f"{_WHIRL} --model linear --liquid brine",
+        "kdv": f"{_WHIRL} --model kdv",
+        "kdv-stokes": f"{_WHIRL} --model kdv --friction stokes",
+        "kdv-linear": f"{_WHIRL} --model kdv --friction linear:0.5",
+        "kdv-large": f"{_LAYER} 1.5e-2 --model kdv --friction linear:0.5",
+        "kdv-dispersion": f"{_WHIRL} --model kdv --friction linear:0.5 --dispersion",
+        "fem": f"{_WHIRL} --model fem",
+        "fem-closed": f"{_WHIRL} --model fem --baffles 6",
+        "fem-baffles": f"{_WHIRL} --model fem --baffles 3 --baffle-tip-radius 140mm --baffle-wall-gap 2mm",
+    }
+    wave = f"{_WHIRL} --model long_wave --cells 64 --friction"
+    steady |= {f"long_wave-{law.partition(':')[0]}": f"{wave} {law}" for law in _FRICTION}
+    steady |= {
+        "long_wave-gravity": f"{wave} linear:0.5 --gravity 9.81",
+        "long_wave-dispersion": f"{wave} linear:0.5 --dispersion",
+    }
+    starts = {f"duration-{law.partition(':')[0]}": f"{wave} {law} --duration 5 --ramp 1" for law in _FRICTION}
+    starts["duration-bore"] = f"{_LAYER} 3e-3 --model long_wave --cells 64 --duration 2"
+    for name, typed in (steady | starts).items():
+        yield _case(f"layer-{name}", f"{typed} --profile --json")
+    yield _case("layer-figure", f"{_WHIRL} --model linear --json --out out")
+
+
+_FRICTION = ("none", "stokes", "linear:0.5", "quadratic:0.01")
+_MODES = "modes --radius 0.15 --volume 6.7e-4 --height 0.05 --speed 40"
+
+
+def _modes() -> Iterator[Case]:
+    yield _case("modes-round", f"{_MODES} --json --out out")
+    yield _case("modes-order1", f"{_MODES} --order 1 --count 6 --segments 64 --layers 4 --json")
+    yield _case("modes-closed", f"{_MODES} --baffles 6 --json")
+    yield _case("modes-baffles", f"{_MODES} --baffles 4 --baffle-tip-radius 140mm --baffle-wall-gap 2mm --json")
+    mesh = "--mesh docs/examples/lobes.msh"
+    yield _case(
+        "modes-mesh", f"modes --radius 180mm --volume 1l --height 60mm --speed 60 {mesh} --json --out out"
+    )
+    yield _case("modes-words", f"{_MODES} --count 4")
+
+
+def _views() -> Iterator[Case]:
+    for name in ("vibratory_table", *ROTORS, *DOCS):
+        yield _case(f"view-{name}", f"view {_scene(name)} --json --out out", needs="screen")
+    yield _case(
+        "view-mode",
+        "view examples/centrifuge.toml --mode 1 --screenshot mode.png --json --out out",
+        needs="screen",
+    )
+    yield _case(
+        "view-film",
+        "view small/centrifuge.toml --animate film.gif --frames 3 --json --out out",
+        needs="screen",
+    )
+
+
+def _words() -> Iterator[Case]:
+    """Each command in words: exit code and files only."""
+    for name in ("explain", "run", "runup", "optimise", "map"):
+        options = {"map": " --volumes 3 --speeds 5", "optimise": " --no-front --steady"}.get(name, "")
+        out = "" if name == "explain" else " --out out"
+        yield _case(f"words-{name}", f"{name} small/runup.toml{options}{out}")
+    yield _case("words-exciter", "run examples/vibratory_table.toml")
+    yield _case("words-exciter-explain", "explain examples/vibratory_table.toml")
+    yield _case("words-volume", "volume --radius 0.15 --height 0.05 --eccentricity 1e-3 --speed 100 --volume 2e-4")
+    yield _case("words-layer", f"{_WHIRL} --model linear")
+    yield _case("words-layer-duration", f"{_WHIRL} --model long_wave --cells 32 --duration 2")
+    yield _case("words-sweep", "sweep small/centrifuge_shares.toml --workers 0")
+    yield _case("words-view", "view small/runup.toml --screenshot view.png", needs="screen")
+    yield _case("words-validate", "validate vector_model")
+    yield _case("words-new", "new")
+    yield _case("words-out", "run docs/examples/smallest_scene.toml")
+
+
+def _cheap() -> Iterator[Case]:
+    volume = "volume --radius 0.15 --height 0.05 --eccentricity 1e-3 --speed 100 --json"
+    yield _case("volume-optimal", volume)
+    yield _case("volume-dry", f"{volume} --volume 2e-5")
+    yield _case("volume-wet", f"{volume} --volume 2e-4")
+    yield _case("volume-full", f"{volume} --volume 3.5e-3")
+    yield _case("volume-slow", f"{volume} --volume 2e-4 --speed 12")
+    yield _case("volume-ring", f"{volume} --volume 2e-4 --inner-radius 100mm --gravity 0")
+    yield _case("new-file", "new my_scene.toml")
+    yield _case("help", "--help")
+    for name in COMMANDS:
+        yield _case(f"help-{name}", f"{name} --help")
+
+
+def _wrong() -> Iterator[Case]:
+    studies = ("unknown_path", "unknown_method", "unknown_spread", "no_samples")
+    for name in (*WRONG, "empty", "not_text"):
+        command = "sweep" if name in studies else "run"
+        yield _case(f"wrong-{name}", f"{command} wrong/{name}.toml --json --out out")
+    table, rig, smallest = "examples/vibratory_table.toml", "examples/horizontal_rig.toml", _scene("smallest_scene")
+    typed = {
+        "no-file": "run nowhere.toml",
+        "folder": "run examples",
+        "explain-no-file": "explain nowhere.toml",
+        "study-as-scene": "run examples/studies/uncertain_rig.toml",
+        "scene-as-study": f"sweep {rig}",
+        "map-exciter": f"map {table}",
+        "runup-exciter": f"runup {table}",
+        "optimise-exciter": f"optimise {table}",
+        "runup-missing": f"runup {smallest}",
+        "map-volumes": f"map {rig} --volumes 0",
+        "map-friction": f"map {rig} --friction sticky",
+        "optimise-objective": f"optimise {rig} --objective beauty",
+        "optimise-seed": f"optimise {rig} --seed -1",
+        "optimise-limit": f"optimise {rig} --objective least_mass --limit 1kg",
+        "runup-cells": f"runup {rig} --cells 1",
+        "volume-unit": "volume --radius 1kg --height 1 --eccentricity 1e-3 --speed 1",
+        "volume-option": "volume --height 1",
+        "volume-negative": "volume --radius 1 --height 1 --eccentricity -1e-3 --speed 1",
+        "layer-model": f"{_WHIRL} --model best",
+        "layer-friction": f"{_WHIRL} --friction linear:-1",
+        "layer-duration": f"{_WHIRL} --model linear --duration 3",
+        "layer-baffles": f"{_WHIRL} --model kdv --baffles 3",
+        "layer-kdv-friction": f"{_WHIRL} --model kdv --friction quadratic:0.01",
+        "layer-linear-friction": f"{_WHIRL} --model linear --friction stokes",
+        "layer-statics-whirl": f"{_WHIRL} --model statics",
+        "layer-number": f"{_LAYER} 1.5e-4e1",
+        "layer-liquid": f"{_WHIRL} --liquid beer",
+        "modes-mesh": f"{_MODES} --mesh nowhere.msh",
+        "modes-mesh-unit": f"{_MODES} --mesh-unit mm",
+        "modes-baffles": f"{_MODES} --baffles 99",
+        "modes-count": f"{_MODES} --count 0",
+        "view-ending": f"view {rig} --screenshot view.txt",
+        "view-speed": f"view {rig} --speed 4kg",
+        "view-frames": f"view {rig} --animate film.gif --frames 0",
+        "view-together": f"view {rig} --browser --window",
+        "new-there": "new docs/examples/smallest_scene.toml",
+        "validate-group": "validate nothing",
+        "command": "nonsense",
+        "option": f"run {rig} --speed 3",
+        "out": f"run {smallest} --out docs/examples/smallest_scene.toml",
+    }
+    for name, line in typed.items():
+        yield _case(f"wrong-{name}", line)

@@ -1,0 +1,114 @@
+"""The input files of the net: shipped scenes, smaller copies of them, and wrong ones, all written to a folder."""
+
+from __future__ import annotations
+
+import re
+import runpy
+import shutil
+from pathlib import Path
+
+from tests.net.call import ROOT
+
+# Smaller copies of shipped scenes and studies, by their changed fields.
+SMALL: dict[str, dict[str, str]] = {}
+
+_SMALLEST = "docs/examples/smallest_scene.toml"
+_RIG = "examples/horizontal_rig.toml"
+
+# Wrong scenes: a shipped file, a text in it and what stands in its place.
+WRONG: dict[str, tuple[str, str, str]] = {
+    "unknown_key": (_SMALLEST, "mass =", "weight ="),
+    "unknown_table": (_SMALLEST, "[speeds]", "[speed]"),
+    "wrong_unit": (_SMALLEST, '"4 kg"', '"4 s"'),
+    "no_unit_known": (_SMALLEST, '"4 kg"', '"4 quux"'),
+    "negative_height": (_RIG, 'height = "20 mm"', 'height = "-20 mm"'),
+    "not_a_number": (_SMALLEST, "0.1", "nan"),
+    "two_stiffnesses": (_SMALLEST, "damping_ratio", 'stiffness = "4e4 N/m"\ndamping_ratio'),
+    "no_chambers_list": (_SMALLEST, "[[chambers]]", "[chambers]"),
+    "overfull": (_SMALLEST, '"10 ml"', '"10 l"'),
+    "unknown_liquid": (_SMALLEST, '"water"', '"beer"'),
+    "unknown_kind": (_SMALLEST, '"jeffcott"', '"laval"'),
+    "unknown_axis": (_SMALLEST, '"vertical"', '"oblique"'),
+    "one_speed_too_few": (_SMALLEST, "count = 61", "count = 0"),
+    "speeds_backwards": (_SMALLEST, '"500 rpm"', '"5000 rpm"'),
+    "unknown_model": (_RIG, 'liquid = "auto"', 'liquid = "best"'),
+    "unknown_friction": (_RIG, 'friction = "stokes"', 'friction = "sticky"'),
+    "assumed_nowhere": (_RIG, '"rotor.mass", "rotor.critical', '"rotor.masses", "rotor.critical'),
+    "no_supports": ("examples/two_plane_rig.toml", "[[rotor.supports]]", "[[rotor.bearings]]"),
+    "baffles_beyond_wall": ("docs/examples/closed_baffles.toml", "count = 6", 'count = 6, wall_gap = "1 m"'),
+    "no_section_file": ("docs/examples/lobes.toml", "lobes.msh", "nowhere.msh"),
+    "motor_and_rate": ("examples/runup.toml", "[runup]", '[runup.motor]\ninertia = "1 kg*m^2"\n\n[runup]'),
+    "wrong_balls": ("examples/vibratory_table.toml", "count = 2", "count = 0"),
+    "not_toml": (_SMALLEST, "[rotor]", "[rotor"),
+    "unknown_path": ("examples/studies/uncertain_rig.toml", '"rotor.mass"', '"rotor.masses"'),
+    "unknown_method": ("examples/studies/uncertain_rig.toml", '"latin_hypercube"', '"dice"'),
+    "unknown_spread": ("examples/studies/uncertain_rig.toml", "uniform", "uneven"),
+    "no_samples": ("examples/studies/uncertain_rig.toml", "samples = 1024", ""),
+}
+
+
+def write_inputs(folder: Path) -> None:
+    """Write all input files.
+
+    Parameters
+    ----------
+    folder : empty; gets examples/, docs/examples/, small/ and wrong/
+    """
+    for name in ("examples", "docs/examples"):
+        shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__", "*.msh"))
+    lobes = runpy.run_path(str(folder / "docs/examples/lobes.py"), run_name="lobes")
+    lobes["write_section"](lobes["lobes"](), folder / "docs/examples/lobes.msh")
+    for kind in ("small", "wrong"):
+        (folder / kind).mkdir()
+    for name, (source, old, new) in WRONG.items():
+        text = (folder / source).read_text(encoding="utf-8")
+        if old not in text:
+            raise ValueError(f"{source} has no {old!r}, which the wrong input {name} replaces")
+        _put(folder / "wrong" / f"{name}.toml", text.replace(old, new))
+    _put(folder / "wrong" / "empty.toml", "")
+    (folder / "wrong" / "not_text.toml").write_bytes(b"name = \"\xff\xfe\"\n")
+    for name, changes in SMALL.items():
+        source = next(p for p in folder.glob(f"*/**/{name}.toml") if p.parent.name in ("examples", "studies"))
+        _put(folder / "small" / f"{name}.toml", changed(source.read_text(encoding="utf-8"), changes))
+
+
+def _put(path: Path, text: str) -> None:
+    """Write a scene; what it names beside itself is looked for among the examples."""
+    path.write_text(text.replace('"../', '"../small/').replace('"lobes', '"../docs/examples/lobes'), "utf-8")
+
+
+def changed(text: str, changes: dict[str, str]) -> str:
+    """The text of a TOML file with other values.
+
+    Parameters
+    ----------
+    text : of the file
+    changes : values as TOML by the path of their key, such as {"speeds.count": "21"}
+
+    Raises
+    ------
+    ValueError : the file has no such key
+    """
+    table, lines, done = "", [], set()
+    for line in text.splitlines():
+        header = re.match(r"\[+([^\]]+)\]", line)
+        table = header[1] + "." if header else table
+        key = re.match(r"([\w.]+) *=", line)
+        path = table + key[1] if key else ""
+        if path in changes:
+            line = f"{path.removeprefix(table)} = {changes[path]}"
+            done.add(path)
+        lines.append(line)
+    if lost := changes.keys() - done:
+        raise ValueError(f"no {', '.join(sorted(lost))} in the file")
+    return "\n".join(lines) + "\n"
+
+
+SMALL |= {
+    "horizontal_rig": {"speeds.count": "15"},
+    "centrifuge": {"speeds.count": "15"},
+    "runup": {"speeds.count": "9", "runup.duration": '"2 s"', "runup.cells": "32"},
+    "fill_grid": {},
+    "uncertain_rig": {"samples": "24"},
+    "centrifuge_shares": {"samples": "4"},
+}

@@ -1,0 +1,43 @@
+"""How near a number must come to the kept one: one table, each entry with its reason."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """Bound of a difference: the larger of the two.
+
+    Parameters
+    ----------
+    relative : to the largest magnitude in the kept array
+    absolute : in the unit of the value
+    """
+
+    relative: float = 0.0
+    absolute: float = 0.0
+
+
+DEFAULT = Tolerance(relative=1e-12)
+EXACT = Tolerance()
+
+# (commands, paths, tolerance, reason): the first that fits holds.
+TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (
+    ("*", "*#", EXACT, "lengths of lists"),
+)
+
+
+def tolerance_of(case: str, path: str) -> Tolerance:
+    """Tolerance of a value.
+
+    Parameters
+    ----------
+    case : name of the command
+    path : of the value, without indices: `stdout.layers[].numbers.fill`
+    """
+    for commands, paths, tolerance, _ in TABLE:
+        if fnmatchcase(case, commands) and fnmatchcase(path, paths.replace("[]", "[[]]")):
+            return tolerance
+    return DEFAULT

@@ -1,0 +1,1 @@
+"""Independent answers and cases that several tests share."""

@@ -1,0 +1,218 @@
+"""Finite volumes: equilibria stay, nothing is lost, bores obey the jump conditions, second order."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from fluid import long_wave as lw
+from solvers.layer.face_flux import DRY
+from solvers.layer.finite_volume import GHOSTS, WORK, rates, solve_ring
+from solvers.layer.step import advance, scratch
+
+SPIN = 1.0
+
+
+def angles(n: int) -> np.ndarray:
+    edge = 2 * np.pi * np.arange(n) / n
+    middle = edge + np.pi / n
+    return np.stack([np.cos(middle), np.sin(middle), np.cos(edge), np.sin(edge)])
+
+
+def circle(n: int, amplitude: float, radius: float) -> tuple[np.ndarray, np.ndarray]:
+    """Equilibrium under a synchronous whirl: a circle about the rotation axis, as values at the middles."""
+    cosine, sine = angles(n)[:2]
+    surface = np.sqrt(np.maximum(radius**2 - (amplitude * sine) ** 2, 0.0)) - amplitude * cosine
+    area = 0.5 * np.maximum(1.0 - np.clip(surface, 0.0, 1.0) ** 2, 0.0)
+    return area, -SPIN * area**2
+
+
+def run(
+    area: np.ndarray, q: np.ndarray, length: float, drive=(0.0, 0.0, 0.0, 1.0, 0.0), rub=(0.0, 0.0, 0.0, 0.0)
+):  # type: ignore[no-untyped-def]
+    n, sums = area.size, np.empty(9)
+    return advance(area, q, 0.0, length, (*drive, SPIN), rub, angles(n), 0.8, 10**9, scratch(n), sums)
+
+
+def test_equilibria() -> None:
+    """Circles are kept to rounding at any amplitude, dry patches included."""
+    for amplitude, radius in ((0.05, 0.9), (0.2, 0.95), (0.5, 1.2), (0.9, 1.7)):
+        for n in (64, 200):
+            area, q = circle(n, amplitude, radius)
+            start = area.copy()
+            assert amplitude < 0.1 or (area == 0.0).any()
+            steps = run(area, q, 50.0, (amplitude, 0.0, 0.0, 1.0, 0.0))
+            assert steps > 300
+            # Rounding of some 1e-16 a step, of which the waves keep the square root.
+            np.testing.assert_allclose(area, start, atol=1e-13)
+
+
+def test_a_million_steps_lose_no_mass() -> None:
+    n = 16
+    area, q = np.full(n, 0.095), np.full(n, -(0.095**2))
+    before, taken = area.sum(), 0
+    while taken < 1_000_000:
+        # Strong asynchronous whirl with a dry patch and bores.
+        steps = run(area, q, 20000.0, (0.1, -0.24, 100.0, 0.76, 0.0), (1.0, 0.02, 0.0, 0.0))
+        assert steps > 0
+        taken += steps
+        assert area.min() >= 0.0
+    assert abs(area.sum() / before - 1.0) < 1e-12
+
+
+def test_angular_momentum() -> None:
+    """Without a body force nothing turns the liquid, bores or not."""
+    n = 256
+    theta = 2 * np.pi * (np.arange(n) + 0.5) / n
+    area = np.where(np.abs(theta - np.pi) < 1.0, 0.14, 0.06)
+    q = 0.02 * area - SPIN * area**2
+    # Absolute angular momentum: q + Omega A, up to the constant Omega^2 of the drum's own frame.
+    before = (q + SPIN * area).sum()
+    energy = []
+    for _ in range(5):
+        assert run(area, q, 4.0) > 0
+        velocity = (q + SPIN * area**2) / area
+        # Kinetic energy in the drum and potential of the centrifugal force.
+        energy.append((0.5 * velocity**2 * lw.layer_log(area) + 0.5 * SPIN**2 * area**2).sum())
+    assert abs((q + SPIN * area).sum() / before - 1.0) < 1e-12
+    assert all(late < early for early, late in pairwise(energy))
+
+
+def jump_residual(a: tuple[float, float], u: tuple[float, float]) -> float:
+    """Rankine-Hugoniot: both equations give the same speed of the jump."""
+    areas, us = np.array(a), np.array(u)
+    log, surface = lw.layer_log(areas), lw.free_surface_radius(areas)
+    mass = lw.mass_flux(us, log)
+    flow = lw.momentum_flux(us, log, areas, surface) + lw.pressure_force(areas, surface, SPIN, 0.0)
+    q = us * areas - SPIN * areas**2
+    return float((mass[1] - mass[0]) / (areas[1] - areas[0]) - (flow[1] - flow[0]) / (q[1] - q[0]))
+
+
+def test_bore() -> None:
+    """A dam break: the bore obeys the jump conditions, runs at their speed, and does not overshoot."""
+    n = 2048
+    theta = 2 * np.pi * (np.arange(n) + 0.5) / n
+    area = np.where(theta < np.pi, 0.14, 0.06)
+    q = -SPIN * area**2
+    run(area, q, 1.5)
+    velocity = (q + SPIN * area**2) / area
+    # The slopes of the two waves, each within its bounds, may add up where they part: measured are 1e-6 above
+    # and 2e-5 below on 256 to 4096 cells. Limiting head and velocity alone has none here, but ripples of a
+    # hundredth of the jump behind the bore of the next test.
+    assert area.max() <= 0.14 * (1 + 2e-6) and area.min() >= 0.06 * (1 - 3e-5)
+    # The prograde bore runs into the shallow liquid at rest beyond pi.
+    inside = np.flatnonzero((theta > np.pi) & (area > 0.0601) & (velocity > 0.0))
+    front = theta[inside[-1]]
+    plateau = inside[-1] - 40
+    a, u = (float(area[plateau]), 0.06), (float(velocity[plateau]), 0.0)
+    log = lw.layer_log(np.array(a))
+    speed = float(lw.mass_flux(u[0], log[0]) / (a[0] - a[1]))
+    assert abs(jump_residual(a, u)) < 2e-3 * speed
+    # The front is a few cells wide.
+    assert front == pytest.approx(np.pi + 1.5 * speed, abs=5 * 2 * np.pi / n)
+
+
+def test_a_bore_under_a_whirl_leaves_no_ripples() -> None:
+    """At the retrograde free wave a bore goes round behind which the surface falls without a bump."""
+    for n in (64, 200):
+        area = np.full(n, 0.095)
+        q = -SPIN * area**2
+        drive = (0.005, -0.2356, 24.0, 0.7644, 0.0)
+        assert run(area, q, 600.0, drive, (1.0, 0.025, 0.0, 0.0)) > 0
+        assert np.abs(np.diff(area)).max() > 0.2 * np.ptp(area)
+        variation = np.abs(np.diff(np.append(area, area[0]))).sum()
+        assert variation == pytest.approx(2.0 * np.ptp(area), rel=1e-9)
+
+
+def test_films_and_dry_beds_stay_positive() -> None:
+    for n in (16, 100, 513):
+        theta = 2 * np.pi * (np.arange(n) + 0.5) / n
+        area = np.where(np.abs(theta - 2.0) < 0.5, 0.2, 0.0)
+        q = -SPIN * area**2
+        before = area.sum()
+        for length in (0.1, 1.0, 20.0):
+            steps = run(area, q, length)
+            assert steps > 0 and np.isfinite(area).all() and np.isfinite(q).all() and area.min() >= 0.0
+        assert abs(area.sum() / before - 1.0) < 1e-13
+
+
+def test_energy() -> None:
+    """A free wave loses energy to the grid alone, ever less of it, and gains none."""
+    lost = []
+    for n in (32, 64, 128):
+        theta = 2 * np.pi * (np.arange(n) + 0.5) / n
+        mean, log = 0.095, float(lw.layer_log(0.095))
+        speed = log - math.sqrt(log * log + log)
+        area = mean * (1.0 + 1e-3 * np.cos(theta))
+        q = 1e-3 * mean * np.cos(theta) * speed / log * area - SPIN * area**2
+        ends = []
+        for length in (0.0, 6.0 * math.pi / abs(speed)):
+            if length:
+                run(area, q, length)
+            velocity = (q + SPIN * area**2) / area
+            ends.append((0.5 * velocity**2 * lw.layer_log(area) + 0.5 * (area - mean) ** 2).mean())
+        lost.append(1.0 - ends[1] / ends[0])
+    assert all(one > 0.0 for one in lost)
+    # Third order, the limiter's at extrema; measured 2.9 to 3.2 from 64 to 1024 cells.
+    assert lost[0] > 6.0 * lost[1] > 36.0 * lost[2], lost
+
+
+def test_order() -> None:
+    """Second order on a smooth travelling disturbance, by successive grids."""
+    answers = []
+    for n in (64, 128, 256, 512):
+        theta = 2 * np.pi * (np.arange(n) + 0.5) / n
+        # Cell averages of the smooth start: the middle's value is one to second order, sinc makes it exact.
+        blunt = math.sin(np.pi / n) / (np.pi / n)
+        area = 0.1 + 0.002 * np.cos(theta) * blunt
+        q = -SPIN * area**2
+        run(area, q, 3.0)
+        answers.append(area.reshape(64, -1).mean(axis=1))
+    errors = [np.abs(a - b).mean() for a, b in pairwise(answers)]
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    # Limiters clip at the two extrema: a little below two in the mean.
+    assert np.all(orders > 1.7), orders
+
+
+def test_ring() -> None:
+    """The system of the dispersive term, against dense elimination."""
+    rng = np.random.default_rng(3)
+    for n, side in ((8, 12.0), (33, 12.0), (40, 0.0), (500, 1e4)):
+        diagonal = 15.0 + 2.0 * side
+        right = rng.normal(size=n)
+        around = np.roll(np.eye(n), 1, axis=0) + np.roll(np.eye(n), -1, axis=0)
+        found = right.copy()
+        solve_ring(diagonal, side, found)
+        # Rounding, times the condition number diagonal/15 at worst.
+        np.testing.assert_allclose(
+            diagonal * found - side * around @ found, right, atol=1e-15 * diagonal * 20
+        )
+
+
+def test_friction() -> None:
+    """A layer that turns as a whole slows down as each law says."""
+    n, area0, u0 = 32, 0.08, 0.05
+    depth = 1.0 - math.sqrt(1.0 - 2.0 * area0)
+    for law, coefficient, lid, kept in (
+        (1.0, 0.3, 0.0, math.exp(-0.3 * depth / area0 * 2.0)),
+        (2.0, 0.004, 5.0, math.exp(-0.004 * (1 + 5.0 * depth) / area0 * 2.0)),
+        (3.0, 0.5, 0.0, 1.0 / (1.0 + 0.5 * u0 / area0 * 2.0)),
+    ):
+        area = np.full(n, area0)
+        q = u0 * area - SPIN * area**2
+        run(area, q, 2.0, rub=(law, coefficient, lid, 0.0))
+        np.testing.assert_allclose((q + SPIN * area**2) / area, u0 * kept, rtol=1e-10)
+
+
+def test_euler_force_spins_the_liquid_back() -> None:
+    n = 16
+    area = np.full(n, 0.08)
+    q, work = -SPIN * area**2, np.zeros((WORK, n + 2 * GHOSTS))
+    d_area, d_q, still = np.zeros(n), np.zeros(n), np.zeros(n)
+    rates(area, q, SPIN, 0.7, still, still, 2 * np.pi / n, 1e-3, 0.0, work, d_area, d_q)
+    np.testing.assert_allclose(d_q, -0.7 * area, rtol=1e-13)
+    np.testing.assert_allclose(d_area, 0.0, atol=1e-15)
+    assert DRY < 1e-12

@@ -1,0 +1,177 @@
+"""Seeded faults of the linear layers' time step, and their oracles, run as plain Python."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fluid.fill import Fill
+from fluid.friction import Friction
+from fluid.liquid import Liquid
+from meshes.chamber import Chamber
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.runup.linear import LinearCoupled, couple_linear
+from solvers.runup.state import DRIVE, FRICTION, GRAVITY, MOTOR, SUPPORT, UNBALANCE
+from solvers.whirl.growth import asynchronous_growth
+from tests.mutants import kills
+
+FILL = Fill(Chamber(0.25, 0.04), Liquid("water", 1000.0, 1e-6), 2e-3)
+ROTOR = Jeffcott(3.0, 3.0 * 15.0**2, 6.0, 4e-3)
+
+
+def machine(cells: int, friction: float = 2.0, gravity: float = 0.0) -> LinearCoupled:
+    found = couple_linear(ROTOR.system(), [FILL], 30.0, Friction("linear", friction), gravity, cells, False)
+    found.machine.place[:4] = 2e-3, -1e-3, 5e-3, 2e-3
+    found.machine.rate[:4] = 0.05, 0.02, -0.1, 0.04
+    return found
+
+
+@kills(
+    "solvers.runup.linear_kernel:_assemble",
+    "2.0 * kappa * (after - before) / dt",
+    "0.0 * (after - before) / dt",
+)
+@kills("solvers.runup.linear_kernel:_assemble", "m.gravity[part] - forces", "-m.gravity[part] - forces")
+@kills(
+    "solvers.runup.linear_kernel:_rotor_rows",
+    "spins[0] * (m.unbalance[i] * first).imag",
+    "spins[0] * (m.unbalance[i] * last).imag",
+)
+@kills("solvers.runup.linear_kernel:_carry", "m.carried[j] * (1.0 - share)", "m.carried[j]")
+@kills("solvers.runup.linear_kernel:_tally", "(x * q - y * p)", "(x * p + y * q)")
+@kills(
+    "solvers.runup.linear:LinearCoupled.energy",
+    "0.5 * layer[INERTIA] * m.carried",
+    "layer[INERTIA] * m.carried",
+)
+def test_energy() -> None:
+    """The balance closes with the square of the step, spin and friction changing things."""
+    left = []
+    for cells in (32, 64):
+        found = machine(cells, gravity=3.0)
+        before = found.energy()
+        assert found.advance(0.3, 20.0, 0.8, 10**5) == 0
+        s = found.sums
+        gained = s[UNBALANCE] + s[DRIVE] + s[GRAVITY] - s[SUPPORT] - s[FRICTION]
+        left.append(abs(gained - (found.energy() - before)) / abs(s[UNBALANCE]))
+    assert left[1] < 5e-3
+    assert left[1] < 0.4 * left[0]
+
+
+@kills(
+    "solvers.runup.linear_kernel:_assemble",
+    "mass * (b[0, i] * b[0, k] + b[1, i] * b[1, k])",
+    "mass * b[0, i] * b[0, k]",
+)
+@kills("solvers.runup.linear_kernel:_assemble", "4.0 * kappa * whole * sign", "2.0 * kappa * whole * sign")
+@kills(
+    "solvers.runup.linear_kernel:_assemble",
+    "whole * friction + 2.0 * kappa",
+    "-whole * friction + 2.0 * kappa",
+)
+@kills("solvers.runup.linear_kernel:_assemble", "-2.0 * kappa * whole * whole", "2.0 * kappa * whole * whole")
+@kills(
+    "solvers.runup.linear_kernel:_assemble", "1.0 + kappa + 0.5 * dt * friction", "1.0 + 0.5 * dt * friction"
+)
+def test_growth() -> None:
+    """A machine let go grows, or dies, as its characteristic equation says."""
+    for rate in (0.0, 5.0):
+        free = Jeffcott(3.0, 3.0 * 15.0**2, 0.0, 0.0).system()
+        found = couple_linear(free, [FILL], 22.0, Friction("linear", rate), 0.0, 64, False)
+        found.machine.place[0] = 1e-6
+        seen = []
+        times = np.linspace(0.0, 3.0, 61)[1:]
+        for stop in times.tolist():
+            assert found.advance(stop, 0.0, 0.8, 10**5) == 0
+            seen.append(complex(*found.machine.place[:2]))
+        growth = np.polyfit(times[40:], np.log(np.abs(seen))[40:], 1)[0]
+        wanted, _ = asynchronous_growth(free, [FILL], [22.0], Friction("linear", rate))
+        assert growth == pytest.approx(wanted[0], rel=0.05, abs=0.02)
+
+
+@kills(
+    "solvers.runup.linear_kernel:_tally",
+    "m.sums[UNBALANCE] -= m.swing[i] * mean",
+    "m.sums[UNBALANCE] += m.swing[i] * mean",
+)
+@kills("solvers.runup.linear_kernel:_tally", "u + whole * y, v - whole * x", "u - whole * y, v + whole * x")
+@kills(
+    "solvers.runup.linear_kernel:_tally",
+    "m.layers[j, INERTIA] * spin * gained",
+    "m.layers[j, INERTIA] * whole * gained",
+)
+@kills("solvers.runup.linear_kernel:_tally", "m.gravity[0] * u + m.gravity[1] * v", "m.gravity[0] * v")
+@kills("solvers.runup.linear_kernel:_tally", "(spin - whole) ** 2", "(spin - whole)")
+def test_tallies() -> None:
+    """Works and heats are the integrals of their powers over what is sampled."""
+    found = machine(64, gravity=3.0)
+    rows, times = [], np.linspace(0.0, 0.2, 81)
+    for stop in times.tolist():
+        if stop > 0.0:
+            assert found.advance(stop, 20.0, 0.8, 10**5) == 0
+        m = found.machine
+        v, d, turn = m.rate[:2], m.rate[2:4], np.exp(1j * m.turning[1])
+        force = ((found.spin**2 - 20j) * found.system.unbalance * turn).real
+        offset, whole = complex(*m.place[2:4]), m.carried[0]
+        slip = complex(*d) - 1j * whole * offset
+        kappa, inertia = m.layers[0, 1], m.layers[0, 4]
+        k = m.layers[0, 2]
+        heat = 2.0 * k * (1.0 + kappa) * abs(slip) ** 2 + inertia * k * (found.spin - whole) ** 2
+        gained = k * (found.spin - whole)
+        wave = -2.0 * k * (1.0 + kappa) * (np.conj(1j * whole * offset) * slip).real
+        swing = (np.conj(offset) * complex(*d)).imag - whole * abs(offset) ** 2
+        drive = inertia * found.spin * gained + wave + 2.0 * kappa * 2.0 * gained * swing
+        weight = 2.0 * float(m.gravity @ d)
+        rows.append((force @ v, v @ found.system.damping @ v, weight, heat, drive))
+    wanted = np.trapezoid(np.array(rows).T, times)
+    for name, value in zip((UNBALANCE, SUPPORT, GRAVITY, FRICTION, DRIVE), wanted, strict=True):
+        assert found.sums[name] == pytest.approx(value, rel=1e-2, abs=1e-5)
+
+
+@kills("solvers.runup.linear_kernel:advance_linear", "load -= m.change[i]", "load += m.change[i]")
+@kills(
+    "solvers.runup.linear_kernel:advance_linear",
+    "load += m.layers[j, INERTIA] * gained",
+    "load -= m.layers[j, INERTIA] * gained",
+)
+@kills("solvers.runup.linear_kernel:_tally", "m.sums[MOTOR] += dt * spin", "m.sums[MOTOR] += dt")
+def test_motor() -> None:
+    """Torque of the motor, less what spins the liquid and what the unbalance takes."""
+    found = couple_linear(
+        replace(ROTOR, unbalance=0.1).system(), [FILL], 30.0, Friction("linear", 2.0), 0.0, 64, False
+    )
+    found.machine.rate[:4] = 0.05, 0.02, -0.1, 0.04
+    found.drive(np.array([[0.0, 80.0], [6.0, 0.0]]), 0.05)
+    m = found.machine
+
+    def momentum() -> float:
+        turn = np.exp(1j * m.turning[1])
+        cross = m.rate[:2] @ (1j * found.system.unbalance * turn).real
+        return float(0.05 * found.spin + m.layers[0, 4] * m.carried[0] + cross)
+
+    before, rows, times = momentum(), [], np.linspace(0.0, 0.1, 41)
+    for stop in times.tolist():
+        if stop > 0.0:
+            assert found.advance(stop, 0.0, 0.8, 10**5) == 0
+            m = found.machine
+        turn = np.exp(1j * m.turning[1])
+        swung = -found.spin * m.rate[:2] @ (found.system.unbalance * turn).real
+        torque = float(np.interp(found.spin, [0.0, 80.0], [6.0, 0.0]))
+        rows.append((torque + swung, torque * found.spin))
+    push, work = np.trapezoid(np.array(rows).T, times)
+    assert momentum() - before == pytest.approx(push, rel=5e-3)
+    assert found.sums[MOTOR] == pytest.approx(work, rel=1e-3)
+
+
+@kills("solvers.runup.linear:_layer", "chamber.radius**4 * area * (1.0 - area)", "chamber.radius**4 * area")
+def test_inertia() -> None:
+    """Moment of inertia of the layer, and the squared ratio of the radii."""
+    layer = couple_linear(ROTOR.system(), [FILL], 30.0, Friction(), 0.0, 8, False).machine.layers[0]
+    inner = FILL.surface_radius
+    assert layer[4] == pytest.approx(0.5 * FILL.mass * (0.25**2 + inner**2), rel=1e-12)
+    assert layer[1] == pytest.approx((0.25 / inner) ** 2, rel=1e-12)
+
+
+STEP, SET = "solvers.runup.linear_kernel", "solvers.runup.linear"

@@ -1,0 +1,472 @@
+"""Seeded faults of the coupled time step, and their oracles, run as plain Python by `test_uncompiled.py`."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from fluid.fill import Fill
+from fluid.friction import Friction
+from fluid.liquid import Liquid
+from meshes.chamber import Chamber
+from solvers.layer import finite_volume
+from solvers.layer.loads import ring
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.system import RotorSystem
+from solvers.runup import kernel as coupled_layer
+from solvers.runup import kernel as coupled_parts
+from solvers.runup.long_wave import Coupled, couple
+from solvers.runup.state import (
+    BORES,
+    DRIVE,
+    ENERGY,
+    FLOW,
+    FRICTION,
+    GAINS,
+    GRAVITY,
+    HEAT,
+    INERTIA,
+    LOSS,
+    MEASURES,
+    MOMENT,
+    MOTOR,
+    PROFILE,
+    SPINNING,
+    SUPPORT,
+    TORQUE,
+    UNBALANCE,
+)
+from tests.mutants import kills
+
+SPIN, TURNED = 2.0, 0.4
+FILL = Fill(Chamber(0.25, 0.04), Liquid("water", 1000.0, 1e-6), 2e-3)
+
+
+def state(n: int) -> tuple[np.ndarray, np.ndarray]:
+    theta = 2.0 * np.pi * (np.arange(n) + 0.5) / n
+    area = 0.1 + 0.02 * np.cos(theta) + 0.01 * np.sin(2.0 * theta)
+    velocity = 0.3 + 0.2 * np.sin(theta) + 0.1 * np.cos(theta)
+    return area, velocity * area - SPIN * area**2
+
+
+def measured(area: np.ndarray, q: np.ndarray) -> np.ndarray:
+    out = np.zeros(MEASURES)
+    spare = coupled_layer.layer_scratch(1, area.size)[0]
+    coupled_layer.measure(area, q, SPIN, ring(area.size), spare, out)
+    return out
+
+
+def rates(area: np.ndarray, q: np.ndarray, push: complex = 0j) -> tuple[np.ndarray, np.ndarray]:
+    n = area.size
+    angles, step = ring(n), 2.0 * np.pi / n
+    d_area, d_q = np.empty(n), np.empty(n)
+    work = np.zeros((finite_volume.WORK, n + 2 * finite_volume.GHOSTS))
+    cell, face = (push.real * angles[k] + push.imag * angles[k + 1] for k in (0, 2))
+    finite_volume.rates(area, q, SPIN, 0.0, cell, face, step, 0.0, 0.0, work, d_area, d_q)
+    return d_area, d_q
+
+
+@kills(
+    "solvers.runup.kernel:measure",
+    "u = faded_velocity(area[i], q[i], spin)\n        log[i]",
+    "u = 0.0\n        log[i]",
+)
+@kills(
+    "solvers.runup.kernel:measure",
+    "out[MOMENT + 1] += lever * angles[1, i]",
+    "out[MOMENT + 1] += lever * angles[0, i]",
+)
+@kills("solvers.runup.kernel:measure", "whole = area[i] * (1.0 - area[i])", "whole = area[i]")
+@kills("solvers.runup.kernel:measure", "0.5 * spin * spin * whole", "spin * spin * whole")
+@kills(
+    "solvers.runup.kernel:measure",
+    "spin * u * area[i] + 0.5 * u * u * log[i]) * step",
+    "spin * u * area[i] + 0.5 * u * u * area[i]) * step",
+)
+@kills("solvers.runup.kernel:measure", "out[FLOW] += flow[i] * x", "out[FLOW] -= flow[i] * x")
+@kills(
+    "solvers.runup.kernel:measure", "out[INERTIA + 1] += log[i] * x * y", "out[INERTIA + 1] -= log[i] * x * y"
+)
+def test_measures() -> None:
+    """Moment, angular momentum and energy by quadrature over the depth; rates of change by the volumes'."""
+    n = 96
+    area, q = state(n)
+    out = measured(area, q)
+    theta = 2.0 * np.pi * (np.arange(n) + 0.5) / n
+    surface = np.sqrt(1.0 - 2.0 * area)
+    u = q / area + SPIN * area
+    node, weight = np.polynomial.legendre.leggauss(12)
+    radius = 0.5 * (1.0 + surface + np.outer(node, 1.0 - surface))
+    each = np.outer(weight, 0.5 * (1.0 - surface)) * (2.0 * np.pi / n)
+    # Cells hold means of a smooth state: rectangles are exact to rounding.
+    moment = np.sum(each * radius**2 * np.exp(1j * theta))
+    turning = SPIN * radius + u / radius
+    assert complex(*out[MOMENT : MOMENT + 2]) == pytest.approx(moment, rel=1e-10)
+    assert out[SPINNING] == pytest.approx(np.sum(each * radius**2 * turning), rel=1e-10)
+    assert out[ENERGY] == pytest.approx(np.sum(each * radius * 0.5 * turning**2), rel=1e-10)
+    d_area, d_q = rates(area, q)
+    moved = np.sum(surface * np.exp(1j * theta) * d_area) * 2.0 * np.pi / n
+    # Second order: some (2 pi/96)^2 of the size.
+    assert complex(*out[FLOW : FLOW + 2]) == pytest.approx(moved, abs=1e-2 * abs(moved))
+    # Inertia: how a push changes the flow's rate.
+    tiny = 1e-4
+    for push in (1.0, 1.0j):
+        pushed = rates(area, q, tiny * push)[1]
+        later = measured(area, q + (pushed - d_q))
+        flow = complex(*(later - out)[FLOW : FLOW + 2]) / tiny
+        xx, xy, yy = out[INERTIA : INERTIA + 3]
+        wanted = xx * push.real + xy * push.imag + 1j * (xy * push.real + yy * push.imag)
+        assert abs(flow - wanted) < 2e-2 * abs(wanted)
+
+
+def layer_run(law: float, push: complex, n: int = 32) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    area, q = state(n)
+    gains, spare = np.zeros(GAINS), coupled_layer.layer_scratch(1, n)[0]
+    there = push * np.exp(-1j * SPIN * 0.02)
+    status, _ = coupled_layer.layer_step(
+        *(area, q, np.array([SPIN, SPIN]), np.array([push.real, push.imag, there.real, there.imag])),
+        *(np.array([law, 0.5, 0.0, 0.0]), 0.02, ring(n), spare, gains),
+    )
+    assert status == coupled_layer.DONE
+    return area, q, gains
+
+
+@kills(
+    "solvers.runup.kernel:_energy",
+    "turning = spin * area[i] * (0.5 * spin",
+    "turning = spin * area[i] * (spin",
+)
+@kills("solvers.runup.kernel:_power", "rate_y + spin * moment_x", "rate_y - spin * moment_x")
+@kills("solvers.runup.kernel:_work", "gains[TORQUE] += a * (v - u)", "gains[TORQUE] += (v - u)")
+@kills(
+    "solvers.runup.kernel:_work",
+    "gains[HEAT] += 0.5 * log_of_surface(a, r)",
+    "gains[HEAT] += log_of_surface(a, r)",
+)
+@kills(
+    "solvers.runup.kernel:layer_step",
+    "lid, 0.5 * dt)\n    _work(area, q, before, spins[0]",
+    "lid, dt)\n    _work(area, q, before, spins[0]",
+)
+@kills(
+    "solvers.runup.kernel:layer_step",
+    "gains[LOSS] -= _energy(area, q, spins[1]) + gains[MISSED]",
+    "gains[LOSS] += _energy(area, q, spins[1])",
+)
+def test_layer_gains() -> None:
+    """Wall torque and heat are what the angular momentum and the energy lose; the rest is small."""
+    push = 0.3 + 0.2j
+    for law in (0.0, 1.0):
+        area, q, gains = layer_run(law, push)
+        before, after = measured(*state(32)), measured(area, q)
+        change = after - before
+        # The push's torque about the axis, by the mean moment, and its work.
+        middle = push * np.exp(-1j * SPIN * 0.01)
+        moment = 0.5 * complex(*(before + after)[MOMENT : MOMENT + 2])
+        flow = 0.5 * complex(*(before + after)[FLOW : FLOW + 2])
+        torque = (moment.conjugate() * middle).imag * 0.02
+        work = (middle.conjugate() * (flow + 1j * SPIN * moment)).real * 0.02
+        # Means of the ends for means over the step, and the volumes' own error at 32 cells.
+        assert change[SPINNING] - torque == pytest.approx(gains[TORQUE], abs=1e-5)
+        left = work + SPIN * gains[TORQUE] - gains[HEAT] - gains[LOSS] - change[ENERGY]
+        assert abs(left) < 1e-5
+        assert abs(gains[LOSS]) < 1e-4
+        assert (gains[HEAT] > 1e-4) == (law > 0.0)
+        if law > 0.0:
+            velocity = q / area + SPIN * area
+            shear = 0.5 * (1.0 - np.sqrt(1.0 - 2.0 * area)) * velocity
+            assert -gains[TORQUE] == pytest.approx(np.sum(shear) * 2.0 * np.pi / 32 * 0.02, rel=0.02)
+            log = -0.5 * np.log(1.0 - 2.0 * area)
+            heat = np.sum(shear * velocity * log / area) * 2.0 * np.pi / 32 * 0.02
+            assert gains[HEAT] == pytest.approx(heat, rel=0.02)
+
+
+@kills("solvers.layer.step:calm", "most = FASTEST * abs(spin) * a", "most = FASTEST * abs(spin)")
+def test_calm() -> None:
+    """Films that run away are held back, layers are not touched."""
+    area, q = np.array([1e-6, 1e-6, 0.1]), np.array([1.0, 1e-7, 5.0])
+    from solvers.layer.step import FASTEST, calm
+
+    calm(area, q, SPIN)
+    assert q[0] / 1e-6 + SPIN * 1e-6 == pytest.approx(FASTEST * SPIN)
+    assert q[1] == pytest.approx(1e-7, rel=1e-9)
+    assert q[2] == 5.0
+
+
+def machine(cells: int, gravity: float = 0.0, rate: float = 0.5) -> Coupled:
+    rotor = Jeffcott(3.0, 3.0 * 15.0**2, 6.0, 4e-3)
+    found = couple(rotor.system(), [FILL], 30.0, Friction("linear", rate), gravity, cells, False)
+    found.state.rotor[:4] = 2e-3, -1e-3, 0.05, 0.02
+    return found
+
+
+def momentum(found: Coupled) -> np.ndarray:
+    velocity = found.state.rotor[2:4]
+    total = found.system.mass @ velocity
+    for one, plane, _, relative in found.measured():
+        total = total + plane.T @ (one[2] * plane @ velocity + relative)
+    turn = np.exp(1j * found.state.rotor[5])
+    return total + (1j * found.spin * found.system.unbalance * turn).real
+
+
+@kills(
+    "solvers.runup.kernel:_move_rotor",
+    "room.spins[0] * first.imag - room.spins[1] * last.imag",
+    "room.spins[1] * last.imag - room.spins[0] * first.imag",
+)
+@kills(
+    "solvers.runup.kernel:_move_rotor",
+    "left[i, k] += (mass - xx) * b[0, i] * b[0, k]",
+    "left[i, k] += (mass + xx) * b[0, i] * b[0, k]",
+)
+@kills("solvers.runup.kernel:_move_rotor", "change[i] -= b[0, i] * given_x", "change[i] += b[0, i] * given_x")
+@kills(
+    "solvers.runup.kernel:_accept",
+    "state.rotor[2 * n + 1] += 0.5 * (room.spins[0] + room.spins[1]) * dt",
+    "state.rotor[2 * n + 1] += room.spins[1] * dt",
+)
+def test_momentum() -> None:
+    """Momentum of a machine without support stays to rounding: rotor, liquid and unbalance."""
+    rotor = Jeffcott(3.0, 1e-15, 0.0, 4e-3)
+    free = couple(rotor.system(), [FILL], 30.0, Friction("linear", 0.5), 0.0, 12, False)
+    free.state.rotor[2:4] = 0.05, 0.02
+    before = momentum(free)
+    assert free.advance(0.05, 20.0, 0.4, 1000) == 0
+    np.testing.assert_allclose(momentum(free), before, atol=1e-13)
+
+
+@kills(
+    "solvers.runup.kernel:relative_momentum", "- spin * measures[MOMENT + 1]", "+ spin * measures[MOMENT + 1]"
+)
+@kills(
+    "solvers.runup.kernel:relative_momentum",
+    "scale * (x * sine + y * cosine)",
+    "scale * (y * cosine - x * sine)",
+)
+@kills(
+    "solvers.runup.kernel:_move_layers",
+    "machine.gravity[0] - room.guess[j, 0]",
+    "machine.gravity[0] + room.guess[j, 0]",
+)
+@kills(
+    "solvers.runup.kernel:_move_layers",
+    "x * cosine + y * sine, y * cosine - x * sine",
+    "x * cosine - y * sine, y * cosine + x * sine",
+)
+@kills("solvers.runup.kernel:_tally", "sums[DRIVE] += spin * scale", "sums[DRIVE] -= spin * scale")
+@kills("solvers.runup.kernel:_tally", "sums[FRICTION] += scale", "sums[FRICTION] -= scale")
+@kills("solvers.runup.long_wave:Coupled.energy", "0.5 * layer[MASS] * rate @ rate + momentum", "momentum")
+def test_energy() -> None:
+    """The remainder of the energy balance goes down with the square of the step and the cell."""
+    left = []
+    for cells in (12, 24):
+        found = machine(cells, 0.5)
+        before = found.energy()
+        assert found.advance(0.15, 20.0, 0.3, 1000) == 0
+        s = found.sums
+        gained = s[UNBALANCE] + s[DRIVE] + s[GRAVITY]
+        lost = s[SUPPORT] + s[FRICTION] + s[BORES] + s[PROFILE]
+        left.append(abs(gained - lost - (found.energy() - before)) / abs(s[UNBALANCE]))
+    assert left[1] < 2e-2
+    assert left[1] < 0.35 * left[0]
+
+
+@kills("solvers.runup.kernel:_power", "gains[MISSED] -= dt", "gains[MISSED] += dt")
+@kills(
+    "solvers.runup.kernel:_tally",
+    "sums[UNBALANCE] -= room.swing[i] * mean",
+    "sums[UNBALANCE] += room.swing[i] * mean",
+)
+@kills("solvers.runup.kernel:_tally", "sums[GRAVITY] += 0.5 * dt", "sums[GRAVITY] += dt")
+@kills(
+    "solvers.runup.kernel:_tally", "dt * mean * machine.matrices[1, i, k]", "mean * machine.matrices[1, i, k]"
+)
+def test_tallies() -> None:
+    """Works and heats are the integrals of their powers over what is sampled."""
+    found = machine(12, 0.5)
+    times = np.linspace(0.0, 0.1, 41)
+    rows = []
+    for stop in times:
+        if stop > 0.0:
+            assert found.advance(stop, 20.0, 0.4, 1000) == 0
+        v, angle = found.state.rotor[2:4].copy(), found.state.rotor[5]
+        force = ((found.spin**2 - 20j) * found.system.unbalance * np.exp(1j * angle)).real
+        relative = found.measured()[0][3]
+        rows.append((force @ v, v @ found.system.damping @ v, found.machine.gravity @ relative))
+    wanted = np.trapezoid(np.array(rows).T, times)
+    s = found.sums
+    for name, value in zip((UNBALANCE, SUPPORT, GRAVITY), wanted, strict=True):
+        # The trapezium over 41 points of a turn of a third.
+        assert s[name] == pytest.approx(value, rel=5e-3, abs=1e-6)
+    # The drive lifts the liquid's angular momentum against what the accelerations take.
+    assert s[FRICTION] > 0.0
+    assert s[PROFILE] < 0.0
+
+
+@kills("solvers.runup.kernel:layer_step", "push[2 * stage], push[2 * stage + 1]", "push[0], push[1]")
+@kills("solvers.runup.kernel:_move_rotor", "stiffness * (x + 0.5 * dt * v)", "stiffness * x")
+@kills(
+    "solvers.runup.kernel:_accept",
+    "dt * (state.rotor[n + i] + 0.5 * room.change[i])",
+    "dt * state.rotor[n + i]",
+)
+def test_order() -> None:
+    """Halving the step leaves a quarter of the error."""
+    ends = []
+    for courant in (0.4, 0.2, 0.1):
+        found = machine(12)
+        assert found.advance(0.1, 20.0, courant, 4000) == 0
+        ends.append(complex(*found.state.rotor[:2]))
+    ratio = abs(ends[0] - ends[1]) / abs(ends[1] - ends[2])
+    assert 3.0 < ratio < 5.5
+
+
+@kills("solvers.runup.kernel:_move_rotor", "spin * machine.matrices[2, i, k]", "machine.matrices[2, i, k]")
+@kills("solvers.runup.kernel:_move_rotor", "0.25 * dt * dt * stiffness", "0.5 * dt * dt * stiffness")
+def test_gyroscope() -> None:
+    """A turn with gyroscopic coupling keeps the energy, and precesses as it must."""
+    one, cross = np.eye(2), np.array([[0.0, 1.0], [-1.0, 0.0]])
+    system = RotorSystem(
+        ("a", "b"), one, 0.0 * one, 0.5 * cross, 9.0 * one, np.zeros(2, dtype=complex), one, 0.0 * one
+    )
+    found = couple(system, [], 4.0, Friction(), 0.0, 400, False)
+    found.state.rotor[0] = 1.0
+    assert found.advance(0.5, 0.0, 0.8, 1000) == 0
+    # z'' - 2i z' + 9 z = 0 with Omega G = 2: z'' + 2 (y', -x') + 9 z = 0.
+    roots = np.roots([1.0, -2j, 9.0])
+    weights = np.linalg.solve(np.array([[1.0, 1.0], roots]), np.array([1.0, 0.0]))
+    wanted = weights @ np.exp(roots * 0.5)
+    assert complex(*found.state.rotor[:2]) == pytest.approx(wanted, abs=2e-4)
+    # The trapezium keeps the energy of what has no damping.
+    assert found.energy() == pytest.approx(4.5, rel=1e-12)
+
+
+@kills(
+    "solvers.runup.kernel:_spin_after",
+    "load -= room.change[i] * middle.imag",
+    "load += room.change[i] * middle.imag",
+)
+@kills(
+    "solvers.runup.kernel:_spin_after",
+    "machine.layers[j, RADIUS] ** 4 * room.gains[j, TORQUE]",
+    "machine.layers[j, RADIUS] ** 3 * room.gains[j, TORQUE]",
+)
+@kills("solvers.runup.kernel:_spin_after", "0.5 * (spin + after)) - load", "0.5 * (spin + after)) + load")
+@kills("solvers.runup.kernel:_tally", "sums[MOTOR] += dt * spin", "sums[MOTOR] += dt")
+def test_motor() -> None:
+    """The motor's torque goes into the spin, less what the unbalance and the liquid take."""
+    rotor = Jeffcott(3.0, 3.0 * 15.0**2, 6.0, 0.05)
+    found = couple(rotor.system(), [FILL], 30.0, Friction("linear", 0.5), 0.0, 12, False)
+    found.state.rotor[:4] = 2e-3, -1e-3, 0.05, 0.02
+    curve = np.array([[0.0, 40.0, 80.0], [6.0, 2.0, 0.0]])
+    found.drive(curve, 0.05)
+    wall = 1000.0 * 0.04 * 0.25**4
+
+    def turning() -> float:
+        """Spin's own momentum, with the unbalance's share and the liquid's."""
+        v, angle = found.state.rotor[2:4], found.state.rotor[5]
+        cross = v @ (1j * found.system.unbalance * np.exp(1j * angle)).real
+        return 0.05 * found.spin + cross
+
+    before = turning()
+    spins, forces, walls = [], [], []
+    times = np.linspace(0.0, 0.05, 41)
+    for stop in times:
+        if stop > 0.0:
+            assert found.advance(stop, 0.0, 0.2, 2000) == 0
+        v, angle = found.state.rotor[2:4], found.state.rotor[5]
+        # d/dt of the share: v' . Re(iU e) and v . Re(-Omega U e); the latter is no torque.
+        forces.append(-found.spin * v @ (found.system.unbalance * np.exp(1j * angle)).real)
+        surface = np.sqrt(1.0 - 2.0 * found.area[0])
+        velocity = found.momentum[0] / found.area[0] + found.spin * found.area[0]
+        walls.append(-wall * np.mean(0.5 * (1.0 - surface) * velocity) * 2.0 * np.pi)
+        spins.append(found.spin)
+    torque = np.interp(spins, curve[0], curve[1])
+    wanted = np.trapezoid(torque + np.array(forces) - np.array(walls), times)
+    assert turning() - before == pytest.approx(wanted, rel=2e-3)
+    work = np.trapezoid(torque * np.array(spins), times)
+    assert found.sums[MOTOR] == pytest.approx(work, rel=1e-4)
+
+
+@kills("solvers.runup.long_wave:couple", "(np.array([-gravity, 0.0])", "(np.array([gravity, 0.0])")
+def test_gravity() -> None:
+    """The rotor held, liquid let go is pulled against the first direction by its flow's inertia."""
+    rotor = Jeffcott(3.0, 1e15, 0.0, 0.0)
+    found = couple(rotor.system(), [FILL], 30.0, Friction(), 0.5, 24, False)
+    found.state.rotor[5] = TURNED
+    inertia = found.measured()[0][2][INERTIA] * 40.0 * 0.25**2
+    assert found.advance(0.001, 0.0, 0.8, 100) == 0
+    relative = found.measured()[0][3]
+    # In a millisecond the drum turns by 0.03: waves and turning take that much of it.
+    assert relative[0] == pytest.approx(-0.5 * 0.001 * inertia, rel=0.05)
+    assert abs(relative[1]) < 0.1 * abs(relative[0])
+
+
+@kills("solvers.runup.kernel:_move_layers", "rub[1] *= np.sqrt(", "rub[1] *= (")
+@kills(
+    "solvers.runup.long_wave:couple",
+    '"momentum": -spin * np.square(area)',
+    '"momentum": spin * np.square(area)',
+)
+@kills(
+    "solvers.runup.chamber:layer_properties",
+    "lid = 2.0 * chamber.radius / chamber.height",
+    "lid = chamber.radius / chamber.height",
+)
+@kills("solvers.runup.chamber:layer_properties", "slip)) / chamber.radius", "slip))")
+def test_stokes() -> None:
+    """Stokes' friction takes the frequency of the slower free wave, with floor and lid."""
+    viscous = Fill(FILL.chamber, Liquid("oil", 1000.0, 1e-3), FILL.volume)
+    rotor = Jeffcott(3.0, 1e15, 0.0, 0.0)
+    found = couple(rotor.system(), [viscous], 30.0, Friction("stokes"), 0.0, 8, False)
+    found.momentum[0] += 0.2 * found.area[0]
+    found.state.momentum[:] = found.momentum
+    assert found.advance(0.2, 0.0, 0.8, 1000) == 0
+    velocity = found.momentum[0] / found.area[0] + 30.0 * found.area[0]
+    log = math.log(0.25 / viscous.surface_radius)
+    t = math.tanh(log)
+    slip = 30.0 * (math.sqrt(t * (t + 1.0)) - t)
+    shear = math.sqrt(0.5 * 1e-3 * slip) * (1.0 + 2.0 * viscous.depth / 0.04)
+    rate = shear * 0.25 / (found.area[0, 0] * 0.25**2)
+    np.testing.assert_allclose(velocity, 0.2 * math.exp(-rate * 0.2), rtol=1e-6)
+
+
+@kills(
+    "solvers.runup.kernel:flow_inertia",
+    "out[1] = c * s * (xx - yy) + (c * c - s * s) * xy",
+    "out[1] = c * s * (xx + yy)",
+)
+@kills(
+    "solvers.runup.kernel:flow_inertia",
+    "scale = layer[WEIGHT] * layer[RADIUS] ** 2",
+    "scale = layer[WEIGHT] * layer[RADIUS] ** 3",
+)
+@kills("solvers.runup.kernel:solve", "factor = matrix[i, k] / matrix[k, k]", "factor = matrix[i, k]")
+@kills(
+    "solvers.runup.kernel:motor_torque", "part * (curve[1, k + 1] - curve[1, k])", "part * curve[1, k + 1]"
+)
+def test_small_parts() -> None:
+    """Elimination, straight lines, turned tensors."""
+    generator = np.random.default_rng(5)
+    matrix, right = generator.normal(size=(5, 5)), generator.normal(size=5)
+    matrix[0, 0] = 0.0
+    wanted = np.linalg.solve(matrix, right)
+    left, found = matrix.copy(), right.copy()
+    coupled_parts.solve(left, found)
+    np.testing.assert_allclose(found, wanted, rtol=1e-12)
+    curve = np.array([[1.0, 2.0, 5.0], [3.0, 4.0, -2.0]])
+    for spin in (0.5, 1.0, 1.7, 3.0, 5.0, 7.0):
+        assert coupled_parts.motor_torque(curve, spin) == pytest.approx(np.interp(spin, *curve))
+    measures = np.zeros(MEASURES)
+    measures[INERTIA : INERTIA + 3] = 2.0, 0.7, 1.0
+    turn = np.array([[math.cos(0.6), -math.sin(0.6)], [math.sin(0.6), math.cos(0.6)]])
+    whole = turn @ np.array([[2.0, 0.7], [0.7, 1.0]]) @ turn.T
+    out = np.zeros(3)
+    coupled_parts.flow_inertia(measures, np.array([0.5, 3.0]), math.cos(0.6), math.sin(0.6), out)
+    np.testing.assert_allclose(out, 3.0 * 0.25 * np.array([whole[0, 0], whole[0, 1], whole[1, 1]]))
+
+
+LAYER, STEP, PARTS = "solvers.runup.kernel", "solvers.runup.kernel", "solvers.runup.kernel"
+STAGES, SET, OF_FILL = "solvers.layer.step", "solvers.runup.long_wave", "solvers.runup.chamber"

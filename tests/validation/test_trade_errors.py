@@ -1,0 +1,378 @@
+"""Accuracy against cost: errors, front and advice from made-up runs; real ones for what is measured."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import math
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+from fluid.waves import capture_speed
+from leblanc.cli import main
+from leblanc.results.provenance import versions
+from leblanc.scene.scene import Scene, load_scene
+from leblanc.studies.runup import planned
+from tests.mutants import kills
+from validation.trade.answers import DISPERSION, RESPONSE, RUNUP, Answer, Case, answer, at_speeds
+from validation.trade.cases import (
+    SPEEDS,
+    Question,
+    exciter_question,
+    passage,
+    response_question,
+    telling_speeds,
+)
+from validation.trade.command import trade as trade_command
+from validation.trade.figure import trade_figure
+from validation.trade.judge import Row, Run, compare, dominates, errors, recommend, reference_error
+from validation.trade.results import recommendation, trade_json, trade_lines
+from validation.trade.trade import REPEATS, TradeRecord, alone, error_table
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def scene(name: str = "centrifuge") -> Scene:
+    return load_scene(EXAMPLES / f"{name}.toml")
+
+
+def said(values: list[float] | np.ndarray, reason: str = "") -> Answer:
+    return Answer(np.array(values, dtype=float), True, reason, ("statics",))
+
+
+def row(error: float, time: float, spread: float = 0.1, **more: object) -> Row:
+    given = {
+        "question": RUNUP, "model": "long_wave", "resolution": 64, "variant": "", "used": ("long_wave",),
+        "error": error, "peak_error": error, "resolved": True, "time": time, "spread": spread, "repeats": 5,
+        "first": 1.0, "memory": 1000, "in_range": True, "selectable": True, "note": "",
+    }  # fmt: skip
+    return Row(**(given | more))  # type: ignore[arg-type]
+
+
+@kills("validation.trade.judge:dominates", "one.error <= other.error + own", "one.error <= other.error - own")
+@kills("validation.trade.judge:dominates", "one.time + noise < other.time", "one.time - noise < other.time")
+@kills(
+    "validation.trade.judge:_noise",
+    "one.spread * one.time, other.spread * other.time,",
+    "one.spread * one.time, 0.0 * other.time,",
+)
+@kills("validation.trade.judge:_noise", "_REPRODUCED * min(", "0.0 * min(")
+def test_dominates() -> None:
+    """As accurate, closer than the reference being equal, and cheaper by more than the times spread."""
+    rival = row(1e-3, 1.0)
+    assert dominates(row(5e-4, 0.8), rival, 1e-5)
+    assert not dominates(row(5e-4, 0.95), rival, 1e-5)  # within the spread of 0.1
+    assert not dominates(row(5e-4, 0.8, 0.3), rival, 1e-5)  # its own spread
+    assert not dominates(row(5e-4, 0.8, 0.0), row(1e-3, 1.0, 0.3), 1e-5)  # the other's
+    # What is quieter than any repetition of it.
+    assert not dominates(row(5e-4, 0.975, 0.0), row(1e-3, 1.0, 0.0), 1e-5)
+    assert dominates(row(5e-4, 0.965, 0.0), row(1e-3, 1.0, 0.0), 1e-5)
+    assert not dominates(row(2e-3, 0.1), rival, 1e-5)
+    assert dominates(row(1.1e-3, 0.1), rival, 2e-4)
+    assert not dominates(row(0.0, 1.2), rival, 1e-5)
+    assert dominates(rival, row(math.nan, 0.1), 1e-5) and not dominates(row(math.nan, 0.1), rival, 1e-5)
+    assert not dominates(row(math.nan, 0.1), row(math.nan, 1.0), 1e-5)
+
+
+@given(
+    st.lists(
+        st.tuples(st.floats(1e-6, 1.0), st.floats(1e-3, 10.0), st.floats(0.0, 0.3)), min_size=2, max_size=9
+    )
+)
+def test_no_two_rows_dominate_each_other(values: list[tuple[float, float, float]]) -> None:
+    rows = [row(*one) for one in values]
+    for one in rows:
+        assert not dominates(one, one, 1e-4)
+        assert not any(dominates(one, other, 1e-4) and dominates(other, one, 1e-4) for other in rows)
+    # The cheapest of all is dominated by none.
+    assert not any(dominates(other, min(rows, key=lambda r: r.time), 1e-4) for other in rows)
+
+
+def ladder_question(name: str = RUNUP) -> Question:
+    cases = tuple(Case(name, "long_wave", n) for n in (512, 256, 128))
+    return Question(name, scene(), "made up", cases, cases[0], cases)
+
+
+@kills("validation.trade.judge:reference_error", "fine / (2.0**order - 1.0)", "fine / 2.0**order")
+@kills("validation.trade.judge:reference_error", "math.log2(coarse / fine)", "math.log2(fine / coarse)")
+@kills(
+    "validation.trade.judge:reference_error",
+    "return max(coarse, fine), math.nan",
+    "return min(coarse, fine), math.nan",
+)
+def test_reference_error() -> None:
+    """Answers a + c/N^p: the order is p and the finest one's error exactly c/512^p, seen against itself."""
+    shape = np.array([1.0, 2.0, 0.5])
+    for order in (1.0, 2.0, 3.5):
+        answers = [said(np.array([3.0, 4.0, 5.0]) + shape * (n / 64.0) ** -order) for n in (512, 256, 128)]
+        own, found = reference_error(ladder_question(), answers)
+        true = np.linalg.norm(shape * 8.0**-order) / np.linalg.norm(answers[0].values)
+        # The coarse difference is taken against the middle answer: off by the relative change of its size.
+        assert found == pytest.approx(order, abs=0.15)
+        assert own == pytest.approx(true, rel=0.12)
+    scattered = [said([1.0, 1.0]), said([1.0, 1.1]), said([1.0, 1.05])]
+    own, found = reference_error(ladder_question(), scattered)
+    assert own == pytest.approx(0.1 / math.sqrt(2.0)) and math.isnan(found)
+    assert reference_error(ladder_question(), [said([1.0])]) == (1e-12, pytest.approx(math.nan, nan_ok=True))
+    lost = [said([1.0]), said([1.0], "the motor stands"), said([1.0])]
+    assert math.isnan(reference_error(ladder_question(), lost)[0])
+
+
+@kills(
+    "validation.trade.judge:errors",
+    "np.linalg.norm(gap) / np.linalg.norm(size)",
+    "np.linalg.norm(gap) / largest",
+)
+@kills("validation.trade.judge:errors", "gap / np.where(size > 0.0, size, largest)", "gap / largest")
+@kills(
+    "validation.trade.judge:errors",
+    "float(found.values.max()) / largest - 1.0",
+    "float(found.values[-1]) / largest - 1.0",
+)
+def test_errors() -> None:
+    """A response by its worst speed, a history by its root mean square, both with the error of the peak."""
+    best = said([1.0, 10.0, 2.0])
+    found = said([1.1, 9.0, 2.0])
+    assert errors(RESPONSE, found, best) == pytest.approx((0.1, 0.1))
+    assert errors(RUNUP, found, best) == pytest.approx((math.sqrt(1.01 / 105.0), 0.1))
+    assert errors(RESPONSE, said([1.5, 10.0, 2.0]), best) == pytest.approx((0.5, 0.0))
+    assert errors(RESPONSE, said([0.1, 1.0]), said([0.0, 1.0])) == pytest.approx((0.1, 0.0))
+    assert errors(RESPONSE, best, best) == (0.0, 0.0)
+    assert all(map(math.isnan, errors(RUNUP, said([1.0], "stands"), best)))
+    assert errors(RUNUP, said([0.0, 0.0]), said([0.0, 0.0])) == (0.0, 0.0)
+
+
+@kills("validation.trade.judge:recommend", "if rows[k].error <= tolerance]", "if rows[k].error >= tolerance]")
+@kills("validation.trade.judge:recommend", "best = min(within,", "best = max(within,")
+def test_recommend() -> None:
+    """The cheapest within the tolerance; the default if it costs no more; the best if nothing is within."""
+    rows = [row(1e-4, 1.0), row(5e-3, 0.3), row(2e-2, 0.1), row(1e-5, 9.0)]
+    assert recommend(rows, 1e-6, 0.01) == 1
+    assert recommend(rows, 1e-6, 1e-3) == 0
+    assert recommend(rows, 1e-6, 0.1) == 2
+    assert recommend(rows, 1e-6, 1e-6) == 3
+    near = [row(1e-4, 1.05), row(1e-4, 1.0), row(1.0, 0.1)]
+    assert recommend(near, 1e-6, 0.01) == 0
+    assert recommend([row(1e-4, 1.0), row(1e-4, 0.5, note="other physics")], 1e-6, 0.01) == 0
+    assert recommend([row(1e-4, 1.0), row(1e-4, 0.5, selectable=False)], 1e-6, 0.01) == 0
+    assert recommend([row(math.nan, 1.0)], 1e-6, 0.01) == -1
+
+
+def record() -> TradeRecord:
+    """A made-up comparison of a run-up: second order, four times the time for twice the cells."""
+    cells = (16, 32, 64, 128)
+    cases = (
+        Case(RUNUP, "auto"),
+        Case(RUNUP, "linear"),
+        *(Case(RUNUP, "long_wave", n, variant) for variant in ("", DISPERSION) for n in cells),
+    )
+    best = cases[5]
+    question = Question(RUNUP, scene(), "made up", cases, best, (best, cases[4], cases[3]))
+
+    def run(case: Case) -> Run:
+        if case.model == "linear":
+            return Run(
+                replace(said([1.0, 2.4, 1.0]), used=("linear",), in_range=False), (0.01, 0.011), 0.5, 10**5
+            )
+        size = case.resolution or 64
+        wrong, shift = 16.0 / size**2, 0.05 if case.variant else 0.0
+        taken = (size / 64.0) ** 2 * (1.02 if case.resolution is None else 1.0)
+        found = replace(said([1.0, 2.0 + wrong + shift, 1.0]), used=("long_wave",))
+        return Run(found, (taken, 1.04 * taken, 1.1 * taken), 0.5, 10**6)
+
+    runs = {case: run(case) for case in cases}
+    runs[cases[6]] = Run(said([1.0], "the motor stands"), (0.1,), 0.5, 10**6)
+    found = compare(question, runs, 0.01)
+    return TradeRecord("Made up", "", ("rotor.mass",), "0", 0.01, (found,))
+
+
+@kills(
+    "validation.trade.judge:_spread", "np.median(times) / min(times) - 1.0", "max(times) / min(times) - 1.0"
+)
+@kills(
+    "validation.trade.judge:_judged",
+    "overhead=rows[0].time / twin - 1.0",
+    "overhead=twin / rows[0].time - 1.0",
+)
+def test_compare() -> None:
+    """Default first, its twin's price, front and advice, as laid out in `record`."""
+    one = record().comparisons[0]
+    by = {r.label: r for r in one.rows}
+    assert one.default.label == "auto" and one.order == pytest.approx(2.0, abs=0.05)
+    assert one.overhead == pytest.approx(0.02)
+    # Two per cent dearer than the same answer, and the times spread by four.
+    assert one.dominated_by == () and one.default.on_front
+    assert by["auto"].spread == pytest.approx(0.04)
+    assert by["long_wave 128"].error == 0.0 and not by["long_wave 128"].resolved
+    assert by["linear"].on_front and not by["linear"].in_range
+    assert [r.label for r in one.rows if r.recommended] == ["long_wave 32"]
+    assert not any(by[f"long_wave {n}, dispersion"].on_front for n in (16, 32, 64, 128))
+    stands = by["long_wave 16, dispersion"]
+    assert math.isnan(stands.error) and stands.note == "the motor stands" and not stands.on_front
+    # A single time takes the worst spread of the others.
+    assert stands.repeats == 1 and stands.spread == pytest.approx(0.05)
+    assert "other physics" in by["long_wave 32, dispersion"].note
+
+
+def test_words_and_json() -> None:
+    found = record()
+    text = "\n".join(trade_lines(found))
+    assert "take long_wave 32" in text and "within 1 %" in text and "the motor stands" in text
+    values = json.loads(json.dumps(trade_json(found), allow_nan=False))
+    assert values["versions"] == versions() and len(values["rows"]) == 10
+    wanted = {
+        "question",
+        "model",
+        "resolution",
+        "error",
+        "peak_error",
+        "time",
+        "memory",
+        "on_front",
+        "default",
+    }
+    assert wanted | {"recommended", "spread", "time_ratio"} <= set(values["rows"][0])
+    assert values["rows"][0]["time_ratio"] == 1.0 and values["questions"][0]["recommended"] == "long_wave 32"
+    one = found.comparisons[0]
+    nothing = replace(one, rows=tuple(replace(r, recommended=False) for r in one.rows))
+    assert "nothing has answered" in recommendation(nothing, 0.01)
+    assert "nothing is within" in recommendation(one, 1e-9)
+
+
+@kills("validation.trade.cases:telling_speeds", "chosen = [top, speed.size - 1]", "chosen = [0]")
+def test_speeds() -> None:
+    """The steady peak and the last speed are among them, and none at which gravity holds the liquid down."""
+    for name in ("tub", "runup"):
+        machine = scene(name)
+        chosen, every = telling_speeds(machine), machine.speed_array()
+        if machine.rotor.axis == "horizontal":
+            held = max(float(capture_speed(fill.surface_radius, 9.81)) for fill in machine.chambers)
+            every = every[every > held]
+        assert chosen.size == SPEEDS and np.all(np.diff(chosen) > 0.0) and np.isin(chosen, every).all()
+        assert chosen[-1] == every[-1]
+        whole = answer(at_speeds(machine, every), Case(RESPONSE, "statics")).values
+        part = answer(at_speeds(machine, chosen), Case(RESPONSE, "statics")).values
+        assert part.max() == whole.max()
+    few = replace(machine, speeds=replace(machine.speeds, count=4))
+    assert telling_speeds(few).size == 4
+
+
+@kills("validation.trade.cases:passage", "_HELD * _capture(scene)", "_capture(scene)")
+@kills("validation.trade.cases:passage", "length = (stop - start) / plan.rate", "length = stop / plan.rate")
+def test_passage() -> None:
+    """Within the scene's own run-up; with gravity across, from four times that at the surface on."""
+    for name, passes in (("runup", True), ("washing_machine", False)):
+        machine = scene(name)
+        plan, cut = planned(machine), passage(machine)[0]
+        assert (
+            plan.start <= cut.start < cut.stop <= plan.stop and cut.duration <= plan.duration and not cut.back
+        )
+        if cut.rate is not None:
+            assert cut.duration == pytest.approx((cut.stop - cut.start) / cut.rate)
+        if machine.rotor.axis == "horizontal":
+            held = max(float(capture_speed(fill.surface_radius, 9.81)) for fill in machine.chambers)
+            assert cut.start >= 2.0 * held * (1.0 - 1e-12)
+        values = answer(replace(machine, runup=cut), Case(RUNUP, "long_wave", 32)).values
+        top = int(np.argmax(values))
+        assert not passes or 0 < top < values.size - 1
+
+
+def test_same_answer_alone() -> None:
+    """In a process of its own a case answers the same to the last bit, and says what it took."""
+    question = response_question(scene(), quick=True)
+    case = Case(RESPONSE, "long_wave", 16)
+    run = alone(question.scene, case)
+    np.testing.assert_array_equal(run.answer.values, answer(question.scene, case).values)
+    assert run.times[0] > 0.0 and 0 <= run.memory < 50e6 and run.answer.used == ("long_wave",)
+    with pytest.raises(RuntimeError, match="nonsense"):
+        alone(question.scene, Case("nonsense", "long_wave", 16))
+
+
+HUNGRY = """
+import json, sys
+import numpy as np
+from study import trade_answers, trade_child
+from leblanc.scene.scene import load_scene
+
+trade_answers.taste = lambda scene, case: None
+trade_answers.answer = lambda scene, case: trade_answers.Answer(
+    np.array([np.ones(int(sys.argv[1]) // 8).sum()]), True, "", ("linear",)
+)
+case = trade_answers.Case(trade_answers.RESPONSE, "linear")
+print(trade_child.run(load_scene(sys.argv[2]), case)["memory"])
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the largest memory so far cannot be set back")
+def test_memory_is_that_of_the_run() -> None:
+    """Sixty megabytes that a run takes, writes to and gives back; what Python adds is some four at most.
+
+    In a fresh process, as the cases are measured: one that has run other tests may give pages back meanwhile.
+    """
+    size = 60_000_000
+    command = [sys.executable, "-c", HUNGRY, str(size), str(EXAMPLES / "horizontal_rig.toml")]
+    told = subprocess.run(command, capture_output=True, text=True, check=True, cwd=EXAMPLES.parent)
+    assert 0.98 * size <= int(told.stdout) <= 1.1 * size + 4e6
+
+
+@pytest.mark.slow
+def test_exciter() -> None:
+    """Integration is of fourth order, and the formulas, of first order in a small number, are near it."""
+    question = exciter_question(scene("vibratory_table"), quick=True)
+    found = error_table(question, question.cases[:3])
+    coarse, fine = found["integration 12"][0], found["integration 24"][0]
+    # Against 48 steps, which have a sixteenth of the error of 24: 15/16 and 255/256 of the errors are seen.
+    assert math.log2(coarse / fine) == pytest.approx(4.0, abs=0.3)
+    assert 1e-4 < found["formulas"][0] < 2e-2
+
+
+def test_response_ladder() -> None:
+    """On the vertical axis the plane cells miss the paraboloid whatever their number; elements do not."""
+    question = response_question(scene("vertical_rig"), quick=True)
+    cut = replace(question, scene=at_speeds(question.scene, np.array([12.5])))
+    found = error_table(cut, [case for case in cut.cases if case.variant != "order 1"])
+    assert found["auto"][0] <= 0.01 and found["statics"][0] == 0.0
+    assert found["fem 16, order 2"][0] < 1e-4 < 1e-3 < min(found[f"long_wave {n}"][0] for n in (16, 32, 64))
+    assert not answer(cut.scene, Case(RESPONSE, "long_wave", 16)).in_range
+
+
+@kills("validation.trade.figure:_label", "sum(map(box.overlap, taken))", "0.0 * sum(map(box.overlap, taken))")
+def test_labels() -> None:
+    """No two labels of the figure overlap, and no label leaves its axes."""
+    found = record()
+    one = found.comparisons[0]
+    # All in one place, which is what has to be told apart.
+    near = tuple(
+        replace(r, time=1.0 + 0.02 * k, error=1e-3 * (1 + k % 3)) for k, r in enumerate(one.rows[:-1])
+    )
+    figure = trade_figure(replace(found, comparisons=(replace(one, rows=near),)))
+    FigureCanvasAgg(figure).draw()
+    axes = figure.axes[0]
+    boxes = [text.get_window_extent() for text in axes.texts]
+    assert len(boxes) == 7
+    frame = axes.get_window_extent()
+    for k, box in enumerate(boxes):
+        assert frame.contains(box.x0, box.y0) and frame.contains(box.x1, box.y1)
+        assert not any(box.overlaps(other) for other in boxes[:k])
+    assert axes.get_xscale() == axes.get_yscale() == "log"
+
+
+def test_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr("validation.trade.trade.trade_scene", lambda *_, **__: record())
+    path, out = str(EXAMPLES / "centrifuge.toml"), str(tmp_path)
+    assert main(["trade", path, "--quick", "--json", "--out", out]) == 0
+    shown = json.loads(capsys.readouterr().out)
+    assert shown == json.loads((tmp_path / "trade.json").read_text(encoding="utf-8"))
+    assert main(["trade", path, "--out", out]) == 0
+    assert "recommended" in capsys.readouterr().out
+    assert {"trade.png", "trade.svg", "trade.json"} == {p.name for p in tmp_path.iterdir()}
+    assert main(["trade", path, "--repeats", "1", "--out", out]) == 2
+    assert inspect.signature(trade_command).parameters["repeats"].default == REPEATS
