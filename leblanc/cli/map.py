@@ -42,7 +42,7 @@ def map(
 
     with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
         task = bar.add_task("volumes", total=None)
-        record = map_scene(
+        found = map_scene(
             *(machine, volumes, speeds, most, law),
             progress=lambda done, total: bar.update(task, completed=done, total=total),
         )
@@ -51,11 +51,11 @@ def map(
     from leblanc.figures.stability_map import map_figure, save
     from leblanc.report.page import about, command_line
     from leblanc.report.whirl_map import write_map_report
-    from leblanc.results.whirl_map import map_json, write_map
+    from leblanc.results.netcdf import write_dataset
     from leblanc.studies.whirl_map import SPEEDS, VOLUMES
 
-    write_map(record, folder / "map.nc")
-    files = save(map_figure(record), folder, "map", "Self-excited whirl over speed and volume")
+    write_dataset(found.to_dataset(), folder / "map.nc")
+    files = save(map_figure(found), folder, "map", "Self-excited whirl over speed and volume")
     command = command_line(
         "map",
         scene,
@@ -65,18 +65,18 @@ def map(
         ("--friction", friction, None),
     )
     what = about(machine, command, "map.nc", unused=("runup", "optimise"))
-    write_map_report(record, what, files, folder / "map.html")
+    write_map_report(found, what, files, folder / "map.html")
     if json:
-        print_json(map_json(record))
+        print_json(found.to_json())
     else:
-        print(f"liquid friction: {record.friction}; support: {record.damping}")
-        for note in record.notes:
+        print(f"liquid friction: {found.friction}; support: {found.damping}")
+        for note in found.notes:
             print(note)
         print(f"Read {folder / 'map.html'}; the data are in {folder / 'map.nc'}")
 
-    lost = int((record.growth != record.growth).sum())
+    lost = int((found.growth != found.growth).sum())
     if lost:
         from leblanc.scene.faults import NotConverged
 
-        raise NotConverged([f"{scene}: modes not found at {lost} of {record.growth.size} points"])
-    say(f"{record.name}: {record.volume.size} volumes by {record.speed.size} speeds done")
+        raise NotConverged([f"{scene}: modes not found at {lost} of {found.growth.size} points"])
+    say(f"{found.name}: {found.volume.size} volumes by {found.speed.size} speeds done")

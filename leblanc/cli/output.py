@@ -8,12 +8,13 @@ import os
 import re
 import sys
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
+_WIDTH = 110  # characters of a line where there is no terminal
 _LONGEST_NAME = 200  # bytes; file systems allow 255
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)  # on Windows
 
@@ -21,6 +22,37 @@ _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)  
 def say(text: str) -> None:
     """Print a line of progress or a fault on stderr."""
     print(text, file=sys.stderr, flush=True)
+
+
+def print_table(
+    rows: Iterable[Sequence[str]], head: Sequence[str] = (), right: bool = False, indent: int = 0
+) -> None:
+    """Print a table on stdout; on a terminal its texts are wrapped to fit, elsewhere to 110 characters.
+
+    Parameters
+    ----------
+    rows : texts of the cells
+    head : of the columns; none for labels and values
+    right : all columns but the first are aligned to the right
+    indent : blanks before each line
+    """
+    from rich.console import Console
+    from rich.padding import Padding
+    from rich.table import Table
+    from rich.text import Text
+
+    lines = [tuple(row) for row in rows]
+    table = Table(box=None, show_header=bool(head), pad_edge=False, padding=(0, 2, 0, 0), header_style="")
+    side: Literal["left", "right"] = "right" if right else "left"
+    for k, name in enumerate(head or [""] * len(lines[0])):
+        table.add_column(Text(name), justify=side if k else "left", no_wrap=k == 0, overflow="fold")
+    for row in lines:
+        table.add_row(*map(Text, row))
+    terminal = sys.stdout.isatty()
+    console = Console(file=sys.stdout, width=None if terminal else _WIDTH, highlight=False, emoji=False)
+    with console.capture() as printed:
+        console.print(Padding(table, (0, 0, 0, indent), expand=False))
+    sys.stdout.writelines(f"{line.rstrip()}\n" for line in printed.get().splitlines())
 
 
 def print_json(value: object) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.output import out_dir, print_json, say
+from leblanc.cli.output import out_dir, print_json, print_table, say
 
 if TYPE_CHECKING:
     from leblanc.scene.scene import Scene
@@ -32,39 +32,37 @@ def run(
 
     from leblanc.studies.run import run_scene
 
-    record = run_scene(machine)
+    result = run_scene(machine)
 
     from leblanc.figures import write_figures
     from leblanc.report.page import about, command_line
-    from leblanc.report.run import comparisons, write_run_report
+    from leblanc.report.run import write_run_report
     from leblanc.results.netcdf import write_dataset
-    from leblanc.results.response import run_json, to_dataset
+    from leblanc.text.run import comparisons
 
-    write_dataset(to_dataset(record), folder / "response.nc")
-    figures = write_figures(record, folder)
+    write_dataset(result.to_dataset(), folder / "response.nc")
+    figures = write_figures(result, folder)
     what = about(machine, command_line("run", scene), "response.nc", unused=("runup", "optimise"))
-    write_run_report(machine, record, what, figures, folder / "summary.html")
+    write_run_report(result, what, figures, folder / "summary.html")
     if json:
-        print_json(run_json(record))
+        print_json(result.to_json())
     else:
-        print(f"{'':34}{'with liquid':>14}{'without':>14}{'ratio':>10}")
-        for row in comparisons(record):
-            print(f"{row.label:34}{row.wet:>14}{row.dry:>14}{row.ratio:>10}")
+        rows = [(row.label, row.wet, row.dry, row.ratio) for row in comparisons(result)]
+        print_table(rows, ("", "with liquid", "without", "ratio"), right=True)
         print(f"Read {folder / 'summary.html'}; the data are in {folder / 'response.nc'}")
 
-    answer = record.response
-    if not answer.converged.all():
+    if not result.converged.all():
         from leblanc.scene.faults import NotConverged
 
-        lost = answer.speed[~answer.converged]
+        lost = result.speed[~result.converged]
         raise NotConverged(
             [
-                f"{scene}: no bounded deflection found at {lost.size} of {answer.speed.size} speeds: "
-                + ", ".join(f"{one:.6g} rad/s" for one in lost[:10])
+                f"{scene}: no bounded deflection found at {lost.size} of {result.speed.size} speeds: "
+                + ", ".join(f"{speed:.6g} rad/s" for speed in lost[:10])
                 + (", ..." if lost.size > 10 else "")
             ]
         )
-    say(f"{record.name}: {answer.speed.size} speeds done")
+    say(f"{result.name}: {result.speed.size} speeds done")
 
 
 def _run_exciter(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
@@ -72,19 +70,20 @@ def _run_exciter(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
     from leblanc.figures.exciter import write_exciter_figure
     from leblanc.report.exciter import write_exciter_report
     from leblanc.report.page import about, command_line
-    from leblanc.studies.exciter import describe_exciter, exciter_json, run_exciter
+    from leblanc.studies.exciter import run_exciter
+    from leblanc.text.exciter import lines
 
-    record = run_exciter(machine)
-    figure = write_exciter_figure(record, folder)
+    result = run_exciter(machine)
+    figure = write_exciter_figure(result, folder)
     what = about(machine, command_line("run", scene), unused=("model", "runup", "optimise"))
-    write_exciter_report(record, what, figure, folder / "summary.html")
+    write_exciter_report(result, what, figure, folder / "summary.html")
     if json:
-        print_json(exciter_json(record))
+        print_json(result.to_json())
     else:
-        print("\n".join(describe_exciter(record)))
+        print("\n".join(lines(result)))
         print(f"Read {folder / 'summary.html'}")
-    if not record.converged:
+    if not result.converged:
         from leblanc.scene.faults import NotConverged
 
-        raise NotConverged([f"{record.name}: a time integration beside the formulas did not stay finite"])
-    say(f"{record.name}: {record.speed.size} speeds done")
+        raise NotConverged([f"{result.name}: a time integration beside the formulas did not stay finite"])
+    say(f"{result.name}: {result.speed.size} speeds done")

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from leblanc.cli.output import print_json
-
-if TYPE_CHECKING:
-    from meshes.chamber import Chamber
+from leblanc.cli.output import print_json, print_table
 
 
 def volume(
@@ -24,10 +20,9 @@ def volume(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Volume that just covers the wall at a deflection. Also the surface of a given volume."""
-    from dataclasses import asdict
-
     from leblanc.scene.faults import NotConverged
-    from leblanc.studies.volume import answer_surface, answer_volume
+    from leblanc.studies.volume import answer_volume
+    from leblanc.text.volume import facts, question
     from leblanc.units import ACCELERATION, ANGULAR_SPEED, LENGTH, VOLUME, parse_option
     from meshes.chamber import Chamber
     from meshes.errors import require_not_negative
@@ -42,50 +37,12 @@ def volume(
     g = parse_option(gravity, ACCELERATION, "--gravity")
     for field, value in (("--eccentricity", e), ("--speed", spin), ("--gravity", g)):
         require_not_negative(field, value)
-    best = answer_volume(chamber, e, spin, g)
-    answer = asdict(best)
-    if volume is not None:
-        surface = answer_surface(chamber, parse_option(volume, VOLUME, "--volume"), e, spin, g)
-        answer |= asdict(surface)
+    held = None if volume is None else parse_option(volume, VOLUME, "--volume")
+    answer = answer_volume(chamber, e, spin, g, held)
     if json:
-        print_json(answer)
+        print_json(answer.to_json())
     else:
-        print(_asked(chamber, e, spin))
-        for name, value in answer.items():
-            print(f"{_LABELS.get(name, name.replace('_', ' ')):26}{_words(name, value)}")
-    if not answer.get("converged", True):
+        print(question(answer))
+        print_table(facts(answer))
+    if not answer.converged:
         raise NotConverged(["leblanc volume: no surface found that holds the volume asked for"])
-
-
-_LABELS = {
-    "optimal_volume_fem": "by finite elements",
-    "fem_error": "relative difference",
-    "printed_eq18": "as printed, DR18 eq. 18",
-    "corrected_eq18": "the same, corrected",
-    "unbalance_volume_fem": "by finite elements",
-}
-
-
-def _asked(chamber: Chamber, eccentricity: float, speed: float) -> str:
-    """What was understood, in engineers' units."""
-    inner = f", inner radius {chamber.inner_radius * 1e3:.6g} mm" if chamber.inner_radius > 0.0 else ""
-    return (
-        f"Chamber of radius {chamber.radius * 1e3:.6g} mm{inner}, height {chamber.height * 1e3:.6g} mm; "
-        f"deflection {eccentricity * 1e3:.6g} mm at {speed * 30.0 / math.pi:.6g} rpm"
-    )
-
-
-def _words(name: str, value: object) -> str:
-    """Value with its unit."""
-    if value is None:
-        return "none"
-    if isinstance(value, bool | int):
-        return str(value).lower()
-    assert isinstance(value, float)
-    if name.startswith("unbalance"):
-        return f"{value:.10g} m^4"
-    if name == "surface_constant":
-        return f"{value:.10g} m"
-    if name == "fem_error":
-        return f"{value:.2g}"
-    return f"{value * 1e6:.10g} ml"

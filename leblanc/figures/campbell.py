@@ -1,4 +1,4 @@
-"""The Campbell diagram of a dry rotor, drawn on axes that are handed in."""
+"""The Campbell diagram of a dry rotor."""
 
 from __future__ import annotations
 
@@ -6,8 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.figures.caption import caption
 from leblanc.figures.curves import gapped, joined
-from leblanc.results.record import StudyRecord
+from leblanc.figures.page import Figure, Frame, add_rate_axis, lay_out, number, style
+from leblanc.results.response import RunResult
+from leblanc.text.run import alts
 from leblanc.units import RPM
 from meshes.arrays import Array
 
@@ -22,18 +25,34 @@ STYLES = (
     ("against the spin", -1.0, BACKWARD, (0, (5, 1.5)), "v"),
     ("to and fro", 0.0, STRAIGHT, (0, (1, 1.2)), "o"),
 )
+FRAME = Frame(left=0.72, top=0.46, between=0.12, below=0.42)
 
 
-def draw_campbell(axes: Axes, record: StudyRecord) -> None:
+def campbell_figure(result: RunResult) -> Figure:
+    """Natural frequencies of the dry rotor over its speed."""
+    with style():
+        figure = Figure()
+        figure.alt = alts(result)["campbell"]
+        axes: Axes = figure.add_axes((0, 0, 1, 1))
+        draw_campbell(axes, result)
+        for scale in (axes.xaxis, axes.yaxis):
+            scale.set_major_formatter(number)
+        add_rate_axis(axes)
+        text = "Damped natural frequencies without liquid, by the sense in which the axis goes round."
+        lay_out(figure, [[axes]], [2.75], FRAME, caption(result, text))
+    return figure
+
+
+def draw_campbell(axes: Axes, result: RunResult) -> None:
     """Natural frequencies over speed, forward and backward told apart, and where the spin meets them.
 
     Parameters
     ----------
     axes : an empty drawing
-    record : of a rotor that is not planar
+    result : of a rotor that is not planar
     """
-    assert record.motion is not None
-    diagram = record.motion.campbell
+    assert result.motion is not None
+    diagram = result.motion.campbell
     rpm, hertz = diagram.spin * RPM, diagram.frequency * RPM / HZ
     overdamped = hertz <= 0.0
     direction = diagram.direction.copy()
@@ -61,7 +80,7 @@ def draw_campbell(axes: Axes, record: StudyRecord) -> None:
             )
     top = float(rpm[-1])
     axes.plot([0.0, top], [0.0, top / HZ], color=SPIN, linewidth=0.9, label="once a turn")
-    low, high = record.response.speed[[0, -1]] * RPM
+    low, high = result.response.speed[[0, -1]] * RPM
     if min(low, high) > 0.02 * top:
         axes.axvspan(
             0.0, min(low, high), color="0.92", linewidth=0, zorder=0, label="below the speeds studied"

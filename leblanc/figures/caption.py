@@ -1,19 +1,20 @@
-"""Words below the figures of a study."""
+"""Words below the figures of a response."""
 
 from __future__ import annotations
 
+from leblanc.figures.page import Caption
 from leblanc.results.provenance import one_line
-from leblanc.results.record import StudyRecord, models_used
+from leblanc.results.response import RunResult
 
 
-def caption(record: StudyRecord, text: str) -> str:
+def caption(result: RunResult, text: str) -> Caption:
     """What the figure shows, the scene, the model and the values it assumes."""
-    assumed = ", ".join(map(one_line, record.assumed)) or "nothing"
-    model = ", ".join(models_used(record.response))
-    return f"{text} Scene: {one_line(record.name)}. Liquid model: {model}. Assumed: {assumed}."
+    assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
+    model = ", ".join(result.models_used)
+    return Caption(text, f"Scene: {one_line(result.name)}. Liquid model: {model}. Assumed: {assumed}.")
 
 
-def zero_of(record: StudyRecord) -> str:
+def zero_of(result: RunResult) -> str:
     """What angles count from."""
-    motion = record.motion
+    motion = result.motion
     return "the unbalance" if motion is None or motion.zero == "unbalance" else motion.zero

@@ -1,17 +1,21 @@
-"""Chambers seen along the axis, drawn on axes that are handed in."""
+"""Chambers seen along the axis."""
 
 from __future__ import annotations
 
 import cmath
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from leblanc.figures.caption import caption
+from leblanc.figures.page import MOST_LINES, RIGHT, WIDTH, Figure, Frame, lay_out, style
 from leblanc.figures.section import Exaggeration, exaggeration, liquid_outline, side_by_side
 from leblanc.figures.uneven import bodies, is_uneven, plates, wall_line
-from leblanc.results.record import ChamberRecord, StudyRecord, peak, phase
+from leblanc.results.chamber import FilledChamber
+from leblanc.results.response import RunResult, peak, phase
+from leblanc.text.run import alts
 from leblanc.units import MM, RPM
 from meshes.arrays import Array
 
@@ -20,6 +24,9 @@ Axes = Any  # matplotlib's, which no module that only draws imports
 WALL, LIQUID, CENTRE, UNBALANCE = "0.15", "#56B4E9", "#D55E00", "0.15"
 MOST_DRAWINGS = 3  # side by side
 TIMES, MINUS = "\N{MULTIPLICATION SIGN}", "\N{MINUS SIGN}"
+FRAME = Frame(left=0.15, top=0.26, between=0.6, below=0.36)
+HEADING_ROW = 0.14  # inches
+NOTED_LINES = 10  # of a caption with notes
 
 
 @dataclass(frozen=True)
@@ -35,39 +42,72 @@ class Views:
     left_out : number of chambers that found no room
     """
 
-    drawings: list[tuple[ChamberRecord, ...]]
+    drawings: list[tuple[FilledChamber, ...]]
     instants: list[int]
     scale: Exaggeration
     largest: float
     left_out: int
 
 
-def choose_views(record: StudyRecord) -> Views:
+def chamber_figure(result: RunResult) -> Figure:
+    """Chambers as seen along the axis at the largest deflection and at the working speed."""
+    views = choose_views(result)
+    zero = "unbalance" if result.motion is None else result.motion.zero
+    with style():
+        figure = Figure()
+        figure.alt = alts(result)["chamber"]
+        cells = [(drawing, index) for index in views.instants for drawing in views.drawings]
+        if not cells:
+            axes: Axes = figure.add_axes((0, 0, 1, 1), frame_on=False, xticks=[], yticks=[])
+            axes.text(0.5, 0.5, "no chamber, or no deflection found", ha="center")
+            lay_out(figure, [[axes]], [1.0], FRAME, caption(result, "Chamber seen along the axis."))
+            return figure
+        drawn = []
+        for i, (chambers, index) in enumerate(cells):
+            axes = figure.add_axes((0, 0, 1, 1), label=str(i))
+            at = moved(result, chambers, index)
+            draw_chambers(axes, chambers, at, views, zero)
+            if i % len(views.drawings) == 0:
+                write_numbers(axes, result, views, index)
+            drawn.append(axes)
+        # Up to two drawings of each view stand in one row, more in a row for each view.
+        columns = len(drawn) if len(views.drawings) < 3 else len(views.drawings)
+        rows = [drawn[i : i + columns] for i in range(0, len(drawn), columns)]
+        sides = [min(2.7, (WIDTH - FRAME.left - RIGHT) / columns)] * len(rows)
+        part = "" if result.motion is None else " Drawn is the part of the motion that turns with the spin."
+        words = caption(result, f"Chamber seen along the axis. {describe_scale(views)}{part}")
+        more = HEADING_ROW * more_heading_rows(result, views)
+        frame = replace(FRAME, top=FRAME.top + more, between=FRAME.between + more)
+        lay_out(figure, rows, sides, frame, words, MOST_LINES if result.motion is None else NOTED_LINES)
+    return figure
+
+
+def choose_views(result: RunResult) -> Views:
     """The chambers at the resonance peak and at the working speed, the last one.
 
     Parameters
     ----------
-    record : the study; a speed at which nothing was found is not drawn
+    result : the study; a speed at which nothing was found is not drawn
     """
-    deflection = record.response.deflection
-    last, highest = deflection.size - 1, peak(record.amplitude)
+    deflection = result.response.deflection
+    last, highest = deflection.size - 1, peak(result.amplitude)
     instants = [i for i in (highest, last) if i is not None and np.isfinite(deflection[i])]
-    if highest is None or highest == last or record.amplitude[highest] == 0.0:
+    if highest is None or highest == last or result.amplitude[highest] == 0.0:
         instants = instants[-1:]
-    drawings = side_by_side(record.chambers)
+    drawings = side_by_side(result.chambers)
     drawn = drawings[:MOST_DRAWINGS]
-    amplitudes = tuple(abs(moved(record, drawing, i)) for drawing in drawn for i in instants)
+    amplitudes = tuple(abs(moved(result, drawing, i)) for drawing in drawn for i in instants)
     chambers = tuple(chamber for drawing in drawn for chamber in drawing)
     scale = exaggeration(chambers, amplitudes) if chambers else Exaggeration(1.0, 1.0)
     left_out = sum(map(len, drawings[MOST_DRAWINGS:]))
     return Views(drawn, instants, scale, max(amplitudes, default=0.0), left_out)
 
 
-def moved(record: StudyRecord, chambers: tuple[ChamberRecord, ...], index: int) -> complex:
+def moved(result: RunResult, chambers: tuple[FilledChamber, ...], index: int) -> complex:
     """Deflection of the axis at the chambers of one drawing, m; the unbalance along the real axis."""
-    if record.motion is None:
-        return complex(record.response.deflection[index])
-    return complex(record.motion.chamber_forward[index, record.chambers.index(chambers[0])])
+    if result.motion is None:
+        return complex(result.response.deflection[index])
+    return complex(result.motion.chamber_forward[index, result.chambers.index(chambers[0])])
 
 
 def describe_scale(views: Views) -> str:
@@ -79,30 +119,30 @@ def describe_scale(views: Views) -> str:
     return f"{text} {views.left_out} more chambers are not drawn." if views.left_out else text
 
 
-def describe_view(record: StudyRecord, index: int) -> str:
+def describe_view(result: RunResult, index: int) -> str:
     """Name and speed of one view."""
-    r = record.response
+    r = result.response
     name = "Working speed" if index == r.speed.size - 1 else "Largest deflection"
     text = f"{name}, {r.speed[index] * RPM:.4g} rpm"
     return text if r.in_range[index] else f"{text}\n(model out of range)"
 
 
-def more_heading_rows(record: StudyRecord, views: Views) -> int:
+def more_heading_rows(result: RunResult, views: Views) -> int:
     """Lines above the drawings besides the first."""
-    out_of_range = not record.response.in_range[views.instants].all()
+    out_of_range = not result.response.in_range[views.instants].all()
     return int(len(views.drawings) > 1) + int(out_of_range)
 
 
-def describe_state(record: StudyRecord, index: int) -> str:
+def describe_state(result: RunResult, index: int) -> str:
     """Numbers of one view in words."""
-    r = record.response
+    r = result.response
     w, offset = r.deflection[index], r.liquid_offset[index]
     if w == 0.0:
         return "no deflection"
     place = f"{abs(w) * MM:.3g} mm at {_degrees(float(phase(w)))}\N{DEGREE SIGN}"
     text = f"deflection {place}"
-    if record.motion is not None:
-        several = len({chamber.plane for chamber in record.chambers}) > 1
+    if result.motion is not None:
+        several = len({chamber.plane for chamber in result.chambers}) > 1
         text = f"{'first chamber' if several else 'deflection'} {place}"
     if offset > 0.0:
         text += f"\nliquid {offset * MM:.3g} mm at {_degrees(float(r.liquid_angle[index]))}\N{DEGREE SIGN}"
@@ -115,7 +155,7 @@ def _degrees(angle: float) -> str:
 
 def draw_chambers(
     axes: Axes,
-    chambers: tuple[ChamberRecord, ...],
+    chambers: tuple[FilledChamber, ...],
     deflection: complex,
     views: Views,
     zero: str = "unbalance",
@@ -172,7 +212,7 @@ def draw_chambers(
 
 
 def _draw_uneven(
-    axes: Axes, chamber: ChamberRecord, centre: complex, depth: float, depth_factor: float
+    axes: Axes, chamber: FilledChamber, centre: complex, depth: float, depth_factor: float
 ) -> None:
     """Walls, baffles and each body of liquid of a chamber that is no clear ring."""
     if depth > 0.0:
@@ -194,21 +234,21 @@ def _draw_uneven(
             axes.plot(x, y, color=WALL, linewidth=1.4)
 
 
-def write_numbers(axes: Axes, record: StudyRecord, views: Views, index: int) -> None:
+def write_numbers(axes: Axes, result: RunResult, views: Views, index: int) -> None:
     """Heading above and numbers below the drawings of one view.
 
     Parameters
     ----------
     axes : the first of its drawings; the others follow to the right
-    record, views : the study and what is shown of it
+    result, views : the study and what is shown of it
     index : of the view's speed
     """
     middle = 0.5 * len(views.drawings)
     place = {"xycoords": "axes fraction", "textcoords": "offset points", "ha": "center"}
     # Above names of the drawings if there are several.
     above = 4.0 if len(views.drawings) == 1 else 13.0
-    axes.annotate(describe_view(record, index), (middle, 1.0), xytext=(0.0, above), va="bottom", **place)
-    axes.annotate(describe_state(record, index), (middle, 0.0), xytext=(0.0, -2.0), va="top", **place)
+    axes.annotate(describe_view(result, index), (middle, 1.0), xytext=(0.0, above), va="bottom", **place)
+    axes.annotate(describe_state(result, index), (middle, 0.0), xytext=(0.0, -2.0), va="top", **place)
 
 
 def _unbalance(axes: Axes, centre: complex, radius: float, label: str) -> None:

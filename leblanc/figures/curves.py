@@ -8,7 +8,7 @@ from itertools import combinations, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.record import StudyRecord, phase
+from leblanc.results.response import RunResult, phase
 from leblanc.units import MM, RPM
 from meshes.arrays import Array, Flags
 
@@ -176,14 +176,14 @@ def _reported(
     return number
 
 
-def prepare(record: StudyRecord) -> Curves:
+def prepare(result: RunResult) -> Curves:
     """Curves of a study, ready for drawing.
 
     Parameters
     ----------
-    record : the study, of any number of speeds in any order
+    result : the study, of any number of speeds in any order
     """
-    r = record.response
+    r = result.response
     order = np.argsort(r.speed, kind="stable")
     rpm = r.speed[order] * RPM
     margin = 0.0 if rpm[0] < rpm[-1] else max(0.05 * float(rpm[0]), 1.0)
@@ -192,7 +192,7 @@ def prepare(record: StudyRecord) -> Curves:
     size, size_dry = np.abs(deflection), np.abs(_bounded(r.deflection_dry))
     amplitude, amplitude_dry, each = (
         np.where(np.isfinite(x), x, np.nan)
-        for x in (record.amplitude, record.amplitude_dry, record.branch_amplitude)
+        for x in (result.amplitude, result.amplitude_dry, result.branch_amplitude)
     )
     lines = [amplitude * MM, amplitude_dry * MM, r.liquid_offset * MM]
     lines.append(lag_degrees(r.liquid_angle, r.liquid_offset))

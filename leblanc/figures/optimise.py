@@ -8,10 +8,22 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.page import RIGHT, WIDTH, Figure, FigureFiles, Frame, lay_out, number, save, style
+from leblanc.figures.page import (
+    RIGHT,
+    WIDTH,
+    Caption,
+    Figure,
+    FigureFiles,
+    Frame,
+    lay_out,
+    number,
+    save,
+    style,
+)
 from leblanc.results.notes import texts
 from leblanc.results.optimum import OptimumResult
 from leblanc.results.provenance import one_line
+from leblanc.text.numbers import number as short
 from leblanc.units import MM, RPM
 from meshes.arrays import Array
 
@@ -49,6 +61,16 @@ def write_figures(result: OptimumResult, directory: Path) -> tuple[FigureFiles, 
 
 def objective_figure(result: OptimumResult) -> Figure:
     """Vibration over the volume of one chamber; a map for two; sections through the best point for more."""
+    figure = _over_volumes(result)
+    best = ", ".join(short(volume * ML) for volume in result.volume.tolist())
+    figure.alt = (
+        f"Vibration over the volumes that were tried; the best, {best} ml, gives "
+        f"{short(result.vibration * MM)} mm, no liquid {short(result.vibration_baseline * MM)} mm."
+    )
+    return figure
+
+
+def _over_volumes(result: OptimumResult) -> Figure:
     count = result.volume.size
     with style():
         figure = Figure()
@@ -86,6 +108,10 @@ def front_figure(result: OptimumResult) -> Figure:
             "speeds; circles: all die out, the larger the faster; crosses: one grows, the larger the faster. "
         )
         lay_out(figure, [[axes]], [HEIGHT], FRAME, _caption(result, text, False), LINES)
+        figure.alt = (
+            "Vibration over the mass of liquid for the points that no other beats, with their stability "
+            "margins, as in the table."
+        )
     return figure
 
 
@@ -274,7 +300,7 @@ def _short(value: float) -> float:
     return float(f"{value:.3g}")
 
 
-def _caption(result: OptimumResult, text: str, forms: bool = True) -> str:
+def _caption(result: OptimumResult, text: str, forms: bool = True) -> Caption:
     """What is shown, the scene, what was asked for."""
     assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
     notes = " ".join(map(one_line, texts(result.notes)))
@@ -282,9 +308,9 @@ def _caption(result: OptimumResult, text: str, forms: bool = True) -> str:
     what = result.constraints["vibration"].meaning if "vibration" in result.constraints else vibration
     at = f"Closed forms at the deflection of the best point at {result.working_speed * RPM:.4g} rpm. "
     at = at if forms and result.closed_form else ""
-    words = (
-        f"{text}Vibration: {what}. Objective: {result.objective}. {at}"
+    shown = f"{text}Vibration: {what}. Objective: {result.objective}. {at}"
+    origin = (
         f"{notes} Scene: {one_line(result.name)}. Friction of the liquid: {result.friction.law}. "
         f"Assumed: {assumed}."
     )
-    return " ".join(words.split())
+    return Caption(" ".join(shown.split()), " ".join(origin.split()))

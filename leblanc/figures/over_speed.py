@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from leblanc.figures.curves import Curves, gapped, joined, lonely, other_branches, widened
-from leblanc.results.record import StudyRecord
+from leblanc.results.response import RunResult
 from leblanc.units import RPM
 from meshes.arrays import Array, Flags
 
@@ -21,7 +21,7 @@ MARKS = 14  # along a line
 OUT_OF_RANGE = "model out of range"
 
 
-def draw_amplitude(axes: Axes, curves: Curves, record: StudyRecord) -> None:
+def draw_amplitude(axes: Axes, curves: Curves, result: RunResult) -> None:
     """Deflection amplitude with and without liquid, all branches."""
     reported(axes, curves, curves.amplitude, "with liquid")
     without(axes, curves, curves.amplitude_dry)
@@ -31,32 +31,32 @@ def draw_amplitude(axes: Axes, curves: Curves, record: StudyRecord) -> None:
         axes.plot(*stable, **thin, label="other branches, stable")
         axes.plot(*unstable, **thin, linestyle=UNSTABLE, label="other branches, unstable")
     value_axis(axes, curves, [curves.amplitude, curves.amplitude_dry, curves.branches.ravel()])
-    background(axes, curves, record, [curves.amplitude, curves.amplitude_dry])
+    background(axes, curves, result, [curves.amplitude, curves.amplitude_dry])
     axes.set_ylabel("Amplitude (mm)")
 
 
-def draw_offset(axes: Axes, curves: Curves, record: StudyRecord) -> None:
+def draw_offset(axes: Axes, curves: Curves, result: RunResult) -> None:
     """Distance of the liquid's centre of mass from the rotation axis."""
     reported(axes, curves, curves.offset, "liquid's centre of mass")
     value_axis(axes, curves, [curves.offset])
-    background(axes, curves, record, [curves.offset])
+    background(axes, curves, result, [curves.offset])
     axes.set_ylabel("Liquid offset (mm)")
 
 
-def draw_angle(axes: Axes, curves: Curves, record: StudyRecord) -> None:
+def draw_angle(axes: Axes, curves: Curves, result: RunResult) -> None:
     """Angle of the liquid's centre of mass from the unbalance."""
     reported(axes, curves, curves.angle, "liquid's centre of mass")
     angle_axis(axes, curves, [curves.angle])
-    background(axes, curves, record, [curves.angle])
+    background(axes, curves, result, [curves.angle])
     axes.set_ylabel("Liquid angle (deg)")
 
 
-def draw_phase(axes: Axes, curves: Curves, record: StudyRecord) -> None:
+def draw_phase(axes: Axes, curves: Curves, result: RunResult) -> None:
     """Angle from the unbalance to the deflection, with and without liquid."""
     reported(axes, curves, curves.phase, "with liquid")
     without(axes, curves, curves.phase_dry)
     angle_axis(axes, curves, [curves.phase, curves.phase_dry])
-    background(axes, curves, record, [curves.phase, curves.phase_dry])
+    background(axes, curves, result, [curves.phase, curves.phase_dry])
     axes.set_ylabel("Phase of the deflection (deg)")
 
 
@@ -109,7 +109,7 @@ def _turns(degrees: Array) -> Flags:
     return np.abs(np.where(np.isnan(step), 0.0, step)) > 180.0
 
 
-def background(axes: Axes, curves: Curves, record: StudyRecord, lines: list[Array]) -> None:
+def background(axes: Axes, curves: Curves, result: RunResult, lines: list[Array]) -> None:
     """Ranges of speed and marked speeds, behind the lines."""
     low, high = curves.limits
     axes.set_xlim(low, high)
@@ -127,9 +127,9 @@ def background(axes: Axes, curves: Curves, record: StudyRecord, lines: list[Arra
             x, y = joined([(np.array(span), np.full(2, height)) for span in marked])
             axes.plot(x, y, linestyle=dashes, label=label, **bars)
     for speed, style, color, label in (
-        (record.critical_speed_wet, (0, (6, 1.5, 1, 1.5, 1, 1.5)), WET, "critical speed with liquid,"),
-        (record.critical_speed_dry, (0, (6, 1.5, 1, 1.5)), DRY, "critical speed without liquid,"),
-        (record.capture_speed, (0, (8, 3)), "0.3", "liquid captured from"),
+        (result.critical_speed_wet, (0, (6, 1.5, 1, 1.5, 1, 1.5)), WET, "critical speed with liquid,"),
+        (result.critical_speed_dry, (0, (6, 1.5, 1, 1.5)), DRY, "critical speed without liquid,"),
+        (result.capture_speed, (0, (8, 3)), "0.3", "liquid captured from"),
     ):
         if speed is not None and low <= speed * RPM <= high:
             text = f"{label} {speed * RPM:.4g} rpm"

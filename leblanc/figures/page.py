@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -13,12 +13,16 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import matplotlib
+import matplotlib.figure
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure as Figure  # handed on to who draws elsewhere
 from matplotlib.font_manager import findfont, get_font
+from matplotlib.ticker import MultipleLocator as MultipleLocator  # handed on: this is the only door
+from numpy.typing import ArrayLike
 
 from leblanc.results.netcdf import replacing
+from leblanc.units import RPM
 from meshes.errors import InputError
 
 # Lengths in inches.
@@ -40,6 +44,38 @@ class Frame:
 
 
 @dataclass(frozen=True)
+class Caption:
+    """Words below a figure.
+
+    Parameters
+    ----------
+    shown : what the figure shows
+    origin : scene, model and assumed values behind it, which a report says elsewhere
+    """
+
+    shown: str
+    origin: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.shown} {self.origin}".strip()
+
+
+class Figure(matplotlib.figure.Figure):
+    """A figure of matplotlib that carries its words.
+
+    Attributes
+    ----------
+    caption : below it, drawn in the figure as well
+    alt : what it shows and the numbers a reader would take from it, for who cannot see it
+    drawn : width and height of what stands above the drawn caption, inches
+    """
+
+    caption: Caption = Caption("")
+    alt: str = ""
+    drawn: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
 class FigureFiles:
     """One figure on disk.
 
@@ -48,12 +84,16 @@ class FigureFiles:
     name : stem of its files
     title : what it shows
     png, svg : its files
+    caption, alt, drawn : as of `Figure`
     """
 
     name: str
     title: str
     png: Path
     svg: Path
+    caption: Caption = field(default=Caption(""))
+    alt: str = ""
+    drawn: tuple[float, float] | None = None
 
 
 @contextmanager
@@ -75,7 +115,12 @@ def save(figure: Figure, directory: Path, name: str, title: str) -> FigureFiles:
     directory : where its files go; made if it is missing
     name, title : stem of the files, what the figure shows
     """
-    files = FigureFiles(name, title, directory / f"{name}.png", directory / f"{name}.svg")
+    files = FigureFiles(
+        *(name, title, directory / f"{name}.png", directory / f"{name}.svg"),
+        caption=figure.caption,
+        alt=figure.alt,
+        drawn=figure.drawn,
+    )
     FigureCanvasAgg(figure)
     with style():
         with replacing(files.png) as path:
@@ -87,9 +132,30 @@ def save(figure: Figure, directory: Path, name: str, title: str) -> FigureFiles:
     return files
 
 
-def number(value: float, _position: int | None = None) -> str:
+def number(value: float, _position: float | None = None) -> str:
     """Tick label without an offset or a common factor elsewhere on the axis."""
     return f"{value:.10g}".replace("-", "\N{MINUS SIGN}")
+
+
+def add_rate_axis(axes: Axes, label: str = "Speed (rad/s)") -> None:
+    """An axis in rad/s above one in rpm.
+
+    Parameters
+    ----------
+    axes : whose x axis is in rpm
+    label : of the axis above
+    """
+    above = axes.secondary_xaxis("top", functions=(_to_rate, _to_rpm))
+    above.set_xlabel(label)
+    above.xaxis.set_major_formatter(number)
+
+
+def _to_rate(rpm: ArrayLike) -> ArrayLike:
+    return np.asarray(rpm) / RPM
+
+
+def _to_rpm(rate: ArrayLike) -> ArrayLike:
+    return np.asarray(rate) * RPM
 
 
 def lay_out(
@@ -97,7 +163,7 @@ def lay_out(
     rows: list[list[Axes]],
     heights: list[float],
     frame: Frame,
-    caption: str,
+    caption: Caption | str,
     most_lines: int = MOST_LINES,
 ) -> None:
     """Size of the figure, places of its axes, and below them the legend and the caption.
@@ -107,18 +173,20 @@ def lay_out(
     figure : all of whose axes are drawn
     rows, heights : axes that stand beside one another, and how high each row is, inches
     frame : room around them
-    caption, most_lines : in one piece; what does not fit so many lines is cut
+    caption, most_lines : what does not fit so many lines is cut in the drawing
     """
+    figure.caption = Caption(caption) if isinstance(caption, str) else caption
     entries: dict[str, Any] = {}
     for axes in [axes for row in rows for axes in row]:
         handles, labels = axes.get_legend_handles_labels()
         entries = dict(zip(labels, handles, strict=True)) | entries
-    lines = _wrapped(caption, WIDTH - 2.0 * RIGHT, most_lines)
+    lines = _wrapped(str(caption), WIDTH - 2.0 * RIGHT, most_lines)
     text = CAPTION_ROW * len(lines) + 2.0 * MARGIN
     columns = max(1, min(4, LEGEND_CHARACTERS // (max(map(len, entries), default=0) + 8)))
     legend = LEGEND_ROW * -(-len(entries) // columns) + MARGIN
     total = frame.top + sum(heights) + frame.between * (len(rows) - 1) + frame.below + legend + text
     figure.set_size_inches(WIDTH, total)
+    figure.drawn = WIDTH, total - MARGIN - CAPTION_ROW * len(lines)
     above = frame.top
     for row, height in zip(rows, heights, strict=True):
         width = (WIDTH - frame.left - RIGHT) / len(row)

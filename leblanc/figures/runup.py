@@ -10,11 +10,11 @@ import numpy as np
 
 from leblanc.figures.curves import gapped, joined, lag_degrees, link, spans, widened
 from leblanc.figures.over_speed import DRY, SHADE, UNSTABLE, WET
-from leblanc.figures.page import WIDTH, Figure, FigureFiles, Frame, lay_out, number, save, style
+from leblanc.figures.page import WIDTH, Caption, Figure, FigureFiles, Frame, lay_out, number, save, style
 from leblanc.friction import friction_words
 from leblanc.results.provenance import one_line
 from leblanc.results.runup import RunupResult
-from leblanc.text.runup import describe_model
+from leblanc.text.runup import describe_model, largest
 from leblanc.units import MM, RPM
 from meshes.arrays import Array, Flags
 
@@ -85,6 +85,9 @@ def speed_figure(result: RunupResult) -> Figure:
             axis.set_major_formatter(number)
         text = "Deflection of the first chamber's axis while the speed changes; arrows point on in time."
         lay_out(figure, [[axes]], [2.9], SPEED_FRAME, caption(result, text), LINES)
+        figure.alt = (
+            f"Curve of the amplitude over speed with the steady branches behind; largest {largest(result)}."
+        )
     return figure
 
 
@@ -173,6 +176,10 @@ def time_figure(result: RunupResult) -> Figure:
         if result.gravity > 0.0:
             text += " Place of the liquid: means over whole turns, in which gravity's share drops out."
         lay_out(figure, rows, [height for height, _ in panels], TIME_FRAME, caption(result, text), LINES)
+        figure.alt = (
+            "Curves over time of speed, amplitude, the place of the liquid and the depth of its layers; "
+            f"largest amplitude {largest(result)}."
+        )
         for (axes,) in rows:
             box = axes.get_position()
             axes.set_position((box.x0, box.y0, box.width - ASIDE / WIDTH, box.height))
@@ -280,6 +287,9 @@ def energy_figure(result: RunupResult) -> Figure:
         axes.xaxis.set_major_formatter(number)
         text = f"Energy over the whole run; not accounted for: {audit.closure:.2%} of the work."
         lay_out(figure, [[axes]], [2.3], ENERGY_FRAME, caption(result, text), LINES)
+        figure.alt = (
+            "Bars of the work done on rotor and liquid and of where it went, as in the table of the energy."
+        )
     return figure
 
 
@@ -287,14 +297,15 @@ def _joule(value: float) -> str:
     return f"{value:.3g}".replace("-", "\N{MINUS SIGN}")
 
 
-def caption(result: RunupResult, text: str) -> str:
+def caption(result: RunupResult, text: str) -> Caption:
     """What a figure shows, the scene, model, friction, resolution, error and what is assumed."""
     error = result.error_estimate
     size = "not estimated" if math.isnan(error) else f"{error:.1%} of the largest"
     assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
     stopped = "" if result.converged else f" Stopped: {one_line(result.reason)}."
-    return (
-        f"{text}{stopped} Scene: {one_line(result.name)}, {result.axis} axis. Liquid model: "
+    return Caption(
+        f"{text}{stopped}",
+        f"Scene: {one_line(result.name)}, {result.axis} axis. Liquid model: "
         f"{describe_model(result.model, result.cells, result.dispersion)}; liquid friction: "
-        f"{friction_words(result.friction)}. Error of the amplitude: {size}. Assumed: {assumed}."
+        f"{friction_words(result.friction)}. Error of the amplitude: {size}. Assumed: {assumed}.",
     )

@@ -12,8 +12,8 @@ import numpy as np
 from leblanc.figures import wave
 from leblanc.figures.page import FILM_DPI, RIGHT, WIDTH, Figure, Frame, lay_out, number, style, write_film
 from leblanc.figures.runup import caption
+from leblanc.results.chamber import FilledChamber
 from leblanc.results.drawing import film_factor, half_angle
-from leblanc.results.record import ChamberRecord
 from leblanc.results.runup import RunupFrames, RunupResult
 from leblanc.units import MM, RPM
 from meshes.arrays import Array
@@ -99,7 +99,7 @@ def _describe(frames: RunupFrames, factor: float, left_out: int) -> str:
     return f"{text} One second of the film is {step * FRAME_RATE:.2g} s."
 
 
-def drawings(chambers: tuple[ChamberRecord, ...], planes: tuple[float, ...]) -> list[list[int]]:
+def drawings(chambers: tuple[FilledChamber, ...], planes: tuple[float, ...]) -> list[list[int]]:
     """Chambers that share a drawing because they lie inside one another in one plane, by their indices."""
     groups: list[list[int]] = []
     for j in sorted(range(len(chambers)), key=lambda j: -chambers[j].radius):
@@ -166,7 +166,7 @@ def _points(edge: Any) -> Array:
 
 
 def liquid_shape(
-    chamber: ChamberRecord, frames: RunupFrames, index: int, j: int, factor: float
+    chamber: FilledChamber, frames: RunupFrames, index: int, j: int, factor: float
 ) -> tuple[Any, Any]:
     """Closed outline of the liquid in a chamber and its free surface, about the chamber's centre, mm.
 

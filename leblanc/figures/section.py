@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from leblanc.results.chamber import FilledChamber
 from leblanc.results.drawing import chord, rounded_down
-from leblanc.results.record import ChamberRecord
 from meshes.arrays import Array
 
 RAYS = 361  # one degree apart, closed
@@ -33,7 +33,7 @@ class Exaggeration:
     depth: float
 
 
-def liquid_outline(chamber: ChamberRecord, centre: complex, depth: float) -> tuple[Array, Array, Array]:
+def liquid_outline(chamber: FilledChamber, centre: complex, depth: float) -> tuple[Array, Array, Array]:
     """Liquid between the wall and the circle about the rotation axis that leaves the right area of it.
 
     Parameters
@@ -62,7 +62,7 @@ def liquid_outline(chamber: ChamberRecord, centre: complex, depth: float) -> tup
     return angle, np.clip(0.5 * (low + high), floor, outer), outer
 
 
-def exaggeration(chambers: tuple[ChamberRecord, ...], deflections: tuple[float, ...]) -> Exaggeration:
+def exaggeration(chambers: tuple[FilledChamber, ...], deflections: tuple[float, ...]) -> Exaggeration:
     """Factors that make deflection and layer visible and keep wet walls wet and dry patches dry.
 
     Parameters
@@ -89,14 +89,14 @@ def exaggeration(chambers: tuple[ChamberRecord, ...], deflections: tuple[float, 
     return Exaggeration(factor, factor if dry and min(dry) < depth_factor else depth_factor)
 
 
-def side_by_side(chambers: tuple[ChamberRecord, ...]) -> list[tuple[ChamberRecord, ...]]:
+def side_by_side(chambers: tuple[FilledChamber, ...]) -> list[tuple[FilledChamber, ...]]:
     """Chambers sorted into drawings: those that lie inside one another share one, equal ones are drawn once.
 
     Parameters
     ----------
     chambers : of the rotor, in any order
     """
-    drawings: list[list[ChamberRecord]] = []
+    drawings: list[list[FilledChamber]] = []
     for chamber in sorted(dict.fromkeys(chambers), key=lambda c: -c.radius):
         for drawing in drawings:
             if chamber.radius <= drawing[-1].inner_radius and chamber.plane == drawing[-1].plane:

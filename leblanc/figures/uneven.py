@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.record import ChamberRecord
+from leblanc.results.chamber import FilledChamber
 from meshes.arrays import Array
 from meshes.baffles import Baffles
 from meshes.chamber_section import ChamberSection
@@ -23,7 +23,7 @@ RAYS = 721
 BISECTIONS = 60  # from the radius down to rounding
 
 
-def is_uneven(chamber: ChamberRecord) -> bool:
+def is_uneven(chamber: FilledChamber) -> bool:
     """Baffles or a section of its own."""
     return chamber.baffles is not None or chamber.section is not None
 
@@ -40,7 +40,7 @@ def wall_line(section: ChamberSection) -> list[Array]:
     return [section.mesh.points[one] for one in ordered]
 
 
-def bodies(chamber: ChamberRecord, centre: complex, depth: float) -> list[Array]:
+def bodies(chamber: FilledChamber, centre: complex, depth: float) -> list[Array]:
     """Outline of each body of liquid, m, as closed lines of points, shape (k, 2).
 
     Parameters
@@ -79,7 +79,7 @@ def plates(baffles: Baffles, radius: float, depth_factor: float) -> list[tuple[c
     return [(inner * complex(turn), outer * complex(turn)) for turn in np.exp(1j * baffles.angles)]
 
 
-def _sectors(chamber: ChamberRecord) -> list[Array]:
+def _sectors(chamber: FilledChamber) -> list[Array]:
     """Angles of each body of liquid that cannot mix with the others."""
     baffles = chamber.baffles
     whole = np.linspace(-math.pi, math.pi, RAYS)
@@ -92,7 +92,7 @@ def _sectors(chamber: ChamberRecord) -> list[Array]:
     return [start + np.linspace(0.0, width, RAYS) for start in baffles.angles]
 
 
-def _wall(chamber: ChamberRecord, angle: Array) -> Array:
+def _wall(chamber: FilledChamber, angle: Array) -> Array:
     """Distance of the outermost wall in each direction, m."""
     if chamber.section is None:
         return np.full(angle.shape, chamber.radius)

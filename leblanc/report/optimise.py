@@ -128,7 +128,7 @@ def checks(result: OptimumResult) -> Table:
         ),
     ]
     if result.response is not None:
-        rows += response_checks(result.response, result.tolerance).rows
+        rows += response_checks(result.response).rows
     return table("", ("Limits of the answer", "with the best volumes, at"), rows)
 
 
@@ -144,14 +144,7 @@ def write_optimise_report(
     figures : of it
     path : the file to write or replace
     """
-    names = [span.model for span in result.spans] + (["long_wave"] if result.in_time else [])
-    best = ", ".join(number(one * ML) for one in result.volume.tolist())
-    alts = {
-        "objective": f"Vibration over the volumes that were tried; the best, {best} ml, gives "
-        f"{number(result.vibration * MM)} mm, no liquid {number(result.vibration_baseline * MM)} mm.",
-        "front": "Vibration over the mass of liquid for the points that no other beats, with their stability "
-        "margins, as in the table.",
-    }
+    names = [span.model for span in result.models] + (["long_wave"] if result.in_time else [])
     paste = ", ".join(f'"{volume * ML:.6g} ml"' for volume in result.volume.tolist())
     parts = {
         "title": "Best volume of liquid",
@@ -163,8 +156,8 @@ def write_optimise_report(
         "front": front(result),
         "checks": checks(result),
         "paste": paste,
-        "pictures": [picture(one, alts.get(one.name, one.title), texts(result.notes)) for one in figures],
-        "why": why(result.spans) if result.spans else None,
+        "pictures": [picture(files) for files in figures],
+        "why": why(result.models) if result.models else None,
         "models": models(names),
         "reason": f"{ONE_MODEL} {RUN_UP if result.in_time else ''}".strip(),
         "remarks": notes(texts(result.notes)),

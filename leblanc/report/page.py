@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import platform
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from importlib import metadata, resources
+from importlib import resources
 from pathlib import Path
 from typing import Any
 
 from leblanc.report.inputs import Inputs, scene_inputs
 from leblanc.report.parts import Table, table
+from leblanc.results import provenance
+from leblanc.results.choice import ModelSpan
 from leblanc.results.netcdf import replacing
+from leblanc.results.notes import Note, NoteCode
 from leblanc.results.provenance import one_line
 from leblanc.scene.optimise import Aim
 from leblanc.scene.scene import Scene
-from leblanc.text.models import ModelSpan, described, error_words, speeds_words
+from leblanc.text.models import described, error_words, speeds_words
 
 # What the numbers, the files and the figures come from.
 PACKAGES = (
@@ -88,13 +91,7 @@ def command_line(name: str, scene: Path, *options: tuple[str, object, object]) -
 
 def versions() -> dict[str, str]:
     """Versions of Python and of what the numbers, files and figures come from."""
-    found = {"Python": platform.python_version()}
-    for package in PACKAGES:
-        try:
-            found[package] = metadata.version(package)
-        except metadata.PackageNotFoundError:  # run from a source tree that was never installed
-            found[package] = "not installed"
-    return found
+    return {"Python": platform.python_version()} | provenance.versions(PACKAGES)
 
 
 def citation() -> str:
@@ -126,16 +123,16 @@ def models(names: Sequence[str]) -> list[tuple[str, str]]:
     return described(names)
 
 
-def notes(given: Sequence[str], elsewhere: Sequence[str] = ()) -> list[str]:
-    """Notes of a record without those that the page says in another place.
+def notes(given: Iterable[Note | str], elsewhere: Collection[NoteCode] = ()) -> list[str]:
+    """Sentences of a result's notes without those that the page says in another place.
 
     Parameters
     ----------
-    given : of the record
+    given : of the result
     elsewhere : of these
     """
-    left_out = set(map(one_line, elsewhere))
-    return [line for line in map(one_line, given) if line and line not in left_out]
+    said = [str(note) for note in given if isinstance(note, str) or note.code not in elsewhere]
+    return [line for line in map(one_line, said) if line]
 
 
 def write_page(body: str, what: About, parts: Mapping[str, Any], path: Path) -> None:

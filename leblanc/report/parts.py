@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import base64
-import html
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -16,7 +14,6 @@ if TYPE_CHECKING:
 
 LIGHT = 300_000  # bytes up to which a drawing is kept as lines; beyond it the smaller of the two files
 TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
-SCENE = " Scene: "  # from here on a caption repeats what the page says
 
 
 @dataclass(frozen=True)
@@ -77,7 +74,7 @@ class Picture:
     title, caption : below it
     alt : what it shows, for who cannot see it
     address : that holds the whole picture
-    shape : width and height of what is shown, the lines of the caption cut off; None if not known
+    shape : width and height of what is shown, the drawn caption cut off; None if not known
     """
 
     title: str
@@ -86,52 +83,18 @@ class Picture:
     address: str
     shape: tuple[float, float] | None
 
-    @property
-    def ratio(self) -> float:
-        """Height over width."""
-        return 0.66 if self.shape is None else self.shape[1] / self.shape[0]
 
-
-def picture(files: FigureFiles, alt: str, without: Sequence[str] = ()) -> Picture:
-    """A figure with the caption that is drawn in it as text.
+def picture(files: FigureFiles, alt: str = "") -> Picture:
+    """A figure on disk as a page shows it, with its caption as text.
 
     Parameters
     ----------
     files : of the figure
-    alt : what it shows and the numbers a reader would take from it
-    without : sentences of the caption that the page has elsewhere
+    alt : what it shows and the numbers a reader would take from it; the figure's own if empty
     """
-    drawing = files.svg.read_text(encoding="utf-8")
-    lines, shape = _caption(drawing)
-    text = " ".join(lines).partition(SCENE)[0]
-    for sentence in without:
-        text = text.replace(one_line(sentence), "")
-    text = one_line(text.removeprefix(f"{files.title}."))
-    chosen = min((files.svg, files.png), key=lambda file: file.stat().st_size)
-    chosen = files.svg if files.svg.stat().st_size <= LIGHT else chosen
+    lightest = min((files.svg, files.png), key=lambda file: file.stat().st_size)
+    chosen = files.svg if files.svg.stat().st_size <= LIGHT else lightest
     content = base64.b64encode(chosen.read_bytes()).decode("ascii")
-    return Picture(files.title, text, alt, f"data:{TYPES[chosen.suffix]};base64,{content}", shape)
-
-
-def _caption(drawing: str) -> tuple[list[str], tuple[float, float] | None]:
-    """Lines of the caption of a drawing, and the size of what stands above them, points.
-
-    The lines of a caption stand at the left margin in a size and a grey of their own; each letter is a path,
-    with the text beside it as a comment.
-    """
-    from leblanc.figures.page import CAPTION_ROW, CAPTION_SIZE, RIGHT
-
-    size = re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', drawing)
-    if size is None:
-        return [], None
-    wide, high = map(float, size.groups())
-    scale = re.escape(f"scale({CAPTION_SIZE / 100.0:g} -{CAPTION_SIZE / 100.0:g})")
-    line = (
-        r'<g id="text_\d+">\s*<!-- (.*?) -->\s*<g style="fill: #404040" '
-        rf'transform="translate\({72.0 * RIGHT:g} ([\d.]+)\) {scale}">'
-    )
-    found = sorted((float(below), html.unescape(text)) for text, below in re.findall(line, drawing))
-    if found:
-        # The base of the first line stands a quarter of a row above the row's end.
-        high = found[0][0] - 0.75 * 72.0 * CAPTION_ROW
-    return [text for _, text in found], (round(wide, 2), round(high, 2))
+    text = one_line(files.caption.shown.removeprefix(f"{files.title}."))
+    address = f"data:{TYPES[chosen.suffix]};base64,{content}"
+    return Picture(files.title, text, alt or files.alt or files.title, address, files.drawn)

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from leblanc.report.page import About, models, notes, write_page
 from leblanc.report.parts import Cell, Table, picture, table
+from leblanc.results.notes import percent
 from leblanc.results.provenance import one_line
-from leblanc.results.record import peak
+from leblanc.results.response import peak
 from leblanc.results.runup import RunupResult
 from leblanc.results.runup_notes import CLOSURE, ERROR, IN_TABLES
-from leblanc.text.models import percent
 from leblanc.text.numbers import MOST_RANGES, number
 from leblanc.text.runup import describe_model
 from leblanc.text.runup import moments as samples
@@ -202,15 +202,6 @@ def write_runup_report(result: RunupResult, what: About, figures: Sequence[Figur
     figures : of it
     path : the file to write or replace
     """
-    largest = moments(result).rows[0]
-    at = f"{largest[1].text} mm at {largest[2].text} rpm"
-    alts = {
-        "runup_speed": f"Curve of the amplitude over speed with the steady branches behind; largest {at}.",
-        "runup_time": "Curves over time of speed, amplitude, the place of the liquid and the depth of its "
-        f"layers; largest amplitude {at}.",
-        BALANCE: "Bars of the work done on rotor and liquid and of where it went, as in the table of "
-        "the energy.",
-    }
     count, low, high = len(result.chambers), float(result.speed[0]) * RPM, float(result.speed.max()) * RPM
     back = " and back" if result.turns_back else ""
     machine = (
@@ -225,8 +216,8 @@ def write_runup_report(result: RunupResult, what: About, figures: Sequence[Figur
         "energy": energy(result),
         "checks": checks(result),
         "events": events(result),
-        "balance": [picture(one, alts[one.name]) for one in figures if one.name == BALANCE],
-        "pictures": [picture(one, alts.get(one.name, one.title)) for one in figures if one.name != BALANCE],
+        "balance": [picture(files) for files in figures if files.name == BALANCE],
+        "pictures": [picture(files) for files in figures if files.name != BALANCE],
         "why": why(result),
         "models": models((result.model,)),
         "remarks": notes([note.text for note in result.notes if note.code not in IN_TABLES]),

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from leblanc.results.record import ChamberRecord
+from leblanc.results.chamber import FilledChamber
 from meshes.arrays import Array, Complex
 
 
@@ -86,7 +86,7 @@ SWING = 0.3  # largest deflection as drawn, over the smallest wall radius
 USUAL = 0.9  # of the frames of a film, whose depths its drawing is scaled to
 
 
-def film_factor(chambers: Sequence[ChamberRecord], depth: Array, deflection: Complex) -> float:
+def film_factor(chambers: Sequence[FilledChamber], depth: Array, deflection: Complex) -> float:
     """One factor for deflections and depths, so that a surface round the axis at rest stays so as drawn.
 
     Parameters

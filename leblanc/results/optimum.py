@@ -12,12 +12,12 @@ import numpy as np
 
 from fluid.friction import Friction
 from leblanc.results.base import Result
+from leblanc.results.choice import ModelSpan
 from leblanc.results.netcdf import dataset, flags, write_dataset
 from leblanc.results.netcdf import variable as var
 from leblanc.results.notes import Note, NoteCode, texts
 from leblanc.results.provenance import attributes
-from leblanc.results.record import StudyRecord
-from leblanc.text.models import ModelSpan
+from leblanc.results.response import RunResult
 from leblanc.units import MM, RPM
 from meshes.arrays import Array, Flags
 
@@ -272,8 +272,7 @@ class OptimumResult(Result):
     sweep : from no liquid to the fullest chamber, shares as in the answer; None with the front
     notes : limits and findings
     response : of the machine with these volumes over the scene's speeds; None where the liquid model of the
-        search gives no steady answer, or where it was not asked for
-    spans : which liquid model the search took at these speeds, and why
+        search gives no steady answer, or where it was not asked for; its models are those of the search
     emulator : what the emulator that the search asked says of the answer; None without one
     """
 
@@ -304,8 +303,7 @@ class OptimumResult(Result):
     front: ParetoFront | None
     sweep: ParetoFront | None
     notes: tuple[Note, ...]
-    response: StudyRecord | None = None
-    spans: tuple[ModelSpan, ...] = ()
+    response: RunResult | None = None
     emulator: EmulatedAnswer | None = None
 
     figure = "leblanc.figures.optimise:objective_figure"
@@ -315,6 +313,11 @@ class OptimumResult(Result):
     def feasible(self) -> bool:
         """Every constraint is met."""
         return self.feasibility is Feasibility.FEASIBLE
+
+    @property
+    def models(self) -> tuple[ModelSpan, ...]:
+        """Which liquid model the search took at the scene's speeds, and why."""
+        return () if self.response is None else self.response.models
 
     @property
     def stability_margin(self) -> float:

@@ -14,10 +14,10 @@ def one_line(text: str) -> str:
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 
-def versions() -> dict[str, str]:
-    """Versions of this package and of the libraries its numbers come from."""
+def versions(packages: Iterable[str] = ("leblanc", "numpy", "scipy")) -> dict[str, str]:
+    """Versions of packages, by default of this one and of the libraries that all numbers come from."""
     found = {}
-    for package in ("leblanc", "numpy", "scipy"):
+    for package in packages:
         try:
             found[package] = metadata.version(package)
         except metadata.PackageNotFoundError:  # run from a source tree that was never installed

@@ -1,25 +1,303 @@
-"""What `run` writes for other programs: the dataset and the JSON object."""
+"""The response of a machine to its unbalance over speed: what `run` answers."""
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass, fields
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from leblanc.results.base import Result
+from leblanc.results.chamber import FilledChamber
+from leblanc.results.choice import ModelSpan
+from leblanc.results.motion import Motion, SelfExcited
 from leblanc.results.netcdf import dataset, flags
 from leblanc.results.netcdf import variable as var
-from leblanc.results.provenance import one_line, versions
-from leblanc.results.record import ChamberRecord as ChamberRecord
-from leblanc.results.record import StudyRecord as StudyRecord
-from leblanc.results.record import models_used, phase
+from leblanc.results.notes import Note, texts
+from leblanc.results.provenance import attributes, one_line
+from meshes.arrays import Array, Complex, Flags
+from meshes.errors import InputError
+from solvers.synchronous.planar import Response
 
 if TYPE_CHECKING:
     from leblanc.results.netcdf import Dataset, Variable
 
 SCALARS = ("liquid_mass", "critical_speed_dry", "critical_speed_wet", "capture_speed")
 STATES = ("dry_patch", "stable", "model", "in_range", "converged")  # over speed
+
+
+def phase(deflection: NDArray[np.complex128]) -> Array:
+    """Angle from the unbalance to the deflection.
+
+    Parameters
+    ----------
+    deflection : complex, the unbalance pointing along the real axis, m, shape (...,)
+
+    Returns
+    -------
+    rad in (-pi, pi], negative where the deflection lags, 0 where there is none, shape (...,).
+    """
+    angle = np.angle(deflection)
+    angle = np.where(angle <= -math.pi, math.pi, angle)
+    return np.where(deflection == 0.0, 0.0, angle)
+
+
+def peak(deflection: NDArray[np.complex128] | Array) -> int | None:
+    """Index of the largest deflection, the first of equals; None if there is no finite one.
+
+    Parameters
+    ----------
+    deflection : complex or its size, nan where nothing was found, m, shape (n,)
+    """
+    size = np.abs(deflection)
+    known = np.asarray(np.isfinite(size))
+    return int(np.argmax(np.where(known, size, -1.0))) if known.any() else None
+
+
+@dataclass(frozen=True)
+class RunResult(Result):
+    """Response to the unbalance at each speed, the machine it belongs to, and what a reader must know.
+
+    Parameters
+    ----------
+    name, source : of the scene, free text
+    assumed : field paths of the values that no source gives
+    inputs : label, value with its unit, field path
+    digest : of the scene
+    response : the answer at each speed, SI
+    liquid_mass : of all chambers, kg
+    notes : limits of validity and findings
+    axis : "horizontal" or "vertical"
+    chambers : one for each chamber
+    capture_speed : below it gravity keeps the liquid from riding with the drum, rad/s; None if never
+    critical_speed_dry, critical_speed_wet : without liquid and with its added mass, rad/s; of several the one
+        at which the unbalance moves the axis most
+    motion : None for a planar rotor
+    whirl : None where it was not asked for
+    error_estimate : relative, of amplitude and liquid the larger one, nan where there is none, shape (n,);
+        None where nothing was estimated
+    models : which liquid model answers at which speeds, how well, and why; empty where that is not known
+    tolerance : relative error that the scene allows; None where nothing was estimated
+
+    Raises
+    ------
+    InputError : no speed at all, an axis of another name, arrays of the response that do not fit together
+    """
+
+    figure: ClassVar[str] = "leblanc.figures.response:amplitude_figure"
+    summary: ClassVar[str] = "leblanc.text.run:summary"
+
+    name: str
+    source: str
+    assumed: tuple[str, ...]
+    inputs: tuple[tuple[str, str, str], ...]
+    digest: str
+    response: Response
+    liquid_mass: float
+    notes: tuple[Note, ...]
+    axis: str
+    chambers: tuple[FilledChamber, ...]
+    capture_speed: float | None
+    critical_speed_dry: float
+    critical_speed_wet: float
+    motion: Motion | None = None
+    whirl: SelfExcited | None = None
+    error_estimate: Array | None = None
+    models: tuple[ModelSpan, ...] = ()
+    tolerance: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.axis not in ("horizontal", "vertical"):
+            raise InputError("rotor.axis", self.axis, "horizontal or vertical")
+        count = self.response.speed.size
+        if self.response.speed.ndim != 1 or count == 0:
+            raise InputError("speeds", self.response.speed.shape, "a list of at least one speed")
+        branches = self.response.branch_deflection.shape
+        for field in fields(self.response):
+            shape = getattr(self.response, field.name).shape
+            expected = (count, *branches[1:]) if field.name.startswith("branch_") else (count,)
+            if shape != expected:
+                raise InputError(f"response.{field.name}", shape, f"of shape {expected}")
+
+    @property
+    def amplitude(self) -> Array:
+        """Largest distance of the axis from the line it rests in, of the branch reported, m, shape (n,)."""
+        more = 0.0 if self.motion is None else np.abs(self.motion.backward)
+        return np.asarray(np.abs(self.response.deflection) + more)
+
+    @property
+    def amplitude_dry(self) -> Array:
+        """The same of the rotor without liquid, m, shape (n,)."""
+        more = 0.0 if self.motion is None else np.abs(self.motion.backward_dry)
+        return np.asarray(np.abs(self.response.deflection_dry) + more)
+
+    @property
+    def branch_amplitude(self) -> Array:
+        """The same of every branch, nan where there is none, m, shape (n, b)."""
+        more = 0.0 if self.motion is None else np.abs(self.motion.branch_backward)
+        return np.asarray(np.abs(self.response.branch_deflection) + more)
+
+    @property
+    def speed(self) -> Array:
+        """Spin speed, rad/s, shape (n,)."""
+        return self.response.speed
+
+    @property
+    def deflection(self) -> Complex:
+        """Deflection of the branch reported, from the unbalance, m, shape (n,)."""
+        return self.response.deflection
+
+    @property
+    def deflection_dry(self) -> Complex:
+        """The same of the rotor without liquid, m, shape (n,)."""
+        return self.response.deflection_dry
+
+    @property
+    def phase(self) -> Array:
+        """Angle from the unbalance to the deflection, rad, negative where it lags, shape (n,)."""
+        return phase(self.response.deflection)
+
+    @property
+    def liquid_offset(self) -> Array:
+        """Distance of the liquid's centre of mass from the rotation axis, m, shape (n,)."""
+        return self.response.liquid_offset
+
+    @property
+    def liquid_angle(self) -> Array:
+        """Angle from the unbalance to the liquid's centre of mass, rad, shape (n,)."""
+        return self.response.liquid_angle
+
+    @property
+    def dry_patch(self) -> Flags:
+        """The wall is dry somewhere in at least one chamber, shape (n,)."""
+        return self.response.dry_patch
+
+    @property
+    def stable(self) -> Flags:
+        """The branch reported is stable, shape (n,)."""
+        return self.response.stable
+
+    @property
+    def model(self) -> NDArray[np.str_]:
+        """Name of the liquid model used, shape (n,)."""
+        return self.response.model
+
+    @property
+    def in_range(self) -> Flags:
+        """The liquid model holds there, shape (n,)."""
+        return self.response.in_range
+
+    @property
+    def converged(self) -> Flags:
+        """Every branch was found, shape (n,)."""
+        return self.response.converged
+
+    @property
+    def growth(self) -> Array | None:
+        """Growth of the whirl that grows most by itself, 1/s, shape (n,); None where it was not asked for."""
+        return None if self.whirl is None else self.whirl.growth
+
+    @property
+    def whirl_speed(self) -> Array | None:
+        """Speed of that whirl in space, rad/s, shape (n,); None where it was not asked for."""
+        return None if self.whirl is None else self.whirl.whirl_speed
+
+    @property
+    def models_used(self) -> tuple[str, ...]:
+        """Names of the liquid models, in the order in which they appear over speed."""
+        return tuple(dict.fromkeys(self.response.model.tolist()))
+
+    def to_json(self) -> dict[str, Any]:
+        """What `run` prints for scripts: plain Python values, SI, radians, complex numbers as [re, im].
+
+        Lists run over speed, with None (null) where nothing was found; `branches` has one list for each
+        speed, of as many deflections as there are branches.
+        """
+        r = self.response
+        present = ~np.isnan(r.branch_deflection)
+        ends = np.cumsum(np.count_nonzero(present, axis=1)).tolist()
+        rows = [slice(start, stop) for start, stop in pairwise([0, *ends])]
+        branches, branch_stable = _finite(r.branch_deflection[present]), r.branch_stable[present].tolist()
+        return {
+            "speed": _finite(r.speed),
+            "amplitude": _finite(self.amplitude),
+            "amplitude_dry": _finite(self.amplitude_dry),
+            "phase": _finite(phase(r.deflection)),
+            "liquid_offset": _finite(r.liquid_offset),
+            "liquid_angle": _finite(r.liquid_angle),
+            **{name: getattr(r, name).tolist() for name in STATES},
+            "deflection": _finite(r.deflection),
+            "branches": [branches[row] for row in rows],
+            "branch_stable": [branch_stable[row] for row in rows],
+            **{name: getattr(self, name) for name in ("name", "digest", *SCALARS)},
+            "assumed": list(self.assumed),
+            "notes": list(texts(self.notes)),
+            **({} if self.error_estimate is None else {"error_estimate": _finite(self.error_estimate)}),
+            **_motion_json(self.motion),
+            **_whirl_json(self.whirl),
+        }
+
+    def to_dataset(self) -> Dataset:
+        """Dataset with dimensions `speed` and `branch`; units, names and descriptions in the attributes.
+
+        netCDF has no complex numbers and no truth values: deflections are pairs `_real`, `_imag`, truth
+        values are bytes with `flag_meanings`. There is no time stamp, so one result gives one file, byte for
+        byte, as long as the versions of xarray, h5netcdf and HDF5 stay the same.
+        """
+        rank = np.arange(self.response.branch_deflection.shape[1], dtype=np.int32)
+        own = {
+            "inputs": "\n".join(one_line("{}: {} [{}]".format(*entry)) for entry in self.inputs),
+            "model": ", ".join(self.models_used),
+            "axis": self.axis,
+        }
+        return dataset(
+            _variables(self),
+            coords={
+                "speed": var(("speed",), self.speed, "rad s-1", "spin speed", "of the rotor about its axis"),
+                "branch": var(("branch",), rank, "1", "branch", "rank by rising amplitude"),
+            },
+            attrs=attributes(self, "run", own, self.notes),
+        )
+
+
+def _finite(values: NDArray[Any]) -> list[Any]:
+    """Nested lists, None in place of what is not finite, complex numbers as [re, im]."""
+    known = np.isfinite(values)
+    if np.iscomplexobj(values):
+        values, known = np.stack([values.real, values.imag], axis=-1), np.stack([known, known], axis=-1)
+    if known.all():
+        return list(values.tolist())
+    found: list[Any] = np.where(known, values, np.array(None)).tolist()
+    return found
+
+
+def _whirl_json(whirl: SelfExcited | None) -> dict[str, Any]:
+    """Self-excited whirl over speed, and the bands of speed in which it grows."""
+    if whirl is None:
+        return {}
+    return {
+        "growth": _finite(whirl.growth),
+        "whirl_speed": _finite(whirl.whirl_speed),
+        "whirl_bands": [list(band) for band in whirl.bands],
+    }
+
+
+def _motion_json(motion: Motion | None) -> dict[str, Any]:
+    """What a rotor that is not planar adds; critical speeds as [rad/s, direction of the whirl]."""
+    if motion is None:
+        return {}
+    return {
+        "position": motion.position,
+        "backward": _finite(motion.backward),
+        "chamber_deflection": _finite(motion.chamber_forward),
+        "natural_frequency": [mode.frequency for mode in motion.modes],
+        "natural_damping_ratio": [mode.damping_ratio for mode in motion.modes],
+        "critical_speeds_dry": [list(speed) for speed in motion.critical_speeds_dry],
+        "critical_speeds_wet": [list(speed) for speed in motion.critical_speeds_wet],
+    }
 
 
 def _pair(name: str, dims: tuple[str, ...], values: NDArray[Any], long_name: str) -> dict[str, Variable]:
@@ -31,15 +309,15 @@ def _pair(name: str, dims: tuple[str, ...], values: NDArray[Any], long_name: str
     }
 
 
-def _variables(record: StudyRecord) -> dict[str, Variable]:
+def _variables(result: RunResult) -> dict[str, Variable]:
     """Variables of the dataset by name."""
-    r, over, each, rate = record.response, ("speed",), ("speed", "branch"), "rad s-1"
+    r, over, each, rate = result.response, ("speed",), ("speed", "branch"), "rad s-1"
     states = np.where(np.isnan(r.branch_deflection), -1, r.branch_stable)
-    mass, dry, wet, capture = (np.array(getattr(record, name), dtype=np.float64) for name in SCALARS)
+    mass, dry, wet, capture = (np.array(getattr(result, name), dtype=np.float64) for name in SCALARS)
     lag, slow = "from the unbalance, positive with the spin, a lag is negative", "against slow disturbances"
     return {
-        "amplitude": var(over, record.amplitude, "m", "amplitude", "of the branch reported"),
-        "amplitude_dry": var(over, record.amplitude_dry, "m", "amplitude", "without liquid"),
+        "amplitude": var(over, result.amplitude, "m", "amplitude", "of the branch reported"),
+        "amplitude_dry": var(over, result.amplitude_dry, "m", "amplitude", "without liquid"),
         "phase": var(over, phase(r.deflection), "rad", "phase of the deflection", lag),
         "phase_dry": var(over, phase(r.deflection_dry), "rad", "phase without liquid", lag),
         **_pair("deflection", over, r.deflection, "deflection of the branch reported"),
@@ -57,39 +335,39 @@ def _variables(record: StudyRecord) -> dict[str, Variable]:
         "critical_speed_dry": var((), dry, rate, "critical speed without liquid", "undamped"),
         "critical_speed_wet": var((), wet, rate, "critical speed with liquid", "undamped, wall wet"),
         "capture_speed": var((), capture, rate, "capture speed", "the liquid rides with the drum above it"),
-        **_error_variables(record),
-        **_motion_variables(record),
-        **_whirl_variables(record),
+        **_error_variables(result),
+        **_motion_variables(result),
+        **_whirl_variables(result),
     }
 
 
-def _error_variables(record: StudyRecord) -> dict[str, Variable]:
+def _error_variables(result: RunResult) -> dict[str, Variable]:
     """Estimated error over speed."""
-    if record.error_estimate is None:
+    if result.error_estimate is None:
         return {}
     text = "relative, of amplitude and liquid the larger one"
-    return {"error_estimate": var(("speed",), record.error_estimate, "1", "estimated error", text)}
+    return {"error_estimate": var(("speed",), result.error_estimate, "1", "estimated error", text)}
 
 
-def _whirl_variables(record: StudyRecord) -> dict[str, Variable]:
+def _whirl_variables(result: RunResult) -> dict[str, Variable]:
     """Self-excited whirl over speed."""
-    if record.whirl is None:
+    if result.whirl is None:
         return {}
     most, over = "of the whirl that grows most", ("speed",)
     return {
-        "growth": var(over, record.whirl.growth, "s-1", "growth rate", f"{most}; above 0 unstable"),
-        "whirl_speed": var(over, record.whirl.whirl_speed, "rad s-1", "whirl speed", f"{most}, in space"),
+        "growth": var(over, result.whirl.growth, "s-1", "growth rate", f"{most}; above 0 unstable"),
+        "whirl_speed": var(over, result.whirl.whirl_speed, "rad s-1", "whirl speed", f"{most}, in space"),
     }
 
 
-def _motion_variables(record: StudyRecord) -> dict[str, Variable]:
-    """What a rotor that is not planar adds; dimensions `mode` and `chamber` besides those of all records."""
-    motion, over, each, rate = record.motion, ("speed",), ("speed", "branch"), "rad s-1"
+def _motion_variables(result: RunResult) -> dict[str, Variable]:
+    """What a rotor that is not planar adds; dimensions `mode` and `chamber` come with it."""
+    motion, over, each, rate = result.motion, ("speed",), ("speed", "branch"), "rad s-1"
     if motion is None:
         return {}
     c, against = motion.campbell, "turning against the spin"
     by_spin = ("spin", "mode")
-    at_rest = np.array([(one.frequency, one.damping_ratio) for one in motion.modes]).reshape(-1, 2)
+    at_rest = np.array([(mode.frequency, mode.damping_ratio) for mode in motion.modes]).reshape(-1, 2)
     sense = "-1 against the spin to 1 with it"
     return {
         **_pair("backward", over, motion.backward, f"part of the deflection {against}"),
@@ -103,117 +381,4 @@ def _motion_variables(record: StudyRecord) -> dict[str, Variable]:
         "campbell_direction": var(by_spin, c.direction, "1", "direction of the whirl", sense),
         "natural_frequency": var(("rest_mode",), at_rest[:, 0], rate, "natural frequency", "at rest, dry"),
         "natural_damping_ratio": var(("rest_mode",), at_rest[:, 1], "1", "damping ratio", "at rest, dry"),
-    }
-
-
-def to_dataset(record: StudyRecord) -> Dataset:
-    """Dataset of a study, dimensions `speed` and `branch`.
-
-    netCDF has no complex numbers and no truth values: deflections are pairs `_real`, `_imag`, truth values
-    are bytes with `flag_meanings`. There is no time stamp, so one record gives one file, byte for byte, as
-    long as the versions of xarray, h5netcdf and HDF5 stay the same.
-
-    Parameters
-    ----------
-    record : the study
-
-    Returns
-    -------
-    Variables with `units`, `long_name` and `description`; scene, digest and versions in the attributes.
-    """
-    speed, branches = record.response.speed, record.response.branch_deflection.shape[1]
-    rank = np.arange(branches, dtype=np.int32)
-    return dataset(
-        _variables(record),
-        coords={
-            "speed": var(("speed",), speed, "rad s-1", "spin speed", "of the rotor about its axis"),
-            "branch": var(("branch",), rank, "1", "branch", "rank by rising amplitude"),
-        },
-        attrs={
-            "title": one_line(record.name),
-            "source": one_line(record.source) or "not stated",
-            "digest": record.digest,
-            "assumed": "; ".join(map(one_line, record.assumed)) or "nothing",
-            "inputs": "\n".join(one_line("{}: {} [{}]".format(*entry)) for entry in record.inputs),
-            "model": ", ".join(models_used(record.response)),
-            "axis": record.axis,
-            "notes": "\n".join(map(one_line, record.notes)) or "none",
-            "history": "written by leblanc run",
-            **{f"version_{package}": version for package, version in versions().items()},
-        },
-    )
-
-
-def _finite(values: NDArray[Any]) -> list[Any]:
-    """Nested lists, None in place of what is not finite, complex numbers as [re, im]."""
-    known = np.isfinite(values)
-    if np.iscomplexobj(values):
-        values, known = np.stack([values.real, values.imag], axis=-1), np.stack([known, known], axis=-1)
-    if known.all():
-        return list(values.tolist())
-    found: list[Any] = np.where(known, values, np.array(None)).tolist()
-    return found
-
-
-def run_json(record: StudyRecord) -> dict[str, Any]:
-    """What `run` prints for scripts: plain Python values, SI, radians, complex numbers as [re, im].
-
-    Parameters
-    ----------
-    record : the study
-
-    Returns
-    -------
-    Lists over speed, with None (null) where nothing was found; `branches` has one list for each speed, of
-    as many deflections as there are branches.
-    """
-    r = record.response
-    present = ~np.isnan(r.branch_deflection)
-    ends = np.cumsum(np.count_nonzero(present, axis=1)).tolist()
-    rows = [slice(start, stop) for start, stop in pairwise([0, *ends])]
-    branches, branch_stable = _finite(r.branch_deflection[present]), r.branch_stable[present].tolist()
-    return {
-        "speed": _finite(r.speed),
-        "amplitude": _finite(record.amplitude),
-        "amplitude_dry": _finite(record.amplitude_dry),
-        "phase": _finite(phase(r.deflection)),
-        "liquid_offset": _finite(r.liquid_offset),
-        "liquid_angle": _finite(r.liquid_angle),
-        **{name: getattr(r, name).tolist() for name in STATES},
-        "deflection": _finite(r.deflection),
-        "branches": [branches[row] for row in rows],
-        "branch_stable": [branch_stable[row] for row in rows],
-        **{name: getattr(record, name) for name in ("name", "digest", *SCALARS)},
-        "assumed": list(record.assumed),
-        "notes": list(record.notes),
-        **({} if record.error_estimate is None else {"error_estimate": _finite(record.error_estimate)}),
-        **_motion_json(record),
-        **_whirl_json(record),
-    }
-
-
-def _whirl_json(record: StudyRecord) -> dict[str, Any]:
-    """Self-excited whirl over speed, and the bands of speed in which it grows."""
-    if record.whirl is None:
-        return {}
-    return {
-        "growth": _finite(record.whirl.growth),
-        "whirl_speed": _finite(record.whirl.whirl_speed),
-        "whirl_bands": [list(band) for band in record.whirl.bands],
-    }
-
-
-def _motion_json(record: StudyRecord) -> dict[str, Any]:
-    """What a rotor that is not planar adds; critical speeds as [rad/s, direction of the whirl]."""
-    motion = record.motion
-    if motion is None:
-        return {}
-    return {
-        "position": motion.position,
-        "backward": _finite(motion.backward),
-        "chamber_deflection": _finite(motion.chamber_forward),
-        "natural_frequency": [one.frequency for one in motion.modes],
-        "natural_damping_ratio": [one.damping_ratio for one in motion.modes],
-        "critical_speeds_dry": [list(one) for one in motion.critical_speeds_dry],
-        "critical_speeds_wet": [list(one) for one in motion.critical_speeds_wet],
     }

@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 from fluid.friction import Friction
 from leblanc.friction import friction_words
 from leblanc.results.base import Result
+from leblanc.results.chamber import FilledChamber
 from leblanc.results.netcdf import dataset, flags, variable, write_dataset
 from leblanc.results.notes import Note, texts
 from leblanc.results.provenance import attributes, one_line
-from leblanc.results.record import ChamberRecord, phase
+from leblanc.results.response import phase
 from meshes.arrays import Array, Complex, Flags
 from solvers.runup.runup import EnergyAudit, RunupHistory
 from solvers.synchronous.planar import Response
@@ -135,7 +136,7 @@ class RunupResult(Result):
     in_range: Flags
     steady: Response | None
     bands: Bands
-    chambers: tuple[ChamberRecord, ...]
+    chambers: tuple[FilledChamber, ...]
     planes: tuple[float, ...]
     notes: tuple[Note, ...]
     frames: RunupFrames | None = None

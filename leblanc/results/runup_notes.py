@@ -9,7 +9,7 @@ import numpy as np
 from fluid.friction import Friction
 from leblanc.friction import friction_words
 from leblanc.results.notes import Note, NoteCode, percent
-from leblanc.results.record import peak
+from leblanc.results.response import peak
 from leblanc.units import MM, RPM
 from meshes.arrays import Flags
 from solvers.runup.runup import RunupHistory

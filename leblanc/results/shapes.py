@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from leblanc.results.drawing import Scale
-from leblanc.results.record import StudyRecord
+from leblanc.results.response import RunResult
 from leblanc.results.runup import RunupFrames, RunupResult
 from meshes.arrays import Array, Complex, Indices
 from meshes.bodies.body import Body, body_integrals
@@ -138,7 +138,7 @@ class MachineMotion:
     lean : slope of the axis along itself, rad, shape (s,)
     """
 
-    response: StudyRecord
+    response: RunResult
     fills: tuple[Fill, ...]
     places: tuple[float, ...]
     moved: bool

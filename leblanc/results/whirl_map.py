@@ -1,71 +1,92 @@
-"""What `map` writes for other programs: the dataset and the JSON object."""
+"""The map of self-excited whirl over spin speed and liquid volume: what `map` answers."""
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from leblanc.results.netcdf import dataset, flags, write_dataset
+from leblanc.results.base import Result
+from leblanc.results.netcdf import dataset, flags
 from leblanc.results.netcdf import variable as var
-from leblanc.results.provenance import one_line, versions
-from leblanc.studies.whirl_map import StabilityRecord
+from leblanc.results.notes import Note, texts
+from leblanc.results.provenance import attributes
+from meshes.arrays import Array, Flags
+
+if TYPE_CHECKING:
+    from leblanc.results.netcdf import Dataset
+    from solvers.whirl.edges import Bands
 
 
-def write_map(record: StabilityRecord, path: Path) -> None:
-    """Write a stability map as netCDF 4, dimensions `volume`, `speed` and `band`.
-
-    Truth values are bytes with `flag_meanings`; volumes with fewer bands than others have nan in `edge_low`
-    and `edge_high`.
+@dataclass(frozen=True)
+class WhirlMap(Result):
+    """Growth of self-excited whirl; n speeds, v volumes.
 
     Parameters
     ----------
-    record : the map
-    path : the file to write or replace
+    name, source, assumed, digest : of the scene
+    speed : spin speed Omega, rad/s, shape (n,)
+    volume : liquid in all chambers together, m^3, shape (v,)
+    growth : of the whirl that grows most, 1/s, 0 if rounding cannot tell, nan if not found, shape (v, n)
+    whirl_speed : of that whirl in the standing frame, rad/s, positive with the spin, shape (v, n)
+    in_range : the plane layer is a fair picture of the liquid there, shape (v, n)
+    edges : for each volume the bands of speed in which a whirl grows, rad/s; an end that is the first or last
+        speed is where the range ends
+    friction, damping : of the liquid, of the support, in words
+    scene_volume, scene_edges : of the scene as it stands, m^3 and as in `edges`
+    notes : limits of validity and findings
     """
-    over, bands = ("volume", "speed"), max(map(len, record.edges), default=0)
-    ends = np.full((record.volume.size, bands, 2), np.nan)
-    for row, found in zip(ends, record.edges, strict=True):
-        row[: len(found)] = np.reshape(found, (len(found), 2))
 
-    mode = "of the whirl that grows most"
-    held = flags(over, record.in_range, "no yes", "in range", "the plane layer holds there")
-    edge = "of a band in which a whirl grows; the ends of the range of speeds count as edges"
-    whole = dataset(
-        {
-            "growth": var(over, record.growth, "s-1", "growth rate", f"{mode}; above 0 unstable"),
-            "whirl_speed": var(over, record.whirl_speed, "rad s-1", "whirl speed", f"{mode}, in space"),
-            "in_range": held,
-            "edge_low": var(("volume", "band"), ends[..., 0], "rad s-1", "lower edge", edge),
-            "edge_high": var(("volume", "band"), ends[..., 1], "rad s-1", "upper edge", edge),
-        },
-        coords={
-            "speed": var(("speed",), record.speed, "rad s-1", "spin speed", "of the rotor about its axis"),
-            "volume": var(("volume",), record.volume, "m3", "volume", "of liquid in all chambers together"),
-        },
-        attrs=_attributes(record),
-    )
-    write_dataset(whole, path)
+    figure: ClassVar[str] = "leblanc.figures.stability_map:map_figure"
+    summary: ClassVar[str] = "leblanc.text.whirl_map:facts"
 
+    name: str
+    source: str
+    assumed: tuple[str, ...]
+    digest: str
+    speed: Array
+    volume: Array
+    growth: Array
+    whirl_speed: Array
+    in_range: Flags
+    edges: tuple[Bands, ...]
+    friction: str
+    damping: str
+    scene_volume: float
+    scene_edges: Bands
+    notes: tuple[Note, ...]
 
-def _attributes(record: StabilityRecord) -> dict[str, str]:
-    """Scene, model and versions."""
-    return {
-        "title": one_line(record.name),
-        "source": one_line(record.source) or "not stated",
-        "digest": record.digest,
-        "assumed": "; ".join(map(one_line, record.assumed)) or "nothing",
-        "friction": record.friction,
-        "damping": record.damping,
-        "notes": "\n".join(map(one_line, record.notes)) or "none",
-        "history": "written by leblanc map",
-        **{f"version_{package}": version for package, version in versions().items()},
-    }
+    def to_json(self) -> dict[str, Any]:
+        """What `map` prints for scripts, SI: rows of `growth`, `whirl_speed`, `in_range` follow `volume`."""
+        names = ["speed", "volume", "growth", "whirl_speed", "edges", "in_range", "friction", "damping"]
+        names += ["scene_volume", "scene_edges", "name", "digest", "assumed"]
+        return {name: getattr(self, name) for name in names} | {"notes": texts(self.notes)}
 
+    def to_dataset(self) -> Dataset:
+        """Dataset with dimensions `volume`, `speed` and `band`.
 
-def map_json(record: StabilityRecord) -> dict[str, Any]:
-    """What `map` prints for scripts, SI: rows of `growth`, `whirl_speed` and `in_range` follow `volume`."""
-    names = ["speed", "volume", "growth", "whirl_speed", "edges", "in_range", "friction", "damping"]
-    names += ["scene_volume", "scene_edges", "name", "digest", "assumed", "notes"]
-    return {name: getattr(record, name) for name in names}
+        Truth values are bytes with `flag_meanings`; volumes with fewer bands than others have nan in
+        `edge_low` and `edge_high`.
+        """
+        over, bands = ("volume", "speed"), max(map(len, self.edges), default=0)
+        ends = np.full((self.volume.size, bands, 2), np.nan)
+        for row, found in zip(ends, self.edges, strict=True):
+            row[: len(found)] = np.reshape(found, (len(found), 2))
+        mode = "of the whirl that grows most"
+        held = flags(over, self.in_range, "no yes", "in range", "the plane layer holds there")
+        edge = "of a band in which a whirl grows; the ends of the range of speeds count as edges"
+        return dataset(
+            {
+                "growth": var(over, self.growth, "s-1", "growth rate", f"{mode}; above 0 unstable"),
+                "whirl_speed": var(over, self.whirl_speed, "rad s-1", "whirl speed", f"{mode}, in space"),
+                "in_range": held,
+                "edge_low": var(("volume", "band"), ends[..., 0], "rad s-1", "lower edge", edge),
+                "edge_high": var(("volume", "band"), ends[..., 1], "rad s-1", "upper edge", edge),
+            },
+            coords={
+                "speed": var(("speed",), self.speed, "rad s-1", "spin speed", "of the rotor about its axis"),
+                "volume": var(("volume",), self.volume, "m3", "volume", "of liquid in all chambers together"),
+            },
+            attrs=attributes(self, "map", {"friction": self.friction, "damping": self.damping}, self.notes),
+        )

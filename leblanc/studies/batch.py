@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.record import phase
-from leblanc.scene.machine import jeffcott
+from leblanc.results.response import phase
 from leblanc.scene.scene import Rotor, Scene
-from leblanc.studies.choose import axial_gravity, choose_all
+from leblanc.studies.choose import choose_all
+from leblanc.studies.prepare import prepare
 from leblanc.studies.run import run_scene
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
@@ -95,12 +95,13 @@ def answer_scenes(scenes: Sequence[Scene]) -> Answers:
 def _planar(scenes: Sequence[Scene]) -> Answers:
     """Answers of planar rotors, over all pairs of a scene and a speed at once."""
     shape = len(scenes), scenes[0].speeds.count
-    machines = [(jeffcott(scene), scene.chambers) for scene in scenes]
-    gravity = np.array([axial_gravity(scene) for scene in scenes])
-    choices = choose_all(scenes)
-    speed = np.stack([scene.speed_array() for scene in scenes]).ravel()
+    prepared = [prepare(scene) for scene in scenes]
+    machines = [(machine.planar, machine.scene.chambers) for machine in prepared]
+    gravity = np.array([machine.axial_gravity for machine in prepared])
+    choices = choose_all(prepared)
+    speed = np.stack([machine.speed for machine in prepared]).ravel()
     owner = np.repeat(np.arange(len(scenes)), shape[1])
-    frictions = [scene.model.friction for scene in scenes]
+    frictions = [machine.friction for machine in prepared]
     growth, whirl_speed = machines_growth(machines, frictions, owner, speed)
     model = np.concatenate([choice.models for choice in choices])
     found: dict[str, Any] = {
@@ -128,17 +129,7 @@ def _planar(scenes: Sequence[Scene]) -> Answers:
 
 def _single(scene: Scene) -> Answers:
     """Answers of one scene as `run` gives them."""
-    record = run_scene(scene)
-    one, whirl = record.response, record.whirl
-    nothing = np.full(one.speed.shape, np.nan)
-    found: dict[str, Any] = {
-        "amplitude": record.amplitude,
-        "amplitude_dry": record.amplitude_dry,
-        "phase": phase(one.deflection),
-        "growth": nothing if whirl is None else whirl.growth,
-        "whirl_speed": nothing if whirl is None else whirl.whirl_speed,
-        "error_estimate": nothing if record.error_estimate is None else record.error_estimate,
-    }
-    rest = [field.name for field in fields(Answers) if field.name not in found]
-    found |= {name: getattr(one, name) for name in rest}
-    return Answers(**{name: value[None] for name, value in found.items()})
+    result = run_scene(scene)
+    nothing = np.full(result.speed.shape, np.nan)
+    found = {field.name: getattr(result, field.name) for field in fields(Answers)}
+    return Answers(**{name: (nothing if value is None else value)[None] for name, value in found.items()})

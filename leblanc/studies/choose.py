@@ -1,22 +1,22 @@
-"""Which liquid model a scene needs at each speed: cheapest within the tolerance."""
+"""Which liquid model a scene needs at each speed: the cheapest within the tolerance."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed
-from leblanc.scene.machine import dry_rotor, jeffcott
-from leblanc.scene.scene import Rotor, Scene
-from meshes.arrays import Array, Flags
+from leblanc.results.choice import Choice
+from leblanc.scene.scene import Scene
+from leblanc.studies.prepare import Prepared, prepare
+from meshes.arrays import Array
 from meshes.chamber_section import rest_offset, surface_is_whole
 from meshes.errors import InputError
+from solvers.rotor.jeffcott import Jeffcott
 from solvers.synchronous.coupled_errors import coupled_error
 from solvers.synchronous.errors import ROUNDING, LinearError, planar_enclosure, planar_gravity_error
 from solvers.synchronous.models import SYNCHRONOUS_MODELS, synchronous_model
@@ -26,53 +26,6 @@ _NO_DEPTH = 1e-6  # over the surface's radius: a slit that reaches the surface l
 _BALANCED = 1e-3  # of the surface's radius, that the liquid at rest may lie off the axis
 
 
-@dataclass(frozen=True)
-class Choice:
-    """The liquid model of a scene at each of its speeds, shape (n,).
-
-    Parameters
-    ----------
-    model : the most exact of the models taken
-    models : name of the model taken at each speed
-    asked : the scene names the model itself
-    in_range : the liquid rides with the drum
-    captured_from : speed above which it does, rad/s; None if at every speed
-    tolerance : relative error that the scene allows
-    error : estimated relative error of what is taken, of amplitude and liquid the larger one; nan where there
-        is no estimate
-    linear : error of the linear theory against the exact equilibrium
-    gravity : estimated error by gravity across the axis, which no model of a steady answer has; nan where the
-        liquid does not ride with the drum
-    cut : baffles cut the liquid of a chamber into compartments, or its section is no circle
-    """
-
-    model: str
-    models: NDArray[np.str_]
-    asked: bool
-    in_range: Flags
-    captured_from: float | None
-    tolerance: float
-    error: Array
-    linear: LinearError
-    gravity: Array
-    cut: bool = False
-
-    @property
-    def missed(self) -> Flags:
-        """Where even the model taken is not known to be within the tolerance, shape (n,)."""
-        return ~(self.error <= self.tolerance)
-
-
-def axial_gravity(scene: Scene) -> float:
-    """Gravity along the rotor's axis, m/s^2: none if the axis lies."""
-    return scene.gravity if scene.rotor.axis == "vertical" else 0.0
-
-
-def across_gravity(scene: Scene) -> float:
-    """Gravity across the rotor's axis, m/s^2: none if the axis stands."""
-    return scene.gravity if scene.rotor.axis == "horizontal" else 0.0
-
-
 def choose(scene: Scene) -> Choice:
     """Liquid model for the synchronous response of a scene at each of its speeds.
 
@@ -80,27 +33,28 @@ def choose(scene: Scene) -> Choice:
     ------
     InputError : the scene asks for a model that does not answer the synchronous response, or is an exciter
     """
-    return choose_all([scene])[0]
+    return choose_all([prepare(scene)])[0]
 
 
-def choose_all(scenes: Sequence[Scene]) -> list[Choice]:
-    """`choose` for several scenes, those of planar rotors all at once.
+def choose_all(machines: Sequence[Prepared]) -> list[Choice]:
+    """`choose` for several machines, planar ones all at once.
 
     Raises
     ------
     InputError : as `choose`
     """
-    for scene in scenes:
+    for machine in machines:
+        scene = machine.scene
         if scene.model.liquid not in ("auto", *SYNCHRONOUS_MODELS):
             allowed = ", ".join(("auto", *SYNCHRONOUS_MODELS))
             raise InputError(
                 "model.liquid", scene.model.liquid, f"one of {allowed} for the response to an unbalance"
             )
         _check_walls(scene)
-    planar = [scene for scene in scenes if isinstance(scene.rotor, Rotor)]
+    planar = [machine for machine in machines if isinstance(machine.rotor, Jeffcott)]
     found = iter(_planar_errors(planar) if planar else ())
-    errors = [next(found) if isinstance(scene.rotor, Rotor) else _other_errors(scene) for scene in scenes]
-    return [_choice(scene, *pair) for scene, pair in zip(scenes, errors, strict=True)]
+    errors = [next(found) if isinstance(one.rotor, Jeffcott) else _other_errors(one) for one in machines]
+    return [_choice(machine, *pair) for machine, pair in zip(machines, errors, strict=True)]
 
 
 def _check_walls(scene: Scene) -> None:
@@ -132,19 +86,20 @@ def is_cut(scene: Scene) -> bool:
     return any(fill.compartments > 1 or fill.chamber.section is not None for fill in scene.chambers)
 
 
-def _planar_errors(scenes: Sequence[Scene]) -> list[tuple[LinearError, Array]]:
-    """Error of the linear theory, and by gravity across the axis, of each scene."""
-    speeds = [scene.speed_array() for scene in scenes]
-    owner = np.repeat(np.arange(len(scenes)), [one.size for one in speeds])
-    speed, gravity = np.concatenate(speeds), np.array([axial_gravity(scene) for scene in scenes])
-    machines = [(jeffcott(scene), scene.chambers) for scene in scenes]
-    pairs = pair_machines(machines, owner, speed, gravity, synchronous_model("linear"))
+def _planar_errors(machines: Sequence[Prepared]) -> list[tuple[LinearError, Array]]:
+    """Error of the linear theory, and by gravity across the axis, of each machine."""
+    counts = [machine.speed.size for machine in machines]
+    owner = np.repeat(np.arange(len(machines)), counts)
+    speed = np.concatenate([machine.speed for machine in machines])
+    gravity = np.array([machine.axial_gravity for machine in machines])
+    rotors = [(machine.planar, machine.scene.chambers) for machine in machines]
+    pairs = pair_machines(rotors, owner, speed, gravity, synchronous_model("linear"))
     bounds = planar_enclosure(pairs)
     error = bounds.error()
-    across = np.array([across_gravity(scene) for scene in scenes])[owner]
+    across = np.array([machine.across_gravity for machine in machines])[owner]
     thrown = planar_gravity_error(pairs, across, bounds.most)
-    ends = np.cumsum([one.size for one in speeds])
-    parts = [slice(stop - one.size, stop) for stop, one in zip(ends, speeds, strict=True)]
+    ends = np.cumsum(counts)
+    parts = [slice(stop - count, stop) for stop, count in zip(ends, counts, strict=True)]
     return [
         (
             LinearError(error.amplitude[part], error.liquid[part], error.wet[part], error.strain[part]),
@@ -154,22 +109,19 @@ def _planar_errors(scenes: Sequence[Scene]) -> list[tuple[LinearError, Array]]:
     ]
 
 
-def _other_errors(scene: Scene) -> tuple[LinearError, Array]:
+def _other_errors(machine: Prepared) -> tuple[LinearError, Array]:
     """The same of a rotor that tilts, or moves differently in two directions."""
-    position = scene.chambers[0].chamber.plane if scene.chambers else 0.0
+    chambers = machine.scene.chambers
+    position = chambers[0].chamber.plane if chambers else 0.0
     return coupled_error(
-        dry_rotor(scene).system(),
-        scene.chambers,
-        scene.speed_array(),
-        axial_gravity(scene),
-        position,
-        across_gravity(scene),
+        machine.system, chambers, machine.speed, machine.axial_gravity, position, machine.across_gravity
     )
 
 
-def _choice(scene: Scene, linear: LinearError, gravity: Array) -> Choice:
+def _choice(machine: Prepared, linear: LinearError, gravity: Array) -> Choice:
     """The cheapest model that the errors allow, or the one asked for."""
-    speed, asked, tolerance = scene.speed_array(), scene.model.liquid, scene.model.tolerance
+    scene, speed = machine.scene, machine.speed
+    asked, tolerance = scene.model.liquid, scene.model.tolerance
     # What gravity does to all models alike does not speak for the dearer one. Where a wall may run dry the
     # exact equilibrium says where.
     enough = linear.wet & (linear.worst <= tolerance)
@@ -183,7 +135,7 @@ def _choice(scene: Scene, linear: LinearError, gravity: Array) -> Choice:
     error = np.where(enough, linear.worst, ROUNDING) + gravity
     if cut:
         # The exact equilibrium of compartments, which would judge small disturbances, is not computed.
-        held = held & (speed > max(_covers(fill, axial_gravity(scene)) for fill in scene.chambers))
+        held = held & (speed > max(_covers(fill, machine.axial_gravity) for fill in scene.chambers))
         error = np.full(speed.shape, np.nan)
     return Choice(
         model=small if enough.all() else "statics",

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from leblanc.units import MM, RPM
+from leblanc.results.exciter import Check, ExciterResult
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.rotor.exciter.machine import Dimensionless, Exciter, platform_motion, rolling_inertia
@@ -22,72 +22,6 @@ if TYPE_CHECKING:
 
 
 CHECKS = 5  # time integrations beside the formulas
-
-
-@dataclass(frozen=True)
-class Check:
-    """One time integration beside the formulas.
-
-    Parameters
-    ----------
-    speed : of the shaft, rad/s
-    stuck_speed : mean speed of the balls, rad/s
-    slow, fast : amplitudes of the platform, m; nan where they cannot be told apart
-    holds : the dual-frequency motion holds
-    converged : every number is finite
-    """
-
-    speed: float
-    stuck_speed: float
-    slow: float
-    fast: float
-    holds: bool
-    converged: bool
-
-
-@dataclass(frozen=True)
-class ExciterRecord:
-    """Answer over speed; n speeds.
-
-    Parameters
-    ----------
-    name : of the scene
-    assumed : values that it assumes
-    machine : the exciter
-    numbers : its dimensionless numbers
-    start : from which the critical speed is searched
-    speed : of the shaft, rad/s, shape (n,)
-    stuck : speeds at which the balls can stick together, by size, rad/s, nan where there are fewer, shape
-        (n, 3)
-    slow, fast : amplitudes of the platform, m, shape (n,), the balls at the slowest stuck speed
-    dual_frequency : below the critical speed, shape (n,)
-    characteristic : shaft speeds between which there are three stuck speeds and, second, where the slowest
-        passes the resonance, rad/s; nan if there is one at every speed
-    critical : largest shaft speed at which the dual-frequency motion is reached, rad/s; nan if there is one
-        stuck speed at every speed
-    printed_critical : by the source's regression, rad/s; nan outside its ranges
-    checks : time integrations
-    """
-
-    name: str
-    assumed: tuple[str, ...]
-    machine: Exciter
-    numbers: Dimensionless
-    start: Start
-    speed: Array
-    stuck: Array
-    slow: Array
-    fast: Array
-    dual_frequency: NDArray[np.bool_]
-    characteristic: tuple[float, float, float]
-    critical: float
-    printed_critical: float
-    checks: tuple[Check, ...]
-
-    @property
-    def converged(self) -> bool:
-        """Every time integration stayed finite."""
-        return all(one.converged for one in self.checks)
 
 
 def machine_of(rotor: ExciterOfScene) -> Exciter:
@@ -112,7 +46,7 @@ def machine_of(rotor: ExciterOfScene) -> Exciter:
     )
 
 
-def run_exciter(scene: Scene) -> ExciterRecord:
+def run_exciter(scene: Scene) -> ExciterResult:
     """Answer of a scene of kind "exciter" over its speeds.
 
     Parameters
@@ -127,7 +61,8 @@ def run_exciter(scene: Scene) -> ExciterRecord:
 
     if not isinstance(scene.rotor, ExciterOfScene):
         raise InputError("rotor.kind", scene.rotor.kind, "exciter for this")
-    return answer_exciter(machine_of(scene.rotor), scene.speed_array(), scene.name, scene.assumed)
+    answer = answer_exciter(machine_of(scene.rotor), scene.speed_array(), scene.name, scene.assumed)
+    return replace(answer, source=scene.source, digest=scene.digest)
 
 
 def printed_critical(numbers: Dimensionless) -> float:
@@ -143,35 +78,6 @@ def printed_critical(numbers: Dimensionless) -> float:
     return math.nan
 
 
-def describe_exciter(record: ExciterRecord) -> list[str]:
-    """The answer in a few lines of words.
-
-    Parameters
-    ----------
-    record : the answer
-    """
-    lines = [f"Natural frequency of the platform: {record.machine.natural_frequency * RPM:.5g} rpm"]
-    if math.isfinite(record.critical):
-        first, _, last = (speed * RPM for speed in record.characteristic)
-        lines += [
-            f"Three stuck speeds of the balls from {first:.5g} to {last:.5g} rpm of the shaft",
-            f"Critical speed, up to which the balls stick together: {record.critical * RPM:.5g} rpm",
-        ]
-    else:
-        lines.append("One stuck speed of the balls at every speed of the shaft")
-    for one in record.checks:
-        words = "balls stay" if one.holds else "balls leave"
-        both = ""
-        if math.isfinite(one.slow):
-            both = f", platform {one.slow * MM:.3g} mm with them and {one.fast * MM:.3g} mm with the shaft"
-        lines.append(
-            f"Integrated at {one.speed * RPM:.5g} rpm: {words} at {one.stuck_speed * RPM:.5g} rpm{both}"
-            if one.holds
-            else f"Integrated at {one.speed * RPM:.5g} rpm: {words}"
-        )
-    return lines
-
-
 def answer_exciter(
     machine: Exciter,
     speed: ArrayLike,
@@ -179,7 +85,7 @@ def answer_exciter(
     assumed: tuple[str, ...] = (),
     start: Start | None = None,
     checks: int = CHECKS,
-) -> ExciterRecord:
+) -> ExciterResult:
     """Stuck speeds, vibration and critical speed of an exciter [theory: balls, eq. 7-14] [YF17, eq. 8-9].
 
     Gravity is left out, as in the source.
@@ -207,7 +113,7 @@ def answer_exciter(
     critical = math.nan
     if not math.isnan(known.merger):
         critical = critical_speed(numbers, machine.ball_count, start).holds * unit
-    return ExciterRecord(
+    return ExciterResult(
         name=name,
         assumed=assumed,
         machine=machine,
@@ -223,47 +129,6 @@ def answer_exciter(
         printed_critical=printed_critical(numbers) * unit,
         checks=_checks(machine, numbers, _checked_speeds(spin, critical, checks), start),
     )
-
-
-def exciter_json(record: ExciterRecord) -> dict[str, Any]:
-    """The answer as an object that JSON can hold: SI units, radians, null for what is not there.
-
-    Parameters
-    ----------
-    record : the answer
-    """
-    first, through, last = map(_number, record.characteristic)
-    nothing = [None] * record.speed.size
-    ratio = record.speed / record.machine.natural_frequency
-    lag = np.arctan2(2.0 * record.numbers.damping * ratio, 1.0 - np.square(ratio))
-    return {
-        "speed": record.speed.tolist(),
-        "amplitude": (record.fast + np.where(record.dual_frequency, record.slow, 0.0)).tolist(),
-        "amplitude_dry": record.fast.tolist(),
-        "phase": (-lag).tolist(),
-        "liquid_offset": nothing,
-        "liquid_angle": nothing,
-        "dry_patch": [False] * record.speed.size,
-        "stable": record.dual_frequency.tolist(),
-        "model": ["balls"] * record.speed.size,
-        "stuck_speeds": [[_number(q) for q in row] for row in record.stuck],
-        "amplitude_slow": record.slow.tolist(),
-        "amplitude_fast": record.fast.tolist(),
-        "dual_frequency": record.dual_frequency.tolist(),
-        "characteristic_speeds": {"second_pair": first, "through_resonance": through, "merger": last},
-        "critical_speed": _number(record.critical),
-        "critical_speed_printed": _number(record.printed_critical),
-        "natural_frequency": record.machine.natural_frequency,
-        "dimensionless": asdict(record.numbers),
-        "start": asdict(record.start),
-        "checks": [
-            asdict(one) | {"slow": _number(one.slow), "fast": _number(one.fast)} for one in record.checks
-        ],
-    }
-
-
-def _number(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None
 
 
 def _checked_speeds(speed: Array, critical: float, count: int) -> Array:

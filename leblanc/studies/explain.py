@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.numbers import LayerNumbers, layer_numbers
-from leblanc.results.record import ModeRecord
-from leblanc.scene.machine import dry_rotor
+from fluid.numbers import layer_numbers
+from leblanc.results.choice import model_spans
+from leblanc.results.explanation import ExciterExplanation, Explanation, LayerExplanation
+from leblanc.results.motion import RestMode
 from leblanc.scene.rotors import Exciter as ExciterOfScene
 from leblanc.scene.rows import baffle_words
 from leblanc.scene.scene import Scene
-from leblanc.studies.choose import axial_gravity, choose
+from leblanc.studies.choose import choose_all
 from leblanc.studies.exciter import machine_of, printed_critical
+from leblanc.studies.prepare import Prepared, prepare
 from leblanc.studies.run import main_critical_speeds, rest_modes
-from leblanc.text.models import ModelSpan, model_spans
 from meshes.errors import InputError
 from solvers.rotor.exciter.stuck import characteristic_speeds
 from solvers.rotor.jeffcott import Jeffcott
@@ -28,17 +28,12 @@ from solvers.synchronous.coupled import wet_critical_speeds
 from solvers.synchronous.planar import critical_speed
 
 
-def explain_exciter(scene: Scene) -> dict[str, Any]:
+def explain_exciter(scene: Scene) -> ExciterExplanation:
     """Numbers that decide how an exciter behaves, without any integration in time [YF17, eq. 2-7 and 13].
 
     Parameters
     ----------
     scene : with a rotor of kind "exciter"
-
-    Returns
-    -------
-    Name, natural frequency and characteristic shaft speeds, rad/s, dimensionless numbers, and the source's
-    critical speed, rad/s, by its regression; None where there is none
 
     Raises
     ------
@@ -49,77 +44,17 @@ def explain_exciter(scene: Scene) -> dict[str, Any]:
     machine = machine_of(scene.rotor)
     numbers, unit = machine.dimensionless(), machine.natural_frequency
     known = characteristic_speeds(numbers)
-    return {
-        "name": scene.name,
-        "natural_frequency": unit,
-        "speed_ratio": [scene.speeds.start / unit, scene.speeds.stop / unit],
-        "dimensionless": asdict(numbers),
-        "characteristic_speeds": {
-            "second_pair": _number(known.second_pair * unit),
-            "through_resonance": _number(known.through_resonance * unit),
-            "merger": _number(known.merger * unit),
-        },
-        "critical_speed_printed": _number(printed_critical(numbers) * unit),
-    }
-
-
-def _number(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None
-
-
-@dataclass(frozen=True)
-class LayerExplanation:
-    """One chamber in numbers, at the first and the last speed where they change.
-
-    Parameters
-    ----------
-    numbers : dimensionless numbers, shape (2,) where they depend on speed
-    depth : mean depth of the layer at fast spin, m
-    added_mass_ratio : mass of a full chamber over the rotor's, m_f/M
-    liquid_mass_ratio : mass of the liquid over the rotor's
-    optimal_volume : that just covers the wall at the dry rotor's deflection at the last speed, m^3; nan where
-        baffles cut the liquid or the section is no circle
-    walls : baffles, or the file of the section, in words; empty for a plain ring
-    """
-
-    numbers: LayerNumbers
-    depth: float
-    added_mass_ratio: float
-    liquid_mass_ratio: float
-    optimal_volume: float
-    walls: str = ""
-
-
-@dataclass(frozen=True)
-class Explanation:
-    """A scene in numbers.
-
-    Parameters
-    ----------
-    name : of the scene
-    critical_speed_dry, critical_speed_wet : without liquid, and with it at small deflections, rad/s; of
-        several the one at which the unbalance moves the axis most
-    damping_ratio : of the support; of several modes the one next to the dry critical speed, at that speed
-    speed_ratio : first and last speed over the dry critical speed
-    captured_from : speed above which the liquid rides with the drum, rad/s; None if at every speed
-    layers : one for each chamber; None for an empty one
-    models : which model answers at each speed, how well, and why
-    tolerance : relative error that the scene allows
-    modes : of the dry rotor at rest; none for a planar rotor, whose only one is the critical speed
-    runup : which liquid model the run-up will take, in words; empty without one
-    """
-
-    name: str
-    critical_speed_dry: float
-    critical_speed_wet: float
-    damping_ratio: float
-    speed_ratio: tuple[float, float]
-    captured_from: float | None
-    layers: tuple[LayerExplanation | None, ...]
-    models: tuple[ModelSpan, ...]
-    tolerance: float
-    modes: tuple[ModeRecord, ...] = ()
-    runup: str = ""
+    return ExciterExplanation(
+        name=scene.name,
+        natural_frequency=unit,
+        speed_ratio=(scene.speeds.start / unit, scene.speeds.stop / unit),
+        dimensionless=numbers,
+        characteristic=(known.second_pair * unit, known.through_resonance * unit, known.merger * unit),
+        critical_speed_printed=printed_critical(numbers) * unit,
+        source=scene.source,
+        assumed=scene.assumed,
+        digest=scene.digest,
+    )
 
 
 def explain_scene(scene: Scene) -> Explanation:
@@ -129,9 +64,10 @@ def explain_scene(scene: Scene) -> Explanation:
     ------
     InputError : the scene asks for a liquid model that does not answer the response to an unbalance
     """
-    gravity, choice = axial_gravity(scene), choose(scene)
+    machine = prepare(scene)
+    gravity, (choice,) = machine.axial_gravity, choose_all([machine])
     ends = np.array([scene.speeds.start, scene.speeds.stop])
-    bare = _bare(scene, gravity, choice.model)
+    bare = _bare(machine, choice.model)
     layers: list[LayerExplanation | None] = []
     for fill, dry in zip(scene.chambers, bare.deflection, strict=True):
         if fill.volume == 0.0:
@@ -155,10 +91,13 @@ def explain_scene(scene: Scene) -> Explanation:
         speed_ratio=(ends[0] / bare.critical_speed, ends[1] / bare.critical_speed),
         captured_from=choice.captured_from,
         layers=tuple(layers),
-        models=model_spans(choice, scene.speed_array()),
+        models=model_spans(choice, machine.speed),
         tolerance=choice.tolerance,
         modes=bare.modes,
         runup=_runup(scene),
+        source=scene.source,
+        assumed=scene.assumed,
+        digest=scene.digest,
     )
 
 
@@ -198,15 +137,15 @@ class _Bare:
     critical_speed_wet: float
     damping_ratio: float
     deflection: tuple[float, ...]
-    modes: tuple[ModeRecord, ...] = ()
+    modes: tuple[RestMode, ...] = ()
 
 
-def _bare(scene: Scene, gravity: float, model: str) -> _Bare:
-    rotor, last = dry_rotor(scene), np.array([scene.speeds.stop])
-    system, fills = rotor.system(), scene.chambers
+def _bare(machine: Prepared, model: str) -> _Bare:
+    rotor, system, fills = machine.rotor, machine.system, machine.scene.chambers
+    gravity, last = machine.axial_gravity, np.array([machine.scene.speeds.stop])
     answer = unbalance_response(system, last)
     moved = [float(np.abs(orbit(system, answer, fill.chamber.plane).forward[0])) for fill in fills]
-    deflection = tuple(one if np.isfinite(one) else 0.0 for one in moved)
+    deflection = tuple(size if np.isfinite(size) else 0.0 for size in moved)
     if isinstance(rotor, Jeffcott):
         wet = critical_speed(rotor, fills, gravity, model)
         return _Bare(rotor.mass, rotor.natural_frequency, wet, rotor.damping_ratio, deflection)

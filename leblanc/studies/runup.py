@@ -13,14 +13,14 @@ from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
 from leblanc.friction import friction_words
 from leblanc.results import runup_notes
+from leblanc.results.chamber import FilledChamber
 from leblanc.results.notes import Note, percent
-from leblanc.results.record import ChamberRecord
 from leblanc.results.runup import Bands, RunupResult
 from leblanc.results.runup_notes import RunupCode
 from leblanc.scene.machine import dry_rotor, jeffcott, require_clear
 from leblanc.scene.scene import Rotor, Runup, Scene
-from leblanc.studies.choose import across_gravity as across_gravity  # of a run-up, asked for with it
-from leblanc.studies.choose import axial_gravity
+from leblanc.studies.prepare import across_gravity as across_gravity  # of a run-up, asked for with it
+from leblanc.studies.prepare import axial_gravity
 from leblanc.studies.runup_frames import require_frames, require_layers, runup_frames
 from leblanc.studies.validity import RANGES
 from leblanc.units import ML, MM, RPM
@@ -383,6 +383,6 @@ def _passed(speed: Array, count: int) -> Array:
     return np.linspace(low, high, count) if 0.0 < low < high else np.empty(0)
 
 
-def _chamber(fill: Fill) -> ChamberRecord:
+def _chamber(fill: Fill) -> FilledChamber:
     one, name = fill.chamber, fill.liquid.name
-    return ChamberRecord(one.radius, one.inner_radius, one.height, fill.volume, name, fill.surface_radius)
+    return FilledChamber(one.radius, one.inner_radius, one.height, fill.volume, name, fill.surface_radius)

@@ -9,7 +9,7 @@ import numpy as np
 from leblanc.results.runup import RunupFrames
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import Scene
-from leblanc.studies.choose import across_gravity
+from leblanc.studies.prepare import across_gravity
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.runup.drive import Drive, Ramp, torque_curve

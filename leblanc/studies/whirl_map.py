@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,12 +12,15 @@ from fluid.friction import Friction
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
 from leblanc.friction import friction_words
-from leblanc.scene.machine import dry_rotor, jeffcott
-from leblanc.scene.scene import Rotor, Scene
+from leblanc.results import map_notes
+from leblanc.results.notes import Note
+from leblanc.results.whirl_map import WhirlMap
+from leblanc.scene.scene import Scene
+from leblanc.studies.prepare import Prepared, prepare
 from leblanc.studies.validity import RANGES
-from leblanc.units import ML, RPM
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
+from solvers.rotor.jeffcott import Jeffcott
 from solvers.whirl.edges import Bands, unstable_bands
 from solvers.whirl.growth import growth_map
 
@@ -27,42 +30,6 @@ _AT_ONCE = 20  # volumes between reports of progress
 _THIN = RANGES["linear"]["wall_layer"][1]
 
 
-@dataclass(frozen=True)
-class StabilityRecord:
-    """Growth of self-excited whirl; n speeds, v volumes.
-
-    Parameters
-    ----------
-    name, source, assumed, digest : of the scene
-    speed : spin speed Omega, rad/s, shape (n,)
-    volume : liquid in all chambers together, m^3, shape (v,)
-    growth : of the whirl that grows most, 1/s, 0 if rounding cannot tell, nan if not found, shape (v, n)
-    whirl_speed : of that whirl in the standing frame, rad/s, positive with the spin, shape (v, n)
-    in_range : the plane layer is a fair picture of the liquid there, shape (v, n)
-    edges : for each volume the bands of speed in which a whirl grows, rad/s; an end that is the first or last
-        speed is where the range ends
-    friction, damping : of the liquid, of the support, in words
-    scene_volume, scene_edges : of the scene as it stands, m^3 and as in `edges`
-    notes : limits of validity and findings, in words
-    """
-
-    name: str
-    source: str
-    assumed: tuple[str, ...]
-    digest: str
-    speed: Array
-    volume: Array
-    growth: Array
-    whirl_speed: Array
-    in_range: Flags
-    edges: tuple[Bands, ...]
-    friction: str
-    damping: str
-    scene_volume: float
-    scene_edges: Bands
-    notes: tuple[str, ...]
-
-
 def map_scene(
     scene: Scene,
     volumes: int = VOLUMES,
@@ -70,7 +37,7 @@ def map_scene(
     max_volume: float | None = None,
     friction: Friction | None = None,
     progress: Callable[[int, int], None] | None = None,
-) -> StabilityRecord:
+) -> WhirlMap:
     """Growth rate and whirl speed of self-excited whirl over the scene's speeds and over volume.
 
     Parameters
@@ -87,21 +54,21 @@ def map_scene(
     """
     _check(scene, volumes, speeds)
     law = scene.model.friction if friction is None else friction
-    speed = np.linspace(scene.speeds.start, scene.speeds.stop, speeds)
-    system = dry_rotor(scene).system()
+    machine = prepare(scene)
+    system, speed = machine.system, np.linspace(scene.speeds.start, scene.speeds.stop, speeds)
     rows = fills_over_volume(scene.chambers, volumes, max_volume)
     parts = []
     for first in range(0, volumes, _AT_ONCE):
         parts.append(growth_map(system, rows[first : first + _AT_ONCE], speed, law))
         if progress is not None:
             progress(min(first + _AT_ONCE, volumes), volumes)
-    growth, whirl_speed = (np.concatenate([one[k] for one in parts]) for k in (0, 1))
+    growth, whirl_speed = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
     edges = unstable_bands(system, rows, speed, law, growth)
     (own,) = unstable_bands(system, [scene.chambers], speed, law)
     held = np.array([_held(scene, fills, speed) for fills in rows])
     pairs = zip(rows, whirl_speed - speed, strict=True)
     thin = np.array([_thin_layers(fills, slip) for fills, slip in pairs]) | (law.law != "stokes")
-    return StabilityRecord(
+    return WhirlMap(
         name=scene.name,
         source=scene.source,
         assumed=scene.assumed,
@@ -113,10 +80,10 @@ def map_scene(
         in_range=held & thin,
         edges=edges,
         friction=small_whirl_friction(law),
-        damping=_damping_words(scene),
+        damping=_damping(machine),
         scene_volume=sum(fill.volume for fill in scene.chambers),
         scene_edges=own,
-        notes=_notes(scene, law, own, held, thin, bool(np.any(system.damping))),
+        notes=_notes(machine, law, own, held, thin),
     )
 
 
@@ -193,47 +160,25 @@ def _thin_layers(fills: tuple[Fill, ...], slip: Array) -> Flags:
     return thin
 
 
-def _damping_words(scene: Scene) -> str:
-    if isinstance(scene.rotor, Rotor):
-        return f"damping ratio {jeffcott(scene).damping_ratio:.3g}"
+def _damping(machine: Prepared) -> str:
+    """Damping of the support, in words."""
+    if isinstance(machine.rotor, Jeffcott):
+        return f"damping ratio {machine.rotor.damping_ratio:.3g}"
     return "damping as in the scene"
 
 
-def _notes(
-    scene: Scene, law: Friction, own: Bands, held: Flags, thin: Flags, damped: bool
-) -> tuple[str, ...]:
-    """Limits of validity and findings, in words."""
-    notes = [_own_note(scene, own)]
+def _notes(machine: Prepared, law: Friction, own: Bands, held: Flags, thin: Flags) -> tuple[Note, ...]:
+    """Limits of validity and findings."""
+    scene = machine.scene
+    notes = [map_notes.own_volume(sum(fill.volume for fill in scene.chambers), own)]
     if law.law == "quadratic":
-        notes.append(
-            "Quadratic friction damps in proportion to the motion, not at all in the limit of a small one: "
-            "the map is that without liquid friction. It bounds the whirl that grows."
-        )
-    if law.law in ("none", "quadratic") and damped:
-        notes.append(
-            "Without liquid friction the damping of the support feeds the wave that runs against the spin, "
-            "whose energy is negative: a weak growth remains at almost every speed."
-        )
+        notes.append(map_notes.quadratic())
+    if law.law in ("none", "quadratic") and np.any(machine.system.damping):
+        notes.append(map_notes.without_friction())
     if len(scene.chambers) > 1:
-        notes.append("The volumes of the chambers grow by a common factor up to where the first is full.")
+        notes.append(map_notes.common_factor())
     if not held.all():
-        why = (
-            "gravity across the axis outweighs the centrifugal acceleration at a free surface"
-            if scene.rotor.axis == "horizontal"
-            else "the paraboloid leaves part of a wall dry or reaches an inner wall"
-        )
-        notes.append(f"At {100.0 * np.mean(~held):.2g} % of the points {why}: out of range.")
+        notes.append(map_notes.not_held(float(np.mean(~held)), scene.rotor.axis == "horizontal"))
     if not thin.all():
-        notes.append(
-            f"At {100.0 * np.mean(~thin):.2g} % of the points the laminar layer at the wall is thicker than "
-            f"{_THIN:g} of the liquid's depth: out of range."
-        )
+        notes.append(map_notes.thick_wall_layer(float(np.mean(~thin)), _THIN))
     return tuple(notes)
-
-
-def _own_note(scene: Scene, own: Bands) -> str:
-    volume = sum(fill.volume for fill in scene.chambers) * ML
-    if not own:
-        return f"With the scene's {volume:.4g} ml no whirl grows by itself at these speeds."
-    words = ", ".join(f"{low * RPM:.5g} to {high * RPM:.5g} rpm" for low, high in own)
-    return f"With the scene's {volume:.4g} ml a whirl grows by itself from {words}."

@@ -30,6 +30,13 @@ def moments(result: RunupResult) -> list[tuple[str, int]]:
     return [*found, ("At the end", result.time.size - 1)]
 
 
+def largest(result: RunupResult) -> str:
+    """The largest amplitude on the way up and where it was."""
+    k = result.peak()
+    size, speed = number(float(result.amplitude[k]) * MM), number(float(result.speed[k]) * RPM)
+    return f"{size} mm at {speed} rpm"
+
+
 def summary(result: RunupResult) -> list[tuple[str, str]]:
     """The main numbers of a run-up, as labels and values."""
 

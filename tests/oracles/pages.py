@@ -9,7 +9,7 @@ from pathlib import Path
 
 from leblanc.report.inputs import Entry, Inputs, Marker
 from leblanc.report.page import About
-from leblanc.results.record import StudyRecord
+from leblanc.results.response import RunResult
 
 VOID = {"meta", "img", "br"}
 ONLY_IN = {"tr": {"thead", "tbody"}, "td": {"tr"}, "th": {"tr"}, "dt": {"div"}, "dd": {"div"}, "li": {"ul"}}
@@ -136,7 +136,7 @@ def check_rules(page: Page, text: str) -> None:
     assert "None" not in page.all_text.split()
 
 
-def about_record(record: StudyRecord) -> About:
+def about_record(record: RunResult) -> About:
     """What a report of a made-up record is about: the record's own list of inputs."""
     mark = Marker(record.assumed)
     entries = tuple(Entry(label, (mark.cell(value, path),)) for label, value, path in record.inputs)

@@ -9,7 +9,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.record import ChamberRecord, StudyRecord
+from leblanc.results import run_notes
+from leblanc.results.chamber import FilledChamber
+from leblanc.results.response import RunResult
 from meshes.arrays import Array
 from solvers.synchronous.planar import Response
 
@@ -42,8 +44,8 @@ def response_of(speed: Array, added: float = ADDED, depth: float = 1.24e-3) -> R
     )
 
 
-def record_of(response: Response, **changes: object) -> StudyRecord:
-    record = StudyRecord(
+def record_of(response: Response, **changes: object) -> RunResult:
+    record = RunResult(
         name="Horizontal rig",
         source="DR18, section 7.2",
         assumed=("rotor.mass", "rotor.damping_ratio", "chambers.0.height"),
@@ -67,9 +69,9 @@ def record_of(response: Response, **changes: object) -> StudyRecord:
         digest="9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08",
         response=response,
         liquid_mass=LIQUID_MASS,
-        notes=("Below 350 rpm gravity keeps the liquid at the bottom of the chamber.",),
+        notes=(run_notes.not_carried(350.0 * RPM),),
         axis="horizontal",
-        chambers=(ChamberRecord(0.065, 0.0, 0.02, 1e-5, "water", 0.06376),),
+        chambers=(FilledChamber(0.065, 0.0, 0.02, 1e-5, "water", 0.06376),),
         capture_speed=350.0 * RPM,
         critical_speed_dry=1000.0 * RPM,
         critical_speed_wet=1000.0 * RPM * math.sqrt(MASS / (MASS + ADDED)),
@@ -77,12 +79,12 @@ def record_of(response: Response, **changes: object) -> StudyRecord:
     return replace(record, **changes)  # type: ignore[arg-type]
 
 
-def rig(count: int = 201, start: float = 100.0, stop: float = 2000.0) -> StudyRecord:
+def rig(count: int = 201, start: float = 100.0, stop: float = 2000.0) -> RunResult:
     """A horizontal rig whose liquid is captured from 350 rpm on."""
     return record_of(response_of(np.linspace(start, stop, count) * RPM))
 
 
-def folded(count: int = 241, follow: str = "low") -> StudyRecord:
+def folded(count: int = 241, follow: str = "low") -> RunResult:
     """A lightly damped machine whose thin layer saturates: up to three branches at one speed.
 
     Reported is the lowest or, as in a run-up, the highest of them.
@@ -130,7 +132,7 @@ def folded(count: int = 241, follow: str = "low") -> StudyRecord:
     )
 
 
-def nothing_found() -> StudyRecord:
+def nothing_found() -> RunResult:
     r = rig(50).response
     empty = {
         name: np.full_like(getattr(r, name), np.nan)
@@ -139,7 +141,7 @@ def nothing_found() -> StudyRecord:
     return record_of(replace(r, **empty, converged=~r.converged))
 
 
-def not_converged_in_the_fold() -> StudyRecord:
+def not_converged_in_the_fold() -> RunResult:
     record = folded()
     r = record.response
     w, branches, converged = r.deflection.copy(), r.branch_deflection.copy(), r.converged.copy()
@@ -147,7 +149,7 @@ def not_converged_in_the_fold() -> StudyRecord:
     return replace(record, response=replace(r, deflection=w, branch_deflection=branches, converged=converged))
 
 
-def scaled(factor: float) -> StudyRecord:
+def scaled(factor: float) -> RunResult:
     r = rig(50).response
     lengths = {
         name: getattr(r, name) * factor
@@ -156,29 +158,29 @@ def scaled(factor: float) -> StudyRecord:
     return record_of(replace(r, **lengths))
 
 
-def everywhere() -> StudyRecord:
+def everywhere() -> RunResult:
     r = rig(50).response
     always = np.ones(50, dtype=np.bool_)
     return record_of(replace(r, dry_patch=always, in_range=~always, stable=~always))
 
 
-def awkward_texts() -> StudyRecord:
+def awkward_texts() -> RunResult:
     name = "<b>$x_1^{$</b> \N{CJK UNIFIED IDEOGRAPH-6D17} \x07\n" + "W" * 300
     return replace(rig(20), name=name, assumed=tuple(f"chambers.{i}.height" for i in range(40)))
 
 
-def many_chambers() -> StudyRecord:
+def many_chambers() -> RunResult:
     sizes = (0.1, 0.09, 0.08, 0.07, 0.06)
     return replace(
-        rig(20), chambers=tuple(ChamberRecord(R, 0.0, 0.04, 1e-4, "water", R - 0.01) for R in sizes)
+        rig(20), chambers=tuple(FilledChamber(R, 0.0, 0.04, 1e-4, "water", R - 0.01) for R in sizes)
     )
 
 
-def out_of_range_with_many_chambers() -> StudyRecord:
+def out_of_range_with_many_chambers() -> RunResult:
     return replace(everywhere(), chambers=many_chambers().chambers)
 
 
-def undamped() -> StudyRecord:
+def undamped() -> RunResult:
     """Infinite amplitude at one of the speeds."""
     r = rig(50).response
     w, branches = r.deflection.copy(), r.branch_deflection.copy()
@@ -186,18 +188,18 @@ def undamped() -> StudyRecord:
     return record_of(replace(r, deflection=w, deflection_dry=w, branch_deflection=branches))
 
 
-def full_annulus() -> StudyRecord:
-    return replace(rig(20), chambers=(ChamberRecord(0.065, 0.02, 0.02, 1e-4, "water", 0.02),))
+def full_annulus() -> RunResult:
+    return replace(rig(20), chambers=(FilledChamber(0.065, 0.02, 0.02, 1e-4, "water", 0.02),))
 
 
-def no_liquid() -> StudyRecord:
+def no_liquid() -> RunResult:
     r = rig(20).response
     return record_of(
-        replace(r, liquid_offset=0.0 * r.speed), chambers=(ChamberRecord(0.065, 0, 0.02, 0, "water", 0.065),)
+        replace(r, liquid_offset=0.0 * r.speed), chambers=(FilledChamber(0.065, 0, 0.02, 0, "water", 0.065),)
     )
 
 
-EXTREMES: dict[str, Callable[[], StudyRecord]] = {
+EXTREMES: dict[str, Callable[[], RunResult]] = {
     "rig": rig,
     "folded": folded,
     "one speed": lambda: rig(1, 1200.0, 1200.0),

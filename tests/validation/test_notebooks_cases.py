@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from leblanc.scene.machine import jeffcott
-from leblanc.studies.choose import axial_gravity
+from leblanc.studies.prepare import axial_gravity
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.planar import synchronous_response
 from tests.mutants import kills

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from leblanc.scene.machine import dry_rotor, jeffcott
 from leblanc.scene.scene import Exciter, Rotor, Scene
-from leblanc.studies.choose import across_gravity, axial_gravity, choose
+from leblanc.studies.choose import choose
+from leblanc.studies.prepare import across_gravity, axial_gravity
 from leblanc.studies.runup import RunupChoice, chosen_run, drive_of, judged, planned
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError

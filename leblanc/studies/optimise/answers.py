@@ -11,7 +11,7 @@ from fluid.fill import Fill
 from leblanc.scene.machine import jeffcott
 from leblanc.scene.scene import Rotor, Scene, Speeds
 from leblanc.studies.batch import answer_scenes
-from leblanc.studies.choose import axial_gravity
+from leblanc.studies.prepare import axial_gravity
 from meshes.arrays import Array, Flags
 from solvers.synchronous.planar import machine_responses
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from fluid.whirl import is_full
 from leblanc.results import optimum
+from leblanc.results.choice import ModelSpan
 from leblanc.results.notes import Note
 from leblanc.results.optimum import (
     CandidateChamber,
@@ -21,7 +22,6 @@ from leblanc.results.optimum import (
 from leblanc.scene.machine import require_clear
 from leblanc.scene.optimise import Aim
 from leblanc.scene.scene import Scene, Speeds
-from leblanc.studies.choose import axial_gravity, choose
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.at_deflection import WettedWalls, wet_walls
 from leblanc.studies.optimise.closed_form import wetting_volumes
@@ -31,9 +31,9 @@ from leblanc.studies.optimise.front import front_around
 from leblanc.studies.optimise.objectives import RunupPeak
 from leblanc.studies.optimise.problem import Problem, growth_speeds, problem_of
 from leblanc.studies.optimise.search import best_volumes, bounds_of, evaluated_again, on_all_cells
+from leblanc.studies.prepare import axial_gravity
 from leblanc.studies.run import run_scene
 from leblanc.studies.validity import RANGES
-from leblanc.text.models import ModelSpan, model_spans
 from leblanc.units import RPM
 from meshes.arrays import Array
 from meshes.errors import InputError
@@ -212,10 +212,10 @@ def _with_response(result: OptimumResult, scene: Scene, machine: FilledMachine) 
     if machine.scene.model.liquid not in SYNCHRONOUS_MODELS:
         return result
     filled = with_volumes(machine.scene, result.volume)
-    spans = model_spans(choose(filled), filled.speed_array())
+    response = run_scene(filled)
     if scene.model.liquid == "auto":
-        spans = tuple(_of_search(span) for span in spans)
-    return replace(result, response=run_scene(filled), spans=spans)
+        response = replace(response, models=tuple(_of_search(span) for span in response.models))
+    return replace(result, response=response)
 
 
 def _of_search(span: ModelSpan) -> ModelSpan:

@@ -11,10 +11,10 @@ import numpy as np
 from leblanc.scene.machine import jeffcott
 from leblanc.scene.optimise import Aim
 from leblanc.scene.scene import Rotor, Scene
-from leblanc.studies.choose import axial_gravity
 from leblanc.studies.optimise.closed_form import wetting_volumes
 from leblanc.studies.optimise.objectives import PeakOver, RunupPeak
 from leblanc.studies.optimise.problem import Problem
+from leblanc.studies.prepare import axial_gravity
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.search import Found, Judgement, SearchPlan, search

@@ -10,11 +10,12 @@ import numpy as np
 
 from fluid.fill import Fill
 from leblanc.results.drawing import Scale
-from leblanc.results.record import StudyRecord
+from leblanc.results.response import RunResult
 from leblanc.results.shapes import DrawnLiquid, Liquid, MachineMotion, MachineView
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import Rotor, Scene, Speeds
-from leblanc.studies.choose import axial_gravity, choose
+from leblanc.studies.choose import choose
+from leblanc.studies.prepare import axial_gravity
 from leblanc.studies.run import run_scene
 from leblanc.studies.shapes.bodies import bodies_at_rest, is_cut, wall_is_dry
 from leblanc.studies.shapes.layer import body_at_rest
@@ -70,7 +71,7 @@ def require_rotor(scene: Scene) -> None:
         raise InputError("rotor.kind", "exciter", allowed)
 
 
-def _lean(scene: Scene, record: StudyRecord) -> Complex:
+def _lean(scene: Scene, record: RunResult) -> Complex:
     """Slope of the axis, from its forward part at two places of the rigid rotor."""
     if isinstance(scene.rotor, Rotor):
         return np.zeros(record.response.speed.shape, dtype=complex)

@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 from fluid.fill import Fill
 from leblanc.results.shapes import ModeView
 from leblanc.scene.scene import Scene
-from leblanc.studies.choose import across_gravity
+from leblanc.studies.prepare import across_gravity
 from leblanc.studies.shapes.scale import inner_room
 from meshes.arrays import Complex
 from meshes.chamber_section import surface_is_whole

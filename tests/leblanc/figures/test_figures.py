@@ -19,7 +19,7 @@ from matplotlib.transforms import Bbox
 
 from leblanc import figures
 from leblanc.figures import chamber, curves
-from leblanc.results.record import ChamberRecord
+from leblanc.results.chamber import FilledChamber
 from tests.oracles.records import EXTREMES, RPM, dry_deflection, folded, record_of, response_of, rig
 
 DRAW = (figures.amplitude_figure, figures.liquid_figure, figures.phase_figure, figures.chamber_figure)
@@ -177,7 +177,7 @@ def test_spin_is_drawn_the_way_angles_grow():
 
 def test_nested_chambers_share_a_drawing():
     nested = tuple(
-        ChamberRecord(R, R_i, 0.04, 1e-4, "water", R - 0.005)
+        FilledChamber(R, R_i, 0.04, 1e-4, "water", R - 0.005)
         for R, R_i in ((0.1, 0.0), (0.2, 0.155), (0.15, 0.105))
     )
     views = chamber.choose_views(replace(rig(), chambers=nested))

@@ -9,15 +9,15 @@ import pytest
 
 from leblanc.figures.section import exaggeration
 from leblanc.figures.uneven import bodies, is_uneven, plates, wall_line
-from leblanc.results.record import ChamberRecord
+from leblanc.results.chamber import FilledChamber
 from meshes.baffles import Baffles
 from meshes.chamber_section import chamber_section
 from meshes.section import Section, annulus, disc
 
 RADIUS, REST, HEIGHT = 0.1, 0.09, 0.02
 VOLUME = math.pi * (RADIUS**2 - REST**2) * HEIGHT
-CUT = ChamberRecord(RADIUS, 0.0, HEIGHT, VOLUME, "water", REST, baffles=Baffles(4))
-LOW = ChamberRecord(RADIUS, 0.0, HEIGHT, VOLUME, "water", REST, baffles=Baffles(4, 0.095))
+CUT = FilledChamber(RADIUS, 0.0, HEIGHT, VOLUME, "water", REST, baffles=Baffles(4))
+LOW = FilledChamber(RADIUS, 0.0, HEIGHT, VOLUME, "water", REST, baffles=Baffles(4, 0.095))
 
 
 def area(points: np.ndarray) -> float:
@@ -50,7 +50,7 @@ def test_the_surface_of_a_section_about_the_axis() -> None:
     stretch = 1.0 + 0.02 * np.cos(6.0 * angle) * (np.hypot(*base.points.T) / RADIUS) ** 4
     section = chamber_section("lobes", Section(base.points * stretch[:, None], base.triangles))
     volume = 0.2 * section.area * HEIGHT
-    record = ChamberRecord(section.farthest, 0.0, HEIGHT, volume, "water", REST, section=section)
+    record = FilledChamber(section.farthest, 0.0, HEIGHT, volume, "water", REST, section=section)
     assert is_uneven(record)
     (one,) = bodies(record, 0.001j, section.farthest - REST)
     # The wall between its nodes is drawn straight.
@@ -65,7 +65,7 @@ def test_the_surface_of_a_section_about_the_axis() -> None:
 @pytest.mark.parametrize("inner", [0.3 * RADIUS, 0.7 * RADIUS])
 def test_the_liquid_lies_on_the_outer_of_two_walls(inner: float) -> None:
     section = chamber_section("ring", annulus(RADIUS, inner, 96))
-    record = ChamberRecord(RADIUS, 0.0, HEIGHT, VOLUME, "water", REST, section=section)
+    record = FilledChamber(RADIUS, 0.0, HEIGHT, VOLUME, "water", REST, section=section)
     (one,) = bodies(record, 0.0j, RADIUS - REST)
     wall = np.hypot(*np.split(one, 2)[0].T)
     # Straight sides between 96 nodes on the circle; their middles lie R (1 - cos(pi/96)) inside it.
@@ -77,4 +77,4 @@ def test_plates_grow_with_the_layer() -> None:
     for inner, outer in plates(Baffles(3, 0.095, 0.001), RADIUS, 2.0):
         assert abs(outer) == pytest.approx(RADIUS - 2.0 * 0.001)
         assert abs(inner) == pytest.approx(RADIUS - 2.0 * 0.005)
-    assert not is_uneven(ChamberRecord(RADIUS, 0.0, HEIGHT, VOLUME, "water", REST))
+    assert not is_uneven(FilledChamber(RADIUS, 0.0, HEIGHT, VOLUME, "water", REST))

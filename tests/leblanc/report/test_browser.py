@@ -9,7 +9,7 @@ import pytest
 
 from leblanc.figures import write_figures
 from leblanc.report.page import about
-from leblanc.report.run import write_run_report, write_summary
+from leblanc.report.run import write_run_report
 from leblanc.scene.scene import load_scene
 from leblanc.studies.run import run_scene
 from tests.oracles.browser import Browser, browser, found
@@ -38,7 +38,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
         figures = write_figures(record, place)
         what = about(scene, f"leblanc run {name}.toml", "response.nc", unused=("runup", "optimise"))
         files[name] = place / "summary.html"
-        write_run_report(scene, record, what, figures, files[name])
+        write_run_report(record, what, figures, files[name])
     for name, record in (
         ("many", many_chambers()),
         ("awkward", awkward_texts()),
@@ -47,7 +47,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
         files[name] = folder / f"{name}.html"
         if name == "many":
             figures = write_figures(record, folder / name)
-        write_summary(record, about_record(record), figures, files[name])
+        write_run_report(record, about_record(record), figures, files[name])
     return files
 
 

@@ -21,14 +21,18 @@ from leblanc.report import optimise as report_optimise
 from leblanc.report import runup as report_runup
 from leblanc.report import whirl_map as report_map
 from leblanc.report.page import about
+from leblanc.results.exciter import ExciterResult
 from leblanc.results.optimum import ConstraintValue, Feasibility, OptimumResult
 from leblanc.results.runup import RunupResult
+from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import scene_from_table
-from leblanc.studies.exciter import ExciterRecord, exciter_json, run_exciter
+from leblanc.studies.exciter import run_exciter
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.run import run_scene
 from leblanc.studies.runup import runup_scene
-from leblanc.studies.whirl_map import StabilityRecord, map_scene
+from leblanc.studies.whirl_map import map_scene
+from leblanc.text import exciter as text_exciter
+from leblanc.text import whirl_map as text_map
 from leblanc.text.models import MODELS
 from tests.leblanc.studies.test_runup import lying
 from tests.leblanc.studies.test_runup import table as machine
@@ -90,13 +94,13 @@ def check_command(page: Page, command: str, data: str) -> None:
 
 
 @cache
-def small_map() -> StabilityRecord:
+def small_map() -> WhirlMap:
     return map_scene(scene_from_table(example("horizontal_rig", 9)), 7, 40)
 
 
-def test_map_numbers(record: StabilityRecord | None = None) -> None:
+def test_map_numbers(record: WhirlMap | None = None) -> None:
     record = small_map() if record is None else record
-    found = dict(report_map.facts(record))
+    found = dict(text_map.facts(record))
     k, j = np.unravel_index(np.argmax(record.growth), record.growth.shape)
     speed, volume = record.speed[j] * RPM, record.volume[k] * 1e6
     growth = printed(record.growth[k, j])
@@ -296,7 +300,7 @@ def test_optimise_report_is_the_json() -> None:
 def test_a_search_that_names_its_model_says_so() -> None:
     scene = scene_from_table(example("washing_machine", 5, model={"liquid": "statics"}))
     record = optimise_scene(scene, front=False)
-    assert "scene asks" in record.spans[-1].reason
+    assert "scene asks" in record.models[-1].reason
 
 
 def test_a_given_deflection_has_its_report() -> None:
@@ -481,13 +485,13 @@ def test_a_run_that_stopped_says_so(tmp_path: Path) -> None:
 
 
 @cache
-def exciter() -> ExciterRecord:
+def exciter() -> ExciterResult:
     return run_exciter(scene_from_table(example("vibratory_table", 6)))
 
 
 def test_exciter_numbers() -> None:
     record = exciter()
-    found = dict(report_exciter.facts(record))
+    found = dict(text_exciter.facts(record))
     first, through, last = (one * RPM for one in record.characteristic)
     assert (
         found["Natural frequency of the platform"] == f"{printed(record.machine.natural_frequency * RPM)} rpm"
@@ -505,7 +509,7 @@ def test_exciter_numbers() -> None:
         fast=record.fast[:3],
         dual_frequency=record.dual_frequency[:3],
     )
-    slow = dict(report_exciter.facts(below))[
+    slow = dict(text_exciter.facts(below))[
         f"Vibration with the balls at {printed(record.speed[2] * RPM)} rpm"
     ]
     assert slow == f"{printed(record.slow[2] * 1e3)} mm"
@@ -536,7 +540,7 @@ def test_exciter_warnings() -> None:
 
 def test_exciter_report_is_the_json(tmp_path: Path) -> None:
     record = exciter()
-    answer = json.loads(json.dumps(exciter_json(record)))
+    answer = json.loads(json.dumps(record.to_json()))
     what = about(scene_from_table(example("vibratory_table", 6)), "leblanc run table.toml")
     figure = write_exciter_figure(record, tmp_path)
     report_exciter.write_exciter_report(record, what, figure, tmp_path / "summary.html")
@@ -545,8 +549,8 @@ def test_exciter_report_is_the_json(tmp_path: Path) -> None:
     assert page.row("The same by the source's regression") == [f"{printed(printed_critical)} rpm"]
     assert page.row("Critical speed, up to which the balls stick") == [f"{printed(critical)} rpm"]
     for name, value in answer["dimensionless"].items():
-        if name in report_exciter.WORDS:
-            assert page.row(report_exciter.WORDS[name]) == [printed(value)]
+        if name in text_exciter.NUMBERS:
+            assert page.row(text_exciter.NUMBERS[name]) == [printed(value)]
     assert ("Balls do not stick" in page.warnings()) == (not all(answer["dual_frequency"]))
     assert len(page.addresses) == 1
     check_command(page, "run", "")

@@ -17,18 +17,23 @@ from leblanc.cli import main
 from leblanc.figures.page import FigureFiles
 from leblanc.report import page as report
 from leblanc.report import run as report_run
-from leblanc.report.layout import NARROW, WIDE
 from leblanc.report.parts import LIGHT, picture
-from leblanc.results.record import ChamberRecord, SelfExcited, StudyRecord
+from leblanc.results.chamber import FilledChamber
+from leblanc.results.motion import SelfExcited
+from leblanc.results.notes import Note
+from leblanc.results.response import RunResult
+from leblanc.results.run_notes import OF_MODELS, RunCode
 from leblanc.scene.scene import load_scene
-from leblanc.studies.choose import choose
-from leblanc.text.models import MODELS, model_spans
+from leblanc.studies.run import run_scene
+from leblanc.text import run as words
+from leblanc.text.models import MODELS
 from leblanc.text.numbers import number, ranges
 from tests.oracles.pages import WARNING, Page, about_record, printed, read_page
 from tests.oracles.records import RPM, folded, record_of, response_of, rig
 
 ROOT = Path(__file__).parents[3]
 SVG = '<?xml version="1.0"?><svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 400 300"/>'
+ALT = "What is seen in the figure and its numbers."
 PNG = b"\x89PNG\r\n\x1a\n" + bytes(100)
 
 
@@ -38,22 +43,22 @@ def drawing(tmp_path: Path) -> FigureFiles:
 
 
 def figure(folder: Path, name: str, svg: str, png: bytes = PNG) -> FigureFiles:
-    files = FigureFiles(name, f"Title of {name}", folder / f"{name}.png", folder / f"{name}.svg")
+    files = FigureFiles(name, f"Title of {name}", folder / f"{name}.png", folder / f"{name}.svg", alt=ALT)
     files.svg.write_text(svg, encoding="utf-8")
     files.png.write_bytes(png)
     return files
 
 
-def page_of(record: StudyRecord, folder: Path, figures: Sequence[FigureFiles] = (), tolerance=None) -> Page:
+def page_of(record: RunResult, folder: Path, figures: Sequence[FigureFiles] = (), tolerance=None) -> Page:
     path = folder / "summary.html"
-    report_run.write_summary(record, about_record(record), figures, path, tolerance=tolerance)
+    report_run.write_run_report(replace(record, tolerance=tolerance), about_record(record), figures, path)
     return read_page(path)
 
 
 def test_comparisons() -> None:
     record = rig()
     r = record.response
-    largest, at, last, critical = report_run.comparisons(record)
+    largest, at, last, critical = words.comparisons(record)
     wet, dry = np.abs(r.deflection), np.abs(r.deflection_dry)
     # Four digits are printed.
     close = {"rel_tol": 6e-4}
@@ -69,7 +74,7 @@ def test_comparisons() -> None:
     assert critical.dry == "1000" and math.isclose(
         float(critical.wet), 1000.0 * float(critical.ratio), **close
     )
-    found = dict(report_run.facts(record))
+    found = dict(words.facts(record))
     place = found["Its centre of mass at 2000 rpm"].replace("\N{MINUS SIGN}", "-").split()
     assert math.isclose(float(place[0]), r.liquid_offset[-1] * 1000.0, **close)
     assert math.isclose(float(place[-2]), math.degrees(r.liquid_angle[-1]), **close)
@@ -84,7 +89,7 @@ def test_ranges() -> None:
     assert ranges(speed, ~holds) == "100; 400; 600 rpm"
 
 
-def quiet() -> StudyRecord:
+def quiet() -> RunResult:
     """A record of which nothing is to be said."""
     r = rig().response
     always = np.ones(201, dtype=np.bool_)
@@ -101,7 +106,7 @@ def some(first: int, last: int) -> np.ndarray:
     return mask
 
 
-def troubled() -> dict[str, tuple[StudyRecord, str]]:
+def troubled() -> dict[str, tuple[RunResult, str]]:
     """One trouble each: heading of the check, record, speeds that it must name."""
     record = quiet()
     r, whirl = record.response, record.whirl
@@ -127,10 +132,10 @@ def troubled() -> dict[str, tuple[StudyRecord, str]]:
 
 
 def test_warnings() -> None:
-    calm = report_run.checks(quiet(), 1e-3)
+    calm = report_run.checks(replace(quiet(), tolerance=1e-3))
     assert not any(cell.warning for row in calm.rows for cell in row)
     for heading, (record, where) in troubled().items():
-        rows = report_run.checks(record, 1e-3).rows
+        rows = report_run.checks(replace(record, tolerance=1e-3)).rows
         assert [row[0].text for row in rows if row[1].warning] == [heading]
         (text,) = [row[1].text for row in rows if row[0].text == heading]
         assert text == where, heading
@@ -222,7 +227,7 @@ def test_numbers_are_those_of_the_json(name: str, tmp_path: Path, capsys) -> Non
 
 def test_why_gives_the_error_of_each_range() -> None:
     scene = load_scene(ROOT / "examples/horizontal_rig.toml")
-    spans = model_spans(choose(scene), scene.speed_array())
+    spans = run_scene(scene).models
     rows = report.why(spans).rows
     assert [row[2].text for row in rows] == ["not known", "about 100 % or more", "0.099 %"]
     assert [row[0].text for row in rows] == ["100 to 128.5", "138 to 1477.5", "1487 to 2000"]
@@ -238,7 +243,7 @@ def test_page_names_machine_model_notes_and_versions(tmp_path: Path) -> None:
     assert "A rotor with a horizontal axis that carries one chamber with 10 ml of water" in text
     assert "from 100 to 2000 rpm in 201 speeds." in text
     assert "Source: DR18, section 7.2." in text
-    assert record.notes[0] in page.of("li")
+    assert str(record.notes[0]) in page.of("li")
     assert record.digest in text
     for package, version in report.versions().items():
         assert f"{package} {version}" in text
@@ -275,17 +280,14 @@ def test_several_models_each_with_its_range(tmp_path: Path) -> None:
 
 def test_remarks_come_from_the_numbers() -> None:
     record = rig()
-    assert report_run.remarks(record) == list(record.notes)
-    assert report_run.remarks(record, record.notes) == []
+    assert words.remarks(record) == []
     below = replace(rig(50, 100.0, 900.0), notes=())
-    assert report_run.remarks(below) == ["The largest amplitude lies at an end of the range of speeds."]
+    assert words.remarks(below) == ["The largest amplitude lies at an end of the range of speeds."]
     r = record.response
     doubtful = replace(record, notes=(), response=replace(r, in_range=np.zeros(201, dtype=np.bool_)))
-    assert len(report_run.remarks(doubtful)) == 2
+    assert len(words.remarks(doubtful)) == 2
     lost = replace(r, deflection=np.full(201, np.nan + 0j))
-    assert report_run.remarks(replace(record, notes=(), response=lost)) == [
-        "No answer was found at any speed."
-    ]
+    assert words.remarks(replace(record, notes=(), response=lost)) == ["No answer was found at any speed."]
 
 
 def test_figures_are_inside_the_page(tmp_path: Path, drawing: FigureFiles) -> None:
@@ -295,9 +297,7 @@ def test_figures_are_inside_the_page(tmp_path: Path, drawing: FigureFiles) -> No
     assert kind == "data:image/svg+xml;base64"
     assert base64.b64decode(content) == drawing.svg.read_bytes()
     assert page.of("figcaption") == [] and page.of("b")[1] == "Figure 1. Title of amplitude."
-    (alt,) = page.alts
-    largest = report_run.comparisons(rig())[0]
-    assert f"largest {largest.wet} mm" in alt and f"{largest.dry} mm" in alt
+    assert page.alts == [drawing.alt]
 
 
 def test_heavy_drawings_are_pictures(tmp_path: Path) -> None:
@@ -327,32 +327,28 @@ def test_captions_are_text_and_cut_from_the_picture(tmp_path: Path) -> None:
         "chamber": figures.chamber_figure(record),
     }
     for name, one in drawn.items():
-        shown = picture(figures.save(one, tmp_path, name, "Title"), "alt")
+        shown = picture(figures.save(one, tmp_path, name, "Title"))
         lines = sorted(one.texts, key=lambda line: -line.get_position()[1])
         caption = " ".join(line.get_text() for line in lines)
         assert "Scene: A & B." in caption
         assert shown.caption == caption.partition(" Scene:")[0]
         assert shown.shape is not None
-        wide, high = 72.0 * one.get_size_inches()
+        wide, high = one.get_size_inches()
         first = high * (1.0 - lines[0].get_position()[1])
-        # Points as the file has them, to a hundredth. The tallest letters of seven points are 5.3 high: they
-        # are cut off, and no more than a line above them.
-        assert abs(shown.shape[0] - wide) < 0.02
-        assert first - 9.0 < shown.shape[1] < first - 5.3
+        # Inches. The tallest letters of seven points are 5.3 points high: they are cut off, and no more than
+        # a line above them.
+        assert shown.shape[0] == wide
+        assert first - 9.0 / 72.0 < shown.shape[1] < first - 5.3 / 72.0
+        assert shown.alt == one.alt and len(one.alt) > 20
     assert picture(figure(tmp_path, "bare", SVG), "alt").caption == ""
 
 
-def test_notes_of_the_page_are_not_repeated_below_a_figure(tmp_path: Path) -> None:
-    line = (
-        '<g id="text_1"><!-- {} --><g style="fill: #404040" transform="translate(18 {}) scale(0.07 -0.07)">'
-    )
-    svg = (
-        SVG.replace("/>", ">")
-        + line.format("Title of x. Curves. A note", 280)
-        + line.format("that is long. Scene: y", 289)
-    )
-    shown = picture(figure(tmp_path, "x", svg), "alt", ["A note that is long."])
-    assert shown.caption == "Curves."
+def test_notes_that_the_page_says_elsewhere_are_left_out() -> None:
+    """The table of models says what the notes on the models say; other notes stay."""
+    result = run_scene(load_scene(ROOT / "examples/horizontal_rig.toml"))
+    codes = [note.code for note in result.notes]
+    assert codes[:2] == list(OF_MODELS)
+    assert report.notes(result.notes, OF_MODELS) == [str(note) for note in result.notes[2:]]
 
 
 def test_user_text_is_text(tmp_path: Path) -> None:
@@ -361,10 +357,10 @@ def test_user_text_is_text(tmp_path: Path) -> None:
         rig(),
         name=hostile,
         source=hostile,
-        notes=(hostile,),
+        notes=(Note(RunCode.MESH, {}, hostile),),
         assumed=(hostile,),
         inputs=((hostile, hostile, "rotor.mass"),),
-        chambers=(ChamberRecord(0.065, 0.0, 0.02, 1e-5, hostile, 0.06),),
+        chambers=(FilledChamber(0.065, 0.0, 0.02, 1e-5, hostile, 0.06),),
     )
     page = page_of(record, tmp_path)
     assert "script" not in page.tags
@@ -377,22 +373,6 @@ def test_unicode_survives_and_control_characters_do_not(tmp_path: Path) -> None:
     name = "Ölabscheider \N{CJK UNIFIED IDEOGRAPH-6D17} \N{HEBREW LETTER ALEF} \N{SNOWMAN}"
     page = page_of(replace(rig(), name=f"{name}\x00\x1b\n"), tmp_path)
     assert page.of("h1") == [name]
-
-
-def test_more_text_makes_smaller_figures_and_too_much_lets_them_be(
-    tmp_path: Path, drawing: FigureFiles
-) -> None:
-    figures = [replace(drawing, name=name) for name in ("amplitude", "liquid", "chamber")]
-
-    def width(notes: int) -> float:
-        page_of(replace(rig(), notes=("A note on the limits of the model.",) * notes), tmp_path, figures)
-        text = (tmp_path / "summary.html").read_text(encoding="utf-8")
-        return float(text.split("--width: ")[1].split("mm")[0])
-
-    widths = [width(notes) for notes in range(0, 40, 4)]
-    assert widths[0] == widths[-1] == WIDE
-    shrunk = [one for one in widths if one < WIDE]
-    assert shrunk and min(shrunk) >= NARROW
 
 
 @pytest.mark.parametrize(
@@ -413,7 +393,7 @@ def test_more_text_makes_smaller_figures_and_too_much_lets_them_be(
     ],
     ids=["folded", "one speed", "bare", "nothing found"],
 )
-def test_extremes_give_a_page(record: StudyRecord, tmp_path: Path) -> None:
+def test_extremes_give_a_page(record: RunResult, tmp_path: Path) -> None:
     page_of(record, tmp_path)
 
 

@@ -11,8 +11,7 @@ import pytest
 import xarray as xr
 
 from leblanc.results.netcdf import replacing, write_dataset
-from leblanc.results.record import StudyRecord
-from leblanc.results.response import run_json, to_dataset
+from leblanc.results.response import RunResult
 from meshes.errors import InputError
 from tests.oracles.records import folded, record_of, response_of, rig
 
@@ -30,13 +29,13 @@ CONTRACT = [
 
 
 @pytest.fixture(scope="module", params=[rig, folded, lambda: rig(1)], ids=["rig", "folded", "one speed"])
-def record(request) -> StudyRecord:
+def record(request) -> RunResult:
     return request.param()
 
 
-def test_file_holds_what_was_written(record: StudyRecord, tmp_path: Path):
+def test_file_holds_what_was_written(record: RunResult, tmp_path: Path):
     path = tmp_path / "run.nc"
-    write_dataset(to_dataset(record), path)
+    write_dataset(record.to_dataset(), path)
     r = record.response
     with xr.open_dataset(path) as data:
         assert set(data.dims) == {"speed", "branch"}
@@ -59,7 +58,7 @@ def test_file_holds_what_was_written(record: StudyRecord, tmp_path: Path):
 
 
 def test_every_variable_says_what_it_is():
-    data = to_dataset(folded())
+    data = folded().to_dataset()
     for name, variable in data.variables.items():
         assert {"units", "long_name", "description"} <= set(variable.attrs), name
         assert all(variable.attrs[key] for key in ("units", "long_name", "description")), name
@@ -72,7 +71,7 @@ def test_every_variable_says_what_it_is():
 
 def test_attributes_name_scene_and_versions():
     record = rig()
-    attrs = to_dataset(record).attrs
+    attrs = record.to_dataset().attrs
     assert attrs["title"] == record.name
     assert attrs["source"] == record.source
     assert attrs["digest"] == record.digest
@@ -86,13 +85,13 @@ def test_attributes_name_scene_and_versions():
 def test_same_record_same_bytes(tmp_path: Path):
     files = [tmp_path / "a.nc", tmp_path / "b" / "c.nc"]
     for file in files:
-        write_dataset(to_dataset(folded()), file)
+        write_dataset(folded().to_dataset(), file)
     assert files[0].read_bytes() == files[1].read_bytes()
 
 
 def test_texts_that_a_file_cannot_carry(tmp_path: Path):
     record = replace(rig(3), name="Schleuder \x00 \N{SNOWMAN}\n2", source="", assumed=(), notes=())
-    write_dataset(to_dataset(record), tmp_path / "run.nc")
+    write_dataset(record.to_dataset(), tmp_path / "run.nc")
     with xr.open_dataset(tmp_path / "run.nc") as data:
         assert data.attrs["title"] == "Schleuder \N{SNOWMAN} 2"
         assert data.attrs["assumed"] == "nothing"
@@ -108,8 +107,8 @@ def test_interrupted_writing_leaves_the_old_file(tmp_path: Path):
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_json_keeps_its_promise(record: StudyRecord):
-    found = json.loads(json.dumps(run_json(record), allow_nan=False))
+def test_json_keeps_its_promise(record: RunResult):
+    found = json.loads(json.dumps(record.to_json(), allow_nan=False))
     count = record.response.speed.size
     for key in CONTRACT:
         assert len(found[key]) == count, key
@@ -123,7 +122,7 @@ def test_json_keeps_its_promise(record: StudyRecord):
         record.response.deflection,
         rtol=1e-14,
     )
-    assert found["notes"] == list(record.notes)
+    assert found["notes"] == [note.text for note in record.notes]
     assert found["capture_speed"] == record.capture_speed
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fluid.friction import Friction
-from leblanc.results.record import StudyRecord, phase
+from leblanc.results.response import RunResult, phase
 from leblanc.scene.scene import Model, Scene, load_scene
 from leblanc.studies.batch import Answers, answer_scenes
 from leblanc.studies.run import run_scene
@@ -27,7 +27,7 @@ def scene(name: str, share: float = 1.0) -> Scene:
     return replace(found, chambers=chambers, speeds=replace(found.speeds, count=COUNT))
 
 
-def outputs(record: StudyRecord) -> dict[str, np.ndarray]:
+def outputs(record: RunResult) -> dict[str, np.ndarray]:
     """What `run` says, under the names of the answers."""
     one, whirl = record.response, record.whirl
     assert whirl is not None
@@ -68,7 +68,7 @@ def mixed() -> list[Scene]:
 
 @kills(
     "leblanc.studies.batch:_planar",
-    "gravity = np.array([axial_gravity(scene) for scene in scenes])",
+    "gravity = np.array([machine.axial_gravity for machine in prepared])",
     "gravity = np.zeros(len(scenes))",
 )
 @kills("leblanc.studies.batch:_planar", "~(growth > 0.0)", "(growth == growth)")
@@ -84,8 +84,8 @@ def mixed() -> list[Scene]:
 )
 @kills(
     "leblanc.studies.batch:_single",
-    '"amplitude": record.amplitude',
-    '"amplitude": abs(record.response.deflection)',
+    '"amplitude": result.amplitude',
+    '"amplitude": abs(result.response.deflection)',
 )
 @kills("leblanc.studies.batch:answer_scenes", "for part in parts])[order]", "for part in parts])")
 def test_each_is_what_run_gives() -> None:

@@ -10,15 +10,10 @@ import numpy as np
 import pytest
 
 from leblanc.figures.exciter import exciter_figure, write_exciter_figure
+from leblanc.results.exciter import ExciterResult
 from leblanc.scene.scene import load_scene, scene_from_table
-from leblanc.studies.exciter import (
-    ExciterRecord,
-    answer_exciter,
-    describe_exciter,
-    exciter_json,
-    machine_of,
-    run_exciter,
-)
+from leblanc.studies.exciter import answer_exciter, machine_of, run_exciter
+from leblanc.text import exciter as text_exciter
 from meshes.errors import InputError
 from solvers.rotor.exciter.machine import Exciter
 from tests.mutants import kills
@@ -30,7 +25,7 @@ MACHINE = Exciter(40.0, 4e4, 100.0, 0.02, 2, 1.0, 1.4, 0.08, 2.0)
 
 
 @pytest.fixture(scope="module")
-def record() -> ExciterRecord:
+def record() -> ExciterResult:
     return answer_exciter(MACHINE, np.linspace(10.0, 400.0, 40), "small", ("rotor.unbalance",), checks=4)
 
 
@@ -99,7 +94,7 @@ def test_the_start_of_a_pendulum_is_its_own_inertia() -> None:
     assert machine.rolling == pytest.approx(2.0, rel=1e-12) and machine.ball_count == 3
 
 
-def test_speeds_and_branches(record: ExciterRecord) -> None:
+def test_speeds_and_branches(record: ExciterResult) -> None:
     first, through, last = record.characteristic
     three = (record.speed > first) & (record.speed < last)
     assert np.array_equal(np.isfinite(record.stuck).all(axis=1), three)
@@ -108,7 +103,7 @@ def test_speeds_and_branches(record: ExciterRecord) -> None:
     assert record.converged
 
 
-def test_integrations_stand_beside_the_formulas(record: ExciterRecord) -> None:
+def test_integrations_stand_beside_the_formulas(record: ExciterResult) -> None:
     """Where the balls stay the lowest order is right to the balls' share of the mass, 3.4 %, a few times."""
     held = [one for one in record.checks if one.holds and one.speed > 1.5 * MACHINE.natural_frequency]
     assert held
@@ -120,8 +115,8 @@ def test_integrations_stand_beside_the_formulas(record: ExciterRecord) -> None:
     assert any(not one.holds for one in record.checks if one.speed > record.critical)
 
 
-def test_json_holds_numbers_and_nulls_only(record: ExciterRecord) -> None:
-    text = json.dumps(exciter_json(record), allow_nan=False)
+def test_json_holds_numbers_and_nulls_only(record: ExciterResult) -> None:
+    text = json.dumps(record.to_json(), allow_nan=False)
     found = json.loads(text)
     assert len(found["speed"]) == len(found["stuck_speeds"]) == len(found["amplitude_slow"]) == 40
     assert found["stuck_speeds"][0][1] is None
@@ -134,12 +129,12 @@ def test_one_stuck_speed_at_every_speed() -> None:
     damped = Exciter(40.0, 4e4, 3000.0, 0.02, 2, 1.0, 1.4, 0.08, 20.0)
     found = answer_exciter(damped, [20.0, 60.0], checks=1)
     assert math.isnan(found.critical) and found.dual_frequency.all()
-    answer = exciter_json(found)
+    answer = found.to_json()
     assert answer["critical_speed"] is None and answer["characteristic_speeds"]["merger"] is None
     assert "One stuck speed" in "".join(text.get_text() for text in exciter_figure(found).texts)
 
 
-def test_the_figure(record: ExciterRecord, tmp_path: Path) -> None:
+def test_the_figure(record: ExciterResult, tmp_path: Path) -> None:
     """Curves in rpm and mm, marks where the integrations stand, hatching beyond the critical speed."""
     figure = exciter_figure(record)
     above, below = figure.axes[:2]
@@ -180,8 +175,8 @@ def test_a_scene_is_run_over_its_speeds() -> None:
         run_exciter(load_scene(ROOT / "examples" / "centrifuge.toml"))
 
 
-def test_words(record: ExciterRecord) -> None:
-    lines = describe_exciter(record)
+def test_words(record: ExciterResult) -> None:
+    lines = text_exciter.lines(record)
     assert f"{record.critical / RPM:.5g} rpm" in " ".join(lines)
     assert sum(line.startswith("Integrated at") for line in lines) == len(record.checks)
     assert any("balls leave" in line for line in lines) and any("balls stay" in line for line in lines)

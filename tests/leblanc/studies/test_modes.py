@@ -58,7 +58,7 @@ def test_ring() -> None:
     assert answer.converged and not answer.notes
 
 
-@kills("leblanc.studies.modes:table_lines", "k += same", "k += 1")
+@kills("leblanc.text.modes:table_lines", "k += same", "k += 1")
 def test_closed_sectors() -> None:
     """Six compartments: one frequency six times, against the series of sines."""
     chamber = Chamber(R, H, baffles=Baffles(6))

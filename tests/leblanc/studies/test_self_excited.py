@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from fluid.friction import Friction
-from leblanc.results.record import SelfExcited
+from leblanc.results.motion import SelfExcited
+from leblanc.results.run_notes import self_excited as note_of
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import load_scene
-from leblanc.studies.run import describe_whirl, self_excited, stable_with
+from leblanc.studies.prepare import prepare
+from leblanc.studies.run import self_excited
 from solvers.whirl.growth import asynchronous_growth
 from tests.mutants import kills
 
@@ -17,34 +19,34 @@ def found(growth: list[float], bands: tuple[tuple[float, float], ...]) -> SelfEx
     return SelfExcited(np.array(growth), np.array([50.0, 60.0, 70.0]), bands, "none")
 
 
-@kills("leblanc.studies.run:stable_with", "found.growth > 0.0)", "found.growth >= 0.0)")
-@kills("leblanc.studies.run:stable_with", "stable & ~(found", "stable | ~(found")
+@kills("leblanc.results.motion:SelfExcited.leaves_stable", "self.growth > 0.0)", "self.growth >= 0.0)")
+@kills("leblanc.results.motion:SelfExcited.leaves_stable", "stable & ~(self", "stable | ~(self")
 def test_stability() -> None:
     """Growing whirls take stability away, and give none back."""
     whirl = found([-1.0, 0.0, 0.5], ((80.0, 90.0),))
-    stable = stable_with(whirl, np.array([True, False, True]))
+    stable = whirl.leaves_stable(np.array([True, False, True]))
     np.testing.assert_array_equal(stable, [True, False, False])
-    np.testing.assert_array_equal(stable_with(whirl, np.ones(3, dtype=bool)), [True, True, False])
+    np.testing.assert_array_equal(whirl.leaves_stable(np.ones(3, dtype=bool)), [True, True, False])
 
 
-@kills("leblanc.studies.run:describe_whirl", "np.argmax(found.growth)", "np.argmin(found.growth)")
-@kills("leblanc.studies.run:describe_whirl", "{high * RPM:.5g} rpm", "{high:.5g} rpm")
+@kills("leblanc.results.run_notes:self_excited", "np.argmax(whirl.growth)", "np.argmin(whirl.growth)")
+@kills("leblanc.results.run_notes:self_excited", "{high * RPM:.5g} rpm", "{high:.5g} rpm")
 def test_words() -> None:
     """Edges and the fastest whirl in rpm."""
-    text = describe_whirl(found([-1.0, 0.25, 0.5], ((20.0 * np.pi, 30.0 * np.pi),)))
+    text = note_of(found([-1.0, 0.25, 0.5], ((20.0 * np.pi, 30.0 * np.pi),))).text
     assert "600 to 900 rpm" in text and "668.5 rpm" in text and "0.5 1/s" in text
-    assert describe_whirl(found([-1.0, -1.0, 0.0], ())).startswith("No whirl")
-    assert "not found" in describe_whirl(found([np.nan, 0.0, 0.0], ()))
+    assert note_of(found([-1.0, -1.0, 0.0], ())).text.startswith("No whirl")
+    assert "not found" in note_of(found([np.nan, 0.0, 0.0], ())).text
 
 
 @kills(
     "leblanc.studies.run:self_excited",
-    "unstable_bands(system, [scene.chambers], speed, friction, growth[None])",
-    "unstable_bands(system, [scene.chambers], speed, (0, 0.0), growth[None])",
+    "unstable_bands(machine.system, filled, speed, machine.friction, known)",
+    "unstable_bands(machine.system, filled, 1.1 * speed, machine.friction, known)",
 )
 def test_rig() -> None:
     """The horizontal rig whirls just above its critical speed, slower than it spins."""
-    whirl = self_excited(load_scene("examples/horizontal_rig.toml"))
+    whirl = self_excited(prepare(load_scene("examples/horizontal_rig.toml")))
     ((low, high),) = whirl.bands
     speed = load_scene("examples/horizontal_rig.toml").speed_array()
     grows = whirl.growth > 0.0

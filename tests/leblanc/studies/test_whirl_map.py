@@ -18,10 +18,12 @@ from fluid.whirl import covering_speed
 from leblanc.cli import main
 from leblanc.cli.map import map as map_command
 from leblanc.figures.stability_map import map_figure, signed_distance
-from leblanc.results.whirl_map import write_map
+from leblanc.results.map_notes import MapCode
+from leblanc.results.netcdf import write_dataset
+from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import Scene, load_scene
-from leblanc.studies.whirl_map import SPEEDS, VOLUMES, StabilityRecord, fills_over_volume, map_scene
+from leblanc.studies.whirl_map import SPEEDS, VOLUMES, fills_over_volume, map_scene
 from meshes.errors import InputError
 from solvers.whirl.growth import asynchronous_growth
 from tests.mutants import kills
@@ -34,7 +36,7 @@ def scene(name: str = "washing_machine") -> Scene:
     return load_scene(EXAMPLES / f"{name}.toml")
 
 
-def small(name: str = "washing_machine", **changes: object) -> StabilityRecord:
+def small(name: str = "washing_machine", **changes: object) -> WhirlMap:
     return map_scene(scene(name), **({"volumes": 9, "speeds": 40} | changes))  # type: ignore[arg-type]
 
 
@@ -110,12 +112,13 @@ def test_thin_layers() -> None:
 
 def test_notes_say_which_dampings_there_are() -> None:
     record = small(friction=Friction("quadratic", 0.1))
-    assert any("proportion to the motion" in note for note in record.notes)
-    assert any("negative" in note for note in record.notes)
+    assert any(note.code is MapCode.QUADRATIC for note in record.notes)
+    assert any(note.code is MapCode.WITHOUT_FRICTION for note in record.notes)
     assert record.friction.startswith("none (") and "0.187" in record.damping
     record = small()
-    assert "laminar" in record.friction and not any("negative" in note for note in record.notes)
-    assert "128.5" in record.notes[0] and len(record.scene_edges) == 1
+    assert "laminar" in record.friction
+    assert not any(note.code is MapCode.WITHOUT_FRICTION for note in record.notes)
+    assert "128.5" in str(record.notes[0]) and len(record.scene_edges) == 1
 
 
 def test_other_rotors() -> None:
@@ -128,7 +131,7 @@ def test_other_rotors() -> None:
 
 def test_file(tmp_path: Path) -> None:
     record = small("horizontal_rig")
-    write_map(record, tmp_path / "map.nc")
+    write_dataset(record.to_dataset(), tmp_path / "map.nc")
     with h5netcdf.File(tmp_path / "map.nc", "r") as file:
         np.testing.assert_array_equal(file["growth"][...], record.growth)
         np.testing.assert_array_equal(file["in_range"][...], record.in_range)

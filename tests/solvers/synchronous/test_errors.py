@@ -14,7 +14,7 @@ from fluid.fill import Fill, Fills
 from fluid.liquid import KNOWN_LIQUIDS
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import load_scene
-from leblanc.studies.choose import across_gravity, axial_gravity
+from leblanc.studies.prepare import across_gravity, axial_gravity
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.error import MOST_LAG, MOST_WAVE, linear_run_error

@@ -210,7 +210,7 @@ def test_peak() -> None:
 
 @kills(
     "leblanc.studies.optimise.robust:_in_condition",
-    "liquid_at(fill.liquid, one.temperature), 0.0",
+    "liquid_at(fill.liquid, condition.temperature), 0.0",
     "fill.liquid, 0.0",
 )
 @kills("leblanc.studies.optimise.robust:Robust.exact", "self.quantile, axis=0", "1.0 - self.quantile, axis=0")

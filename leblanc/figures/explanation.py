@@ -1,0 +1,102 @@
+"""The figures of an explanation: which liquid model answers where, and where balls can stick."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from leblanc.figures.page import Caption, Figure, Frame, add_rate_axis, lay_out, number, style
+from leblanc.results.explanation import ExciterExplanation, Explanation
+from leblanc.results.notes import EXACT
+from leblanc.results.provenance import one_line
+from leblanc.text.models import error_words, speeds_words
+from leblanc.units import RPM
+
+FRAME = Frame(left=0.72, top=0.46, between=0.12, below=0.42)
+COLOURS = {"statics": "#0072B2", "linear": "#E69F00", "fem": "#009E73"}  # after Okabe and Ito
+HATCHES = {"statics": "", "linear": "///", "fem": "..."}
+MOST = 1.0  # relative error that is drawn at most
+
+
+def model_figure(answer: Explanation) -> Figure:
+    """Estimated error over speed, with the liquid model that answers there.
+
+    Parameters
+    ----------
+    answer : the scene in numbers
+    """
+    with style():
+        figure = Figure()
+        axes: Any = figure.add_axes((0, 0, 1, 1))
+        axes.set_yscale("log")
+        axes.set_ylim(0.1 * EXACT, 3.0 * MOST)
+        for span in answer.models:
+            known = math.isfinite(span.error)
+            top = min(max(span.error, EXACT), MOST) if known else 3.0 * MOST
+            look = {"facecolor": COLOURS.get(span.model, "0.5"), "hatch": HATCHES.get(span.model, "xx")}
+            label = f"{span.model}{'' if known else ', error not known'}"
+            axes.fill_between(
+                *([span.first * RPM, span.last * RPM], [0.1 * EXACT] * 2, [top] * 2),
+                alpha=0.75 if known else 0.25,
+                edgecolor="black",
+                linewidth=0.7,
+                label=label,
+                **look,
+            )
+        axes.axhline(answer.tolerance, color="black", linestyle="--", linewidth=0.9, label="tolerance")
+        for speed, look, name in (
+            (answer.critical_speed_dry, "-.", "critical speed without liquid"),
+            (answer.critical_speed_wet, ":", "critical speed with liquid"),
+        ):
+            if math.isfinite(speed):
+                axes.axvline(speed * RPM, color="0.3", linestyle=look, label=name)
+        axes.set_xlim(answer.models[0].first * RPM, answer.models[-1].last * RPM)
+        axes.set_xlabel("Speed (rpm)")
+        axes.set_ylabel("Estimated relative error")
+        axes.xaxis.set_major_formatter(number)
+        add_rate_axis(axes)
+        told = "; ".join(f"{speeds_words(span)} rpm {span.model}" for span in answer.models)
+        figure.alt = f"Bars of the estimated error over speed, one for each range of a liquid model: {told}."
+        assumed = ", ".join(map(one_line, answer.assumed)) or "nothing"
+        origin = f"Scene: {one_line(answer.name)}. Assumed: {assumed}."
+        largest = max(answer.models, key=lambda span: span.error if math.isfinite(span.error) else -1.0)
+        text = f"Liquid model at each speed and its estimated error, {error_words(largest)} at most."
+        lay_out(figure, [[axes]], [2.4], FRAME, Caption(text, origin))
+    return figure
+
+
+def stuck_range_figure(answer: ExciterExplanation) -> Figure:
+    """Speeds of the shaft at which the balls have three stuck speeds, beside the speeds of the scene.
+
+    Parameters
+    ----------
+    answer : the vibrating table in numbers
+    """
+    begin, through, end = (speed * RPM for speed in answer.characteristic)
+    unit = answer.natural_frequency * RPM
+    low, high = (ratio * unit for ratio in answer.speed_ratio)
+    with style():
+        figure = Figure()
+        axes: Any = figure.add_axes((0, 0, 1, 1))
+        axes.plot([low, high], [1.0, 1.0], color="0.3", linewidth=6, label="speeds of the scene")
+        if math.isfinite(begin):
+            axes.plot([begin, end], [0.0, 0.0], color="#0072B2", linewidth=6, label="three stuck speeds")
+        for speed, look, name in (
+            (unit, ":", "natural frequency"),
+            (through, "-.", "slowest stuck speed at the resonance"),
+            (answer.critical_speed_printed * RPM, "--", "critical speed, the source's regression"),
+        ):
+            if math.isfinite(speed):
+                axes.axvline(speed, color="black", linestyle=look, linewidth=0.9, label=name)
+        axes.set_ylim(-0.7, 1.7)
+        axes.set_yticks([])
+        axes.set_xlabel("Shaft speed (rpm)")
+        axes.xaxis.set_major_formatter(number)
+        add_rate_axis(axes, "Shaft speed (rad/s)")
+        figure.alt = (
+            f"Ranges of the shaft's speed: the scene from {low:.5g} to {high:.5g} rpm, three stuck speeds of "
+            f"the balls from {begin:.5g} to {end:.5g} rpm."
+        )
+        text = "Speeds of the shaft at which the balls can stick together at three speeds."
+        lay_out(figure, [[axes]], [1.2], FRAME, Caption(text, f"Scene: {one_line(answer.name)}."))
+    return figure

@@ -1,0 +1,179 @@
+"""Which liquid model answers at each speed of a scene, how well, and why."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from leblanc.results.notes import EXACT, percent
+from meshes.arrays import Array, Flags, Index
+
+if TYPE_CHECKING:
+    from solvers.synchronous.errors import LinearError
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The liquid model of a scene at each of its speeds, shape (n,).
+
+    Parameters
+    ----------
+    model : the most exact of the models taken
+    models : name of the model taken at each speed
+    asked : the scene names the model itself
+    in_range : the liquid rides with the drum
+    captured_from : speed above which it does, rad/s; None if at every speed
+    tolerance : relative error that the scene allows
+    error : estimated relative error of what is taken, of amplitude and liquid the larger one; nan where there
+        is no estimate
+    linear : error of the linear theory against the exact equilibrium
+    gravity : estimated error by gravity across the axis, which no model of a steady answer has; nan where the
+        liquid does not ride with the drum
+    cut : baffles cut the liquid of a chamber into compartments, or its section is no circle
+    """
+
+    model: str
+    models: NDArray[np.str_]
+    asked: bool
+    in_range: Flags
+    captured_from: float | None
+    tolerance: float
+    error: Array
+    linear: LinearError
+    gravity: Array
+    cut: bool = False
+
+    @property
+    def missed(self) -> Flags:
+        """Where even the model taken is not known to be within the tolerance, shape (n,)."""
+        return ~(self.error <= self.tolerance)
+
+
+@dataclass(frozen=True)
+class ModelSpan:
+    """A range of speeds that one model answers.
+
+    Parameters
+    ----------
+    first, last : rad/s
+    model : its name
+    in_range : it holds there
+    within_tolerance : its estimated error is below the scene's tolerance at every speed
+    error : largest estimate of it; nan where one is missing
+    linear_error : largest error that the linear theory may have against the exact equilibrium
+    strain : largest linear deflection over the one at which the law of the liquid bends
+    gravity_error : largest estimate of what gravity across the axis does; nan where one is missing
+    reason : why the model is taken, in words
+    better : what the next better model would cost and give, in words
+    """
+
+    first: float
+    last: float
+    model: str
+    in_range: bool
+    within_tolerance: bool
+    error: float
+    linear_error: float
+    strain: float
+    gravity_error: float
+    reason: str
+    better: str
+
+
+def model_spans(choice: Choice, speed: Array) -> tuple[ModelSpan, ...]:
+    """Consecutive speeds with the same model that are alike in range and within the tolerance."""
+    kinds = np.stack((choice.models != "statics", choice.in_range, choice.missed))
+    edges = np.flatnonzero((np.diff(kinds.astype(int), axis=1) != 0).any(axis=0)) + 1
+    return tuple(_span(choice, speed, part) for part in np.split(np.arange(speed.size), edges))
+
+
+def _span(choice: Choice, speed: Array, part: Index) -> ModelSpan:
+    model = str(choice.models[part[0]])
+    return ModelSpan(
+        first=float(speed[part[0]]),
+        last=float(speed[part[-1]]),
+        model=model,
+        in_range=bool(choice.in_range[part[0]]),
+        within_tolerance=not choice.missed[part[0]],
+        error=float(choice.error[part].max()),
+        linear_error=float(choice.linear.worst[part].max()),
+        strain=float(choice.linear.strain[part].max()),
+        gravity_error=float(choice.gravity[part].max()),
+        reason=_reason(choice, model, part),
+        better=_better(choice, model, part),
+    )
+
+
+def _reason(choice: Choice, model: str, part: Index) -> str:
+    """Why that model."""
+    if choice.cut:
+        why = "chambers cut by baffles, or of another section than a circle: small disturbances only"
+        return why if choice.in_range[part[0]] else f"{why}; at this speed the liquid does not cover the wall"
+    if not choice.in_range[part[0]]:
+        return (
+            "gravity across the axis outweighs the spin: the liquid does not ride with the drum, the numbers "
+            "are those of liquid that does"
+        )
+    why = _statics_reason(choice, part) if model == "statics" else _linear_reason(choice, part)
+    if choice.asked:
+        why = f"the scene asks for it; {why}"
+    if not choice.missed[part[0]]:
+        return why
+    limit, waves = percent(choice.tolerance), choice.gravity[part].max()
+    if waves > choice.tolerance:
+        return f"{why}; but waves driven by gravity may change it by {percent(waves)}, tolerance {limit}"
+    return f"{why}; this is more than the tolerance of {limit}"
+
+
+def _linear_reason(choice: Choice, part: Index) -> str:
+    """What the linear theory leaves out at these speeds."""
+    strain, worst = choice.linear.strain[part].max(), choice.linear.worst[part].max()
+    if worst < EXACT:
+        moves = f"at most {percent(strain)} of the way there" if strain > 0.0 else "not"
+        return (
+            "it is exact until the surface touches an end of the wall or an inner wall, and the axis moves "
+            f"{moves}"
+        )
+    if not choice.asked:
+        return f"what it leaves out changes amplitude and liquid by less than {percent(worst)}"
+    size = f"by up to {percent(worst)}" if np.isfinite(worst) else "without a bound"
+    return f"against the exact equilibrium amplitude or liquid may be off {size}"
+
+
+def _statics_reason(choice: Choice, part: Index) -> str:
+    """What rules the linear theory out at these speeds."""
+    strain, worst = choice.linear.strain[part], choice.linear.worst[part].max()
+    known = np.isfinite(worst)
+    off = f"linear theory may be off by {percent(worst)}" if known else "linear theory has no bound of error"
+    if choice.asked and worst <= choice.tolerance:
+        return f"{off}, within the tolerance"
+    if not np.isfinite(strain).all():
+        return f"{off}: at this spin the surface does not cover the wall's height or clear an inner wall"
+    if strain.max() > 1.0:
+        return (
+            f"{off}: the axis moves up to {strain.max():.3g} times as far as to where the surface touches "
+            "the wall's end or an inner wall"
+        )
+    return f"{off}: with a wall dry in part, other deflections may satisfy the balance as well"
+
+
+def _better(choice: Choice, model: str, part: Index) -> str:
+    """What the next better model is, costs and gives."""
+    if choice.cut:
+        return "none: no other model knows such chambers"
+    if not choice.in_range[part[0]]:
+        return "none that is steady: `leblanc runup` carries the liquid until it is caught"
+    gravity = choice.gravity[part].max()
+    if gravity > 0.0 and (model == "statics" or gravity > choice.tolerance):
+        return f"long waves in time (`leblanc runup`, seconds a speed), for gravity's {percent(gravity)}"
+    if model != "statics":
+        worst = choice.linear.worst[part].max()
+        gives = "the same" if worst < EXACT else f"less than {percent(worst)} of change"
+        return (
+            f"the exact equilibrium gives {gives if np.isfinite(worst) else 'the answer'} for about a "
+            "hundred times the time, up to some milliseconds a speed"
+        )
+    return "none: the equilibrium is exact for liquid at rest in the drum"

@@ -1,0 +1,173 @@
+"""What `run` answers of a vibrating table whose balls can stick: stuck speeds and vibration over speed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from leblanc.results.base import Result
+from leblanc.results.netcdf import dataset, flags
+from leblanc.results.netcdf import variable as var
+from leblanc.results.provenance import attributes
+from meshes.arrays import Array, Flags
+
+if TYPE_CHECKING:
+    from leblanc.results.netcdf import Dataset
+    from solvers.rotor.exciter.machine import Dimensionless, Exciter
+    from solvers.rotor.exciter.motion import Start
+
+
+@dataclass(frozen=True)
+class Check:
+    """One time integration beside the formulas.
+
+    Parameters
+    ----------
+    speed : of the shaft, rad/s
+    stuck_speed : mean speed of the balls, rad/s
+    slow, fast : amplitudes of the platform, m; nan where they cannot be told apart
+    holds : the dual-frequency motion holds
+    converged : every number is finite
+    """
+
+    speed: float
+    stuck_speed: float
+    slow: float
+    fast: float
+    holds: bool
+    converged: bool
+
+
+@dataclass(frozen=True)
+class ExciterResult(Result):
+    """Answer over speed; n speeds.
+
+    Parameters
+    ----------
+    name : of the scene
+    assumed : values that it assumes
+    machine : the exciter
+    numbers : its dimensionless numbers
+    start : from which the critical speed is searched
+    speed : of the shaft, rad/s, shape (n,)
+    stuck : speeds at which the balls can stick together, by size, rad/s, nan where there are fewer, shape
+        (n, 3)
+    slow, fast : amplitudes of the platform, m, shape (n,), the balls at the slowest stuck speed
+    dual_frequency : below the critical speed, shape (n,)
+    characteristic : shaft speeds between which there are three stuck speeds and, second, where the slowest
+        passes the resonance, rad/s; nan if there is one at every speed
+    critical : largest shaft speed at which the dual-frequency motion is reached, rad/s; nan if there is one
+        stuck speed at every speed
+    printed_critical : by the source's regression, rad/s; nan outside its ranges
+    checks : time integrations
+    source, digest : of the scene
+    """
+
+    figure: ClassVar[str] = "leblanc.figures.exciter:exciter_figure"
+    summary: ClassVar[str] = "leblanc.text.exciter:facts"
+
+    name: str
+    assumed: tuple[str, ...]
+    machine: Exciter
+    numbers: Dimensionless
+    start: Start
+    speed: Array
+    stuck: Array
+    slow: Array
+    fast: Array
+    dual_frequency: Flags
+    characteristic: tuple[float, float, float]
+    critical: float
+    printed_critical: float
+    checks: tuple[Check, ...]
+    source: str = ""
+    digest: str = ""
+
+    @property
+    def converged(self) -> bool:
+        """Every time integration stayed finite."""
+        return all(check.converged for check in self.checks)
+
+    @property
+    def amplitude(self) -> Array:
+        """Vibration of the platform with the shaft, and with the balls where they stick, m, shape (n,)."""
+        return np.asarray(self.fast + np.where(self.dual_frequency, self.slow, 0.0))
+
+    @property
+    def amplitude_dry(self) -> Array:
+        """Vibration with the shaft alone, m, shape (n,)."""
+        return self.fast
+
+    @property
+    def phase(self) -> Array:
+        """Angle from the shaft's unbalance to the platform's motion, rad, negative where it lags."""
+        ratio = self.speed / self.machine.natural_frequency
+        return -np.arctan2(2.0 * self.numbers.damping * ratio, 1.0 - np.square(ratio))
+
+    def to_json(self) -> dict[str, Any]:
+        """What `run` prints for scripts: SI units, radians, null for what is not there."""
+        first, through, last = map(number_or_none, self.characteristic)
+        nothing = [None] * self.speed.size
+        return {
+            "speed": self.speed.tolist(),
+            "amplitude": self.amplitude.tolist(),
+            "amplitude_dry": self.amplitude_dry.tolist(),
+            "phase": self.phase.tolist(),
+            "liquid_offset": nothing,
+            "liquid_angle": nothing,
+            "dry_patch": [False] * self.speed.size,
+            "stable": self.dual_frequency.tolist(),
+            "model": ["balls"] * self.speed.size,
+            "stuck_speeds": [[number_or_none(speed) for speed in row] for row in self.stuck],
+            "amplitude_slow": self.slow.tolist(),
+            "amplitude_fast": self.fast.tolist(),
+            "dual_frequency": self.dual_frequency.tolist(),
+            "characteristic_speeds": {"second_pair": first, "through_resonance": through, "merger": last},
+            "critical_speed": number_or_none(self.critical),
+            "critical_speed_printed": number_or_none(self.printed_critical),
+            "natural_frequency": self.machine.natural_frequency,
+            "dimensionless": asdict(self.numbers),
+            "start": asdict(self.start),
+            "checks": [
+                asdict(check) | {"slow": number_or_none(check.slow), "fast": number_or_none(check.fast)}
+                for check in self.checks
+            ],
+        }
+
+    def to_dataset(self) -> Dataset:
+        """Dataset with dimensions `speed`, `pair` (of stuck speeds) and `check` (time integrations)."""
+        over, rate = ("speed",), "rad s-1"
+        first, through, last = self.characteristic
+        checks = {
+            name: np.array([getattr(check, name) for check in self.checks])
+            for name in ("speed", "stuck_speed", "slow", "fast", "holds")
+        }
+        slow, fast = "with the balls, slowest stuck speed", "with the shaft"
+        return dataset(
+            {
+                "stuck_speed": var(("speed", "pair"), self.stuck, rate, "stuck speed of the balls"),
+                "amplitude": var(over, self.amplitude, "m", "amplitude", "of the platform, both vibrations"),
+                "amplitude_slow": var(over, self.slow, "m", "slow vibration of the platform", slow),
+                "amplitude_fast": var(over, self.fast, "m", "fast vibration of the platform", fast),
+                "dual_frequency": flags(over, self.dual_frequency, "no yes", "the balls stick together"),
+                "second_pair": var((), first, rate, "shaft speed", "from here on three stuck speeds"),
+                "through_resonance": var((), through, rate, "shaft speed", "slowest at the resonance"),
+                "merger": var((), last, rate, "shaft speed", "up to here three stuck speeds"),
+                "critical_speed": var((), self.critical, rate, "critical speed", "balls stick up to it"),
+                "check_speed": var(("check",), checks["speed"], rate, "shaft speed", "integrated in time"),
+                "check_stuck_speed": var(("check",), checks["stuck_speed"], rate, "speed of the balls"),
+                "check_slow": var(("check",), checks["slow"], "m", "slow vibration", "integrated in time"),
+                "check_fast": var(("check",), checks["fast"], "m", "fast vibration", "integrated in time"),
+                "check_holds": flags(("check",), checks["holds"], "no yes", "the balls stay"),
+            },
+            coords={"speed": var(over, self.speed, rate, "shaft speed", "of the exciter")},
+            attrs=attributes(self, "run", {}, ()),
+        )
+
+
+def number_or_none(value: float) -> float | None:
+    """The number, None where it is not finite."""
+    return float(value) if math.isfinite(value) else None

@@ -1,0 +1,204 @@
+"""A scene in numbers, and which liquid model answers it: what `explain` answers."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass, fields
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from fluid.numbers import LayerNumbers
+from leblanc.results.base import Result
+from leblanc.results.choice import ModelSpan
+from leblanc.results.exciter import number_or_none
+from leblanc.results.motion import RestMode
+from leblanc.results.netcdf import dataset, flags
+from leblanc.results.netcdf import variable as var
+from leblanc.results.provenance import attributes
+
+if TYPE_CHECKING:
+    from leblanc.results.netcdf import Dataset, Variable
+    from solvers.rotor.exciter.machine import Dimensionless
+
+
+@dataclass(frozen=True)
+class LayerExplanation:
+    """One chamber in numbers, at the first and the last speed where they change.
+
+    Parameters
+    ----------
+    numbers : dimensionless numbers, shape (2,) where they depend on speed
+    depth : mean depth of the layer at fast spin, m
+    added_mass_ratio : mass of a full chamber over the rotor's, m_f/M
+    liquid_mass_ratio : mass of the liquid over the rotor's
+    optimal_volume : that just covers the wall at the dry rotor's deflection at the last speed, m^3; nan where
+        baffles cut the liquid or the section is no circle
+    walls : baffles, or the file of the section, in words; empty for a plain ring
+    """
+
+    numbers: LayerNumbers
+    depth: float
+    added_mass_ratio: float
+    liquid_mass_ratio: float
+    optimal_volume: float
+    walls: str = ""
+
+
+_ABOUT = ("source", "assumed", "digest")  # of the scene; not part of the JSON
+
+
+@dataclass(frozen=True)
+class Explanation(Result):
+    """A scene in numbers.
+
+    Parameters
+    ----------
+    name : of the scene
+    critical_speed_dry, critical_speed_wet : without liquid, and with it at small deflections, rad/s; of
+        several the one at which the unbalance moves the axis most
+    damping_ratio : of the support; of several modes the one next to the dry critical speed, at that speed
+    speed_ratio : first and last speed over the dry critical speed
+    captured_from : speed above which the liquid rides with the drum, rad/s; None if at every speed
+    layers : one for each chamber; None for an empty one
+    models : which model answers at each speed, how well, and why
+    tolerance : relative error that the scene allows
+    modes : of the dry rotor at rest; none for a planar rotor, whose only one is the critical speed
+    runup : which liquid model the run-up will take, in words; empty without one
+    source, assumed, digest : of the scene
+    """
+
+    figure: ClassVar[str] = "leblanc.figures.explanation:model_figure"
+    summary: ClassVar[str] = "leblanc.text.explanation:facts"
+
+    name: str
+    critical_speed_dry: float
+    critical_speed_wet: float
+    damping_ratio: float
+    speed_ratio: tuple[float, float]
+    captured_from: float | None
+    layers: tuple[LayerExplanation | None, ...]
+    models: tuple[ModelSpan, ...]
+    tolerance: float
+    modes: tuple[RestMode, ...] = ()
+    runup: str = ""
+    source: str = ""
+    assumed: tuple[str, ...] = ()
+    digest: str = ""
+
+    def to_json(self) -> dict[str, Any]:
+        """What `explain` prints for scripts, SI; what is not finite becomes null when it is printed."""
+        return {name: value for name, value in asdict(self).items() if name not in _ABOUT}
+
+    def to_dataset(self) -> Dataset:
+        """Dataset with dimensions `chamber`, `end` (first and last speed) and `span` (of one model)."""
+        rate, span = "rad s-1", ("span",)
+        ends = np.array(self.speed_ratio) * self.critical_speed_dry
+        captured = math.nan if self.captured_from is None else self.captured_from
+        spans = {
+            field.name: np.array([getattr(one, field.name) for one in self.models])
+            for field in fields(ModelSpan)
+        }
+        return dataset(
+            {
+                "critical_speed_dry": var((), self.critical_speed_dry, rate, "critical speed without liquid"),
+                "critical_speed_wet": var((), self.critical_speed_wet, rate, "critical speed with liquid"),
+                "damping_ratio": var((), self.damping_ratio, "1", "damping ratio", "of the support"),
+                "capture_speed": var((), captured, rate, "capture speed", "the liquid rides with the drum"),
+                "tolerance": var((), self.tolerance, "1", "tolerance", "relative error that is allowed"),
+                "first": var(span, spans["first"], rate, "first speed of a liquid model"),
+                "last": var(span, spans["last"], rate, "last speed of a liquid model"),
+                "model": var(span, spans["model"], "1", "liquid model"),
+                "in_range": flags(span, spans["in_range"], "no yes", "the model holds there"),
+                "error": var(span, spans["error"], "1", "estimated error", "largest, relative"),
+                "reason": var(span, spans["reason"], "1", "why that model"),
+                **_layer_variables(self.layers),
+            },
+            coords={"speed": var(("end",), ends, rate, "spin speed", "first and last of the scene")},
+            attrs=attributes(self, "explain", {}, ()),
+        )
+
+
+def _layer_variables(layers: tuple[LayerExplanation | None, ...]) -> dict[str, Variable]:
+    """Numbers of every chamber, nan for an empty one."""
+    units = {"depth": "m", "optimal_volume": "m3", "added_mass_ratio": "1", "liquid_mass_ratio": "1"}
+    found = {
+        name: var(
+            ("chamber",),
+            np.array([math.nan if layer is None else getattr(layer, name) for layer in layers]),
+            unit,
+            name.replace("_", " "),
+        )
+        for name, unit in units.items()
+    }
+    for field in fields(LayerNumbers):
+        values = [
+            np.full(2, math.nan) if layer is None else np.broadcast_to(getattr(layer.numbers, field.name), 2)
+            for layer in layers
+        ]
+        table = np.array(values, dtype=float).reshape(-1, 2)
+        found[field.name] = var(("chamber", "end"), table, "1", field.name.replace("_", " "))
+    return found
+
+
+@dataclass(frozen=True)
+class ExciterExplanation(Result):
+    """Numbers that decide how a vibrating table with balls behaves, without any integration in time.
+
+    Parameters
+    ----------
+    name : of the scene
+    natural_frequency : of the platform, rad/s
+    speed_ratio : first and last shaft speed over it
+    dimensionless : numbers of the machine
+    characteristic : shaft speeds between which there are three stuck speeds and, second, where the slowest
+        passes the resonance, rad/s; nan if there is one at every speed
+    critical_speed_printed : by the source's regression, rad/s; nan outside its ranges
+    source, assumed, digest : of the scene
+    """
+
+    figure: ClassVar[str] = "leblanc.figures.explanation:stuck_range_figure"
+    summary: ClassVar[str] = "leblanc.text.explanation:exciter_facts"
+
+    name: str
+    natural_frequency: float
+    speed_ratio: tuple[float, float]
+    dimensionless: Dimensionless
+    characteristic: tuple[float, float, float]
+    critical_speed_printed: float
+    source: str = ""
+    assumed: tuple[str, ...] = ()
+    digest: str = ""
+
+    def to_json(self) -> dict[str, Any]:
+        """What `explain` prints for scripts, SI, null for what is not there."""
+        first, through, last = map(number_or_none, self.characteristic)
+        return {
+            "name": self.name,
+            "natural_frequency": self.natural_frequency,
+            "speed_ratio": list(self.speed_ratio),
+            "dimensionless": asdict(self.dimensionless),
+            "characteristic_speeds": {"second_pair": first, "through_resonance": through, "merger": last},
+            "critical_speed_printed": number_or_none(self.critical_speed_printed),
+        }
+
+    def to_dataset(self) -> Dataset:
+        """Dataset of single numbers."""
+        rate = "rad s-1"
+        numbers = {
+            name: var((), value, "1", name.replace("_", " "))
+            for name, value in asdict(self.dimensionless).items()
+        }
+        first, through, last = self.characteristic
+        return dataset(
+            {
+                "natural_frequency": var((), self.natural_frequency, rate, "natural frequency"),
+                "second_pair": var((), first, rate, "shaft speed", "from here on three stuck speeds"),
+                "through_resonance": var((), through, rate, "shaft speed", "slowest at the resonance"),
+                "merger": var((), last, rate, "shaft speed", "up to here three stuck speeds"),
+                "critical_speed_printed": var((), self.critical_speed_printed, rate, "critical speed"),
+                **numbers,
+            },
+            coords={},
+            attrs=attributes(self, "explain", {}, ()),
+        )

@@ -1,0 +1,101 @@
+"""The answer of a vibrating table with balls in words."""
+
+from __future__ import annotations
+
+import math
+
+from leblanc.results.exciter import ExciterResult
+from leblanc.text.numbers import NOT_FOUND, number
+from leblanc.units import MM, RPM
+
+NUMBERS = {
+    "smallness": "Share of the balls in the moving mass, over their rolling inertia",
+    "drag": "Drag of the balls",
+    "unbalance": "Unbalance of the shaft, over that of the balls",
+    "damping": "Damping ratio of the platform",
+}
+
+
+def _rpm(speed: float, missing: str = NOT_FOUND) -> str:
+    return f"{number(speed * RPM)} rpm" if math.isfinite(speed) else missing
+
+
+def answer(result: ExciterResult) -> str:
+    """Up to where the balls stick, in one sentence.
+
+    Parameters
+    ----------
+    result : the answer
+    """
+    if not math.isfinite(result.critical):
+        return "The balls can stick together at one speed only, whatever the speed of the shaft."
+    return (
+        f"The balls stick together up to {_rpm(result.critical)} of the shaft, the platform vibrating at two "
+        f"frequencies; from {_rpm(result.characteristic[0])} to {_rpm(result.characteristic[2])} they have "
+        "three stuck speeds."
+    )
+
+
+def facts(result: ExciterResult) -> list[tuple[str, str]]:
+    """Speeds that decide how the table behaves, and its vibration at the last speed: label and value.
+
+    Parameters
+    ----------
+    result : the answer
+    """
+    first, through, last = result.characteristic
+    none = "none: one stuck speed at every speed"
+    three = f"{_rpm(first)} to {_rpm(last)}" if math.isfinite(first) else none
+    at = _rpm(float(result.speed[-1]))
+    slow = (
+        f"{number(float(result.slow[-1]) * MM)} mm"
+        if result.dual_frequency[-1]
+        else "none: they do not stick"
+    )
+    return [
+        ("Natural frequency of the platform", _rpm(result.machine.natural_frequency)),
+        ("Three stuck speeds, shaft from and to", three),
+        ("Slowest stuck speed at the resonance, shaft at", _rpm(through, "none")),
+        ("Critical speed, up to which the balls stick", _rpm(result.critical, "none")),
+        ("The same by the source's regression", _rpm(result.printed_critical, "outside its ranges")),
+        (f"Vibration with the balls at {at}", slow),
+        (f"Vibration with the shaft at {at}", f"{number(float(result.fast[-1]) * MM)} mm"),
+    ]
+
+
+def alt(result: ExciterResult) -> str:
+    """What the figure shows."""
+    told = dict(facts(result))
+    return (
+        "Curves of the speeds at which the balls can stick together and of the platform's two vibrations "
+        f"over the shaft's speed; critical speed: {told['Critical speed, up to which the balls stick']}."
+    )
+
+
+def lines(result: ExciterResult) -> list[str]:
+    """The answer in a few lines.
+
+    Parameters
+    ----------
+    result : the answer
+    """
+    told = [f"Natural frequency of the platform: {result.machine.natural_frequency * RPM:.5g} rpm"]
+    if math.isfinite(result.critical):
+        first, _, last = (speed * RPM for speed in result.characteristic)
+        told += [
+            f"Three stuck speeds of the balls from {first:.5g} to {last:.5g} rpm of the shaft",
+            f"Critical speed, up to which the balls stick together: {result.critical * RPM:.5g} rpm",
+        ]
+    else:
+        told.append("One stuck speed of the balls at every speed of the shaft")
+    for check in result.checks:
+        began = f"Integrated at {check.speed * RPM:.5g} rpm: balls"
+        if not check.holds:
+            told.append(f"{began} leave")
+            continue
+        both = ""
+        if math.isfinite(check.slow):
+            slow, fast = check.slow * MM, check.fast * MM
+            both = f", platform {slow:.3g} mm with them and {fast:.3g} mm with the shaft"
+        told.append(f"{began} stay at {check.stuck_speed * RPM:.5g} rpm{both}")
+    return told

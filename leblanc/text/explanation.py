@@ -1,0 +1,117 @@
+"""A scene in numbers and its liquid models, as a terminal or a notebook shows them."""
+
+from __future__ import annotations
+
+import math
+
+from leblanc.results.choice import ModelSpan
+from leblanc.results.explanation import ExciterExplanation, Explanation, LayerExplanation
+from leblanc.results.motion import RestMode
+from leblanc.results.provenance import one_line
+from leblanc.text.models import error_words, speeds_words
+from leblanc.units import ML, MM, RPM
+from meshes.arrays import Array
+
+Rows = list[tuple[str, str]]
+
+_CYLINDER = 1e20  # steepness from which the surface is drawn as a cylinder
+_HZ = 60.0  # rpm in one hertz
+
+
+def machine_rows(answer: Explanation) -> Rows:
+    """The rotor as a whole: label and words."""
+    dry, wet = answer.critical_speed_dry * RPM, answer.critical_speed_wet * RPM
+    first, last = answer.speed_ratio
+    rows = [
+        ("critical speed", f"{dry:.5g} rpm without liquid, {wet:.5g} rpm with it at small deflections"),
+        ("damping ratio", f"{answer.damping_ratio:.4g}"),
+        ("speeds", f"{first:.3g} to {last:.3g} times the dry critical speed"),
+    ]
+    if answer.captured_from is not None:
+        captured = f"above {answer.captured_from * RPM:.4g} rpm the liquid rides with the drum"
+        rows.append(("captured", captured))
+    return rows
+
+
+def mode_rows(modes: tuple[RestMode, ...]) -> Rows:
+    """Natural frequencies at rest: frequency and words."""
+    return [
+        (
+            f"{mode.frequency * RPM / _HZ:.4g} Hz",
+            f"{mode.frequency * RPM:.4g} rpm, damping ratio {mode.damping_ratio:.3g}, mostly a {mode.moves}",
+        )
+        for mode in modes
+    ]
+
+
+def layer_rows(layer: LayerExplanation | None) -> Rows:
+    """One chamber: label and words."""
+    if layer is None:
+        return [("fill", "empty")]
+    n = layer.numbers
+    steepness = f"{_ends(n.steepness)}: rise of the surface over the radius in chamber heights"
+    if n.steepness[0] > _CYLINDER:
+        steepness = "a cylinder: no gravity along the axis"
+    covers = "not known for such a chamber"
+    if not math.isnan(layer.optimal_volume):
+        covers = f"from {layer.optimal_volume * ML:.4g} ml at the dry rotor's last deflection"
+    return [
+        *([("walls", layer.walls)] if layer.walls else []),
+        ("fill", f"{n.fill:.4g} of the capacity"),
+        ("layer at fast spin", f"{layer.depth * MM:.4g} mm deep, h0/R = {n.relative_depth:.4g}"),
+        ("curvature", f"kappa = {n.curvature:.5g}"),
+        ("added mass", f"{layer.added_mass_ratio:.4g} of the rotor's mass while the wall is wet"),
+        ("mass of the liquid", f"{layer.liquid_mass_ratio:.4g} of the rotor's mass"),
+        ("centrifuge number", f"{_ends(n.centrifuge)}: acceleration at the surface over gravity"),
+        ("steepness", steepness),
+        ("Reynolds number", _ends(n.reynolds)),
+        ("wall layer", f"{_ends(n.skin)} of the depth"),
+        ("covers the wall", covers),
+    ]
+
+
+def span_rows(span: ModelSpan) -> Rows:
+    """One range of speeds: its error, why that model, and what the next better one gives."""
+    return [("estimated error", error_words(span)), ("why", span.reason), ("next better", span.better)]
+
+
+def span_heading(span: ModelSpan) -> str:
+    """Range of speeds and its model."""
+    return f"{speeds_words(span)} rpm: {span.model}{'' if span.in_range else ' (out of range)'}"
+
+
+def exciter_rows(answer: ExciterExplanation) -> Rows:
+    """A vibrating table with balls: label and words."""
+    numbers, (begin, _, end) = answer.dimensionless, answer.characteristic
+    first, last = answer.speed_ratio
+    share = "share of the balls in the moving mass over their rolling inertia"
+    return [
+        ("natural frequency", _rpm(answer.natural_frequency)),
+        ("speeds", f"{first:.3g} to {last:.3g} times the natural frequency"),
+        ("smallness", f"{numbers.smallness:.4g}: {share}"),
+        ("drag", f"{numbers.drag:.4g}: drag of the balls"),
+        ("unbalance", f"{numbers.unbalance:.4g}: unbalance over that of the balls"),
+        ("damping", f"{numbers.damping:.4g}: damping ratio of the platform"),
+        ("three stuck speeds", f"from {_rpm(begin)} to {_rpm(end)}"),
+        ("printed critical", f"{_rpm(answer.critical_speed_printed)} by the source's regression"),
+    ]
+
+
+def facts(answer: Explanation) -> Rows:
+    """Main numbers of a scene: label and value."""
+    spans = [(f"{speeds_words(span)} rpm", f"{span.model}, {error_words(span)}") for span in answer.models]
+    return [("Scene", one_line(answer.name)), *machine_rows(answer), *spans]
+
+
+def exciter_facts(answer: ExciterExplanation) -> Rows:
+    """Main numbers of a vibrating table: label and value."""
+    return [("Scene", one_line(answer.name)), *exciter_rows(answer)]
+
+
+def _ends(values: Array) -> str:
+    """From the first speed to the last."""
+    return f"{values[0]:.3g} to {values[1]:.3g}"
+
+
+def _rpm(speed: float) -> str:
+    return f"{speed * RPM:.5g} rpm" if math.isfinite(speed) else "none"

@@ -1,0 +1,250 @@
+"""The response to an unbalance in words: the answer, comparisons, limits, what figures show."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from leblanc.results.provenance import one_line
+from leblanc.results.response import RunResult, peak
+from leblanc.text.numbers import NOT_FOUND, number, ranges
+from leblanc.units import MM, RPM
+from meshes.arrays import Array, Flags
+
+AGAINST = 0.5  # from here on a whirl counts as one with or against the spin
+
+
+def answer(result: RunResult) -> str:
+    """What the liquid does, in one sentence.
+
+    Parameters
+    ----------
+    result : the response
+    """
+    largest, at, last, *_ = comparisons(result)
+    if largest.wet == NOT_FOUND:
+        return "No answer was found at any speed."
+    speed = f"{number(result.speed[-1] * RPM)} rpm"
+    if not result.liquid_mass > 0.0:
+        return f"Without liquid the amplitude is {largest.wet} mm at most, at {at.wet} rpm."
+    if result.speed.size == 1:
+        return f"At {speed} the amplitude is {last.wet} mm with the liquid and {last.dry} mm without."
+    grows = ""
+    if result.whirl is not None and result.whirl.bands:
+        bands = [f"{number(low * RPM)} to {number(high * RPM)}" for low, high in result.whirl.bands]
+        grows = f"; a whirl grows by itself from {', '.join(bands)} rpm"
+    return (
+        f"The largest amplitude is {largest.wet} mm at {at.wet} rpm with the liquid and {largest.dry} mm at "
+        f"{at.dry} rpm without; at {speed} it is {last.wet} mm instead of {last.dry} mm{grows}."
+    )
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """With liquid, without, and their ratio, as printed."""
+
+    label: str
+    wet: str
+    dry: str
+    ratio: str
+
+
+def comparisons(result: RunResult) -> list[Comparison]:
+    """Largest and last amplitude, and the critical speed of a planar rotor, with and without liquid.
+
+    Parameters
+    ----------
+    result : the response
+    """
+    r = result.response
+    wet, dry = peak(result.amplitude), peak(result.amplitude_dry)
+    at_wet, at_dry = (NOT_FOUND if i is None else number(r.speed[i] * RPM) for i in (wet, dry))
+    found = [
+        _compared("Largest amplitude (mm)", result, wet, dry),
+        Comparison("at the speed (rpm)", at_wet, at_dry, ""),
+        _compared(f"Amplitude at {number(r.speed[-1] * RPM)} rpm (mm)", result, -1, -1),
+    ]
+    if result.motion is None:
+        with_liquid, without = result.critical_speed_wet, result.critical_speed_dry
+        words = number(with_liquid * RPM), number(without * RPM), number(with_liquid / without)
+        found.append(Comparison("Critical speed (rpm)", *words))
+    return found
+
+
+def _compared(label: str, result: RunResult, wet: int | None, dry: int | None) -> Comparison:
+    """Amplitudes at two places in the list of speeds."""
+    with_liquid = math.nan if wet is None else float(result.amplitude[wet])
+    without = math.nan if dry is None else float(result.amplitude_dry[dry])
+    comparable = without > 0.0 and math.isfinite(without) and math.isfinite(with_liquid)
+    ratio = number(with_liquid / without) if comparable else ""
+    return Comparison(label, number(with_liquid * MM), number(without * MM), ratio)
+
+
+def facts(result: RunResult) -> list[tuple[str, str]]:
+    """What else a reader wants to know: label and value.
+
+    Parameters
+    ----------
+    result : the response
+    """
+    r = result.response
+    where = NOT_FOUND if math.isnan(r.liquid_offset[-1]) else "none"
+    if r.liquid_offset[-1] > 0.0:
+        angle = number(math.degrees(r.liquid_angle[-1]))
+        where = f"{number(r.liquid_offset[-1] * MM)} mm off the axis at {angle} deg"
+    return [
+        ("Mass of the liquid", f"{number(result.liquid_mass * 1e3)} g"),
+        (f"Its centre of mass at {number(r.speed[-1] * RPM)} rpm", where),
+        *_vibration(result),
+    ]
+
+
+def _vibration(result: RunResult) -> list[tuple[str, str]]:
+    """Critical speeds and natural frequencies; "b" marks a whirl against the spin."""
+    if result.motion is None:
+        return []
+
+    def listed(speeds: tuple[tuple[float, float], ...]) -> str:
+        words = [f"{number(speed * RPM)}" + (" b" if sense < -AGAINST else "") for speed, sense in speeds]
+        return ", ".join(words) + " rpm" if words else "none"
+
+    at_rest = [
+        f"{number(mode.frequency / (2.0 * math.pi))} ({mode.damping_ratio:.2g})"
+        for mode in result.motion.modes
+    ]
+    return [
+        ("Critical speeds with liquid", listed(result.motion.critical_speeds_wet)),
+        ("Critical speeds without liquid", listed(result.motion.critical_speeds_dry)),
+        ("Natural frequencies at rest (damping ratios)", ", ".join(at_rest) + " Hz"),
+    ]
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A check of the answer.
+
+    Parameters
+    ----------
+    label : what is checked
+    where : speeds that fail it
+    failed : some do
+    """
+
+    label: str
+    where: str
+    failed: bool
+
+
+def limits(result: RunResult) -> list[Limit]:
+    """Where the answer is not what it seems: each check with the speeds that fail it.
+
+    Parameters
+    ----------
+    result : the response
+    """
+    r, tolerance = result.response, result.tolerance
+    found = [
+        _limit("Not converged", r.speed, ~r.converged),
+        _limit("Liquid model out of range", r.speed, ~r.in_range),
+    ]
+    if result.capture_speed is not None:
+        loose = r.speed <= result.capture_speed
+        edge = f" (below {number(result.capture_speed * RPM)} rpm)" if loose.any() else ""
+        found.append(Limit("Liquid not carried round", f"{ranges(r.speed, loose)}{edge}", bool(loose.any())))
+    if tolerance is not None and result.error_estimate is not None:
+        missed = ~(result.error_estimate <= tolerance)
+        found.append(_limit(f"Error above {number(100.0 * tolerance)} % or unknown", r.speed, missed))
+    found.append(_limit("Wall dry in part", r.speed, r.dry_patch))
+    found.append(_limit("Answer unstable", r.speed, ~r.stable))
+    if result.whirl is not None:
+        words = [f"{low * RPM:.5g} to {high * RPM:.5g} rpm" for low, high in result.whirl.bands]
+        lost = np.isnan(result.whirl.growth)
+        words += [f"not found at {ranges(r.speed, lost)}"] if lost.any() else []
+        found.append(Limit("Self-excited whirl", ", ".join(words) or "none", bool(words)))
+    infinite = np.isinf(result.amplitude)
+    if infinite.any():
+        found.append(_limit("Amplitude infinite", r.speed, infinite))
+    return found
+
+
+def _limit(label: str, speed: Array, fails: Flags) -> Limit:
+    return Limit(label, ranges(speed, fails), bool(fails.any()))
+
+
+def machine(result: RunResult) -> str:
+    """The machine and its speeds, in one sentence.
+
+    Parameters
+    ----------
+    result : the response
+    """
+    r = result.response
+    count = len(result.chambers)
+    volume = number(sum(chamber.volume for chamber in result.chambers) * 1e6)
+    liquids = " and ".join(dict.fromkeys(one_line(c.liquid_name) for c in result.chambers))
+    chambers = f"{count} chambers, together" if count > 1 else "one chamber"
+    carries = f"{chambers} with {volume} ml of {liquids}" if count else "no chamber"
+    speeds = f"at {number(r.speed[0] * RPM)} rpm"
+    if r.speed.size > 1:
+        speeds = (
+            f"from {number(r.speed[0] * RPM)} to {number(r.speed[-1] * RPM)} rpm in {r.speed.size} speeds"
+        )
+    return f"A rotor with a {result.axis} axis that carries {carries}, {speeds}."
+
+
+def remarks(result: RunResult) -> list[str]:
+    """What the numbers themselves ask a reader to bear in mind, besides the notes.
+
+    Parameters
+    ----------
+    result : the response
+    """
+    r, found = result.response, []
+    highest = peak(result.amplitude)
+    if highest is None:
+        found.append("No answer was found at any speed.")
+    elif r.speed.size > 1 and r.speed[highest] in (r.speed.min(), r.speed.max()):
+        found.append("The largest amplitude lies at an end of the range of speeds.")
+    if highest is not None and not r.in_range[highest]:
+        found.append("The largest amplitude lies where the liquid model is out of range.")
+    if result.motion is not None and any(way < -AGAINST for _, way in result.motion.critical_speeds_dry):
+        found.append("Critical speeds marked b belong to whirl against the spin.")
+    if not r.in_range[-1]:
+        found.append("At the last speed the liquid model is out of range.")
+    return found
+
+
+def alts(result: RunResult) -> dict[str, str]:
+    """What each figure shows, with the numbers a reader would take from it.
+
+    Parameters
+    ----------
+    result : the response
+    """
+    largest, at, last, *_ = comparisons(result)
+    told = dict(facts(result))
+    centre = next(value for label, value in told.items() if label.startswith("Its centre"))
+    return {
+        "amplitude": f"Curves of the amplitude over speed: largest {largest.wet} mm at {at.wet} rpm with "
+        f"liquid, {largest.dry} mm at {at.dry} rpm without.",
+        "liquid": "Curves of the distance and the angle of the liquid's centre of mass over speed; at the "
+        f"last speed: {centre}.",
+        "phase": "Curves of the angle from the unbalance to the deflection over speed, with and without "
+        "liquid.",
+        "chamber": "Drawing of each chamber with its liquid, seen along the axis, at the largest deflection, "
+        f"{largest.wet} mm, and at the last speed, {last.wet} mm.",
+        "campbell": "Curves of the natural frequencies without liquid over speed.",
+    }
+
+
+def summary(result: RunResult) -> list[tuple[str, str]]:
+    """Main numbers: label and value.
+
+    Parameters
+    ----------
+    result : the response
+    """
+    rows = [(row.label, f"{row.wet} with liquid, {row.dry} without") for row in comparisons(result)]
+    return [("Scene", one_line(result.name)), *rows, *facts(result)]

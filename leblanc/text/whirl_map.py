@@ -1,0 +1,82 @@
+"""The map of self-excited whirl in words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from leblanc.results.whirl_map import WhirlMap
+from leblanc.text.numbers import number
+from leblanc.units import ML, RPM
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+MOST_BANDS = 4  # listed one by one
+
+
+def answer(found: WhirlMap) -> str:
+    """Where a whirl grows, in one sentence.
+
+    Parameters
+    ----------
+    found : the map
+    """
+    told = dict(facts(found))
+    if not (found.growth > 0.0).any():
+        return "No whirl grows by itself at any speed with any volume of liquid."
+    own = f"with the scene's {number(found.scene_volume * ML)} ml"
+    bands = f"from {band_words(found.scene_edges)} rpm" if found.scene_edges else "nowhere"
+    return (
+        f"A whirl grows by itself at {told['A whirl grows at']}, fastest by {told['Fastest growth']}; "
+        f"{own} it grows {bands}."
+    )
+
+
+def band_words(bands: Sequence[tuple[float, float]]) -> str:
+    """Ranges of speed in which a whirl grows."""
+    words = [f"{low * RPM:.5g} to {high * RPM:.5g}" for low, high in bands]
+    if len(words) > MOST_BANDS:
+        return f"{len(words)} bands between {bands[0][0] * RPM:.5g} and {bands[-1][1] * RPM:.5g}"
+    return "; ".join(words) or "none"
+
+
+def facts(found: WhirlMap) -> list[tuple[str, str]]:
+    """What the map says in numbers: label and value.
+
+    Parameters
+    ----------
+    found : the map
+    """
+    growth, size = found.growth, found.growth.size
+    unstable = growth > 0.0
+    fastest, turning = "none grows", "none grows"
+    if unstable.any():
+        row, column = np.unravel_index(int(np.nanargmax(growth)), growth.shape)
+        speed, volume = float(found.speed[column]), float(found.volume[row])
+        at = f"{number(speed * RPM)} rpm, {number(volume * ML)} ml"
+        fastest = f"{number(float(growth[row, column]))} 1/s at {at}"
+        turning = f"{number(float(found.whirl_speed[row, column]) / speed)} of the spin"
+    return [
+        ("Volumes by speeds", f"{found.volume.size} by {found.speed.size}"),
+        ("Most liquid, all chambers", f"{number(float(found.volume[-1]) * ML)} ml"),
+        ("A whirl grows at", f"{number(100.0 * float(np.count_nonzero(unstable)) / size)} % of the points"),
+        ("Fastest growth", fastest),
+        ("That whirl's speed in space", turning),
+        (
+            f"Bands with the scene's {number(found.scene_volume * ML)} ml (rpm)",
+            band_words(found.scene_edges),
+        ),
+        ("Friction of the liquid", found.friction),
+        ("Support", found.damping),
+    ]
+
+
+def alt(found: WhirlMap) -> str:
+    """What the figure shows and the numbers a reader would take from it."""
+    told = dict(facts(found))
+    return (
+        "Map of the growth rate over speed and liquid, and of the whirl's speed where one grows; one grows "
+        f"at {told['A whirl grows at']}, fastest: {told['Fastest growth']}."
+    )
