@@ -44,12 +44,12 @@ def model_figure(answer: Explanation) -> Figure:
                 **look,
             )
         axes.axhline(answer.tolerance, color="black", linestyle="--", linewidth=0.9, label="tolerance")
-        for speed, look, name in (
+        for speed, line, name in (
             (answer.critical_speed_dry, "-.", "critical speed without liquid"),
             (answer.critical_speed_wet, ":", "critical speed with liquid"),
         ):
             if math.isfinite(speed):
-                axes.axvline(speed * RPM, color="0.3", linestyle=look, label=name)
+                axes.axvline(speed * RPM, color="0.3", linestyle=line, label=name)
         axes.set_xlim(answer.models[0].first * RPM, answer.models[-1].last * RPM)
         axes.set_xlabel("Speed (rpm)")
         axes.set_ylabel("Estimated relative error")

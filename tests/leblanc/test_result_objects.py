@@ -1,0 +1,159 @@
+"""Results as objects: one question asked once, the same numbers by every way out."""
+
+from __future__ import annotations
+
+import json
+import pickle
+import sys
+from collections import Counter
+from functools import cache
+from html.parser import HTMLParser
+from pathlib import Path
+from types import CodeType, FrameType
+
+import numpy as np
+import pytest
+
+from leblanc.cli import main
+from leblanc.cli.output import print_json
+from leblanc.figures.page import Figure
+from leblanc.figures.volume import surface_figure
+from leblanc.results.base import Result
+from leblanc.results.response import RunResult
+from leblanc.results.volume import Coverage
+from leblanc.scene.scene import Scene, load_scene
+from leblanc.studies.choose import choose_all
+from leblanc.studies.exciter import run_exciter
+from leblanc.studies.explain import explain_exciter, explain_scene
+from leblanc.studies.prepare import prepare
+from leblanc.studies.run import run_scene
+from leblanc.studies.volume import answer_volume
+from leblanc.studies.whirl_map import map_scene
+from meshes.chamber import Chamber
+
+CHAMBER = Chamber(0.065, 0.02)
+ROOT = Path(__file__).parents[2]
+
+
+def scene(name: str) -> Scene:
+    return load_scene(ROOT / f"examples/{name}.toml")
+
+
+@cache
+def run() -> RunResult:
+    return run_scene(scene("tub"))
+
+
+RESULTS = {
+    "run": run,
+    "map": lambda: map_scene(scene("horizontal_rig"), 5, 21),
+    "explain": lambda: explain_scene(scene("runup")),
+    "explain an exciter": lambda: explain_exciter(scene("vibratory_table")),
+    "volume": lambda: answer_volume(CHAMBER, 1e-3, 20.0, 9.81, 3e-5),
+    "exciter": lambda: run_exciter(scene("vibratory_table")),
+}
+
+
+class Cells(HTMLParser):
+    """Texts of a block of a notebook, and its pictures."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.texts: list[str] = []
+        self.pictures: list[dict[str, str | None]] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        if tag == "img":
+            self.pictures.append(dict(attrs))
+
+    def handle_data(self, data: str) -> None:
+        self.texts.append(data)
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_every_result_has_every_way_out(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    result: Result = RESULTS[name]()
+    print_json(result.to_json())
+    assert json.loads(capsys.readouterr().out)
+    data = result.to_dataset()
+    assert all(variable.attrs["units"] and variable.attrs["long_name"] for variable in data.values())
+    assert data.attrs["version_numpy"] == np.__version__
+    figure = result.plot()
+    assert isinstance(figure, Figure) and figure.axes
+    assert figure.caption.shown and len(figure.alt) > 20
+    assert figure.drawn is not None and figure.drawn[1] < figure.get_figheight()
+    cells = Cells(result._repr_html_())
+    assert len(cells.texts) >= 6 and "nan" not in " ".join(cells.texts).split()
+    (picture,) = cells.pictures
+    assert picture["alt"] == figure.alt and str(picture["src"]).startswith("data:image/svg+xml;base64,")
+
+
+def test_attributes_are_the_arrays_of_the_json() -> None:
+    result = run()
+    found = result.to_json()
+    for key in ("speed", "amplitude", "amplitude_dry", "phase", "liquid_offset", "liquid_angle", "growth"):
+        np.testing.assert_array_equal(np.array(found[key], dtype=float), getattr(result, key))
+    for key in ("dry_patch", "stable", "model", "in_range", "converged"):
+        assert found[key] == getattr(result, key).tolist()
+    turn = np.array(found["deflection"]) @ np.array([1.0, 1.0j])
+    np.testing.assert_array_equal(turn, result.deflection)
+
+
+def test_notes_say_what_their_numbers_are() -> None:
+    """A note is found by its code; its sentence has its numbers, in engineers' units."""
+    notes = run().notes
+    assert len({note.code for note in notes}) == len(notes)
+    for note in notes:
+        assert pickle.loads(pickle.dumps(note)) == note
+        if "share" in note.data:
+            assert f"{note.data['share']:.2g}" in note.text
+        if "below" in note.data:
+            assert note.data["below"] == run().capture_speed
+
+
+def calls(action: object, *counted: CodeType) -> Counter[CodeType]:
+    """How often each of some functions is called while something is done."""
+    found: Counter[CodeType] = Counter()
+
+    def note(frame: FrameType, event: str, _: object) -> None:
+        if event == "call" and frame.f_code in counted:
+            found[frame.f_code] += 1
+
+    assert callable(action)
+    sys.setprofile(note)
+    try:
+        action()
+    finally:
+        sys.setprofile(None)
+    return found
+
+
+@pytest.mark.parametrize("command", ["run", "explain"])
+def test_models_are_chosen_once_a_command(command: str, tmp_path: Path) -> None:
+    """So are the machine and its speeds made once: text, figures and report take them from the result."""
+    counted = (choose_all.__code__, prepare.__code__, Scene.speed_array.__code__)
+    options = ["--out", str(tmp_path)] if command == "run" else []
+    found = calls(lambda: main([command, str(ROOT / "examples/centrifuge.toml"), *options]), *counted)
+    assert found == dict.fromkeys(counted, 1)
+
+
+def test_the_optimal_surface_touches_the_near_wall_at_the_floor() -> None:
+    """What is drawn of the optimal volume begins at the floor where the wall is nearest to the axis."""
+    best = answer_volume(CHAMBER, 2e-3, 60.0, 9.81)
+    (liquid,) = surface_figure(best).axes[0].collections
+    x, z = np.concatenate([path.vertices for path in liquid.get_paths()]).T
+    left, right = (2.0 - 65.0), (2.0 + 65.0)
+    # 400 points over 130 mm; the surface is as steep as 2 beta r = 23 there.
+    near = z[x < left + 0.5].max(initial=0.0)
+    assert near < 0.5 * 23.2 and z[x > right - 0.5].max() == pytest.approx(20.0)
+
+
+@pytest.mark.parametrize(
+    ("factor", "case"), [(1.2, Coverage.MORE), (1.0, Coverage.AS_MUCH), (0.8, Coverage.LESS)]
+)
+def test_the_case_says_how_much_there_is(factor: float, case: Coverage) -> None:
+    best = answer_volume(CHAMBER, 1e-3, 60.0, 9.81).optimal_volume
+    surface = answer_volume(CHAMBER, 1e-3, 60.0, 9.81, factor * best).surface
+    assert surface is not None and surface.case is case
+    assert ("dry" in case.message) == (case is Coverage.LESS)
