@@ -68,7 +68,7 @@ def test_json_is_the_record() -> None:
 )
 def test_dataset_is_the_record() -> None:
     r = folded(31).response
-    data = results.to_dataset(folded(31))
+    data = folded(31).to_dataset()
     # The phase is an angle again after a turn through the exponential, to rounding.
     turn = data["amplitude_dry"].values * np.exp(1j * data["phase_dry"].values)
     np.testing.assert_allclose(turn, r.deflection_dry, rtol=1e-14)

@@ -82,11 +82,6 @@ def mixed() -> list[Scene]:
     '"phase": phase(one.deflection),\n        }',
     '"phase": -phase(one.deflection),\n        }',
 )
-@kills(
-    "leblanc.studies.batch:_single",
-    '"amplitude": result.amplitude',
-    '"amplitude": abs(result.response.deflection)',
-)
 @kills("leblanc.studies.batch:answer_scenes", "for part in parts])[order]", "for part in parts])")
 def test_each_is_what_run_gives() -> None:
     """Field by field, to the rounding of sums whose terms are added in another order."""
