@@ -11,8 +11,7 @@ import typer
 from leblanc.cli.output import out_dir, print_json, say
 
 if TYPE_CHECKING:
-    from leblanc.results.layer import LayerAnswer
-    from solvers.layer.prescribed import LayerHistory
+    from leblanc.results.layer import LayerPeriodsResult, LayerResult
 
 
 def layer(
@@ -50,8 +49,6 @@ def layer(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Force and centre of mass of a liquid layer under a whirl. In the plane, the whirl being prescribed."""
-    from dataclasses import asdict
-
     from fluid.fill import Fill
     from fluid.liquid import known_liquid
     from leblanc.friction import parse_friction
@@ -80,24 +77,22 @@ def layer(
         "numerics": Numerics((96 if model == "fem" else 256) if cells is None else cells, dispersion),
     }
     grown = parse_option(ramp, TIME, "--ramp")
+    result: LayerResult | LayerPeriodsResult
     if duration is not None:
-        history = layer_history(**asked, duration=parse_option(duration, TIME, "--duration"), ramp=grown)
-        shown, converged = _history(asked, history, profile), history.converged
+        result = layer_history(**asked, duration=parse_option(duration, TIME, "--duration"), ramp=grown)
     else:
-        answer = answer_layer(**asked)
-        shown, converged = asdict(answer), answer.converged
-        if not profile:
-            del shown["theta"], shown["depth"]
+        result = answer_layer(**asked)
         if out is not None:
-            _draw(asked, answer, out_dir("layer", out))
+            _draw(result, out_dir("layer", out))
     if animate is not None:
         length = None if duration is None else parse_option(duration, TIME, "--duration")
         _film(asked, length, grown, animate)
+    shown = result.to_json(profile)
     if json:
         print_json(shown)
     else:
         _tell(shown)
-    if not converged:
+    if not result.converged:
         reason = "; ".join(shown["notes"][:1])
         raise NotConverged([f"leblanc layer: {reason or 'no answer'}; {_HELP[model]}"])
 
@@ -140,58 +135,23 @@ def _tell(shown: dict[str, Any]) -> None:
         print(f"note: {note}")
 
 
-def _history(asked: dict[str, Any], history: LayerHistory, profile: bool) -> dict[str, Any]:
-    """What the whirl periods give, as scripts expect it, and whether the model holds."""
-    from dataclasses import asdict
-
-    from leblanc.studies.layer import long_wave_notes, long_wave_validity
-    from solvers.layer.prescribed import Whirl
-
-    whirl = Whirl(asked["speed"], asked["whirl_speed"], asked["whirl_amplitude"], 0.0, asked["gravity"])
-    validity = long_wave_validity(asked["fill"], whirl, history)
-    notes = long_wave_notes(asked["fill"], history, validity)
-    names = ["time", "force_ratio", "mean_rotation", "depth_max", "depth_min", "offset", "pressure_ratio"]
-    names += ["mass_error", "converged"] + (["theta", "depth"] if profile else [])
-    rows = {name: getattr(history, name) for name in names}
-    return rows | {
-        "in_range": not notes,
-        "validity": tuple(map(asdict, validity)),
-        "notes": notes,
-    }
-
-
-def _draw(asked: dict[str, Any], answer: LayerAnswer, folder: Path) -> None:
+def _draw(result: LayerResult, folder: Path) -> None:
     """The wave as it stands in the frame of the deflection."""
     from leblanc.figures import save, wave_figure
-    from leblanc.studies.layer import wave_record
 
-    files = save(wave_figure(wave_record(answer=answer, **asked)), folder, "wave", "Wave on the annulus")
+    files = save(wave_figure(result.wave()), folder, "wave", "Wave on the annulus")
     say(f"wrote {files.png}")
 
 
 def _film(asked: dict[str, Any], duration: float | None, ramp: float, path: Path) -> None:
     """The wave in the drum frame: long_wave from rest, six whirl periods unless told; others two, steady."""
-    from dataclasses import replace
-
     from rich.progress import Progress
 
-    from fluid.friction import NO_FRICTION
     from leblanc.figures import animate
-    from leblanc.studies.layer import answer_layer, steady_film, wave_film, wave_record
-    from solvers.layer.prescribed import Whirl
+    from leblanc.studies.layer import layer_film
 
-    whirl = Whirl(asked["speed"], asked["whirl_speed"], asked["whirl_amplitude"])
-    if asked["model"] == "long_wave":
-        history = wave_film(**asked, duration=duration or 6.0 * whirl.period, ramp=ramp)
-        answer = answer_layer(**(asked | {"model": "linear", "friction": NO_FRICTION}))
-        answer = replace(answer, theta=history.theta, depth=history.depth[-1], notes=())
-    else:
-        answer = answer_layer(**asked)
-        history = steady_film(answer, whirl, 2.0 * whirl.period)
-    last = wave_record(answer=answer, **asked)
+    wave, film = layer_film(**asked, duration=duration, ramp=ramp)
     with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
         task = bar.add_task("drawing", total=None)
-        frames = animate(
-            last, history, path, lambda done, total: bar.update(task, completed=done, total=total)
-        )
+        frames = animate(wave, film, path, lambda done, total: bar.update(task, completed=done, total=total))
     say(f"wrote {path}, {frames} frames")

@@ -10,7 +10,8 @@ import typer
 from leblanc.cli.output import out_dir, print_json, say
 
 if TYPE_CHECKING:
-    from leblanc.studies.modes import ModesRecord, SectionSource
+    from leblanc.results.modes import ModesResult
+    from leblanc.studies.modes import SectionSource
     from meshes.baffles import Baffles
 
 
@@ -45,11 +46,10 @@ def modes(
 
     Frequencies are relative to the drum, positive with the spin.
     """
-    from dataclasses import asdict
-
     from fluid.liquid import known_liquid
     from leblanc.scene.faults import NotConverged
-    from leblanc.studies.modes import Resolution, answer_modes, table_lines
+    from leblanc.studies.modes import Resolution, answer_modes
+    from leblanc.text.modes import table_lines
     from leblanc.units import ANGULAR_SPEED, LENGTH, VOLUME, parse_option
     from meshes.chamber import Chamber
 
@@ -58,7 +58,7 @@ def modes(
         parse_option(height, LENGTH, "--height"),
         baffles=_baffles(baffles, baffle_tip_radius, baffle_wall_gap),
     )
-    answer, record = answer_modes(
+    result = answer_modes(
         chamber,
         parse_option(volume, VOLUME, "--volume"),
         known_liquid(liquid),
@@ -68,16 +68,16 @@ def modes(
         _source(mesh, mesh_unit, mesh_size),
     )
     if json:
-        print_json(asdict(answer))
+        print_json(result.to_json())
     else:
-        print(f"{record.title}; free surface at {answer.surface_radius * 1e3:.6g} mm; {liquid}")
-        print("\n".join(table_lines(answer)))
-        print(f"force ratio of a synchronous whirl {answer.synchronous_force_ratio:.6g}")
-        for note in answer.notes:
-            print(f"note: {note}")
+        print(f"{result.title}; free surface at {result.surface_radius * 1e3:.6g} mm; {liquid}")
+        print("\n".join(table_lines(result)))
+        print(f"force ratio of a synchronous whirl {result.synchronous_force_ratio:.6g}")
+        for note in result.notes:
+            print(f"note: {note.text}")
     if out is not None:
-        _draw(record, out_dir("modes", out))
-    if not answer.converged:
+        _draw(result, out_dir("modes", out))
+    if not result.converged:
         reason = "the eigenproblem was not solved to rounding; a coarser mesh may help"
         raise NotConverged([f"leblanc modes: {reason}"])
 
@@ -117,9 +117,9 @@ def _source(mesh: Path | None, unit: str | None, size: str | None) -> SectionSou
     )
 
 
-def _draw(record: ModesRecord, folder: Path) -> None:
+def _draw(result: ModesResult, folder: Path) -> None:
     """The shapes of the slowest modes."""
     from leblanc.figures.modes import modes_figure, save
 
-    files = save(modes_figure(record), folder, "modes", "Shapes of the liquid's modes")
+    files = save(modes_figure(result), folder, "modes", "Shapes of the liquid's modes")
     say(f"wrote {files.png}")

@@ -11,9 +11,9 @@ import typer
 from leblanc.cli.output import out_dir, print_json, say
 
 if TYPE_CHECKING:
+    from leblanc.results.optimum import OptimumResult
     from leblanc.scene.optimise import Optimisation
     from leblanc.scene.scene import Scene
-    from leblanc.studies.optimise.optimise import OptimumRecord
 
 
 def optimise(
@@ -52,15 +52,15 @@ def optimise(
     machine = load_scene(scene)
     aim = _aim(machine, objective, deflection, limit, steady, seed)
     folder = out_dir(machine.name, out)
-    record = _run(machine, aim, not no_front, emulator)
+    result = _run(machine, aim, not no_front, emulator)
 
     from leblanc.figures.optimise import write_figures
     from leblanc.report.optimise import write_optimise_report
     from leblanc.report.page import about, command_line
-    from leblanc.results.optimum import optimum_json, write_optimum
+    from leblanc.results.optimum import write_optimum
 
-    write_optimum(record, folder / "optimum.nc")
-    files = write_figures(record, folder)
+    write_optimum(result, folder / "optimum.nc")
+    files = write_figures(result, folder)
     command = command_line(
         "optimise",
         scene,
@@ -74,15 +74,15 @@ def optimise(
     )
     in_time = aim.objective == "peak" and not aim.steady
     what = about(machine, command, "optimum.nc", aim, () if in_time else ("runup",))
-    write_optimise_report(record, what, files, folder / "optimise.html")
+    write_optimise_report(result, what, files, folder / "optimise.html")
     if json:
-        print_json(optimum_json(record))
+        print_json(result.to_json())
     else:
         from leblanc.text.optimum import describe_optimum
 
-        print("\n".join(describe_optimum(record)))
+        print("\n".join(describe_optimum(result)))
         print(f"Read {folder / 'optimise.html'}; the data are in {folder / 'optimum.nc'}")
-    say(f"{record.scene.name}: {record.evaluations} sets of volumes judged")
+    say(f"{result.name}: {result.evaluations} sets of volumes judged")
 
 
 def _aim(
@@ -124,7 +124,7 @@ def _length(text: str, option: str) -> float:
     return value
 
 
-def _run(machine: Scene, aim: Optimisation, front: bool, store: Path | None) -> OptimumRecord:
+def _run(machine: Scene, aim: Optimisation, front: bool, store: Path | None) -> OptimumResult:
     """The search itself, with a count on a terminal."""
     from rich.progress import Progress, SpinnerColumn, TextColumn
 

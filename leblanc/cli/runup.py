@@ -11,8 +11,8 @@ import typer
 from leblanc.cli.output import out_dir, print_json, say
 
 if TYPE_CHECKING:
+    from leblanc.results.runup import RunupResult
     from leblanc.scene.scene import Scene
-    from leblanc.studies.runup import RunupRecord
 
 
 def runup(
@@ -42,82 +42,85 @@ def runup(
     planned(machine)
     if animate is not None:
         from leblanc.figures.page import require_film
-        from leblanc.studies.runup_film import require_layers
+        from leblanc.studies.runup_frames import require_layers
 
         require_film(animate)
         require_layers(machine)
     folder = out_dir(machine.name, out)
-    record = _run(machine, cells, samples, not no_check)
+    result = _run(machine, cells, samples, not no_check, animate is not None)
 
     from leblanc.figures.runup import write_figures
     from leblanc.report.page import about, command_line
     from leblanc.report.runup import write_runup_report
-    from leblanc.results.runup import runup_json, write_runup
+    from leblanc.results.runup import write_runup
 
-    write_runup(record, folder / "runup.nc")
-    figures = write_figures(record, folder)
+    write_runup(result, folder / "runup.nc")
+    figures = write_figures(result, folder)
     options = ("--cells", cells, None), ("--samples", samples, None), ("--no-check", no_check, False)
     command = command_line("runup", scene, *options)
     what = about(machine, command, "runup.nc", unused=("speeds", "optimise"))
-    write_runup_report(record, what, figures, folder / "runup.html")
+    write_runup_report(result, what, figures, folder / "runup.html")
     if animate is not None:
-        _film(machine, record, animate)
+        _film(result, animate)
     if json:
-        print_json(runup_json(record))
+        print_json(result.to_json())
     else:
-        _tell(record, folder)
-    _finish(record, scene)
+        _tell(result, folder)
+    _finish(result, scene)
 
 
-def _run(machine: Scene, cells: int | None, samples: int | None, check: bool) -> RunupRecord:
+def _run(machine: Scene, cells: int | None, samples: int | None, check: bool, film: bool) -> RunupResult:
     """The run itself, with a bar on a terminal."""
     from rich.progress import Progress
 
     from leblanc.studies.runup import runup_scene
+    from leblanc.studies.runup_frames import FRAMES
 
+    frames = FRAMES if film else None
     with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
         task = bar.add_task("running up", total=1.0)
-        return runup_scene(machine, cells, samples, check, lambda done: bar.update(task, completed=done))
+        return runup_scene(
+            machine, cells, samples, check, lambda done: bar.update(task, completed=done), frames
+        )
 
 
-def _film(machine: Scene, record: RunupRecord, path: Path) -> None:
-    """The film, run once more with the layers kept."""
+def _film(result: RunupResult, path: Path) -> None:
+    """The film of the layers that the run kept."""
     from rich.progress import Progress
 
     from leblanc.figures.runup_film import animate
-    from leblanc.studies.runup_film import film
 
+    assert result.frames is not None
     with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
         task = bar.add_task("drawing", total=None)
-        reel = film(machine, record)
         frames = animate(
-            record, reel, path, lambda done, total: bar.update(task, completed=done, total=total)
+            result, result.frames, path, lambda done, total: bar.update(task, completed=done, total=total)
         )
     say(f"wrote {path}, {frames} frames")
 
 
-def _tell(record: RunupRecord, folder: Path) -> None:
+def _tell(result: RunupResult, folder: Path) -> None:
     """The run in words."""
     from leblanc.units import MM, RPM
 
-    h = record.history
-    rows = [("largest amplitude", record.peak()), ("at the end", h.time.size - 1)]
-    if record.turning < h.time.size - 1:
-        rows.insert(1, ("largest on the way down", record.peak(back=True)))
+    rows = [("largest amplitude", result.peak()), ("at the end", result.time.size - 1)]
+    if result.turns_back:
+        rows.insert(1, ("largest on the way down", result.peak(back=True)))
     for label, k in rows:
-        print(f"{label:26}{h.amplitude[k] * MM:10.4g} mm at {h.speed[k] * RPM:8.5g} rpm, {h.time[k]:.4g} s")
-    for note in record.notes:
-        print(f"note: {note}")
+        size, speed, time = result.amplitude[k] * MM, result.speed[k] * RPM, result.time[k]
+        print(f"{label:26}{size:10.4g} mm at {speed:8.5g} rpm, {time:.4g} s")
+    for note in result.notes:
+        print(f"note: {note.text}")
     print(f"Read {folder / 'runup.html'}; the data are in {folder / 'runup.nc'}")
 
 
-def _finish(record: RunupRecord, scene: Path) -> None:
+def _finish(result: RunupResult, scene: Path) -> None:
     """Say what did not come to its end, after all that was reached is written."""
+    from leblanc.results.runup import RunupEnd
     from leblanc.scene.faults import NotConverged
 
-    history = record.history
-    if history.reason.startswith("interrupted"):
+    if result.end is RunupEnd.INTERRUPTED:
         raise KeyboardInterrupt
-    if not history.converged:
-        raise NotConverged([f"{scene}: {history.reason}; what was reached is written"])
-    say(f"{record.name}: {history.steps} steps done, energy closed to {history.audit.closure:.1e}")
+    if not result.converged:
+        raise NotConverged([f"{scene}: {result.reason}; what was reached is written"])
+    say(f"{result.name}: {result.steps} steps done, energy closed to {result.energy.closure:.1e}")

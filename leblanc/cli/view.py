@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,9 +12,9 @@ import typer
 from leblanc.cli.output import out_dir, print_json, say
 
 if TYPE_CHECKING:
+    from leblanc.results.shapes import ModeView
     from leblanc.scene.scene import Scene
     from leblanc.view.film import Film
-    from leblanc.view.modes import Mode
     from leblanc.view.parts import Picture
 
 
@@ -60,23 +61,10 @@ def view(
     if browser:
         _serve(machine, spin, factor, host, port)
         return
-    numbers: dict[str, object] = {}
-    wave: Mode | None = None
-    if mode is not None:
-        from leblanc.view.modes import mode_picture, solve_mode
-
-        wave = solve_mode(machine, mode, spin, chamber)
-        picture = mode_picture(machine, wave)
-        numbers = {"speed": wave.speed, "frequency": wave.frequency, "crests": wave.crests}
-    elif machine.rotor.kind == "exciter":
-        picture, numbers = _table(machine, spin)
-    else:
-        from leblanc.view.view import view_scene
-
-        shown = view_scene(machine, spin, factor)
-        picture, numbers = shown.picture, shown.in_numbers()
+    wave = None if mode is None else _mode(machine, mode, spin, chamber)
+    picture, numbers = _still(machine, spin, factor) if wave is None else _of_mode(wave)
     if window:
-        from leblanc.view.view import open_window
+        from leblanc.view.files import open_window
 
         open_window(picture)
         return
@@ -102,7 +90,7 @@ def _check_choices(
     from meshes.errors import InputError
 
     if screenshot is not None:
-        from leblanc.view.view import require_picture
+        from leblanc.view.files import require_picture
 
         require_picture(screenshot)
     if animate is not None:
@@ -127,17 +115,39 @@ def _check_choices(
         raise InputError("--port", port, "from 0 to 65535")
 
 
-def _table(machine: Scene, speed: float | None) -> tuple[Picture, dict[str, object]]:
-    """Picture of a table with balls."""
-    from leblanc.view.exciter import exciter_picture
+def _mode(machine: Scene, number: int, speed: float | None, chamber: int) -> ModeView:
+    """A sloshing mode as drawn."""
+    from leblanc.studies.shapes.modes import mode_view
 
-    return exciter_picture(machine, speed)
+    return mode_view(machine, number, speed, chamber)
+
+
+def _of_mode(wave: ModeView) -> tuple[Picture, dict[str, object]]:
+    """Picture of a sloshing mode and its numbers."""
+    from leblanc.view.modes import mode_picture
+
+    return mode_picture(wave), wave.to_json()
+
+
+def _still(machine: Scene, speed: float | None, factor: float | None) -> tuple[Picture, dict[str, object]]:
+    """Picture of a machine at one speed and its numbers."""
+    if machine.rotor.kind == "exciter":
+        from leblanc.studies.shapes.exciter import table_view
+        from leblanc.view.exciter import table_picture
+
+        table = table_view(machine, speed)
+        return table_picture(table), table.to_json()
+    from leblanc.studies.shapes.machine import machine_view
+    from leblanc.view.still import still
+
+    found = machine_view(machine, speed, factor)
+    return still(found.motion, -1, found.liquid), found.to_json()
 
 
 def _files(
     machine: Scene,
     picture: Picture,
-    wave: Mode | None,
+    wave: ModeView | None,
     screenshot: Path | None,
     animate: Path | None,
     frames: int | None,
@@ -145,7 +155,7 @@ def _files(
     out: Path | None,
 ) -> dict[str, Path | None]:
     """Write what was asked for; without a choice a picture in the folder."""
-    from leblanc.view.view import write_picture
+    from leblanc.view.files import write_picture
 
     made: dict[str, Path | None] = {"screenshot": None, "animation": None}
     if screenshot is not None or animate is None:
@@ -158,36 +168,60 @@ def _files(
     return made
 
 
-def _film(machine: Scene, wave: Mode | None, path: Path, frames: int | None, factor: float | None) -> None:
+def _film(
+    machine: Scene, wave: ModeView | None, path: Path, frames: int | None, factor: float | None
+) -> None:
     """Write a film, with a bar on a terminal."""
     from rich.progress import Progress
 
-    from leblanc.view.film import FRAMES, write_film
-    from leblanc.view.view import film_of
+    from leblanc.view.film import FRAMES, require_frames, write_film
 
+    if wave is None:
+        require_frames(frames or FRAMES)
     with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
         task = bar.add_task("solving", total=1.0)
-        film: Film
         if wave is not None:
             from leblanc.view.modes import ROUND, mode_film
 
-            film = mode_film(machine, wave, frames or ROUND)
+            film = mode_film(wave, frames or ROUND)
         else:
-            film = film_of(machine, frames or FRAMES, factor, lambda done: bar.update(task, completed=done))
+            film = _film_of(machine, frames or FRAMES, factor, lambda done: bar.update(task, completed=done))
         bar.update(task, description="drawing", completed=0.0)
         count = write_film(film, path, lambda done, total: bar.update(task, completed=done / total))
     say(f"wrote {path}, {count} frames")
 
 
+def _film_of(machine: Scene, frames: int, factor: float | None, progress: Callable[[float], None]) -> Film:
+    """The run-up of a scene, or its steady states over the speeds if it has none."""
+    from leblanc.view.film import runup_film, sweep_film
+
+    if machine.runup is not None and machine.rotor.kind != "exciter":
+        from leblanc.studies.shapes.runup import runup_view
+
+        return runup_film(runup_view(machine, frames, factor, progress))
+    from leblanc.studies.shapes.machine import drawn_liquid, machine_motion
+    from leblanc.studies.shapes.scale import scale_of
+
+    motion = machine_motion(machine)
+    scale = scale_of(motion, factor)
+    return sweep_film(motion, scale, lambda k: drawn_liquid(motion, k, scale), frames)
+
+
 def _serve(machine: Scene, speed: float | None, factor: float | None, host: str, port: int) -> None:
     """Serve the page until interrupted."""
-    from leblanc.studies.shapes import look_at
+    from leblanc.studies.shapes.machine import drawn_liquid, dry_walls, machine_motion
+    from leblanc.studies.shapes.scale import scale_at, scale_of
     from leblanc.view.browser import frames_of_speeds, require_trame, serve
-    from leblanc.view.view import require_rotor, scale_of
 
     require_trame()
-    require_rotor(machine)
-    sight = look_at(machine)
-    frames = frames_of_speeds(sight, scale_of(sight, factor), speed)
+    motion = machine_motion(machine)
+    scale = scale_of(motion, factor)
+    frames = frames_of_speeds(
+        motion,
+        scale,
+        lambda k, fitted: drawn_liquid(motion, k, scale_at(motion, k) if fitted else scale),
+        [dry_walls(motion, k) for k in range(motion.speed.size)],
+        speed,
+    )
     say(f"{machine.name}: {frames.count} speeds solved; the page stays until Ctrl-C")
     serve(machine.name, frames, host, port, lambda address: print(f"Open {address}", flush=True))

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.figures.page import Figure, Frame, lay_out, number, style
 from leblanc.figures.page import save as save  # a figure is drawn and written together
-from leblanc.figures.section import rounded_down
+from leblanc.results.drawing import rounded_down
+from leblanc.results.modes import ModesResult
+from leblanc.units import MM, RPM
 from meshes.arrays import Array
-
-if TYPE_CHECKING:
-    from leblanc.studies.modes import ModesRecord
-    from meshes.liquid_section import LiquidSection
+from meshes.liquid_section import LiquidSection
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 
@@ -33,16 +31,16 @@ CUTS = {
 }
 
 
-def modes_figure(record: ModesRecord) -> Figure:
+def modes_figure(result: ModesResult) -> Figure:
     """The slowest modes at the instant of the strongest flow, one shape of those with equal frequencies.
 
     Parameters
     ----------
-    record : of `leblanc.studies.modes.answer_modes`
+    result : the modes
     """
-    modes = record.modes
+    modes = result.shapes
     shown = _distinct(modes.multiplicity)[:MOST]
-    stretch = _stretch(record.section)
+    stretch = _stretch(result.section)
     with style():
         figure = Figure()
         rows = []
@@ -50,11 +48,11 @@ def modes_figure(record: ModesRecord) -> Figure:
             row = [figure.add_axes((0, 0, 1, 1), label=str(start + j)) for j in range(ACROSS)]
             for j, axes in enumerate(row):
                 if start + j < len(shown):
-                    _draw(axes, record, shown[start + j], stretch)
+                    _draw(axes, result, shown[start + j], stretch)
                 else:
                     axes.set_axis_off()
             rows.append(row)
-        caption = _caption(record, stretch)
+        caption = _caption(result, stretch)
         lay_out(figure, rows, [PANEL] * len(rows), FRAME, caption, 6)
     return figure
 
@@ -83,15 +81,13 @@ def _placed(section: LiquidSection, points: Array, stretch: float, inward: Array
     return np.asarray(points * (drawn / radius)[:, None])
 
 
-def _draw(axes: Axes, record: ModesRecord, k: int, stretch: float) -> None:
+def _draw(axes: Axes, result: ModesResult, k: int, stretch: float) -> None:
     """Stream lines, free surface and walls of one mode."""
-    from solvers.sloshing.modes import first_largest
-
-    section, modes = record.section, record.modes
+    section, modes = result.section, result.shapes
     outer = float(np.hypot(*section.points.T).max())
     points = _placed(section, section.points, stretch)
     psi = modes.psi[k]
-    phase = np.exp(-1j * np.angle(psi[first_largest(psi[None])[0]]))
+    phase = np.exp(-1j * result.phase[k])
     cuts = section.cells[:, CUTS[section.cells.shape[1]]].reshape(-1, 3)
     share = (psi * phase).real / np.abs(psi).max()
     axes.tricontourf(*points.T, cuts, share, levels=LEVELS, cmap="PuOr", vmin=-1.3, vmax=1.3)
@@ -111,7 +107,7 @@ def _draw(axes: Axes, record: ModesRecord, k: int, stretch: float) -> None:
     axes.set_xlim(-limit, limit)
     axes.set_ylim(-limit, limit)
     axes.set_axis_off()
-    axes.set_title(_title(record, k), fontsize=7.5, pad=2.0)
+    axes.set_title(_title(result, k), fontsize=7.5, pad=2.0)
 
 
 def _lines(axes: Axes, points: Array, sides: NDArray[np.int64], **look: Any) -> None:
@@ -122,8 +118,8 @@ def _lines(axes: Axes, points: Array, sides: NDArray[np.int64], **look: Any) -> 
     axes.plot(*np.concatenate([path, gap], axis=1).reshape(-1, 2).T, **look)
 
 
-def _title(record: ModesRecord, k: int) -> str:
-    modes = record.modes
+def _title(result: ModesResult, k: int) -> str:
+    modes = result.shapes
     sigma, crests, same = float(modes.frequency[k]), int(modes.crests[k]), int(modes.multiplicity[k])
     runs = "stands"
     if abs(float(modes.travelling[k])) >= 0.5:
@@ -133,13 +129,13 @@ def _title(record: ModesRecord, k: int) -> str:
     return f"{number(float(f'{sigma:.5g}'))} rad/s{times}\n{crests} {plural}, {runs}"
 
 
-def _caption(record: ModesRecord, stretch: float) -> str:
+def _caption(result: ModesResult, stretch: float) -> str:
     depth = "" if stretch == 1.0 else f" Depths are drawn {number(stretch)} times larger."
-    surface, rpm = record.section.surface_radius * 1e3, record.spin * 30.0 / math.pi
+    surface, rpm = result.section.surface_radius * MM, result.speed * RPM
     return (
         "Slowest modes of the liquid in the frame of the drum, spin counter-clockwise. Lines: stream lines, "
         "solid where liquid circles counter-clockwise, dashed where clockwise; blue: free surface at that "
-        f"instant, dotted: at rest. {record.title}, free surface at {surface:.5g} mm, "
-        f"{record.spin:.4g} rad/s = {rpm:.4g} rpm. "
+        f"instant, dotted: at rest. {result.title}, free surface at {surface:.5g} mm, "
+        f"{result.speed:.4g} rad/s = {rpm:.4g} rpm. "
         f"Model: finite elements, plane and inviscid.{depth} Assumed: nothing."
     )

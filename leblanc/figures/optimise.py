@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -20,12 +20,12 @@ from leblanc.figures.page import (
     save,
     style,
 )
+from leblanc.results.notes import texts
+from leblanc.results.optimum import OptimumResult
 from leblanc.results.provenance import one_line
+from leblanc.text.numbers import number as short
 from leblanc.units import MM, RPM
 from meshes.arrays import Array
-
-if TYPE_CHECKING:
-    from leblanc.studies.optimise.optimise import OptimumRecord
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 
@@ -41,43 +41,53 @@ MOST_SLICES = 3
 LEAST = 1e-4  # of what a chamber holds, below which a map is no longer logarithmic
 
 
-def write_figures(record: OptimumRecord, directory: Path) -> tuple[FigureFiles, ...]:
+def write_figures(result: OptimumResult, directory: Path) -> tuple[FigureFiles, ...]:
     """Draw what there is to draw and write each figure as PNG and SVG.
 
     Parameters
     ----------
-    record : the optimum
+    result : the optimum
     directory : where the files go; made if it is missing
     """
     files = []
-    if record.points.shape[0] > 2:
+    if result.candidates.volume.shape[0] > 2:
         title = "Objective over the volumes"
-        files.append(save(objective_figure(record), directory, "objective", title))
-    if record.front is not None and record.front.mass.size > 1:
+        files.append(save(objective_figure(result), directory, "objective", title))
+    if result.front is not None and result.front.mass.size > 1:
         title = "Vibration, liquid and stability"
-        files.append(save(front_figure(record), directory, "front", title))
+        files.append(save(front_figure(result), directory, "front", title))
     return tuple(files)
 
 
-def objective_figure(record: OptimumRecord) -> Figure:
+def objective_figure(result: OptimumResult) -> Figure:
     """Vibration over the volume of one chamber; a map for two; sections through the best point for more."""
-    count = record.volume.size
+    figure = _over_volumes(result)
+    best = ", ".join(short(volume * ML) for volume in result.volume.tolist())
+    figure.alt = (
+        f"Vibration over the volumes that were tried; the best, {best} ml, gives "
+        f"{short(result.vibration * MM)} mm, no liquid {short(result.vibration_baseline * MM)} mm."
+    )
+    return figure
+
+
+def _over_volumes(result: OptimumResult) -> Figure:
+    count = result.volume.size
     with style():
         figure = Figure()
         if count == 2:
             axes = figure.add_axes((0, 0, 1, 1))
-            _draw_map(figure, axes, record)
-            lay_out(figure, [[axes]], [HEIGHT], FRAME, _caption(record, _MAP), LINES)
+            _draw_map(figure, axes, result)
+            lay_out(figure, [[axes]], [HEIGHT], FRAME, _caption(result, _MAP), LINES)
             _make_room(figure, axes)
             return figure
         shown = min(count, MOST_SLICES)
         panels = [figure.add_axes((0, 0, 1, 1), label=str(k)) for k in range(shown)]
         for k, axes in enumerate(panels):
-            _draw_section(axes, record, k)
+            _draw_section(axes, result, k)
         height = HEIGHT if shown == 1 else 1.5
         text = _CURVE if count == 1 else _SECTIONS
         rows = [[axes] for axes in panels]
-        lay_out(figure, rows, [height] * shown, FRAME, _caption(record, text), LINES)
+        lay_out(figure, rows, [height] * shown, FRAME, _caption(result, text), LINES)
     return figure
 
 
@@ -86,39 +96,43 @@ _SECTIONS = "The volumes that were tried, over each chamber's own; the others di
 _MAP = "Every pair of volumes that was tried. "
 
 
-def front_figure(record: OptimumRecord) -> Figure:
+def front_figure(result: OptimumResult) -> Figure:
     """Vibration over the mass of liquid; the size of a mark tells the stability margin."""
     with style():
         figure = Figure()
         axes = figure.add_axes((0, 0, 1, 1))
-        _draw_front(axes, record)
+        _draw_front(axes, result)
         text = (
             "Of these points none is better than another in vibration, mass of liquid and stability margin "
             "at once. The margin is the decay of the small whirl that dies out slowest at the operating "
             "speeds; circles: all die out, the larger the faster; crosses: one grows, the larger the faster. "
         )
-        lay_out(figure, [[axes]], [HEIGHT], FRAME, _caption(record, text, False), LINES)
+        lay_out(figure, [[axes]], [HEIGHT], FRAME, _caption(result, text, False), LINES)
+        figure.alt = (
+            "Vibration over the mass of liquid for the points that no other beats, with their stability "
+            "margins, as in the table."
+        )
     return figure
 
 
-def _known(record: OptimumRecord) -> tuple[Array, Array, Array]:
+def _known(result: OptimumResult) -> tuple[Array, Array, Array]:
     """Volumes, vibrations and excesses of the points that are finite and sure, or by the emulator."""
-    found = record.judged
-    good = np.isfinite(found.details["vibration"])
-    if record.emulated is None:
-        good &= found.details["sure"] == 1.0
-    points, vibration, excess = record.points[good], found.details["vibration"][good], found.excess[good]
-    if record.sweep is not None and record.volume.size == 1:
-        points = np.concatenate((points, record.sweep.volume))
-        vibration = np.concatenate((vibration, record.sweep.vibration))
-        excess = np.concatenate((excess, np.full(record.sweep.mass.shape, np.nan)))
+    tried = result.candidates
+    good = np.isfinite(tried.vibration)
+    if result.emulator is None:
+        good &= tried.exact
+    points, vibration, excess = tried.volume[good], tried.vibration[good], tried.excess[good]
+    if result.sweep is not None and result.volume.size == 1:
+        points = np.concatenate((points, result.sweep.volume))
+        vibration = np.concatenate((vibration, result.sweep.vibration))
+        excess = np.concatenate((excess, np.full(result.sweep.mass.shape, np.nan)))
     return points, vibration, excess
 
 
-def _draw_section(axes: Axes, record: OptimumRecord, k: int) -> None:
+def _draw_section(axes: Axes, result: OptimumResult, k: int) -> None:
     """Vibration over the volume of one chamber."""
-    points, vibration, excess = _known(record)
-    alone = record.volume.size == 1
+    points, vibration, excess = _known(result)
+    alone = result.volume.size == 1
     volume = points[:, k] * ML
     least = float(volume[volume > 0.0].min(initial=math.inf))
     order = np.argsort(volume, kind="stable")
@@ -133,15 +147,15 @@ def _draw_section(axes: Axes, record: OptimumRecord, k: int) -> None:
         if chosen.any():
             look = {"color": LINE, "linestyle": "none", "markersize": 3.0, "zorder": 2.5}
             axes.plot(volume[chosen], vibration[chosen], label=label, **look, **mark)
-    _marks(axes, record, k)
-    top = FAR * max(record.vibration_baseline, record.vibration) * MM
-    low = min(float(vibration.min(initial=math.inf)), record.vibration * MM)
+    _marks(axes, result, k)
+    top = FAR * max(result.vibration_baseline, result.vibration) * MM
+    low = min(float(vibration.min(initial=math.inf)), result.vibration * MM)
     high = min(float(vibration.max(initial=0.0)), top)
     room = 0.06 * max(high - low, 1e-3 * high)
     axes.set_ylim(low - room, high + room)
     if math.isfinite(least):
         axes.set_xscale("symlog", linthresh=least, linscale=0.3)
-        axes.set_xlim(-0.15 * least, 1.15 * record.scene.fills[k].chamber.capacity * ML)
+        axes.set_xlim(-0.15 * least, 1.15 * result.chambers[k].capacity * ML)
         ticks = [0.0, *10.0 ** np.arange(math.ceil(math.log10(least)), 12)]
         axes.set_xticks([one for one in ticks if one <= axes.get_xlim()[1]])
     axes.minorticks_off()
@@ -151,15 +165,15 @@ def _draw_section(axes: Axes, record: OptimumRecord, k: int) -> None:
     axes.set_ylabel("Vibration (mm)")
 
 
-def _marks(axes: Axes, record: OptimumRecord, k: int) -> None:
+def _marks(axes: Axes, result: OptimumResult, k: int) -> None:
     """The best point, the baseline and the closed forms of one chamber."""
-    baseline = record.vibration_baseline * MM
+    baseline = result.vibration_baseline * MM
     axes.axhline(baseline, **BARE, label="without liquid")
-    best = record.volume[k] * ML
+    best = result.volume[k] * ML
     star = {"color": BEST, "marker": "*", "markersize": 11.0, "linestyle": "none", "zorder": 4}
-    axes.plot([best], [record.vibration * MM], label="best", markeredgecolor="black", **star)
-    if k < len(record.covering):
-        form = record.covering[k]
+    axes.plot([best], [result.vibration * MM], label="best", markeredgecolor="black", **star)
+    if k < len(result.closed_form):
+        form = result.closed_form[k]
         dashes = {"color": FULL, "linewidth": 0.9, "zorder": 1.6}
         axes.axvline(
             form.optimal_volume * ML, linestyle=(0, (6, 2)), label="closed form: wall just covered", **dashes
@@ -169,14 +183,14 @@ def _marks(axes: Axes, record: OptimumRecord, k: int) -> None:
             axes.axvline(form.full_volume * ML, linestyle=(0, (1, 1)), label=label, **dashes)
 
 
-def _draw_map(figure: Figure, axes: Axes, record: OptimumRecord) -> None:
+def _draw_map(figure: Figure, axes: Axes, result: OptimumResult) -> None:
     """Vibration over the volumes of two chambers as colours and lines, and the points it is drawn from."""
-    points, vibration, excess = _known(record)
+    points, vibration, excess = _known(result)
     points, first = np.unique(points, axis=0, return_index=True)
     value, excess = vibration[first] * MM, excess[first]
-    capacity = np.array([fill.chamber.capacity for fill in record.scene.fills])
+    capacity = np.array([chamber.capacity for chamber in result.chambers])
     least = LEAST * capacity
-    worst = max(record.vibration_baseline, record.vibration) * MM
+    worst = max(result.vibration_baseline, result.vibration) * MM
     low = float(value.min())
     top = 1.03 * worst if worst > 1.03 * low else FAR * low
     drawn = _contours(axes, points, np.minimum(value, top), np.log1p(points / least), (low, top))
@@ -188,11 +202,11 @@ def _draw_map(figure: Figure, axes: Axes, record: OptimumRecord) -> None:
             look = {"color": "black", "markersize": 2.0, "linestyle": "none", "zorder": 2.5}
             axes.plot(*(points[chosen].T * ML), marker=mark, label=label, **look)
     star = {"color": BEST, "marker": "*", "markersize": 12.0, "linestyle": "none", "zorder": 4}
-    axes.plot(*(record.volume[:, None] * ML), label="best", markeredgecolor="white", **star)
-    for form, line in zip(record.covering, (axes.axvline, axes.axhline), strict=False):
+    axes.plot(*(result.volume[:, None] * ML), label="best", markeredgecolor="white", **star)
+    for form, line in zip(result.closed_form, (axes.axvline, axes.axhline), strict=False):
         dashes = {"color": "white", "linewidth": 1.1, "linestyle": (0, (6, 2)), "zorder": 1.6}
         line(form.optimal_volume * ML, **dashes)
-    if record.covering:
+    if result.closed_form:
         look = {"color": "0.6", "linewidth": 1.1, "linestyle": (0, (6, 2))}
         axes.plot([], [], label="closed form: wall just covered (white)", **look)
     for k, scale in enumerate(("x", "y")):
@@ -245,29 +259,29 @@ def _make_room(figure: Figure, axes: Axes) -> None:
             bar.set_position((box.x0 + width + 0.1 / WIDTH, box.y0, BAR / WIDTH, box.height))
 
 
-def _draw_front(axes: Axes, record: OptimumRecord) -> None:
+def _draw_front(axes: Axes, result: OptimumResult) -> None:
     """The front, the point chosen, and the machine without liquid."""
-    front = record.front
+    front = result.front
     assert front is not None
     mass, vibration = front.mass * GRAM, front.vibration * MM
-    widest = float(np.abs(front.margin).max(initial=0.0))
-    share = np.abs(front.margin) / widest if widest > 0.0 else np.zeros_like(front.margin)
+    widest = float(np.abs(front.stability_margin).max(initial=0.0))
+    share = np.abs(front.stability_margin) / widest if widest > 0.0 else np.zeros_like(front.stability_margin)
     size = SIZES[0] + (SIZES[1] - SIZES[0]) * share
-    calm = front.margin >= 0.0
+    calm = front.stability_margin >= 0.0
     axes.plot(mass, vibration, color="0.75", linewidth=0.8, zorder=1)
-    top = f"margin {number(_short(float(front.margin.max())))} 1/s at most"
+    top = f"margin {number(_short(float(front.stability_margin.max())))} 1/s at most"
     if calm.any():
         look = {"facecolor": "white", "edgecolor": LINE, "linewidths": 1.0, "zorder": 2}
         axes.scatter(mass[calm], vibration[calm], s=size[calm], label=f"no whirl grows; {top}", **look)
     if not calm.all():
-        worst = f"a whirl grows, by {number(_short(float(-front.margin.min())))} 1/s at most"
+        worst = f"a whirl grows, by {number(_short(float(-front.stability_margin.min())))} 1/s at most"
         axes.scatter(
             mass[~calm], vibration[~calm], s=size[~calm], marker="x", color=DRY, label=worst, linewidths=1.0
         )
-    axes.axhline(record.vibration_baseline * MM, **BARE, label="without liquid")
+    axes.axhline(result.vibration_baseline * MM, **BARE, label="without liquid")
     star = {"color": BEST, "marker": "*", "markersize": 12.0, "linestyle": "none", "zorder": 4}
-    best = [record.mass * GRAM], [record.vibration * MM]
-    axes.plot(*best, label=f"chosen: {record.objective}", markeredgecolor="black", **star)
+    best = [result.mass * GRAM], [result.vibration * MM]
+    axes.plot(*best, label=f"chosen: {result.objective}", markeredgecolor="black", **star)
     wet = mass[mass > 0.0]
     if wet.size and wet.max() > 30.0 * wet.min():
         least = float(wet.min())
@@ -286,19 +300,17 @@ def _short(value: float) -> float:
     return float(f"{value:.3g}")
 
 
-def _caption(record: OptimumRecord, text: str, forms: bool = True) -> Caption:
+def _caption(result: OptimumResult, text: str, forms: bool = True) -> Caption:
     """What is shown, the scene, what was asked for."""
-    scene = record.scene
-    assumed = ", ".join(one_line(one) for one in scene.assumed) or "nothing"
-    notes = " ".join(one_line(note) for note in record.notes)
-    vibration = record.meaning if record.unit == "m" else "the amplitude that is limited"
-    what = record.constraints["vibration"].text if "vibration" in record.constraints else vibration
-    at = f"Closed forms at the deflection of the best point at {record.working_speed * RPM:.4g} rpm. "
-    shown = (
-        f"{text}Vibration: {what}. Objective: {record.objective}. {at if forms and record.covering else ''}"
-    )
+    assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
+    notes = " ".join(map(one_line, texts(result.notes)))
+    vibration = result.meaning if result.unit == "m" else "the amplitude that is limited"
+    what = result.constraints["vibration"].meaning if "vibration" in result.constraints else vibration
+    at = f"Closed forms at the deflection of the best point at {result.working_speed * RPM:.4g} rpm. "
+    at = at if forms and result.closed_form else ""
+    shown = f"{text}Vibration: {what}. Objective: {result.objective}. {at}"
     origin = (
-        f"{notes} Scene: {one_line(scene.name)}. Friction of the liquid: {scene.model.friction.law}. "
+        f"{notes} Scene: {one_line(result.name)}. Friction of the liquid: {result.friction.law}. "
         f"Assumed: {assumed}."
     )
     return Caption(" ".join(shown.split()), " ".join(origin.split()))

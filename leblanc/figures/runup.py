@@ -13,8 +13,8 @@ from leblanc.figures.over_speed import DRY, SHADE, UNSTABLE, WET
 from leblanc.figures.page import WIDTH, Caption, Figure, FigureFiles, Frame, lay_out, number, save, style
 from leblanc.friction import friction_words
 from leblanc.results.provenance import one_line
-from leblanc.studies.runup import RunupRecord
-from leblanc.text.runup import model_words, switches
+from leblanc.results.runup import RunupResult
+from leblanc.text.runup import describe_model, largest
 from leblanc.units import MM, RPM
 from meshes.arrays import Array, Flags
 
@@ -34,16 +34,16 @@ _RATES = (lambda rpm: rpm / RPM, lambda rate: rate * RPM)  # from rpm to rad/s a
 LAYERS = ((WET, "-"), (DRY, (0, (3.5, 1.5))), ("#009E73", (0, (1, 1.2))))  # colour and line of a chamber
 
 
-def write_figures(record: RunupRecord, directory: Path) -> tuple[FigureFiles, ...]:
+def write_figures(result: RunupResult, directory: Path) -> tuple[FigureFiles, ...]:
     """Draw all figures of a run-up and write each as PNG and SVG.
 
     Parameters
     ----------
-    record : the run-up
+    result : the run-up
     directory : where the files go; made if it is missing
     """
     return tuple(
-        save(draw(record), directory, name, title)
+        save(draw(result), directory, name, title)
         for name, title, draw in (
             ("runup_speed", "Amplitude over speed on the run-up", speed_figure),
             ("runup_time", "Run-up over time", time_figure),
@@ -52,18 +52,17 @@ def write_figures(record: RunupRecord, directory: Path) -> tuple[FigureFiles, ..
     )
 
 
-def speed_figure(record: RunupRecord) -> Figure:
+def speed_figure(result: RunupResult) -> Figure:
     """Amplitude over speed, up and back told apart, with the steady branches behind."""
-    h = record.history
-    speed, amplitude = h.speed * RPM, h.amplitude * MM
+    speed, amplitude = result.speed * RPM, result.amplitude * MM
     low, high = float(speed.min()), float(speed.max())
     room = 0.02 * (high - low) if high > low else 1.0
     with style():
         figure = Figure()
         axes: Axes = figure.add_axes((0, 0, 1, 1))
-        _shade(axes, record, (low, high))
-        _steady(axes, record)
-        turn = record.turning
+        _shade(axes, result, (low, high))
+        _steady(axes, result)
+        turn = result.turning
         top = 1.15 * float(amplitude.max()) or 1.0
         scale = ((high - low) or 1.0, top)
         name = "run-up" if turn + 1 < speed.size else "run-up and hold"
@@ -85,26 +84,29 @@ def speed_figure(record: RunupRecord) -> Figure:
         for axis in (axes.xaxis, axes.yaxis, above.xaxis):
             axis.set_major_formatter(number)
         text = "Deflection of the first chamber's axis while the speed changes; arrows point on in time."
-        lay_out(figure, [[axes]], [2.9], SPEED_FRAME, caption(record, text), LINES)
+        lay_out(figure, [[axes]], [2.9], SPEED_FRAME, caption(result, text), LINES)
+        figure.alt = (
+            f"Curve of the amplitude over speed with the steady branches behind; largest {largest(result)}."
+        )
     return figure
 
 
-def _shade(axes: Axes, record: RunupRecord, limits: tuple[float, float]) -> None:
+def _shade(axes: Axes, result: RunupResult, limits: tuple[float, float]) -> None:
     """Speeds at which the model is out of range, and those of self-excited whirl."""
-    speed = record.history.speed * RPM
+    speed = result.speed * RPM
     order = np.argsort(speed, kind="stable")
-    for i, (left, right) in enumerate(spans(speed[order], ~record.in_range[order], limits)):
+    for i, (left, right) in enumerate(spans(speed[order], ~result.in_range[order], limits)):
         label = "_" if i else "model out of range"
         axes.axvspan(left, right, color=SHADE, linewidth=0, zorder=0, label=label)
-    for i, (left, right) in enumerate(record.bands):
+    for i, (left, right) in enumerate(result.bands):
         label = "_" if i else "self-excited whirl (linear theory)"
         look = {"facecolor": WHIRL, "alpha": 0.35, "hatch": "///", "edgecolor": "0.55", "linewidth": 0.0}
         axes.axvspan(left * RPM, right * RPM, zorder=0.5, label=label, **look)
 
 
-def _steady(axes: Axes, record: RunupRecord) -> None:
+def _steady(axes: Axes, result: RunupResult) -> None:
     """Branches of the steady response, thin; the rotor without liquid as well."""
-    answer = record.steady
+    answer = result.steady
     if answer is None:
         return
     stable, unstable = steady_lines(answer.speed * RPM, answer.branch_deflection, answer.branch_stable)
@@ -149,20 +151,20 @@ def _arrows(axes: Axes, x: Array, y: Array, scale: tuple[float, float], color: s
         axes.annotate("", (x[head], y[head]), xytext=(x[tail], y[tail]), arrowprops=look, zorder=4)
 
 
-def time_figure(record: RunupRecord) -> Figure:
+def time_figure(result: RunupResult) -> Figure:
     """Speed, amplitude, place of the liquid and depths over time; capture and release marked."""
     panels = [(0.8, _draw_speed), (1.1, _draw_amplitude)]
-    if record.history.layer_mass.sum() > 0.0:
+    if result.layer_mass.sum() > 0.0:
         panels += [(0.95, _draw_offset), (0.95, _draw_angle), (1.1, _draw_depths)]
-    time = record.history.time
+    time = result.time
     first, last = float(time[0]), float(time[-1])
     margin = 0.01 * (last - first) if last > first else 0.5
     with style():
         figure = Figure()
         rows: list[list[Axes]] = [[figure.add_axes((0, 0, 1, 1), label=str(i))] for i in range(len(panels))]
         for (axes,), (_, draw) in zip(rows, panels, strict=True):
-            draw(axes, record)
-            _mark_time(axes, record)
+            draw(axes, result)
+            _mark_time(axes, result)
             axes.set_xlim(first - margin, last + margin)
             axes.xaxis.set_major_formatter(number)
             for scale in (axes, *axes.child_axes):
@@ -170,61 +172,65 @@ def time_figure(record: RunupRecord) -> Figure:
             axes.tick_params(labelbottom=axes is rows[-1][0])
         rows[-1][0].set_xlabel("Time (s)")
         text = "The run-up over time; angles in the drum frame from the drum's zero mark"
-        text += ", the unbalance." if record.kind == "jeffcott" else "."
-        if record.gravity > 0.0:
+        text += ", the unbalance." if result.kind == "jeffcott" else "."
+        if result.gravity > 0.0:
             text += " Place of the liquid: means over whole turns, in which gravity's share drops out."
-        lay_out(figure, rows, [height for height, _ in panels], TIME_FRAME, caption(record, text), LINES)
+        lay_out(figure, rows, [height for height, _ in panels], TIME_FRAME, caption(result, text), LINES)
+        figure.alt = (
+            "Curves over time of speed, amplitude, the place of the liquid and the depth of its layers; "
+            f"largest amplitude {largest(result)}."
+        )
         for (axes,) in rows:
             box = axes.get_position()
             axes.set_position((box.x0, box.y0, box.width - ASIDE / WIDTH, box.height))
     return figure
 
 
-def _mark_time(axes: Axes, record: RunupRecord) -> None:
+def _mark_time(axes: Axes, result: RunupResult) -> None:
     """Times out of range, capture and release."""
-    time = record.history.time
+    time = result.time
     limits = (float(time[0]), float(time[-1]))
-    for i, (left, right) in enumerate(spans(time, ~record.in_range, limits)):
+    for i, (left, right) in enumerate(spans(time, ~result.in_range, limits)):
         label = "_" if i else "model out of range"
         axes.axvspan(left, right, color=SHADE, linewidth=0, zorder=0, label=label)
-    for k, _, caught in switches(record.history):
+    for k, _, caught in result.captures:
         label, dashes = ("liquid captured", (0, (8, 3))) if caught else ("liquid falls back", (0, (2, 2)))
         axes.axvline(time[k], color="0.3", linewidth=0.9, linestyle=dashes, label=label, zorder=1)
 
 
-def _draw_speed(axes: Axes, record: RunupRecord) -> None:
-    axes.plot(record.history.time, record.history.speed * RPM, color="0.15", linewidth=1.2)
-    axes.set_ylim(0.0, 1.1 * float(record.history.speed.max()) * RPM)
+def _draw_speed(axes: Axes, result: RunupResult) -> None:
+    axes.plot(result.time, result.speed * RPM, color="0.15", linewidth=1.2)
+    axes.set_ylim(0.0, 1.1 * float(result.speed.max()) * RPM)
     axes.set_ylabel("Speed (rpm)")
     beside = axes.secondary_yaxis("right", functions=_RATES)
     beside.set_ylabel("(rad/s)")
 
 
-def _draw_amplitude(axes: Axes, record: RunupRecord) -> None:
-    amplitude = record.history.amplitude * MM
-    axes.plot(record.history.time, amplitude, color=UP, linewidth=1.2)
+def _draw_amplitude(axes: Axes, result: RunupResult) -> None:
+    amplitude = result.amplitude * MM
+    axes.plot(result.time, amplitude, color=UP, linewidth=1.2)
     axes.set_ylim(0.0, 1.12 * float(amplitude.max()) or 1.0)
     axes.set_ylabel("Amplitude (mm)")
 
 
-def _place(record: RunupRecord) -> Any:
+def _place(result: RunupResult) -> Any:
     """Liquid's centre of mass as it is drawn."""
-    return record.mean_position if record.gravity > 0.0 else record.history.liquid_position
+    return result.mean_position if result.gravity > 0.0 else result.liquid_position
 
 
-def _draw_offset(axes: Axes, record: RunupRecord) -> None:
-    offset = np.abs(_place(record)) * MM
-    axes.plot(record.history.time, offset, color=UP, linewidth=1.2)
+def _draw_offset(axes: Axes, result: RunupResult) -> None:
+    offset = np.abs(_place(result)) * MM
+    axes.plot(result.time, offset, color=UP, linewidth=1.2)
     axes.set_ylim(0.0, 1.12 * float(offset.max()) or 1.0)
     axes.set_ylabel("Liquid offset\n(mm)")
 
 
-def _draw_angle(axes: Axes, record: RunupRecord) -> None:
-    place = _place(record)
-    angle = lag_degrees(np.angle(place), np.where(record.in_range, np.abs(place), 0.0))
+def _draw_angle(axes: Axes, result: RunupResult) -> None:
+    place = _place(result)
+    angle = lag_degrees(np.angle(place), np.where(result.in_range, np.abs(place), 0.0))
     step = np.diff(angle)
     turns = np.abs(np.where(np.isnan(step), 0.0, step)) > 180.0
-    axes.plot(*gapped(record.history.time, angle, turns), color=UP, linewidth=1.2)
+    axes.plot(*gapped(result.time, angle, turns), color=UP, linewidth=1.2)
     known = angle[~np.isnan(angle)]
     low, high = min(-180.0, known.min(initial=0.0)) - 10.0, max(0.0, known.max(initial=-180.0)) + 10.0
     axes.set_ylim(low, high)
@@ -232,23 +238,23 @@ def _draw_angle(axes: Axes, record: RunupRecord) -> None:
     axes.set_ylabel("Liquid angle\n(deg)")
 
 
-def _draw_depths(axes: Axes, record: RunupRecord) -> None:
+def _draw_depths(axes: Axes, result: RunupResult) -> None:
     """Largest and least depth of the first layers; filled between."""
-    h, top = record.history, 0.0
-    for j, (color, dashes) in enumerate(LAYERS[: len(record.chambers)]):
-        crest, trough = h.depth_max[:, j] * MM, h.depth_min[:, j] * MM
-        axes.fill_between(h.time, trough, crest, color=color, alpha=0.18, linewidth=0)
-        label = f"depth, chamber {j + 1}" if len(record.chambers) > 1 else "largest and least depth"
+    top = 0.0
+    for j, (color, dashes) in enumerate(LAYERS[: len(result.chambers)]):
+        crest, trough = result.depth_max[:, j] * MM, result.depth_min[:, j] * MM
+        axes.fill_between(result.time, trough, crest, color=color, alpha=0.18, linewidth=0)
+        label = f"depth, chamber {j + 1}" if len(result.chambers) > 1 else "largest and least depth"
         for y, name in ((crest, label), (trough, "_")):
-            axes.plot(h.time, y, color=color, linewidth=0.9, linestyle=dashes, label=name)
+            axes.plot(result.time, y, color=color, linewidth=0.9, linestyle=dashes, label=name)
         top = max(top, float(np.nan_to_num(crest).max()))
     axes.set_ylim(0.0, 1.12 * top or 1.0)
     axes.set_ylabel("Depth (mm)")
 
 
-def energy_figure(record: RunupRecord) -> Figure:
+def energy_figure(result: RunupResult) -> Figure:
     """Work done and where it went, as bars."""
-    audit = record.history.audit
+    audit = result.energy
     terms = [
         ("work of the unbalance", audit.unbalance, True),
         ("work of the drive on the liquid", audit.drive, True),
@@ -280,7 +286,10 @@ def energy_figure(record: RunupRecord) -> Figure:
         axes.set_xlabel("Energy (J)")
         axes.xaxis.set_major_formatter(number)
         text = f"Energy over the whole run; not accounted for: {audit.closure:.2%} of the work."
-        lay_out(figure, [[axes]], [2.3], ENERGY_FRAME, caption(record, text), LINES)
+        lay_out(figure, [[axes]], [2.3], ENERGY_FRAME, caption(result, text), LINES)
+        figure.alt = (
+            "Bars of the work done on rotor and liquid and of where it went, as in the table of the energy."
+        )
     return figure
 
 
@@ -288,15 +297,15 @@ def _joule(value: float) -> str:
     return f"{value:.3g}".replace("-", "\N{MINUS SIGN}")
 
 
-def caption(record: RunupRecord, text: str) -> Caption:
+def caption(result: RunupResult, text: str) -> Caption:
     """What a figure shows, the scene, model, friction, resolution, error and what is assumed."""
-    h, numerics = record.history, record.numerics
-    error = "not estimated" if math.isnan(h.error_estimate) else f"{h.error_estimate:.1%} of the largest"
-    assumed = ", ".join(map(one_line, record.assumed)) or "nothing"
-    stopped = "" if h.converged else f" Stopped: {one_line(h.reason)}."
+    error = result.error_estimate
+    size = "not estimated" if math.isnan(error) else f"{error:.1%} of the largest"
+    assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
+    stopped = "" if result.converged else f" Stopped: {one_line(result.reason)}."
     return Caption(
         f"{text}{stopped}",
-        f"Scene: {one_line(record.name)}, {record.axis} axis. Liquid model: "
-        f"{model_words(record.model, numerics)}; liquid friction: "
-        f"{friction_words(record.friction)}. Error of the amplitude: {error}. Assumed: {assumed}.",
+        f"Scene: {one_line(result.name)}, {result.axis} axis. Liquid model: "
+        f"{describe_model(result.model, result.cells, result.dispersion)}; liquid friction: "
+        f"{friction_words(result.friction)}. Error of the amplitude: {size}. Assumed: {assumed}.",
     )

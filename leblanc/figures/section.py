@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from leblanc.results.chamber import FilledChamber
+from leblanc.results.drawing import chord, rounded_down
 from meshes.arrays import Array
 
 RAYS = 361  # one degree apart, closed
@@ -30,19 +31,6 @@ class Exaggeration:
 
     deflection: float
     depth: float
-
-
-def chord(radius: float, centre: complex, angle: Array) -> Array:
-    """Distance from the origin, inside a circle, to that circle.
-
-    Parameters
-    ----------
-    radius, centre : of the circle, m
-    angle : direction of the ray, rad, shape (...,)
-    """
-    away = centre * np.exp(-1j * angle)
-    distance: Array = away.real + np.sqrt(radius**2 - away.imag**2)
-    return distance
 
 
 def liquid_outline(chamber: FilledChamber, centre: complex, depth: float) -> tuple[Array, Array, Array]:
@@ -72,18 +60,6 @@ def liquid_outline(chamber: FilledChamber, centre: complex, depth: float) -> tup
         area = math.pi * float(np.mean((outer**2 - inner**2)[1:]))
         low, high = (surface, high) if area > wanted else (low, surface)
     return angle, np.clip(0.5 * (low + high), floor, outer), outer
-
-
-def rounded_down(factor: float) -> float:
-    """The factor with two digits, for printing.
-
-    Parameters
-    ----------
-    factor : above 0
-    """
-    step = 10.0 ** (math.floor(math.log10(factor)) - 1)
-    # A factor that is a round number already must not lose a digit to rounding.
-    return math.floor(factor / step * (1.0 + 1e-9)) * step
 
 
 def exaggeration(chambers: tuple[FilledChamber, ...], deflections: tuple[float, ...]) -> Exaggeration:

@@ -10,7 +10,7 @@ import numpy as np
 
 from leblanc.figures import wave
 from leblanc.figures.over_speed import STRIP
-from leblanc.figures.wave import WaveRecord
+from leblanc.results.layer import Wave
 from leblanc.results.provenance import one_line
 from leblanc.units import MM, RPM
 from meshes.arrays import Array
@@ -27,7 +27,7 @@ DRY_BAR = {"color": "0.35", "linewidth": 5, "linestyle": (0, (0.2, 0.3)), "label
 MEAN_LINE = {"color": "0.25", "linewidth": 1.0, "linestyle": (0, (5, 2)), "label": "mean depth"}
 
 
-def draw_annulus(axes: Axes, record: WaveRecord, factor: float) -> None:
+def draw_annulus(axes: Axes, record: Wave, factor: float) -> None:
     """Walls, liquid, force, centre of mass, senses of spin and whirl, in the frame of the deflection.
 
     Parameters
@@ -61,7 +61,7 @@ def draw_annulus(axes: Axes, record: WaveRecord, factor: float) -> None:
     axes.annotate(f"{describe_force(record)}\n{describe_offset(record)}", (0.5, 0.0), xytext=(0, -3), **place)
 
 
-def walls(axes: Axes, record: WaveRecord) -> None:
+def walls(axes: Axes, record: Wave) -> None:
     """Walls, and limits that leave room around them.
 
     Parameters
@@ -78,7 +78,7 @@ def walls(axes: Axes, record: WaveRecord) -> None:
     axes.axis("off")
 
 
-def wet_surface(record: WaveRecord, angle: Array, surface: Array, factor: float) -> Any:
+def wet_surface(record: Wave, angle: Array, surface: Array, factor: float) -> Any:
     """Points of the free surface as complex numbers, nan where the wall is dry.
 
     Parameters
@@ -90,7 +90,7 @@ def wet_surface(record: WaveRecord, angle: Array, surface: Array, factor: float)
     return np.where(dry, np.nan, surface * np.exp(1j * angle))
 
 
-def dry_wall(record: WaveRecord, angle: Array, surface: Array, factor: float) -> Any:
+def dry_wall(record: Wave, angle: Array, surface: Array, factor: float) -> Any:
     """Points just outside the wall as complex numbers, nan where liquid covers it.
 
     Parameters
@@ -101,7 +101,7 @@ def dry_wall(record: WaveRecord, angle: Array, surface: Array, factor: float) ->
     return np.where(dry, 1.035 * record.radius * MM * np.exp(1j * angle), np.nan)
 
 
-def arrow(axes: Axes, record: WaveRecord, direction: complex, color: str, label: str) -> Any:
+def arrow(axes: Axes, record: Wave, direction: complex, color: str, label: str) -> Any:
     """Arrow outside the wall.
 
     Parameters
@@ -126,7 +126,7 @@ def _line_with_head(axes: Axes, x: list[float], y: list[float], head: Any, color
     return line
 
 
-def arrow_ends(record: WaveRecord, direction: complex) -> tuple[list[float], list[float], Any]:
+def arrow_ends(record: Wave, direction: complex) -> tuple[list[float], list[float], Any]:
     """Ends of an arrow outside the wall.
 
     Parameters
@@ -149,14 +149,14 @@ def _head(angle: float) -> tuple[int, int, float]:
     return (3, 0, math.degrees(angle) - 90.0)
 
 
-def _force(axes: Axes, record: WaveRecord) -> None:
+def _force(axes: Axes, record: Wave) -> None:
     """Arrow from the geometric axis in the direction of the force."""
     angle = cmath.phase(record.force_ratio)
     tip = ARROW * record.radius * MM * cmath.exp(1j * angle)
     _line_with_head(axes, [0.0, tip.real], [0.0, tip.imag], _head(angle), FORCE, "force on the drum")
 
 
-def turning(axes: Axes, record: WaveRecord, name: str, sense: float, middle: float) -> None:
+def turning(axes: Axes, record: Wave, name: str, sense: float, middle: float) -> None:
     """Named arc with a head.
 
     Parameters
@@ -178,7 +178,7 @@ def turning(axes: Axes, record: WaveRecord, name: str, sense: float, middle: flo
     axes.text(place.real, place.imag, name, fontsize=7, color="0.3", ha="right", va=align)
 
 
-def draw_profile(axes: Axes, record: WaveRecord) -> None:
+def draw_profile(axes: Axes, record: Wave) -> None:
     """Depth in mm against the angle from the deflection.
 
     Parameters
@@ -215,7 +215,7 @@ def profile_axis(axes: Axes, top: float, dry: bool) -> None:
     axes.tick_params(axis="x", pad=5.0)  # the lowest depth stands beside the first angle
 
 
-def describe_force(record: WaveRecord) -> str:
+def describe_force(record: Wave) -> str:
     """The force in words, over that of a full drum."""
     force = record.force_ratio
     if not cmath.isfinite(force):
@@ -225,7 +225,7 @@ def describe_force(record: WaveRecord) -> str:
     return f"force ratio {signed(force.real)}{imaginary}"
 
 
-def describe_offset(record: WaveRecord) -> str:
+def describe_offset(record: Wave) -> str:
     """The centre of mass in words."""
     if not cmath.isfinite(record.offset):
         return "centre of mass not found"
@@ -242,7 +242,7 @@ def signed(value: float) -> str:
     return f"{value:.4g}".replace("-", MINUS)
 
 
-def describe_case(record: WaveRecord) -> str:
+def describe_case(record: Wave) -> str:
     """Title, model, sizes and speeds in words."""
     inner = f", inner wall {record.inner_radius * MM:.4g}{BOUND}mm" if record.inner_radius > 0.0 else ""
     slip = record.seen_from_the_drum
@@ -259,7 +259,7 @@ def describe_case(record: WaveRecord) -> str:
     )
 
 
-def describe_notes(record: WaveRecord) -> str:
+def describe_notes(record: Wave) -> str:
     """Notes as one sentence, empty if there are none."""
     return f" Notes: {'; '.join(map(one_line, record.notes))}." if record.notes else ""
 

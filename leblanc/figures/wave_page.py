@@ -22,10 +22,11 @@ from leblanc.figures.page import (
     style,
     write_film,
 )
-from leblanc.figures.wave import WaveHistory, WaveRecord
+from leblanc.results.layer import LayerPeriodsResult, LayerResult, Wave, WaveFrames
+from leblanc.units import MM
 
 Axes = Any  # matplotlib's, which no module that only draws imports
-DrawTime = Callable[[Axes, WaveRecord, WaveHistory], None]
+DrawTime = Callable[[Axes, Wave, WaveFrames], None]
 
 WAVE_FRAME = Frame(left=0.1, top=0.1, between=0.0, below=0.44)
 FILM_FRAME = Frame(left=0.1, top=0.28, between=0.0, below=0.26)
@@ -35,7 +36,7 @@ NOTED_LINES = 10  # of a caption with notes
 RPM_ROOM = 0.42  # for a second axis on the right, inches
 
 
-def wave_figure(record: WaveRecord) -> Figure:
+def wave_figure(record: Wave) -> Figure:
     """The layer seen along the axis and its depth around the wall, in the frame of the deflection."""
     deepest = float(np.max(record.depth))
     factor = wave.depth_factor(record, max(deepest, record.mean_depth))
@@ -55,9 +56,9 @@ def wave_figure(record: WaveRecord) -> Figure:
     return figure
 
 
-def history_figure(record: WaveRecord, history: WaveHistory) -> Figure:
+def history_figure(record: Wave, history: WaveFrames) -> Figure:
     """Force, mean rotation and depths over time; the first two only if the history has periods."""
-    wave.require_room(record, history)
+    record.require_room(history)
     panels: list[tuple[float, DrawTime]] = [(1.2, wave_time.draw_depths)]
     text = "Largest and smallest depth around the wall."
     if history.period_time is not None:
@@ -87,7 +88,7 @@ def history_figure(record: WaveRecord, history: WaveHistory) -> Figure:
 
 
 def animate(
-    record: WaveRecord, history: WaveHistory, path: Path, drawn: Callable[[int, int], None] | None = None
+    record: Wave, history: WaveFrames, path: Path, drawn: Callable[[int, int], None] | None = None
 ) -> int:
     """Write the film of a wave, in the frame of the drum.
 
@@ -109,12 +110,12 @@ def animate(
     InputError : another kind of file, an .mp4 without an ffmpeg, a layer deeper than the wall's radius
     """
     require_film(path)
-    wave.require_room(record, history)
+    record.require_room(history)
     frames = wave.frames(record, history).tolist()
     return write_film(lambda: _film(record, history), frames, wave.FRAME_RATE, path, drawn)
 
 
-def _film(record: WaveRecord, history: WaveHistory) -> tuple[Figure, Callable[[int], None]]:
+def _film(record: Wave, history: WaveFrames) -> tuple[Figure, Callable[[int], None]]:
     """Figure of a film and what sets it to the time of an index."""
     with style():
         figure = Figure()
@@ -136,3 +137,32 @@ def _beside(figure: Figure, left: Axes, right: Axes, frame: Frame, caption: str)
     right.set_position((x, y, 1.0 - RIGHT / WIDTH - x, box.y1 - y))
     place = left.get_position()
     left.set_position((place.x0 - ASIDE / WIDTH, place.y0, place.width, place.height))
+
+
+def layer_figure(result: LayerResult) -> Figure:
+    """The main figure of a layer's answer."""
+    return wave_figure(result.wave())
+
+
+def periods_figure(result: LayerPeriodsResult) -> Figure:
+    """Force on the drum and mean rotation over the whirl periods of a layer that starts from rest."""
+    h, model = result.history, result.case.model
+    with style():
+        figure = Figure()
+        rows = [[figure.add_axes((0, 0, 1, 1), label=name)] for name in ("force", "rotation", "depths")]
+        force, rotation, depths = (row[0] for row in rows)
+        force.plot(h.time, h.force_ratio.real, marker="o", label="force along the deflection")
+        force.plot(h.time, h.force_ratio.imag, marker="s", linestyle="--", label="force 90 deg ahead of it")
+        force.set_ylabel("Force ratio (-)")
+        rotation.plot(h.time, h.mean_rotation, color="0.15", marker="^", label="mean rotation in the drum")
+        rotation.set_ylabel("Rotation (rad/s)")
+        depths.plot(h.time, h.depth_max * MM, label="crest")
+        depths.plot(h.time, h.depth_min * MM, linestyle="--", label="trough")
+        depths.set_ylabel("Depth (mm)")
+        depths.set_xlabel("Time (s)")
+        for axes in (force, rotation):
+            axes.tick_params(labelbottom=False)
+        text = f"Means over periods of the whirl seen from the drum. Liquid model: {model}."
+        lay_out(figure, rows, [1.5, 1.0, 1.2], TIME_FRAME, text, NOTED_LINES)
+        figure.alt = "Curves over time of the force on the drum, the liquid's rotation and its depths."
+    return figure

@@ -11,8 +11,8 @@ import numpy as np
 
 from leblanc.figures import wave, wave_axes
 from leblanc.figures.over_speed import STRIP
-from leblanc.figures.wave import WaveHistory, WaveRecord
 from leblanc.figures.wave_axes import DEFLECTION, DEGREE, DRY_BAR, LIQUID, MEAN_LINE, SURFACE, WALL
+from leblanc.results.layer import Wave, WaveFrames
 from leblanc.units import MM, RPM
 from meshes.arrays import Array
 
@@ -22,7 +22,7 @@ Axes = Any  # matplotlib's, which no module that only draws imports
 TURNED = "#D55E00"
 
 
-def draw_force(axes: Axes, _record: WaveRecord, history: WaveHistory) -> None:
+def draw_force(axes: Axes, _record: Wave, history: WaveFrames) -> None:
     """Both parts of the force ratio, a point for each period."""
     if history.force_ratio is None or history.period_time is None:
         return
@@ -34,7 +34,7 @@ def draw_force(axes: Axes, _record: WaveRecord, history: WaveHistory) -> None:
     axes.set_ylabel("Force ratio (\N{EN DASH})")
 
 
-def draw_rotation(axes: Axes, _record: WaveRecord, history: WaveHistory) -> None:
+def draw_rotation(axes: Axes, _record: Wave, history: WaveFrames) -> None:
     """Mean rotation of the liquid in the drum, a point for each period."""
     if history.mean_rotation is None or history.period_time is None:
         return
@@ -47,7 +47,7 @@ def draw_rotation(axes: Axes, _record: WaveRecord, history: WaveHistory) -> None
     beside.set_ylabel("(rpm)")
 
 
-def draw_depths(axes: Axes, record: WaveRecord, history: WaveHistory) -> None:
+def draw_depths(axes: Axes, record: Wave, history: WaveFrames) -> None:
     """Deepest and shallowest place at each time."""
     crest, trough = history.depth.max(axis=1) * MM, history.depth.min(axis=1) * MM
     mark = "o" if history.time.size == 1 else None
@@ -60,7 +60,7 @@ def draw_depths(axes: Axes, record: WaveRecord, history: WaveHistory) -> None:
     axes.set_ylabel("Depth (mm)")
 
 
-def film(left: Axes, right: Axes, record: WaveRecord, history: WaveHistory) -> Show:
+def film(left: Axes, right: Axes, record: Wave, history: WaveFrames) -> Show:
     """Both drawings of a film in the frame of the drum.
 
     Parameters
@@ -88,7 +88,7 @@ def film(left: Axes, right: Axes, record: WaveRecord, history: WaveHistory) -> S
     return show
 
 
-def _annulus(axes: Axes, record: WaveRecord, history: WaveHistory, factor: float, dry: bool) -> Show:
+def _annulus(axes: Axes, record: Wave, history: WaveFrames, factor: float, dry: bool) -> Show:
     """Draw what stands still of the annulus, and return what moves the rest."""
     radius, largest = record.radius * MM, float(np.abs(history.deflection).max())
     wave_axes.walls(axes, record)
@@ -116,7 +116,7 @@ def _annulus(axes: Axes, record: WaveRecord, history: WaveHistory, factor: float
     return show
 
 
-def _profile(axes: Axes, record: WaveRecord, history: WaveHistory, dry: bool) -> Show:
+def _profile(axes: Axes, record: Wave, history: WaveFrames, dry: bool) -> Show:
     """Draw what stands still of the depth around the wall, and return what moves the rest."""
     across = {"transform": axes.get_xaxis_transform()}
     (curve,) = axes.plot([], [], color=SURFACE, linewidth=1.2, label="depth of the layer")
@@ -143,7 +143,7 @@ def _digits(time: Array) -> int:
     return min(max(0, 1 - math.floor(math.log10(step))), 9)
 
 
-def describe_film(record: WaveRecord, history: WaveHistory) -> str:
+def describe_film(record: Wave, history: WaveFrames) -> str:
     """What a film shows and how fast, in words."""
     chosen = wave.frames(record, history)
     time, whole = history.time[chosen], float(history.time[-1] - history.time[0])

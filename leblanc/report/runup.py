@@ -16,9 +16,11 @@ from leblanc.report.parts import Cell, Table, picture, table
 from leblanc.results.notes import percent
 from leblanc.results.provenance import one_line
 from leblanc.results.response import peak
-from leblanc.studies.runup import RunupRecord
+from leblanc.results.runup import RunupResult
+from leblanc.results.runup_notes import CLOSURE, ERROR, IN_TABLES
 from leblanc.text.numbers import MOST_RANGES, number
-from leblanc.text.runup import CLOSURE, ERROR, model_words, switches
+from leblanc.text.runup import describe_model
+from leblanc.text.runup import moments as samples
 from leblanc.units import MM, RPM
 
 if TYPE_CHECKING:
@@ -26,11 +28,6 @@ if TYPE_CHECKING:
 
 DRY = 1e-3  # of the layer's mean depth: a wall with less on it counts as dry
 MASS = 1e-6  # relative change of a layer's volume to speak of
-# Of notes that the tables say as well.
-REPEATED = (
-    "Liquid model: ", "With half the cells", "The energy balance leaves", "in the steady response it is",
-    "its liquid is captured", "its liquid falls back", "some whirl grows by itself",
-)  # fmt: skip
 BALANCE = "runup_energy"  # the figure beside the table of the energy
 TERMS = {
     "unbalance": "work of the unbalance",
@@ -66,53 +63,47 @@ def times(time: NDArray[np.float64], mask: NDArray[np.bool_]) -> str:
     return "; ".join(f"{a:.3g} s" if a == b else f"{a:.3g} to {b:.3g} s" for a, b in pairs)
 
 
-def moments(record: RunupRecord) -> Table:
+def moments(result: RunupResult) -> Table:
     """Largest amplitude on the way up and down, that of the steady response, and the end."""
-    h, last = record.history, record.history.time.size - 1
-    found = [("Largest on the way up" if record.turning < last else "Largest amplitude", record.peak())]
-    if record.turning < last:
-        found.append(("Largest on the way down", record.peak(back=True)))
-    found.append(("At the end", last))
     rows = [
         (
             label,
-            number(float(h.amplitude[k]) * MM),
-            number(float(h.speed[k]) * RPM),
-            number(float(h.time[k])),
+            number(float(result.amplitude[k]) * MM),
+            number(float(result.speed[k]) * RPM),
+            number(float(result.time[k])),
         )
-        for label, k in found
+        for label, k in samples(result)
     ]
-    highest = None if record.steady is None else peak(record.steady.deflection)
-    if record.steady is not None and highest is not None:
-        size = float(abs(record.steady.deflection[highest]))
-        speed = float(record.steady.speed[highest])
+    highest = None if result.steady is None else peak(result.steady.deflection)
+    if result.steady is not None and highest is not None:
+        size = float(abs(result.steady.deflection[highest]))
+        speed = float(result.steady.speed[highest])
         rows.append(("Largest of the steady response", number(size * MM), number(speed * RPM), ""))
     return table("", ("", "amplitude (mm)", "at (rpm)", "after (s)"), rows)
 
 
-def facts(record: RunupRecord) -> list[tuple[str, str]]:
+def facts(result: RunupResult) -> list[tuple[str, str]]:
     """The end of the run, its resolution and its errors: label and value.
 
     Parameters
     ----------
-    record : the run-up
+    result : the run-up
     """
-    h, numerics = record.history, record.numerics
-    mass = float(h.layer_mass.sum())
+    mass = float(result.layer_mass.sum())
     where = "none"
     if mass > 0.0:
-        place = h.liquid_position[-1]
+        place = result.liquid_position[-1]
         angle = number(math.degrees(math.atan2(place.imag, place.real)))
         where = f"{number(abs(place) * MM)} mm off the axis at {angle} deg"
     return [
         ("Mass of the liquid", f"{number(mass * 1e3)} g"),
         ("Its centre of mass at the end", where),
-        ("Phase of the deflection at the end", f"{number(math.degrees(float(record.phase[-1])))} deg"),
-        ("Resolution", f"{numerics.cells} cells, {h.steps} steps, {h.time.size} samples kept"),
-        ("Error by half the cells, of the largest", _share(h.error_estimate)),
-        ("Error of model and steps", _share(record.model_error)),
-        ("Energy not accounted for, of the work", _share(h.audit.closure)),
-        ("Largest change of a layer's mass", _share(h.mass_error)),
+        ("Phase of the deflection at the end", f"{number(math.degrees(float(result.phase[-1])))} deg"),
+        ("Resolution", f"{result.cells} cells, {result.steps} steps, {result.time.size} samples kept"),
+        ("Error by half the cells, of the largest", _share(result.error_estimate)),
+        ("Error of model and steps", _share(result.model_error)),
+        ("Energy not accounted for, of the work", _share(result.energy.closure)),
+        ("Largest change of a layer's mass", _share(result.mass_error)),
     ]
 
 
@@ -120,9 +111,9 @@ def _share(value: float) -> str:
     return "not known" if math.isnan(value) else f"{number(100.0 * value)} %"
 
 
-def energy(record: RunupRecord) -> Table:
+def energy(result: RunupResult) -> Table:
     """The balance of energy, and each term over the work that the closure is measured by."""
-    audit = record.history.audit
+    audit = result.energy
     values = asdict(audit)
     work = max(abs(audit.unbalance), audit.support + audit.friction + audit.bores)
 
@@ -139,24 +130,23 @@ def energy(record: RunupRecord) -> Table:
     return table("", ("Energy", "J", "% of the work"), rows)
 
 
-def checks(record: RunupRecord) -> Table:
+def checks(result: RunupResult) -> Table:
     """Where the run is not what it seems, each with the times or the size, those marked."""
-    h = record.history
-    reason = "no" if h.converged else one_line(h.reason)
+    reason = "no" if result.converged else one_line(result.reason)
     found = [
-        ("Stopped before its end", reason, not h.converged),
-        ("Liquid model out of range", times(h.time, ~record.in_range), bool((~record.in_range).any())),
+        ("Stopped before its end", reason, not result.converged),
+        ("Liquid model out of range", times(result.time, ~result.in_range), bool((~result.in_range).any())),
     ]
-    for k, chamber in enumerate(record.chambers):
+    for k, chamber in enumerate(result.chambers):
         if chamber.volume == 0.0:
             continue
-        name = "Liquid" if len(record.chambers) == 1 else f"Liquid of chamber {k + 1}"
-        loose, depth = ~h.captured[:, k], chamber.radius - chamber.mean_surface_radius
-        found.append((f"{name} not carried round", times(h.time, loose), bool(loose.any())))
-        dry = ~loose & (np.nan_to_num(h.depth_min[:, k], nan=math.inf) <= DRY * depth)
-        found.append((f"{name} leaves a wall dry", times(h.time, dry), bool(dry.any())))
-    bands = ", ".join(f"{low * RPM:.4g} to {high * RPM:.4g} rpm" for low, high in record.bands)
-    rough = not h.error_estimate <= ERROR
+        name = "Liquid" if len(result.chambers) == 1 else f"Liquid of chamber {k + 1}"
+        loose, depth = ~result.captured[:, k], chamber.radius - chamber.mean_surface_radius
+        found.append((f"{name} not carried round", times(result.time, loose), bool(loose.any())))
+        dry = ~loose & (np.nan_to_num(result.depth_min[:, k], nan=math.inf) <= DRY * depth)
+        found.append((f"{name} leaves a wall dry", times(result.time, dry), bool(dry.any())))
+    bands = ", ".join(f"{low * RPM:.4g} to {high * RPM:.4g} rpm" for low, high in result.bands)
+    rough = not result.error_estimate <= ERROR
     return table(
         "",
         ("Limits of the answer", ""),
@@ -165,10 +155,10 @@ def checks(record: RunupRecord) -> Table:
             ("Self-excited whirl, linear theory", Cell(bands or "none", warning=bool(bands))),
             (
                 f"Error above {number(100.0 * ERROR)} % or unknown",
-                Cell(_share(h.error_estimate) if rough else "no", warning=rough),
+                Cell(_share(result.error_estimate) if rough else "no", warning=rough),
             ),
-            _size(f"Energy lost above {number(100.0 * CLOSURE)} %", h.audit.closure, CLOSURE),
-            _size(f"Mass changed above {number(MASS)}", h.mass_error, MASS),
+            _size(f"Energy lost above {number(100.0 * CLOSURE)} %", result.energy.closure, CLOSURE),
+            _size(f"Mass changed above {number(MASS)}", result.mass_error, MASS),
         ],
     )
 
@@ -179,69 +169,57 @@ def _size(label: str, value: float, most: float) -> tuple[str, Cell]:
     return label, Cell(_share(value) if bad else "no", warning=bad)
 
 
-def events(record: RunupRecord) -> Table:
+def events(result: RunupResult) -> Table:
     """When liquid began and ceased to ride with the drum."""
-    h = record.history
     rows = [
         (
-            number(float(h.time[k])),
-            number(float(h.speed[k]) * RPM),
+            number(float(result.time[k])),
+            number(float(result.speed[k]) * RPM),
             f"chamber {j + 1}: {'captured' if caught else 'falls back'}",
         )
-        for k, j, caught in switches(h)
+        for k, j, caught in result.captures
     ]
     return table("", ("Time (s)", "speed (rpm)", "liquid"), rows[:12])
 
 
-def why(record: RunupRecord) -> Table:
+def why(result: RunupResult) -> Table:
     """The liquid model of the run, its error and the reason for it."""
-    h = record.history
-    span = f"{number(float(h.speed.min()) * RPM)} to {number(float(h.speed.max()) * RPM)}"
-    error = "not known" if math.isnan(record.model_error) else percent(record.model_error)
-    text = one_line(record.model_reason)
-    reason = f"{text[:1].upper()}{text[1:]} Taken as {model_words(record.model, record.numerics)}."
+    span = f"{number(float(result.speed.min()) * RPM)} to {number(float(result.speed.max()) * RPM)}"
+    error = "not known" if math.isnan(result.model_error) else percent(result.model_error)
+    text, taken = one_line(result.model_reason), describe_model(result.model, result.cells, result.dispersion)
+    reason = f"{text[:1].upper()}{text[1:]} Taken as {taken}."
     head = ("Speeds (rpm)", "Model", "Estimated error", "Why")
-    return table("", head, [(span, record.model, error, reason)], words=True)
+    return table("", head, [(span, result.model, error, reason)], words=True)
 
 
-def write_runup_report(record: RunupRecord, what: About, figures: Sequence[FigureFiles], path: Path) -> None:
+def write_runup_report(result: RunupResult, what: About, figures: Sequence[FigureFiles], path: Path) -> None:
     """Write the report.
 
     Parameters
     ----------
-    record : the run-up
+    result : the run-up
     what : it is about
     figures : of it
     path : the file to write or replace
     """
-    h = record.history
-    largest = moments(record).rows[0]
-    at = f"{largest[1].text} mm at {largest[2].text} rpm"
-    alts = {
-        "runup_speed": f"Curve of the amplitude over speed with the steady branches behind; largest {at}.",
-        "runup_time": "Curves over time of speed, amplitude, the place of the liquid and the depth of its "
-        f"layers; largest amplitude {at}.",
-        BALANCE: "Bars of the work done on rotor and liquid and of where it went, as in the table of "
-        "the energy.",
-    }
-    count, low, high = len(record.chambers), float(h.speed[0]) * RPM, float(h.speed.max()) * RPM
-    back = " and back" if record.turning < h.time.size - 1 else ""
+    count, low, high = len(result.chambers), float(result.speed[0]) * RPM, float(result.speed.max()) * RPM
+    back = " and back" if result.turns_back else ""
     machine = (
-        f"A rotor with a {record.axis} axis and {count} chamber{'' if count == 1 else 's'} goes from "
-        f"{number(low)} to {number(high)} rpm{back}, {number(float(h.time[-1]))} s in all."
+        f"A rotor with a {result.axis} axis and {count} chamber{'' if count == 1 else 's'} goes from "
+        f"{number(low)} to {number(high)} rpm{back}, {number(float(result.time[-1]))} s in all."
     )
     parts = {
         "title": "Run-up in time",
         "machine": machine,
-        "moments": moments(record),
-        "facts": table("", (), facts(record)),
-        "energy": energy(record),
-        "checks": checks(record),
-        "events": events(record),
-        "balance": [picture(one, alts[one.name]) for one in figures if one.name == BALANCE],
-        "pictures": [picture(one, alts.get(one.name, "")) for one in figures if one.name != BALANCE],
-        "why": why(record),
-        "models": models((record.model,)),
-        "remarks": [line for line in notes(record.notes) if not any(part in line for part in REPEATED)],
+        "moments": moments(result),
+        "facts": table("", (), facts(result)),
+        "energy": energy(result),
+        "checks": checks(result),
+        "events": events(result),
+        "balance": [picture(files) for files in figures if files.name == BALANCE],
+        "pictures": [picture(files) for files in figures if files.name != BALANCE],
+        "why": why(result),
+        "models": models((result.model,)),
+        "remarks": notes([note.text for note in result.notes if note.code not in IN_TABLES]),
     }
     write_page("runup", what, parts, path)

@@ -1,24 +1,124 @@
-"""What the liquid answers to one prescribed whirl."""
+"""What the liquid answers to one prescribed whirl, and the wave that figures show of it.
+
+Angles run with the spin. In the frame of the deflection they start there, in the frame of the drum at a mark
+on it; in both the origin is the geometric axis.
+"""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from leblanc.studies.validity import Number
-from meshes.arrays import Array
+from leblanc.results.base import Result
+from leblanc.results.netcdf import dataset, variable
+from leblanc.results.notes import Note, NoteCode, texts
+from leblanc.results.provenance import one_line, versions
+from meshes.arrays import Array, Complex
+from meshes.errors import InputError, require_not_negative, require_positive
+from solvers.layer.prescribed import LayerHistory
 
+if TYPE_CHECKING:
+    from leblanc.results.netcdf import Dataset
+
+FEWEST = 3  # angles of a wave
+SLACK = 1e-9  # rounding of a depth, over the radius
 _POINTS = 360
 
 
+class LayerCode(NoteCode):
+    """What the notes of a layer say."""
+
+    NO_ANSWER = "no_answer"
+    OUT_OF_RANGE = "out_of_range"
+    INNER_WALL = "inner_wall"
+    AGAINST_WHIRL = "against_whirl"
+    DRY_WALL = "dry_wall"
+
+
 @dataclass(frozen=True)
-class LayerAnswer:
+class Number:
+    """A dimensionless number and the range in which the model holds.
+
+    Parameters
+    ----------
+    name, meaning : what it is
+    value : not finite where it has no bound or was not found
+    least, most : the model's range; None where it sets none
+    in_range : the value is within
+    """
+
+    name: str
+    meaning: str
+    value: float
+    least: float | None
+    most: float | None
+    in_range: bool
+
+    def __str__(self) -> str:
+        least, most = self.least or 0.0, math.inf if self.most is None else self.most
+        allowed = f"at least {least:g}" if math.isinf(most) else f"{least:g} to {most:g}"
+        return f"{self.meaning} = {self.value:.2g}, the model's range is {allowed}"
+
+
+def no_answer(reason: str) -> Note:
+    """Why there is no answer, or none to rely on."""
+    return Note(LayerCode.NO_ANSWER, {}, reason)
+
+
+def out_of_range(numbers: tuple[Number, ...]) -> tuple[Note, ...]:
+    """The numbers that are out of their range, a note for each."""
+    return tuple(
+        Note(LayerCode.OUT_OF_RANGE, asdict(number), str(number)) for number in numbers if not number.in_range
+    )
+
+
+def inner_wall() -> Note:
+    """The surface reaches the inner wall."""
+    return Note(LayerCode.INNER_WALL, {}, "the surface reaches the inner wall")
+
+
+def against_whirl(share: float) -> Note:
+    """The liquid answers against the whirl as well, at a share of its answer with the whirl."""
+    text = f"the liquid also answers against the whirl, {share:.3g} times as strongly"
+    return Note(LayerCode.AGAINST_WHIRL, {"share": share}, text)
+
+
+def dry_wall() -> Note:
+    """The wall is dry in part."""
+    return Note(LayerCode.DRY_WALL, {}, "the wall is dry in part")
+
+
+@dataclass(frozen=True)
+class LayerCase:
+    """The layer and the whirl that were asked for.
+
+    Parameters
+    ----------
+    model : of the liquid
+    radius, inner_radius, mean_depth : wall, inner wall (0 if none), layer undisturbed, m
+    speed, whirl_speed : spin; whirl in space, negative against the spin, rad/s
+    whirl_amplitude : m
+    """
+
+    model: str
+    radius: float
+    inner_radius: float
+    mean_depth: float
+    speed: float
+    whirl_speed: float
+    whirl_amplitude: float
+
+
+@dataclass(frozen=True)
+class LayerResult(Result):
     """Force and centre of mass of a liquid layer; complex: along the deflection, 90 deg ahead of it.
 
     Parameters
     ----------
+    case : what was asked for
     force_ratio : force on the drum over m_f omega_w^2 A
     offset : liquid's centre of mass from the drum's axis, m
     mass_error : of the surface that the model draws, relative
@@ -27,12 +127,13 @@ class LayerAnswer:
     mean_rotation : of the liquid relative to the drum, rad/s
     wall_time : s
     theta, depth : angle from the deflection, rad, and depth of the layer there, m, shape (k,)
-    notes : what the model leaves out here, in words
+    notes : what the model leaves out here
     gravity_offset : steady part of the offset under gravity across the axis, in space, m: up is negative
     captured : centrifugal acceleration at the surface exceeds gravity
     validity : dimensionless numbers the model rests on, each with its range
     """
 
+    case: LayerCase
     force_ratio: complex
     offset: complex
     mass_error: float
@@ -42,10 +143,262 @@ class LayerAnswer:
     wall_time: float
     theta: Array
     depth: Array
-    notes: tuple[str, ...]
+    notes: tuple[Note, ...]
     gravity_offset: float
     captured: bool
     validity: tuple[Number, ...]
+
+    figure = "leblanc.figures.wave_page:layer_figure"
+    summary = "leblanc.text.layer:summary"
+
+    def wave(self) -> Wave:
+        """The layer as figures show it."""
+        return Wave(
+            title="Layer under a whirl",
+            model=self.case.model,
+            radius=self.case.radius,
+            inner_radius=self.case.inner_radius,
+            mean_depth=self.case.mean_depth,
+            whirl_amplitude=self.case.whirl_amplitude,
+            spin=self.case.speed,
+            whirl_speed=self.case.whirl_speed,
+            theta=self.theta,
+            depth=self.depth,
+            force_ratio=self.force_ratio,
+            offset=self.offset,
+            notes=texts(self.notes),
+        )
+
+    def to_json(self, profile: bool = True) -> dict[str, Any]:
+        """What `layer` prints for scripts, SI and radians.
+
+        Parameters
+        ----------
+        profile : with the depth around the wall
+        """
+        names = ("force_ratio", "offset", "mass_error", "converged", "in_range", "mean_rotation", "wall_time")
+        more = ("theta", "depth") if profile else ()
+        found: dict[str, Any] = {name: getattr(self, name) for name in (*names, *more)}
+        return found | {
+            "notes": texts(self.notes),
+            "gravity_offset": self.gravity_offset,
+            "captured": self.captured,
+            "validity": tuple(map(asdict, self.validity)),
+        }
+
+    def to_dataset(self) -> Dataset:
+        """The depth over `theta`; everything else in variables without a dimension and in attributes."""
+        along = ("theta",)
+        columns = {
+            "depth": variable(along, self.depth, "m", "depth of the layer"),
+            "force_ratio_real": variable((), self.force_ratio.real, "1", "force ratio, along the deflection"),
+            "force_ratio_imag": variable((), self.force_ratio.imag, "1", "force ratio, 90 deg ahead of it"),
+            "offset_real": variable((), self.offset.real, "m", "centre of mass, along the deflection"),
+            "offset_imag": variable((), self.offset.imag, "m", "centre of mass, 90 deg ahead of it"),
+            "mean_rotation": variable((), self.mean_rotation, "rad s-1", "mean rotation in the drum"),
+            "mass_error": variable((), self.mass_error, "1", "relative error of the liquid's volume"),
+            "gravity_offset": variable((), self.gravity_offset, "m", "steady offset by gravity, in space"),
+        }
+        coords = {"theta": variable(along, self.theta, "rad", "angle from the deflection, with the spin")}
+        return dataset(columns, coords, _attributes(self.case, self.converged, self.in_range, self.notes))
+
+
+@dataclass(frozen=True)
+class LayerPeriodsResult(Result):
+    """Whirl periods of a layer that starts from rest in its drum; k periods, n angles.
+
+    Parameters
+    ----------
+    case : what was asked for
+    history : force, centre of mass and depths period by period, and the depth at the end
+    notes : why there is no answer, and where the model is out of its range
+    validity : dimensionless numbers the model rests on, each with its range
+    """
+
+    case: LayerCase
+    history: LayerHistory
+    notes: tuple[Note, ...]
+    validity: tuple[Number, ...]
+
+    figure = "leblanc.figures.wave_page:periods_figure"
+    summary = "leblanc.text.layer:periods_summary"
+
+    @property
+    def converged(self) -> bool:
+        """Every period was finished."""
+        return self.history.converged
+
+    @property
+    def in_range(self) -> bool:
+        """The model holds."""
+        return not self.notes
+
+    def to_json(self, profile: bool = True) -> dict[str, Any]:
+        """What `layer --duration` prints for scripts, SI and radians.
+
+        Parameters
+        ----------
+        profile : with the depth around the wall at the end
+        """
+        names = ("time", "force_ratio", "mean_rotation", "depth_max", "depth_min", "offset", "pressure_ratio")
+        names += ("mass_error", "converged", *(("theta", "depth") if profile else ()))
+        found: dict[str, Any] = {name: getattr(self.history, name) for name in names}
+        return found | {
+            "in_range": self.in_range,
+            "validity": tuple(map(asdict, self.validity)),
+            "notes": texts(self.notes),
+        }
+
+    def to_dataset(self) -> Dataset:
+        """Means over whirl periods over `time`, the depth at the end over `theta`."""
+        h, over = self.history, ("time",)
+        columns = {
+            "mean_rotation": variable(over, h.mean_rotation, "rad s-1", "mean rotation in the drum"),
+            "depth_max": variable(over, h.depth_max, "m", "largest depth"),
+            "depth_min": variable(over, h.depth_min, "m", "least depth"),
+            "depth": variable(("theta",), h.depth, "m", "depth of the layer at the end"),
+            "mass_error": variable((), h.mass_error, "1", "relative change of the liquid's volume"),
+        }
+        parts = (("real", "along the deflection"), ("imag", "90 deg ahead of it"))
+        for name, unit, text in (
+            ("force_ratio", "1", "force ratio by momentum"),
+            ("pressure_ratio", "1", "force ratio by pressure"),
+            ("offset", "m", "centre of mass"),
+        ):
+            for part, where in parts:
+                values = getattr(getattr(h, name), part)
+                columns[f"{name}_{part}"] = variable(over, values, unit, f"{text}, {where}")
+        coords = {
+            "time": variable(over, h.time, "s", "middle of the whirl period"),
+            "theta": variable(("theta",), h.theta, "rad", "angle from the deflection, with the spin"),
+        }
+        return dataset(columns, coords, _attributes(self.case, self.converged, self.in_range, self.notes))
+
+
+def _attributes(case: LayerCase, converged: bool, in_range: bool, notes: tuple[Note, ...]) -> dict[str, Any]:
+    """What was asked for, whether it was answered, versions."""
+    return {
+        "title": "Layer under a whirl",
+        **asdict(case),
+        "converged": "yes" if converged else "no",
+        "in_range": "yes" if in_range else "no",
+        "notes": "\n".join(map(one_line, texts(notes))) or "none",
+        "history": "written by leblanc layer",
+        **{f"version_{package}": version for package, version in versions().items()},
+    }
+
+
+@dataclass(frozen=True)
+class Wave:
+    """A layer under a prescribed whirl as figures show it, in the frame of the deflection.
+
+    Parameters
+    ----------
+    title, model : of the figure; of the liquid
+    radius, inner_radius, mean_depth : wall, inner wall (0 if none), layer undisturbed, m
+    whirl_amplitude : m
+    spin, whirl_speed : rad/s; the spin positive, the whirl in space and negative against it
+    theta, depth : angle from the deflection in any order, rad, and depth there, m, shape (n,), n > 2
+    force_ratio : on the drum over that of a full drum; along the deflection, 90 deg ahead; nan if none found
+    offset : centre of mass from the geometric axis, same axes, m; nan if none was found
+    notes : limits of validity and findings, in words
+
+    Raises
+    ------
+    InputError : a value out of its range, arrays that do not fit together
+    """
+
+    title: str
+    model: str
+    radius: float
+    inner_radius: float
+    mean_depth: float
+    whirl_amplitude: float
+    spin: float
+    whirl_speed: float
+    theta: Array
+    depth: Array
+    force_ratio: complex
+    offset: complex
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        require_positive("radius", self.radius)
+        require_not_negative("inner_radius", self.inner_radius)
+        require_not_negative("mean_depth", self.mean_depth)
+        if self.inner_radius + self.mean_depth > self.radius * (1.0 + SLACK):
+            raise InputError("mean_depth", self.mean_depth, "at most the room between the walls")
+        require_not_negative("whirl_amplitude", self.whirl_amplitude)
+        require_positive("spin", self.spin)
+        if not math.isfinite(self.whirl_speed):
+            raise InputError("whirl_speed", self.whirl_speed, "a finite number")
+        _require_angles(self.theta)
+        _require_depth(self.depth, self.theta.shape, self.radius)
+
+    @property
+    def seen_from_the_drum(self) -> float:
+        """Whirl speed less spin speed, rad/s."""
+        return self.whirl_speed - self.spin
+
+    def require_room(self, frames: WaveFrames) -> None:
+        """Raise `InputError` unless the depths of some frames fit the wall."""
+        _require_depth(frames.depth, frames.depth.shape, self.radius)
+
+
+@dataclass(frozen=True)
+class WaveFrames:
+    """A layer over time, in the frame of the drum.
+
+    Parameters
+    ----------
+    time : rising, s, shape (k,)
+    theta : angle from a mark on the drum, rad, shape (n,), n > 2
+    depth : m, shape (k, n)
+    deflection : complex, the mark on the real axis, m, shape (k,)
+    force_ratio, period_time, mean_rotation : means over periods of the whirl seen from the drum: force as in
+        `Wave`, middle of the period, s, and the liquid's rotation in the drum, rad/s; shape (p,)
+
+    Raises
+    ------
+    InputError : values out of their range, arrays that do not fit together
+    """
+
+    time: Array
+    theta: Array
+    depth: Array
+    deflection: Complex
+    force_ratio: Complex | None = None
+    period_time: Array | None = None
+    mean_rotation: Array | None = None
+
+    def __post_init__(self) -> None:
+        count = self.time.size
+        if self.time.ndim != 1 or not count or not np.isfinite(self.time).all():
+            raise InputError("time", self.time.shape, "a list of at least one finite time")
+        if np.any(np.diff(self.time) <= 0.0):
+            raise InputError("time", "not rising", "rising")
+        _require_angles(self.theta)
+        _require_depth(self.depth, (count, self.theta.size), math.inf)
+        if self.deflection.shape != (count,) or not np.isfinite(self.deflection).all():
+            raise InputError("deflection", self.deflection.shape, f"finite and of shape {(count,)}")
+        means = (self.force_ratio, self.period_time, self.mean_rotation)
+        shapes = {None if mean is None else mean.shape for mean in means}
+        if len(shapes) > 1:
+            raise InputError("force_ratio", str(shapes), "of the shape of period_time and mean_rotation")
+
+
+def _require_angles(theta: Array) -> None:
+    if theta.ndim != 1 or theta.size < FEWEST or not np.isfinite(theta).all():
+        raise InputError("theta", theta.shape, f"a list of at least {FEWEST} finite angles")
+
+
+def _require_depth(depth: Array, shape: tuple[int, ...], radius: float) -> None:
+    if depth.shape != shape:
+        raise InputError("depth", depth.shape, f"of shape {shape}")
+    slack = SLACK * radius if math.isfinite(radius) else 0.0
+    low, high = float(np.min(depth)), float(np.max(depth))
+    if not (math.isfinite(low) and math.isfinite(high) and -slack <= low and high <= radius + slack):
+        raise InputError("depth", (low, high), "finite, 0 or above, and at most the radius")
 
 
 def angles() -> Array:

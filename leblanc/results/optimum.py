@@ -1,144 +1,396 @@
-"""What `optimise` writes for other programs: the dataset and the JSON object."""
+"""The best volumes of a scene's chambers and what they were chosen from."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import asdict, dataclass
+from enum import Enum
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fluid.friction import Friction
+from leblanc.results.base import Result
+from leblanc.results.choice import ModelSpan
 from leblanc.results.netcdf import dataset, flags, write_dataset
 from leblanc.results.netcdf import variable as var
-from leblanc.results.provenance import one_line, versions
-from leblanc.studies.optimise.closed_form import Covering
-from leblanc.studies.optimise.front import Front
-from leblanc.studies.optimise.optimise import OptimumRecord
+from leblanc.results.notes import Note, NoteCode, texts
+from leblanc.results.provenance import attributes
+from leblanc.results.response import RunResult
+from leblanc.units import MM, RPM
+from meshes.arrays import Array, Flags
+
+if TYPE_CHECKING:
+    from leblanc.results.netcdf import Dataset
 
 
-def write_optimum(record: OptimumRecord, path: Path) -> None:
-    """Write all volumes that were judged as netCDF 4, dimensions `candidate` and `chamber`.
+class Feasibility(Enum):
+    """Whether some volumes keep to all that was asked, and what that means."""
+
+    FEASIBLE = "every constraint is met"
+    INFEASIBLE = "no volumes meet every constraint; these exceed them least"
+
+
+class OptimumCode(NoteCode):
+    """What the notes of an optimum say."""
+
+    GIVEN_DEFLECTION = "given_deflection"
+    FEW_CELLS = "few_cells"
+    NO_DUTY = "no_duty"
+    NO_LIMIT = "no_limit"
+    NO_RANGE = "no_range"
+    TOO_DEEP = "too_deep"
+    EMULATED = "emulated"
+
+
+def given_deflection(deflection: float, speed: float, gap: float) -> Note:
+    """The volumes are the least that wet the walls at a deflection, m, and a speed, rad/s.
 
     Parameters
     ----------
-    record : the optimum
+    deflection, speed : given
+    gap : largest relative difference of search and closed form
+    """
+    text = (
+        f"The deflection is given, {deflection * MM:.4g} mm at {speed * RPM:.4g} rpm: the volumes are the "
+        "least that leave no part of a wall dry over its whole height; search and closed form differ by "
+        f"{gap:.1e}."
+    )
+    data = {"deflection": deflection, "speed": speed, "gap": gap}
+    return Note(OptimumCode.GIVEN_DEFLECTION, data, text)
+
+
+def few_cells(few: int, all_of_them: int) -> Note:
+    """The search ran run-ups on fewer cells than the scene's."""
+    text = (
+        f"The search ran the machine up with {few} cells round each wall; the best volumes were run "
+        f"again with the scene's {all_of_them}."
+    )
+    return Note(OptimumCode.FEW_CELLS, {"cells": few, "scene_cells": all_of_them}, text)
+
+
+def no_duty() -> Note:
+    """The mean is over speeds that count alike."""
+    text = "No duty cycle is given: the mean is over the scene's speeds, all alike."
+    return Note(OptimumCode.NO_DUTY, {}, text)
+
+
+def no_limit(limit: float) -> Note:
+    """The vibration limit is one per cent above the least that is possible, m."""
+    share = f"{limit * MM:.4g} mm, one per cent above the least possible"
+    text = f"No vibration limit is given: taken is {share}."
+    return Note(OptimumCode.NO_LIMIT, {"limit": limit}, text)
+
+
+def no_range() -> Note:
+    """The unbalances are half to twice the scene's."""
+    text = "No range is given: taken are unbalances from half to twice the scene's."
+    return Note(OptimumCode.NO_RANGE, {}, text)
+
+
+def too_deep(chamber: int, limit: float) -> Note:
+    """The layer of a chamber, counted from 0, is deeper than a share of its radius."""
+    text = f"Out of range: the layer in chamber {chamber + 1} is deeper than {limit:g} of its radius."
+    return Note(OptimumCode.TOO_DEEP, {"chamber": chamber + 1, "limit": limit}, text)
+
+
+def emulated(answer: EmulatedAnswer) -> Note:
+    """How far an emulator could have led the search astray."""
+    error = answer.error
+    text = (
+        f"The search asked an emulator of {error.samples} samples, off by {error.root_mean_square:.2g} on "
+        f"unseen ones (root mean square; largest {error.largest:.2g}); the best volumes it found were judged "
+        f"by the solvers. By the emulator alone: {answer.value * MM:.4g} mm, give or take "
+        f"{2.0 * answer.deviation * MM:.2g} mm."
+    )
+    return Note(OptimumCode.EMULATED, asdict(answer), text)
+
+
+@dataclass(frozen=True)
+class WettingVolumes:
+    """Volumes of one chamber that wet its wall at a deflection and a speed, in closed form.
+
+    Parameters
+    ----------
+    deflection : e, m
+    speed : rad/s
+    optimal_volume : the least that leaves no part of the wall dry over its whole height, m^3 [theory:
+        statics, eq. 8]
+    full_volume : the least that wets the whole wall up to the lid, beyond which more liquid adds nothing,
+        m^3; infinite where the chamber does not hold it [theory: optimum, eq. 1]
+    unbalance_share : liquid's unbalance with the optimal volume over the largest possible one at this
+        deflection
+    """
+
+    deflection: float
+    speed: float
+    optimal_volume: float
+    full_volume: float
+    unbalance_share: float
+
+    def to_json(self) -> dict[str, float | None]:
+        """As `optimise` prints it; null for a volume that the chamber does not hold."""
+        return asdict(self) | {"full_volume": self.full_volume if math.isfinite(self.full_volume) else None}
+
+
+@dataclass(frozen=True)
+class ConstraintValue:
+    """A constraint at the best volumes.
+
+    Parameters
+    ----------
+    limit, value : in the unit; the value must not be above the limit
+    satisfied : it is not
+    unit, meaning : of both, and what they are
+    """
+
+    limit: float
+    value: float
+    satisfied: bool
+    unit: str
+    meaning: str
+
+
+@dataclass(frozen=True)
+class ParetoFront:
+    """Points of which none is better than another in everything; m points of c chambers.
+
+    Parameters
+    ----------
+    volume : m^3, shape (m, c)
+    vibration : m, shape (m,)
+    mass : of the liquid, kg, shape (m,)
+    stability_margin : decay of the small whirl that dies out slowest at the operating speeds, 1/s; below 0 it
+        grows; shape (m,)
+    """
+
+    volume: Array
+    vibration: Array
+    mass: Array
+    stability_margin: Array
+
+    def to_json(self) -> list[dict[str, Any]]:
+        """Its points."""
+        names = ("volume", "vibration", "mass", "stability_margin")
+        return [{name: getattr(self, name)[k] for name in names} for k in range(self.mass.size)]
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """Sets of volumes that were evaluated; m of c chambers.
+
+    Parameters
+    ----------
+    volume : m^3, shape (m, c)
+    objective : in its unit, shape (m,)
+    excess : of the constraint that is exceeded most, relative; 0 or below where all hold, shape (m,)
+    vibration, mass : m and kg, shape (m,)
+    exact : the vibration is known, not an estimate from below, shape (m,)
+    """
+
+    volume: Array
+    objective: Array
+    excess: Array
+    vibration: Array
+    mass: Array
+    exact: Flags
+
+
+@dataclass(frozen=True)
+class EmulatorError:
+    """Error of an emulator on samples that it was not shown [theory: emulator, eq. 4].
+
+    Parameters
+    ----------
+    root_mean_square, largest : relative to the output for positive outputs, otherwise to its spread
+    spread : standard deviation of the output in the same measure, what knowing nothing leaves
+    within_two : share of the samples within two of the standard deviations that the emulator itself claims
+    samples : that were predicted
+    """
+
+    root_mean_square: float
+    largest: float
+    spread: float
+    within_two: float
+    samples: int
+
+
+@dataclass(frozen=True)
+class EmulatedAnswer:
+    """What an emulator says of the best volumes.
+
+    Parameters
+    ----------
+    value, deviation : vibration and its standard deviation, m
+    error : of the emulator on unseen samples
+    """
+
+    value: float
+    deviation: float
+    error: EmulatorError
+
+
+@dataclass(frozen=True)
+class CandidateChamber:
+    """A chamber of the scene whose volume was looked for.
+
+    Parameters
+    ----------
+    capacity : m^3
+    liquid_name : as the scene names it
+    """
+
+    capacity: float
+    liquid_name: str
+
+
+@dataclass(frozen=True)
+class OptimumResult(Result):
+    """The best volumes of a scene and what they were chosen from; c chambers.
+
+    Parameters
+    ----------
+    name, source, assumed, digest : of the scene
+    chambers : whose volumes were looked for
+    friction : of the liquid
+    tolerance : relative error that the scene allows
+    in_time : the objective is judged by run-ups in time
+    objective, meaning, unit : name, words and unit of the value
+    working_speed : rad/s
+    volume : the answer, m^3, shape (c,)
+    value, baseline : of the objective with these volumes and without liquid
+    vibration, vibration_baseline : m; the value itself unless that is a mass
+    feasibility : whether every constraint is met
+    constraints : by name
+    mass : of the liquid, kg
+    growth : of the small whirl that grows most at the operating speeds, 1/s
+    closed_form : for each chamber, at the deflection that the answer itself has; empty where it has none
+    evaluations : sets of volumes evaluated
+    candidates : all of them
+    front : what must be given up for what; None if it was not asked for
+    sweep : from no liquid to the fullest chamber, shares as in the answer; None with the front
+    notes : limits and findings
+    response : of the machine with these volumes over the scene's speeds; None where the liquid model of the
+        search gives no steady answer, or where it was not asked for; its models are those of the search
+    emulator : what the emulator that the search asked says of the answer; None without one
+    """
+
+    name: str
+    source: str
+    assumed: tuple[str, ...]
+    digest: str
+    chambers: tuple[CandidateChamber, ...]
+    friction: Friction
+    tolerance: float
+    in_time: bool
+    objective: str
+    meaning: str
+    unit: str
+    working_speed: float
+    volume: Array
+    value: float
+    baseline: float
+    vibration: float
+    vibration_baseline: float
+    feasibility: Feasibility
+    constraints: dict[str, ConstraintValue]
+    mass: float
+    growth: float
+    closed_form: tuple[WettingVolumes, ...]
+    evaluations: int
+    candidates: Candidates
+    front: ParetoFront | None
+    sweep: ParetoFront | None
+    notes: tuple[Note, ...]
+    response: RunResult | None = None
+    emulator: EmulatedAnswer | None = None
+
+    figure = "leblanc.figures.optimise:objective_figure"
+    summary = "leblanc.text.optimum:summary"
+
+    @property
+    def feasible(self) -> bool:
+        """Every constraint is met."""
+        return self.feasibility is Feasibility.FEASIBLE
+
+    @property
+    def models(self) -> tuple[ModelSpan, ...]:
+        """Which liquid model the search took at the scene's speeds, and why."""
+        return () if self.response is None else self.response.models
+
+    @property
+    def stability_margin(self) -> float:
+        """Decay of the small whirl that dies out slowest at the operating speeds, 1/s; below 0 it grows."""
+        return -self.growth
+
+    def to_json(self) -> dict[str, Any]:
+        """What `optimise` prints for scripts, SI."""
+        names = ("objective", "volume", "value", "baseline", "feasible", "evaluations", "unit", "meaning")
+        more = ("working_speed", "vibration", "vibration_baseline", "mass", "stability_margin")
+        found: dict[str, Any] = {name: getattr(self, name) for name in (*names, *more)}
+        return (
+            found
+            | ({} if self.emulator is None else {"emulator": asdict(self.emulator)})
+            | {
+                "constraints": {name: asdict(value) for name, value in self.constraints.items()},
+                "closed_form": [form.to_json() for form in self.closed_form],
+                "pareto": [] if self.front is None else self.front.to_json(),
+                "name": self.name,
+                "digest": self.digest,
+                "assumed": self.assumed,
+                "notes": texts(self.notes),
+            }
+        )
+
+    def to_dataset(self) -> Dataset:
+        """All volumes that were evaluated, over `candidate` and `chamber`, and the front."""
+        over, tried = ("candidate",), self.candidates
+        excess = "of the constraint exceeded most; 0 or below: none is"
+        estimate = "else the vibration is an estimate from below"
+        columns = {
+            "volume": var(("candidate", "chamber"), tried.volume, "m3", "volume of liquid"),
+            "objective": var(over, tried.objective, self.unit, "objective", self.meaning),
+            "excess": var(over, tried.excess, "1", "excess", excess),
+            "best_volume": var(("chamber",), self.volume, "m3", "best volume"),
+            "sure": flags(over, tried.exact, "no yes", "sure", estimate),
+            "vibration": var(over, tried.vibration, "m", "vibration"),
+            "mass": var(over, tried.mass, "kg", "mass"),
+        }
+        if self.front is not None:
+            along, front = ("front",), self.front
+            margin = front.stability_margin
+            columns |= {
+                "front_volume": var(("front", "chamber"), front.volume, "m3", "volume on the front"),
+                "front_vibration": var(along, front.vibration, "m", "vibration on the front"),
+                "front_mass": var(along, front.mass, "kg", "mass of liquid on the front"),
+                "front_margin": var(along, margin, "s-1", "stability margin on the front"),
+            }
+        tries, chambers = np.arange(tried.volume.shape[0]), np.arange(1, self.volume.size + 1)
+        coords = {
+            "candidate": var(over, tries.astype(np.int32), "1", "candidate"),
+            "chamber": var(("chamber",), chambers.astype(np.int32), "1", "chamber"),
+        }
+        return dataset(columns, coords, self._attributes())
+
+    def _attributes(self) -> dict[str, Any]:
+        """Scene, what was asked for, versions."""
+        own: dict[str, Any] = {
+            "objective": self.objective,
+            "meaning": self.meaning,
+            "value": self.value,
+            "baseline": self.baseline,
+            "feasible": "yes" if self.feasible else "no",
+        }
+        return attributes(self, "optimise", own, self.notes)
+
+
+def write_optimum(result: OptimumResult, path: Path) -> None:
+    """Write all volumes that were evaluated as netCDF 4.
+
+    Parameters
+    ----------
+    result : the optimum
     path : the file to write or replace
     """
-    over, judged = ("candidate",), record.judged
-    count = record.volume.size
-    columns = {
-        "volume": var(("candidate", "chamber"), record.points, "m3", "volume of liquid"),
-        "objective": var(over, judged.objective, record.unit, "objective", record.meaning),
-        "excess": var(
-            over, judged.excess, "1", "excess", "of the constraint exceeded most; 0 or below: none is"
-        ),
-        "best_volume": var(("chamber",), record.volume, "m3", "best volume"),
-    }
-    sure = judged.details["sure"]
-    columns["sure"] = flags(over, sure, "no yes", "sure", "else the vibration is an estimate from below")
-    for name in ("vibration", "mass"):
-        unit = "m" if name == "vibration" else "kg"
-        columns[name] = var(over, judged.details[name], unit, name)
-    if record.front is not None:
-        along = ("front",)
-        columns |= {
-            "front_volume": var(("front", "chamber"), record.front.volume, "m3", "volume on the front"),
-            "front_vibration": var(along, record.front.vibration, "m", "vibration on the front"),
-            "front_mass": var(along, record.front.mass, "kg", "mass of liquid on the front"),
-            "front_margin": var(along, record.front.margin, "s-1", "stability margin on the front"),
-        }
-    coords = {
-        "candidate": var(over, np.arange(record.points.shape[0], dtype=np.int32), "1", "candidate"),
-        "chamber": var(("chamber",), np.arange(1, count + 1, dtype=np.int32), "1", "chamber"),
-    }
-    write_dataset(dataset(columns, coords, _attributes(record)), path)
-
-
-def _attributes(record: OptimumRecord) -> dict[str, Any]:
-    """Scene, what was asked for, versions."""
-    scene = record.scene
-    return {
-        "title": one_line(scene.name),
-        "source": one_line(scene.source) or "not stated",
-        "digest": scene.digest,
-        "assumed": "; ".join(map(one_line, scene.assumed)) or "nothing",
-        "objective": record.objective,
-        "meaning": record.meaning,
-        "value": record.value,
-        "baseline": record.baseline,
-        "feasible": "yes" if record.feasible else "no",
-        "notes": "\n".join(map(one_line, record.notes)) or "none",
-        "history": "written by leblanc optimise",
-        **{f"version_{package}": version for package, version in versions().items()},
-    }
-
-
-def optimum_json(record: OptimumRecord) -> dict[str, Any]:
-    """What `optimise` prints for scripts, SI.
-
-    Parameters
-    ----------
-    record : the optimum
-
-    Returns
-    -------
-    Arrays and numbers for `leblanc.cli.output.print_json`
-    """
-    front = record.front
-    points = [] if front is None else _points(front)
-    return {
-        "objective": record.objective,
-        "volume": record.volume,
-        "value": record.value,
-        "baseline": record.baseline,
-        "feasible": record.feasible,
-        "constraints": {
-            name: {
-                "limit": one.limit,
-                "value": one.value,
-                "satisfied": one.satisfied,
-                "unit": one.unit,
-                "meaning": one.text,
-            }
-            for name, one in record.constraints.items()
-        },
-        "evaluations": record.evaluations,
-        **({} if record.emulated is None else {"emulator": record.emulated}),
-        "unit": record.unit,
-        "meaning": record.meaning,
-        "working_speed": record.working_speed,
-        "vibration": record.vibration,
-        "vibration_baseline": record.vibration_baseline,
-        "mass": record.mass,
-        "stability_margin": -record.growth,
-        "closed_form": [_closed_form(one) for one in record.covering],
-        "pareto": points,
-        "name": record.scene.name,
-        "digest": record.scene.digest,
-        "assumed": record.scene.assumed,
-        "notes": record.notes,
-    }
-
-
-def _closed_form(one: Covering) -> dict[str, float | None]:
-    """The covering volumes of one chamber."""
-    return {
-        "deflection": one.deflection,
-        "speed": one.speed,
-        "optimal_volume": one.optimal_volume,
-        "full_volume": one.full_volume if math.isfinite(one.full_volume) else None,
-        "unbalance_share": one.share,
-    }
-
-
-def _points(front: Front) -> list[dict[str, Any]]:
-    """Points of the front."""
-    return [
-        {
-            "volume": front.volume[k],
-            "vibration": front.vibration[k],
-            "mass": front.mass[k],
-            "stability_margin": front.margin[k],
-        }
-        for k in range(front.mass.size)
-    ]
+    write_dataset(result.to_dataset(), path)

@@ -1,43 +1,339 @@
-"""What `runup` writes for other programs: the dataset and the JSON object."""
+"""A run-up of a scene: what `runup` answers, for figures, reports, files and scripts."""
 
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
+import math
+from dataclasses import asdict, dataclass
+from enum import Enum
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fluid.friction import Friction
 from leblanc.friction import friction_words
+from leblanc.results.base import Result
+from leblanc.results.chamber import FilledChamber
 from leblanc.results.netcdf import dataset, flags, variable, write_dataset
-from leblanc.results.provenance import one_line, versions
-from leblanc.studies.runup import RunupRecord
+from leblanc.results.notes import Note, texts
+from leblanc.results.provenance import attributes, one_line
+from leblanc.results.response import phase
+from meshes.arrays import Array, Complex, Flags
+from solvers.runup.runup import EnergyAudit, RunupHistory
+from solvers.synchronous.response import Response
+
+if TYPE_CHECKING:
+    from leblanc.results.netcdf import Dataset
 
 Values = NDArray[Any]
+Bands = tuple[tuple[float, float], ...]
+_FEWEST = 8  # samples in a mean over turns
 
 
-def write_runup(record: RunupRecord, path: Path) -> None:
-    """Write a run-up as netCDF 4, dimensions `time`, `chamber` and `coordinate`.
+class RunupEnd(Enum):
+    """How a run-up ended, and what that means."""
 
-    Complex numbers are pairs `_real`, `_imag`, truth values are bytes with `flag_meanings`. The energy audit
-    and what else is a single value stand in the attributes.
+    DONE = "it came to its end"
+    AT_AXIS = "the surface of a layer came to the axis"
+    NO_STEPS_LEFT = "the time steps ran out"
+    NOT_COUPLED = "rotor and layers did not agree in the shortest steps"
+    MOTOR_STANDS = "the motor stands"
+    INTERRUPTED = "interrupted"
+
+    @classmethod
+    def of_reason(cls, reason: str) -> RunupEnd:
+        """The end that a solver's reason names; a reason is empty or begins with the message of an end."""
+        if not reason:
+            return cls.DONE
+        for end in cls:
+            if reason.startswith(end.value):
+                return end
+        raise ValueError(f"no such end of a run-up: {reason}")
+
+
+class Capture(NamedTuple):
+    """A layer begins or ceases to ride with its drum.
 
     Parameters
     ----------
-    record : the run-up
-    path : the file to write or replace
+    sample : index of the first one after it
+    chamber : index
+    captured : it begins
     """
-    columns = _columns(record)
-    coords = {name: columns.pop(name) for name in ("time", "chamber")}
-    write_dataset(dataset(columns, coords, _attributes(record)), path)
+
+    sample: int
+    chamber: int
+    captured: bool
 
 
-def _columns(record: RunupRecord) -> dict[str, Any]:
+@dataclass(frozen=True)
+class RunupFrames:
+    """The layers at regular times, for a film; f frames, l chambers, c cells, all in the drum frame.
+
+    Parameters
+    ----------
+    time, speed : s and rad/s, shape (f,)
+    deflection : complex, of each chamber's axis, m, shape (f, l)
+    amplitude : of the first of them, m, shape (f,)
+    theta : angle from the drum's zero mark of the cells, rad, shape (c,)
+    depth : of the layers, m, nan where the liquid is none, shape (f, l, c)
+    pool : angle of liquid that lies at the bottom, rad, shape (f,)
+    """
+
+    time: Array
+    speed: Array
+    deflection: Complex
+    amplitude: Array
+    theta: Array
+    depth: Array
+    pool: Array
+
+
+@dataclass(frozen=True)
+class RunupResult(Result):
+    """A run-up of a scene; k times, l chambers.
+
+    Parameters
+    ----------
+    name, source, assumed, digest : of the scene
+    inputs : label, value with its unit, field path
+    kind, axis : of the rotor; "horizontal" or "vertical"
+    friction : law and coefficient
+    gravity : across the axis, m/s^2
+    model : of the liquid, "long_wave" or "linear"
+    model_reason : why that one, in words
+    model_error : estimated error of the amplitude over its largest, by the model and by its steps; nan where
+        one of them is not known
+    cells, dispersion : of each layer; whether its waves have the dispersion of the finite depth
+    history : of rotor and liquid
+    turning : index of the last time before the speed falls again; the last one of all if it never does
+    in_range : the layer is a fair picture of the liquid at that time, shape (k,)
+    steady : synchronous response at the speeds passed, of a Jeffcott rotor; None for others
+    bands : of speed in which some whirl grows by itself, rad/s, an end of the range counting as an edge
+    chambers, planes : one for each chamber; its position along the axis, m
+    notes : limits of validity and findings
+    frames : the layers at regular times; None if they were not asked for
+    """
+
+    name: str
+    source: str
+    assumed: tuple[str, ...]
+    digest: str
+    inputs: tuple[tuple[str, str, str], ...]
+    kind: str
+    axis: str
+    friction: Friction
+    gravity: float
+    model: str
+    model_reason: str
+    model_error: float
+    cells: int
+    dispersion: bool
+    history: RunupHistory
+    turning: int
+    in_range: Flags
+    steady: Response | None
+    bands: Bands
+    chambers: tuple[FilledChamber, ...]
+    planes: tuple[float, ...]
+    notes: tuple[Note, ...]
+    frames: RunupFrames | None = None
+
+    figure = "leblanc.figures.runup:speed_figure"
+    summary = "leblanc.text.runup:summary"
+
+    @property
+    def end(self) -> RunupEnd:
+        """How the run ended."""
+        return RunupEnd.of_reason(self.history.reason)
+
+    @property
+    def converged(self) -> bool:
+        """It came to its end."""
+        return self.history.converged
+
+    @property
+    def reason(self) -> str:
+        """Why, when and at what speed it stopped before its end; empty if it did not."""
+        return self.history.reason
+
+    @property
+    def time(self) -> Array:
+        """Times, s, shape (k,)."""
+        return self.history.time
+
+    @property
+    def speed(self) -> Array:
+        """Spin speed, rad/s, shape (k,)."""
+        return self.history.speed
+
+    @property
+    def amplitude(self) -> Array:
+        """Modulus of the first deflection, m, shape (k,)."""
+        return self.history.amplitude
+
+    @property
+    def deflection(self) -> Complex:
+        """Of the first chamber's axis, in the drum frame, m, shape (k,)."""
+        return np.asarray(self.history.deflection[:, 0] * np.exp(-1j * self.history.angle))
+
+    @property
+    def phase(self) -> Array:
+        """Angle of that deflection from the drum's zero mark, where a Jeffcott rotor has its unbalance."""
+        return phase(self.deflection)
+
+    @property
+    def liquid_position(self) -> Complex:
+        """Liquid's centre of mass in the drum frame, m, shape (k,)."""
+        return self.history.liquid_position
+
+    @property
+    def mean_position(self) -> Complex:
+        """The same as a mean over whole turns, m, shape (k,)."""
+        return turn_mean(self.history.liquid_position, self.history.angle)
+
+    @property
+    def captured(self) -> Flags:
+        """Each layer rides with its drum, shape (k, l)."""
+        return self.history.captured
+
+    @property
+    def depth_min(self) -> Array:
+        """Least depth of each layer, m, nan while it is not captured, shape (k, l)."""
+        return self.history.depth_min[:, : len(self.chambers)]
+
+    @property
+    def depth_max(self) -> Array:
+        """Largest depth of each layer, m, nan while it is not captured, shape (k, l)."""
+        return self.history.depth_max[:, : len(self.chambers)]
+
+    @property
+    def mean_rotation(self) -> Array:
+        """Rotation of each layer relative to its drum, rad/s, shape (k, l)."""
+        return self.history.mean_rotation[:, : len(self.chambers)]
+
+    @property
+    def layer_mass(self) -> Array:
+        """Mass of each layer, kg, shape (l,)."""
+        return self.history.layer_mass
+
+    @property
+    def mass_error(self) -> float:
+        """Largest relative change of a layer's volume."""
+        return self.history.mass_error
+
+    @property
+    def error_estimate(self) -> float:
+        """Error of the amplitude by half the cells, relative to its largest; nan if it was not estimated."""
+        return self.history.error_estimate
+
+    @property
+    def energy(self) -> EnergyAudit:
+        """Where the energy went."""
+        return self.history.audit
+
+    @property
+    def steps(self) -> int:
+        """Steps of time."""
+        return self.history.steps
+
+    @property
+    def turns_back(self) -> bool:
+        """The speed falls again."""
+        return self.turning < self.time.size - 1
+
+    @property
+    def captures(self) -> tuple[Capture, ...]:
+        """When layers began and ceased to ride with their drums, in order of time."""
+        row, column = np.nonzero(np.diff(self.captured.astype(np.int8), axis=0))
+        pairs = zip(row.tolist(), column.tolist(), strict=True)
+        return tuple(Capture(k + 1, j, bool(self.captured[k + 1, j])) for k, j in pairs)
+
+    def peak(self, back: bool = False) -> int:
+        """Index of the largest amplitude on the way up, or on the way back."""
+        if back and self.turns_back:
+            return self.turning + 1 + int(np.argmax(self.amplitude[self.turning + 1 :]))
+        return int(np.argmax(self.amplitude[: self.turning + 1]))
+
+    def to_json(self) -> dict[str, Any]:
+        """What `runup` prints for scripts, SI and radians; of chambers a list in each list over time."""
+        position, mean = self.liquid_position, self.mean_position
+        found: dict[str, Any] = {
+            "time": self.time,
+            "speed": self.speed,
+            "amplitude": self.amplitude,
+            "phase": self.phase,
+            "liquid_offset": np.abs(position),
+            "liquid_angle": np.angle(position),
+            "liquid_offset_mean": np.abs(mean),
+            "liquid_angle_mean": np.angle(mean),
+            "mass_error": self.mass_error,
+            "captured": self.captured,
+            "in_range": self.in_range,
+            "depth_max": self.depth_max,
+            "depth_min": self.depth_min,
+            "mean_rotation": self.mean_rotation,
+        }
+        last = self.time.size - 1
+        ends = {"peak": self._moment(self.peak()), "end": self._moment(last)}
+        if self.turns_back:
+            ends["peak_back"] = self._moment(self.peak(back=True))
+        ends["end"] |= {name: float(found[name][-1]) for name in ("phase", "liquid_offset", "liquid_angle")}
+        rest = ("error_estimate", "converged", "reason", "steps", "cells", "model", "model_reason")
+        own = ("model_error", "name", "digest", "assumed", "bands")
+        return (
+            found
+            | ends
+            | {name: getattr(self, name) for name in (*rest, *own)}
+            | {"energy": self._energy(), "notes": texts(self.notes)}
+        )
+
+    def _moment(self, index: int) -> dict[str, float]:
+        """Amplitude, speed and time of one sample."""
+        return {name: float(getattr(self, name)[index]) for name in ("amplitude", "speed", "time")}
+
+    def _energy(self) -> dict[str, float]:
+        """Terms of the balance, J, what it leaves, and that over the work."""
+        audit = self.energy
+        return asdict(audit) | {"remainder": audit.remainder, "closure": audit.closure}
+
+    def to_dataset(self) -> Dataset:
+        """The run-up over `time`, `chamber` and `coordinate`.
+
+        Complex numbers are pairs `_real`, `_imag`, truth values are bytes with `flag_meanings`. The energy
+        audit and what else is a single value stand in the attributes.
+        """
+        columns = _columns(self)
+        coords = {name: columns.pop(name) for name in ("time", "chamber")}
+        return dataset(columns, coords, self._attributes())
+
+    def _attributes(self) -> dict[str, Any]:
+        """Scene, numerics, single results and versions."""
+        own: dict[str, Any] = {
+            "inputs": "\n".join(one_line("{}: {} [{}]".format(*entry)) for entry in self.inputs),
+            "rotor": self.kind,
+            "axis": self.axis,
+            "friction": friction_words(self.friction),
+            "model": self.model,
+            "model_reason": one_line(self.model_reason),
+            "model_error": self.model_error,
+            "cells": np.int32(self.cells),
+            "dispersion": "with" if self.dispersion else "without",
+            "energy": json.dumps(self._energy()),
+            "mass_error": self.mass_error,
+            "error_estimate": self.error_estimate,
+            "steps": np.int64(self.steps),
+            "converged": "yes" if self.converged else one_line(f"no: {self.reason}"),
+        }
+        return attributes(self, "runup", own, self.notes)
+
+
+def _columns(result: RunupResult) -> dict[str, Any]:
     """Variables by name."""
-    h, over = record.history, ("time",)
-    count = len(record.chambers)
+    h, over = result.history, ("time",)
+    count = len(result.chambers)
 
     def each(values: Values, unit: str, text: str) -> Any:
         return variable(("time", "chamber"), values[:, :count], unit, text)
@@ -51,10 +347,10 @@ def _columns(record: RunupRecord) -> dict[str, Any]:
         "speed": variable(over, h.speed, "rad s-1", "spin speed"),
         "angle": variable(over, h.angle, "rad", "angle of rotation"),
         "amplitude": variable(over, h.amplitude, "m", "deflection of the first chamber's axis, modulus"),
-        "phase": variable(over, record.phase, "rad", f"angle of that deflection {drum}"),
+        "phase": variable(over, result.phase, "rad", f"angle of that deflection {drum}"),
         "liquid_offset": variable(over, np.abs(h.liquid_position), "m", here),
         "liquid_angle": variable(over, np.angle(h.liquid_position), "rad", f"angle of that place {drum}"),
-        "in_range": flags(over, record.in_range, "no yes", "the layer is a fair picture of the liquid"),
+        "in_range": flags(over, result.in_range, "no yes", "the layer is a fair picture of the liquid"),
         "coordinates": variable(("time", "coordinate"), h.coordinates, "1", "of the rotor, m or rad"),
         "captured": flags(("time", "chamber"), h.captured[:, :count], "no yes", held),
         "depth_min": each(h.depth_min, "m", "least depth around the wall"),
@@ -71,88 +367,40 @@ def _columns(record: RunupRecord) -> dict[str, Any]:
     return columns
 
 
-def _attributes(record: RunupRecord) -> dict[str, Any]:
-    """Scene, numerics, single results and versions."""
-    history, numerics = record.history, record.numerics
-    return {
-        "title": one_line(record.name),
-        "source": one_line(record.source) or "not stated",
-        "digest": record.digest,
-        "assumed": "; ".join(map(one_line, record.assumed)) or "nothing",
-        "inputs": "\n".join(one_line("{}: {} [{}]".format(*entry)) for entry in record.inputs),
-        "rotor": record.kind,
-        "axis": record.axis,
-        "friction": friction_words(record.friction),
-        "model": record.model,
-        "model_reason": one_line(record.model_reason),
-        "model_error": record.model_error,
-        "cells": np.int32(numerics.cells),
-        "dispersion": "with" if numerics.dispersion else "without",
-        "energy": json.dumps(_energy(record)),
-        "mass_error": history.mass_error,
-        "error_estimate": history.error_estimate,
-        "steps": np.int64(history.steps),
-        "converged": "yes" if history.converged else one_line(f"no: {history.reason}"),
-        "notes": "\n".join(map(one_line, record.notes)) or "none",
-        "history": "written by leblanc runup",
-        **{f"version_{package}": version for package, version in versions().items()},
-    }
-
-
-def _energy(record: RunupRecord) -> dict[str, float]:
-    """Terms of the balance, J, what it leaves, and that over the work."""
-    audit = record.history.audit
-    return asdict(audit) | {"remainder": audit.remainder, "closure": audit.closure}
-
-
-def _moment(record: RunupRecord, index: int) -> dict[str, float]:
-    """Amplitude, speed and time of one sample."""
-    h = record.history
-    return {
-        "amplitude": float(h.amplitude[index]),
-        "speed": float(h.speed[index]),
-        "time": float(h.time[index]),
-    }
-
-
-def runup_json(record: RunupRecord) -> dict[str, Any]:
-    """What `runup` prints for scripts, SI and radians; lists over time, of chambers a list in each of it.
+def write_runup(result: RunupResult, path: Path) -> None:
+    """Write a run-up as netCDF 4.
 
     Parameters
     ----------
-    record : the run-up
+    result : the run-up
+    path : the file to write or replace
+    """
+    write_dataset(result.to_dataset(), path)
+
+
+def turn_mean(values: Complex, angle: Array) -> Complex:
+    """Mean over the turns of the rotor around each time: what stands still in space drops out of it.
+
+    The mean is taken over one turn, or over as many whole turns as hold eight samples.
+
+    Parameters
+    ----------
+    values : in the drum frame, shape (k,)
+    angle : of rotation, rising, rad, shape (k,)
 
     Returns
     -------
-    Arrays and numbers for `leblanc.cli.output.print_json`
+    Means, shape (k,); near the ends over the turns that there are
     """
-    h, count = record.history, len(record.chambers)
-    position, mean = h.liquid_position, record.mean_position
-    found: dict[str, Any] = {
-        "time": h.time,
-        "speed": h.speed,
-        "amplitude": h.amplitude,
-        "phase": record.phase,
-        "liquid_offset": np.abs(position),
-        "liquid_angle": np.angle(position),
-        "liquid_offset_mean": np.abs(mean),
-        "liquid_angle_mean": np.angle(mean),
-        "mass_error": h.mass_error,
-        "captured": h.captured,
-        "in_range": record.in_range,
-    }
-    found |= {name: getattr(h, name)[:, :count] for name in ("depth_max", "depth_min", "mean_rotation")}
-    last = h.time.size - 1
-    ends = {"peak": _moment(record, record.peak()), "end": _moment(record, last)}
-    if record.turning < last:
-        ends["peak_back"] = _moment(record, record.peak(back=True))
-    ends["end"] |= {name: float(found[name][-1]) for name in ("phase", "liquid_offset", "liquid_angle")}
-    names = ("name", "digest", "assumed", "notes", "bands")
-    return (
-        found
-        | ends
-        | {name: getattr(h, name) for name in ("error_estimate", "converged", "reason", "steps")}
-        | {"energy": _energy(record), "cells": record.numerics.cells, "model": record.model}
-        | {"model_reason": record.model_reason, "model_error": record.model_error}
-        | {name: getattr(record, name) for name in names}
-    )
+    if angle.size < 3:
+        return values.copy()
+    steps = np.diff(angle)
+    total = np.concatenate(([0.0], np.cumsum(0.5 * (values[1:] + values[:-1]) * steps)))
+    half = math.pi * np.maximum(1.0, np.ceil(_FEWEST * np.gradient(angle) / (2.0 * math.pi)))
+    half = np.minimum(half, 0.5 * (angle[-1] - angle[0]))
+    middle = np.clip(angle, angle[0] + half, angle[-1] - half)
+
+    def until(edge: Array) -> Complex:
+        return np.asarray(np.interp(edge, angle, total.real) + 1j * np.interp(edge, angle, total.imag))
+
+    return np.asarray((until(middle + half) - until(middle - half)) / (2.0 * half))

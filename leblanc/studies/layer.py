@@ -5,31 +5,37 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fluid import kdv, waves
 from fluid.fill import Fill
 from fluid.friction import NO_FRICTION, Friction, damping_rate
-from leblanc.results.layer import LayerAnswer, angles, wave_amplitude
-from leblanc.studies.validity import Number, judge, strained
+from leblanc.results import layer as notes_of
+from leblanc.results.layer import (
+    LayerCase,
+    LayerPeriodsResult,
+    LayerResult,
+    Number,
+    Wave,
+    WaveFrames,
+    angles,
+    wave_amplitude,
+)
+from leblanc.results.notes import Note
+from leblanc.studies.validity import judge
 from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.layer.prescribed import LayerHistory, Numerics, Whirl
 from solvers.layer.settle import film, settle, simulate
 from solvers.statics.hydrostatics import equilibrium
 
-if TYPE_CHECKING:
-    from leblanc.figures.wave import WaveHistory, WaveRecord
-
-
 MOST_CELLS = 600  # around; the matrices of the free surface are dense
 _ACROSS = 6
 _ONE_WAY = 1e-6  # part of the answer that may go the other way round before it is worth a note
 
 
-def fem_answer(fill: Fill, whirl: Whirl, friction: Friction, cells: int) -> LayerAnswer:
+def fem_answer(fill: Fill, whirl: Whirl, friction: Friction, cells: int) -> LayerResult:
     """Forced response of the liquid in the drum's frame [theory: sloshing, eq. 13-16].
 
     Parameters
@@ -67,14 +73,14 @@ def fem_answer(fill: Fill, whirl: Whirl, friction: Friction, cells: int) -> Laye
     offset = complex(0.5 * (moment @ FORWARD.conj())) if whirl.amplitude > 0.0 else 0j
     height = float(np.abs(displacement).max())
     validity = judge("linear", fill, whirl, {"wave_amplitude": height / fill.depth})
-    notes = [*strained(validity)]
+    notes = [*notes_of.out_of_range(validity)]
     if abs(counter) > _ONE_WAY * abs(onward):
-        share = abs(counter) / abs(onward)
-        notes.append(f"the liquid also answers against the whirl, {share:.3g} times as strongly")
+        notes.append(notes_of.against_whirl(float(abs(counter) / abs(onward))))
     if inner - height < chamber.inner_radius:
-        notes.append("the surface reaches the inner wall")
+        notes.append(notes_of.inner_wall())
     theta, drawn = _profile(system.section.points[nodes], displacement)
-    return LayerAnswer(
+    return LayerResult(
+        case=_case(fill, whirl, "fem"),
         force_ratio=complex(onward / (pull * system.enclosed_area)),
         offset=offset,
         mass_error=abs(system.liquid_area * chamber.height / fill.volume - 1.0),
@@ -122,7 +128,7 @@ def layer_history(
     friction: Friction = NO_FRICTION,
     gravity: float = 0.0,
     numerics: Numerics | None = None,
-) -> LayerHistory:
+) -> LayerPeriodsResult:
     """Layer from rest in the drum, whirl period by whirl period; the parameters are `answer_layer`'s.
 
     Parameters
@@ -137,39 +143,59 @@ def layer_history(
     if model != "long_wave":
         raise InputError("--model", model, "long_wave where a --duration is given")
     whirl = Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity)
-    return simulate(fill, whirl, duration, friction, numerics)
+    history = simulate(fill, whirl, duration, friction, numerics)
+    validity = long_wave_validity(fill, whirl, history)
+    return LayerPeriodsResult(
+        _case(fill, whirl, model), history, long_wave_notes(fill, history, validity), validity
+    )
 
 
-def wave_film(
+def layer_film(
     fill: Fill,
     speed: float,
     whirl_speed: float,
     whirl_amplitude: float,
     model: str,
-    friction: Friction,
-    gravity: float,
-    numerics: Numerics,
-    duration: float,
-    ramp: float,
-) -> WaveHistory:
-    """Pictures of the wave from rest, in the drum frame; the parameters are `layer_history`'s.
+    friction: Friction = NO_FRICTION,
+    gravity: float = 0.0,
+    numerics: Numerics | None = None,
+    duration: float | None = None,
+    ramp: float = 0.0,
+) -> tuple[Wave, WaveFrames]:
+    """A layer in the drum frame for a film; the parameters are `layer_history`'s.
+
+    Long waves start from rest and run for six whirl periods unless a duration is given; waves of the other
+    models stand still in the frame of the deflection and run round the drum for two.
+
+    Returns
+    -------
+    Walls and speeds with the wave at the end, and the wave over time
 
     Raises
     ------
-    InputError : a value out of its range, a model other than `long_wave`
+    InputError : a value out of its range
     """
-    from leblanc.figures.wave import WaveHistory
-
-    if model != "long_wave":
-        raise InputError("--model", model, "long_wave for a layer set in motion")
     whirl = Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity)
+    if model != "long_wave":
+        answer = answer_layer(fill, speed, whirl_speed, whirl_amplitude, model, friction, gravity, numerics)
+        return answer.wave(), steady_film(answer, whirl, 2.0 * whirl.period)
+    frames = _film_from_rest(fill, whirl, friction, numerics or Numerics(), duration or 6.0 * whirl.period)
+    linear = answer_layer(fill, speed, whirl_speed, whirl_amplitude, "linear", NO_FRICTION, gravity, numerics)
+    last = replace(linear.wave(), model=model, theta=frames.theta, depth=frames.depth[-1], notes=())
+    return last, frames
+
+
+def _film_from_rest(
+    fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics, duration: float
+) -> WaveFrames:
+    """Long waves from rest."""
     # Eight pictures at least while the deflection turns once, and enough for a smooth film.
     frames = int(np.clip(8.0 * duration / whirl.period, 120, 2000))
     shots = film(fill, whirl, frames, duration / whirl.period, friction, numerics)
-    return WaveHistory(time=shots.time, theta=shots.theta, depth=shots.depth, deflection=shots.deflection)
+    return WaveFrames(time=shots.time, theta=shots.theta, depth=shots.depth, deflection=shots.deflection)
 
 
-def steady_film(answer: LayerAnswer, whirl: Whirl, duration: float) -> WaveHistory:
+def steady_film(answer: LayerResult, whirl: Whirl, duration: float) -> WaveFrames:
     """Pictures of a wave that stands still in the frame of the deflection, as it runs round the drum.
 
     Parameters
@@ -178,17 +204,15 @@ def steady_film(answer: LayerAnswer, whirl: Whirl, duration: float) -> WaveHisto
     whirl : that it answers
     duration : s
     """
-    from leblanc.figures.wave import WaveHistory
-
     frames = int(np.clip(60.0 * duration / whirl.period, 60, 2000))
     time = duration * np.arange(frames) / frames
     turned = answer.theta - whirl.slip * time[:, None]
     depth = np.interp(turned, answer.theta, answer.depth, period=2.0 * math.pi)
     deflection = whirl.amplitude * np.exp(1j * whirl.slip * time)
-    return WaveHistory(time=time, theta=answer.theta, depth=depth, deflection=deflection)
+    return WaveFrames(time=time, theta=answer.theta, depth=depth, deflection=deflection)
 
 
-def long_wave_answer(fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics) -> LayerAnswer:
+def long_wave_answer(fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics) -> LayerResult:
     """Nonlinear long waves, settled [theory: long_wave, eq. 4]."""
     chamber, surface = fill.chamber, fill.surface_radius
     history = settle(fill, whirl, friction, numerics)
@@ -197,7 +221,8 @@ def long_wave_answer(fill: Fill, whirl: Whirl, friction: Friction, numerics: Num
     notes = long_wave_notes(fill, history, validity)
     capture = float(waves.capture_speed(surface, whirl.gravity)) if whirl.gravity > 0.0 else 0.0
     kappa = (chamber.radius / surface) ** 2
-    return LayerAnswer(
+    return LayerResult(
+        case=_case(fill, whirl, "long_wave"),
         force_ratio=complex(history.force_ratio[-1]) if answered else complex(math.nan, math.nan),
         offset=complex(history.offset[-1]) if answered else complex(math.nan, math.nan),
         mass_error=history.mass_error,
@@ -229,16 +254,18 @@ def long_wave_validity(fill: Fill, whirl: Whirl, history: LayerHistory) -> tuple
     return judge("long_wave", fill, whirl, found)
 
 
-def long_wave_notes(fill: Fill, history: LayerHistory, validity: tuple[Number, ...]) -> tuple[str, ...]:
-    """Why there is no answer, and where the long waves are out of their range, in words."""
+def long_wave_notes(fill: Fill, history: LayerHistory, validity: tuple[Number, ...]) -> tuple[Note, ...]:
+    """Why there is no answer, and where the long waves are out of their range."""
     chamber = fill.chamber
-    notes = (*([history.reason] if history.reason else []), *strained(validity))
-    if history.depth.size and history.depth.max() > chamber.radius - chamber.inner_radius:
-        notes = (*notes, "the surface reaches the inner wall")
-    return notes
+    reached = history.depth.size and history.depth.max() > chamber.radius - chamber.inner_radius
+    return (
+        *([notes_of.no_answer(history.reason)] if history.reason else []),
+        *notes_of.out_of_range(validity),
+        *([notes_of.inner_wall()] if reached else []),
+    )
 
 
-def kdv_answer(fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics) -> LayerAnswer:
+def kdv_answer(fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics) -> LayerResult:
     """Steady wave of the family whose resonance is nearer [theory: kdv, eq. 18].
 
     Raises
@@ -270,8 +297,9 @@ def kdv_answer(fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics)
     # Below nothing and above all that the drum holds there is no layer, whatever the equation says.
     possible = float(size.thinnest) > 0.0 and float(eta.max()) < 0.5 * surface**2
     reason = wave.reason if possible else "the wave would run the wall dry or fill the drum"
-    notes = (*([reason] if reason else []), *strained(validity))
-    return LayerAnswer(
+    notes = (*([notes_of.no_answer(reason)] if reason else []), *notes_of.out_of_range(validity))
+    return LayerResult(
+        case=_case(fill, whirl, "kdv"),
         force_ratio=complex(kdv.force_ratio(family, offset, whirl.amplitude)) if whirl.amplitude else 0j,
         offset=offset,
         mass_error=abs(float(area.mean()) / family.mean_area - 1.0),
@@ -312,7 +340,7 @@ def answer_layer(
     friction: Friction = NO_FRICTION,
     gravity: float = 0.0,
     numerics: Numerics | None = None,
-) -> LayerAnswer:
+) -> LayerResult:
     """Answer of the liquid in one chamber to a circular whirl of its axis.
 
     Parameters
@@ -357,36 +385,20 @@ def answer_layer(
     return replace(answer, wall_time=time.perf_counter() - begin)
 
 
-def wave_record(
-    fill: Fill,
-    speed: float,
-    whirl_speed: float,
-    whirl_amplitude: float,
-    model: str,
-    answer: LayerAnswer,
-    **_: object,
-) -> WaveRecord:
-    """What the figure of a layer's wave shows; the parameters are `answer_layer`'s and its answer."""
-    from leblanc.figures.wave import WaveRecord
-
-    return WaveRecord(
-        title="Layer under a whirl",
+def _case(fill: Fill, whirl: Whirl, model: str) -> LayerCase:
+    """What was asked for, for whoever shows the answer."""
+    return LayerCase(
         model=model,
         radius=fill.chamber.radius,
         inner_radius=fill.chamber.inner_radius,
         mean_depth=fill.depth,
-        whirl_amplitude=whirl_amplitude,
-        spin=speed,
-        whirl_speed=whirl_speed,
-        theta=answer.theta,
-        depth=answer.depth,
-        force_ratio=answer.force_ratio,
-        offset=answer.offset,
-        notes=answer.notes,
+        speed=whirl.spin,
+        whirl_speed=whirl.speed,
+        whirl_amplitude=whirl.amplitude,
     )
 
 
-def _statics(fill: Fill, whirl: Whirl, friction: Friction) -> LayerAnswer:
+def _statics(fill: Fill, whirl: Whirl, friction: Friction) -> LayerResult:
     """Exact equilibrium: the liquid is at rest in the drum, so no friction acts on it."""
     speed, amplitude = whirl.spin, whirl.amplitude
     if whirl.speed != speed:
@@ -410,7 +422,8 @@ def _statics(fill: Fill, whirl: Whirl, friction: Friction) -> LayerAnswer:
     across = np.maximum(squared - np.square(amplitude * np.sin(theta)), 0.0)
     surface = np.maximum(np.sqrt(across) - amplitude * np.cos(theta), chamber.inner_radius)
     depth = np.clip(chamber.radius - surface, 0.0, chamber.radius)
-    return LayerAnswer(
+    return LayerResult(
+        case=_case(fill, whirl, "statics"),
         force_ratio=complex(ratio),
         offset=complex(moment / fill.volume - amplitude),
         mass_error=abs(float(state.volume) / fill.volume - 1.0),
@@ -420,14 +433,14 @@ def _statics(fill: Fill, whirl: Whirl, friction: Friction) -> LayerAnswer:
         wall_time=0.0,
         theta=theta,
         depth=depth,
-        notes=("the wall is dry in part",) if bool(state.dry_patch) else (),
+        notes=(notes_of.dry_wall(),) if bool(state.dry_patch) else (),
         gravity_offset=0.0,
         captured=True,
         validity=judge("statics", fill, whirl, {"wave_amplitude": wave_amplitude(depth, fill.depth)}),
     )
 
 
-def _linear(fill: Fill, whirl: Whirl, friction: Friction) -> LayerAnswer:
+def _linear(fill: Fill, whirl: Whirl, friction: Friction) -> LayerResult:
     """Exact linear theory without friction."""
     speed, amplitude, gravity = whirl.spin, whirl.amplitude, whirl.gravity
     if friction.law != "none":
@@ -444,14 +457,15 @@ def _linear(fill: Fill, whirl: Whirl, friction: Friction) -> LayerAnswer:
     found = {"wave_amplitude": abs(displacement) / fill.depth}
     # A synchronous whirl's linear surface is the exact circle, to the square of its own offset, while wet.
     validity = judge("linear", fill, whirl, found, {} if whirl.slip else {"wave_amplitude": (0.0, 1.0)})
-    notes = [] if converged else ["the whirl meets a free wave, the linear force is unbounded"]
-    notes += strained(validity)
+    unbounded = notes_of.no_answer("the whirl meets a free wave, the linear force is unbounded")
+    notes = [*([] if converged else [unbounded]), *notes_of.out_of_range(validity)]
     if surface - abs(displacement) < chamber.inner_radius:
-        notes.append("the surface reaches the inner wall")
+        notes.append(notes_of.inner_wall())
     theta = angles()
     drawn = surface + displacement * np.cos(theta) if converged else np.full(theta.shape, surface)
     lost = 0.5 * displacement**2 / (chamber.radius**2 - surface**2) if converged else math.nan
-    return LayerAnswer(
+    return LayerResult(
+        case=_case(fill, whirl, "linear"),
         force_ratio=complex(force),
         offset=complex(offset),
         mass_error=lost,

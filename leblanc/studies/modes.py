@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.liquid import Liquid
 from fluid.waves import free_wave_frequencies
+from leblanc.results import modes as notes_of
+from leblanc.results.modes import ModesResult
+from leblanc.results.notes import Note
 from leblanc.scene.chambers import is_outline, section_of_any_file
 from meshes.arrays import Array
 from meshes.baffles import Baffles
@@ -23,7 +24,7 @@ from meshes.findings import wave_findings
 from meshes.liquid_section import LiquidSection
 from solvers.sloshing.damping import ModeDamping, mode_damping
 from solvers.sloshing.forced import forced_response
-from solvers.sloshing.modes import SloshingModes, sloshing_modes, spectrum
+from solvers.sloshing.modes import SloshingModes, first_largest, sloshing_modes, spectrum
 from solvers.sloshing.system import LiquidSystem, condense
 
 # A radius of the section that differs by more from the one given.
@@ -101,7 +102,7 @@ def ring_sections(
 
 def round_sections(
     chamber: Chamber, volume: float, liquid: Liquid, fineness: Resolution
-) -> tuple[list[LiquidSection], list[str], str]:
+) -> tuple[list[LiquidSection], list[Note], str]:
     """Coarser and finer mesh of the liquid in a round chamber, notes, and the chamber in words.
 
     Parameters
@@ -119,10 +120,11 @@ def round_sections(
     a, radius = fill.surface_radius, chamber.radius
     if a <= 0.01 * radius or a <= chamber.inner_radius or fill.depth < 1e-6 * radius:
         raise InputError("--volume", volume, "less than what fills the chamber, and enough to cover its wall")
-    notes, baffles = [], chamber.baffles
+    notes: list[Note] = []
+    baffles = chamber.baffles
     span = baffles.wetted_span(radius, a) if baffles is not None else None
     if baffles is not None and span is None:
-        notes.append("the baffles stand clear of the liquid")
+        notes.append(notes_of.baffles_clear())
     title = f"Round chamber, R = {radius * 1e3:.4g} mm"
     if baffles is not None and span is not None:
         inner, outer = span
@@ -134,7 +136,7 @@ def round_sections(
 
 def section_of_file(
     chamber: Chamber, volume: float, fineness: Resolution, source: SectionSource
-) -> tuple[list[LiquidSection], list[str], str]:
+) -> tuple[list[LiquidSection], list[Note], str]:
     """Coarser and finer mesh of the liquid in a chamber from a file, notes, and the section in words.
 
     Parameters
@@ -160,14 +162,12 @@ def section_of_file(
         raise InputError("--baffles", chamber.baffles.count, "left out with --mesh, which has its own walls")
     section = section_of_any_file(source.path, source.unit, source.size, ("--mesh-unit", "--mesh-size"))
     a = surface_radius_of(section, volume / chamber.height)
-    notes = [f"mesh: {one}" for one in mesh_findings(section)]
+    notes = [notes_of.of_mesh(finding) for finding in mesh_findings(section)]
     if section.order == 1 and not is_outline(source.path):
-        notes.append("straight sides: the error is that on these walls, whatever curves they stand for")
+        notes.append(notes_of.straight_sides())
     farthest = float(np.hypot(*section.points.T).max())
     if abs(farthest / chamber.radius - 1.0) > _OTHER:
-        notes.append(
-            f"the section reaches to {farthest * 1e3:.5g} mm from the axis: that counts, not --radius"
-        )
+        notes.append(notes_of.other_radius(farthest))
     size = 4.0 * math.pi * a / fineness.segments
     liquid = liquid_outside(section, a, order=2, surface_size=size, wall_size=2.0 * size)
     sections = [liquid, halved(liquid)]
@@ -182,72 +182,6 @@ _ROUGH = 1e-3
 _VISCOUS = 0.1
 
 
-@dataclass(frozen=True, eq=False)
-class ModesAnswer:
-    """Slowest modes of the liquid, by rising size of the frequency, seen from the drum.
-
-    Parameters
-    ----------
-    frequency : sigma, prograde positive, rad/s, shape (k,)
-    exact : of the ring without baffles, rad/s; None where no closed form is known
-    damping : decay rate of the amplitude in laminar layers, 1/s, shape (k,)
-    damping_ratio : over the size of the frequency, shape (k,)
-    plain_damping : without the Coriolis force in the layers on floor and lid, 1/s, shape (k,)
-    damping_spread : change of the damping for half or twice the layers' thickness at edges, relative, shape
-    (k,)
-    crests : round the drum, of the largest share, shape (k,)
-    travelling : 0 for a standing oscillation to 1 for a wave that runs one way, shape (k,)
-    multiplicity : modes with that frequency, shape (k,)
-    error_estimate : of the frequency, relative, from a mesh twice as coarse
-    synchronous_force_ratio : force of the liquid in a synchronous whirl over that of all that the wall
-        encloses, the mean over its directions
-    surface_radius : a, m
-    circulations : steady flows, without a frequency
-    unknowns : of the mesh, and
-    surface_unknowns : of the eigenproblem
-    converged : the eigenproblem is solved to rounding
-    wall_time : s
-    notes : what to know about these values, in words
-    """
-
-    frequency: Array
-    exact: tuple[float | None, ...]
-    damping: Array
-    damping_ratio: Array
-    plain_damping: Array
-    damping_spread: Array
-    crests: NDArray[np.int64]
-    travelling: Array
-    multiplicity: NDArray[np.int64]
-    error_estimate: Array
-    synchronous_force_ratio: float
-    surface_radius: float
-    circulations: int
-    unknowns: int
-    surface_unknowns: int
-    converged: bool
-    wall_time: float
-    notes: tuple[str, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class ModesRecord:
-    """What the figure of the shapes shows.
-
-    Parameters
-    ----------
-    section : the liquid at rest
-    modes : its modes
-    title : the chamber in words
-    spin : Omega, rad/s
-    """
-
-    section: LiquidSection
-    modes: SloshingModes
-    title: str
-    spin: float
-
-
 def answer_modes(
     chamber: Chamber,
     volume: float,
@@ -256,7 +190,7 @@ def answer_modes(
     count: int = 12,
     resolution: Resolution | None = None,
     source: SectionSource | None = None,
-) -> tuple[ModesAnswer, ModesRecord]:
+) -> ModesResult:
     """Modes of the liquid in one chamber.
 
     Parameters
@@ -268,10 +202,6 @@ def answer_modes(
     count : how many modes
     resolution : of the mesh; with `source` the longest side at the surface, as cells around
     source : file with the section of the chamber
-
-    Returns
-    -------
-    The modes, and what is drawn of them.
 
     Raises
     ------
@@ -293,12 +223,15 @@ def answer_modes(
     damping = mode_damping(system, modes, liquid.viscosity, chamber.height)
     size = np.abs(modes.frequency)
     estimate = _error(condense(sections[0]), size / speed, fineness.order)
-    notes += (
-        [f"mesh: {one}" for one in wave_findings(sections[-1], int(modes.crests.max()))] if source else []
-    )
-    notes += _found(damping, _depth(sections[-1]), estimate)
+    if source is not None:
+        crests = int(modes.crests.max())
+        notes += [notes_of.of_mesh(finding) for finding in wave_findings(sections[-1], crests)]
+    notes += _limits(damping, _depth(sections[-1]), estimate)
     clear = source is None and _is_ring(sections[-1], chamber.radius)
-    answer = ModesAnswer(
+    strongest = modes.psi[np.arange(len(size)), first_largest(modes.psi)]
+    return ModesResult(
+        title=title,
+        speed=speed,
         frequency=modes.frequency,
         exact=_exact(modes, chamber.radius, system.section.surface_radius) if clear else (None,) * len(size),
         damping=damping.rate,
@@ -317,8 +250,10 @@ def answer_modes(
         converged=modes.converged,
         wall_time=time.perf_counter() - begin,
         notes=tuple(notes),
+        section=sections[-1],
+        shapes=modes,
+        phase=np.angle(strongest),
     )
-    return answer, ModesRecord(sections[-1], modes, title, speed)
 
 
 def _is_ring(section: LiquidSection, radius: float) -> bool:
@@ -340,18 +275,16 @@ def _error(coarse: LiquidSystem, size: Array, order: int) -> Array:
     return found
 
 
-def _found(damping: ModeDamping, depth: float, estimate: Array) -> list[str]:
+def _limits(damping: ModeDamping, depth: float, estimate: Array) -> list[Note]:
     """What to know about errors and damping."""
     notes = []
     worst = float(np.max(np.nan_to_num(estimate, nan=1.0)))
     if worst > _ROUGH:
-        notes.append(
-            f"the mesh is coarse for the fastest of these modes (error about {worst:.1g}): more --segments"
-        )
+        notes.append(notes_of.coarse(worst))
     if np.any(damping.thickness > _VISCOUS * depth):
-        notes.append("boundary layers are not thin beside the liquid: the damping is their first order alone")
+        notes.append(notes_of.thick_layers())
     if np.any(damping.edge_spread > 0.0):
-        notes.append("laminar damping at edges of baffles: separation adds to it, more at large amplitude")
+        notes.append(notes_of.sharp_edges())
     return notes
 
 
@@ -360,37 +293,3 @@ def _exact(modes: SloshingModes, radius: float, surface_radius: float) -> tuple[
     depth = math.log(radius / surface_radius)
     both = free_wave_frequencies(modes.crests, depth, modes.spin)
     return tuple(np.where(modes.frequency > 0.0, *both).tolist())
-
-
-def table_lines(answer: ModesAnswer) -> list[str]:
-    """The modes in words, equal ones on one line.
-
-    Parameters
-    ----------
-    answer : of `answer_modes`
-    """
-    lines = [
-        f"{'rad/s':>12}{'times':>7}{'crests':>8}  {'runs':<9}{'exact':>12}{'error':>9}"
-        f"{'decay 1/s':>11}{'ratio':>9}"
-    ]
-    k = 0
-    while k < len(answer.frequency):
-        sigma, same = answer.frequency[k], int(answer.multiplicity[k])
-        exact, error = answer.exact[k], answer.error_estimate
-        cells: Sequence[str] = (
-            f"{sigma:12.6g}", f"{same if same > 1 else '':>7}", f"{answer.crests[k]:8d}",
-            f"  {_runs(sigma, float(answer.travelling[k])):<9}",
-            f"{'' if exact is None else f'{exact:.6g}':>12}",
-            f"{error[k]:>9.1g}",
-            f"{answer.damping[k]:11.4g}", f"{answer.damping_ratio[k]:9.2g}",
-        )  # fmt: skip
-        lines.append("".join(cells))
-        k += same
-    return lines
-
-
-def _runs(frequency: float, travelling: float) -> str:
-    """Which way the crests run."""
-    if abs(travelling) < 0.5:
-        return "stands"
-    return "with" if frequency > 0.0 else "against"

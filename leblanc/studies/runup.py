@@ -7,22 +7,24 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
-from fluid.friction import Friction
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
+from leblanc.results import runup_notes
 from leblanc.results.chamber import FilledChamber
-from leblanc.results.notes import percent
-from leblanc.results.response import phase
+from leblanc.results.notes import Note, percent
+from leblanc.results.runup import Bands, RunupResult
+from leblanc.results.runup_notes import RunupCode
 from leblanc.scene.inputs import runup_rows
 from leblanc.scene.machine import dry_rotor, jeffcott, require_clear
 from leblanc.scene.scene import JeffcottRotor, Runup, Scene
-from leblanc.studies.prepare import across_gravity as across_gravity
+from leblanc.studies.prepare import across_gravity as across_gravity  # of a run-up, asked for with it
 from leblanc.studies.prepare import axial_gravity
+from leblanc.studies.runup_frames import require_frames, require_layers, runup_frames
 from leblanc.studies.validity import RANGES
-from leblanc.text.runup import Bands, describe_run
-from meshes.arrays import Array, Complex, Flags
+from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.runup.drive import Drive, Motor, Ramp
 from solvers.runup.error import MOST_LAG, MOST_WAVE, LinearRunError, largest_wave, linear_run_error
@@ -43,8 +45,8 @@ def liquid_model(scene: Scene) -> str:
     return "long_wave" if asked == "auto" else asked
 
 
-def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tuple[Flags, tuple[str, ...]]:
-    """Where the layer is a fair picture of the liquid, and in words why it is none elsewhere.
+def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tuple[Flags, tuple[Note, ...]]:
+    """Where the layer is a fair picture of the liquid, and why it is none elsewhere.
 
     A layer must turn fast enough itself, whatever the drum does, must not be deep beside its radius
     [theory: long_wave, eq. 4], and must leave the inner wall clear.
@@ -57,16 +59,16 @@ def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tup
 
     Returns
     -------
-    Truth values, shape (k,), and one sentence for each reason
+    Truth values, shape (k,), and one note for each reason
     """
     good = np.ones(history.time.shape, dtype=bool)
-    words: list[str] = []
+    notes: list[Note | None] = []
     deepest, highest = RANGES["long_wave"]["relative_depth"][1], RANGES["linear"]["wave_amplitude"][1]
     linear = (model or liquid_model(scene)) == "linear"
     for k, fill in enumerate(scene.fills):
         if fill.volume == 0.0 or is_full(fill):
             continue
-        wall, label = fill.chamber, f"chamber {k + 1}"
+        wall = fill.chamber
         own = history.speed + history.mean_rotation[:, k]
         held = history.captured[:, k] & (np.abs(own) > held_from(scene, fill))
         reached = np.nan_to_num(history.depth_max[:, k]) >= wall.radius - wall.inner_radius
@@ -75,17 +77,15 @@ def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tup
         shallow = linear or fill.depth <= deepest * wall.radius
         rise = np.nan_to_num(history.depth_max[:, k] - fill.depth)
         small = ~(linear & (rise > highest * fill.depth))
-        reasons = (
-            (held, f"the liquid in {label} turns too slowly to stand round the wall against gravity"),
-            (~touches, f"the surface reaches the inner wall of {label}"),
-            (np.full(good.shape, shallow), f"the layer in {label} is deeper than {deepest:g} of its radius"),
-            (small, f"the wave in {label} is higher than {highest:g} of the depth, beyond linear theory"),
-        )
-        for holds, why in reasons:
+        for code, holds, limit in (
+            (RunupCode.TOO_SLOW, held, math.nan),
+            (RunupCode.INNER_WALL, ~touches, math.nan),
+            (RunupCode.TOO_DEEP, np.full(good.shape, shallow), deepest),
+            (RunupCode.TOO_HIGH, small, highest),
+        ):
             good &= holds
-            if not holds.all():
-                words.append(f"Out of range for {1.0 - np.mean(holds):.0%} of the samples: {why}.")
-    return good, tuple(words)
+            notes.append(runup_notes.out_of_range(code, k, holds, limit))
+    return good, tuple(note for note in notes if note is not None)
 
 
 def held_from(scene: Scene, fill: Fill) -> float:
@@ -121,7 +121,12 @@ class RunupChoice:
 
 
 def chosen_run(
-    scene: Scene, drive: Drive, gravity: float, numerics: RunupNumerics, progress: Progress = None
+    scene: Scene,
+    drive: Drive,
+    gravity: float,
+    numerics: RunupNumerics,
+    progress: Progress = None,
+    snapshots: ArrayLike = (),
 ) -> RunupChoice:
     """Run a scene up with the cheapest liquid model whose estimated error is within its tolerance.
 
@@ -132,7 +137,7 @@ def chosen_run(
     Parameters
     ----------
     scene : the machine
-    drive, gravity, numerics, progress : as in `solvers.runup.runup.run_up`
+    drive, gravity, numerics, progress, snapshots : as in `solvers.runup.runup.run_up`
 
     Raises
     ------
@@ -141,8 +146,8 @@ def chosen_run(
     model, tolerance = liquid_model(scene), scene.model.tolerance
     system, friction = dry_rotor(scene).system(), scene.model.friction
 
-    def run(name: str, resolved: RunupNumerics, told: Progress) -> RunupHistory:
-        return run_up(system, scene.fills, drive, friction, gravity, resolved, told, name)
+    def run(name: str, resolved: RunupNumerics, report: Progress) -> RunupHistory:
+        return run_up(system, scene.fills, drive, friction, gravity, resolved, report, name, snapshots)
 
     if scene.model.liquid == "long_wave":
         history = run(model, numerics, progress)
@@ -150,7 +155,7 @@ def chosen_run(
     if scene.model.liquid == "linear":
         history = run(model, numerics, progress)
         found = linear_run_error(history, scene.fills)
-        reason = f"the scene asks for linear layers; {_words(found)}."
+        reason = f"the scene asks for linear layers; {_judged_by(found)}."
         return RunupChoice(history, model, found.estimate + history.error_estimate, reason)
     ruled_out = _ruled_out(scene)
     if not ruled_out:
@@ -159,9 +164,9 @@ def chosen_run(
         if found.estimate <= tolerance:
             history = run("linear", numerics, progress) if numerics.companion else first
             error = found.estimate + (0.0 if math.isnan(history.error_estimate) else history.error_estimate)
-            reason = f"linear layers, as {_words(found)}, within the tolerance of {percent(tolerance)}."
+            reason = f"linear layers, as {_judged_by(found)}, within the tolerance of {percent(tolerance)}."
             return RunupChoice(history, "linear", error, reason)
-        ruled_out = f"with linear layers {_words(found)}, and the tolerance is {percent(tolerance)}"
+        ruled_out = f"with linear layers {_judged_by(found)}, and the tolerance is {percent(tolerance)}"
     history = run(model, numerics, progress)
     return RunupChoice(history, model, history.error_estimate, f"long waves: {ruled_out}.")
 
@@ -195,94 +200,14 @@ def _ruled_out(scene: Scene) -> str:
     return ""
 
 
-def _words(found: LinearRunError) -> str:
-    """What a linear run says of itself."""
-    size = (
-        f"waves reach {percent(found.wave)} of the depth and the liquid lags by up to {percent(found.lag)} \
-of the spin"
-    )
-    if found.touches:
-        return f"{size}, and a surface touches an inner wall, beyond any estimate"
-    if math.isfinite(found.estimate):
-        return f"{size}, an estimated error of {percent(found.estimate)} against long waves"
-    return (
-        f"{size}, beyond the {percent(MOST_WAVE)} and {percent(MOST_LAG)} up to which an error is estimated"
-    )
+def _judged_by(found: LinearRunError) -> str:
+    """What a linear run says of its own error."""
+    limits = MOST_WAVE, MOST_LAG
+    return runup_notes.linear_layers(found.wave, found.lag, found.touches, found.estimate, limits)
 
 
 STEADY_SPEEDS = 401  # of the steady response drawn behind the run-up
 BAND_SPEEDS = 201  # at which self-excited whirl is looked for
-_FEWEST = 8  # samples in a mean over turns
-
-
-@dataclass(frozen=True)
-class RunupRecord:
-    """A run-up of a scene; k times, l chambers.
-
-    Parameters
-    ----------
-    name, source, assumed, digest : of the scene
-    inputs : label, value with its unit, field path
-    kind, axis : of the rotor; "horizontal" or "vertical"
-    friction : law and coefficient
-    gravity : across the axis, m/s^2
-    model : of the liquid, "long_wave" or "linear"
-    numerics : resolution
-    history : of rotor and liquid
-    turning : index of the last time before the speed falls again; the last one of all if it never does
-    in_range : the layer is a fair picture of the liquid at that time, shape (k,)
-    steady : synchronous response at the speeds passed, of a Jeffcott rotor; None for others
-    bands : of speed in which some whirl grows by itself, rad/s, an end of the range counting as an edge
-    chambers, planes : one for each chamber; its position along the axis, m
-    notes : limits of validity and findings, in words
-    model_reason : why that liquid model, in words
-    model_error : estimated error of the amplitude over its largest, by the model and by its steps; nan where
-        one of them is not known
-    """
-
-    name: str
-    source: str
-    assumed: tuple[str, ...]
-    digest: str
-    inputs: tuple[tuple[str, str, str], ...]
-    kind: str
-    axis: str
-    friction: Friction
-    gravity: float
-    model: str
-    numerics: RunupNumerics
-    history: RunupHistory
-    turning: int
-    in_range: Flags
-    steady: Response | None
-    bands: Bands
-    chambers: tuple[FilledChamber, ...]
-    planes: tuple[float, ...]
-    notes: tuple[str, ...]
-    model_reason: str = ""
-    model_error: float = math.nan
-
-    @property
-    def deflection(self) -> Complex:
-        """Of the first chamber's axis, in the drum frame, m, shape (k,)."""
-        return np.asarray(self.history.deflection[:, 0] * np.exp(-1j * self.history.angle))
-
-    @property
-    def phase(self) -> Array:
-        """Angle of that deflection from the drum's zero mark, where a Jeffcott rotor has its unbalance."""
-        return phase(self.deflection)
-
-    @property
-    def mean_position(self) -> Complex:
-        """Liquid's centre of mass in the drum frame as a mean over whole turns, m, shape (k,)."""
-        return turn_mean(self.history.liquid_position, self.history.angle)
-
-    def peak(self, back: bool = False) -> int:
-        """Index of the largest amplitude on the way up, or on the way back."""
-        amplitude = self.history.amplitude
-        if back and self.turning + 1 < amplitude.size:
-            return self.turning + 1 + int(np.argmax(amplitude[self.turning + 1 :]))
-        return int(np.argmax(amplitude[: self.turning + 1]))
 
 
 def runup_scene(
@@ -290,8 +215,9 @@ def runup_scene(
     cells: int | None = None,
     samples: int | None = None,
     check: bool = True,
-    progress: Callable[[float], None] | None = None,
-) -> RunupRecord:
+    progress: Progress = None,
+    frames: int | None = None,
+) -> RunupResult:
     """Run the machine of a scene through its speeds [theory: coupling].
 
     Parameters
@@ -300,10 +226,11 @@ def runup_scene(
     cells, samples : in place of the scene's
     check : run once more with half the cells to estimate the error
     progress : called with the share of the work that is done
+    frames : how many times the layers are kept for a film; not at all if None
 
     Returns
     -------
-    RunupRecord; with what was reached if the run did not come to its end
+    RunupResult; with what was reached if the run did not come to its end
 
     Raises
     ------
@@ -311,14 +238,18 @@ def runup_scene(
     """
     require_clear(scene, "a run-up, whose waves run in a clear ring; model.friction may stand for baffles")
     plan = planned(scene)
+    if frames is not None:
+        require_frames(frames)
+        require_layers(scene)
     numerics = numerics_of(plan, cells, samples, check)
-    law, gravity = scene.model.friction, across_gravity(scene)
-    taken = chosen_run(scene, drive_of(plan), gravity, numerics, progress)
+    drive, gravity = drive_of(plan), across_gravity(scene)
+    times = () if frames is None else np.linspace(0.0, float(drive.corners()[0, -1]), frames)
+    taken = chosen_run(scene, drive, gravity, numerics, progress, times)
     history = taken.history
     steady, bands = steady_response(scene, history.speed), whirl_bands(scene, history.speed)
-    in_range, faults = judged(scene, history, taken.model)
+    in_range, limits = judged(scene, history, taken.model)
     fastest = np.flatnonzero(history.speed == history.speed.max())
-    return RunupRecord(
+    return RunupResult(
         name=scene.name,
         source=scene.source,
         assumed=scene.assumed,
@@ -326,12 +257,13 @@ def runup_scene(
         inputs=runup_rows(scene, numerics.cells, numerics.dispersion),
         kind=scene.rotor.kind,
         axis=scene.rotor.axis,
-        friction=law,
+        friction=scene.model.friction,
         gravity=gravity,
         model=taken.model,
         model_reason=taken.reason,
         model_error=taken.error,
-        numerics=numerics,
+        cells=numerics.cells,
+        dispersion=numerics.dispersion,
         history=history,
         turning=int(fastest[-1]) if plan.back else history.time.size - 1,
         in_range=in_range,
@@ -339,8 +271,29 @@ def runup_scene(
         bands=bands,
         chambers=tuple(_chamber(fill) for fill in scene.fills),
         planes=tuple(fill.chamber.plane for fill in scene.fills),
-        notes=(f"Liquid model: {taken.reason}", *describe_run(scene, history, steady, bands), *faults),
+        notes=(*_notes(scene, taken, steady, bands), *limits),
+        frames=runup_frames(history),
     )
+
+
+def _notes(scene: Scene, taken: RunupChoice, steady: Response | None, bands: Bands) -> list[Note]:
+    """What happened and how far it can be trusted."""
+    h = taken.history
+    after, which = np.nonzero(np.diff(h.captured.astype(np.int8), axis=0))
+    switched = [(k + 1, j) for k, j in zip(after.tolist(), which.tolist(), strict=True)]
+    notes = [
+        runup_notes.liquid_model(taken.model, taken.reason),
+        None if h.converged else runup_notes.stopped(h.reason),
+        runup_notes.numerical_error(h.error_estimate),
+        runup_notes.energy_left(h.audit.closure),
+        runup_notes.largest_amplitude(h, steady),
+        *(
+            runup_notes.capture(j, bool(h.captured[k, j]), float(h.time[k]), float(h.speed[k]))
+            for k, j in switched
+        ),
+        runup_notes.self_excited(bands, scene.model.friction),
+    ]
+    return [note for note in notes if note is not None]
 
 
 def planned(scene: Scene) -> Runup:
@@ -396,42 +349,13 @@ def whirl_bands(scene: Scene, speed: Array) -> Bands:
     passed = _passed(speed, BAND_SPEEDS)
     if not scene.fills or passed.size == 0:
         return ()
-    rotor, friction = dry_rotor(scene), scene.model.friction
-    return unstable_bands(rotor, [scene.fills], passed, friction)[0]
+    return unstable_bands(dry_rotor(scene), [scene.fills], passed, scene.model.friction)[0]
 
 
 def _passed(speed: Array, count: int) -> Array:
     """Speeds evenly over those of a run with the spin, which a motor may have turned round; none if still."""
     low, high = max(float(speed.min()), 1e-3 * float(speed.max())), float(speed.max())
     return np.linspace(low, high, count) if 0.0 < low < high else np.empty(0)
-
-
-def turn_mean(values: Complex, angle: Array) -> Complex:
-    """Mean over the turns of the rotor around each time: what stands still in space drops out of it.
-
-    The mean is taken over one turn, or over as many whole turns as hold eight samples.
-
-    Parameters
-    ----------
-    values : in the drum frame, shape (k,)
-    angle : of rotation, rising, rad, shape (k,)
-
-    Returns
-    -------
-    Means, shape (k,); near the ends over the turns that there are
-    """
-    if angle.size < 3:
-        return values.copy()
-    steps = np.diff(angle)
-    total = np.concatenate(([0.0], np.cumsum(0.5 * (values[1:] + values[:-1]) * steps)))
-    half = math.pi * np.maximum(1.0, np.ceil(_FEWEST * np.gradient(angle) / (2.0 * math.pi)))
-    half = np.minimum(half, 0.5 * (angle[-1] - angle[0]))
-    middle = np.clip(angle, angle[0] + half, angle[-1] - half)
-
-    def until(edge: Array) -> Complex:
-        return np.asarray(np.interp(edge, angle, total.real) + 1j * np.interp(edge, angle, total.imag))
-
-    return np.asarray((until(middle + half) - until(middle - half)) / (2.0 * half))
 
 
 def _chamber(fill: Fill) -> FilledChamber:

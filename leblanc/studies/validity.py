@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 
 from fluid.fill import Fill
 from fluid.numbers import whirl_numbers
+from leblanc.results.layer import Number
 from solvers.layer.prescribed import Whirl
 
 MEANING = {
@@ -50,31 +51,6 @@ RANGES: Mapping[str, Mapping[str, Range]] = {
 }
 
 
-@dataclass(frozen=True)
-class Number:
-    """A dimensionless number and the range in which the model holds.
-
-    Parameters
-    ----------
-    name, meaning : what it is
-    value : not finite where it has no bound or was not found
-    least, most : the model's range; None where it sets none
-    in_range : the value is within
-    """
-
-    name: str
-    meaning: str
-    value: float
-    least: float | None
-    most: float | None
-    in_range: bool
-
-    def __str__(self) -> str:
-        least, most = self.least or 0.0, math.inf if self.most is None else self.most
-        allowed = f"at least {least:g}" if math.isinf(most) else f"{least:g} to {most:g}"
-        return f"{self.meaning} = {self.value:.2g}, the model's range is {allowed}"
-
-
 def judge(
     model: str,
     fill: Fill,
@@ -107,8 +83,3 @@ def judge(
         inside = bounds is None or bounds[0] <= value <= bounds[1]
         numbers.append(Number(name, meaning, value, least, most, inside))
     return tuple(numbers)
-
-
-def strained(numbers: tuple[Number, ...]) -> tuple[str, ...]:
-    """In words, those out of range."""
-    return tuple(str(number) for number in numbers if not number.in_range)

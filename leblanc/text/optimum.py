@@ -4,26 +4,41 @@ from __future__ import annotations
 
 import math
 
-from leblanc.studies.optimise.optimise import OptimumRecord
+from leblanc.results.notes import texts
+from leblanc.results.optimum import OptimumResult
 from leblanc.text.numbers import number
 from leblanc.units import ML, MM, RPM
 
 
-def describe_optimum(record: OptimumRecord) -> list[str]:
+def describe_optimum(result: OptimumResult) -> list[str]:
     """The answer, what it keeps to, and the closed forms beside it, line by line.
 
     Parameters
     ----------
-    record : the optimum
+    result : the optimum
     """
     return [
-        *_answer(record),
-        *_constraints(record),
-        *_closed_forms(record),
-        f"Stability margin over the operating speeds: {number(-record.growth)} 1/s"
-        + (" (a small whirl grows)" if record.growth > 0.0 else ""),
-        *record.notes,
-        *_to_paste(record),
+        *_answer(result),
+        *_constraints(result),
+        *_closed_forms(result),
+        f"Stability margin over the operating speeds: {number(result.stability_margin)} 1/s"
+        + (" (a small whirl grows)" if result.growth > 0.0 else ""),
+        *texts(result.notes),
+        *_to_paste(result),
+    ]
+
+
+def summary(result: OptimumResult) -> list[tuple[str, str]]:
+    """The main numbers of an optimum, as labels and values."""
+    pairs = zip(result.chambers, result.volume.tolist(), strict=True)
+    return [
+        ("Objective", f"{result.objective}, the {result.meaning}"),
+        *(
+            (f"Chamber {k + 1}", f"{number(volume * ML)} ml of {chamber.liquid_name}")
+            for k, (chamber, volume) in enumerate(pairs)
+        ),
+        ("Value", f"{shown(result.value, result.unit)}; without liquid {_baseline(result)}"),
+        ("Constraints", result.feasibility.value),
     ]
 
 
@@ -38,44 +53,44 @@ def shown(value: float, unit: str) -> str:
     return f"{number(value)} {unit}" if unit != "1" else number(value)
 
 
-def _answer(record: OptimumRecord) -> list[str]:
+def _answer(result: OptimumResult) -> list[str]:
     """Volumes, value, what it is without liquid."""
-    lines = [f"Objective: {record.objective}, the {record.meaning}"]
-    if not record.feasible:
-        lines.append("NOT FEASIBLE: no volumes meet every constraint; these exceed them least.")
-    for k, (fill, volume) in enumerate(zip(record.scene.fills, record.volume.tolist(), strict=True)):
-        share = volume / fill.chamber.capacity
+    lines = [f"Objective: {result.objective}, the {result.meaning}"]
+    if not result.feasible:
+        lines.append(f"NOT FEASIBLE: {result.feasibility.value}.")
+    for k, (chamber, volume) in enumerate(zip(result.chambers, result.volume.tolist(), strict=True)):
+        share = volume / chamber.capacity
         lines.append(
-            f"Chamber {k + 1}: {volume * ML:.5g} ml of {fill.liquid.name} ({share:.3%} of what it holds)"
+            f"Chamber {k + 1}: {volume * ML:.5g} ml of {chamber.liquid_name} ({share:.3%} of what it holds)"
         )
-    lines.append(f"Value: {shown(record.value, record.unit)}; without liquid {_baseline(record)}")
-    lines.append(f"Liquid: {record.mass * 1e3:.4g} g; {record.evaluations} sets of volumes judged")
+    lines.append(f"Value: {shown(result.value, result.unit)}; without liquid {_baseline(result)}")
+    lines.append(f"Liquid: {result.mass * 1e3:.4g} g; {result.evaluations} sets of volumes judged")
     return lines
 
 
-def _baseline(record: OptimumRecord) -> str:
-    if record.unit != "kg":
-        return shown(record.baseline, record.unit)
-    both = f"{shown(record.vibration, 'm')} instead of {shown(record.vibration_baseline, 'm')}"
-    return f"{shown(record.baseline, record.unit)}; amplitude {both}"
+def _baseline(result: OptimumResult) -> str:
+    if result.unit != "kg":
+        return shown(result.baseline, result.unit)
+    both = f"{shown(result.vibration, 'm')} instead of {shown(result.vibration_baseline, 'm')}"
+    return f"{shown(result.baseline, result.unit)}; amplitude {both}"
 
 
-def _constraints(record: OptimumRecord) -> list[str]:
+def _constraints(result: OptimumResult) -> list[str]:
     """One line each."""
     lines = []
-    for name, one in record.constraints.items():
+    for name, one in result.constraints.items():
         mark = "kept" if one.satisfied else "EXCEEDED"
         lines.append(
-            f"Constraint {name}: {one.text} {shown(one.value, one.unit)}, "
+            f"Constraint {name}: {one.meaning} {shown(one.value, one.unit)}, "
             f"at most {shown(one.limit, one.unit)}: {mark}"
         )
     return lines
 
 
-def _closed_forms(record: OptimumRecord) -> list[str]:
-    """The covering volumes of each chamber."""
+def _closed_forms(result: OptimumResult) -> list[str]:
+    """The volumes that wet the wall of each chamber."""
     lines = []
-    for k, one in enumerate(record.covering):
+    for k, one in enumerate(result.closed_form):
         full = (
             "its wall is never wet up to the lid"
             if math.isinf(one.full_volume)
@@ -83,13 +98,13 @@ def _closed_forms(record: OptimumRecord) -> list[str]:
         )
         lines.append(
             f"Closed form, chamber {k + 1}, {one.deflection * MM:.4g} mm at {one.speed * RPM:.4g} rpm: "
-            f"{one.optimal_volume * ML:.5g} ml just cover the wall ({one.share:.1%} of the largest "
+            f"{one.optimal_volume * ML:.5g} ml just cover the wall ({one.unbalance_share:.1%} of the largest "
             f"unbalance); {full}"
         )
     return lines
 
 
-def _to_paste(record: OptimumRecord) -> list[str]:
+def _to_paste(result: OptimumResult) -> list[str]:
     """Lines for the scene file."""
-    volumes = ", ".join(f'"{volume * ML:.6g} ml"' for volume in record.volume.tolist())
+    volumes = ", ".join(f'"{volume * ML:.6g} ml"' for volume in result.volume.tolist())
     return [f"For the scene, chamber by chamber: volume = {volumes}"]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -16,10 +16,10 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.studies.shapes import Sight
+from leblanc.results.drawing import Scale
+from leblanc.results.shapes import DrawnLiquid, MachineMotion
 from leblanc.view.parts import Picture
 from leblanc.view.picture import VIEWS, aim, fill, plotter
-from leblanc.view.scale import Scale, choose_scale
 from leblanc.view.still import describe_speed, describe_state, stage_of, still
 from meshes.errors import InputError
 
@@ -56,30 +56,32 @@ class Frames:
     words: tuple[str, ...]
 
 
-def frames_of_speeds(sight: Sight, scale: Scale, speed: float | None = None) -> Frames:
+def frames_of_speeds(
+    motion: MachineMotion,
+    scale: Scale,
+    liquid: Callable[[int, bool], DrawnLiquid],
+    dry: Sequence[Sequence[bool]],
+    speed: float | None = None,
+) -> Frames:
     """Pictures of all speeds of a machine.
 
     Parameters
     ----------
-    sight : its answers
+    motion : the machine
     scale : common to all pictures
+    liquid : gives it as drawn at a speed, by the index of that, with the common scale or with one that fits
+    dry : the wall of each chamber is dry in part, at each speed
     speed : the one nearest to it is shown first, rad/s; the last if None
     """
-    stage = stage_of(sight, scale)
+    stage = stage_of(motion, scale)
 
     def picture(index: int, fitted: bool) -> Picture:
-        if not fitted:
-            return still(sight, index, scale, stage)
-        rows = slice(index, index + 1)
-        one = choose_scale(
-            sight.fills, sight.deflection[rows], sight.speed[rows], sight.gravity, sight.length
-        )
-        return still(sight, index, one)
+        return still(motion, index, liquid(index, fitted), None if fitted else stage)
 
-    count = sight.speed.size
-    values = tuple(describe_speed("", float(one)).removeprefix(": ") for one in sight.speed)
-    words = tuple("; ".join(describe_state(sight, k)) for k in range(count))
-    first = count - 1 if speed is None else int(np.argmin(np.abs(sight.speed - speed)))
+    count = motion.speed.size
+    values = tuple(describe_speed("", spin).removeprefix(": ") for spin in motion.speed.tolist())
+    words = tuple("; ".join(describe_state(motion, k, dry[k])) for k in range(count))
+    first = count - 1 if speed is None else int(np.argmin(np.abs(motion.speed - speed)))
     return Frames(count, first, picture, values, words)
 
 

@@ -6,51 +6,26 @@ import math
 
 import numpy as np
 
-from leblanc.figures.section import rounded_down
 from leblanc.results.provenance import one_line
-from leblanc.scene.scene import Exciter, Scene
+from leblanc.results.shapes import TableView
 from leblanc.units import MM, RPM
 from leblanc.view.parts import NO_CELLS, Label, Picture, Piece, bar_length, circle, line
 from meshes.arrays import Array, Indices
-from meshes.errors import InputError
-from solvers.rotor.exciter.machine import platform_motion
-from solvers.rotor.exciter.stuck import stuck_speeds
 
 # Lengths over the radius of the track, chosen for the picture: a scene does not give them.
 HALF, THICK, BELOW, SPRING, BALL, SPOT = 1.9, 0.18, 1.5, 1.2, 0.22, 0.09
-SWING, MOST = 0.35, 100.0  # vibration as drawn, and the largest factor
 
 
-def exciter_picture(scene: Scene, speed: float | None = None) -> tuple[Picture, dict[str, object]]:
-    """A table with balls at the moment when balls and unbalance both point along the vibration.
+def table_picture(table: TableView) -> Picture:
+    """Picture of a table with balls at the moment when balls and unbalance point along the vibration.
 
     Parameters
     ----------
-    scene : of kind "exciter"
-    speed : of the shaft, rad/s; the last of its speeds if None
-
-    Returns
-    -------
-    The picture and its numbers, SI
-
-    Raises
-    ------
-    InputError : another rotor, a speed that is not above 0
+    table : its motion
     """
-    rotor = scene.rotor
-    if not isinstance(rotor, Exciter):
-        raise InputError("rotor.kind", rotor.kind, "exciter for this")
-    spin = scene.speeds.stop if speed is None else speed
-    if not (math.isfinite(spin) and spin > 0.0):
-        raise InputError("--speed", spin, "a finite number above 0")
-    machine = rotor.machine()
-    numbers, unit = machine.dimensionless(), machine.natural_frequency
-    stuck = float(stuck_speeds(np.array([spin / unit]), numbers)[0, 0])
-    slow, fast = (abs(one) * machine.length for one in platform_motion(numbers, spin / unit, stuck))
-    largest, track = slow + fast, rotor.balls.track_radius
-    factor = float(f"{rounded_down(min(MOST, SWING * track / largest)):.6g}") if largest > 0.0 else 1.0
-    pieces = _table(track) + _rotor(track, rotor.balls.count)
-    swing, names = _swing(track, factor * largest)
+    track, factor = table.track_radius, table.factor
+    pieces = _table(track) + _rotor(track, table.balls)
+    swing, names = _swing(track, factor * (table.slow + table.fast))
     bar, name = _bar(track)
     caption = [
         f"Vibration drawn {factor:g} times larger; radius of the track to scale.",
@@ -58,34 +33,26 @@ def exciter_picture(scene: Scene, speed: float | None = None) -> tuple[Picture, 
         "Balls and unbalance turn at different speeds; drawn is a moment when they line up.",
     ]
     state = [
-        f"balls stuck together at {stuck * unit * RPM:.4g} rpm: platform {slow * MM:.3g} mm",
-        f"unbalance of the shaft: platform {fast * MM:.3g} mm",
+        f"balls stuck together at {table.stuck_speed * RPM:.4g} rpm: platform {table.slow * MM:.3g} mm",
+        f"unbalance of the shaft: platform {table.fast * MM:.3g} mm",
     ]
     labels = [
         Label("unbalance", (0.0, -0.62 * track * MM, 0.55 * track * MM)),
-        Label(f"{rotor.balls.count} {rotor.balls.name}s", (0.0, 0.75 * track * MM, 1.1 * track * MM)),
+        Label(f"{table.balls} {table.kind}s", (0.0, 0.75 * track * MM, 1.1 * track * MM)),
         *names,
         name,
     ]
     frame = np.concatenate([one.points for one in (*pieces, *swing, bar)])
-    picture = Picture(
+    return Picture(
         (*pieces, *swing, bar),
         tuple(labels),
-        f"{one_line(scene.name)}: shaft at {spin * RPM:.4g} rpm ({spin:.4g} rad/s)",
+        f"{one_line(table.name)}: shaft at {table.speed * RPM:.4g} rpm ({table.speed:.4g} rad/s)",
         "\n".join(state),
         " ".join(caption),
         lying=True,
         long=False,
         frame=frame,
     )
-    found: dict[str, object] = {
-        "speed": spin,
-        "stuck_speed": stuck * unit,
-        "slow": slow,
-        "fast": fast,
-        "deflection_factor": factor,
-    }
-    return picture, found
 
 
 def _box(low: tuple[float, float, float], high: tuple[float, float, float]) -> tuple[Array, Indices]:

@@ -8,30 +8,23 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from leblanc.results.drawing import Scale
 from leblanc.results.netcdf import replacing
 from leblanc.results.provenance import one_line
-from leblanc.studies.shapes import Sight
+from leblanc.results.shapes import DrawnLiquid, MachineMotion, RunupView
 from leblanc.units import MM, RPM
 from leblanc.view.parts import Instant, Picture, Stage
 from leblanc.view.picture import Pixels, fill, pixels, plotter, write_png
-from leblanc.view.scale import SHOWN, THIN, Scale
 from leblanc.view.scene import compose
 from leblanc.view.still import stage_of, still
-from leblanc.view.surfaces import LiquidShape, body_of_layer, body_of_pool
 from meshes.errors import InputError
-
-if TYPE_CHECKING:
-    from leblanc.studies.runup import RunupRecord
-    from leblanc.studies.runup_film import Reel
 
 FRAMES, MOST_FRAMES, RATE = 60, 600, 15  # frames a second; a GIF counts in hundredths of a second
 FILM_SIZE = (800, 600)  # pixels; video codecs want even numbers
 COLOURS = 128  # of a GIF
-VISIBLE = 0.04  # a largest deflection smaller than this over the radius is drawn larger
 
 
 @dataclass(frozen=True)
@@ -48,13 +41,16 @@ class Film:
     picture: Callable[[int], Picture]
 
 
-def sweep_film(sight: Sight, scale: Scale, frames: int = FRAMES) -> Film:
+def sweep_film(
+    motion: MachineMotion, scale: Scale, liquid: Callable[[int], DrawnLiquid], frames: int = FRAMES
+) -> Film:
     """Steady states over the speeds of a machine, evenly chosen.
 
     Parameters
     ----------
-    sight : its answers
+    motion : the machine
     scale : common to all frames
+    liquid : gives it as drawn at a speed, by the index of that
     frames : how many at most
 
     Raises
@@ -62,10 +58,10 @@ def sweep_film(sight: Sight, scale: Scale, frames: int = FRAMES) -> Film:
     InputError : too few frames or too many
     """
     require_frames(frames)
-    last = sight.speed.size - 1
-    chosen = np.unique(np.linspace(0, last, min(frames, last + 1)).round().astype(int))
-    stage = stage_of(sight, scale)
-    return Film(chosen.size, lambda k: still(sight, int(chosen[k]), scale, stage))
+    last = motion.speed.size - 1
+    chosen = np.unique(np.linspace(0, last, min(frames, last + 1)).round().astype(int)).tolist()
+    stage = stage_of(motion, scale)
+    return Film(len(chosen), lambda k: still(motion, chosen[k], liquid(chosen[k]), stage))
 
 
 def require_frames(frames: int) -> None:
@@ -79,44 +75,34 @@ def require_frames(frames: int) -> None:
         raise InputError("--frames", frames, f"from 2 to {MOST_FRAMES}")
 
 
-def runup_film(stage: Stage, record: RunupRecord, reel: Reel) -> Film:
+def runup_film(view: RunupView) -> Film:
     """A run-up in time, with the layers as they are at each moment.
 
     Parameters
     ----------
-    stage : what stands still
-    record, reel : the run-up and its frames
+    view : the run-up and its layers as drawn
     """
-    return Film(reel.time.size, lambda k: compose(stage, _instant(stage, record, reel, k)))
+    stage = Stage(
+        fills=view.fills,
+        places=view.places,
+        lying=view.result.axis == "horizontal",
+        scale=view.scale,
+        swing=view.scale.deflection * float(abs(view.frames.deflection).max()),
+        zero="unbalance" if view.result.kind == "jeffcott" else "angle 0",
+    )
+    return Film(view.frames.time.size, lambda k: compose(stage, _instant(stage, view, k)))
 
 
-def runup_scale(stage_radius: float, record: RunupRecord, reel: Reel) -> Scale:
-    """One factor for deflections and depths, so that a surface round the axis at rest stays so as drawn.
-
-    Parameters
-    ----------
-    stage_radius : of the widest chamber, m
-    record, reel : the run-up and its frames
-    """
-    from leblanc.figures.runup_film import exaggeration
-
-    largest = float(np.abs(reel.deflection).max())
-    thin = any(c.radius - c.mean_surface_radius < THIN * c.radius for c in record.chambers if c.volume > 0.0)
-    if not thin and largest >= VISIBLE * stage_radius:
-        return Scale()
-    both = max(1.0, min(exaggeration(record, reel), SHOWN * stage_radius / largest if largest > 0.0 else 1.0))
-    both = float(f"{both:.2g}")
-    return Scale(both, both)
-
-
-def _instant(stage: Stage, record: RunupRecord, reel: Reel, k: int) -> Instant:
+def _instant(stage: Stage, view: RunupView, k: int) -> Instant:
     """One frame of a run-up."""
-    found = tuple(complex(one) for one in reel.deflection[k])
-    spread = [j for j in range(len(found)) if record.planes[j] != record.planes[0]]
-    lean = (found[spread[0]] - found[0]) / (record.planes[spread[0]] - record.planes[0]) if spread else 0j
+    frames, planes = view.frames, view.result.planes
+    found = tuple(map(complex, frames.deflection[k]))
+    spread = [j for j in range(len(found)) if planes[j] != planes[0]]
+    lean = (found[spread[0]] - found[0]) / (planes[spread[0]] - planes[0]) if spread else 0j
+    speed, name = float(frames.speed[k]), one_line(view.result.name)
     state = [
-        f"t = {reel.time[k]:.2f} s, amplitude {reel.amplitude[k] * MM:.3g} mm",
-        f"liquid model {record.model}",
+        f"t = {frames.time[k]:.2f} s, amplitude {frames.amplitude[k] * MM:.3g} mm",
+        f"liquid model {view.result.model}",
     ]
     caption = [stage.scale.in_words(), "Seen from the drum.", "The surface stands upright along the axis."]
     if stage.lying:
@@ -124,22 +110,12 @@ def _instant(stage: Stage, record: RunupRecord, reel: Reel, k: int) -> Instant:
     return Instant(
         deflection=found,
         lean=lean,
-        bodies=tuple(_liquid(stage, reel, k, j) for j in range(len(found))),
-        title=f"{one_line(record.name)}: run-up, {reel.speed[k] * RPM:.0f} rpm ({reel.speed[k]:.1f} rad/s)",
+        bodies=view.bodies[k],
+        title=f"{name}: run-up, {speed * RPM:.0f} rpm ({speed:.1f} rad/s)",
         state="\n".join(state),
         caption=" ".join(caption),
-        down=float(reel.pool[k]) if stage.lying else None,
+        down=float(frames.pool[k]) if stage.lying else None,
     )
-
-
-def _liquid(stage: Stage, reel: Reel, k: int, j: int) -> LiquidShape | None:
-    fill = stage.fills[j]
-    if fill.volume == 0.0:
-        return None
-    moved, depth = complex(stage.scale.deflection * reel.deflection[k, j]), reel.depth[k, j]
-    if np.isnan(depth).any():
-        return body_of_pool(fill.chamber, fill.volume, moved, float(reel.pool[k]))
-    return body_of_layer(fill.chamber, moved, reel.theta, stage.scale.depth * depth)
 
 
 def write_film(film: Film, path: Path, drawn: Callable[[int, int], None] | None = None) -> int:

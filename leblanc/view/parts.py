@@ -8,10 +8,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fluid.fill import Fill
+from leblanc.results.drawing import Scale
+from leblanc.results.shapes import Liquid
 from leblanc.units import MM
-from leblanc.view.bodies import LiquidBodies
-from leblanc.view.scale import Scale
-from leblanc.view.surfaces import LiquidShape
 from meshes.arrays import Array, Complex, Indices
 
 ROUND = 181  # points of a circle
@@ -122,7 +121,7 @@ class Instant:
 
     deflection: tuple[complex, ...]
     lean: complex
-    bodies: tuple[LiquidShape | LiquidBodies | None, ...]
+    bodies: tuple[Liquid, ...]
     title: str
     state: str
     caption: str

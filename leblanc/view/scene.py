@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.view.bodies import LiquidBodies
+from leblanc.results.shapes import LiquidBodies, LiquidShape, strips
 from leblanc.view.parts import (
     ABOVE,
     AWAY,
@@ -23,7 +23,6 @@ from leblanc.view.parts import (
     marks,
     placed,
 )
-from leblanc.view.surfaces import LiquidShape, strips
 from leblanc.view.walls import baffles, plates_of, section_walls, straight
 from meshes.arrays import Array, Complex, Indices
 from meshes.bodies.body import WALL_PARTS

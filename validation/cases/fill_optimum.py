@@ -10,7 +10,7 @@ from pathlib import Path
 
 from leblanc.scene.machine import jeffcott
 from leblanc.scene.scene import Scene, load_scene
-from leblanc.studies.optimise.closed_form import covering
+from leblanc.studies.optimise.closed_form import wetting_volumes
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.prepare import axial_gravity
 from leblanc.units import MM
@@ -67,5 +67,5 @@ def closed_forms(scene: Scene) -> tuple[float, float]:
     total = rotor.mass + fill.full_mass
     stiffness = complex(rotor.stiffness - total * speed**2, rotor.damping * speed)
     deflection = rotor.unbalance * speed**2 / abs(stiffness)
-    form = covering(fill.chamber, deflection, speed, axial_gravity(scene))
+    form = wetting_volumes(fill.chamber, deflection, speed, axial_gravity(scene))
     return deflection, form.full_volume

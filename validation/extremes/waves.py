@@ -14,6 +14,7 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.friction import Friction, FrictionLaw
 from fluid.liquid import Liquid
+from leblanc.results.notes import texts
 from leblanc.studies.layer import answer_layer, long_wave_notes, long_wave_validity
 from meshes.chamber import Chamber
 from solvers.layer.prescribed import Numerics, Whirl
@@ -121,7 +122,7 @@ def outcome(case: Extreme) -> Outcome:
             mass_error=answer.mass_error,
             least_depth=float(answer.depth.min()) / fill.depth,
             force=abs(answer.force_ratio),
-            says="; ".join(answer.notes),
+            says="; ".join(texts(answer.notes)),
         )
     whirl = Whirl(case.spin, speed, amplitude, ramp=20.0 / case.spin)
     history = simulate(fill, whirl, case.periods * whirl.period, friction, numerics)
@@ -135,7 +136,7 @@ def outcome(case: Extreme) -> Outcome:
         mass_error=history.mass_error,
         least_depth=float(history.depth.min()) / fill.depth,
         force=float(abs(history.force_ratio[-1])) if history.force_ratio.size else math.nan,
-        says="; ".join(notes),
+        says="; ".join(texts(notes)),
     )
 
 

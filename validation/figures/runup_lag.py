@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from fluid.friction import Friction, FrictionLaw
-from leblanc.studies.runup import turn_mean
+from leblanc.results.runup import turn_mean
 from meshes.arrays import Array, Complex
 from solvers.runup.drive import Ramp
 from solvers.runup.runup import RunupNumerics, run_up

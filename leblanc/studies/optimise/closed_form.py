@@ -1,47 +1,21 @@
-"""The volumes that just cover a chamber's wall: the closed forms beside every optimum, and their search."""
+"""The volumes that just wet a chamber's wall: the closed forms beside every optimum, and their search."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from fluid.fill import Fill
-from leblanc.scene.scene import Scene
-from leblanc.studies.optimise.constraints import Verdict
-from leblanc.studies.prepare import axial_gravity
-from leblanc.units import MM, RPM
+from leblanc.results.optimum import WettingVolumes
 from meshes.arrays import Array
 from meshes.chamber import Chamber
 from solvers.search import Found, Judgement, SearchPlan, search
 from solvers.statics.hydrostatics import equilibrium, optimal_volume
 
 
-@dataclass(frozen=True)
-class Covering:
-    """Volumes of one chamber that cover its wall at a deflection and a speed.
-
-    Parameters
-    ----------
-    deflection : e, m
-    speed : rad/s
-    optimal_volume : the least that leaves no part of the wall dry over its whole height, m^3 [theory:
-        statics, eq. 8]
-    full_volume : the least that wets the whole wall up to the lid, beyond which more liquid adds nothing,
-        m^3; infinite where the chamber does not hold it [theory: optimum, eq. 1]
-    share : liquid's unbalance with the optimal volume over the largest possible one at this deflection
-    """
-
-    deflection: float
-    speed: float
-    optimal_volume: float
-    full_volume: float
-    share: float
-
-
-def covering(chamber: Chamber, deflection: float, speed: float, gravity: float) -> Covering:
-    """The volumes that cover a wall, in closed form.
+def wetting_volumes(chamber: Chamber, deflection: float, speed: float, gravity: float) -> WettingVolumes:
+    """The volumes that wet a wall, in closed form.
 
     Parameters
     ----------
@@ -63,7 +37,7 @@ def covering(chamber: Chamber, deflection: float, speed: float, gravity: float) 
         for volume in (held, most)
     )
     share = of_touching / of_most if of_most > 0.0 else 1.0
-    return Covering(deflection, speed, touching, full, share)
+    return WettingVolumes(deflection, speed, touching, full, share)
 
 
 def full_volume(chamber: Chamber, deflection: float, speed: float, gravity: float) -> float:
@@ -71,7 +45,7 @@ def full_volume(chamber: Chamber, deflection: float, speed: float, gravity: floa
 
     Parameters
     ----------
-    chamber, deflection, speed, gravity : as for `covering`
+    chamber, deflection, speed, gravity : as for `wetting_volumes`
 
     Returns
     -------
@@ -88,7 +62,7 @@ def full_volume(chamber: Chamber, deflection: float, speed: float, gravity: floa
     return math.pi * chamber.height * (ring + 0.5 * fall)
 
 
-def covering_by_search(
+def optimal_volume_by_search(
     fill: Fill, deflection: float, speed: float, gravity: float, plan: SearchPlan | None = None
 ) -> Found:
     """The least volume that leaves no part of the wall dry over its whole height, found by the search.
@@ -96,7 +70,7 @@ def covering_by_search(
     Parameters
     ----------
     fill : chamber and liquid; its volume does not matter
-    deflection, speed, gravity : as for `covering`
+    deflection, speed, gravity : as for `wetting_volumes`
     plan : of the search
 
     Returns
@@ -124,7 +98,7 @@ def largest_unbalance_by_search(
 
     Parameters
     ----------
-    fill, deflection, speed, gravity, plan : as for `covering_by_search`
+    fill, deflection, speed, gravity, plan : as for `optimal_volume_by_search`
 
     Returns
     -------
@@ -140,57 +114,3 @@ def largest_unbalance_by_search(
     low, high = np.zeros(1), np.array([chamber.capacity])
     tight = plan or SearchPlan(hair=1e-13, edge=1e-11)
     return search(judge, low, high, np.array([fill.liquid.density]), plan=tight)
-
-
-def cover_walls(
-    scene: Scene, deflection: float, speed: float
-) -> tuple[list[float], tuple[Covering, ...], int, tuple[str, ...]]:
-    """For each chamber the least volume that leaves no part of its wall dry over its whole height.
-
-    Parameters
-    ----------
-    scene : the machine
-    deflection : e, m
-    speed : rad/s
-
-    Returns
-    -------
-    volumes found by the search, m^3, the closed forms, how many were judged, and what to say of them
-    """
-    gravity = axial_gravity(scene)
-    found = [covering_by_search(fill, deflection, speed, gravity) for fill in scene.fills]
-    volumes, count = [float(one.point[0]) for one in found], sum(one.points.shape[0] for one in found)
-    forms = tuple(covering(fill.chamber, deflection, speed, gravity) for fill in scene.fills)
-    gap = max(
-        abs(volume / form.optimal_volume - 1.0) if form.optimal_volume > 0.0 else abs(volume)
-        for volume, form in zip(volumes, forms, strict=True)
-    )
-    note = (
-        f"The deflection is given, {deflection * MM:.4g} mm at {speed * RPM:.4g} rpm: the volumes are the "
-        "least that leave no part of a wall dry over its whole height; search and closed form differ by "
-        f"{gap:.1e}."
-    )
-    return volumes, forms, count, (note,)
-
-
-def liquid_unbalance(fill: Fill, deflection: float, speed: float, gravity: float) -> float:
-    """First moment of a chamber's liquid about the rotation axis, kg m."""
-    state = equilibrium(fill.chamber, fill.volume, deflection, speed, gravity)
-    return fill.liquid.density * float(state.unbalance()[0])
-
-
-def dry_verdict(scene: Scene, volumes: list[float], deflection: float, speed: float) -> Verdict:
-    """Whether any wall is dry over its whole height."""
-    gravity = axial_gravity(scene)
-    dry = 0.0
-    for fill, volume in zip(scene.fills, volumes, strict=True):
-        # A hair above the volume that just covers it.
-        held = min(volume * (1.0 + 1e-9), fill.chamber.capacity)
-        dry = max(dry, float(equilibrium(fill.chamber, held, deflection, speed, gravity).dry_patch))
-    return Verdict(0.0, dry, dry == 0.0, "1", "wall dry somewhere at the deflection given (1) or nowhere (0)")
-
-
-def one_point(volumes: list[float], value: float, mass: float) -> Judgement:
-    """Judgement of the answer alone."""
-    one = np.ones(1)
-    return Judgement(value * one, -one, {"vibration": value * one, "mass": mass * one, "sure": one.copy()})

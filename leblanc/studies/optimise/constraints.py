@@ -1,42 +1,23 @@
-"""What volumes must keep to, and the judge that puts objective and constraints together [theory: optimum]."""
+"""What volumes must keep to [theory: optimum, eq. 5]."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
 
 from fluid.fill import Fill
+from leblanc.results.optimum import ConstraintValue
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import Scene
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
-from leblanc.studies.optimise.conditions import Robust
 from leblanc.studies.optimise.objectives import PeakOver, Vibration
+from leblanc.studies.optimise.robust import Robust
 from meshes.arrays import Array
-from solvers.search import Judgement
 from solvers.whirl.growth import growth_map
 
-_BEYOND = 1.3  # of a limit, up to which a vibration above it must be known exactly
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """A constraint at one point.
-
-    Parameters
-    ----------
-    limit, value : in the unit; the value must not be above the limit
-    satisfied : it is not
-    unit, text : of both, and what they are
-    """
-
-    limit: float
-    value: float
-    satisfied: bool
-    unit: str
-    text: str
+BEYOND = 1.3  # of a limit, up to which a vibration above it must be known exactly
 
 
 class Constraint:
@@ -44,7 +25,7 @@ class Constraint:
 
     Parameters
     ----------
-    name, text, unit : for reports
+    name, meaning, unit : for reports
     limit : in the unit
     scale : what an excess is measured by, above 0
     value : of volumes, shape (m, c), and of the limit beyond which a lower estimate will do; shape (m,)
@@ -53,13 +34,13 @@ class Constraint:
     def __init__(
         self,
         name: str,
-        text: str,
+        meaning: str,
         unit: str,
         limit: float,
         scale: float,
         value: Callable[[Array, float], Array],
     ) -> None:
-        self.name, self.text, self.unit = name, text, unit
+        self.name, self.meaning, self.unit = name, meaning, unit
         self.limit, self.scale, self._value = limit, scale, value
 
     def value(self, volumes: Array) -> Array:
@@ -71,9 +52,9 @@ class Constraint:
         """By how much a value is above its limit, over the scale; 0 or below if it is not."""
         return np.asarray((value - self.limit) / self.scale)
 
-    def verdict(self, value: float) -> Verdict:
-        """The constraint at one point."""
-        return Verdict(self.limit, value, value <= self.limit, self.unit, self.text)
+    def at(self, value: float) -> ConstraintValue:
+        """The constraint where it has a value."""
+        return ConstraintValue(self.limit, value, value <= self.limit, self.unit, self.meaning)
 
 
 def dry_wall(machine: FilledMachine, speed: float) -> Constraint:
@@ -86,13 +67,13 @@ def dry_wall(machine: FilledMachine, speed: float) -> Constraint:
     return Constraint("dry_patch", text, "1", 0.0, 1.0, value)
 
 
-def limited(name: str, text: str, vibration: Vibration, limit: float) -> Constraint:
+def limited(name: str, meaning: str, vibration: Vibration, limit: float) -> Constraint:
     """A vibration up to a limit, m."""
 
     def value(volumes: Array, most: float) -> Array:
-        return vibration.exact(volumes, _BEYOND * most)
+        return vibration.exact(volumes, BEYOND * most)
 
-    return Constraint(name, text, "m", limit, limit, value)
+    return Constraint(name, meaning, "m", limit, limit, value)
 
 
 def clearance(over: PeakOver, limit: float) -> Constraint:
@@ -138,46 +119,3 @@ def room_when_warm(robust: Robust) -> Constraint:
 
     text = "share of a chamber that its liquid takes when warmest"
     return Constraint("room_when_warm", text, "1", 1.0, 1.0, value)
-
-
-@dataclass
-class FillJudge:
-    """Judges volumes by a vibration, or by their mass, and by constraints.
-
-    Parameters
-    ----------
-    vibration : to be small
-    density : of each chamber's liquid, kg/m^3, shape (c,)
-    constraints : to keep to
-    by_mass : the liquid's mass is to be small; the vibration is then one of the constraints
-    best : least objective of any allowed volumes so far, above which an estimate will do
-    """
-
-    vibration: Vibration
-    density: Array
-    constraints: tuple[Constraint, ...]
-    by_mass: bool = False
-    best: float = field(default=math.inf)
-
-    def __call__(self, volumes: Array) -> Judgement:
-        """Judgement of m sets of volumes, m^3, shape (m, c).
-
-        Its details are the values of the constraints, the mass, the vibration, and whether that is sure (1)
-        or an estimate from below (0).
-        """
-        found = {one.name: one.value(volumes) for one in self.constraints}
-        over = np.full(volumes.shape[0], -1.0)
-        for one in self.constraints:
-            over = np.maximum(over, one.excess(found[one.name]))
-        mass = volumes @ self.density
-        if self.by_mass:
-            objective, vibration = mass, found["vibration"]
-            sure = vibration <= _BEYOND * next(
-                one.limit for one in self.constraints if one.name == "vibration"
-            )
-        else:
-            vibration, sure = self.vibration.least(volumes, self.best)
-            objective = vibration
-        self.best = min(self.best, float(objective[sure & (over <= 0.0)].min(initial=math.inf)))
-        extra = {"mass": mass, "vibration": vibration, "sure": sure.astype(float)}
-        return Judgement(objective, over, found | extra)

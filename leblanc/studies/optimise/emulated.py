@@ -4,45 +4,21 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from leblanc.results.optimum import EmulatedAnswer, EmulatorError
 from leblanc.scene.optimise import Optimisation
 from leblanc.scene.scene import Scene
-from leblanc.studies.sweep.emulator import CrossValidation, Emulator, emulate_store, varied_fields
+from leblanc.studies.sweep.emulator import Emulator, emulate_store, varied_fields
 from leblanc.studies.sweep.store import read_store
-from leblanc.units import MM
 from meshes.arrays import Array
 from meshes.errors import InputError
 
 _VOLUME = re.compile(r"chambers\.(\d+)\.volume")
-
-
-@dataclass(frozen=True)
-class EmulatedAnswer:
-    """What an emulator says of the best volumes.
-
-    Parameters
-    ----------
-    value, deviation : vibration and its standard deviation, m
-    error : of the emulator on unseen samples
-    """
-
-    value: float
-    deviation: float
-    error: CrossValidation
-
-    def words(self) -> str:
-        """How far the search could be led astray."""
-        return (
-            f"The search asked an emulator of {self.error.samples} samples, off by "
-            f"{self.error.root_mean_square:.2g} on unseen ones (root mean square; largest "
-            f"{self.error.largest:.2g}); the best volumes it found were judged by the solvers. By the "
-            f"emulator alone: {self.value * MM:.4g} mm, give or take {2.0 * self.deviation * MM:.2g} mm."
-        )
 
 
 class EmulatedVibration:
@@ -68,7 +44,8 @@ class EmulatedVibration:
     def answer(self, volume: Array) -> EmulatedAnswer:
         """What it says of one set of volumes, shape (c,)."""
         value, deviation = self.emulator.predict(volume[None, self.chambers])
-        return EmulatedAnswer(float(value[0]), float(deviation[0]), self.emulator.error)
+        error = EmulatorError(**asdict(self.emulator.error))
+        return EmulatedAnswer(float(value[0]), float(deviation[0]), error)
 
     def inside(self, low: Array, high: Array, own: Array) -> tuple[Array, Array]:
         """Bounds of the volumes cut to what the emulator knows; other chambers keep their own volume.

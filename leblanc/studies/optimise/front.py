@@ -2,35 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
+from leblanc.results.optimum import ParetoFront
 from leblanc.scene.scene import Scene
 from leblanc.studies.optimise.constraints import growth
-from leblanc.studies.optimise.judge import Goal
+from leblanc.studies.optimise.problem import Problem
 from meshes.arrays import Array, Flags
 from solvers.search import Found
-
-
-@dataclass(frozen=True)
-class Front:
-    """Points of which none is better than another in everything; m points of c chambers.
-
-    Parameters
-    ----------
-    volume : m^3, shape (m, c)
-    vibration : m, shape (m,)
-    mass : of the liquid, kg, shape (m,)
-    margin : decay of the small whirl that dies out slowest at the operating speeds, 1/s; below 0 it grows;
-        shape (m,)
-    """
-
-    volume: Array
-    vibration: Array
-    mass: Array
-    margin: Array
 
 
 def not_dominated(values: Array) -> Flags:
@@ -54,30 +34,30 @@ def not_dominated(values: Array) -> Flags:
     return kept
 
 
-def front_of(volume: Array, vibration: Array, mass: Array, margin: Array) -> Front:
+def front_of(volume: Array, vibration: Array, mass: Array, margin: Array) -> ParetoFront:
     """The points that are not dominated, by rising mass.
 
     Parameters
     ----------
-    volume, vibration, mass, margin : as in `Front`
+    volume, vibration, mass, margin : as in `ParetoFront`
     """
     kept = np.flatnonzero(not_dominated(np.stack((vibration, mass, -margin), axis=1)))
     kept = kept[np.lexsort((vibration[kept], mass[kept]))]
-    return Front(volume[kept], vibration[kept], mass[kept], margin[kept])
+    return ParetoFront(volume[kept], vibration[kept], mass[kept], margin[kept])
 
 
 _SWEEP, _SPARING = 40, 12  # volumes of the dedicated sweep; where an answer costs much
-_MOST_IN_FRONT = 60  # of the points judged by the way
+_MOST_IN_FRONT = 60  # of the points evaluated by the way
 
 
 def front_around(
-    scene: Scene, goal: Goal, found: Found, vibration: float, speeds: Array
-) -> tuple[Front, Front]:
+    scene: Scene, problem: Problem, found: Found, vibration: float, speeds: Array
+) -> tuple[ParetoFront, ParetoFront]:
     """What must be given up for what.
 
     Parameters
     ----------
-    scene, goal : the machine and what it is judged by
+    scene, problem : the machine and what its volumes are evaluated by
     found : by the search
     vibration : of the best volumes, m
     speeds : at which small whirls are looked at, rad/s
@@ -86,8 +66,8 @@ def front_around(
     -------
     the front, and all of the sweep from no liquid to the fullest chamber, shares as in the best volumes
     """
-    judge, known = goal.judge, found.judged.details
-    count = _SPARING if goal.costly else _SWEEP
+    evaluate, known = problem.evaluate, found.judged.details
+    count = _SPARING if problem.costly else _SWEEP
     high = np.array([fill.chamber.capacity for fill in scene.fills])
     share = np.concatenate(([0.0], np.geomspace(1e-3, 1.0, count)))
     along = found.point if found.point.max() > 0.0 else high
@@ -97,11 +77,11 @@ def front_around(
     exact = np.flatnonzero((known["sure"] == 1.0) & np.isfinite(known["vibration"]))
     by_the_way = exact[_thin(known["vibration"][exact], known["mass"][exact])]
     volume = np.concatenate((swept, found.points[by_the_way]))
-    size = np.concatenate((judge.vibration.exact(swept), known["vibration"][by_the_way]))
+    size = np.concatenate((evaluate.vibration.exact(swept), known["vibration"][by_the_way]))
     size[np.all(volume == found.point, axis=1)] = vibration
-    margin, mass = -growth(scene, volume, speeds), volume @ judge.density
+    margin, mass = -growth(scene, volume, speeds), volume @ evaluate.density
     part = slice(0, swept.shape[0])
-    whole = Front(volume[part], size[part], mass[part], margin[part])
+    whole = ParetoFront(volume[part], size[part], mass[part], margin[part])
     return front_of(volume, size, mass, margin), whole
 
 

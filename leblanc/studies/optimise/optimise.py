@@ -2,89 +2,45 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from fluid.whirl import is_full
+from leblanc.results import optimum
+from leblanc.results.choice import ModelSpan
+from leblanc.results.notes import Note
+from leblanc.results.optimum import (
+    CandidateChamber,
+    Candidates,
+    ConstraintValue,
+    Feasibility,
+    OptimumResult,
+    WettingVolumes,
+)
 from leblanc.scene.machine import require_clear
 from leblanc.scene.optimise import Optimisation
 from leblanc.scene.scene import Scene, Speeds
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
-from leblanc.studies.optimise.closed_form import (
-    Covering,
-    cover_walls,
-    covering,
-    dry_verdict,
-    liquid_unbalance,
-    one_point,
-)
-from leblanc.studies.optimise.constraints import Verdict, growth
-from leblanc.studies.optimise.emulated import EmulatedAnswer, EmulatedVibration
-from leblanc.studies.optimise.front import Front, front_around
-from leblanc.studies.optimise.judge import Goal, goal_of, growth_speeds
+from leblanc.studies.optimise.at_deflection import WettedWalls, wet_walls
+from leblanc.studies.optimise.closed_form import wetting_volumes
+from leblanc.studies.optimise.constraints import growth
+from leblanc.studies.optimise.emulated import EmulatedVibration
+from leblanc.studies.optimise.front import front_around
 from leblanc.studies.optimise.objectives import RunupPeak
-from leblanc.studies.optimise.search import best_volumes, bounds_of, judged_again, on_all_cells
+from leblanc.studies.optimise.problem import Problem, growth_speeds, problem_of
+from leblanc.studies.optimise.search import best_volumes, bounds_of, evaluated_again, on_all_cells
 from leblanc.studies.prepare import axial_gravity
+from leblanc.studies.run import run_scene
 from leblanc.studies.validity import RANGES
 from leblanc.units import RPM
 from meshes.arrays import Array
 from meshes.errors import InputError
-from solvers.search import Found, Judgement
+from solvers.search import Found
+from solvers.synchronous.models import MODEL_NAMES
 
-
-@dataclass(frozen=True)
-class OptimumRecord:
-    """The best volumes of a scene and what they were chosen from; c chambers, m sets of volumes judged.
-
-    Parameters
-    ----------
-    scene : the machine as it was given
-    aim : what was asked for
-    objective, meaning, unit : name, words and unit of the value
-    working_speed : rad/s
-    volume : the answer, m^3, shape (c,)
-    value, baseline : of the objective with these volumes and without liquid
-    vibration, vibration_baseline : m; the value itself unless that is a mass
-    feasible : every constraint is met
-    constraints : by name
-    mass : of the liquid, kg
-    growth : of the small whirl that grows most at the operating speeds, 1/s
-    covering : for each chamber the closed forms at the deflection that the answer itself has
-    evaluations : sets of volumes judged
-    points : all of them, m^3, shape (m, c)
-    judged : what was said of them
-    front : what must be given up for what; None if it was not asked for
-    sweep : from no liquid to the fullest chamber, shares as in the answer; None with the front
-    notes : limits and findings, in words
-    emulated : what the emulator that the search asked says of the answer; None without one
-    """
-
-    scene: Scene
-    aim: Optimisation
-    objective: str
-    meaning: str
-    unit: str
-    working_speed: float
-    volume: Array
-    value: float
-    baseline: float
-    vibration: float
-    vibration_baseline: float
-    feasible: bool
-    constraints: dict[str, Verdict]
-    mass: float
-    growth: float
-    covering: tuple[Covering, ...]
-    evaluations: int
-    points: Array
-    judged: Judgement
-    front: Front | None
-    sweep: Front | None
-    notes: tuple[str, ...]
-    emulated: EmulatedAnswer | None = None
+_ASKED = "the scene asks for it; "
 
 
 def optimise_scene(
@@ -94,7 +50,8 @@ def optimise_scene(
     front: bool = True,
     progress: Callable[[int], None] | None = None,
     emulator: EmulatedVibration | None = None,
-) -> OptimumRecord:
+    response: bool = True,
+) -> OptimumResult:
     """Best volume for each chamber of a scene.
 
     Parameters
@@ -103,13 +60,14 @@ def optimise_scene(
     objective : in place of the aim's
     aim : in place of the scene's
     front : find out as well what must be given up for what
-    progress : called with the number of sets of volumes judged so far
-    emulator : asked by the search in place of the solvers, which then judge the best that it found
+    progress : called with the number of sets of volumes evaluated so far
+    emulator : asked by the search in place of the solvers, which then evaluate the best that it found
+    response : answer the machine with the best volumes over the scene's speeds as well
 
     Returns
     -------
-    OptimumRecord; `feasible` is False where no volumes meet the constraints, and those are given then that
-    exceed them least
+    OptimumResult; not feasible where no volumes meet the constraints, and those are given then that exceed
+    them least
 
     Raises
     ------
@@ -128,135 +86,178 @@ def optimise_scene(
         raise InputError("chambers", "none", "at least one to choose the volume of")
     require_clear(scene, "a search over volumes, which rests on the exact equilibrium in a clear ring")
     low, high = bounds_of(scene, wish)
-    if wish.deflection is not None:
-        return _at_given_deflection(scene, wish, wish.deflection)
     machine = FilledMachine(scene)
-    goal = goal_of(scene, wish, machine, lambda one: best_volumes(scene, one, low, high, progress))
+    if wish.deflection is not None:
+        result = _at_deflection(scene, wish, wet_walls(scene, wish.deflection, _working_speed(scene, wish)))
+        return _with_response(result, scene, machine) if response else result
+
+    def solve(problem: Problem) -> Found:
+        return best_volumes(scene, problem, low, high, progress)
+
+    problem = problem_of(scene, wish, machine, solve)
     if emulator is None:
-        found = best_volumes(scene, goal, low, high, progress)
-        chosen, sure = on_all_cells(scene, goal, found)
-        record = _record(scene, wish, sure, machine, chosen)
+        chosen, exact = on_all_cells(scene, problem, solve(problem))
+        result = _result(scene, wish, exact, machine, chosen)
     else:
         low, high = emulator.inside(low, high, np.array([fill.volume for fill in scene.fills]))
-        quick = replace(goal, judge=replace(goal.judge, vibration=emulator), costly=False)
-        chosen = judged_again(goal, best_volumes(scene, quick, low, high, progress))
-        told = emulator.answer(chosen.point)
-        record = _record(scene, wish, goal, machine, chosen)
-        record = replace(record, emulated=told, notes=(told.words(), *record.notes))
-    if not front:
-        return record
-    edge, sweep = front_around(scene, goal, chosen, record.vibration, growth_speeds(scene, wish))
-    return replace(record, front=edge, sweep=sweep)
+        quick = replace(problem, evaluate=replace(problem.evaluate, vibration=emulator), costly=False)
+        chosen = evaluated_again(problem, best_volumes(scene, quick, low, high, progress))
+        answer = emulator.answer(chosen.point)
+        result = _result(scene, wish, problem, machine, chosen)
+        result = replace(result, emulator=answer, notes=(optimum.emulated(answer), *result.notes))
+    if front:
+        edge, sweep = front_around(scene, problem, chosen, result.vibration, growth_speeds(scene, wish))
+        result = replace(result, front=edge, sweep=sweep)
+    return _with_response(result, scene, machine) if response else result
 
 
-def _record(
-    scene: Scene, aim: Optimisation, goal: Goal, machine: FilledMachine, found: Found
-) -> OptimumRecord:
-    """All that is to be told of the answer."""
-    judge, volume = goal.judge, found.point
+def _working_speed(scene: Scene, aim: Optimisation) -> float:
+    return scene.speeds.stop if aim.working_speed is None else aim.working_speed
+
+
+def _result(
+    scene: Scene, aim: Optimisation, problem: Problem, machine: FilledMachine, found: Found
+) -> OptimumResult:
+    """The best volumes with all that belongs to them."""
+    evaluate, volume = problem.evaluate, found.point
     nothing = np.zeros((1, volume.size))
-    vibration, dry = (float(judge.vibration.exact(row)[0]) for row in (volume[None], nothing))
-    verdicts = {
+    vibration, dry = (float(evaluate.vibration.exact(row)[0]) for row in (volume[None], nothing))
+    constraints = {
         "capacity": _capacity(scene, volume),
-        **{one.name: one.verdict(float(one.value(volume[None])[0])) for one in judge.constraints},
+        **{one.name: one.at(float(one.value(volume[None])[0])) for one in evaluate.constraints},
     }
-    mass = float(volume @ judge.density)
-    speeds = growth_speeds(scene, aim)
-    most = float(growth(scene, volume[None], speeds)[0])
-    return OptimumRecord(
-        scene=scene,
-        aim=aim,
+    mass = float(volume @ evaluate.density)
+    said = found.judged
+    return _of_scene(
+        scene,
+        in_time=isinstance(evaluate.vibration, RunupPeak),
         objective=aim.objective,
-        meaning=goal.meaning,
-        unit="kg" if judge.by_mass else "m",
-        working_speed=goal.working_speed,
+        meaning=problem.meaning,
+        unit="kg" if evaluate.by_mass else "m",
+        working_speed=problem.working_speed,
         volume=volume,
-        value=mass if judge.by_mass else vibration,
-        baseline=0.0 if judge.by_mass else dry,
+        value=mass if evaluate.by_mass else vibration,
+        baseline=0.0 if evaluate.by_mass else dry,
         vibration=vibration,
         vibration_baseline=dry,
-        feasible=all(one.satisfied for one in verdicts.values()),
-        constraints=verdicts,
+        constraints=constraints,
         mass=mass,
-        growth=most,
-        covering=_closed_forms(machine.scene, volume, goal.working_speed),
+        growth=float(growth(scene, volume[None], growth_speeds(scene, aim))[0]),
+        closed_form=_closed_forms(machine, volume, problem.working_speed),
         evaluations=int(np.unique(found.points, axis=0).shape[0]),
-        points=found.points,
-        judged=found.judged,
-        front=None,
-        sweep=None,
-        notes=(*goal.notes, *_warnings(scene, goal, volume)),
+        candidates=Candidates(
+            volume=found.points,
+            objective=said.objective,
+            excess=said.excess,
+            vibration=said.details["vibration"],
+            mass=said.details["mass"],
+            exact=said.details["sure"] == 1.0,
+        ),
+        notes=(*problem.notes, *_limits(scene, problem, volume)),
     )
 
 
-def _capacity(scene: Scene, volume: Array) -> Verdict:
+def _at_deflection(scene: Scene, aim: Optimisation, found: WettedWalls) -> OptimumResult:
+    """The least volumes that leave no wall dry over its whole height at a given deflection."""
+    volume = np.array(found.volumes)
+    one = np.ones(1)
+    return _of_scene(
+        scene,
+        in_time=False,
+        objective="working_speed",
+        meaning=f"liquid's unbalance at the deflection given, at {found.speed * RPM:.4g} rpm",
+        unit="kg m",
+        working_speed=found.speed,
+        volume=volume,
+        value=found.unbalance,
+        baseline=0.0,
+        vibration=found.deflection,
+        vibration_baseline=found.deflection,
+        constraints={"capacity": _capacity(scene, volume), "dry_patch": found.dry_wall},
+        mass=found.mass,
+        growth=float(growth(scene, volume[None], growth_speeds(scene, aim))[0]),
+        closed_form=found.closed_form,
+        evaluations=found.evaluations,
+        candidates=Candidates(
+            volume=volume[None],
+            objective=found.unbalance * one,
+            excess=-one,
+            vibration=found.unbalance * one,
+            mass=found.mass * one,
+            exact=one > 0.0,
+        ),
+        notes=found.notes,
+    )
+
+
+def _of_scene(scene: Scene, constraints: dict[str, ConstraintValue], **found: object) -> OptimumResult:
+    """A result with what it says of its scene."""
+    kept = all(constraint.satisfied for constraint in constraints.values())
+    return OptimumResult(
+        name=scene.name,
+        source=scene.source,
+        assumed=scene.assumed,
+        digest=scene.digest,
+        chambers=tuple(CandidateChamber(fill.chamber.capacity, fill.liquid.name) for fill in scene.fills),
+        friction=scene.model.friction,
+        tolerance=scene.model.tolerance,
+        feasibility=Feasibility.FEASIBLE if kept else Feasibility.INFEASIBLE,
+        constraints=constraints,
+        front=None,
+        sweep=None,
+        **found,  # type: ignore[arg-type]
+    )
+
+
+def _with_response(result: OptimumResult, scene: Scene, machine: FilledMachine) -> OptimumResult:
+    """The machine with the best volumes over the scene's speeds, by the model of the search."""
+    if machine.scene.model.liquid not in MODEL_NAMES:
+        return result
+    filled = with_volumes(machine.scene, result.volume)
+    response = run_scene(filled)
+    if scene.model.liquid == "auto":
+        response = replace(response, models=tuple(_of_search(span) for span in response.models))
+    return replace(result, response=response)
+
+
+def _of_search(span: ModelSpan) -> ModelSpan:
+    """The scene leaves the model to the search, which asks for one."""
+    return replace(span, reason=span.reason.removeprefix(_ASKED))
+
+
+def _capacity(scene: Scene, volume: Array) -> ConstraintValue:
     """How full the fullest chamber is."""
     share = max(v / fill.chamber.capacity for v, fill in zip(volume.tolist(), scene.fills, strict=True))
-    return Verdict(1.0, share, share <= 1.0 + 1e-12, "1", "share of the chamber that is fullest")
+    meaning = "share of the chamber that is fullest"
+    return ConstraintValue(1.0, share, share <= 1.0 + 1e-12, "1", meaning)
 
 
-def _warnings(scene: Scene, goal: Goal, volume: Array) -> tuple[str, ...]:
+def _limits(scene: Scene, problem: Problem, volume: Array) -> tuple[Note, ...]:
     """What the models do not hold for."""
     deepest = RANGES["long_wave"]["relative_depth"][1]
-    if not isinstance(goal.judge.vibration, RunupPeak):
+    if not isinstance(problem.evaluate.vibration, RunupPeak):
         return ()
     return tuple(
-        f"Out of range: the layer in chamber {k + 1} is deeper than {deepest:g} of its radius."
+        optimum.too_deep(k, deepest)
         for k, fill in enumerate(with_volumes(scene, volume).fills)
         if fill.depth > deepest * fill.chamber.radius and not is_full(fill)
     )
 
 
-def _closed_forms(scene: Scene, volume: Array, speed: float) -> tuple[Covering, ...]:
-    """The covering volumes at the deflection that the answer has at the working speed."""
-    from leblanc.studies.run import run_scene
-
-    record = run_scene(with_volumes(scene, volume).altered(speeds=Speeds.at(speed)))
-    gravity = axial_gravity(scene)
-    if record.motion is None:
-        moved = np.full(volume.size, abs(record.response.deflection[0]))
+def _closed_forms(machine: FilledMachine, volume: Array, speed: float) -> tuple[WettingVolumes, ...]:
+    """The volumes that wet the walls at the deflection that the answer has at the working speed."""
+    scene = machine.scene
+    if machine.planar and scene.model.liquid in MODEL_NAMES:
+        moved = np.repeat(machine.at(volume[None], np.array([speed])).amplitude, volume.size)
     else:
-        moved = np.abs(record.motion.chamber_forward[0])
-    found = []
-    for fill, deflection in zip(scene.fills, moved.tolist(), strict=True):
-        if not math.isfinite(deflection):
-            return ()
-        found.append(covering(fill.chamber, deflection, speed, gravity))
-    return tuple(found)
-
-
-def _at_given_deflection(scene: Scene, aim: Optimisation, deflection: float) -> OptimumRecord:
-    """The least volumes that leave no wall dry over its whole height at a given deflection."""
-    speed = scene.speeds.stop if aim.working_speed is None else aim.working_speed
-    volumes, forms, count, notes = cover_walls(scene, deflection, speed)
-    filled = with_volumes(scene, np.array(volumes)).fills
-    value = sum(liquid_unbalance(fill, deflection, speed, axial_gravity(scene)) for fill in filled)
-    mass = sum(fill.mass for fill in filled)
-    verdicts = {
-        "capacity": _capacity(scene, np.array(volumes)),
-        "dry_patch": dry_verdict(scene, volumes, deflection, speed),
-    }
-    return OptimumRecord(
-        scene=scene,
-        aim=aim,
-        objective="working_speed",
-        meaning=f"liquid's unbalance at the deflection given, at {speed * RPM:.4g} rpm",
-        unit="kg m",
-        working_speed=speed,
-        volume=np.array(volumes),
-        value=value,
-        baseline=0.0,
-        vibration=deflection,
-        vibration_baseline=deflection,
-        feasible=all(one.satisfied for one in verdicts.values()),
-        constraints=verdicts,
-        mass=mass,
-        growth=float(growth(scene, np.array([volumes]), growth_speeds(scene, aim))[0]),
-        covering=forms,
-        evaluations=count,
-        points=np.array([volumes]),
-        judged=one_point(volumes, value, mass),
-        front=None,
-        sweep=None,
-        notes=notes,
+        answer = run_scene(with_volumes(scene, volume).altered(speeds=Speeds.at(speed)))
+        moved = np.full(volume.size, abs(answer.response.deflection[0]))
+        if answer.motion is not None:
+            moved = np.abs(answer.motion.chamber_forward[0])
+    if not np.isfinite(moved).all():
+        return ()
+    gravity = axial_gravity(scene)
+    return tuple(
+        wetting_volumes(fill.chamber, deflection, speed, gravity)
+        for fill, deflection in zip(scene.fills, moved.tolist(), strict=True)
     )

@@ -11,9 +11,9 @@ import numpy as np
 from leblanc.scene.machine import jeffcott
 from leblanc.scene.optimise import Optimisation
 from leblanc.scene.scene import JeffcottRotor, Scene
-from leblanc.studies.optimise.closed_form import covering
-from leblanc.studies.optimise.judge import Goal
+from leblanc.studies.optimise.closed_form import wetting_volumes
 from leblanc.studies.optimise.objectives import PeakOver, RunupPeak
+from leblanc.studies.optimise.problem import Problem
 from leblanc.studies.prepare import axial_gravity
 from meshes.arrays import Array
 from meshes.errors import InputError
@@ -28,7 +28,7 @@ _FEW = SearchPlan(
     levels=(14, 9, 5), crossed=False, finest=1e-3, sweeps=6, settled=5e-4, hair=2e-5, edge=1e-3, sections=10
 )
 _AGAIN = 3  # searches at most, if a peak turns out to have been hidden between the speeds looked at
-_CLOSER = 6  # of the best that a cheaper judge found are judged again
+_CLOSER = 6  # of the best that a cheaper vibration found are evaluated again
 
 
 def bounds_of(scene: Scene, aim: Optimisation) -> tuple[Array, Array]:
@@ -54,9 +54,9 @@ def bounds_of(scene: Scene, aim: Optimisation) -> tuple[Array, Array]:
 
 
 def best_volumes(
-    scene: Scene, goal: Goal, low: Array, high: Array, progress: Callable[[int], None] | None
+    scene: Scene, problem: Problem, low: Array, high: Array, progress: Callable[[int], None] | None
 ) -> Found:
-    """Best volumes for a goal."""
+    """Best volumes for a problem."""
     count = 0
 
     def judge(volumes: Array) -> Judgement:
@@ -64,31 +64,32 @@ def best_volumes(
         count += volumes.shape[0]
         if progress is not None:
             progress(count)
-        return goal.judge(volumes)
+        return problem.evaluate(volumes)
 
-    plan = _SPARING if goal.costly else _FEW if isinstance(goal.judge.vibration, PeakOver) else SearchPlan()
-    starts, alike = _starts(scene, goal, low.size), _alike(scene, low, high)
+    over_speeds = isinstance(problem.evaluate.vibration, PeakOver)
+    plan = _SPARING if problem.costly else _FEW if over_speeds else SearchPlan()
+    starts, alike = _starts(scene, problem, low.size), _alike(scene, low, high)
     for _ in range(_AGAIN):
-        found = search(judge, low, high, goal.judge.density, starts, alike, plan)
-        if found.excess <= 0.0 and not goal.judge.by_mass:
-            value = float(goal.judge.vibration.exact(found.point[None])[0])
+        found = search(judge, low, high, problem.evaluate.density, starts, alike, plan)
+        if found.excess <= 0.0 and not problem.evaluate.by_mass:
+            value = float(problem.evaluate.vibration.exact(found.point[None])[0])
             if value > found.objective * (1.0 + plan.hair):
                 continue  # what was hidden is known by now
         break
     return found
 
 
-def _starts(scene: Scene, goal: Goal, count: int) -> Array:
+def _starts(scene: Scene, problem: Problem, count: int) -> Array:
     """Volumes that just cover the walls at deflections the machine may have: there the law bends."""
     gravity, rows = axial_gravity(scene), []
-    for speed in goal.speeds:
+    for speed in problem.speeds:
         for deflection in _likely_deflections(scene, speed)[
-            : 5 if count == 1 and len(goal.speeds) == 1 else 2
+            : 5 if count == 1 and len(problem.speeds) == 1 else 2
         ]:
             row = []
             for fill in scene.fills:
                 e = min(deflection, 0.9 * fill.chamber.radius)
-                form = covering(fill.chamber, e, speed, gravity)
+                form = wetting_volumes(fill.chamber, e, speed, gravity)
                 row.append(form.optimal_volume if math.isinf(form.full_volume) else form.full_volume)
             rows.append(row)
     return np.array(rows[: 12 if count == 1 else 3]).reshape(-1, len(scene.fills))
@@ -115,29 +116,29 @@ def _alike(scene: Scene, low: Array, high: Array) -> list[list[int]]:
     return [group for group in groups.values() if len(group) > 1]
 
 
-def on_all_cells(scene: Scene, goal: Goal, found: Found) -> tuple[Found, Goal]:
+def on_all_cells(scene: Scene, problem: Problem, found: Found) -> tuple[Found, Problem]:
     """The best run-ups on few cells run again on all of the scene's, and the best of these."""
-    coarse = goal.judge.vibration
-    if not isinstance(coarse, RunupPeak) or goal.judge.by_mass or scene.runup is None:
-        return found, goal
+    coarse = problem.evaluate.vibration
+    if not isinstance(coarse, RunupPeak) or problem.evaluate.by_mass or scene.runup is None:
+        return found, problem
     if coarse.numerics.cells >= scene.runup.cells:
-        return found, goal
-    fine = replace(goal, judge=replace(goal.judge, vibration=RunupPeak(scene), best=math.inf))
-    return judged_again(fine, found), fine
+        return found, problem
+    fine = replace(problem, evaluate=replace(problem.evaluate, vibration=RunupPeak(scene), best=math.inf))
+    return evaluated_again(fine, found), fine
 
 
-def judged_again(fine: Goal, found: Found) -> Found:
-    """The best of what a search with a cheaper judge found, by the goal's own judge.
+def evaluated_again(fine: Problem, found: Found) -> Found:
+    """The best of what a search with a cheaper vibration found, by the problem's own evaluation.
 
     Parameters
     ----------
-    fine : the goal
+    fine : the problem
     found : by the search
     """
     allowed = np.maximum(found.judged.excess, 0.0) <= max(found.excess, 0.0)
     order = np.flatnonzero(allowed)[np.argsort(found.judged.objective[allowed], kind="stable")]
     tried = np.unique(np.concatenate((found.point[None], found.points[order[:_CLOSER]])), axis=0)
-    again = fine.judge(tried)
+    again = fine.evaluate(tried)
     best = int(np.argmin(np.where(again.excess <= max(found.excess, 0.0), again.objective, math.inf)))
     objective, excess = float(again.objective[best]), float(again.excess[best])
     return replace(found, point=tried[best], objective=objective, excess=excess)

@@ -14,10 +14,11 @@ import pytest
 from leblanc import units
 from leblanc.cli import main
 from leblanc.figures.optimise import write_figures
+from leblanc.results.optimum import OptimumResult
 from leblanc.scene.faults import SceneFaults
 from leblanc.scene.optimise import Optimisation
 from leblanc.scene.scene import load_scene, scene_from_table
-from leblanc.studies.optimise.optimise import OptimumRecord, optimise_scene
+from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.text.optimum import describe_optimum
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
@@ -187,7 +188,7 @@ def test_words_tell_what_is_not_feasible(scene_file: Path) -> None:
     assert "Closed form, chamber 1" in text
 
 
-def _optimum(name: str, **aim: object) -> OptimumRecord:
+def _optimum(name: str, **aim: object) -> OptimumResult:
     scene = load_scene(EXAMPLES / f"{name}.toml")
     return optimise_scene(scene.altered(speeds=scene.speeds.altered(count=9)), aim=Optimisation(**aim))
 

@@ -17,7 +17,7 @@ from PIL import Image
 
 from leblanc import figures
 from leblanc.figures import wave
-from leblanc.figures.wave import WaveHistory, WaveRecord
+from leblanc.results.layer import Wave, WaveFrames
 from meshes.errors import InputError
 from tests.leblanc.figures.test_wave_values import (
     R,
@@ -31,25 +31,25 @@ from tests.leblanc.figures.test_wave_values import (
 )
 
 
-def nothing() -> WaveRecord:
+def nothing() -> Wave:
     """A drum without liquid."""
     lost = complex(math.nan, math.nan)
     return replace(eccentric(), mean_depth=0.0, depth=np.zeros(720), force_ratio=0j, offset=lost)
 
 
-def half_dry() -> WaveRecord:
+def half_dry() -> Wave:
     theta = eccentric().theta
     return replace(eccentric(), depth=0.03 * np.maximum(np.cos(theta), 0.0), offset=0.06 + 0j)
 
 
-def deep(count: int) -> WaveRecord:
+def deep(count: int) -> Wave:
     """Nearly full: 90 % of the radius at the deepest place."""
     theta = np.linspace(0.0, 2.0 * math.pi, count, endpoint=False)
     layer = 0.45 * R * (1.0 + np.cos(theta))
     return replace(eccentric(), mean_depth=0.3 * R, theta=theta, depth=layer, force_ratio=-3.0 - 0.2j)
 
 
-def wordy() -> WaveRecord:
+def wordy() -> Wave:
     notes = ("the surface reaches the wall in linear theory: the amplitude is too large for it",) * 12
     return replace(bore(-1e4), title="A title " * 8, notes=notes, spin=1.23456e5)
 
@@ -316,7 +316,7 @@ def test_bad_record_is_refused(field: str, values: dict[str, object]):
     ],
 )
 def test_bad_history_is_refused(field: str, values: dict[str, object]):
-    history: WaveHistory = running(bore(), count=3)
+    history: WaveFrames = running(bore(), count=3)
     with pytest.raises(InputError) as caught:
         replace(history, **values)
     assert caught.value.field == field

@@ -11,12 +11,12 @@ from matplotlib.markers import MarkerStyle
 
 from leblanc import figures
 from leblanc.figures import wave
-from leblanc.figures.wave import WaveHistory, WaveRecord
+from leblanc.results.layer import Wave, WaveFrames
 
 R, SURFACE, SPIN = 0.15, 0.135, 40.0
 
 
-def eccentric(amplitude: float = 0.005, count: int = 720, turned: float = 0.0) -> WaveRecord:
+def eccentric(amplitude: float = 0.005, count: int = 720, turned: float = 0.0) -> Wave:
     """Synchronous whirl: the surface is a circle about the rotation axis, at -amplitude from the drum's.
 
     With `turned` the layer is drawn for a deflection at that angle of the frame, in which it is not at rest.
@@ -24,7 +24,7 @@ def eccentric(amplitude: float = 0.005, count: int = 720, turned: float = 0.0) -
     theta = np.linspace(0.0, 2.0 * math.pi, count, endpoint=False)
     surface = np.sqrt(SURFACE**2 - np.square(amplitude * np.sin(theta))) - amplitude * np.cos(theta)
     offset = SURFACE**2 * amplitude / (R**2 - SURFACE**2) * np.exp(1j * turned)
-    return WaveRecord(
+    return Wave(
         title="Layer of water",
         model="statics",
         radius=R,
@@ -40,7 +40,7 @@ def eccentric(amplitude: float = 0.005, count: int = 720, turned: float = 0.0) -
     )
 
 
-def bore(whirl_speed: float = 30.0, count: int = 256) -> WaveRecord:
+def bore(whirl_speed: float = 30.0, count: int = 256) -> Wave:
     """A sawtooth that falls steeply at 60 degrees."""
     theta = np.linspace(-math.pi, math.pi, count, endpoint=False)
     share = np.mod(theta - math.pi / 3.0, 2.0 * math.pi) / (2.0 * math.pi) - 0.5
@@ -56,7 +56,7 @@ def bore(whirl_speed: float = 30.0, count: int = 256) -> WaveRecord:
     )
 
 
-def running(record: WaveRecord, count: int = 50, duration: float = 0.5) -> WaveHistory:
+def running(record: Wave, count: int = 50, duration: float = 0.5) -> WaveFrames:
     """The wave of a record, running round the drum with the deflection, which starts at 30 degrees."""
     time = np.linspace(0.0, duration, count)
     theta = np.linspace(0.0, 2.0 * math.pi, 360, endpoint=False)
@@ -64,7 +64,7 @@ def running(record: WaveRecord, count: int = 50, duration: float = 0.5) -> WaveH
     angle, depth = wave.unrolled(record.theta, record.depth)
     from_deflection = np.mod(theta - place[:, None] + math.pi, 2.0 * math.pi) - math.pi
     period = np.linspace(0.1, 0.4, 4) * duration
-    return WaveHistory(
+    return WaveFrames(
         time=time,
         theta=theta,
         depth=np.interp(from_deflection, angle, depth),
@@ -202,9 +202,7 @@ def test_frames_can_be_followed() -> None:
     for whirl, duration in ((30.0, 1.0), (30.0, 100.0), (-60.0, 20.0)):
         record = bore(whirl)
         time = np.linspace(0.0, duration, 20001)
-        still = WaveHistory(
-            time, np.arange(3.0), np.zeros((time.size, 3)), np.zeros(time.size, dtype=complex)
-        )
+        still = WaveFrames(time, np.arange(3.0), np.zeros((time.size, 3)), np.zeros(time.size, dtype=complex))
         chosen = wave.frames(record, still)
         assert chosen.size <= 120 and chosen[-1] == 20000
         turn = abs(whirl - SPIN) * np.max(np.diff(time[chosen]))

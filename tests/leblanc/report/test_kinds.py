@@ -22,13 +22,14 @@ from leblanc.report import runup as report_runup
 from leblanc.report import whirl_map as report_map
 from leblanc.report.page import about
 from leblanc.results.exciter import ExciterResult
+from leblanc.results.optimum import ConstraintValue, Feasibility, OptimumResult
+from leblanc.results.runup import RunupResult
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import scene_from_table
 from leblanc.studies.exciter import run_exciter
-from leblanc.studies.optimise.constraints import Verdict
-from leblanc.studies.optimise.optimise import OptimumRecord, optimise_scene
+from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.run import run_scene
-from leblanc.studies.runup import RunupRecord, runup_scene
+from leblanc.studies.runup import runup_scene
 from leblanc.studies.whirl_map import map_scene
 from leblanc.text import exciter as text_exciter
 from leblanc.text import whirl_map as text_map
@@ -188,17 +189,17 @@ def test_a_map_of_many_points_stays_light(tmp_path: Path) -> None:
 
 
 @cache
-def optimum() -> OptimumRecord:
+def optimum() -> OptimumResult:
     return optimise_scene(scene_from_table(example("centrifuge", 9)), front=True)
 
 
 def test_optimum_numbers() -> None:
     record = optimum()
     (row,) = report_optimise.volumes(record).rows
-    (form,), (fill,) = record.covering, record.scene.fills
+    (form,), (chamber,) = record.closed_form, record.chambers
     expected = [
-        record.volume[0] * 1e6, 100.0 * record.volume[0] / fill.chamber.capacity, form.deflection * 1e3,
-        form.optimal_volume * 1e6, 100.0 * form.share, form.full_volume * 1e6,
+        record.volume[0] * 1e6, 100.0 * record.volume[0] / chamber.capacity, form.deflection * 1e3,
+        form.optimal_volume * 1e6, 100.0 * form.unbalance_share, form.full_volume * 1e6,
     ]  # fmt: skip
     shown = [row[k].text for k in (1, 3, 4, 5, 6, 7)]
     assert shown == ["never" if math.isinf(one) else printed(one) for one in expected]
@@ -218,7 +219,11 @@ def test_optimum_numbers() -> None:
     for row in rows:
         points = [k for k in range(edge.mass.size) if printed(edge.mass[k] * 1e3) == row[0].text.split()[0]]
         mine = [
-            (printed(edge.volume[k, 0] * 1e6), printed(edge.vibration[k] * 1e3), printed(edge.margin[k]))
+            (
+                printed(edge.volume[k, 0] * 1e6),
+                printed(edge.vibration[k] * 1e3),
+                printed(edge.stability_margin[k]),
+            )
             for k in points
         ]
         assert tuple(cell.text for cell in row[1:]) in mine
@@ -230,14 +235,19 @@ def test_optimum_warnings() -> None:
     """With constraints kept and nothing growing no row is marked; each trouble marks its own."""
     record = optimum()
     calm = replace(
-        record, growth=-1.0, feasible=True, constraints={"capacity": Verdict(1.0, 0.1, True, "1", "s")}
+        record,
+        growth=-1.0,
+        feasibility=Feasibility.FEASIBLE,
+        constraints={"capacity": ConstraintValue(1.0, 0.1, True, "1", "s")},
+        response=None,
     )
-    assert not any(cell.warning for row in report_optimise.checks(calm, None).rows for cell in row)
+    assert not any(cell.warning for row in report_optimise.checks(calm).rows for cell in row)
     assert not any(cell.warning for row in report_optimise.constraints(calm).rows for cell in row)
-    grows = report_optimise.checks(replace(calm, growth=0.5), None).rows
+    grows = report_optimise.checks(replace(calm, growth=0.5)).rows
     assert [row[0].text for row in grows if row[1].warning] == ["A small whirl grows when operating"]
-    over = replace(calm, feasible=False, constraints={"dry_patch": Verdict(0.0, 1.0, False, "1", "dry")})
-    rows = report_optimise.checks(over, None).rows
+    dry = {"dry_patch": ConstraintValue(0.0, 1.0, False, "1", "dry")}
+    over = replace(calm, feasibility=Feasibility.INFEASIBLE, constraints=dry)
+    rows = report_optimise.checks(over).rows
     assert [(row[0].text, row[1].text) for row in rows if row[1].warning] == [
         ("Constraints exceeded", "dry patch")
     ]
@@ -290,8 +300,7 @@ def test_optimise_report_is_the_json() -> None:
 def test_a_search_that_names_its_model_says_so() -> None:
     scene = scene_from_table(example("washing_machine", 5, model={"liquid": "statics"}))
     record = optimise_scene(scene, front=False)
-    filled = report_optimise.filled(record)
-    assert filled is not None and "scene asks" in report_optimise.reasons(record, filled)[-1].reason
+    assert "scene asks" in record.models[-1].reason
 
 
 def test_a_given_deflection_has_its_report() -> None:
@@ -309,7 +318,7 @@ def test_a_given_deflection_has_its_report() -> None:
 
 
 @cache
-def run() -> RunupRecord:
+def run() -> RunupResult:
     """Up and down, lying, so that its liquid is captured and let go."""
     return runup_scene(lying(runup={"start": 3.0, "stop": 30.0, "rate": 20.0, "back": True, "duration": 2.0}))
 
@@ -360,7 +369,7 @@ def test_runup_numbers() -> None:
     )
 
 
-def calm_run() -> RunupRecord:
+def calm_run() -> RunupResult:
     record = run()
     h = record.history
     all_the_time = np.ones_like(h.captured)
@@ -380,7 +389,7 @@ def test_runup_warnings() -> None:
     part[10:20] = True
     where = f"{h.time[10]:.3g} to {h.time[19]:.3g} s"
 
-    def with_history(**changes: Any) -> RunupRecord:
+    def with_history(**changes: Any) -> RunupResult:
         return replace(record, history=replace(h, **changes))
 
     audit = replace(h.audit, unbalance=1.0, support=0.99)

@@ -189,7 +189,7 @@ def test_run_up_takes_linear_layers_while_waves_are_small() -> None:
     record = runup_scene(tame, cells=64)
     # By the model below the tolerance, by the steps of 64 cells about as much again.
     assert record.model == "linear" and record.model_error <= 2.0 * tame.model.tolerance
-    assert "within the tolerance" in record.model_reason and record.model_reason in record.notes[0]
+    assert "within the tolerance" in record.model_reason and record.model_reason in record.notes[0].text
     other = runup_scene(asked(tame, "long_wave"), cells=64, check=False)
     a, b = record.history.amplitude, other.history.amplitude
     assert np.abs(a - b).max() <= record.model_error * b.max()

@@ -13,7 +13,7 @@ from fluid.fill import Fill
 from fluid.friction import Friction
 from fluid.liquid import known_liquid
 from leblanc.cli import main
-from leblanc.results.layer import LayerAnswer
+from leblanc.results.layer import LayerResult
 from leblanc.studies.layer import answer_layer, steady_film
 from meshes.chamber import Chamber
 from solvers.layer.prescribed import Whirl
@@ -24,7 +24,7 @@ VOLUME = math.pi * (R**2 - A**2) * H
 FILL = Fill(Chamber(R, H), known_liquid("water"), VOLUME)
 
 
-def _first_moment(answer: LayerAnswer) -> float:
+def _first_moment(answer: LayerResult) -> float:
     """int x dA of the drawn layer over its area: the surface is r_s = R - depth."""
     surface = R - answer.depth
     area = np.mean(R**2 - surface**2) / 2.0

@@ -12,7 +12,7 @@ from fluid.fill import Fill, compartment_share
 from fluid.friction import Friction
 from fluid.liquid import known_liquid
 from leblanc.cli import main
-from leblanc.results.layer import LayerAnswer
+from leblanc.results.layer import LayerResult
 from leblanc.studies.layer import answer_layer
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
@@ -29,7 +29,7 @@ def fill(baffles: Baffles | None = None) -> Fill:
     return Fill(Chamber(WALL, HEIGHT, baffles=baffles), WATER, VOLUME)
 
 
-def answer(whirl: float, model: str, baffles: Baffles | None = None) -> LayerAnswer:
+def answer(whirl: float, model: str, baffles: Baffles | None = None) -> LayerResult:
     return answer_layer(fill(baffles), SPIN, whirl, 1e-4, model)
 
 
@@ -68,7 +68,7 @@ def test_force_and_offset_obey_newton() -> None:
             liquid, whole = WALL**2 - SURFACE**2, WALL**2
             ratio = liquid / whole * (1.0 + found.offset / 1e-4)
             assert found.force_ratio == pytest.approx(ratio, rel=1e-7)
-            told = any("against the whirl" in note for note in found.notes)
+            told = any("against the whirl" in note.text for note in found.notes)
             assert told == (against > 1e-6)
 
 

@@ -13,7 +13,8 @@ import pytest
 
 from fluid.liquid import known_liquid
 from leblanc.cli import main
-from leblanc.studies.modes import Resolution, SectionSource, answer_modes, table_lines
+from leblanc.studies.modes import Resolution, SectionSource, answer_modes
+from leblanc.text.modes import table_lines
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.files.exchange import write_section
@@ -43,7 +44,7 @@ CALL = ["modes", "--radius", "0.15", "--height", "5 cm", "--volume", str(VOLUME)
 @kills("leblanc.studies.modes:answer_modes", "damping.rate / size", "damping.rate * size")
 def test_ring() -> None:
     """Frequencies, exact values beside them, errors estimated within a factor of two, damping by hand."""
-    answer, _ = answer_modes(Chamber(R, H), VOLUME, WATER, 40.0, 6, Resolution(64, 4))
+    answer = answer_modes(Chamber(R, H), VOLUME, WATER, 40.0, 6, Resolution(64, 4))
     exact = np.array(answer.exact, dtype=float)
     assert answer.error_estimate is not None
     error = np.abs(answer.frequency / exact - 1.0)
@@ -57,11 +58,11 @@ def test_ring() -> None:
     assert answer.converged and not answer.notes
 
 
-@kills("leblanc.studies.modes:table_lines", "k += same", "k += 1")
+@kills("leblanc.text.modes:table_lines", "k += same", "k += 1")
 def test_closed_sectors() -> None:
     """Six compartments: one frequency six times, against the series of sines."""
     chamber = Chamber(R, H, baffles=Baffles(6))
-    answer, _ = answer_modes(chamber, VOLUME, WATER, 40.0, 8, Resolution(96, 4))
+    answer = answer_modes(chamber, VOLUME, WATER, 40.0, 8, Resolution(96, 4))
     log = math.log(R / A)
     coarse, fine = (sector_frequencies(math.pi / 3.0, log, terms, 2) for terms in (60, 120))
     first, second = 40.0 * (fine + (fine - coarse) / 7.0)
@@ -83,20 +84,18 @@ def test_file(tmp_path: Path) -> None:
     path = tmp_path / "disc.msh"
     write_section(disc(150.0, 96, order=2), path)
     source = SectionSource(path, 1e-3)
-    plain, _ = answer_modes(Chamber(R, H), VOLUME, WATER, 40.0, 8)
+    plain = answer_modes(Chamber(R, H), VOLUME, WATER, 40.0, 8)
     exact = np.array(plain.exact, dtype=float)
     for order in (1, 2):
-        answer, _ = answer_modes(
-            Chamber(R, H), VOLUME, WATER, 40.0, 8, Resolution(64, 4, order=order), source
-        )
+        answer = answer_modes(Chamber(R, H), VOLUME, WATER, 40.0, 8, Resolution(64, 4, order=order), source)
         error = np.abs(answer.frequency / exact - 1.0)
         # The file's own wall, parabolas of 96 sides, is off by 1e-8; above that the extrapolation holds.
         assert np.all(error < {1: 2e-3, 2: 5e-6}[order])
         known = error > 5e-8
         assert known.any() and np.all(np.abs(answer.error_estimate / error - 1.0)[known] < 0.5)
         assert answer.exact == (None,) * 8
-    other, _ = answer_modes(Chamber(0.2, H), VOLUME, WATER, 40.0, 2, Resolution(32, 2), source)
-    assert any("not --radius" in note for note in other.notes)
+    other = answer_modes(Chamber(0.2, H), VOLUME, WATER, 40.0, 2, Resolution(32, 2), source)
+    assert any("not --radius" in note.text for note in other.notes)
 
 
 def circle_drawing(path: Path) -> None:
@@ -122,7 +121,7 @@ def test_outline(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for more in ([], ["--mesh-size", "10 mm"]):
         assert main([*CALL, "--count", "4", "--mesh", str(tmp_path / "circle.dxf"), *more, "--json"]) == 0
         shown.append(json.loads(capsys.readouterr().out))
-    plain, _ = answer_modes(Chamber(R, H), VOLUME, WATER, 40.0, 4)
+    plain = answer_modes(Chamber(R, H), VOLUME, WATER, 40.0, 4)
     for one in shown:
         assert np.allclose(one["frequency"], plain.frequency, rtol=5e-5)
         assert max(one["error_estimate"]) < 1e-4
@@ -146,9 +145,9 @@ def test_a_poor_mesh_is_named(tmp_path: Path) -> None:
     points[inside] *= 0.12
     write_section(Section(points, coarse.triangles), tmp_path / "poor.msh")
     source = SectionSource(tmp_path / "poor.msh")
-    answer, _ = answer_modes(Chamber(R, H), VOLUME, WATER, 40.0, 2, Resolution(32, 2), source)
-    assert any(note.startswith("mesh: ") for note in answer.notes)
-    assert any("straight sides" in note for note in answer.notes)
+    answer = answer_modes(Chamber(R, H), VOLUME, WATER, 40.0, 2, Resolution(32, 2), source)
+    assert any(note.text.startswith("mesh: ") for note in answer.notes)
+    assert any("straight sides" in note.text for note in answer.notes)
 
 
 def test_json(capsys: pytest.CaptureFixture[str]) -> None:
@@ -204,18 +203,18 @@ def test_wrong_input(more: list[str], word: str, capsys: pytest.CaptureFixture[s
 
 def test_dry_baffles_change_nothing() -> None:
     chamber = Chamber(R, H, baffles=Baffles(3, 0.05, 0.02))
-    answer, _ = answer_modes(chamber, VOLUME, WATER, 40.0, 2, Resolution(32, 2))
-    assert answer.exact[0] is not None and "clear of the liquid" in answer.notes[0]
+    answer = answer_modes(chamber, VOLUME, WATER, 40.0, 2, Resolution(32, 2))
+    assert answer.exact[0] is not None and "clear of the liquid" in answer.notes[0].text
 
 
 def test_a_coarse_mesh_says_so() -> None:
-    answer, _ = answer_modes(Chamber(R, H), VOLUME, WATER, 40.0, 14, Resolution(16, 2))
-    assert any("--segments" in note for note in answer.notes)
+    answer = answer_modes(Chamber(R, H), VOLUME, WATER, 40.0, 14, Resolution(16, 2))
+    assert any("--segments" in note.text for note in answer.notes)
 
 
 def test_thick_oil_says_so() -> None:
-    answer, _ = answer_modes(Chamber(R, H), VOLUME, known_liquid("glycerol"), 40.0, 2, Resolution(32, 2))
-    assert any("boundary layers" in note for note in answer.notes)
+    answer = answer_modes(Chamber(R, H), VOLUME, known_liquid("glycerol"), 40.0, 2, Resolution(32, 2))
+    assert any("boundary layers" in note.text for note in answer.notes)
 
 
 def test_baffle_table() -> None:
@@ -232,6 +231,6 @@ def test_baffle_table() -> None:
 
 def test_plates_of_a_high_chamber_do_not_count() -> None:
     chamber = Chamber(R, 1e6)
-    _, record = answer_modes(chamber, VOLUME / H * 1e6, WATER, 40.0, 2, Resolution(32, 2))
-    damping = mode_damping(condense(record.section), record.modes, WATER.viscosity, 1e6)
+    record = answer_modes(chamber, VOLUME / H * 1e6, WATER, 40.0, 2, Resolution(32, 2))
+    damping = mode_damping(condense(record.section), record.shapes, WATER.viscosity, 1e6)
     assert np.allclose(damping.rate, damping.wall_rate, rtol=1e-5)

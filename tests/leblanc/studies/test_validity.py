@@ -11,7 +11,7 @@ from fluid.fill import Fill
 from fluid.friction import NO_FRICTION, Friction
 from fluid.liquid import known_liquid
 from leblanc.cli import main
-from leblanc.results.layer import LayerAnswer
+from leblanc.results.layer import LayerResult
 from leblanc.studies.layer import answer_layer
 from leblanc.studies.validity import MEANING
 from meshes.chamber import Chamber
@@ -25,7 +25,7 @@ def layer(relative_depth: float, liquid: str = "water") -> Fill:
     return Fill(Chamber(R, H), known_liquid(liquid), math.pi * (R**2 - surface**2) * H)
 
 
-def outside(answer: LayerAnswer) -> set[str]:
+def outside(answer: LayerResult) -> set[str]:
     return {number.name for number in answer.validity if not number.in_range}
 
 
@@ -53,7 +53,7 @@ def test_outside_is_said(model: str, depth: float, whirl: float, amplitude: floa
     friction = Friction("linear", 1.0) if model != "linear" else NO_FRICTION
     answer = answer_layer(layer(depth), SPIN, whirl, amplitude, model, friction)
     assert out in outside(answer) and not answer.in_range
-    assert any(MEANING[out] in note for note in answer.notes)
+    assert any(MEANING[out] in note.text for note in answer.notes)
 
 
 def test_gravity_that_lets_the_layer_fall_is_out_of_range() -> None:

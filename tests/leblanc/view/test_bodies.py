@@ -15,14 +15,13 @@ import pytest
 from fluid.fill import Fill
 from fluid.liquid import known_liquid
 from fluid.waves import free_wave_frequencies
+from leblanc.results.shapes import LiquidBodies
 from leblanc.scene.scene import Speeds, scene_from_table
-from leblanc.studies.shapes import look_at
-from leblanc.view.bodies import AROUND, LiquidBodies, bodies_at_rest, sections_of, surfaces, wall_is_dry
-from leblanc.view.film import sweep_film
-from leblanc.view.modes import drawn_lift, shape_of, solve_mode
-from leblanc.view.scale import choose_scale, drawn_volume
-from leblanc.view.still import liquid_at
-from leblanc.view.view import View, view_scene
+from leblanc.studies.shapes.bodies import AROUND, bodies_at_rest, sections_of, surfaces, wall_is_dry
+from leblanc.studies.shapes.machine import drawn_liquid, machine_motion
+from leblanc.studies.shapes.modes import mode_view
+from leblanc.studies.shapes.scale import choose_scale, drawn_volume, scale_of
+from leblanc.view.modes import shape_of
 from leblanc.view.walls import outline
 from meshes.baffles import Baffles
 from meshes.bodies.body import body_integrals
@@ -33,6 +32,7 @@ from meshes.files.exchange import write_section
 from meshes.rings.sectors import compartment
 from meshes.section import Section, annulus, disc
 from tests.leblanc.scene.test_baffles import BASE
+from tests.leblanc.view.views import Shown, film_over, show
 
 CHORD = (2.0 * math.pi / AROUND) ** 2 / 6.0
 WATER = known_liquid("water")
@@ -223,15 +223,15 @@ CLOSED = {
 }  # fmt: skip
 
 
-def across(view: View, name: str) -> np.ndarray:
+def across(view: Shown, name: str) -> np.ndarray:
     points = np.concatenate([one.points for one in view.picture.pieces if one.name == name])
     return np.asarray(points[:, 0] + 1j * points[:, 1])
 
 
 def test_picture_of_compartments() -> None:
     fresh()
-    view = view_scene(scene_of(**CLOSED))
-    centre = 1e3 * view.scale.deflection * complex(view.sight.deflection[-1, 0])
+    view = show(scene_of(**CLOSED))
+    centre = 1e3 * view.scale.deflection * complex(view.motion.deflection[-1, 0])
     plates = [one for one in view.picture.pieces if one.name == "baffle 1"]
     assert len(plates) == 6
     for k, plate in enumerate(plates):
@@ -258,8 +258,8 @@ def check_picture_of_a_section(folder: Path) -> None:
     shape = lobes(0.05, 0.07).chamber.section
     assert shape is not None
     write_section(shape.mesh, folder / "lobes.msh")
-    view = view_scene(scene_of(section=str(folder / "lobes.msh")))
-    centre = 1e3 * view.scale.deflection * complex(view.sight.deflection[-1, 0])
+    view = show(scene_of(section=str(folder / "lobes.msh")))
+    centre = 1e3 * view.scale.deflection * complex(view.motion.deflection[-1, 0])
     for name in ("wall 1", "rim 1"):
         wall = across(view, name) - centre
         outer = wall[np.abs(wall) > 120.0]
@@ -270,9 +270,9 @@ def check_picture_of_a_section(folder: Path) -> None:
     assert np.ptp(np.abs(across(view, "surface 1"))) > 0.0
     assert "Section from lobes.msh." in view.picture.caption and "wet all round" in view.picture.state
     # No further than 90 % of the depth at the thinnest place.
-    fill = view.sight.fills[0]
+    fill = view.motion.fills[0]
     assert np.abs(centre) <= 900.0 * view.scale.depth * fill.depth * (1.0 + 1e-9)
-    assert view.in_numbers()["volume_drawn"] == [pytest.approx(fill.volume)]
+    assert view.liquid.volume == (pytest.approx(fill.volume),)
 
 
 def check_modes_of_a_section(folder: Path) -> None:
@@ -281,10 +281,10 @@ def check_modes_of_a_section(folder: Path) -> None:
     drawn = scene_of(section=str(folder / "disc.msh"))
     fill = Fill(Chamber(RADIUS, HEIGHT), WATER, VOLUME)
     for number in (1, 2):
-        mode = solve_mode(drawn, number)
+        mode = mode_view(drawn, number)
         both = free_wave_frequencies(mode.crests, math.log(RADIUS / fill.surface_radius), mode.speed)
         assert mode.frequency == pytest.approx(float(both[0 if mode.frequency > 0.0 else 1]), rel=1e-4)
-        lift = drawn_lift(mode)
+        lift = mode.lift
         assert lift == pytest.approx(0.6 * fill.depth, rel=1e-4)
         volumes = []
         for phase in (0.0, 0.7):
@@ -313,12 +313,12 @@ def test_sections(check: Any, tmp_path: Path) -> None:
 
 def test_a_film_over_the_speeds_has_bodies_in_every_frame() -> None:
     scene = scene_of(**CLOSED).altered(speeds=Speeds(start=5.0, stop=150.0, count=3))
-    sight = look_at(scene)
-    scale = choose_scale(sight.fills, sight.deflection, sight.speed, sight.gravity)
-    film = sweep_film(sight, scale, 3)
+    motion = machine_motion(scene)
+    scale = scale_of(motion)
+    film = film_over(motion, scale, 3)
     for k in range(3):
         assert sum(one.name == "surface 1" for one in film.picture(k).pieces) == 6
-        drawn = liquid_at(sight, 0, k, scale)
+        (drawn,) = drawn_liquid(motion, k, scale).bodies
         assert isinstance(drawn, LiquidBodies)
         assert drawn.volume() == pytest.approx(VOLUME, rel=10.0 * CHORD)
 
@@ -326,7 +326,7 @@ def test_a_film_over_the_speeds_has_bodies_in_every_frame() -> None:
 def test_a_mode_whose_surface_meets_a_wall_is_refused(tmp_path: Path) -> None:
     write_section(compartment(Baffles(1), 0, RADIUS, 0.05, 36), tmp_path / "slit.msh")
     with pytest.raises(InputError, match="meets no wall"):
-        solve_mode(scene_of(section=str(tmp_path / "slit.msh")), 1)
+        mode_view(scene_of(section=str(tmp_path / "slit.msh")), 1)
 
 
 def test_an_empty_and_a_full_section() -> None:
@@ -342,7 +342,7 @@ def is_dry_drawn(fill: Fill) -> bool:
 
 
 def test_low_baffles_are_plates_in_one_body() -> None:
-    view = view_scene(scene_of(**CLOSED | {"baffles": {"count": 3, "tip_radius": "174 mm"}}))
+    view = show(scene_of(**CLOSED | {"baffles": {"count": 3, "tip_radius": "174 mm"}}))
     assert sum(one.name == "baffle 1" for one in view.picture.pieces) == 3
     assert sum(one.name == "surface 1" for one in view.picture.pieces) == 1
     assert "compartments" not in view.picture.caption

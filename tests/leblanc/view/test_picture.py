@@ -9,19 +9,23 @@ import numpy as np
 import pytest
 
 from fluid.waves import free_wave_frequencies
+from leblanc.results.drawing import Scale
+from leblanc.results.shapes import LiquidShape
 from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.studies.run import run_scene
-from leblanc.studies.shapes import look_at
-from leblanc.view.exciter import exciter_picture
-from leblanc.view.film import Film, sweep_film, write_film
-from leblanc.view.modes import drawn_lift, mode_film, mode_picture, shape_of, solve_mode
+from leblanc.studies.shapes.exciter import table_view
+from leblanc.studies.shapes.machine import machine_motion
+from leblanc.studies.shapes.modes import mode_view
+from leblanc.studies.shapes.scale import scale_of
+from leblanc.view.exciter import table_picture
+from leblanc.view.files import write_picture
+from leblanc.view.film import Film, write_film
+from leblanc.view.modes import mode_film, mode_picture, shape_of
 from leblanc.view.parts import Picture
 from leblanc.view.picture import SIZE, VIEWS, aim, fill, pixels, plotter, prepare_off_screen
-from leblanc.view.scale import Scale, choose_scale
-from leblanc.view.still import liquid_at, still
-from leblanc.view.view import View, view_scene, write_picture
 from meshes.errors import InputError
 from tests.leblanc.view.test_surfaces import CHORD, centroid
+from tests.leblanc.view.views import Shown, film_over, picture_at, show
 from tests.mutants import kills
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
@@ -32,9 +36,9 @@ def scene(name: str) -> Scene:
     return load_scene(EXAMPLES / f"{name}.toml")
 
 
-def working(name: str) -> View:
+def working(name: str) -> Shown:
     """An example at its working speed."""
-    return view_scene(scene(name))
+    return show(scene(name))
 
 
 def across(picture: Picture, name: str) -> np.ndarray:
@@ -64,9 +68,9 @@ def test_factor() -> None:
     # The rim's centre stands off the axis of rotation by the deflection times the factor that is printed.
     for name in MACHINES:
         view = working(name)
-        for k in range(len(view.sight.fills)):
+        for k in range(len(view.motion.fills)):
             centre = middle_of_circle(across(view.picture, f"rim {k + 1}"))
-            true = complex(view.sight.deflection[-1, k]) * 1e3
+            true = complex(view.motion.deflection[-1, k]) * 1e3
             # Means over 180 points are exact for a circle, to rounding of the radius.
             assert abs(centre - view.scale.deflection * true) < 1e-9, name
         if view.scale.deflection != 1.0:
@@ -79,9 +83,8 @@ def test_direction() -> None:
     # far above gravity. All chambers move alike, so the mean over them does too.
     for name in ("horizontal_rig", "vertical_rig", "washing_machine", "runup", "centrifuge"):
         view = working(name)
-        answer = view.sight.record.response
-        shapes = [liquid_at(view.sight, k, 0, view.scale) for k in range(len(view.sight.fills))]
-        drawn = sum(centroid(one) for one in shapes if one is not None)
+        answer = view.motion.response.response
+        drawn = sum(centroid(one) for one in view.liquid.bodies if isinstance(one, LiquidShape))
         turned = drawn * np.exp(-1j * float(answer.liquid_angle[-1]))
         assert abs(np.angle(turned)) < 1e-3, name
 
@@ -91,7 +94,7 @@ def test_liquid_fills_its_walls() -> None:
     # of rotation: the body belongs to the deflection that is drawn.
     for name in ("horizontal_rig", "two_plane_rig", "washing_machine"):
         view = working(name)
-        for k, fill_ in enumerate(view.sight.fills):
+        for k, fill_ in enumerate(view.motion.fills):
             centre = middle_of_circle(across(view.picture, f"rim {k + 1}"))
             away = np.abs(across(view.picture, f"liquid {k + 1}") - centre)
             assert away.max() == pytest.approx(fill_.chamber.radius * 1e3, rel=1e-9)
@@ -99,8 +102,9 @@ def test_liquid_fills_its_walls() -> None:
 
 
 def test_table() -> None:
-    picture, found = exciter_picture(load_scene(EXAMPLES / "vibratory_table.toml"))
-    slow, fast, factor = (float(str(found[key])) for key in ("slow", "fast", "deflection_factor"))
+    table = table_view(load_scene(EXAMPLES / "vibratory_table.toml"))
+    picture = table_picture(table)
+    slow, fast, factor = table.slow, table.fast, table.factor
     arrow = picture.piece("vibration").points
     assert np.linalg.norm(arrow[1] - arrow[0]) == pytest.approx(1e3 * factor * (slow + fast), rel=1e-12)
     # Far above resonance the unbalance shakes the table by m e/M; corrections are of the order of the square
@@ -123,47 +127,51 @@ def test_spin_and_unbalance() -> None:
         assert mark.real == pytest.approx(max(f.chamber.radius for f in scene(name).fills) * 1e3)
 
 
-@kills("leblanc.studies.shapes:_lean", "(high - low) / np.ptp(planes)", "(low - high) / np.ptp(planes)")
+@kills(
+    "leblanc.studies.shapes.machine:_lean",
+    "(high - low) / np.ptp(planes)",
+    "(low - high) / np.ptp(planes)",
+)
 def test_axis_of_the_drum() -> None:
     # It runs through the middles of the chambers as they are drawn, in both planes of the rotor.
     view = working("two_plane_rig")
     line = next(one for one in view.picture.pieces if one.name == "axis of the drum").points
-    for k, place in enumerate(view.sight.places):
+    for k, place in enumerate(view.motion.places):
         share = (place * 1e3 - line[0, 0]) / (line[1, 0] - line[0, 0])
         point = line[0] + share * (line[1] - line[0])
         centre = middle_of_circle(across(view.picture, f"rim {k + 1}"))
         assert complex(point[1], point[2]) == pytest.approx(centre, abs=1e-9)
 
 
-@kills("leblanc.studies.shapes:_lean", "for place in (-0.5, 0.5)", "for place in (0.5, -0.5)")
+@kills("leblanc.studies.shapes.machine:_lean", "for place in (-0.5, 0.5)", "for place in (0.5, -0.5)")
 def test_lean_of_one_chamber() -> None:
     # With one chamber the slope comes from the rotor's coordinates: the same as between two chambers, the
     # second one empty, at another plane.
     tub = scene("tub")
-    one = look_at(tub, 40.0)
+    one = machine_motion(tub, 40.0)
     ring = tub.chambers[0]
     far = ring.altered(plane=ring.plane - 0.2, volume=0.0)
-    two = look_at(tub.altered(chambers=(ring, far)), 40.0)
+    two = machine_motion(tub.altered(chambers=(ring, far)), 40.0)
     assert abs(one.lean[0]) > 0.0
     assert complex(one.lean[0]) == pytest.approx(complex(two.lean[0]), rel=1e-6)
 
 
 def test_same_answer_as_run() -> None:
     machine = scene("washing_machine")
-    sight, record = look_at(machine), run_scene(machine)
+    sight, record = machine_motion(machine), run_scene(machine)
     assert np.array_equal(sight.deflection[:, 0], record.response.deflection)
 
 
-@kills("leblanc.studies.shapes:places_of", "behind -= height", "behind -= 0.0 * height - behind")
+@kills("leblanc.studies.shapes.machine:places_of", "behind -= height", "behind -= 0.0 * height - behind")
 def test_chambers_apart() -> None:
     # Chambers of a planar rotor that do not nest are drawn one behind the other; rings that nest stay.
     apart = working("horizontal_rig")
-    assert apart.sight.moved
-    assert abs(apart.sight.places[0] - apart.sight.places[1]) > 0.02
+    assert apart.motion.moved
+    assert abs(apart.motion.places[0] - apart.motion.places[1]) > 0.02
     assert "one behind the other" in apart.picture.caption
     nested = working("vertical_rig")
-    assert not nested.sight.moved
-    assert len(set(nested.sight.places)) == 1
+    assert not nested.motion.moved
+    assert len(set(nested.motion.places)) == 1
 
 
 def test_gravity_points_down() -> None:
@@ -187,14 +195,14 @@ def test_mode() -> None:
     fill_ = machine.fills[0]
     log = math.log(fill_.chamber.radius / fill_.surface_radius)
     for number in (1, 2, 3):
-        mode = solve_mode(machine, number)
+        mode = mode_view(machine, number)
         both = free_wave_frequencies(mode.crests, log, mode.speed)
         exact = float(both[0 if mode.frequency > 0.0 else 1])
         # 120 x 4 curved elements: about 1e-6 for the first modes.
         assert mode.frequency == pytest.approx(exact, rel=1e-5)
         # A crest of the drawn wave runs as sigma/n says: with the spin if sigma is above 0. It is the place
         # where the phase of n theta - sigma t is that of the lowest radius.
-        lift = drawn_lift(mode)
+        lift = mode.lift
         # Where the surface is displaced outwards, its radius is larger.
         outwards = shape_of(mode, 0.0, lift).radius[:, 0] - fill_.surface_radius
         assert np.all(outwards * mode.displacement.real >= -1e-15)
@@ -213,22 +221,22 @@ def test_mode() -> None:
 
 
 def test_a_dry_wall_is_said_and_drawn() -> None:
-    view = view_scene(scene("runup"), 24.0)
+    view = show(scene("runup"), 24.0)
     assert "dry in part" in view.picture.state
     assert view.picture.caption.startswith("Everything to scale.")
-    assert "wet all round" in view_scene(scene("runup"), 90.0).picture.state
+    assert "wet all round" in show(scene("runup"), 90.0).picture.state
 
 
 def test_a_factor_that_dries_the_wall_says_so() -> None:
     machine = scene("runup")
-    view = view_scene(machine, 90.0, factor=8.0)
+    view = show(machine, 90.0, factor=8.0)
     assert "dry in part in the picture alone" in view.picture.caption
 
 
 # -- rendering -----------------------------------------------------------------------------------------------
 
 
-def shot(view: View) -> np.ndarray:
+def shot(view: Shown) -> np.ndarray:
     plot = plotter(view.picture)
     try:
         return pixels(plot)
@@ -263,12 +271,12 @@ def test_every_view_shows_the_whole_machine() -> None:
 
 
 def test_a_plotter_shows_what_was_put_in_last() -> None:
-    sight = look_at(scene("runup"))
-    scale = choose_scale(sight.fills, sight.deflection, sight.speed, sight.gravity)
-    plot = plotter(still(sight, 0, scale))
+    motion = machine_motion(scene("runup"))
+    scale = scale_of(motion)
+    plot = plotter(picture_at(motion, 0, scale))
     try:
         first = pixels(plot)
-        fill(plot, still(sight, 75, scale))
+        fill(plot, picture_at(motion, 75, scale))
         assert np.mean(np.any(pixels(plot) != first, axis=2)) > 0.01
     finally:
         plot.close()
@@ -276,7 +284,7 @@ def test_a_plotter_shows_what_was_put_in_last() -> None:
 
 def short_film() -> Film:
     machine = scene("runup").altered(speeds=Speeds(start=15.0, stop=30.0, count=3))
-    return sweep_film(look_at(machine), Scale(), 3)
+    return film_over(machine_motion(machine), Scale(), 3)
 
 
 def test_films(tmp_path: Path) -> None:
@@ -298,15 +306,15 @@ def test_films(tmp_path: Path) -> None:
 
 
 def test_a_period_of_a_mode_closes() -> None:
-    film = mode_film(scene("runup"), solve_mode(scene("runup"), 1), 4)
+    film = mode_film(mode_view(scene("runup"), 1), 4)
     assert film.count == 4
-    assert "sloshing mode 1" in mode_picture(scene("runup"), solve_mode(scene("runup"), 1)).title
+    assert "sloshing mode 1" in mode_picture(mode_view(scene("runup"), 1)).title
 
 
 def test_a_page_needs_nothing_from_elsewhere(tmp_path: Path) -> None:
     pytest.importorskip("trame_pyvista")
     path = tmp_path / "page.html"
-    write_picture(view_scene(scene("runup"), 24.0).picture, path)
+    write_picture(show(scene("runup"), 24.0).picture, path)
     text = path.read_text(encoding="utf-8")
     for foreign in ('src="http', "src='http", 'href="http', "@import", "unpkg.com", "cdn.", "/icon/"):
         assert foreign not in text, foreign

@@ -11,7 +11,15 @@ from hypothesis import strategies as st
 
 from fluid.fill import Fill
 from fluid.liquid import known_liquid
-from leblanc.view.scale import DEEP, SHOWN, Scale, choose_scale, drawn_volume, drying_deflection, given_scale
+from leblanc.results.drawing import Scale
+from leblanc.studies.shapes.scale import (
+    DEEP,
+    SHOWN,
+    choose_scale,
+    drawn_volume,
+    drying_deflection,
+    given_scale,
+)
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.statics.hydrostatics import equilibrium, optimal_volume

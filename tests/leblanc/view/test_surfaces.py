@@ -14,7 +14,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from leblanc.view.surfaces import RAYS, LiquidShape, body_at_rest, body_of_layer, body_of_pool, strips
+from leblanc.results.shapes import LiquidShape, strips
+from leblanc.studies.shapes.layer import RAYS, body_at_rest, body_of_layer, body_of_pool
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.statics.hydrostatics import equilibrium, optimal_volume

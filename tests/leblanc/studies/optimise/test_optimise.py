@@ -17,16 +17,16 @@ from leblanc.scene.optimise import Optimisation
 from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.studies.optimise.answers import FilledMachine
 from leblanc.studies.optimise.closed_form import (
-    covering,
-    covering_by_search,
     full_volume,
     largest_unbalance_by_search,
+    optimal_volume_by_search,
+    wetting_volumes,
 )
-from leblanc.studies.optimise.conditions import Robust, circumstances
 from leblanc.studies.optimise.constraints import growth, stability
 from leblanc.studies.optimise.front import not_dominated
 from leblanc.studies.optimise.objectives import AtSpeed, PeakOver
 from leblanc.studies.optimise.optimise import optimise_scene
+from leblanc.studies.optimise.robust import Robust, operating_conditions
 from leblanc.studies.run import run_scene
 from meshes.chamber import Chamber
 from meshes.errors import InputError
@@ -47,7 +47,7 @@ CHAMBERS = (
 
 
 @kills(
-    "leblanc.studies.optimise.closed_form:covering_by_search",
+    "leblanc.studies.optimise.closed_form:optimal_volume_by_search",
     "np.divide(-state.nearest_depth",
     "np.divide(1.0 - state.nearest_depth",
 )
@@ -55,8 +55,8 @@ def test_optimal_volume() -> None:
     """At a given deflection the least liquid without a dry wall is the closed form's, to 1e-9 of it."""
     for chamber, deflection, speed in CHAMBERS:
         for gravity in (9.81, 0.0):
-            fill, form = Fill(chamber, WATER, 0.0), covering(chamber, deflection, speed, gravity)
-            found = covering_by_search(fill, deflection, speed, gravity)
+            fill, form = Fill(chamber, WATER, 0.0), wetting_volumes(chamber, deflection, speed, gravity)
+            found = optimal_volume_by_search(fill, deflection, speed, gravity)
             # The search closes its edge in to 1e-11; the closed form is exact to some 1e-12.
             assert found.point[0] == pytest.approx(form.optimal_volume, rel=1e-9)
 
@@ -74,11 +74,11 @@ def test_largest_unbalance() -> None:
     """
     for chamber, deflection, speed in CHAMBERS:
         fill = Fill(chamber, WATER, 0.0)
-        flat = covering(chamber, deflection, speed, 0.0)
+        flat = wetting_volumes(chamber, deflection, speed, 0.0)
         found = largest_unbalance_by_search(fill, deflection, speed, 0.0)
         assert found.point[0] == pytest.approx(flat.optimal_volume, rel=1e-6)
         assert flat.full_volume == pytest.approx(flat.optimal_volume, rel=1e-9)
-        form = covering(chamber, deflection, speed, 9.81)
+        form = wetting_volumes(chamber, deflection, speed, 9.81)
         if math.isfinite(form.full_volume):
             found = largest_unbalance_by_search(fill, deflection, speed, 9.81)
             assert found.point[0] == pytest.approx(form.full_volume, rel=1e-4)
@@ -95,7 +95,9 @@ def test_largest_unbalance() -> None:
     "2.0 * gravity * chamber.height / speed**2",
     "gravity * chamber.height / speed**2",
 )
-@kills("leblanc.studies.optimise.closed_form:covering", "of_touching / of_most", "of_most / of_touching")
+@kills(
+    "leblanc.studies.optimise.closed_form:wetting_volumes", "of_touching / of_most", "of_most / of_touching"
+)
 def test_full_volume() -> None:
     """With it the unbalance is that of a full chamber; with a tenth less it is not; with more it stays."""
     for chamber, deflection, speed in CHAMBERS:
@@ -112,10 +114,10 @@ def test_full_volume() -> None:
         assert abs(short(1.0)) < 1e-11
         assert abs(short(1.0001)) < 1e-11
         assert short(0.9) > 1e-4
-        form = covering(chamber, deflection, speed, 9.81)
+        form = wetting_volumes(chamber, deflection, speed, 9.81)
         own = float(equilibrium(chamber, form.optimal_volume, deflection, speed, 9.81).unbalance()[0])
-        assert form.share == pytest.approx(own / most, rel=1e-9)
-        assert form.share < 1.0
+        assert form.unbalance_share == pytest.approx(own / most, rel=1e-9)
+        assert form.unbalance_share < 1.0
 
 
 @settings(max_examples=30)
@@ -178,7 +180,7 @@ def test_excess() -> None:
     """A decay of 0.7 1/s meets a margin of 0.5, one of 0.3 does not."""
     one = stability(rig(), np.array([100.0, 200.0]), 0.5)
     np.testing.assert_allclose(one.excess(np.array([-0.7, -0.5, -0.3])), (-0.4, 0.0, 0.4), atol=1e-12)
-    assert one.verdict(-0.7).satisfied and not one.verdict(-0.3).satisfied
+    assert one.at(-0.7).satisfied and not one.at(-0.3).satisfied
 
 
 def _statics(scene: Scene):  # type: ignore[no-untyped-def]
@@ -205,15 +207,13 @@ def test_peak() -> None:
 
 
 @kills(
-    "leblanc.studies.optimise.conditions:_in_circumstance",
-    "liquid=liquid_at(chamber.liquid, one.temperature), volume",
+    "leblanc.studies.optimise.robust:_in_condition",
+    "liquid=liquid_at(chamber.liquid, condition.temperature), volume",
     "liquid=chamber.liquid, volume",
 )
+@kills("leblanc.studies.optimise.robust:Robust.exact", "self.quantile, axis=0", "1.0 - self.quantile, axis=0")
 @kills(
-    "leblanc.studies.optimise.conditions:Robust.exact", "self.quantile, axis=0", "1.0 - self.quantile, axis=0"
-)
-@kills(
-    "leblanc.studies.optimise.conditions:circumstances",
+    "leblanc.studies.optimise.robust:operating_conditions",
     "low + (high - low) * share[:, 0]",
     "low + (high + low) * share[:, 0]",
 )
@@ -221,7 +221,7 @@ def test_robust() -> None:
     """Worst case and median over a grid, from the machine itself with those unbalances and densities."""
     scene = load_scene(EXAMPLES / "runup.toml")
     volume = np.array([[4e-4]])
-    around = circumstances(0.1, (0.05, 0.2), (283.15, 333.15))
+    around = operating_conditions(0.1, (0.05, 0.2), (283.15, 333.15))
     assert len(around) == 9
     np.testing.assert_allclose(sorted({one.unbalance for one in around}), (0.05, 0.125, 0.2), rtol=1e-12)
     density = {283.15: 999.70, 308.15: 994.03, 333.15: 983.20}  # handbook
@@ -317,10 +317,10 @@ def test_special_case_of_a_given_deflection() -> None:
     scene = load_scene(EXAMPLES / "runup.toml")
     for speed in (40.0, 100.0):
         best = optimise_scene(scene, aim=Optimisation(deflection=2e-3, working_speed=speed))
-        assert best.volume[0] == pytest.approx(best.covering[0].optimal_volume, rel=1e-9)
+        assert best.volume[0] == pytest.approx(best.closed_form[0].optimal_volume, rel=1e-9)
         assert best.feasible
     flat = optimise_scene(load_scene(EXAMPLES / "horizontal_rig.toml"), aim=Optimisation(deflection=5e-4))
-    for volume, form in zip(flat.volume, flat.covering, strict=True):
+    for volume, form in zip(flat.volume, flat.closed_form, strict=True):
         assert volume == pytest.approx(form.optimal_volume, rel=1e-9)
 
 
@@ -328,7 +328,7 @@ def test_the_best_volume_is_self_consistent() -> None:
     """Above resonance it is eq. 1 at the deflection that the machine then has, up to the flat edge."""
     scene = load_scene(EXAMPLES / "runup.toml")
     best = optimise_scene(scene, front=False)
-    form = best.covering[0]
+    form = best.closed_form[0]
     # A hair of 1e-6 of the amplitude is some 4e-6 of the unbalance, whose edge hides (4e-6)**0.4 = 0.7 %.
     assert form.full_volume * 0.98 < best.volume[0] <= form.full_volume * (1.0 + 1e-6)
     # Above the wet critical speed all liquid adds its full mass [theory: rotor, eq. 3].
@@ -343,7 +343,7 @@ def test_constraints_bind() -> None:
     free = optimise_scene(scene, front=False)
     dry = optimise_scene(scene, aim=Optimisation(dry_patch=False), front=False)
     assert dry.feasible and dry.constraints["dry_patch"].value == 0.0
-    assert dry.volume[0] >= dry.covering[0].optimal_volume * (1.0 - 1e-6)
+    assert dry.volume[0] >= dry.closed_form[0].optimal_volume * (1.0 - 1e-6)
     bound = Optimisation(volumes=((1e-5, 5e-5),))
     held = optimise_scene(scene, aim=bound, front=False)
     # The more the better up to the closed form; a hair of the amplitude, 1e-6, is some 3e-5 of this volume.
@@ -381,7 +381,7 @@ def test_the_same_question_has_the_same_answer() -> None:
     one, other = (optimise_scene(scene, "robust", front=False) for _ in range(2))
     np.testing.assert_array_equal(one.volume, other.volume)
     assert one.value == other.value
-    drawn = [circumstances(0.1, (0.05, 0.2), None, 40, seed) for seed in (3, 3, 4)]
+    drawn = [operating_conditions(0.1, (0.05, 0.2), None, 40, seed) for seed in (3, 3, 4)]
     assert drawn[0] == drawn[1] != drawn[2]
 
 
@@ -390,7 +390,7 @@ def test_no_point_of_the_front_beats_the_answer() -> None:
     front = best.front
     assert front is not None
     assert front.vibration.min() >= best.value * (1.0 - 3e-6)
-    values = np.stack((front.vibration, front.mass, -front.margin), axis=1)
+    values = np.stack((front.vibration, front.mass, -front.stability_margin), axis=1)
     assert not_dominated(values).all()
     assert np.all(np.diff(front.mass) >= 0.0)
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from fluid.fill import Fill
-from leblanc.figures.section import rounded_down
-from leblanc.view.bodies import is_cut
+from leblanc.results.drawing import Scale, rounded_down
+from leblanc.results.shapes import MachineMotion
+from leblanc.studies.shapes.bodies import is_cut
 from meshes.arrays import Array, Complex
 from meshes.chamber import Chamber
 from meshes.errors import InputError
@@ -26,35 +26,6 @@ MOST = 100.0  # beyond it a deflection is too small for a picture
 CLEAR = 0.9  # of the deflection at which the wall falls dry, where it is wet
 INNER = 0.9  # of an inner wall's radius, inside which the axis at rest stays
 _HALVINGS = 60
-
-
-@dataclass(frozen=True)
-class Scale:
-    """Factors that a picture applies; walls are to scale.
-
-    Parameters
-    ----------
-    deflection : of the axis
-    depth : of the mean layer; 1 draws as much liquid as there is
-    """
-
-    deflection: float = 1.0
-    depth: float = 1.0
-
-    def in_words(self) -> str:
-        """What is larger than it is, for the caption."""
-        if self.deflection == self.depth == 1.0:
-            return "Everything to scale."
-        size = f"{self.deflection:g} times"
-        if self.depth == 1.0:
-            larger = f"{size} larger" if self.deflection > 1.0 else f"at {self.deflection:g} of its size"
-            return f"Deflection drawn {larger}, walls and volume of liquid to scale."
-        if self.depth == self.deflection:
-            return f"Deflection and depth of the liquid layer drawn {size} larger, walls to scale."
-        return (
-            f"Deflection drawn {size} larger, the liquid layer {self.depth:g} times as deep as it is; "
-            "walls to scale."
-        )
 
 
 def drawn_volume(fill: Fill, depth: float) -> float:
@@ -235,3 +206,33 @@ def given_scale(factor: float, fills: tuple[Fill, ...], deflection: Complex) -> 
         allowed = "a finite number above 0" + ("" if math.isinf(most) else f", at most {most:.3g} here")
         raise InputError("--factor", factor, allowed)
     return Scale(factor)
+
+
+def scale_of(motion: MachineMotion, factor: float | None = None) -> Scale:
+    """The factor asked for, or one that makes the deflection visible at all speeds of a machine.
+
+    Parameters
+    ----------
+    motion : the machine at these speeds
+    factor : of the deflection; None to choose it
+
+    Raises
+    ------
+    InputError : a factor out of its range
+    """
+    if factor is not None:
+        return given_scale(factor, motion.fills, motion.deflection)
+    return choose_scale(motion.fills, motion.deflection, motion.speed, motion.gravity, motion.length)
+
+
+def scale_at(motion: MachineMotion, index: int) -> Scale:
+    """The factors that fit one of the speeds.
+
+    Parameters
+    ----------
+    motion, index : the machine, which of its speeds
+    """
+    rows = slice(index, index + 1)
+    return choose_scale(
+        motion.fills, motion.deflection[rows], motion.speed[rows], motion.gravity, motion.length
+    )

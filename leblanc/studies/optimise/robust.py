@@ -17,7 +17,7 @@ from meshes.errors import InputError
 
 
 @dataclass(frozen=True)
-class Circumstance:
+class OperatingCondition:
     """One of the conditions a machine must cope with.
 
     Parameters
@@ -31,13 +31,13 @@ class Circumstance:
 
 
 class Robust(AlwaysExact):
-    """A quantile of the amplitudes at one speed over circumstances [theory: optimum, eq. 4].
+    """A quantile of the amplitudes at one speed over conditions [theory: optimum, eq. 4].
 
     Parameters
     ----------
     scene : a planar rotor
     speed : rad/s
-    circumstances : equally likely
+    conditions : equally likely
     quantile : 1 for the worst case
 
     Raises
@@ -46,17 +46,17 @@ class Robust(AlwaysExact):
     """
 
     def __init__(
-        self, scene: Scene, speed: float, circumstances: Sequence[Circumstance], quantile: float
+        self, scene: Scene, speed: float, conditions: Sequence[OperatingCondition], quantile: float
     ) -> None:
         self.speed, self.quantile = speed, quantile
-        made = [_in_circumstance(scene, one) for one in circumstances]
-        self.machines = [FilledMachine(one) for one, _ in made]
+        made = [_in_condition(scene, condition) for condition in conditions]
+        self.machines = [FilledMachine(changed) for changed, _ in made]
         self.growths = np.array([growth for _, growth in made])
         self.capacity = np.array([fill.chamber.capacity for fill in scene.fills])
 
     @property
     def asked(self) -> int:
-        """How many pairs of volumes and circumstance were answered."""
+        """How many pairs of volumes and condition were answered."""
         return sum(machine.asked for machine in self.machines)
 
     def exact(self, volumes: Array, bound: float = math.inf) -> Array:
@@ -69,32 +69,32 @@ class Robust(AlwaysExact):
         return np.asarray(np.quantile(np.array(rows), self.quantile, axis=0, method="higher"))
 
     def fullest(self, volumes: Array) -> Array:
-        """Largest share of a chamber that its liquid takes in any circumstance, shape (m,)."""
+        """Largest share of a chamber that its liquid takes in any condition, shape (m,)."""
         return np.asarray((volumes[:, None, :] * self.growths / self.capacity).max(axis=(1, 2)))
 
 
-def _in_circumstance(scene: Scene, one: Circumstance) -> tuple[Scene, list[float]]:
+def _in_condition(scene: Scene, condition: OperatingCondition) -> tuple[Scene, list[float]]:
     """The scene there, and by what factor the volume of each chamber's liquid grows."""
     if not isinstance(scene.rotor, JeffcottRotor):
         raise InputError("rotor.kind", scene.rotor.kind, "jeffcott for the objective robust")
-    rotor = scene.rotor.altered(unbalance=one.unbalance)
-    if one.temperature is None:
+    rotor = scene.rotor.altered(unbalance=condition.unbalance)
+    if condition.temperature is None:
         return scene.altered(rotor=rotor), [1.0] * len(scene.fills)
-    growth = [expansion(chamber.liquid, one.temperature) for chamber in scene.chambers]
+    growth = [expansion(chamber.liquid, condition.temperature) for chamber in scene.chambers]
     warm = [
-        chamber.altered(liquid=liquid_at(chamber.liquid, one.temperature), volume=0.0)
+        chamber.altered(liquid=liquid_at(chamber.liquid, condition.temperature), volume=0.0)
         for chamber in scene.chambers
     ]
     return scene.altered(rotor=rotor, chambers=tuple(warm)), growth
 
 
-def circumstances(
+def operating_conditions(
     own: float,
     unbalance: tuple[float, float] | None,
     temperature: tuple[float, float] | None,
     samples: int = 0,
     seed: int = 0,
-) -> tuple[Circumstance, ...]:
+) -> tuple[OperatingCondition, ...]:
     """Unbalances and temperatures that a machine must cope with.
 
     Parameters
@@ -111,8 +111,8 @@ def circumstances(
     low, high = unbalance or (own, own)
     loads = low + (high - low) * share[:, 0]
     if temperature is None:
-        return tuple(Circumstance(one, None) for one in dict.fromkeys(loads.tolist()))
+        return tuple(OperatingCondition(load, None) for load in dict.fromkeys(loads.tolist()))
     cold, warm = temperature
     heats = cold + (warm - cold) * share[:, 1]
     pairs = dict.fromkeys(zip(loads.tolist(), heats.tolist(), strict=True))
-    return tuple(Circumstance(load, heat) for load, heat in pairs)
+    return tuple(OperatingCondition(load, heat) for load, heat in pairs)

@@ -7,7 +7,6 @@ its own; without gravity along the axis it is the circle at a distance of its ow
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -15,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from meshes.bodies.body import Body, body_integrals
+from leblanc.results.shapes import LiquidBodies
 from meshes.bodies.paraboloid import paraboloid_body
 from meshes.chamber_section import liquid_of
 from meshes.rings.sectors import compartment
@@ -27,24 +26,6 @@ if TYPE_CHECKING:  # scikit-fem is loaded where such a chamber is drawn
 
 AROUND = 180  # sides around the farthest wall, at least
 _RIGHT_ANGLE = 24  # sides on a quarter of a compartment's wall
-
-
-@dataclass(frozen=True)
-class LiquidBodies:
-    """Bodies of liquid that cannot mix, in one chamber.
-
-    Parameters
-    ----------
-    centre : of the chamber, m from the axis at rest
-    bodies : in coordinates of the chamber
-    """
-
-    centre: complex
-    bodies: tuple[Body, ...]
-
-    def volume(self) -> float:
-        """Of all of them, m^3."""
-        return sum(body_integrals(body).volume for body in self.bodies)
 
 
 def is_cut(fill: Fill) -> bool:

@@ -1,4 +1,4 @@
-"""A picture as a page that turns it in a browser, without a server and without a network."""
+"""A picture as a file, PNG or a page that turns it in a browser, or in a window."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 
 from leblanc.results.netcdf import replacing
 from leblanc.view.parts import Picture
-from leblanc.view.picture import Plotter
+from leblanc.view.picture import Plotter, pixels, plotter, require_screen, write_png
 from meshes.errors import InputError
 
 ROOMIER = 1.2  # of a page's view, in which what is near looks larger
@@ -23,6 +23,58 @@ CLOSED = (
     '<meta http-equiv="Content-Security-Policy" content="default-src data: blob: '
     "'unsafe-inline' 'unsafe-eval'\">"
 )
+
+
+def write_picture(picture: Picture, path: Path) -> None:
+    """Write a picture as PNG, or as a page that turns it in a browser.
+
+    Parameters
+    ----------
+    picture : what to write
+    path : a .png or an .html
+
+    Raises
+    ------
+    InputError : another ending, nothing to draw with, the page's libraries are missing
+    """
+    kind = require_picture(path)
+    plot = plotter(picture)
+    try:
+        if kind == ".html":
+            write_html(plot, picture, path)
+        else:
+            write_png(pixels(plot), path)
+    finally:
+        plot.close()
+
+
+def require_picture(path: Path) -> str:
+    """Ending of a picture's path.
+
+    Raises
+    ------
+    InputError : it is neither .png nor .html
+    """
+    kind = path.suffix.lower()
+    if kind not in (".png", ".html"):
+        raise InputError("--screenshot", str(path), "a file that ends in .png or .html")
+    return kind
+
+
+def open_window(picture: Picture) -> None:
+    """Show a picture in a window until the user closes it.
+
+    Parameters
+    ----------
+    picture : what to show
+
+    Raises
+    ------
+    InputError : there is no screen
+    """
+    require_screen()
+    plot = plotter(picture, off_screen=False)
+    plot.show(title=picture.title)
 
 
 def write_html(plot: Plotter, picture: Picture, path: Path) -> None:

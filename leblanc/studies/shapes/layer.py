@@ -8,13 +8,12 @@ surface in one curve; the bodies between neighbouring half-planes are flat-sided
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from leblanc.figures.section import chord
-from meshes.arrays import Array, Indices
+from leblanc.results.drawing import chord, half_angle
+from leblanc.results.shapes import LiquidShape
+from meshes.arrays import Array
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.statics.hydrostatics import Equilibrium, equilibrium
@@ -23,87 +22,6 @@ RAYS = 240  # half-planes around a turn, besides those where a waterline meets a
 STEPS = 25  # points from one end of the free surface to the other
 DRY = 1e-6  # a film thinner than this over the radius is drawn as a dry wall
 _FLATTEST = 1e-12  # steepness that stands for a flat surface
-
-
-@dataclass(frozen=True)
-class LiquidShape:
-    """Liquid in n half-planes with k points of the free surface each.
-
-    In a half-plane the liquid lies between the chamber's floor, its outer wall and the free surface, which
-    runs from the floor or the inner wall outwards to the outer wall or the lid.
-
-    Parameters
-    ----------
-    centre : of the half-planes, m from the axis at rest
-    angle : of each, rising over less than a turn, rad, shape (n,)
-    inner, outer : distances of the walls from the centre, m, shape (n,); an inner wall of no size is 0
-    radius, height : of the free surface, distance from the centre and above the floor, m, shape (n, k)
-    """
-
-    centre: complex
-    angle: Array
-    inner: Array
-    outer: Array
-    radius: Array
-    height: Array
-
-    @property
-    def surface(self) -> Array:
-        """Points of the free surface, m, shape (n, k, 3)."""
-        plane = self.centre + self.radius * np.exp(1j * self.angle)[:, None]
-        return np.stack([plane.real, plane.imag, self.height], axis=-1)
-
-    @property
-    def wet(self) -> NDArray[np.bool_]:
-        """Half-planes with liquid at the outer wall, shape (n,)."""
-        last = self.radius[:, -1] < self.outer * (1.0 - 1e-9)
-        return np.asarray(last | (self.height[:, -1] > 0.0))
-
-    def outline(self) -> Array:
-        """Closed outlines of the liquid in the half-planes, m, shape (n, k + 4, 3).
-
-        Floor at the surface's inner end, the surface, its outer end carried to the wall, floor at the wall.
-        """
-        first, last = self.radius[:, :1], self.outer[:, None]
-        flat = np.zeros_like(first)
-        radius = np.concatenate([first, self.radius, last, last, first], axis=1)
-        height = np.concatenate([flat, self.height, self.height[:, -1:], flat, flat], axis=1)
-        plane = self.centre + radius * np.exp(1j * self.angle)[:, None]
-        return np.stack([plane.real, plane.imag, height], axis=-1)
-
-    def volume(self) -> float:
-        """Volume between the flat sides, m^3."""
-        points = self.outline() - np.array([self.centre.real, self.centre.imag, 0.0])
-        return _volume(points.reshape(-1, 3), strips(*points.shape[:2]))
-
-
-def strips(rows: int, columns: int, first: int = 0, last: int | None = None) -> Indices:
-    """Quadrilaterals between neighbouring rows of points, the last row next to the first.
-
-    Parameters
-    ----------
-    rows, columns : of the points, numbered row by row
-    first, last : the columns that are joined, all of them if not given
-
-    Returns
-    -------
-    Numbers of points, shape (m, 4), counter-clockwise seen from outside where rows follow one another
-    counter-clockwise and columns go outwards over the top
-    """
-    end = columns - 1 if last is None else last
-    row, column = np.meshgrid(np.arange(rows), np.arange(first, end), indexing="ij")
-    here, there = row * columns + column, (row + 1) % rows * columns + column
-    return np.stack([here, here + 1, there + 1, there], axis=-1).reshape(-1, 4).astype(np.int64)
-
-
-def _volume(points: Array, quads: Indices) -> float:
-    """Volume inside a closed surface: the sum of the tetrahedra from the origin to its triangles."""
-    corners = points[quads]
-    total = 0.0
-    for second, third in ((1, 2), (2, 3)):
-        a, b, c = corners[:, 0], corners[:, second], corners[:, third]
-        total += float(np.sum(a * np.cross(b, c))) / 6.0
-    return total
 
 
 def body_at_rest(
@@ -217,7 +135,7 @@ def body_of_pool(chamber: Chamber, volume: float, deflection: complex, down: flo
     volume : of the liquid, m^3
     down : direction of gravity, rad
     """
-    level = chamber.radius * math.cos(_half_angle(volume / (chamber.height * chamber.radius**2)))
+    level = chamber.radius * math.cos(half_angle(volume / (chamber.height * chamber.radius**2)))
     # The rays start in the air, half way between its top and the level.
     start = 0.5 * (level - chamber.radius)
     angle = np.linspace(-math.pi, math.pi, 3 * RAYS, endpoint=False)
@@ -227,12 +145,3 @@ def body_of_pool(chamber: Chamber, volume: float, deflection: complex, down: flo
     free = np.divide(level - start, along, out=np.full(angle.shape, math.inf), where=along > 0.0)
     free = np.minimum(free, outer)
     return _upright(deflection - centre, angle, np.zeros_like(outer), outer, free, chamber.height)
-
-
-def _half_angle(share: float) -> float:
-    """Half the angle of a circular segment of area R^2 (a - sin a cos a), given over R^2, rad."""
-    low, high = 0.0, math.pi
-    for _ in range(60):
-        half = 0.5 * (low + high)
-        low, high = (low, half) if half - math.sin(half) * math.cos(half) > share else (half, high)
-    return 0.5 * (low + high)

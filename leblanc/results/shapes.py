@@ -1,0 +1,303 @@
+"""A machine and its liquid as bodies in space: what a three-dimensional view draws.
+
+Everything is measured in the plane across the axis by complex numbers, in the drum frame, and along the axis
+from each chamber's floor.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fluid.fill import Fill
+from leblanc.results.drawing import Scale
+from leblanc.results.response import RunResult
+from leblanc.results.runup import RunupFrames, RunupResult
+from meshes.arrays import Array, Complex, Indices
+from meshes.bodies.body import Body, body_integrals
+from meshes.liquid_section import LiquidSection
+
+
+@dataclass(frozen=True)
+class LiquidShape:
+    """Liquid in n half-planes with k points of the free surface each.
+
+    In a half-plane the liquid lies between the chamber's floor, its outer wall and the free surface, which
+    runs from the floor or the inner wall outwards to the outer wall or the lid.
+
+    Parameters
+    ----------
+    centre : of the half-planes, m from the axis at rest
+    angle : of each, rising over less than a turn, rad, shape (n,)
+    inner, outer : distances of the walls from the centre, m, shape (n,); an inner wall of no size is 0
+    radius, height : of the free surface, distance from the centre and above the floor, m, shape (n, k)
+    """
+
+    centre: complex
+    angle: Array
+    inner: Array
+    outer: Array
+    radius: Array
+    height: Array
+
+    @property
+    def surface(self) -> Array:
+        """Points of the free surface, m, shape (n, k, 3)."""
+        plane = self.centre + self.radius * np.exp(1j * self.angle)[:, None]
+        return np.stack([plane.real, plane.imag, self.height], axis=-1)
+
+    @property
+    def wet(self) -> NDArray[np.bool_]:
+        """Half-planes with liquid at the outer wall, shape (n,)."""
+        last = self.radius[:, -1] < self.outer * (1.0 - 1e-9)
+        return np.asarray(last | (self.height[:, -1] > 0.0))
+
+    def outline(self) -> Array:
+        """Closed outlines of the liquid in the half-planes, m, shape (n, k + 4, 3).
+
+        Floor at the surface's inner end, the surface, its outer end carried to the wall, floor at the wall.
+        """
+        first, last = self.radius[:, :1], self.outer[:, None]
+        flat = np.zeros_like(first)
+        radius = np.concatenate([first, self.radius, last, last, first], axis=1)
+        height = np.concatenate([flat, self.height, self.height[:, -1:], flat, flat], axis=1)
+        plane = self.centre + radius * np.exp(1j * self.angle)[:, None]
+        return np.stack([plane.real, plane.imag, height], axis=-1)
+
+    def volume(self) -> float:
+        """Volume between the flat sides, m^3."""
+        points = self.outline() - np.array([self.centre.real, self.centre.imag, 0.0])
+        return _volume(points.reshape(-1, 3), strips(*points.shape[:2]))
+
+
+def strips(rows: int, columns: int, first: int = 0, last: int | None = None) -> Indices:
+    """Quadrilaterals between neighbouring rows of points, the last row next to the first.
+
+    Parameters
+    ----------
+    rows, columns : of the points, numbered row by row
+    first, last : the columns that are joined, all of them if not given
+
+    Returns
+    -------
+    Numbers of points, shape (m, 4), counter-clockwise seen from outside where rows follow one another
+    counter-clockwise and columns go outwards over the top
+    """
+    end = columns - 1 if last is None else last
+    row, column = np.meshgrid(np.arange(rows), np.arange(first, end), indexing="ij")
+    here, there = row * columns + column, (row + 1) % rows * columns + column
+    return np.stack([here, here + 1, there + 1, there], axis=-1).reshape(-1, 4).astype(np.int64)
+
+
+def _volume(points: Array, quads: Indices) -> float:
+    """Volume inside a closed surface: the sum of the tetrahedra from the origin to its triangles."""
+    corners = points[quads]
+    total = 0.0
+    for second, third in ((1, 2), (2, 3)):
+        a, b, c = corners[:, 0], corners[:, second], corners[:, third]
+        total += float(np.sum(a * np.cross(b, c))) / 6.0
+    return total
+
+
+@dataclass(frozen=True)
+class LiquidBodies:
+    """Bodies of liquid that cannot mix, in one chamber.
+
+    Parameters
+    ----------
+    centre : of the chamber, m from the axis at rest
+    bodies : in coordinates of the chamber
+    """
+
+    centre: complex
+    bodies: tuple[Body, ...]
+
+    def volume(self) -> float:
+        """Of all of them, m^3."""
+        return sum(body_integrals(body).volume for body in self.bodies)
+
+
+Liquid = LiquidShape | LiquidBodies | None  # of one chamber; None where there is none
+
+
+@dataclass(frozen=True)
+class MachineMotion:
+    """A machine at some speeds; s speeds, c chambers. Angles count from the unbalance, in the drum frame.
+
+    Parameters
+    ----------
+    response : what `run` says of them
+    fills : the chambers with their liquid
+    places : middle of each chamber along the axis as it is drawn, m
+    moved : some of them are drawn apart although the scene gives them one plane
+    gravity : along the axis, m/s^2
+    deflection : of the axis at each chamber, m, nan where none was found, shape (s, c); shape (s, 1) without
+        chambers
+    lean : slope of the axis along itself, rad, shape (s,)
+    """
+
+    response: RunResult
+    fills: tuple[Fill, ...]
+    places: tuple[float, ...]
+    moved: bool
+    gravity: float
+    deflection: Complex
+    lean: Complex
+
+    @property
+    def speed(self) -> Array:
+        """Spin speeds, rad/s, shape (s,)."""
+        return self.response.response.speed
+
+    @property
+    def length(self) -> float:
+        """From the first to the last chamber's middle, m."""
+        return float(np.ptp(self.places)) if self.places else 0.0
+
+
+@dataclass(frozen=True)
+class DrawnLiquid:
+    """Liquid of c chambers at one speed, in equilibrium with the deflection as it is drawn.
+
+    Parameters
+    ----------
+    scale : of deflection and depth
+    bodies : the liquid, one for each chamber
+    volume : as drawn, m^3, one for each chamber
+    dry, drawn_dry : the wall of each chamber is dry in part, in truth and as drawn
+    """
+
+    scale: Scale
+    bodies: tuple[Liquid, ...]
+    volume: tuple[float, ...]
+    dry: tuple[bool, ...]
+    drawn_dry: tuple[bool, ...]
+
+
+@dataclass(frozen=True)
+class MachineView:
+    """A machine at one speed and its liquid as drawn.
+
+    Parameters
+    ----------
+    motion : the machine; its last speed is drawn
+    liquid : as drawn there
+    """
+
+    motion: MachineMotion
+    liquid: DrawnLiquid
+
+    def to_json(self) -> dict[str, object]:
+        """What `leblanc view --json` prints of a machine, SI."""
+        answer = self.motion.response.response
+        return {
+            "speed": float(answer.speed[-1]),
+            "deflection": self.motion.deflection[-1],
+            "dry_patch": bool(answer.dry_patch[-1]),
+            "model": str(answer.model[-1]),
+            "deflection_factor": self.liquid.scale.deflection,
+            "depth_factor": self.liquid.scale.depth,
+            "volume": [fill.volume for fill in self.motion.fills],
+            "volume_drawn": list(self.liquid.volume),
+        }
+
+
+@dataclass(frozen=True)
+class RunupView:
+    """A run-up frame by frame with its layers as they are drawn; f frames.
+
+    Parameters
+    ----------
+    result : the run-up
+    frames : times, deflections and layers
+    fills, places : chambers with their liquid; their middles along the axis, m
+    scale : common to all frames
+    bodies : liquid of each chamber in each frame
+    """
+
+    result: RunupResult
+    frames: RunupFrames
+    fills: tuple[Fill, ...]
+    places: tuple[float, ...]
+    scale: Scale
+    bodies: tuple[tuple[Liquid, ...], ...]
+
+
+@dataclass(frozen=True)
+class ModeView:
+    """One oscillation of the liquid in a spinning chamber, m(t) = Re(mode e^{-i sigma t}).
+
+    Parameters
+    ----------
+    name : of the scene
+    lying : the axis is horizontal
+    gravity : across the axis, left out of the mode, m/s^2
+    number : from 1, by rising size of the frequency
+    frequency : sigma seen from the drum, with the spin positive, rad/s
+    crests : around the drum
+    angle : of the rays, rising, rad, shape (n,); two at a baffle
+    displacement : of the surface along the radius, its largest size 1, shape (n,)
+    lift : largest displacement as drawn, m; the true one is any small number
+    fill : the chamber with its liquid
+    speed : of the spin, rad/s
+    converged : of the solver
+    section : the liquid at rest between walls of its own shape, and
+    section_displacement : of each of its nodes; None between circular walls
+    """
+
+    name: str
+    lying: bool
+    gravity: float
+    number: int
+    frequency: float
+    crests: int
+    angle: Array
+    displacement: Complex
+    lift: float
+    fill: Fill
+    speed: float
+    converged: bool
+    section: LiquidSection | None = None
+    section_displacement: Complex | None = None
+
+    def to_json(self) -> dict[str, object]:
+        """What `leblanc view --mode --json` prints, SI."""
+        return {"speed": self.speed, "frequency": self.frequency, "crests": self.crests}
+
+
+@dataclass(frozen=True)
+class TableView:
+    """A vibrating table with balls at the moment when balls and unbalance both point along the vibration.
+
+    Parameters
+    ----------
+    name : of the scene
+    speed : of the shaft, rad/s
+    stuck_speed : of the balls that stick together, rad/s
+    slow, fast : vibration of the platform by the balls and by the unbalance, m
+    track_radius : of the balls' track, m
+    balls, kind : how many, and "ball" or "roller"
+    factor : of the vibration as drawn
+    """
+
+    name: str
+    speed: float
+    stuck_speed: float
+    slow: float
+    fast: float
+    track_radius: float
+    balls: int
+    kind: str
+    factor: float
+
+    def to_json(self) -> dict[str, object]:
+        """What `leblanc view --json` prints of a table, SI."""
+        return {
+            "speed": self.speed,
+            "stuck_speed": self.stuck_speed,
+            "slow": self.slow,
+            "fast": self.fast,
+            "deflection_factor": self.factor,
+        }

@@ -1,0 +1,42 @@
+"""Machines as `leblanc view` draws them, for tests of pictures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from leblanc.results.drawing import Scale
+from leblanc.results.shapes import DrawnLiquid, MachineMotion
+from leblanc.scene.scene import Scene
+from leblanc.studies.shapes.machine import drawn_liquid, machine_view
+from leblanc.view.film import Film, sweep_film
+from leblanc.view.parts import Picture
+from leblanc.view.still import still
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A machine at one speed, its liquid as drawn, and the picture."""
+
+    motion: MachineMotion
+    liquid: DrawnLiquid
+    picture: Picture
+
+    @property
+    def scale(self) -> Scale:
+        return self.liquid.scale
+
+
+def show(scene: Scene, speed: float | None = None, factor: float | None = None) -> Shown:
+    """A scene's machine at one speed."""
+    view = machine_view(scene, speed, factor)
+    return Shown(view.motion, view.liquid, still(view.motion, -1, view.liquid))
+
+
+def picture_at(motion: MachineMotion, index: int, scale: Scale) -> Picture:
+    """Picture at one of the speeds."""
+    return still(motion, index, drawn_liquid(motion, index, scale))
+
+
+def film_over(motion: MachineMotion, scale: Scale, frames: int) -> Film:
+    """Film over the speeds."""
+    return sweep_film(motion, scale, lambda k: drawn_liquid(motion, k, scale), frames)
