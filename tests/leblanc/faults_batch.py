@@ -10,7 +10,7 @@ BATCH, CHECK = "leblanc.studies.batch", oracle.check_each_is_what_run_gives
 FAULTS: tuple[Fault, ...] = (
     Fault(
         BATCH,
-        "gravity = np.array([axial_gravity(scene) for scene in scenes])",
+        "gravity = np.array([machine.axial_gravity for machine in prepared])",
         "gravity = np.zeros(len(scenes))",
         CHECK,
     ),
@@ -24,6 +24,5 @@ FAULTS: tuple[Fault, ...] = (
         '"phase": -phase(one.deflection),\n        }',
         CHECK,
     ),
-    Fault(BATCH, '"amplitude": record.amplitude', '"amplitude": abs(record.response.deflection)', CHECK),
     Fault(BATCH, "for part in parts])[order]", "for part in parts])", CHECK),
 )

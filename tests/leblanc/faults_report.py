@@ -32,8 +32,6 @@ FAULTS: tuple[Fault, ...] = (
     ),
     Fault("leblanc.report.inputs", "balls.mass * 1e3", "balls.mass", check_units_of_other_rotors),
     Fault("leblanc.report.inputs", "length * MM", "length", check_units_of_other_rotors),
-    Fault("leblanc.report.inputs", "size * 1e6", "size * 1e3", check_units),
-    Fault("leblanc.report.inputs", "number(speed * RPM)} rpm (", "number(speed)} rpm (", check_units),
     Fault("leblanc.report.inputs", "fill.volume * ML", "fill.volume", check_units),
     Fault("leblanc.report.inputs", "one.inner_radius * MM", "one.radius * MM", check_units),
     Fault("leblanc.report.inputs", "100.0 * model.tolerance", "model.tolerance", check_units),

@@ -55,7 +55,7 @@ FAULTS: tuple[Fault, ...] = (
         oracle.check_drive,
     ),
     Fault(
-        "leblanc.studies.choose",
+        "leblanc.studies.prepare",
         'scene.gravity if scene.rotor.axis == "horizontal"',
         'scene.gravity if scene.rotor.axis == "vertical"',
         oracle.check_pool,

@@ -34,8 +34,8 @@ FAULTS: tuple[Fault, ...] = (
     ),
     Fault(
         "leblanc.figures.stability_map",
-        "np.abs(record.speed - end))",
-        "np.square(record.speed - end) + 1.0)",
+        "np.abs(result.speed - end))",
+        "np.square(result.speed - end) + 1.0)",
         oracle.check_outline,
     ),
 )

@@ -16,7 +16,7 @@ from matplotlib.transforms import Bbox
 from PIL import Image
 
 from leblanc import figures
-from leblanc.figures import wave
+from leblanc.figures import wave, wave_page
 from leblanc.figures.wave import WaveHistory, WaveRecord
 from meshes.errors import InputError
 from tests.leblanc import faults_wave_figures as oracles
@@ -171,7 +171,7 @@ def test_texts_stay_on_the_page_and_apart(name: str):
     history = running(record, count=5)
     assert_apart(figures.wave_figure(record))
     assert_apart(figures.history_figure(record, history))
-    figure, show = figures._film(record, history)
+    figure, show = wave_page._film(record, history)
     show(3)
     assert_apart(figure)
 
@@ -229,7 +229,7 @@ def test_film_of_one_time(tmp_path: Path):
 def test_arrow_grows_with_the_deflection():
     history = running(bore(), count=3)
     history = replace(history, deflection=history.deflection * np.array([0.0, 0.5, 1.0]))
-    figure, show = figures._film(bore(), history)
+    figure, show = wave_page._film(bore(), history)
     lengths = []
     for index in range(3):
         show(index)
@@ -241,13 +241,13 @@ def test_arrow_grows_with_the_deflection():
 
 def test_caption_of_a_film_tells_time():
     """50 frames of 1/20 s show 49 steps of half a second in all."""
-    figure, _ = figures._film(bore(), running(bore()))
+    figure, _ = wave_page._film(bore(), running(bore()))
     assert "Seen from the drum. " in caption(figure)
     assert f"One second of the film is {0.5 / 49 * 20:.3g} s." in caption(figure)
-    end, _ = figures._film(bore(), running(bore(), count=4000, duration=40.0))
+    end, _ = wave_page._film(bore(), running(bore(), count=4000, duration=40.0))
     assert "(the last 9.34 s of 40 s)" in caption(end)
     assert "too far apart" not in caption(end)
-    coarse, _ = figures._film(bore(), running(bore(), count=20, duration=40.0))
+    coarse, _ = wave_page._film(bore(), running(bore(), count=20, duration=40.0))
     assert "The frames are too far apart to follow the deflection." in caption(coarse)
 
 
@@ -267,7 +267,7 @@ def test_mp4_gets_every_frame(tmp_path: Path):
     player.write_text('#!/bin/sh\nfor last; do :; done\ncat > "$last"\n')
     player.chmod(0o755)
     path = tmp_path / "wave.mp4"
-    figure, _ = figures._film(bore(), running(bore(), count=3))
+    figure, _ = wave_page._film(bore(), running(bore(), count=3))
     width, height = (round(side * 100.0) for side in figure.get_size_inches())
     with matplotlib.rc_context({"animation.ffmpeg_path": str(player)}):
         assert figures.animate(bore(), running(bore(), count=3), path) == 3
