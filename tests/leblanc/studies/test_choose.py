@@ -172,7 +172,7 @@ def test_every_example_is_explained(name: str, capsys: pytest.CaptureFixture[str
 def test_reasons_name_what_decides() -> None:
     """Dry walls, walls that are not covered, and a straight law each have their own words."""
     reasons = " ".join(span.reason for span in explain_scene(strong()).models)
-    assert "times as far" in reasons and "it is exact until" in reasons
+    assert "times as far" in reasons and "does not cover the wall" in reasons
     slow = explain_scene(load_scene("examples/vertical_rig.toml")).models[0]
     assert slow.model == "statics" and "at this spin" in slow.reason and "none" in slow.better
     lying = explain_scene(small_scene()).models[-1]
