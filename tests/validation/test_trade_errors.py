@@ -299,7 +299,7 @@ def test_same_answer_alone() -> None:
 HUNGRY = """
 import json, sys
 import numpy as np
-from study import trade_answers, trade_child
+from validation.trade import answers as trade_answers, child as trade_child
 from leblanc.scene.scene import load_scene
 
 trade_answers.taste = lambda scene, case: None
