@@ -13,6 +13,7 @@ import types
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 
@@ -46,6 +47,7 @@ def _functions(namespace: dict[str, object], module: str) -> dict[str, types.Fun
         elif inspect.isclass(value) and value.__module__ == module:
             for member in vars(value).values():
                 function = member.fget if isinstance(member, property) else member
+                function = member.func if isinstance(member, cached_property) else function
                 if isinstance(function, types.FunctionType) and function.__module__ == module:
                     found[function.__qualname__] = function
     return found

@@ -54,8 +54,8 @@ FAULTS: tuple[Fault, ...] = (
     ),
     Fault(
         "leblanc.studies.optimise.conditions",
-        "liquid_at(fill.liquid, one.temperature), 0.0",
-        "fill.liquid, 0.0",
+        "liquid=liquid_at(chamber.liquid, one.temperature)",
+        "liquid=chamber.liquid",
         oracle.check_robust,
     ),
     Fault(

@@ -131,7 +131,7 @@ FAULTS: tuple[Fault, ...] = (
         "column[~np.isnan(column)]",
         check_statistics,
     ),
-    Fault("leblanc.studies.sweep.scenes", "fills[k] = _fill", "fills[0] = _fill", check_sampled_scenes),
+    Fault("leblanc.studies.sweep.scenes", "parts[k] = Chamber", "parts[0] = Chamber", check_sampled_scenes),
     Fault(
         "leblanc.studies.sweep.scenes", 'if ("rotor",) in touched:', "if not touched:", check_sampled_scenes
     ),
