@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic.fields import FieldInfo
 
-from leblanc.friction import Friction
+from fluid.friction import Friction
 from leblanc.scene.part import Part, parts_of, rule_of
 from leblanc.scene.paths import entry_rule, tables_of
 from leblanc.scene.rules import Entries, Flag, OneOf, Quantity, Several, Span, Text, Whole
