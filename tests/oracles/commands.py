@@ -11,9 +11,7 @@ import numpy as np
 
 from leblanc.cli import main
 from leblanc.results.optimum import optimum_json
-from leblanc.results.response import run_json
 from leblanc.results.runup import runup_json
-from leblanc.results.whirl_map import map_json
 from leblanc.scene.scene import scene_from_table
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.run import run_scene
@@ -24,11 +22,11 @@ Answer = dict[str, Any]
 
 
 def run(table: dict[str, Any]) -> Answer:
-    return run_json(run_scene(scene_from_table(table)))
+    return run_scene(scene_from_table(table)).to_json()
 
 
 def whirl_map(table: dict[str, Any], volumes: int = 4, speeds: int = 5) -> Answer:
-    return map_json(map_scene(scene_from_table(table), volumes, speeds))
+    return map_scene(scene_from_table(table), volumes, speeds).to_json()
 
 
 def optimum(table: dict[str, Any]) -> Answer:

@@ -9,10 +9,10 @@ import numpy as np
 
 from leblanc import figures
 from leblanc.figures import curves, section
-from leblanc.results.record import ChamberRecord
+from leblanc.results.chamber import FilledChamber
 from tests.oracles.records import folded, rig
 
-CHAMBER = ChamberRecord(
+CHAMBER = FilledChamber(
     radius=0.065, inner_radius=0.0, height=0.02, volume=1e-5, liquid_name="water", mean_surface_radius=0.06376
 )
 
@@ -73,7 +73,7 @@ def test_spans_reach_half_way() -> None:
     assert curves.spans(x, np.zeros(4, dtype=np.bool_), (0.0, 40.0)) == []
 
 
-def _moments(chamber: ChamberRecord, centre: complex, depth: float) -> tuple[float, complex]:
+def _moments(chamber: FilledChamber, centre: complex, depth: float) -> tuple[float, complex]:
     """Area and first moment of the outline by the polygon formulas."""
     angle, inner, outer = section.liquid_outline(chamber, centre, depth)
     z = np.concatenate([outer * np.exp(1j * angle), (inner * np.exp(1j * angle))[::-1]])

@@ -7,14 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from leblanc.results import response as results
-from leblanc.results.record import peak, phase
+from leblanc.results.response import peak, phase
 from tests.mutants import kills
 from tests.oracles.records import DAMPING, MASS, RPM, STIFFNESS, dry_deflection, folded
 
 
 @kills(
-    "leblanc.results.record:phase", "angle = np.angle(deflection)", "angle = np.angle(np.conj(deflection))"
+    "leblanc.results.response:phase", "angle = np.angle(deflection)", "angle = np.angle(np.conj(deflection))"
 )
 def test_lag_of_a_damped_rotor() -> None:
     """tan(lag) = C Omega/(K - M Omega^2), between 0 and half a turn [theory: rotor]."""
@@ -24,14 +23,14 @@ def test_lag_of_a_damped_rotor() -> None:
     np.testing.assert_allclose(phase(dry_deflection(speed, MASS)), -lag, rtol=0, atol=1e-14)
 
 
-@kills("leblanc.results.record:phase", "angle <= -math.pi, math.pi", "angle <= -math.pi, -math.pi")
+@kills("leblanc.results.response:phase", "angle <= -math.pi, math.pi", "angle <= -math.pi, -math.pi")
 def test_phase_lies_in_one_turn() -> None:
     """The interval is open below and closed above; without a deflection the angle is 0."""
     w = np.array([complex(-1.0, -0.0), complex(-1.0, 0.0), complex(-0.0, -0.0), 1j, -1j])
     assert phase(w).tolist() == [math.pi, math.pi, 0.0, 0.5 * math.pi, -0.5 * math.pi]
 
 
-@kills("leblanc.results.record:peak", "np.where(known, size, -1.0)", "np.where(known, -size, -1.0)")
+@kills("leblanc.results.response:peak", "np.where(known, size, -1.0)", "np.where(known, -size, -1.0)")
 def test_peak_is_the_largest() -> None:
     assert peak(np.array([0.1, 0.3j, np.nan, -0.2])) == 1
     assert peak(np.array([np.nan + 0j])) is None
@@ -49,7 +48,7 @@ def test_json_is_the_record() -> None:
     r = record.response
     w = np.array(r.deflection)
     w[3] = np.nan
-    found = results.run_json(replace(record, response=replace(r, deflection=w)))
+    found = replace(record, response=replace(r, deflection=w)).to_json()
     assert found["deflection"][3] == [None, None]
     assert found["amplitude"][3] is None
     assert found["deflection"][5] == [w[5].real, w[5].imag]
@@ -69,7 +68,7 @@ def test_json_is_the_record() -> None:
 )
 def test_dataset_is_the_record() -> None:
     r = folded(31).response
-    data = results.to_dataset(folded(31))
+    data = folded(31).to_dataset()
     # The phase is an angle again after a turn through the exponential, to rounding.
     turn = data["amplitude_dry"].values * np.exp(1j * data["phase_dry"].values)
     np.testing.assert_allclose(turn, r.deflection_dry, rtol=1e-14)

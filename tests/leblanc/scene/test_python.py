@@ -17,7 +17,7 @@ from leblanc.scene.faults import SceneFaults
 from leblanc.scene.rotors import JeffcottRotor, Spring
 from leblanc.scene.scene import Scene, Speeds, scene_from_table
 from tests.leblanc.scene.test_rotors import EXCITER, HEAD, MOTOR, TUB, TWO_PLANE
-from tests.leblanc.test_scene import TEXT, read
+from tests.leblanc.scene.test_scene import TEXT, read
 
 SCENES = [name for name in example_names() if not name.startswith("studies/")]
 

@@ -90,12 +90,12 @@ def test_explained_mass() -> None:
 
 
 @kills(
-    "leblanc.results.record:StudyRecord.amplitude",
+    "leblanc.results.response:RunResult.amplitude",
     "np.abs(self.motion.backward)\n",
     "-np.abs(self.motion.backward)\n",
 )
 @kills(
-    "leblanc.results.record:StudyRecord.amplitude_dry",
+    "leblanc.results.response:RunResult.amplitude_dry",
     "np.abs(self.motion.backward_dry)\n",
     "0.5 * np.abs(self.motion.backward_dry)\n",
 )
