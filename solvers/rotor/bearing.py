@@ -50,24 +50,3 @@ def cage_speed(
     if not np.all((angle >= 0.0) & (angle < 0.5 * np.pi)):
         raise InputError("contact_angle", contact_angle, "from 0 to below pi/2")
     return np.asarray(0.5 * shaft * (1.0 - ball * np.cos(angle) / pitch))
-
-
-def cage_slip(measured: ArrayLike, theoretical: ArrayLike) -> Array:
-    """By which part the cage lags the speed of pure rolling, 1 - measured/theoretical.
-
-    Parameters
-    ----------
-    measured, theoretical : speeds of the cage in one unit, shape (...,); the second not 0
-
-    Returns
-    -------
-    slip, shape (...,); 0 for pure rolling, 1 for a cage that stands still
-
-    Raises
-    ------
-    InputError : a theoretical speed of 0
-    """
-    found, expected = np.asarray(measured, dtype=float), np.asarray(theoretical, dtype=float)
-    if not np.all(np.isfinite(expected) & (expected != 0.0)):
-        raise InputError("theoretical", theoretical, "finite numbers other than 0")
-    return np.asarray(1.0 - found / expected)

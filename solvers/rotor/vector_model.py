@@ -55,31 +55,12 @@ def balance_residual(angle: ArrayLike, lag: ArrayLike, ratio: ArrayLike) -> Arra
     return np.asarray(k * np.sin(alpha - delta) - np.sin(delta))
 
 
-def total_over_liquid(angle: ArrayLike, lag: ArrayLike, ratio: ArrayLike) -> Array:
-    """Total unbalance over the liquid's, along the direction that the deflection lags by delta.
-
-    cos(delta) + k cos(alpha - delta), the real part of (1 + k e^{i alpha}) e^{-i delta}. A root of
-    `balance_residual` is an equilibrium where this is 0 or above; below, the deflection points away from the
-    side that the support allows [theory: rotor, eq. 12].
-
-    Parameters
-    ----------
-    angle, lag, ratio : as in `balance_residual`
-
-    Returns
-    -------
-    |U_0 + U_liq|/U_liq with its sign, shape (...,)
-    """
-    alpha, delta, k = (np.asarray(x, dtype=float) for x in (angle, lag, ratio))
-    return np.asarray(np.cos(delta) + k * np.cos(alpha - delta))
-
-
 def balance_angles(lag: ArrayLike, ratio: ArrayLike) -> tuple[Array, Array]:
     """Both angles at which the tangential forces balance.
 
     alpha_0 = delta + phi_C with sin(phi_C) = sin(delta)/k; their cosines are those of the source's solution
     with its lost factor 1/k put back [DR18, eq. 25; theory: rotor, eq. 13]. For k >= 1 only the first is
-    an equilibrium; for k < 1 both are while delta < pi/2 and none beyond: see `total_over_liquid`.
+    an equilibrium; for k < 1 both are while delta < pi/2 and none beyond.
 
     Parameters
     ----------

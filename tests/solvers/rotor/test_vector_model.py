@@ -9,12 +9,30 @@ from solvers.rotor.vector_model import (
     balance_angles,
     balance_residual,
     deflection_lag,
-    total_over_liquid,
     unbalance_left,
 )
 from tests.mutants import kills
 
 EPS = np.finfo(float).eps
+
+
+def total_over_liquid(angle: np.ndarray, lag: np.ndarray, ratio: np.ndarray) -> np.ndarray:
+    """Total unbalance over the liquid's, along the direction that the deflection lags by delta.
+
+    cos(delta) + k cos(alpha - delta), the real part of (1 + k e^{i alpha}) e^{-i delta}. A root of
+    `balance_residual` is an equilibrium where this is 0 or above; below, the deflection points away from the
+    side that the support allows [theory: rotor, eq. 12].
+
+    Parameters
+    ----------
+    angle, lag, ratio : as in `balance_residual`
+
+    Returns
+    -------
+    |U_0 + U_liq|/U_liq with its sign, shape (...,)
+    """
+    alpha, delta, k = (np.asarray(x, dtype=float) for x in (angle, lag, ratio))
+    return np.asarray(np.cos(delta) + k * np.cos(alpha - delta))
 
 
 def eq_24(alpha: np.ndarray, delta: np.ndarray, k: np.ndarray) -> np.ndarray:
@@ -162,11 +180,6 @@ def test_bad_input(call, field: str) -> None:
 
 @kills(
     "solvers.rotor.vector_model:balance_residual", "k * np.sin(alpha - delta)", "k * np.sin(alpha + delta)"
-)
-@kills(
-    "solvers.rotor.vector_model:total_over_liquid",
-    "+ k * np.cos(alpha - delta)",
-    "- k * np.cos(alpha - delta)",
 )
 @kills(
     "solvers.rotor.vector_model:balance_angles", "np.arcsin(np.sin(delta) / k)", "np.arcsin(np.sin(delta))"

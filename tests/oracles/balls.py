@@ -1,0 +1,86 @@
+"""Where statics puts the balls of a balancer."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from meshes.arrays import Array
+from meshes.errors import InputError, require_positive
+
+
+def balanced_places(unbalance: complex, moment: float, count: int) -> Array | None:
+    """Places in which equal balls balance an unbalance in their own plane [theory: balls, eq. 21].
+
+    Pairs symmetrical about the direction opposite to the unbalance; of an odd number one stays in it.
+
+    Parameters
+    ----------
+    unbalance : U0 e^{i angle}, kg m
+    moment : m R of one ball, kg m
+    count : N, 1 or more
+
+    Returns
+    -------
+    Angles in the rotor, rad, shape (N,); None where the balls cannot balance it
+
+    Raises
+    ------
+    InputError : a moment that is not positive, no ball
+    """
+    require_positive("moment", moment)
+    if count < 1:
+        raise InputError("count", count, "1 or more")
+    needed = abs(unbalance) / moment
+    odd = count % 2
+    pairs = count - odd
+    # N = 1 leaves no angle to choose.
+    cosine = (needed - odd) / pairs if pairs else (1.0 if needed == 1.0 else math.inf)
+    if abs(cosine) > 1.0:
+        return None
+    away = math.acos(cosine)
+    spots = [0.0] * odd + [away, -away] * (pairs // 2)
+    opposite = cmath.phase(unbalance) + math.pi if unbalance else 0.0
+    return np.array(spots) + opposite
+
+
+def residual_unbalance(unbalance: complex, moment: float, places: ArrayLike) -> complex:
+    """Unbalance of rotor and balls together, kg m [theory: balls, eq. 21].
+
+    Parameters
+    ----------
+    unbalance : of the rotor, U0 e^{i angle}, kg m
+    moment : m R of one ball, kg m
+    places : of the balls in the rotor, rad, shape (N,)
+    """
+    return complex(unbalance + moment * np.exp(1j * np.asarray(places, dtype=float)).sum())
+
+
+def unbalance_in_planes(
+    unbalances: Sequence[tuple[float, complex]], first: float, second: float
+) -> tuple[complex, complex]:
+    """Two unbalances with the same static and couple parts as any number of them [theory: balls, eq. 21].
+
+    Parameters
+    ----------
+    unbalances : position along the axis, m, and U e^{i angle}, kg m, of each
+    first, second : positions of the two planes, m
+
+    Returns
+    -------
+    In the first and in the second plane, kg m: what balls there must oppose
+
+    Raises
+    ------
+    InputError : both planes in one place
+    """
+    if first == second:
+        raise InputError("second", second, "another plane than the first")
+    static = sum((size for _, size in unbalances), 0j)
+    couple = sum((position * size for position, size in unbalances), 0j)
+    there = (couple - first * static) / (second - first)
+    return static - there, there
