@@ -2,13 +2,17 @@ VENV ?= .venv
 PYTHON ?= python3
 BIN := $(VENV)/bin
 
-.PHONY: study test test-slow test-ross lint clean figures docs trade notebooks
+.PHONY: study test net test-slow test-ross lint clean figures docs trade notebooks
 
 study: $(BIN)/.installed
 	$(BIN)/leblanc run examples/horizontal_rig.toml
 
 test: $(BIN)/.installed-test
 	$(BIN)/python -m pytest -n 2 -m "not slow"
+
+# All commands on all example scenes beside the answers kept in tests/net/kept, some minutes.
+net: $(BIN)/.installed-test
+	$(BIN)/python -m tests.net check
 
 test-slow: $(BIN)/.installed-test
 	$(BIN)/python -m pytest -m slow

@@ -11,8 +11,8 @@ from pathlib import Path
 def use_own_cache() -> None:
     """Choose the folder, unless the environment has chosen one.
 
-    numba keys its cache by the file of the compiled function alone, not by what that calls: a cache of its own for
-    each state of the sources keeps stale machine code out of the tests.
+    numba keys its cache by the file of the compiled function alone, not by what that calls: a cache of its
+    own for each state of the sources keeps stale machine code out of the tests.
     """
     root = Path(__file__).parent.parent
     sources = sorted(p for name in ("fluid", "solvers") for p in (root / name).rglob("*.py"))

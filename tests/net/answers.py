@@ -8,8 +8,6 @@ import re
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from tests.net.call import Called, call
 from tests.net.cases import Case
 
@@ -128,6 +126,7 @@ def _netcdf(path: Path) -> dict[str, Any]:
 
 def _zarr(path: Path) -> dict[str, Any]:
     """Arrays of a zarr store as they stand in it; the names of its attributes."""
+    import numpy as np
     import zarr
 
     store = zarr.open_group(path, mode="r")
@@ -145,6 +144,8 @@ def _zarr(path: Path) -> dict[str, Any]:
 
 def _variable(dims: Any, dtype: Any, units: Any, values: Any) -> dict[str, Any]:
     """One variable in what JSON knows; its prose replaced."""
+    import numpy as np
+
     if np.iscomplexobj(values):
         values = np.stack([values.real, values.imag], axis=-1)
     # Texts have the same type whatever library wrote them.

@@ -1,4 +1,4 @@
-"""One call of the command line, in this process: the only place that knows the name of the front package."""
+"""One call of the command line of this checkout, in this process, whatever its packages are called."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
-FRONT = "leblanc.cli"  # module with main(arguments) -> exit code
 
 
 @dataclass(frozen=True)
@@ -34,7 +33,8 @@ class Called:
 
 def call(arguments: Sequence[str]) -> Called:
     """Run one command as `leblanc ARGUMENTS` would, in the present folder."""
-    main = importlib.import_module(FRONT).main
+    module, _, function = _pyproject()["project"]["scripts"]["leblanc"].partition(":")
+    main = getattr(importlib.import_module(module), function)
     stdout, stderr = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(stdout), contextlib.redirect_stderr(stderr):
         try:
@@ -49,8 +49,8 @@ def call(arguments: Sequence[str]) -> Called:
 def use_checkout(folder: Path) -> None:
     """Make this checkout the one that is imported, here and in processes started from here.
 
-    Commands of other packages are found by the entry points of the installed distribution, which may be of another
-    checkout: a description of this one is written and takes its place.
+    Commands of other packages are found by the entry points of the installed distribution, which may be of
+    another checkout: a description of this one is written and takes its place.
 
     Parameters
     ----------

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import importlib.util
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -15,8 +14,8 @@ ROTORS = (
 )
 DOCS = ("closed_baffles", "lobes", "smallest_scene")
 COMMANDS = (
-    *("new", "explain", "run", "volume", "layer", "modes", "map", "runup", "optimise", "sweep", "trade", "view"),
-    "validate",
+    *("new", "explain", "run", "volume", "layer", "modes", "map", "runup", "optimise", "sweep", "trade"),
+    *("view", "validate"),
 )
 
 
@@ -28,7 +27,7 @@ class Case:
     ----------
     name : of the file that keeps its answer
     argv : what is typed behind `leblanc`
-    needs : what the machine must have, "" if nothing; a key of `MISSING`
+    needs : "screen" where pictures are drawn in three dimensions
     measured : keys of its JSON that a machine measures, held by type
     """
 
@@ -40,8 +39,9 @@ class Case:
 
 def all_cases() -> list[Case]:
     """Every command, those that take long first."""
-    parts = (_long, _runs, _runups, _optimums, _maps, _sweeps, _layers, _modes, _views, _words, _wrong, _cheap)
-    found = [case for part in parts for case in part()]
+    slow = _long, _runs, _runups, _optimums, _maps, _sweeps
+    fast = _layers, _modes, _views, _words, _cheap, _wrong
+    found = [case for part in (*slow, *fast) for case in part()]
     names = [case.name for case in found]
     assert len(set(names)) == len(names), "two commands of one name"
     return found
@@ -51,8 +51,6 @@ def missing(need: str) -> str | None:
     """What this machine lacks of a need, None if nothing."""
     if need == "screen" and not _loads("libEGL.so.1"):
         return "no libEGL"
-    if need == "cad" and not all(map(importlib.util.find_spec, ("gmsh", "ezdxf"))):
-        return "no gmsh or no ezdxf"
     return None
 
 
@@ -106,22 +104,21 @@ def _optimums() -> Iterator[Case]:
     for objective in ("peak", "mean", "least_mass", "robust"):
         yield _case(
             f"optimise-{objective}",
-            f"optimise small/horizontal_rig.toml --objective {objective} --steady --no-front --json --out out",
+            f"optimise small/horizontal_rig.toml --objective {objective} --steady --no-front --json",
         )
     yield _case("optimise-front", "optimise small/centrifuge.toml --json --out out")
-    yield _case(
-        "optimise-deflection",
-        "optimise small/centrifuge.toml --deflection 1mm --objective least_mass --limit 1.5mm --json --out out",
-    )
+    limits = "--deflection 1mm --objective least_mass --limit 1.5mm"
+    yield _case("optimise-deflection", f"optimise small/centrifuge.toml {limits} --json --out out")
+
+
+_GRID = "--volumes 5 --speeds 11"
 
 
 def _maps() -> Iterator[Case]:
     for name in (*ROTORS, *DOCS):
-        yield _case(f"map-{name}", f"map {_scene(name)} --volumes 5 --speeds 11 --json --out out")
+        yield _case(f"map-{name}", f"map {_scene(name)} {_GRID} --json --out out")
     friction = "--friction linear:0.5 --max-volume 20ml"
-    yield _case(
-        "map-friction", f"map small/horizontal_rig.toml --volumes 5 --speeds 11 {friction} --json --out out"
-    )
+    yield _case("map-friction", f"map small/horizontal_rig.toml {_GRID} {friction} --json --out out")
 
 
 def _sweeps() -> Iterator[Case]:
@@ -173,11 +170,10 @@ def _modes() -> Iterator[Case]:
     yield _case("modes-round", f"{_MODES} --json --out out")
     yield _case("modes-order1", f"{_MODES} --order 1 --count 6 --segments 64 --layers 4 --json")
     yield _case("modes-closed", f"{_MODES} --baffles 6 --json")
-    yield _case("modes-baffles", f"{_MODES} --baffles 4 --baffle-tip-radius 140mm --baffle-wall-gap 2mm --json")
-    mesh = "--mesh docs/examples/lobes.msh"
-    yield _case(
-        "modes-mesh", f"modes --radius 180mm --volume 1l --height 60mm --speed 60 {mesh} --json --out out"
-    )
+    edges = "--baffle-tip-radius 140mm --baffle-wall-gap 2mm"
+    yield _case("modes-baffles", f"{_MODES} --baffles 4 {edges} --json")
+    lobes = "modes --radius 180mm --volume 1l --height 60mm --speed 60 --mesh docs/examples/lobes.msh"
+    yield _case("modes-mesh", f"{lobes} --json --out out")
     yield _case("modes-words", f"{_MODES} --count 4")
 
 
@@ -204,7 +200,7 @@ def _words() -> Iterator[Case]:
         yield _case(f"words-{name}", f"{name} small/runup.toml{options}{out}")
     yield _case("words-exciter", "run examples/vibratory_table.toml")
     yield _case("words-exciter-explain", "explain examples/vibratory_table.toml")
-    yield _case("words-volume", "volume --radius 0.15 --height 0.05 --eccentricity 1e-3 --speed 100 --volume 2e-4")
+    yield _case("words-volume", f"{_VOLUME} --volume 2e-4")
     yield _case("words-layer", f"{_WHIRL} --model linear")
     yield _case("words-layer-duration", f"{_WHIRL} --model long_wave --cells 32 --duration 2")
     yield _case("words-sweep", "sweep small/centrifuge_shares.toml --workers 0")
@@ -214,8 +210,11 @@ def _words() -> Iterator[Case]:
     yield _case("words-out", "run docs/examples/smallest_scene.toml")
 
 
+_VOLUME = "volume --radius 0.15 --height 0.05 --eccentricity 1e-3 --speed 100"
+
+
 def _cheap() -> Iterator[Case]:
-    volume = "volume --radius 0.15 --height 0.05 --eccentricity 1e-3 --speed 100 --json"
+    volume = f"{_VOLUME} --json"
     yield _case("volume-optimal", volume)
     yield _case("volume-dry", f"{volume} --volume 2e-5")
     yield _case("volume-wet", f"{volume} --volume 2e-4")
@@ -233,7 +232,7 @@ def _wrong() -> Iterator[Case]:
     for name in (*WRONG, "empty", "not_text"):
         command = "sweep" if name in studies else "run"
         yield _case(f"wrong-{name}", f"{command} wrong/{name}.toml --json --out out")
-    table, rig, smallest = "examples/vibratory_table.toml", "examples/horizontal_rig.toml", _scene("smallest_scene")
+    table, rig, smallest = _scene("vibratory_table"), _scene("horizontal_rig"), _scene("smallest_scene")
     typed = {
         "no-file": "run nowhere.toml",
         "folder": "run examples",

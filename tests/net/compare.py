@@ -50,13 +50,14 @@ class Leaf:
     value: Any
 
 
-def compare(case: str, kept: Answer, found: Answer) -> list[Difference]:
+def compare(case: str, kept: Answer, found: Answer, share: float = 1.0) -> list[Difference]:
     """All differences beyond the tolerances of the command, in the order of the paths.
 
     Parameters
     ----------
     case : name of the command
     kept, found : as `answers.answer` gives them
+    share : of the tolerances that may be used up
     """
     ours, theirs = arrays(kept), arrays(found)
     differences = []
@@ -66,7 +67,7 @@ def compare(case: str, kept: Answer, found: Answer) -> list[Difference]:
         elif path not in ours:
             differences.append(Difference(case, path, "nothing", _shown(theirs[path])))
         else:
-            one = _array(case, path, ours[path], theirs[path])
+            one = _array(case, path, ours[path], theirs[path], share)
             differences += [one] if one else []
     return differences
 
@@ -74,8 +75,8 @@ def compare(case: str, kept: Answer, found: Answer) -> list[Difference]:
 def arrays(value: Any) -> dict[str, list[Leaf]]:
     """Leaves of an answer by their path without indices: what stands under one path is one array.
 
-    The entries of a list of objects are taken together, so that a column has one scale. The length of each list
-    stands under the path of the list and "#", the keys of each object under ".keys".
+    The entries of a list of objects are taken together, so that a column has one scale. The length of each
+    list stands under the path of the list and "#"; an object without keys is told by ".keys".
     """
     found: dict[str, list[Leaf]] = {}
     for general, leaf in _leaves(value, "", ""):
@@ -97,12 +98,16 @@ def _leaves(value: Any, general: str, path: str) -> Iterator[tuple[str, Leaf]]:
         yield general, Leaf(path, value)
 
 
-def _array(case: str, path: str, kept: list[Leaf], found: list[Leaf]) -> Difference | None:
+def _array(
+    case: str, path: str, kept: list[Leaf], found: list[Leaf], share: float
+) -> Difference | None:
     """The worst difference of an array, None if there is none."""
     if len(kept) != len(found):
         return Difference(case, path, f"{len(kept)} values", f"{len(found)} values")
-    tolerance = tolerance_of(case, path)
+    tolerance = tolerance_of(case, path).times(share)
     scale = max((abs(leaf.value) for leaf in kept if _finite(leaf.value)), default=0.0)
+    if not tolerance.ordered:
+        kept, found = sorted(kept, key=_rank), sorted(found, key=_rank)
     bad = [(a, b) for a, b in zip(kept, found, strict=True) if not alike(a.value, b.value, scale, tolerance)]
     if not bad:
         return None
@@ -110,6 +115,11 @@ def _array(case: str, path: str, kept: list[Leaf], found: list[Leaf]) -> Differe
     both = _finite(a.value) and _finite(b.value)
     relative = abs(a.value - b.value) / scale if both and scale > 0.0 else None
     return Difference(case, a.path, _text(a.value), _text(b.value), relative, len(bad), len(kept))
+
+
+def _rank(leaf: Leaf) -> tuple[bool, float, str]:
+    """Place of a value among those of an array whose order does not count."""
+    return (True, leaf.value, "") if _finite(leaf.value) else (False, 0.0, str(leaf.value))
 
 
 def _distance(a: Leaf, b: Leaf) -> float:

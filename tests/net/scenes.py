@@ -1,4 +1,4 @@
-"""The input files of the net: shipped scenes, smaller copies of them, and wrong ones, all written to a folder."""
+"""The input files of the net: shipped scenes, smaller copies of them, and wrong ones."""
 
 from __future__ import annotations
 
@@ -47,12 +47,13 @@ WRONG: dict[str, tuple[str, str, str]] = {
 }
 
 
-def write_inputs(folder: Path) -> None:
+def write_inputs(folder: Path, shaken: bool = False) -> None:
     """Write all input files.
 
     Parameters
     ----------
     folder : empty; gets examples/, docs/examples/, small/ and wrong/
+    shaken : masses, stiffnesses, volumes and their like changed by rounding
     """
     for name in ("examples", "docs/examples"):
         shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__", "*.msh"))
@@ -70,11 +71,33 @@ def write_inputs(folder: Path) -> None:
     for name, changes in SMALL.items():
         source = next(p for p in folder.glob(f"*/**/{name}.toml") if p.parent.name in ("examples", "studies"))
         _put(folder / "small" / f"{name}.toml", changed(source.read_text(encoding="utf-8"), changes))
+    if shaken:
+        for path in (*folder.glob("**/examples/**/*.toml"), *folder.glob("small/*.toml")):
+            path.write_text(shake(path.read_text("utf-8")), "utf-8")
 
 
 def _put(path: Path, text: str) -> None:
     """Write a scene; what it names beside itself is looked for among the examples."""
     path.write_text(text.replace('"../', '"../small/').replace('"lobes', '"../docs/examples/lobes'), "utf-8")
+
+
+_SHAKEN = "mass|unbalance|size|volume|stiffness|critical_speed|damping|tub_mass|drum_mass|platform_mass"
+ROUNDING = 1e-15  # five units of the last digit
+
+
+def shake(text: str) -> str:
+    """The text of a scene with its dynamic quantities changed by rounding."""
+    return re.sub(rf'^((?:{_SHAKEN}) *= *")([-\d.e]+)', _rounded, text, flags=re.MULTILINE)
+
+
+def shake_options(argv: tuple[str, ...]) -> tuple[str, ...]:
+    """What is typed with volumes and amplitudes changed by rounding."""
+    options = r"(--(?:volume|whirl-amplitude|eccentricity) )([\d.]+(?:e-?\d+)?)"
+    return tuple(re.sub(options, _rounded, " ".join(argv)).split(" "))
+
+
+def _rounded(found: re.Match[str]) -> str:
+    return f"{found[1]}{float(found[2]) * (1.0 + ROUNDING)!r}"
 
 
 def changed(text: str, changes: dict[str, str]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 
 
@@ -14,10 +14,16 @@ class Tolerance:
     ----------
     relative : to the largest magnitude in the kept array
     absolute : in the unit of the value
+    ordered : False if only the values of an array count, not their places
     """
 
     relative: float = 0.0
     absolute: float = 0.0
+    ordered: bool = True
+
+    def times(self, share: float) -> Tolerance:
+        """A share of it."""
+        return replace(self, relative=share * self.relative, absolute=share * self.absolute)
 
 
 DEFAULT = Tolerance(relative=1e-12)

@@ -19,11 +19,11 @@ from pathlib import Path
 from types import ModuleType
 
 from tests.net.answers import Answer, answer
-from tests.net.call import FRONT, ROOT, packages
+from tests.net.call import ROOT, packages
 from tests.net.cases import Case
 from tests.net.scenes import write_inputs
 
-_PATIENCE = 600.0  # seconds for one command
+_PATIENCE = 1800.0  # seconds for one command
 # Loaded once, before the processes split off; those that are not there are skipped.
 _LIBRARIES = (
     *("numpy", "scipy.optimize", "scipy.sparse.linalg", "scipy.integrate", "scipy.stats", "scipy.special"),
@@ -33,7 +33,9 @@ _LIBRARIES = (
 )
 
 
-def run_all(cases: Sequence[Case], scratch: Path, jobs: int) -> Iterator[tuple[Case, Answer, float]]:
+def run_all(
+    cases: Sequence[Case], scratch: Path, jobs: int, shaken: bool = False
+) -> Iterator[tuple[Case, Answer, float]]:
     """Answers of all cases and the processor seconds each took, in the order of the cases.
 
     Parameters
@@ -41,9 +43,10 @@ def run_all(cases: Sequence[Case], scratch: Path, jobs: int) -> Iterator[tuple[C
     cases : the commands
     scratch : folder for inputs and outputs
     jobs : how many at a time
+    shaken : inputs changed by rounding
     """
     inputs = scratch / "inputs"
-    write_inputs(inputs)
+    write_inputs(inputs, shaken)
     context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
     if len(cases) > 2 * jobs and context.get_start_method() == "fork":
         _load()
@@ -64,7 +67,7 @@ def run_all(cases: Sequence[Case], scratch: Path, jobs: int) -> Iterator[tuple[C
             done[k] = _received(ready)
             process.join()
             shutil.rmtree(scratch / cases[k].name, ignore_errors=True)
-        for ours, (k, process, began) in list(running.items()):
+        for _, process, began in running.values():
             if time.perf_counter() - began > _PATIENCE:
                 process.kill()  # the pipe then ends, which is an answer
         while told in done:
@@ -106,10 +109,10 @@ def _load() -> None:
         for name in _LIBRARIES:
             if importlib.util.find_spec(name.partition(".")[0]):
                 importlib.import_module(name)
-        front = importlib.import_module(FRONT.partition(".")[0])
-        assert Path(str(front.__file__)).is_relative_to(ROOT), f"{front.__file__} is not of this checkout"
-        for package in packages():
-            _load_all(importlib.import_module(package))
+        for name in packages():
+            package = importlib.import_module(name)
+            assert Path(str(package.__file__)).is_relative_to(ROOT), f"{name} is of another checkout"
+            _load_all(package)
 
 
 def _load_all(package: ModuleType) -> None:

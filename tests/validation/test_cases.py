@@ -10,7 +10,6 @@ import pytest
 from leblanc.cli import main
 from leblanc.scene.machine import jeffcott
 from leblanc.scene.scene import load_scene
-from leblanc.scene.machine import jeffcott
 from meshes.errors import InputError
 from validation.cases.scenes import horizontal_rig, horizontal_rotor, vertical_rig, vertical_rotor
 from validation.command import GROUPS, all_cases

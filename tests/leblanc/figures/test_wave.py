@@ -16,10 +16,8 @@ from matplotlib.transforms import Bbox
 from PIL import Image
 
 from leblanc import figures
-from leblanc.figures import wave
-from leblanc.figures import wave_page
-from leblanc.results.layer import Wave
-from leblanc.results.layer import WaveFrames
+from leblanc.figures import wave, wave_page
+from leblanc.results.layer import Wave, WaveFrames
 from meshes.errors import InputError
 from tests.leblanc.figures.test_wave_values import (
     R,
