@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from fluid.fill import Fill as Fill
     from fluid.liquid import Liquid as Liquid
-    from leblanc.scene.faults import SceneFaults as SceneError
     from leblanc.scene.scene import Scene as Scene
     from leblanc.scene.scene import load_scene as load_scene
+    from leblanc.scene.schema.faults import SceneFaults as SceneError
     from meshes.chamber import Chamber as Chamber
     from meshes.errors import InputError as InputError
 
@@ -25,7 +25,7 @@ _HOMES = {
     "Fill": ("fluid.fill", "Fill"),
     "Liquid": ("fluid.liquid", "Liquid"),
     "InputError": ("meshes.errors", "InputError"),
-    "SceneError": ("leblanc.scene.faults", "SceneFaults"),
+    "SceneError": ("leblanc.scene.schema.faults", "SceneFaults"),
 }
 
 __all__ = ["Chamber", "Fill", "InputError", "Liquid", "Scene", "SceneError", "load_scene"]

@@ -164,8 +164,8 @@ def test_the_page_of_keys_is_up_to_date() -> None:
 
 
 def test_every_key_has_its_line_and_a_meaning() -> None:
-    from leblanc.scene.paths import tables_of
     from leblanc.scene.scene import Scene
+    from leblanc.scene.schema.paths import tables_of
     from leblanc.studies.sweep.distributions import FORMS, KINDS
     from leblanc.studies.sweep.study import Study
 

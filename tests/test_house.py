@@ -65,8 +65,8 @@ def _public(body: list[ast.stmt]) -> list[ast.FunctionDef | ast.ClassDef]:
 
 
 def test_no_folder_is_a_corridor() -> None:
-    """About a dozen modules a folder; validation has a file a case. The figures still have to be sorted."""
-    most = {"leblanc/figures": 19}
+    """About a dozen modules a folder; validation has a file a case.."""
+    most: dict[str, int] = {}
     wide = {}
     for name in ("meshes", "fluid", "solvers", "leblanc"):
         for folder in {path.parent for path in (ROOT / name).rglob("*.py")}:

@@ -8,10 +8,10 @@ from typing import Any
 from pydantic.fields import FieldInfo
 
 from fluid.friction import Friction
-from leblanc.scene.part import Part, parts_of, rule_of
-from leblanc.scene.paths import entry_rule, tables_of
-from leblanc.scene.rules import Entries, Flag, OneOf, Quantity, Several, Span, Text, Whole
 from leblanc.scene.scene import Scene
+from leblanc.scene.schema.part import Part, parts_of, rule_of
+from leblanc.scene.schema.paths import entry_rule, tables_of
+from leblanc.scene.schema.rules import Entries, Flag, OneOf, Quantity, Several, Span, Text, Whole
 from leblanc.studies.sweep.distributions import FORMS
 from leblanc.studies.sweep.study import Study
 

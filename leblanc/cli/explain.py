@@ -40,7 +40,7 @@ def explain(
 
 def _print(answer: Explanation) -> None:
     """The explanation in words."""
-    from leblanc.results.notes import percent
+    from leblanc.results.note import percent
     from leblanc.text.explanation import layer_rows, machine_rows, mode_rows, span_heading, span_rows
     from leblanc.text.models import described
 

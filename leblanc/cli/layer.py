@@ -52,7 +52,7 @@ def layer(
     from fluid.fill import Fill
     from fluid.liquid import known_liquid
     from leblanc.friction import parse_friction
-    from leblanc.scene.faults import NotConverged
+    from leblanc.scene.schema.faults import NotConverged
     from leblanc.studies.layer import answer_layer, layer_history
     from leblanc.units import ACCELERATION, ANGULAR_SPEED, LENGTH, TIME, VOLUME, parse_option
     from meshes.baffles import Baffles

@@ -48,7 +48,7 @@ def map(
         )
     folder = out_dir(machine.name, out)
 
-    from leblanc.figures.stability_map import map_figure, save
+    from leblanc.figures.whirl_map import map_figure, save
     from leblanc.report.page import about, command_line
     from leblanc.report.whirl_map import write_map_report
     from leblanc.results.netcdf import write_dataset
@@ -76,7 +76,7 @@ def map(
 
     lost = int((found.growth != found.growth).sum())
     if lost:
-        from leblanc.scene.faults import NotConverged
+        from leblanc.scene.schema.faults import NotConverged
 
         raise NotConverged([f"{scene}: modes not found at {lost} of {found.growth.size} points"])
     say(f"{found.name}: {found.volume.size} volumes by {found.speed.size} speeds done")

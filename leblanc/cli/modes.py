@@ -47,7 +47,7 @@ def modes(
     Frequencies are relative to the drum, positive with the spin.
     """
     from fluid.liquid import known_liquid
-    from leblanc.scene.faults import NotConverged
+    from leblanc.scene.schema.faults import NotConverged
     from leblanc.studies.modes import Resolution, answer_modes
     from leblanc.text.modes import table_lines
     from leblanc.units import ANGULAR_SPEED, LENGTH, VOLUME, parse_option

@@ -43,7 +43,7 @@ def new(
 def _example(name: str) -> tuple[bytes, str, str]:
     """Content of an example, its file's name, and what to do with it."""
     from leblanc.scene.examples import example_path
-    from leblanc.scene.load import read_toml
+    from leblanc.scene.schema.load import read_toml
 
     path = example_path(name)
     content = path.read_bytes()

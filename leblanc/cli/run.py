@@ -52,7 +52,7 @@ def run(
         print(f"Read {folder / 'summary.html'}; the data are in {folder / 'response.nc'}")
 
     if not result.converged.all():
-        from leblanc.scene.faults import NotConverged
+        from leblanc.scene.schema.faults import NotConverged
 
         lost = result.speed[~result.converged]
         raise NotConverged(
@@ -83,7 +83,7 @@ def _run_exciter(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
         print("\n".join(lines(result)))
         print(f"Read {folder / 'summary.html'}")
     if not result.converged:
-        from leblanc.scene.faults import NotConverged
+        from leblanc.scene.schema.faults import NotConverged
 
         raise NotConverged([f"{result.name}: a time integration beside the formulas did not stay finite"])
     say(f"{result.name}: {result.speed.size} speeds done")

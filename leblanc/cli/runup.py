@@ -42,14 +42,14 @@ def runup(
     planned(machine)
     if animate is not None:
         from leblanc.figures.page import require_film
-        from leblanc.studies.runup_frames import require_layers
+        from leblanc.studies.runup import require_layers
 
         require_film(animate)
         require_layers(machine)
     folder = out_dir(machine.name, out)
     result = _run(machine, cells, samples, not no_check, animate is not None)
 
-    from leblanc.figures.runup import write_figures
+    from leblanc.figures.runup.curves import write_figures
     from leblanc.report.page import about, command_line
     from leblanc.report.runup import write_runup_report
     from leblanc.results.runup import write_runup
@@ -73,8 +73,7 @@ def _run(machine: Scene, cells: int | None, samples: int | None, check: bool, fi
     """The run itself, with a bar on a terminal."""
     from rich.progress import Progress
 
-    from leblanc.studies.runup import runup_scene
-    from leblanc.studies.runup_frames import FRAMES
+    from leblanc.studies.runup import FRAMES, runup_scene
 
     frames = FRAMES if film else None
     with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
@@ -88,7 +87,7 @@ def _film(result: RunupResult, path: Path) -> None:
     """The film of the layers that the run kept."""
     from rich.progress import Progress
 
-    from leblanc.figures.runup_film import animate
+    from leblanc.figures.runup.film import animate
 
     assert result.frames is not None
     with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
@@ -117,7 +116,7 @@ def _tell(result: RunupResult, folder: Path) -> None:
 def _finish(result: RunupResult, scene: Path) -> None:
     """Say what did not come to its end, after all that was reached is written."""
     from leblanc.results.runup import RunupEnd
-    from leblanc.scene.faults import NotConverged
+    from leblanc.scene.schema.faults import NotConverged
 
     if result.end is RunupEnd.INTERRUPTED:
         raise KeyboardInterrupt

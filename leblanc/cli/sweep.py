@@ -115,7 +115,7 @@ def _run(plan: Sweep, folder: Path, workers: int | None, scheduler: str | None, 
 
 def _finish(plan: Sweep, found: Summary) -> None:
     """Say on stderr how it went; with no sample done at all that is a failure."""
-    from leblanc.scene.faults import NotConverged, SceneFault, SceneFaults
+    from leblanc.scene.schema.faults import NotConverged, SceneFault, SceneFaults
 
     for reason, count in found.reasons[:_SHOWN]:
         say(f"{plan.name}: {count} of {found.samples} samples: {reason}")

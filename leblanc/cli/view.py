@@ -12,7 +12,7 @@ import typer
 from leblanc.cli.output import out_dir, print_json, say
 
 if TYPE_CHECKING:
-    from leblanc.results.shapes import ModeView
+    from leblanc.results.drawn.shapes import ModeView
     from leblanc.scene.scene import Scene
     from leblanc.view.film import Film
     from leblanc.view.parts import Picture

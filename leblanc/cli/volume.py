@@ -20,7 +20,7 @@ def volume(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Volume that just covers the wall at a deflection. Also the surface of a given volume."""
-    from leblanc.scene.faults import NotConverged
+    from leblanc.scene.schema.faults import NotConverged
     from leblanc.studies.volume import answer_volume
     from leblanc.text.volume import facts, question
     from leblanc.units import ACCELERATION, ANGULAR_SPEED, LENGTH, VOLUME, parse_option

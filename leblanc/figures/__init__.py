@@ -5,7 +5,7 @@ only door to matplotlib; a figure carries its caption, its alternative text and 
 """
 
 from leblanc.figures.campbell import campbell_figure as campbell_figure
-from leblanc.figures.chamber import chamber_figure as chamber_figure
+from leblanc.figures.chambers.along_axis import chamber_figure as chamber_figure
 from leblanc.figures.page import FigureFiles as FigureFiles
 from leblanc.figures.page import save as save
 from leblanc.figures.page import style as style
@@ -13,6 +13,6 @@ from leblanc.figures.response import amplitude_figure as amplitude_figure
 from leblanc.figures.response import liquid_figure as liquid_figure
 from leblanc.figures.response import phase_figure as phase_figure
 from leblanc.figures.response import write_figures as write_figures
-from leblanc.figures.wave_page import animate as animate
-from leblanc.figures.wave_page import history_figure as history_figure
-from leblanc.figures.wave_page import wave_figure as wave_figure
+from leblanc.figures.wave.page import animate as animate
+from leblanc.figures.wave.page import history_figure as history_figure
+from leblanc.figures.wave.page import wave_figure as wave_figure

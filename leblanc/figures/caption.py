@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from leblanc.figures.page import Caption
-from leblanc.results.provenance import one_line
+from leblanc.results.base import one_line
 from leblanc.results.response import RunResult
 
 

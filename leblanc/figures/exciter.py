@@ -19,8 +19,8 @@ from leblanc.figures.page import (
     save,
     style,
 )
+from leblanc.results.base import one_line
 from leblanc.results.exciter import ExciterResult
-from leblanc.results.provenance import one_line
 from leblanc.text.exciter import alt
 from leblanc.units import MM, RPM
 

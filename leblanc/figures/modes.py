@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from leblanc.figures.page import Figure, Frame, lay_out, number, style
 from leblanc.figures.page import save as save  # a figure is drawn and written together
-from leblanc.results.drawing import rounded_down
+from leblanc.results.drawn.scale import rounded_down
 from leblanc.results.modes import ModesResult
 from leblanc.units import MM, RPM
 from meshes.arrays import Array

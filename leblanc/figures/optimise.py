@@ -20,9 +20,9 @@ from leblanc.figures.page import (
     save,
     style,
 )
-from leblanc.results.notes import texts
+from leblanc.results.base import one_line
+from leblanc.results.note import texts
 from leblanc.results.optimum import OptimumResult
-from leblanc.results.provenance import one_line
 from leblanc.text.numbers import number as short
 from leblanc.units import MM, RPM
 from meshes.arrays import Array

@@ -8,7 +8,7 @@ from typing import Any
 
 from leblanc.figures.campbell import campbell_figure
 from leblanc.figures.caption import caption, zero_of
-from leblanc.figures.chamber import chamber_figure
+from leblanc.figures.chambers.along_axis import chamber_figure
 from leblanc.figures.curves import Curves, prepare
 from leblanc.figures.over_speed import draw_amplitude, draw_angle, draw_offset, draw_phase
 from leblanc.figures.page import (

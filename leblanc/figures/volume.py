@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.figures.chambers.section import liquid_outline
 from leblanc.figures.page import Caption, Figure, Frame, lay_out, number, style
-from leblanc.figures.section import liquid_outline
 from leblanc.results.chamber import FilledChamber
 from leblanc.results.volume import VolumeResult
 from leblanc.text.volume import facts, question

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from leblanc.report.parts import Cell, Table
-from leblanc.results.provenance import one_line
+from leblanc.results.base import one_line
 from leblanc.scene.inputs import inputs_of
 from leblanc.scene.optimise import Optimisation
 from leblanc.scene.rows import Value

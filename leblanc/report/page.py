@@ -12,11 +12,11 @@ from typing import Any
 
 from leblanc.report.inputs import Inputs, scene_inputs
 from leblanc.report.parts import Table, table
-from leblanc.results import provenance
+from leblanc.results import base as provenance
+from leblanc.results.base import one_line
 from leblanc.results.choice import ModelSpan
 from leblanc.results.netcdf import replacing
-from leblanc.results.notes import Note, NoteCode
-from leblanc.results.provenance import one_line
+from leblanc.results.note import Note, NoteCode
 from leblanc.scene.optimise import Optimisation
 from leblanc.scene.scene import Scene
 from leblanc.text.models import described, error_words, speeds_words

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from leblanc.results.provenance import one_line
+from leblanc.results.base import one_line
 
 if TYPE_CHECKING:
     from leblanc.figures.page import FigureFiles

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from leblanc.report.page import About, models, notes, why, write_page
 from leblanc.report.parts import Cell, Table, picture, table
+from leblanc.results.notes.run import OF_MODELS
 from leblanc.results.response import RunResult
-from leblanc.results.run_notes import OF_MODELS
 from leblanc.text.numbers import ranges
 from leblanc.text.run import answer, comparisons, facts, limits, machine, remarks
 

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from leblanc.report.page import About, models, notes, write_page
 from leblanc.report.parts import Cell, Table, picture, table
-from leblanc.results.notes import percent
-from leblanc.results.provenance import one_line
+from leblanc.results.base import one_line
+from leblanc.results.note import percent
+from leblanc.results.notes.runup import CLOSURE, ERROR, IN_TABLES
 from leblanc.results.response import peak
 from leblanc.results.runup import RunupResult
-from leblanc.results.runup_notes import CLOSURE, ERROR, IN_TABLES
 from leblanc.text.numbers import MOST_RANGES, number
 from leblanc.text.runup import describe_model
 from leblanc.text.runup import moments as samples

@@ -6,12 +6,75 @@ import html
 import io
 from abc import ABC, abstractmethod
 from base64 import b64encode
-from collections.abc import Callable
-from importlib import import_module
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Callable, Iterable, Mapping
+from importlib import import_module, metadata
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+
+from leblanc.results.note import Note
 
 if TYPE_CHECKING:
     from leblanc.results.netcdf import Dataset
+
+
+def one_line(text: str) -> str:
+    """Text without line breaks and control characters, which files and figures cannot carry."""
+    return " ".join("".join(c if c.isprintable() else " " for c in text).split())
+
+
+def versions(packages: Iterable[str] = ("leblanc", "numpy", "scipy")) -> dict[str, str]:
+    """Versions of packages, by default of this one and of the libraries that all numbers come from."""
+    found = {}
+    for package in packages:
+        try:
+            found[package] = metadata.version(package)
+        except metadata.PackageNotFoundError:  # run from a source tree that was never installed
+            found[package] = "not installed"
+    return found
+
+
+class OfScene(Protocol):
+    """A result that says which scene it belongs to."""
+
+    @property
+    def name(self) -> str:
+        """Name of the scene."""
+
+    @property
+    def source(self) -> str:
+        """Where its values come from."""
+
+    @property
+    def assumed(self) -> tuple[str, ...]:
+        """Paths of the values that no source gives."""
+
+    @property
+    def digest(self) -> str:
+        """Fingerprint of the scene."""
+
+
+def attributes(
+    result: OfScene, command: str, own: Mapping[str, str], notes: Iterable[Note | str]
+) -> dict[str, str]:
+    """Attributes of the dataset of a result: scene, what is its own, notes, versions.
+
+    Parameters
+    ----------
+    result : names its scene
+    command : that writes the dataset
+    own : attributes that only this kind of result has
+    notes : of the result
+    """
+    said = [one_line(note if isinstance(note, str) else note.text) for note in notes]
+    return {
+        "title": one_line(result.name),
+        "source": one_line(result.source) or "not stated",
+        "digest": result.digest,
+        "assumed": "; ".join(map(one_line, result.assumed)) or "nothing",
+        **own,
+        "notes": "\n".join(said) or "none",
+        "history": f"written by leblanc {command}",
+        **{f"version_{package}": version for package, version in versions().items()},
+    }
 
 
 def presented_by(address: str) -> Callable[[Any], Any]:

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from leblanc.results.base import Result
+from leblanc.results.base import Result, attributes
 from leblanc.results.netcdf import dataset, flags
 from leblanc.results.netcdf import variable as var
-from leblanc.results.provenance import attributes
 from meshes.arrays import Array, Flags
 
 if TYPE_CHECKING:

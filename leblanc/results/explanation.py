@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from fluid.numbers import LayerNumbers
-from leblanc.results.base import Result
+from leblanc.results.base import Result, attributes
 from leblanc.results.choice import ModelSpan
 from leblanc.results.exciter import number_or_none
-from leblanc.results.motion import RestMode
 from leblanc.results.netcdf import dataset, flags
 from leblanc.results.netcdf import variable as var
-from leblanc.results.provenance import attributes
+from leblanc.results.response import RestMode
 
 if TYPE_CHECKING:
     from leblanc.results.netcdf import Dataset, Variable

@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from leblanc.results.base import Result
+from leblanc.results.base import Result, one_line, versions
 from leblanc.results.netcdf import dataset, variable
-from leblanc.results.notes import Note, NoteCode, texts
-from leblanc.results.provenance import one_line, versions
+from leblanc.results.note import Note, NoteCode, texts
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.layer.prescribed import LayerHistory
@@ -148,7 +147,7 @@ class LayerResult(Result):
     captured: bool
     validity: tuple[Number, ...]
 
-    figure = "leblanc.figures.wave_page:layer_figure"
+    figure = "leblanc.figures.wave.page:layer_figure"
     summary = "leblanc.text.layer:summary"
 
     def wave(self) -> Wave:
@@ -220,7 +219,7 @@ class LayerPeriodsResult(Result):
     notes: tuple[Note, ...]
     validity: tuple[Number, ...]
 
-    figure = "leblanc.figures.wave_page:periods_figure"
+    figure = "leblanc.figures.wave.page:periods_figure"
     summary = "leblanc.text.layer:periods_summary"
 
     @property

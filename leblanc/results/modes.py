@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.base import Result
+from leblanc.results.base import Result, one_line, versions
 from leblanc.results.netcdf import dataset, variable
-from leblanc.results.notes import Note, NoteCode, texts
-from leblanc.results.provenance import one_line, versions
+from leblanc.results.note import Note, NoteCode, texts
 from meshes.arrays import Array
 from meshes.findings import Finding
 from meshes.liquid_section import LiquidSection

@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fluid.friction import Friction
-from leblanc.results.base import Result
+from leblanc.results.base import Result, attributes
 from leblanc.results.choice import ModelSpan
 from leblanc.results.netcdf import dataset, flags, write_dataset
 from leblanc.results.netcdf import variable as var
-from leblanc.results.notes import Note, NoteCode, texts
-from leblanc.results.provenance import attributes
+from leblanc.results.note import Note, NoteCode, texts
 from leblanc.results.response import RunResult
 from leblanc.units import MM, RPM
 from meshes.arrays import Array, Flags

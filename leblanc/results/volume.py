@@ -7,10 +7,9 @@ from dataclasses import asdict, dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from leblanc.results.base import Result
+from leblanc.results.base import Result, versions
 from leblanc.results.netcdf import dataset
 from leblanc.results.netcdf import variable as var
-from leblanc.results.provenance import versions
 from meshes.chamber import Chamber
 
 if TYPE_CHECKING:

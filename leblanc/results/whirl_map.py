@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from leblanc.results.base import Result
+from leblanc.results.base import Result, attributes
 from leblanc.results.netcdf import dataset, flags
 from leblanc.results.netcdf import variable as var
-from leblanc.results.notes import Note, texts
-from leblanc.results.provenance import attributes
+from leblanc.results.note import Note, texts
 from meshes.arrays import Array, Flags
 
 if TYPE_CHECKING:
@@ -38,7 +37,7 @@ class WhirlMap(Result):
     notes : limits of validity and findings
     """
 
-    figure: ClassVar[str] = "leblanc.figures.stability_map:map_figure"
+    figure: ClassVar[str] = "leblanc.figures.whirl_map:map_figure"
     summary: ClassVar[str] = "leblanc.text.whirl_map:facts"
 
     name: str

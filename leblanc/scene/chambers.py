@@ -14,9 +14,9 @@ from pydantic import Field, PlainValidator
 from fluid.fill import Fill
 from fluid.liquid import KNOWN_LIQUIDS, Liquid
 from leblanc import units
-from leblanc.scene.faults import meant
-from leblanc.scene.part import Conflict, Part, allowed_at
-from leblanc.scene.rules import LENGTH, Length, Position, Refused, quantity, whole
+from leblanc.scene.schema.faults import meant
+from leblanc.scene.schema.part import Conflict, Part, allowed_at
+from leblanc.scene.schema.rules import LENGTH, Length, Position, Refused, quantity, whole
 from meshes.baffles import Baffles as Plates
 from meshes.chamber import Chamber as Walls
 from meshes.chamber_section import ChamberSection, chamber_section

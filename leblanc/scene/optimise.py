@@ -7,8 +7,8 @@ from typing import Annotated
 from pydantic import Field, PlainValidator
 
 from leblanc import units
-from leblanc.scene.part import Part
-from leblanc.scene.rules import SPEED, Quantity, Span, Speed, Truth, entries, one_of, quantity, whole
+from leblanc.scene.schema.part import Part
+from leblanc.scene.schema.rules import SPEED, Quantity, Span, Speed, Truth, entries, one_of, quantity, whole
 
 OBJECTIVES = ("working_speed", "peak", "mean", "least_mass", "robust")
 MAX_DUTY = 1000

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import Field, PlainValidator
 
 from leblanc import units
-from leblanc.scene.part import Conflict, Part
 from leblanc.scene.rows import Row, RowTable, Value, degrees, mm, row, three, unbalance
-from leblanc.scene.rules import (
+from leblanc.scene.schema.part import Conflict, Part
+from leblanc.scene.schema.rules import (
     DAMPING,
     POSITION,
     SPEED,

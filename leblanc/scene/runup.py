@@ -9,8 +9,8 @@ from typing import Annotated, Any
 from pydantic import Field
 
 from leblanc import units
-from leblanc.scene.part import Conflict, Part
-from leblanc.scene.rules import Inertia, Quantity, Speed, Truth, entries, quantity, whole
+from leblanc.scene.schema.part import Conflict, Part
+from leblanc.scene.schema.rules import Inertia, Quantity, Speed, Truth, entries, quantity, whole
 
 MAX_POINTS = 1000  # of a motor's curve
 

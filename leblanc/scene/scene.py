@@ -15,18 +15,18 @@ from fluid.friction import Friction, FrictionLaw
 from leblanc import units
 from leblanc.scene.chambers import Chamber
 from leblanc.scene.digest import chamber_content, fingerprint, optimise_content, rotor_content
-from leblanc.scene.faults import SceneFault, SceneFaults, meant, shown
-from leblanc.scene.load import read_scene
 from leblanc.scene.optimise import Optimisation
-from leblanc.scene.part import Conflict, Part, faults_of
-from leblanc.scene.paths import keys_of, require_field, with_values
 from leblanc.scene.rotors import AnyRotor
 from leblanc.scene.rotors import Exciter as Exciter  # what a scene's rotor may be
 from leblanc.scene.rotors import JeffcottRotor as JeffcottRotor
 from leblanc.scene.rotors import TubRotor as TubRotor
 from leblanc.scene.rotors import TwoPlaneRotor as TwoPlaneRotor
-from leblanc.scene.rules import Entries, Refused, Speed, Text, entries, one_of, quantity, whole
 from leblanc.scene.runup import Runup as Runup
+from leblanc.scene.schema.faults import SceneFault, SceneFaults, meant, shown
+from leblanc.scene.schema.load import read_scene
+from leblanc.scene.schema.part import Conflict, Part, faults_of
+from leblanc.scene.schema.paths import keys_of, require_field, with_values
+from leblanc.scene.schema.rules import Entries, Refused, Speed, Text, entries, one_of, quantity, whole
 
 if TYPE_CHECKING:
     import numpy as np

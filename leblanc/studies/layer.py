@@ -22,7 +22,7 @@ from leblanc.results.layer import (
     angles,
     wave_amplitude,
 )
-from leblanc.results.notes import Note
+from leblanc.results.note import Note
 from leblanc.studies.validity import judge
 from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative, require_positive

@@ -8,12 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from leblanc.results import run_notes
 from leblanc.results.chamber import FilledChamber
 from leblanc.results.choice import Choice, model_spans
-from leblanc.results.motion import Motion, RestMode, SelfExcited
-from leblanc.results.notes import Note
-from leblanc.results.response import RunResult
+from leblanc.results.note import Note
+from leblanc.results.notes import run as run_notes
+from leblanc.results.response import Motion, RestMode, RunResult, SelfExcited
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
 from leblanc.studies.choose import choose_all, liquid_models

@@ -12,17 +12,16 @@ from numpy.typing import ArrayLike
 from fluid.fill import Fill
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
-from leblanc.results import runup_notes
 from leblanc.results.chamber import FilledChamber
-from leblanc.results.notes import Note, percent
-from leblanc.results.runup import Bands, RunupResult
-from leblanc.results.runup_notes import RunupCode
+from leblanc.results.note import Note, percent
+from leblanc.results.notes import runup as runup_notes
+from leblanc.results.notes.runup import RunupCode
+from leblanc.results.runup import Bands, RunupFrames, RunupResult
 from leblanc.scene.inputs import runup_rows
 from leblanc.scene.machine import dry_rotor, jeffcott, require_clear
 from leblanc.scene.scene import JeffcottRotor, Runup, Scene
 from leblanc.studies.prepare import across_gravity as across_gravity  # of a run-up, asked for with it
 from leblanc.studies.prepare import axial_gravity
-from leblanc.studies.runup_frames import require_frames, require_layers, runup_frames
 from leblanc.studies.validity import RANGES
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
@@ -30,6 +29,58 @@ from solvers.runup.drive import Drive, Motor, Ramp
 from solvers.runup.error import MOST_LAG, MOST_WAVE, LinearRunError, largest_wave, linear_run_error
 from solvers.runup.runup import MODELS, RunupHistory, RunupNumerics, run_up
 from solvers.synchronous.response import Response, response
+
+FRAMES = 180  # of a film
+MOST_FRAMES = 2000
+
+
+def require_layers(scene: Scene) -> None:
+    """A film shows the layers cell by cell.
+
+    Raises
+    ------
+    InputError : the scene's liquid model has no cells
+    """
+    if scene.model.liquid == "linear":
+        raise InputError("model.liquid", "linear", "auto or long_wave for a film")
+
+
+def require_frames(frames: int) -> None:
+    """A number of frames that a film can have.
+
+    Raises
+    ------
+    InputError : too few or too many
+    """
+    if not 2 <= frames <= MOST_FRAMES:
+        raise InputError("frames", frames, f"from 2 to {MOST_FRAMES}")
+
+
+def runup_frames(history: RunupHistory) -> RunupFrames | None:
+    """The layers that a run-up kept [theory: coupling].
+
+    Parameters
+    ----------
+    history : of a run with snapshots
+
+    Returns
+    -------
+    In the drum frame; None where no snapshots were asked for
+    """
+    kept = history.snapshots
+    if kept is None:
+        return None
+    turn = np.exp(-1j * history.angle[kept.sample])
+    return RunupFrames(
+        time=history.time[kept.sample],
+        speed=history.speed[kept.sample],
+        deflection=history.deflection[kept.sample] * turn[:, None],
+        amplitude=history.amplitude[kept.sample],
+        theta=kept.theta,
+        depth=kept.depth,
+        # Gravity points against the first direction.
+        pool=np.angle(-turn),
+    )
 
 
 def liquid_model(scene: Scene) -> str:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
+from leblanc.results.base import one_line
 from leblanc.results.choice import ModelSpan
 from leblanc.results.explanation import ExciterExplanation, Explanation, LayerExplanation
-from leblanc.results.motion import RestMode
-from leblanc.results.provenance import one_line
+from leblanc.results.response import RestMode
 from leblanc.text.models import error_words, speeds_words
 from leblanc.units import ML, MM, RPM
 from meshes.arrays import Array

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from leblanc.results.choice import ModelSpan
-from leblanc.results.notes import percent
+from leblanc.results.note import percent
 from leblanc.units import RPM
 
 # What the model does, and what it takes for granted.

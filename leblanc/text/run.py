@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from leblanc.results.provenance import one_line
+from leblanc.results.base import one_line
 from leblanc.results.response import RunResult, peak
 from leblanc.text.numbers import NOT_FOUND, number, ranges
 from leblanc.units import MM, RPM

@@ -16,8 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.results.drawing import Scale
-from leblanc.results.shapes import DrawnLiquid, MachineMotion
+from leblanc.results.drawn.scale import Scale
+from leblanc.results.drawn.shapes import DrawnLiquid, MachineMotion
 from leblanc.view.parts import Picture
 from leblanc.view.picture import VIEWS, aim, fill, plotter
 from leblanc.view.still import describe_speed, describe_state, stage_of, still

@@ -11,10 +11,10 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from leblanc.results.drawing import Scale
+from leblanc.results.base import one_line
+from leblanc.results.drawn.scale import Scale
+from leblanc.results.drawn.shapes import DrawnLiquid, MachineMotion, RunupView
 from leblanc.results.netcdf import replacing
-from leblanc.results.provenance import one_line
-from leblanc.results.shapes import DrawnLiquid, MachineMotion, RunupView
 from leblanc.units import MM, RPM
 from leblanc.view.parts import Instant, Picture, Stage
 from leblanc.view.picture import Pixels, fill, pixels, plotter, write_png

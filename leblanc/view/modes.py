@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from leblanc.results.drawing import Scale
-from leblanc.results.provenance import one_line
-from leblanc.results.shapes import LiquidBodies, LiquidShape, ModeView
+from leblanc.results.base import one_line
+from leblanc.results.drawn.scale import Scale
+from leblanc.results.drawn.shapes import LiquidBodies, LiquidShape, ModeView
 from leblanc.units import RPM
 from leblanc.view.film import Film
 from leblanc.view.parts import Instant, Picture, Stage

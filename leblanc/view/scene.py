@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.shapes import LiquidBodies, LiquidShape, strips
+from leblanc.results.drawn.shapes import LiquidBodies, LiquidShape, strips
 from leblanc.view.parts import (
     ABOVE,
     AWAY,

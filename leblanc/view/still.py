@@ -9,9 +9,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from leblanc.figures.caption import zero_of
-from leblanc.results.drawing import Scale
-from leblanc.results.provenance import one_line
-from leblanc.results.shapes import DrawnLiquid, MachineMotion
+from leblanc.results.base import one_line
+from leblanc.results.drawn.scale import Scale
+from leblanc.results.drawn.shapes import DrawnLiquid, MachineMotion
 from leblanc.units import MM, RPM
 from leblanc.view.parts import Instant, Picture, Stage
 from leblanc.view.scene import compose

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.figures.uneven import plates
+from leblanc.figures.chambers.uneven import plates
 from leblanc.view.parts import Piece, Stage, placed
 from meshes.arrays import Complex, Indices
 from meshes.chamber import Chamber

@@ -64,9 +64,7 @@ def plain(value: Any, measured: frozenset[str] = frozenset()) -> Any:
     """
     if isinstance(value, dict):
         loose = PROSE | measured
-        return {
-            key: kind(entry) if key in loose else plain(entry, measured) for key, entry in value.items()
-        }
+        return {key: kind(entry) if key in loose else plain(entry, measured) for key, entry in value.items()}
     if isinstance(value, list):
         return [plain(entry, measured) for entry in value]
     if isinstance(value, str) and re.search(r"\s|^$|^<", value):

@@ -98,9 +98,7 @@ def _leaves(value: Any, general: str, path: str) -> Iterator[tuple[str, Leaf]]:
         yield general, Leaf(path, value)
 
 
-def _array(
-    case: str, path: str, kept: list[Leaf], found: list[Leaf], share: float
-) -> Difference | None:
+def _array(case: str, path: str, kept: list[Leaf], found: list[Leaf], share: float) -> Difference | None:
     """The worst difference of an array, None if there is none."""
     if len(kept) != len(found):
         return Difference(case, path, f"{len(kept)} values", f"{len(found)} values")

@@ -67,7 +67,7 @@ def write_inputs(folder: Path, shaken: bool = False) -> None:
             raise ValueError(f"{source} has no {old!r}, which the wrong input {name} replaces")
         _put(folder / "wrong" / f"{name}.toml", text.replace(old, new))
     _put(folder / "wrong" / "empty.toml", "")
-    (folder / "wrong" / "not_text.toml").write_bytes(b"name = \"\xff\xfe\"\n")
+    (folder / "wrong" / "not_text.toml").write_bytes(b'name = "\xff\xfe"\n')
     for name, changes in SMALL.items():
         source = next(p for p in folder.glob(f"*/**/{name}.toml") if p.parent.name in ("examples", "studies"))
         _put(folder / "small" / f"{name}.toml", changed(source.read_text(encoding="utf-8"), changes))

@@ -87,7 +87,9 @@ CHANGES: dict[str, tuple[Callable[[Answer], None], str]] = {
     "new key": (_stdout("novel", 1.0), "stdout.novel"),
     "shorter": (lambda answer: answer["stdout"]["speed"].pop(), "stdout.speed"),
     "shape": (
-        lambda answer: answer["stdout"].update(deflection=[[x for pair in answer["stdout"]["deflection"] for x in pair]]),
+        lambda answer: answer["stdout"].update(
+            deflection=[[x for pair in answer["stdout"]["deflection"] for x in pair]]
+        ),
         "stdout.deflection#",
     ),
     "prose of another type": (_stdout("notes", "<str>"), "stdout.notes"),

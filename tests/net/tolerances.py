@@ -30,9 +30,7 @@ DEFAULT = Tolerance(relative=1e-12)
 EXACT = Tolerance()
 
 # (commands, paths, tolerance, reason): the first that fits holds.
-TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (
-    ("*", "*#", EXACT, "lengths of lists"),
-)
+TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (("*", "*#", EXACT, "lengths of lists"),)
 
 
 def tolerance_of(case: str, path: str) -> Tolerance:

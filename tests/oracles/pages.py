@@ -10,7 +10,7 @@ from pathlib import Path
 from leblanc.report.inputs import Entry, Inputs
 from leblanc.report.page import About
 from leblanc.report.parts import Cell
-from leblanc.results.provenance import one_line
+from leblanc.results.base import one_line
 from leblanc.results.response import RunResult
 from leblanc.scene.rows import Value
 

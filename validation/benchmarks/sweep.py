@@ -14,7 +14,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from leblanc.scene.load import read_toml
+from leblanc.scene.schema.load import read_toml
 from leblanc.studies.sweep.study import Sweep, load_sweep
 from leblanc.studies.sweep.sweep import run_sweep
 

@@ -36,7 +36,7 @@
 #   linear one, or that of a laminar layer on the wall.
 
 # %%
-from leblanc.figures.stability_map import map_figure
+from leblanc.figures.whirl_map import map_figure
 from leblanc.studies.whirl_map import map_scene
 from validation.cases import whirl
 from validation.figures.whirl import growth_figure, in_time

@@ -11,7 +11,7 @@ import numpy as np
 
 from leblanc.figures.page import Figure, Frame, lay_out, style
 from leblanc.figures.page import save as save  # a figure is drawn and written together
-from leblanc.results.provenance import one_line
+from leblanc.results.base import one_line
 
 if TYPE_CHECKING:
     from validation.trade.judge import Comparison, Row

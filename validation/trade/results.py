@@ -6,7 +6,7 @@ import math
 from dataclasses import asdict
 from typing import Any
 
-from leblanc.results.provenance import one_line, versions
+from leblanc.results.base import one_line, versions
 from validation.trade.judge import Comparison, Row
 from validation.trade.trade import TradeRecord
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from leblanc.results.provenance import one_line
+from leblanc.results.base import one_line
 from leblanc.scene.machine import require_clear
 from leblanc.scene.scene import Scene
 from validation.trade.answers import Answer, Case, answer, taste

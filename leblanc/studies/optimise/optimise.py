@@ -10,7 +10,7 @@ import numpy as np
 from fluid.whirl import is_full
 from leblanc.results import optimum
 from leblanc.results.choice import ModelSpan
-from leblanc.results.notes import Note
+from leblanc.results.note import Note
 from leblanc.results.optimum import (
     CandidateChamber,
     Candidates,

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from leblanc.results import optimum
-from leblanc.results.notes import Note
+from leblanc.results.note import Note
 from leblanc.scene.optimise import OBJECTIVES, Optimisation
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds
 from leblanc.studies.optimise.answers import FilledMachine

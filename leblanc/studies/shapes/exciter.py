@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from leblanc.results.drawing import rounded_down
-from leblanc.results.shapes import TableView
+from leblanc.results.drawn.scale import rounded_down
+from leblanc.results.drawn.shapes import TableView
 from leblanc.scene.scene import Exciter, Scene
 from meshes.errors import InputError
 from solvers.rotor.exciter.machine import platform_motion

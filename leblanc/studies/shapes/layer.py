@@ -11,8 +11,8 @@ import math
 
 import numpy as np
 
-from leblanc.results.drawing import chord, half_angle
-from leblanc.results.shapes import LiquidShape
+from leblanc.results.drawn.scale import chord, half_angle
+from leblanc.results.drawn.shapes import LiquidShape
 from meshes.arrays import Array
 from meshes.chamber import Chamber
 from meshes.errors import InputError

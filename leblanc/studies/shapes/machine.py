@@ -8,9 +8,9 @@ import math
 import numpy as np
 
 from fluid.fill import Fill
-from leblanc.results.drawing import Scale
+from leblanc.results.drawn.scale import Scale
+from leblanc.results.drawn.shapes import DrawnLiquid, Liquid, MachineMotion, MachineView
 from leblanc.results.response import RunResult
-from leblanc.results.shapes import DrawnLiquid, Liquid, MachineMotion, MachineView
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds
 from leblanc.studies.choose import choose, liquid_models

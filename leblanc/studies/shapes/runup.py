@@ -7,9 +7,9 @@ from collections.abc import Callable
 import numpy as np
 
 from fluid.fill import Fill
-from leblanc.results.drawing import Scale, film_factor
+from leblanc.results.drawn.scale import Scale, film_factor
+from leblanc.results.drawn.shapes import Liquid, RunupView
 from leblanc.results.runup import RunupFrames, RunupResult
-from leblanc.results.shapes import Liquid, RunupView
 from leblanc.scene.scene import Scene
 from leblanc.studies.runup import runup_scene
 from leblanc.studies.shapes.layer import body_of_layer, body_of_pool

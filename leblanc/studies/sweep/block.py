@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.provenance import versions
-from leblanc.scene.faults import escaped
-from leblanc.scene.paths import Keys
+from leblanc.results.base import versions
 from leblanc.scene.scene import Scene
+from leblanc.scene.schema.faults import escaped
+from leblanc.scene.schema.paths import Keys
 from leblanc.studies.sweep.outputs import DONE, FAILED, NOT_CONVERGED, OUTPUTS, blank, values_of
 from leblanc.studies.sweep.scenes import make_scenes, scene_maker
 from meshes.errors import InputError

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from leblanc import units
-from leblanc.scene.rules import Entries, Quantity, Refused, Whole
+from leblanc.scene.schema.rules import Entries, Quantity, Refused, Whole
 from meshes.arrays import Array
 from meshes.errors import InputError
 

@@ -8,11 +8,11 @@ from typing import Any
 from pydantic import ValidationError
 
 from leblanc.scene.chambers import Chamber
-from leblanc.scene.faults import SceneFaults, escaped
-from leblanc.scene.part import Part, rule_of
-from leblanc.scene.paths import Keys, tables_of, with_values
-from leblanc.scene.rules import Quantity
 from leblanc.scene.scene import Scene, scene_from_table
+from leblanc.scene.schema.faults import SceneFaults, escaped
+from leblanc.scene.schema.part import Part, rule_of
+from leblanc.scene.schema.paths import Keys, tables_of, with_values
+from leblanc.scene.schema.rules import Quantity
 
 _WORDS_ONLY = ("source", "assumed", "runup")  # no answer of a sweep depends on them
 

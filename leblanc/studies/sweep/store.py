@@ -20,9 +20,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from leblanc.results.base import one_line, versions
 from leblanc.results.netcdf import dataset, variable, write_dataset
-from leblanc.results.provenance import one_line, versions
-from leblanc.scene.faults import shown
+from leblanc.scene.schema.faults import shown
 from leblanc.studies.sweep.outputs import FLAG, NUMBER, OUTPUTS, PENDING, STATUS, TEXT, Output
 from leblanc.studies.sweep.study import Sweep, VariedField
 from meshes.errors import InputError

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from leblanc import figures
-from leblanc.figures import curves, section
+from leblanc.figures import curves
+from leblanc.figures.chambers import section
 from leblanc.results.chamber import FilledChamber
 from tests.oracles.records import folded, rig
 

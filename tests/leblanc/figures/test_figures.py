@@ -18,7 +18,8 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
 from leblanc import figures
-from leblanc.figures import chamber, curves
+from leblanc.figures import curves
+from leblanc.figures.chambers import along_axis as chamber
 from leblanc.results.chamber import FilledChamber
 from tests.oracles.records import EXTREMES, RPM, dry_deflection, folded, record_of, response_of, rig
 

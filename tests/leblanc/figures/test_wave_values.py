@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.markers import MarkerStyle
 
 from leblanc import figures
-from leblanc.figures import wave
+from leblanc.figures.wave import picture as wave
 from leblanc.results.layer import Wave, WaveFrames
 
 R, SURFACE, SPIN = 0.15, 0.135, 40.0

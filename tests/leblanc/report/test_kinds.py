@@ -22,9 +22,9 @@ from leblanc.report import runup as report_runup
 from leblanc.report import whirl_map as report_map
 from leblanc.report.page import about
 from leblanc.results.exciter import ExciterResult
+from leblanc.results.notes.runup import IN_TABLES
 from leblanc.results.optimum import ConstraintValue, Feasibility, OptimumResult
 from leblanc.results.runup import RunupResult
-from leblanc.results.runup_notes import IN_TABLES
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import scene_from_table
 from leblanc.studies.exciter import run_exciter
@@ -168,7 +168,7 @@ def test_map_report_is_the_json() -> None:
 
 def test_a_map_of_many_points_stays_light(tmp_path: Path) -> None:
     """Many points: the picture takes the place of the drawing, or the drawing holds a picture."""
-    from leblanc.figures.stability_map import map_figure, save
+    from leblanc.figures.whirl_map import map_figure, save
 
     scene = scene_from_table(example("horizontal_rig", 9))
     record = map_scene(scene, 3, 3)

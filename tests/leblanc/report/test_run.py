@@ -19,10 +19,9 @@ from leblanc.report import page as report
 from leblanc.report import run as report_run
 from leblanc.report.parts import LIGHT, picture
 from leblanc.results.chamber import FilledChamber
-from leblanc.results.motion import SelfExcited
-from leblanc.results.notes import Note
-from leblanc.results.response import RunResult
-from leblanc.results.run_notes import OF_MODELS, RunCode
+from leblanc.results.note import Note
+from leblanc.results.notes.run import OF_MODELS, RunCode
+from leblanc.results.response import RunResult, SelfExcited
 from leblanc.scene.scene import load_scene
 from leblanc.studies.run import run_scene
 from leblanc.text import run as words

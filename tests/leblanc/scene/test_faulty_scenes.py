@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from leblanc.cli import exit_code, main
-from leblanc.scene.faults import SceneFaults
 from leblanc.scene.scene import load_scene
+from leblanc.scene.schema.faults import SceneFaults
 
 # A command that reads a scene; without one, the shell around what all such commands do first.
 COMMAND: str | None = "run"

@@ -11,8 +11,8 @@ import pytest
 
 from leblanc.cli import main
 from leblanc.results.choice import model_spans
-from leblanc.results.notes import percent
-from leblanc.results.run_notes import RunCode
+from leblanc.results.note import percent
+from leblanc.results.notes.run import RunCode
 from leblanc.scene.machine import dry_rotor, jeffcott
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.studies.choose import choose, choose_all

@@ -13,7 +13,7 @@ import xarray as xr
 
 from leblanc.cli import main
 from leblanc.figures import amplitude_figure, campbell_figure, chamber_figure
-from leblanc.figures.section import side_by_side
+from leblanc.figures.chambers.section import side_by_side
 from leblanc.report.run import comparisons, facts
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import Scene, load_scene, scene_from_table

@@ -17,13 +17,13 @@ import leblanc.studies.runup as runup_module
 from fluid.fill import Fill
 from fluid.liquid import known_liquid
 from leblanc.cli.runup import runup
-from leblanc.figures import runup as figures
-from leblanc.figures import runup_film as film_figures
-from leblanc.results.drawing import film_factor, half_angle
+from leblanc.figures.runup import curves as figures
+from leblanc.figures.runup import film as film_figures
+from leblanc.results.drawn.scale import film_factor, half_angle
+from leblanc.results.notes.runup import RunupCode
 from leblanc.results.runup import RunupFrames, RunupResult, turn_mean, write_runup
-from leblanc.results.runup_notes import RunupCode
-from leblanc.scene.faults import NotConverged
 from leblanc.scene.scene import Scene, scene_from_table
+from leblanc.scene.schema.faults import NotConverged
 from leblanc.studies.runup import (
     drive_of,
     held_from,
@@ -533,7 +533,7 @@ def test_figures_of_dull_histories(layers: int) -> None:
 # --- film ------------------------------------------------------------------------------------------------
 
 
-@kills("leblanc.studies.runup_frames:runup_frames", "turn = np.exp(-1j", "turn = np.exp(1j")
+@kills("leblanc.studies.runup:runup_frames", "turn = np.exp(-1j", "turn = np.exp(1j")
 @kills(
     "solvers.runup.long_wave:Coupled.depth",
     "np.maximum(1.0 - 2.0 * self.area, 0.0)",
@@ -564,7 +564,7 @@ def shoelace(edge: np.ndarray) -> float:
     'scene.gravity if scene.rotor.axis == "horizontal"',
     'scene.gravity if scene.rotor.axis == "vertical"',
 )
-@kills("leblanc.studies.runup_frames:runup_frames", "np.angle(-turn)", "np.angle(turn)")
+@kills("leblanc.studies.runup:runup_frames", "np.angle(-turn)", "np.angle(turn)")
 def test_pool() -> None:
     """Liquid at the bottom: its outline holds its volume, and its middle points down as the drum turns."""
     machine = lying(runup={"start": 1.0, "stop": 3.0, "rate": 4.0, "duration": 0.5})

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from fluid.friction import Friction
-from leblanc.results.motion import SelfExcited
-from leblanc.results.run_notes import self_excited as note_of
+from leblanc.results.notes.run import self_excited as note_of
+from leblanc.results.response import SelfExcited
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import load_scene
 from leblanc.studies.prepare import prepare
@@ -19,8 +19,8 @@ def found(growth: list[float], bands: tuple[tuple[float, float], ...]) -> SelfEx
     return SelfExcited(np.array(growth), np.array([50.0, 60.0, 70.0]), bands, "none")
 
 
-@kills("leblanc.results.motion:SelfExcited.leaves_stable", "self.growth > 0.0)", "self.growth >= 0.0)")
-@kills("leblanc.results.motion:SelfExcited.leaves_stable", "stable & ~(self", "stable | ~(self")
+@kills("leblanc.results.response:SelfExcited.leaves_stable", "self.growth > 0.0)", "self.growth >= 0.0)")
+@kills("leblanc.results.response:SelfExcited.leaves_stable", "stable & ~(self", "stable | ~(self")
 def test_stability() -> None:
     """Growing whirls take stability away, and give none back."""
     whirl = found([-1.0, 0.0, 0.5], ((80.0, 90.0),))
@@ -29,7 +29,7 @@ def test_stability() -> None:
     np.testing.assert_array_equal(whirl.leaves_stable(np.ones(3, dtype=bool)), [True, True, False])
 
 
-@kills("leblanc.results.run_notes:self_excited", "np.argmax(whirl", "np.argmin(whirl")
+@kills("leblanc.results.notes.run:self_excited", "np.argmax(whirl", "np.argmin(whirl")
 def test_words() -> None:
     """Edges and the fastest whirl in rpm."""
     text = note_of(found([-1.0, 0.25, 0.5], ((20.0 * np.pi, 30.0 * np.pi),))).text

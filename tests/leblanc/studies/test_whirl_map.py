@@ -17,9 +17,9 @@ from fluid.friction import Friction
 from fluid.whirl import covering_speed
 from leblanc.cli import main
 from leblanc.cli.map import map as map_command
-from leblanc.figures.stability_map import map_figure, signed_distance
-from leblanc.results.map_notes import MapCode
+from leblanc.figures.whirl_map import map_figure, signed_distance
 from leblanc.results.netcdf import write_dataset
+from leblanc.results.notes.whirl_map import MapCode
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.machine import dry_rotor
 from leblanc.scene.scene import Scene, load_scene

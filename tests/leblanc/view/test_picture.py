@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from fluid.waves import free_wave_frequencies
-from leblanc.results.drawing import Scale
-from leblanc.results.shapes import LiquidShape
+from leblanc.results.drawn.scale import Scale
+from leblanc.results.drawn.shapes import LiquidShape
 from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.studies.run import run_scene
 from leblanc.studies.shapes.exciter import table_view

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from leblanc.results.drawing import Scale
-from leblanc.results.shapes import DrawnLiquid, MachineMotion
+from leblanc.results.drawn.scale import Scale
+from leblanc.results.drawn.shapes import DrawnLiquid, MachineMotion
 from leblanc.scene.scene import Scene
 from leblanc.studies.shapes.machine import drawn_liquid, machine_view
 from leblanc.view.film import Film, sweep_film

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from leblanc.cli import main
-from leblanc.scene.paths import keys_of, with_values
 from leblanc.scene.scene import scene_from_table
+from leblanc.scene.schema.paths import keys_of, with_values
 from leblanc.studies.batch import answer_scenes
 from leblanc.studies.sweep.emulator import emulate_store, emulated_outputs, varied_fields
 from leblanc.studies.sweep.store import Store

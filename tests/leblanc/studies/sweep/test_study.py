@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from leblanc.cli import main
-from leblanc.scene.faults import SceneFaults
-from leblanc.scene.paths import keys_of, rule_at, with_values
 from leblanc.scene.scene import Scene, scene_from_table
+from leblanc.scene.schema.faults import SceneFaults
+from leblanc.scene.schema.paths import keys_of, rule_at, with_values
 from leblanc.studies.sweep.study import load_sweep
 from tests.oracles.sweeps import SCENE, STUDY, study_in, write_study
 
@@ -205,7 +205,7 @@ def test_example_studies_are_without_faults(path: Path) -> None:
 @pytest.mark.parametrize("name", ["tub.toml", "two_plane_rig.toml", "washing_machine.toml"])
 def test_every_number_of_an_example_can_vary(name: str) -> None:
     """Whatever stands under rotor, chambers or model has a rule that takes what stands there."""
-    from leblanc.scene.load import read_toml
+    from leblanc.scene.schema.load import read_toml
 
     table = read_toml(EXAMPLES / name)
     found = list(_leaves({key: table[key] for key in ("rotor", "chambers", "model")}))

@@ -17,9 +17,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from leblanc.cli import main
-from leblanc.scene.load import read_toml
-from leblanc.scene.paths import keys_of, with_values
 from leblanc.scene.scene import Scene, scene_from_table
+from leblanc.scene.schema.load import read_toml
+from leblanc.scene.schema.paths import keys_of, with_values
 from leblanc.studies.batch import Answers
 from leblanc.studies.run import run_scene
 from leblanc.studies.sweep.outputs import DONE, FAILED, NOT_CONVERGED, PENDING, STATUS

@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures import wave, wave_axes
 from leblanc.figures.over_speed import STRIP
-from leblanc.figures.wave_axes import DEFLECTION, DEGREE, DRY_BAR, LIQUID, MEAN_LINE, SURFACE, WALL
+from leblanc.figures.wave import axes as wave_axes
+from leblanc.figures.wave import picture as wave
+from leblanc.figures.wave.axes import DEFLECTION, DEGREE, DRY_BAR, LIQUID, MEAN_LINE, SURFACE, WALL
 from leblanc.results.layer import Wave, WaveFrames
 from leblanc.units import MM, RPM
 from meshes.arrays import Array

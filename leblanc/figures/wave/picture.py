@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.drawing import FILLED, LARGEST_FACTOR, rounded_down
+from leblanc.results.drawn.scale import FILLED, LARGEST_FACTOR, rounded_down
 from leblanc.results.layer import Wave, WaveFrames
 from meshes.arrays import Array
 

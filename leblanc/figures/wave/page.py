@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures import wave, wave_axes, wave_time
 from leblanc.figures.page import (
     FILM_DPI,
     RIGHT,
@@ -22,6 +21,9 @@ from leblanc.figures.page import (
     style,
     write_film,
 )
+from leblanc.figures.wave import axes as wave_axes
+from leblanc.figures.wave import picture as wave
+from leblanc.figures.wave import time as wave_time
 from leblanc.results.layer import LayerPeriodsResult, LayerResult, Wave, WaveFrames
 from leblanc.units import MM
 

@@ -8,9 +8,9 @@ from typing import Annotated, Any, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
-from leblanc.scene.faults import field_path, meant
-from leblanc.scene.part import Part, is_list_of_parts, parts_of, rule_of
-from leblanc.scene.rules import Entries, Refused, Several
+from leblanc.scene.schema.faults import field_path, meant
+from leblanc.scene.schema.part import Part, is_list_of_parts, parts_of, rule_of
+from leblanc.scene.schema.rules import Entries, Refused, Several
 
 Keys = tuple[str | int, ...]
 
@@ -54,7 +54,7 @@ def rule_at(root: type[Part], table: Mapping[str, Any], path: str) -> Any:
 
     Returns
     -------
-    the rule: a callable with `allowed`, see leblanc.scene.rules
+    the rule: a callable with `allowed`, see leblanc.scene.schema.rules
 
     Raises
     ------

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from leblanc.results.chamber import FilledChamber
-from leblanc.results.drawing import chord, rounded_down
+from leblanc.results.drawn.scale import chord, rounded_down
 from meshes.arrays import Array
 
 RAYS = 361  # one degree apart, closed

@@ -8,7 +8,7 @@ import numpy as np
 
 from fluid.friction import Friction
 from leblanc.friction import friction_words
-from leblanc.results.notes import Note, NoteCode, percent
+from leblanc.results.note import Note, NoteCode, percent
 from leblanc.results.response import peak
 from leblanc.units import MM, RPM
 from meshes.arrays import Flags

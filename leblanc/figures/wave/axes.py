@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures import wave
 from leblanc.figures.over_speed import STRIP
+from leblanc.figures.wave import picture as wave
+from leblanc.results.base import one_line
 from leblanc.results.layer import Wave
-from leblanc.results.provenance import one_line
 from leblanc.units import MM, RPM
 from meshes.arrays import Array
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from leblanc.figures.page import RIGHT, WIDTH, Caption, Figure, Frame, add_rate_axis, lay_out, number, style
 from leblanc.figures.page import save as save  # a figure is drawn and written together
-from leblanc.results.provenance import one_line
+from leblanc.results.base import one_line
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.text.whirl_map import alt
 from leblanc.units import ML, RPM

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from leblanc.results.choice import Choice
-from leblanc.results.motion import SelfExcited
-from leblanc.results.notes import Note, NoteCode, percent
+from leblanc.results.note import Note, NoteCode, percent
+from leblanc.results.response import SelfExcited
 from leblanc.units import ML, MM, RPM
 from meshes.arrays import Array
 

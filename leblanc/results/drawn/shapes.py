@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from leblanc.results.drawing import Scale
+from leblanc.results.drawn.scale import Scale
 from leblanc.results.response import RunResult
 from leblanc.results.runup import RunupFrames, RunupResult
 from meshes.arrays import Array, Complex, Indices

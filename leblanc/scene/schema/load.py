@@ -8,7 +8,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from leblanc.scene.faults import SceneFault, SceneFaults
+from leblanc.scene.schema.faults import SceneFault, SceneFaults
 
 MAX_BYTES = 10_000_000
 

@@ -12,7 +12,7 @@ from leblanc.figures.curves import gapped, joined, lag_degrees, link, spans, wid
 from leblanc.figures.over_speed import DRY, SHADE, UNSTABLE, WET
 from leblanc.figures.page import WIDTH, Caption, Figure, FigureFiles, Frame, lay_out, number, save, style
 from leblanc.friction import friction_words
-from leblanc.results.provenance import one_line
+from leblanc.results.base import one_line
 from leblanc.results.runup import RunupResult
 from leblanc.text.runup import describe_model, largest
 from leblanc.units import MM, RPM

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from leblanc.figures.caption import caption
+from leblanc.figures.chambers.section import Exaggeration, exaggeration, liquid_outline, side_by_side
+from leblanc.figures.chambers.uneven import bodies, is_uneven, plates, wall_line
 from leblanc.figures.page import MOST_LINES, RIGHT, WIDTH, Figure, Frame, lay_out, style
-from leblanc.figures.section import Exaggeration, exaggeration, liquid_outline, side_by_side
-from leblanc.figures.uneven import bodies, is_uneven, plates, wall_line
 from leblanc.results.chamber import FilledChamber
 from leblanc.results.response import RunResult, peak, phase
 from leblanc.text.run import alts

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from leblanc.results.notes import Note, NoteCode
+from leblanc.results.note import Note, NoteCode
 from leblanc.units import ML, RPM
 
 if TYPE_CHECKING:

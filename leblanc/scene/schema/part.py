@@ -17,8 +17,8 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
-from leblanc.scene.faults import SceneFault, SceneFaults, field_path, meant, shown
-from leblanc.scene.rules import OneOf, Refused
+from leblanc.scene.schema.faults import SceneFault, SceneFaults, field_path, meant, shown
+from leblanc.scene.schema.rules import OneOf, Refused
 from meshes.errors import InputError
 
 _TOGETHER, _ABSENT = "together", "absent"  # names of faults that no single value has
@@ -173,7 +173,7 @@ def _adapter(cls: type[Part], name: str) -> TypeAdapter[Any]:
 
 
 def rule_of(field: FieldInfo) -> Any:
-    """Rule of a field: a callable with `allowed`, see leblanc.scene.rules; None if it is a table.
+    """Rule of a field: a callable with `allowed`, see leblanc.scene.schema.rules; None if it is a table.
 
     Parameters
     ----------

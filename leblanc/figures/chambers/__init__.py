@@ -1,0 +1,1 @@
+"""Chambers seen along the axis, drawn on axes that are handed in."""

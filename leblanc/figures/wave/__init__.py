@@ -1,0 +1,1 @@
+"""The wave of a liquid layer: picture, curves over time, film."""

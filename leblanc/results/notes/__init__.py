@@ -1,0 +1,1 @@
+"""What results say besides their numbers: a code, the numbers of the sentence, and the sentence."""
