@@ -1,7 +1,7 @@
-"""Density and viscosity of the known liquids over temperature.
+"""Liquids by name or by their properties, and how these change with temperature.
 
-A law gives what temperature changes; the values at 20 degrees Celsius are those of `fluid.liquid`, which come
-from other tables: they differ from the laws' by up to 0.3 % in density and 6 % in viscosity.
+A law gives what temperature changes; the values at 20 degrees Celsius are those of `KNOWN_LIQUIDS`, which
+come from other tables: they differ from the laws' by up to 0.3 % in density and 6 % in viscosity.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Passive liquid balancers and rotors partly filled with liquid: describe the machine, get its vibration.
 
-`import leblanc as lb` gives everything a user needs; the names are loaded when they are first used.
+`import leblanc as lb` gives everything that a user needs; each name is loaded when it is first used.
 """
 
 from __future__ import annotations
@@ -9,26 +9,59 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from fluid.fill import Fill as Fill
-    from fluid.liquid import Liquid as Liquid
-    from leblanc.scene.scene import Scene as Scene
-    from leblanc.scene.scene import load_scene as load_scene
+    from fluid.fill import Fill
+    from fluid.liquid import Liquid
+    from leblanc.api import explain, layer, map_whirl, modes, optimise, run, run_up, volume
+    from leblanc.scene.examples import example
+    from leblanc.scene.rotors import Exciter, JeffcottRotor, TubRotor, TwoPlaneRotor
+    from leblanc.scene.scene import Scene, load_scene
     from leblanc.scene.schema.faults import SceneFaults as SceneError
-    from meshes.chamber import Chamber as Chamber
-    from meshes.errors import InputError as InputError
+    from meshes.chamber import Chamber
+    from meshes.errors import InputError
 
-# Where each public name lives: module, and its name there.
+__all__ = [
+    "Chamber",
+    "Exciter",
+    "Fill",
+    "InputError",
+    "JeffcottRotor",
+    "Liquid",
+    "Scene",
+    "SceneError",
+    "TubRotor",
+    "TwoPlaneRotor",
+    "example",
+    "explain",
+    "layer",
+    "load_scene",
+    "map_whirl",
+    "modes",
+    "optimise",
+    "run",
+    "run_up",
+    "volume",
+]
+
+_API = "leblanc.api"
+# Where each public name lives: its module, and its name there.
 _HOMES = {
-    "load_scene": ("leblanc.scene.scene", "load_scene"),
-    "Scene": ("leblanc.scene.scene", "Scene"),
     "Chamber": ("meshes.chamber", "Chamber"),
+    "Exciter": ("leblanc.scene.rotors", "Exciter"),
     "Fill": ("fluid.fill", "Fill"),
-    "Liquid": ("fluid.liquid", "Liquid"),
     "InputError": ("meshes.errors", "InputError"),
+    "JeffcottRotor": ("leblanc.scene.rotors", "JeffcottRotor"),
+    "Liquid": ("fluid.liquid", "Liquid"),
+    "Scene": ("leblanc.scene.scene", "Scene"),
     "SceneError": ("leblanc.scene.schema.faults", "SceneFaults"),
+    "TubRotor": ("leblanc.scene.rotors", "TubRotor"),
+    "TwoPlaneRotor": ("leblanc.scene.rotors", "TwoPlaneRotor"),
+    "example": ("leblanc.scene.examples", "example"),
+    "load_scene": ("leblanc.scene.scene", "load_scene"),
+    **{
+        name: (_API, name)
+        for name in ("explain", "layer", "map_whirl", "modes", "optimise", "run", "run_up", "volume")
+    },
 }
-
-__all__ = ["Chamber", "Fill", "InputError", "Liquid", "Scene", "SceneError", "load_scene"]
 
 
 def __getattr__(name: str) -> Any:
@@ -36,11 +69,10 @@ def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     module, attribute = _HOMES[name]
-    found = getattr(import_module(module), attribute)
-    globals()[name] = found
+    found = globals()[name] = getattr(import_module(module), attribute)
     return found
 
 
 def __dir__() -> list[str]:
     """The public names, loaded or not."""
-    return sorted({*globals(), *_HOMES})
+    return sorted({*globals(), *__all__})

@@ -170,8 +170,8 @@ def parse(value: object, dimension: Dimension, field: str = "value") -> float:
     return number
 
 
-def parse_option(text: str, dimension: Dimension, field: str) -> float:
-    """Value of a quantity typed on the command line, where a plain number comes as text too.
+def parse_option(text: str | float, dimension: Dimension, field: str) -> float:
+    """Value of an option of a command, where a plain number comes as text too, or of a keyword in Python.
 
     Raises
     ------
@@ -179,7 +179,7 @@ def parse_option(text: str, dimension: Dimension, field: str) -> float:
     """
     try:
         number = float(text)
-    except ValueError:
+    except (ValueError, TypeError):
         return parse(text, dimension, field)
     return parse(number, dimension, field)
 

@@ -11,6 +11,7 @@ import typer
 from leblanc.cli.output import out_dir, print_json, say
 
 if TYPE_CHECKING:
+    from leblanc.questions import LayerQuestion
     from leblanc.results.layer import LayerPeriodsResult, LayerResult
 
 
@@ -49,44 +50,38 @@ def layer(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Force and centre of mass of a liquid layer under a whirl. In the plane, the whirl being prescribed."""
-    from fluid.fill import Fill
-    from fluid.liquid import known_liquid
-    from leblanc.friction import parse_friction
+    from leblanc.questions import layer_question
     from leblanc.scene.schema.faults import NotConverged
     from leblanc.studies.layer import answer_layer, layer_history
-    from leblanc.units import ACCELERATION, ANGULAR_SPEED, LENGTH, TIME, VOLUME, parse_option
-    from meshes.baffles import Baffles
-    from meshes.chamber import Chamber
-    from solvers.layer.prescribed import Numerics
 
-    tip = parse_option(baffle_tip_radius, LENGTH, "--baffle-tip-radius")
-    gap = parse_option(baffle_wall_gap, LENGTH, "--baffle-wall-gap")
-    chamber = Chamber(
-        parse_option(radius, LENGTH, "--radius"),
-        parse_option(height, LENGTH, "--height"),
-        baffles=Baffles(baffles, tip, gap) if baffles else None,
+    question = layer_question(
+        radius=radius,
+        volume=volume,
+        height=height,
+        speed=speed,
+        whirl_speed=whirl_speed,
+        whirl_amplitude=whirl_amplitude,
+        model=model,
+        cells=cells,
+        baffles=baffles,
+        baffle_tip_radius=baffle_tip_radius,
+        baffle_wall_gap=baffle_wall_gap,
+        dispersion=dispersion,
+        friction=friction,
+        gravity=gravity,
+        liquid=liquid,
+        duration=duration,
+        ramp=ramp,
     )
-    asked: dict[str, Any] = {
-        "fill": Fill(chamber, known_liquid(liquid), parse_option(volume, VOLUME, "--volume")),
-        "speed": parse_option(speed, ANGULAR_SPEED, "--speed"),
-        "whirl_speed": parse_option(whirl_speed, ANGULAR_SPEED, "--whirl-speed"),
-        "whirl_amplitude": parse_option(whirl_amplitude, LENGTH, "--whirl-amplitude"),
-        "model": model,
-        "friction": parse_friction(friction, "--friction"),
-        "gravity": parse_option(gravity, ACCELERATION, "--gravity"),
-        "numerics": Numerics((96 if model == "fem" else 256) if cells is None else cells, dispersion),
-    }
-    grown = parse_option(ramp, TIME, "--ramp")
     result: LayerResult | LayerPeriodsResult
-    if duration is not None:
-        result = layer_history(**asked, duration=parse_option(duration, TIME, "--duration"), ramp=grown)
+    if question.duration is not None:
+        result = layer_history(**question.whirl, duration=question.duration, ramp=question.ramp)
     else:
-        result = answer_layer(**asked)
+        result = answer_layer(**question.whirl)
         if out is not None:
             _draw(result, out_dir("layer", out))
     if animate is not None:
-        length = None if duration is None else parse_option(duration, TIME, "--duration")
-        _film(asked, length, grown, animate)
+        _film(question, animate)
     shown = result.to_json(profile)
     if json:
         print_json(shown)
@@ -143,14 +138,14 @@ def _draw(result: LayerResult, folder: Path) -> None:
     say(f"wrote {files.png}")
 
 
-def _film(asked: dict[str, Any], duration: float | None, ramp: float, path: Path) -> None:
+def _film(question: LayerQuestion, path: Path) -> None:
     """The wave in the drum frame: long_wave from rest, six whirl periods unless told; others two, steady."""
     from rich.progress import Progress
 
     from leblanc.figures import animate
     from leblanc.studies.layer import layer_film
 
-    wave, film = layer_film(**asked, duration=duration, ramp=ramp)
+    wave, film = layer_film(**question.whirl, duration=question.duration, ramp=question.ramp)
     with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
         task = bar.add_task("drawing", total=None)
         frames = animate(wave, film, path, lambda done, total: bar.update(task, completed=done, total=total))

@@ -11,8 +11,6 @@ from leblanc.cli.output import out_dir, print_json, say
 
 if TYPE_CHECKING:
     from leblanc.results.modes import ModesResult
-    from leblanc.studies.modes import SectionSource
-    from meshes.baffles import Baffles
 
 
 def modes(
@@ -46,27 +44,29 @@ def modes(
 
     Frequencies are relative to the drum, positive with the spin.
     """
-    from fluid.liquid import known_liquid
+    from leblanc.questions import modes_question
     from leblanc.scene.schema.faults import NotConverged
-    from leblanc.studies.modes import Resolution, answer_modes
+    from leblanc.studies.modes import answer_modes
     from leblanc.text.modes import table_lines
-    from leblanc.units import ANGULAR_SPEED, LENGTH, VOLUME, parse_option
-    from meshes.chamber import Chamber
 
-    chamber = Chamber(
-        parse_option(radius, LENGTH, "--radius"),
-        parse_option(height, LENGTH, "--height"),
-        baffles=_baffles(baffles, baffle_tip_radius, baffle_wall_gap),
+    question = modes_question(
+        radius=radius,
+        volume=volume,
+        height=height,
+        speed=speed,
+        count=count,
+        baffles=baffles,
+        baffle_tip_radius=baffle_tip_radius,
+        baffle_wall_gap=baffle_wall_gap,
+        mesh=mesh,
+        mesh_unit=mesh_unit,
+        mesh_size=mesh_size,
+        liquid=liquid,
+        segments=segments,
+        layers=layers,
+        order=order,
     )
-    result = answer_modes(
-        chamber,
-        parse_option(volume, VOLUME, "--volume"),
-        known_liquid(liquid),
-        parse_option(speed, ANGULAR_SPEED, "--speed"),
-        count,
-        Resolution(segments, layers, order),
-        _source(mesh, mesh_unit, mesh_size),
-    )
+    result = answer_modes(**question)
     if json:
         print_json(result.to_json())
     else:
@@ -80,41 +80,6 @@ def modes(
     if not result.converged:
         reason = "the eigenproblem was not solved to rounding; a coarser mesh may help"
         raise NotConverged([f"leblanc modes: {reason}"])
-
-
-def _baffles(count: int, tip_radius: str, wall_gap: str) -> Baffles | None:
-    """Baffles of the options, None without any."""
-    from leblanc.units import LENGTH, parse_option
-    from meshes.baffles import Baffles
-    from meshes.errors import InputError
-
-    tip = parse_option(tip_radius, LENGTH, "--baffle-tip-radius")
-    gap = parse_option(wall_gap, LENGTH, "--baffle-wall-gap")
-    if not 0 <= count <= 64:
-        raise InputError("--baffles", count, "from 0 to 64")
-    if count == 0:
-        if tip != 0.0 or gap != 0.0:
-            raise InputError("--baffles", count, "1 or more where their edges are given")
-        return None
-    return Baffles(count, tip, gap)
-
-
-def _source(mesh: Path | None, unit: str | None, size: str | None) -> SectionSource | None:
-    """File of the options, None without one."""
-    from leblanc.studies.modes import SectionSource
-    from leblanc.units import LENGTH, parse_option
-    from meshes.errors import InputError
-
-    if mesh is None:
-        for name, value in (("--mesh-unit", unit), ("--mesh-size", size)):
-            if value is not None:
-                raise InputError(name, value, "left out without --mesh")
-        return None
-    return SectionSource(
-        mesh,
-        None if unit is None else parse_option(unit, LENGTH, "--mesh-unit"),
-        None if size is None else parse_option(size, LENGTH, "--mesh-size"),
-    )
 
 
 def _draw(result: ModesResult, folder: Path) -> None:

@@ -47,10 +47,11 @@ def optimise(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Best volume(s) for an objective, within constraints. Figures, data file, report."""
+    from leblanc.questions import optimisation_of
     from leblanc.scene.scene import load_scene
 
     machine = load_scene(scene)
-    aim = _aim(machine, objective, deflection, limit, steady, seed)
+    aim = optimisation_of(machine, objective, deflection, limit, steady, seed)
     folder = out_dir(machine.name, out)
     result = _run(machine, aim, not no_front, emulator)
 
@@ -83,45 +84,6 @@ def optimise(
         print("\n".join(describe_optimum(result)))
         print(f"Read {folder / 'optimise.html'}; the data are in {folder / 'optimum.nc'}")
     say(f"{result.name}: {result.evaluations} sets of volumes judged")
-
-
-def _aim(
-    machine: Scene,
-    objective: str | None,
-    deflection: str | None,
-    limit: str | None,
-    steady: bool,
-    seed: int | None,
-) -> Optimisation:
-    """The scene's aim with what the options say in its place."""
-    from leblanc.scene.optimise import OBJECTIVES, Optimisation
-    from meshes.errors import InputError
-
-    aim = machine.optimise or Optimisation()
-    if objective is not None:
-        if objective not in OBJECTIVES:
-            raise InputError("--objective", objective, "one of " + ", ".join(OBJECTIVES))
-        aim = aim.altered(objective=objective)
-    if deflection is not None:
-        aim = aim.altered(deflection=_length(deflection, "--deflection"))
-    if limit is not None:
-        aim = aim.altered(vibration_limit=_length(limit, "--limit"))
-    if seed is not None:
-        if seed < 0:
-            raise InputError("--seed", seed, "a whole number, 0 or above")
-        aim = aim.altered(seed=seed)
-    return aim.altered(steady=aim.steady or steady)
-
-
-def _length(text: str, option: str) -> float:
-    """A length above 0 in metres."""
-    from leblanc.units import LENGTH, parse_option
-    from meshes.errors import InputError
-
-    value = parse_option(text, LENGTH, option)
-    if not 1e-12 <= value <= 1e3:
-        raise InputError(option, text, "from 1e-12 to 1000 m")
-    return value
 
 
 def _run(machine: Scene, aim: Optimisation, front: bool, store: Path | None) -> OptimumResult:

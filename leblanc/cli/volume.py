@@ -20,29 +20,26 @@ def volume(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Volume that just covers the wall at a deflection. Also the surface of a given volume."""
+    from leblanc.questions import volume_question
     from leblanc.scene.schema.faults import NotConverged
     from leblanc.studies.volume import answer_volume
-    from leblanc.text.volume import facts, question
-    from leblanc.units import ACCELERATION, ANGULAR_SPEED, LENGTH, VOLUME, parse_option
-    from meshes.chamber import Chamber
-    from meshes.errors import require_not_negative
+    from leblanc.text.volume import facts
+    from leblanc.text.volume import question as described
 
-    chamber = Chamber(
-        parse_option(radius, LENGTH, "--radius"),
-        parse_option(height, LENGTH, "--height"),
-        parse_option(inner_radius, LENGTH, "--inner-radius"),
+    question = volume_question(
+        radius=radius,
+        height=height,
+        eccentricity=eccentricity,
+        speed=speed,
+        volume=volume,
+        gravity=gravity,
+        inner_radius=inner_radius,
     )
-    e = parse_option(eccentricity, LENGTH, "--eccentricity")
-    spin = parse_option(speed, ANGULAR_SPEED, "--speed")
-    g = parse_option(gravity, ACCELERATION, "--gravity")
-    for field, value in (("--eccentricity", e), ("--speed", spin), ("--gravity", g)):
-        require_not_negative(field, value)
-    held = None if volume is None else parse_option(volume, VOLUME, "--volume")
-    answer = answer_volume(chamber, e, spin, g, held)
+    answer = answer_volume(**question)
     if json:
         print_json(answer.to_json())
     else:
-        print(question(answer))
+        print(described(answer))
         print_table(facts(answer))
     if not answer.converged:
         raise NotConverged(["leblanc volume: no surface found that holds the volume asked for"])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import asdict
 from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Annotated, Any
@@ -196,6 +197,22 @@ class Chamber(Part):
     baffles: Baffles | None = Field(None, description="thin radial plates over the whole height")
     liquid: Annotated[Liquid, PlainValidator(LiquidRule())] = Field(description="what is in it")
     volume: Annotated[float, quantity(units.VOLUME, 0.0, 1e9)] = Field(description="of liquid, V")
+
+    @classmethod
+    def as_table(cls, given: Any) -> Any:
+        """A `fluid.fill.Fill` between circular walls stands for the chamber that holds it."""
+        if not isinstance(given, Fill) or given.chamber.section is not None:
+            return given
+        walls = given.chamber
+        table = {
+            "radius": walls.radius,
+            "inner_radius": walls.inner_radius,
+            "height": walls.height,
+            "plane": walls.plane,
+            "liquid": given.liquid,
+            "volume": given.volume,
+        }
+        return table if walls.baffles is None else table | {"baffles": asdict(walls.baffles)}
 
     @classmethod
     def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:

@@ -91,6 +91,11 @@ class Part(BaseModel):
         return found
 
     @classmethod
+    def as_table(cls, given: Any) -> Any:
+        """What is given as a file would say it; a part may take objects of the solvers as well."""
+        return given
+
+    @classmethod
     def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
         """Values that break a rule together.
 
@@ -112,6 +117,7 @@ class Part(BaseModel):
     @classmethod
     def _check(cls, given: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
         """Each value by itself, then all together; a wrong value does not keep the others from that."""
+        given = cls.as_table(given)
         try:
             made = handler(given)
         except ValidationError as error:

@@ -1,0 +1,427 @@
+"""The calls of `import leblanc as lb`: what the commands do, as functions.
+
+Scenes are `leblanc.Scene` or the path of a scene file; quantities are numbers in SI units or texts with a
+unit, as in "65 mm". Every call returns a result with `.to_json()`, `.to_dataset()` and `.plot()`, which shows
+itself in a notebook.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from leblanc.scene.scene import Scene, load_scene
+from meshes.errors import InputError
+
+if TYPE_CHECKING:
+    from fluid.friction import Friction
+    from fluid.liquid import Liquid
+    from leblanc.questions import Quantity
+    from leblanc.results.exciter import ExciterResult
+    from leblanc.results.explanation import ExciterExplanation, Explanation
+    from leblanc.results.layer import LayerPeriodsResult, LayerResult
+    from leblanc.results.modes import ModesResult
+    from leblanc.results.optimum import OptimumResult
+    from leblanc.results.response import RunResult
+    from leblanc.results.runup import RunupResult
+    from leblanc.results.volume import VolumeResult
+    from leblanc.results.whirl_map import WhirlMap
+
+SceneOrPath = Scene | str | PathLike[str]
+
+_OPTION = re.compile(r"--([a-z][a-z-]*)")
+
+
+def run(scene: SceneOrPath) -> RunResult | ExciterResult:
+    """Response and the liquid's centre of mass at each speed of a scene.
+
+    Parameters
+    ----------
+    scene : the machine, or the path of its file
+
+    Returns
+    -------
+    The response at each speed; of an exciter its stuck speeds and vibration
+
+    Raises
+    ------
+    SceneError : with everything that is wrong with the file
+    InputError : the scene asks for a liquid model that does not answer this
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> answer = lb.run(lb.example("horizontal_rig"))
+    >>> answer.speed.shape == answer.amplitude.shape == (201,)
+    True
+    """
+    machine = _scene(scene)
+    if machine.rotor.kind == "exciter":
+        from leblanc.studies.exciter import run_exciter
+
+        return run_exciter(machine)
+    from leblanc.studies.run import run_scene
+
+    return run_scene(machine)
+
+
+def explain(scene: SceneOrPath) -> Explanation | ExciterExplanation:
+    """A scene's dimensionless numbers, the liquid model that answers at each speed, and why.
+
+    Parameters
+    ----------
+    scene : the machine, or the path of its file
+
+    Raises
+    ------
+    SceneError, InputError : as for `run`
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> lb.explain(lb.example("horizontal_rig")).critical_speed_dry > 0.0
+    True
+    """
+    machine = _scene(scene)
+    from leblanc.studies.explain import explain_exciter, explain_scene
+
+    return explain_exciter(machine) if machine.rotor.kind == "exciter" else explain_scene(machine)
+
+
+def run_up(
+    scene: SceneOrPath,
+    *,
+    cells: int | None = None,
+    samples: int | None = None,
+    check: bool = True,
+    frames: int | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> RunupResult:
+    """Rotor and liquid through the speeds in time, as the scene's table [runup] says.
+
+    Parameters
+    ----------
+    scene : the machine, or the path of its file
+    cells, samples : round each wall, and times that are recorded; the scene's if None
+    check : run once more with half the cells to estimate the error
+    frames : how many times the layers are kept for a film; not at all if None
+    progress : called with the share of the work that is done
+
+    Raises
+    ------
+    SceneError : with everything that is wrong with the file
+    InputError : no table [runup], a value out of its range
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> short = lb.example("runup").replace({"runup.duration": "1 s", "runup.cells": 16})
+    >>> bool(lb.run_up(short, samples=50, check=False).amplitude.max() > 0.0)
+    True
+    """
+    from leblanc.studies.runup import runup_scene
+
+    return runup_scene(_scene(scene), cells, samples, check, progress, frames)
+
+
+def map_whirl(
+    scene: SceneOrPath,
+    *,
+    volumes: int = 101,
+    speeds: int = 201,
+    max_volume: Quantity | None = None,
+    friction: str | Friction | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> WhirlMap:
+    """Growth rate of self-excited whirl over speed and fill, with the edges of its bands.
+
+    Parameters
+    ----------
+    scene : the machine, or the path of its file
+    volumes, speeds : how many of each
+    max_volume : most liquid in all chambers together, m^3; what fits if None
+    friction : none, stokes, linear:RATE or quadratic:NUMBER; the scene's if None
+    progress : called with the number of volumes done and of all
+
+    Raises
+    ------
+    SceneError, InputError : as for `run`
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> lb.map_whirl(lb.example("horizontal_rig"), volumes=3, speeds=5).growth.shape
+    (3, 5)
+    """
+    machine = _scene(scene)
+    from leblanc.questions import friction_of
+    from leblanc.studies.whirl_map import map_scene
+    from leblanc.units import VOLUME, parse_option
+
+    with _keywords():
+        most = None if max_volume is None else parse_option(max_volume, VOLUME, "--max-volume")
+        law = None if friction is None else friction_of(friction)
+        return map_scene(machine, volumes, speeds, most, law, progress)
+
+
+def optimise(
+    scene: SceneOrPath,
+    objective: str | None = None,
+    *,
+    deflection: Quantity | None = None,
+    limit: Quantity | None = None,
+    steady: bool = False,
+    seed: int | None = None,
+    emulator: str | PathLike[str] | None = None,
+    front: bool = True,
+    progress: Callable[[int], None] | None = None,
+) -> OptimumResult:
+    """Best volume of liquid for each chamber.
+
+    Parameters
+    ----------
+    scene : the machine, or the path of its file, with or without a table [optimise]
+    objective : working_speed, peak, mean, least_mass or robust; the scene's if None
+    deflection : given, m: the least liquid that covers the walls at it
+    limit : of the vibration, for least_mass, m
+    steady : the peak is that of the steady response even if the scene has a run-up
+    seed : of the random sample of robust
+    emulator : store of a sweep over the volumes, of which the search asks an emulator
+    front : find out as well what must be given up for what
+    progress : called with the number of sets of volumes judged
+
+    Raises
+    ------
+    SceneError, InputError : as for `run`; a value that does not fit the scene
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> best = lb.optimise(lb.example("horizontal_rig"), front=False)
+    >>> bool(best.value < best.baseline)
+    True
+    """
+    machine = _scene(scene)
+    from leblanc.questions import optimisation_of
+    from leblanc.studies.optimise.emulated import emulated_vibration
+    from leblanc.studies.optimise.optimise import optimise_scene
+
+    with _keywords():
+        aim = optimisation_of(machine, objective, deflection, limit, steady, seed)
+        asked = None if emulator is None else emulated_vibration(Path(emulator), machine, aim)
+        return optimise_scene(machine, aim=aim, front=front, progress=progress, emulator=asked)
+
+
+def layer(
+    *,
+    radius: Quantity,
+    volume: Quantity,
+    height: Quantity,
+    speed: Quantity,
+    whirl_speed: Quantity,
+    whirl_amplitude: Quantity,
+    model: str = "linear",
+    cells: int | None = None,
+    baffles: int = 0,
+    baffle_tip_radius: Quantity = 0.0,
+    baffle_wall_gap: Quantity = 0.0,
+    dispersion: bool = False,
+    friction: str | Friction = "none",
+    gravity: Quantity = 0.0,
+    liquid: str | Liquid = "water",
+    duration: Quantity | None = None,
+    ramp: Quantity = 0.0,
+) -> LayerResult | LayerPeriodsResult:
+    """Force and centre of mass of a liquid layer under a prescribed whirl, in the plane.
+
+    Parameters
+    ----------
+    radius, height : of the chamber, m
+    volume : of the liquid, m^3
+    speed, whirl_speed : of the spin and of the whirl in space, rad/s
+    whirl_amplitude : radius of the whirl, m
+    model : statics, linear, long_wave, kdv or fem
+    cells : round the wall; 256 for long_wave, 96 for fem if None
+    baffles : number of radial baffles, for fem
+    baffle_tip_radius, baffle_wall_gap : of their edges from the axis and from the wall, m
+    dispersion : exact linear dispersion, for long_wave and kdv
+    friction : none, stokes, linear:RATE or quadratic:NUMBER
+    gravity : across the axis, m/s^2
+    liquid : a known name, or a `leblanc.Liquid`
+    duration : start from rest and answer period by period, s; for long_wave
+    ramp : time over which the whirl grows, with a duration, s
+
+    Raises
+    ------
+    InputError : a value out of its range, or one that the model does not serve
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> found = lb.layer(radius="150 mm", volume="671 ml", height="50 mm", speed=40.0, whirl_speed=32.0,
+    ...                  whirl_amplitude="0.15 mm")
+    >>> found.converged
+    True
+    """
+    from leblanc.questions import layer_question
+    from leblanc.studies.layer import answer_layer, layer_history
+
+    with _keywords():
+        question = layer_question(
+            radius=radius,
+            volume=volume,
+            height=height,
+            speed=speed,
+            whirl_speed=whirl_speed,
+            whirl_amplitude=whirl_amplitude,
+            model=model,
+            cells=cells,
+            baffles=baffles,
+            baffle_tip_radius=baffle_tip_radius,
+            baffle_wall_gap=baffle_wall_gap,
+            dispersion=dispersion,
+            friction=friction,
+            gravity=gravity,
+            liquid=liquid,
+            duration=duration,
+            ramp=ramp,
+        )
+        if question.duration is None:
+            return answer_layer(**question.whirl)
+        return layer_history(**question.whirl, duration=question.duration, ramp=question.ramp)
+
+
+def modes(
+    *,
+    radius: Quantity,
+    volume: Quantity,
+    height: Quantity,
+    speed: Quantity,
+    count: int = 12,
+    baffles: int = 0,
+    baffle_tip_radius: Quantity = 0.0,
+    baffle_wall_gap: Quantity = 0.0,
+    mesh: str | PathLike[str] | None = None,
+    mesh_unit: Quantity | None = None,
+    mesh_size: Quantity | None = None,
+    liquid: str | Liquid = "water",
+    segments: int = 96,
+    layers: int = 6,
+    order: int = 2,
+) -> ModesResult:
+    """Natural frequencies, damping and shapes of the liquid in a chamber of any section.
+
+    Parameters
+    ----------
+    radius, height : of the chamber, m
+    volume : of the liquid, m^3
+    speed : of the spin, rad/s
+    count : how many modes, the slowest first
+    baffles, baffle_tip_radius, baffle_wall_gap : how many, and their edges from the axis and the wall, m
+    mesh, mesh_unit, mesh_size : file of a section, length of its unit and of the cells at its walls, m
+    liquid : a known name, or a `leblanc.Liquid`; for the damping
+    segments, layers, order : cells around and across the liquid at least, order of the elements
+
+    Raises
+    ------
+    InputError : a value out of its range, a file that cannot be used
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> found = lb.modes(radius=0.15, volume="671 ml", height=0.05, speed=40.0, count=2, segments=32)
+    >>> found.frequency.shape
+    (2,)
+    """
+    from leblanc.questions import modes_question
+    from leblanc.studies.modes import answer_modes
+
+    with _keywords():
+        question = modes_question(
+            radius=radius,
+            volume=volume,
+            height=height,
+            speed=speed,
+            count=count,
+            baffles=baffles,
+            baffle_tip_radius=baffle_tip_radius,
+            baffle_wall_gap=baffle_wall_gap,
+            mesh=None if mesh is None else Path(mesh),
+            mesh_unit=mesh_unit,
+            mesh_size=mesh_size,
+            liquid=liquid,
+            segments=segments,
+            layers=layers,
+            order=order,
+        )
+        return answer_modes(**question)
+
+
+def volume(
+    *,
+    radius: Quantity,
+    height: Quantity,
+    eccentricity: Quantity,
+    speed: Quantity,
+    volume: Quantity | None = None,
+    gravity: Quantity = 9.81,
+    inner_radius: Quantity = 0.0,
+) -> VolumeResult:
+    """Volume that just covers the wall at a deflection, and the free surface of a given volume.
+
+    Parameters
+    ----------
+    radius, inner_radius, height : of the chamber, m
+    eccentricity : distance of the rotation axis from the chamber's, m
+    speed : of the spin, rad/s
+    volume : of liquid whose free surface is asked for as well, m^3
+    gravity : along the axis, m/s^2
+
+    Raises
+    ------
+    InputError : a value out of its range
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> best = lb.volume(radius=0.2, height=0.05, eccentricity="1 mm", speed=90.0)
+    >>> f"{1e6 * best.optimal_volume:.4f} ml"
+    '54.4396 ml'
+    """
+    from leblanc.questions import volume_question
+    from leblanc.studies.volume import answer_volume
+
+    with _keywords():
+        question = volume_question(
+            radius=radius,
+            height=height,
+            eccentricity=eccentricity,
+            speed=speed,
+            volume=volume,
+            gravity=gravity,
+            inner_radius=inner_radius,
+        )
+        return answer_volume(**question)
+
+
+def _scene(scene: SceneOrPath) -> Scene:
+    """The scene itself, or the one in that file."""
+    return scene if isinstance(scene, Scene) else load_scene(scene)
+
+
+@contextmanager
+def _keywords() -> Iterator[None]:
+    """Faults name the keyword in place of the command's option."""
+    try:
+        yield
+    except InputError as error:
+        field, allowed = (_OPTION.sub(_keyword, text) for text in (error.field, str(error.allowed)))
+        raise InputError(field, error.value, allowed) from error.__cause__
+
+
+def _keyword(option: re.Match[str]) -> str:
+    return option[1].replace("-", "_")

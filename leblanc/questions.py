@@ -1,0 +1,244 @@
+"""What `layer`, `modes`, `volume` and `optimise` ask, from options of the command line or keywords in Python.
+
+Quantities are numbers in SI units or texts with a unit. Faults name the option, as in "--whirl-speed".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from fluid.fill import Fill
+from fluid.friction import Friction
+from fluid.liquid import Liquid, known_liquid
+from leblanc.friction import parse_friction
+from leblanc.scene.optimise import OBJECTIVES, Optimisation
+from leblanc.scene.scene import Scene
+from leblanc.studies.modes import Resolution, SectionSource
+from leblanc.units import ACCELERATION, ANGULAR_SPEED, LENGTH, TIME, VOLUME, parse_option
+from meshes.baffles import Baffles
+from meshes.chamber import Chamber
+from meshes.errors import InputError, require_not_negative
+from solvers.layer.prescribed import Numerics
+
+Quantity = str | float
+_MOST_BAFFLES = 64
+
+
+@dataclass(frozen=True)
+class LayerQuestion:
+    """A layer under a prescribed whirl.
+
+    Parameters
+    ----------
+    whirl : by the names of `leblanc.studies.layer.answer_layer`
+    duration : from rest, s; None for the settled answer
+    ramp : time over which the whirl grows, s
+    """
+
+    whirl: dict[str, Any]
+    duration: float | None
+    ramp: float
+
+
+def layer_question(
+    *,
+    radius: Quantity,
+    volume: Quantity,
+    height: Quantity,
+    speed: Quantity,
+    whirl_speed: Quantity,
+    whirl_amplitude: Quantity,
+    model: str = "linear",
+    cells: int | None = None,
+    baffles: int = 0,
+    baffle_tip_radius: Quantity = 0.0,
+    baffle_wall_gap: Quantity = 0.0,
+    dispersion: bool = False,
+    friction: str | Friction = "none",
+    gravity: Quantity = 0.0,
+    liquid: str | Liquid = "water",
+    duration: Quantity | None = None,
+    ramp: Quantity = 0.0,
+) -> LayerQuestion:
+    """What `layer` is asked; the parameters are those of `leblanc.api.layer`.
+
+    Raises
+    ------
+    InputError : a value that cannot be read, or is out of its range
+    """
+    plates = baffle_plates(baffles, baffle_tip_radius, baffle_wall_gap)
+    chamber = Chamber(
+        parse_option(radius, LENGTH, "--radius"), parse_option(height, LENGTH, "--height"), baffles=plates
+    )
+    whirl = {
+        "fill": Fill(chamber, liquid_of(liquid), parse_option(volume, VOLUME, "--volume")),
+        "speed": parse_option(speed, ANGULAR_SPEED, "--speed"),
+        "whirl_speed": parse_option(whirl_speed, ANGULAR_SPEED, "--whirl-speed"),
+        "whirl_amplitude": parse_option(whirl_amplitude, LENGTH, "--whirl-amplitude"),
+        "model": model,
+        "friction": friction_of(friction),
+        "gravity": parse_option(gravity, ACCELERATION, "--gravity"),
+        "numerics": Numerics((96 if model == "fem" else 256) if cells is None else cells, dispersion),
+    }
+    length = None if duration is None else parse_option(duration, TIME, "--duration")
+    return LayerQuestion(whirl, length, parse_option(ramp, TIME, "--ramp"))
+
+
+def modes_question(
+    *,
+    radius: Quantity,
+    volume: Quantity,
+    height: Quantity,
+    speed: Quantity,
+    count: int = 12,
+    baffles: int = 0,
+    baffle_tip_radius: Quantity = 0.0,
+    baffle_wall_gap: Quantity = 0.0,
+    mesh: str | Path | None = None,
+    mesh_unit: Quantity | None = None,
+    mesh_size: Quantity | None = None,
+    liquid: str | Liquid = "water",
+    segments: int = 96,
+    layers: int = 6,
+    order: int = 2,
+) -> dict[str, Any]:
+    """What `modes` is asked, by the names of `leblanc.studies.modes.answer_modes`.
+
+    The parameters are those of `leblanc.api.modes`.
+
+    Raises
+    ------
+    InputError : a value that cannot be read, or is out of its range
+    """
+    chamber = Chamber(
+        parse_option(radius, LENGTH, "--radius"),
+        parse_option(height, LENGTH, "--height"),
+        baffles=baffle_plates(baffles, baffle_tip_radius, baffle_wall_gap),
+    )
+    return {
+        "chamber": chamber,
+        "volume": parse_option(volume, VOLUME, "--volume"),
+        "liquid": liquid_of(liquid),
+        "speed": parse_option(speed, ANGULAR_SPEED, "--speed"),
+        "count": count,
+        "resolution": Resolution(segments, layers, order),
+        "source": _source(mesh, mesh_unit, mesh_size),
+    }
+
+
+def volume_question(
+    *,
+    radius: Quantity,
+    height: Quantity,
+    eccentricity: Quantity,
+    speed: Quantity,
+    volume: Quantity | None = None,
+    gravity: Quantity = 9.81,
+    inner_radius: Quantity = 0.0,
+) -> dict[str, Any]:
+    """What `volume` is asked, by the names of `leblanc.studies.volume.answer_volume`.
+
+    The parameters are those of `leblanc.api.volume`.
+
+    Raises
+    ------
+    InputError : a value that cannot be read, or is out of its range
+    """
+    chamber = Chamber(
+        parse_option(radius, LENGTH, "--radius"),
+        parse_option(height, LENGTH, "--height"),
+        parse_option(inner_radius, LENGTH, "--inner-radius"),
+    )
+    asked = {
+        "eccentricity": parse_option(eccentricity, LENGTH, "--eccentricity"),
+        "speed": parse_option(speed, ANGULAR_SPEED, "--speed"),
+        "gravity": parse_option(gravity, ACCELERATION, "--gravity"),
+    }
+    for name, value in asked.items():
+        require_not_negative(f"--{name}", value)
+    held = None if volume is None else parse_option(volume, VOLUME, "--volume")
+    return {"chamber": chamber, **asked, "volume": held}
+
+
+def optimisation_of(
+    scene: Scene,
+    objective: str | None = None,
+    deflection: Quantity | None = None,
+    limit: Quantity | None = None,
+    steady: bool = False,
+    seed: int | None = None,
+) -> Optimisation:
+    """What the liquid of a scene is chosen for: its table [optimise] with what is given in its place.
+
+    The parameters are those of `leblanc.api.optimise`.
+
+    Raises
+    ------
+    InputError : no such objective, a value out of its range
+    """
+    aim = scene.optimise or Optimisation()
+    if objective is not None:
+        if objective not in OBJECTIVES:
+            raise InputError("--objective", objective, "one of " + ", ".join(OBJECTIVES))
+        aim = aim.altered(objective=objective)
+    if deflection is not None:
+        aim = aim.altered(deflection=_length(deflection, "--deflection"))
+    if limit is not None:
+        aim = aim.altered(vibration_limit=_length(limit, "--limit"))
+    if seed is not None:
+        if seed < 0:
+            raise InputError("--seed", seed, "a whole number, 0 or above")
+        aim = aim.altered(seed=seed)
+    return aim.altered(steady=aim.steady or steady)
+
+
+def _length(given: Quantity, option: str) -> float:
+    """A length above 0 in metres."""
+    value = parse_option(given, LENGTH, option)
+    if not 1e-12 <= value <= 1e3:
+        raise InputError(option, given, "from 1e-12 to 1000 m")
+    return value
+
+
+def liquid_of(liquid: str | Liquid) -> Liquid:
+    """A liquid, or the known one of that name."""
+    return liquid if isinstance(liquid, Liquid) else known_liquid(liquid)
+
+
+def friction_of(friction: str | Friction) -> Friction:
+    """A friction law, or the one typed as none, stokes, linear:RATE or quadratic:NUMBER."""
+    return friction if isinstance(friction, Friction) else parse_friction(friction, "--friction")
+
+
+def baffle_plates(count: int, tip_radius: Quantity, wall_gap: Quantity) -> Baffles | None:
+    """Radial baffles, None without any.
+
+    Raises
+    ------
+    InputError : more than are taken, edges without baffles
+    """
+    tip = parse_option(tip_radius, LENGTH, "--baffle-tip-radius")
+    gap = parse_option(wall_gap, LENGTH, "--baffle-wall-gap")
+    if not 0 <= count <= _MOST_BAFFLES:
+        raise InputError("--baffles", count, f"from 0 to {_MOST_BAFFLES}")
+    if count > 0:
+        return Baffles(count, tip, gap)
+    if tip != 0.0 or gap != 0.0:
+        raise InputError("--baffles", count, "1 or more where their edges are given")
+    return None
+
+
+def _source(mesh: str | Path | None, unit: Quantity | None, size: Quantity | None) -> SectionSource | None:
+    """File of a section, None without one."""
+    if mesh is None:
+        for name, value in (("--mesh-unit", unit), ("--mesh-size", size)):
+            if value is not None:
+                raise InputError(name, value, "left out without --mesh")
+        return None
+    return SectionSource(
+        Path(mesh),
+        None if unit is None else parse_option(unit, LENGTH, "--mesh-unit"),
+        None if size is None else parse_option(size, LENGTH, "--mesh-size"),
+    )
