@@ -101,6 +101,7 @@ RECIPES = (
             "tub_fig9_dampers_turned",
         ),
     ),
+    Recipe(("docs/house.py", "--picture", "rooms.png"), ("rooms",)),
     Recipe(("validation.figures.two_plane",), ("two_plane_balls",)),
     Recipe(("validation.cases.weak_motor",), ("runup_weak_motor",)),
     Recipe(("validation.figures.runup_lag",), ("runup_lag",)),

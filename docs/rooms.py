@@ -30,7 +30,7 @@ NARROWEST, MARGIN = 84.0, 14.0  # a box, and beside its name together
 MOST = 6  # boxes in a row
 SWEEPS, PASSES = 30, 400  # to untangle, to straighten
 FONT, NAME, SMALL = "DejaVu Sans", 9.5, 7.5  # which comes with matplotlib; points
-DOTS = 200  # of the PNG to an inch
+DOTS = 100  # of the PNG to an inch
 # Okabe and Ito's colours, which colour-blind readers tell apart; from the ground up, then again.
 COLOURS = ("#0072B2", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#D55E00")
 AGAINST = "#000000"
