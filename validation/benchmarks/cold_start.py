@@ -109,10 +109,11 @@ def least(command: Sequence[str], repeats: int, given: str = "") -> float:
 
 
 def _settings() -> dict[str, str]:
-    """One thread for everybody, our packages from this tree."""
+    """One thread for everybody, our packages from this tree, compiled sources kept as Python usually does."""
     threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
     path = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
-    return os.environ | threads | {"PYTHONPATH": path, "MPLBACKEND": "Agg"}
+    kept = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
+    return kept | threads | {"PYTHONPATH": path, "MPLBACKEND": "Agg"}
 
 
 def third_party(modules: Iterable[str]) -> list[str]:
