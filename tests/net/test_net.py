@@ -7,6 +7,7 @@ import math
 import subprocess
 import sys
 from collections.abc import Callable
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -87,7 +88,7 @@ CHANGES: dict[str, tuple[Callable[[Answer], None], str]] = {
     "new key": (_stdout("novel", 1.0), "stdout.novel"),
     "shorter": (lambda answer: answer["stdout"]["speed"].pop(), "stdout.speed"),
     "shape": (
-        lambda answer: answer["stdout"].update(deflection=[[x for pair in answer["stdout"]["deflection"] for x in pair]]),
+        lambda answer: answer["stdout"].update(deflection=[list(chain(*answer["stdout"]["deflection"]))]),
         "stdout.deflection#",
     ),
     "prose of another type": (_stdout("notes", "<str>"), "stdout.notes"),
