@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from tests.net.answers import Answer
 from tests.net.tolerances import Tolerance, tolerance_of
@@ -43,8 +43,7 @@ class Difference:
         return line + (f" ({self.count} of {self.size} values differ)" if self.count > 1 else "")
 
 
-@dataclass(frozen=True)
-class Leaf:
+class Leaf(NamedTuple):
     """A value that holds no others, and where it stands."""
 
     path: str

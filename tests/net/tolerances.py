@@ -33,8 +33,8 @@ EXACT = Tolerance()
 
 # (commands, paths, tolerance, reason): the first that fits holds. The numbers in the reasons are the largest
 # differences seen when inputs were shaken by 1e-15 (`python -m tests.net shake`) and when all ran with the
-# arithmetic of another processor (no fused multiply-add, older BLAS kernels); the tolerances leave a factor of
-# 10 or so.
+# arithmetic of another processor (no fused multiply-add, older BLAS kernels); the tolerances leave a factor
+# of 10 or so.
 TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (
     ("*", "*#", EXACT, "lengths of lists"),
     ("*", "*mass_error", Tolerance(absolute=1e-12), "rounding itself: 1e-15 of the mass"),
@@ -83,8 +83,8 @@ TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (
     ("optimise-*", "*margin*", Tolerance(relative=1e-11), "eigenvalue: 2.4e-13"),
     ("optimise-*", "*evaluations", Tolerance(relative=0.02), "a search stops a step sooner or later: 1e-3"),
     ("volume-*", "*surface_constant", Tolerance(relative=1e-11), "root of an equation: 1.5e-13"),
-    # Compiled finite volumes: the compiler fuses multiplications and additions as the code around them allows,
-    # and what bores make of it grows in time.
+    # Compiled finite volumes: the compiler fuses multiplications and additions as the code around them
+    # allows, and what bores make of it grows in time.
     (
         *("runup-*", "*liquid_angle*", Tolerance(relative=3e-8, skipped=1)),
         "first comes the angle of an offset that is zero: rounding",
