@@ -62,6 +62,9 @@ def compare(case: str, kept: Answer, found: Answer, share: float = 1.0) -> list[
     ours, theirs = arrays(kept), arrays(found)
     differences = []
     for path in sorted(ours.keys() | theirs.keys()):
+        values = path.removesuffix("#") + "[]"  # that they are missing says that their number is
+        if path.endswith("#") and (values in ours) != (values in theirs):
+            continue
         if path not in theirs:
             differences.append(Difference(case, path, _shown(ours[path]), "nothing"))
         elif path not in ours:
@@ -114,7 +117,7 @@ def _array(
         return None
     a, b = max(bad, key=lambda pair: _distance(*pair))
     both = _finite(a.value) and _finite(b.value)
-    relative = _distance(a, b) / scale if both and scale > 0.0 else None
+    relative = _distance(a, b) / scale if both and scale > 0.0 and not path.endswith("#") else None
     return Difference(case, a.path, _text(a.value), _text(b.value), relative, len(bad), len(kept))
 
 
