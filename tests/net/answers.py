@@ -35,7 +35,7 @@ def answer(case: Case, folder: Path) -> Answer:
         "code": called.code,
         "stdout": _printed(case, called),
         "stderr": [_field(line) for line in called.stderr.splitlines()] if called.code in (2, 3) else None,
-        "files": [name for name in _files(folder) if name not in before],
+        "files": {name: "written" for name in _files(folder) if name not in before},
         "data": _data(folder, before) if "--json" in case.argv else {},
     }
 

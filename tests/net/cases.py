@@ -6,12 +6,13 @@ import ctypes
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from tests.net.scenes import WRONG
+from tests.net.scenes import SMALL, WRONG
 
 ROTORS = (
     *("two_plane_rig", "tub", "horizontal_rig", "vertical_rig", "washing_machine", "weak_motor"),
     *("centrifuge", "runup"),
 )
+WHOLE = ("two_plane_rig", "vertical_rig", "centrifuge", "runup")  # run-ups held to their end
 DOCS = ("closed_baffles", "lobes", "smallest_scene")
 COMMANDS = (
     *("new", "explain", "run", "volume", "layer", "modes", "map", "runup", "optimise", "sweep", "trade"),
@@ -91,10 +92,9 @@ def _runs() -> Iterator[Case]:
 
 
 def _runups() -> Iterator[Case]:
-    for name in ROTORS:
-        yield _case(
-            f"runup-{name}", f"runup {_scene(name)} --cells 32 --samples 201 --no-check --json --out out"
-        )
+    pieces = {name: f"small/{name}.toml" for name in SMALL if name.endswith(("_fallen", "_caught", "_above"))}
+    for name, scene in (pieces | {name: _scene(name) for name in WHOLE}).items():
+        yield _case(f"runup-{name}", f"runup {scene} --cells 32 --samples 201 --no-check --json --out out")
     yield _case("runup-check", "runup small/runup.toml --samples 51 --json --out out")
 
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from tests.net.answers import Answer
 from tests.net.tolerances import Tolerance, tolerance_of
@@ -42,8 +43,7 @@ class Difference:
         return line + (f" ({self.count} of {self.size} values differ)" if self.count > 1 else "")
 
 
-@dataclass(frozen=True)
-class Leaf:
+class Leaf(NamedTuple):
     """A value that holds no others, and where it stands."""
 
     path: str
@@ -62,6 +62,9 @@ def compare(case: str, kept: Answer, found: Answer, share: float = 1.0) -> list[
     ours, theirs = arrays(kept), arrays(found)
     differences = []
     for path in sorted(ours.keys() | theirs.keys()):
+        values = path.removesuffix("#") + "[]"  # that they are missing says that their number is
+        if path.endswith("#") and (values in ours) != (values in theirs):
+            continue
         if path not in theirs:
             differences.append(Difference(case, path, _shown(ours[path]), "nothing"))
         elif path not in ours:
@@ -103,15 +106,16 @@ def _array(case: str, path: str, kept: list[Leaf], found: list[Leaf], share: flo
     if len(kept) != len(found):
         return Difference(case, path, f"{len(kept)} values", f"{len(found)} values")
     tolerance = tolerance_of(case, path).times(share)
+    kept, found = kept[tolerance.skipped :], found[tolerance.skipped :]
     scale = max((abs(leaf.value) for leaf in kept if _finite(leaf.value)), default=0.0)
     if not tolerance.ordered:
         kept, found = sorted(kept, key=_rank), sorted(found, key=_rank)
-    bad = [(a, b) for a, b in zip(kept, found, strict=True) if not alike(a.value, b.value, scale, tolerance)]
+    bad = [(a, b) for a, b in zip(kept, found, strict=True) if not alike(a, b, scale, tolerance)]
     if not bad:
         return None
     a, b = max(bad, key=lambda pair: _distance(*pair))
     both = _finite(a.value) and _finite(b.value)
-    relative = abs(a.value - b.value) / scale if both and scale > 0.0 else None
+    relative = _distance(a, b) / scale if both and scale > 0.0 and not path.endswith("#") else None
     return Difference(case, a.path, _text(a.value), _text(b.value), relative, len(bad), len(kept))
 
 
@@ -121,23 +125,29 @@ def _rank(leaf: Leaf) -> tuple[bool, float, str]:
 
 
 def _distance(a: Leaf, b: Leaf) -> float:
-    return abs(a.value - b.value) if _finite(a.value) and _finite(b.value) else math.inf
+    """How far two numbers are apart, an angle by the shorter way round; infinite unless both are finite."""
+    if not (_finite(a.value) and _finite(b.value)):
+        return math.inf
+    distance = abs(a.value - b.value)
+    if re.search(r"[._](phase|liquid_angle\w*)\b", a.path) and distance <= 2.0 * math.pi:
+        return min(distance, 2.0 * math.pi - distance)
+    return distance
 
 
-def alike(kept: Any, found: Any, scale: float, tolerance: Tolerance) -> bool:
+def alike(a: Leaf, b: Leaf, scale: float, tolerance: Tolerance) -> bool:
     """Whether two values are the same within the tolerance.
 
     Parameters
     ----------
-    kept, found : leaves
+    a, b : kept and found
     scale : largest magnitude in the kept array
     tolerance : for numbers; truth values, None, not a number, infinities and strings are the same or not
     """
-    if _finite(kept) and _finite(found):
-        return abs(kept - found) <= max(tolerance.relative * scale, tolerance.absolute)
-    if isinstance(kept, float) and isinstance(found, float):
-        return kept == found or (math.isnan(kept) and math.isnan(found))
-    return type(kept) is type(found) and kept == found
+    if _finite(a.value) and _finite(b.value):
+        return _distance(a, b) <= max(tolerance.relative * scale, tolerance.absolute)
+    if isinstance(a.value, float) and isinstance(b.value, float):
+        return a.value == b.value or (math.isnan(a.value) and math.isnan(b.value))
+    return type(a.value) is type(b.value) and a.value == b.value
 
 
 def _finite(value: Any) -> bool:
