@@ -99,7 +99,7 @@ def write_inputs(folder: Path, shaken: bool = False) -> None:
             raise ValueError(f"{source} has no {old!r}, which the wrong input {name} replaces")
         _put(folder / "wrong" / f"{name}.toml", text.replace(old, new))
     _put(folder / "wrong" / "empty.toml", "")
-    (folder / "wrong" / "not_text.toml").write_bytes(b"name = \"\xff\xfe\"\n")
+    (folder / "wrong" / "not_text.toml").write_bytes(b'name = "\xff\xfe"\n')
     for name, (source, changes) in SMALL.items():
         text = (folder / source).read_text(encoding="utf-8")
         _put(folder / "small" / f"{name}.toml", changed(text, changes))
