@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from leblanc.cli import main
+from leblanc.results.optimum import emulated
 from leblanc.scene.optimise import Optimisation
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.studies.batch import answer_scenes
@@ -35,15 +36,15 @@ def test_search(tmp_path: Path) -> None:
     assert emulator.chambers == (1, 0)  # the order of the study
     quick = optimise_scene(scene, aim=Optimisation(), front=False, emulator=emulator)
     true = optimise_scene(scene, aim=Optimisation(), front=False)
-    assert quick.emulated is not None and quick.notes[0] == quick.emulated.words()
+    assert quick.emulator is not None and quick.notes[0] == emulated(quick.emulator)
     again = answer_scenes([with_volumes(scene, quick.volume)]).amplitude[0, -1]
     # The value told is that of the solvers.
     np.testing.assert_allclose(quick.value, again, rtol=1e-12)
     # Twice off at most: by one error it may take a worse point for a better one, by another miss the best.
     # The search gives up a millionth of the value for less liquid.
     assert true.value <= quick.value * (1.0 + 2e-6)
-    assert quick.value <= true.value * (1.0 + 2.0 * quick.emulated.error.largest)
-    np.testing.assert_allclose(quick.emulated.value, quick.value, rtol=2.0 * quick.emulated.error.largest)
+    assert quick.value <= true.value * (1.0 + 2.0 * quick.emulator.error.largest)
+    np.testing.assert_allclose(quick.emulator.value, quick.value, rtol=2.0 * quick.emulator.error.largest)
     assert np.all(quick.points >= 0.9e-6 * (1.0 - 1e-12)) and np.all(quick.points <= 30e-6 * (1.0 + 1e-12))
 
 

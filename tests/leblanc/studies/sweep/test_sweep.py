@@ -31,6 +31,7 @@ from leblanc.studies.sweep.sweep import run_sweep
 from meshes.errors import InputError
 from tests.mutants import kills
 from tests.oracles.sweeps import ROOT, STUDY, added_mass_answers, study_in, tree, write_study
+from tests.oracles.sweeps import quick as quick  # a fixture
 
 Capture = pytest.CaptureFixture[str]
 SMALL = STUDY.replace("samples = 256", "samples = 8")
