@@ -13,8 +13,7 @@ from leblanc.cli.output import out_dir, print_json, print_table, say
 def compare(
     scene: Annotated[Path, typer.Argument(help="Scene file (TOML).")],
     models: Annotated[
-        str,
-        typer.Option(help="Liquid models with commas between them, by rising exactness: the last is compared with."),
+        str, typer.Option(help="Liquid models, commas between them; the last that answers is the reference.")
     ],
     out: Annotated[
         Path | None, typer.Option(help="Folder for the files [default: out/<scene name>].")

@@ -13,8 +13,8 @@ from leblanc.cli.output import out_dir, print_json, say
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from leblanc.studies.sweep.emulator import Emulator
     from leblanc.results.several.sweep import SweepResult
+    from leblanc.studies.sweep.emulator import Emulator
     from leblanc.studies.sweep.study import Sweep
 
 _SHOWN = 10  # kinds of reasons

@@ -20,6 +20,7 @@ Axes = Any  # matplotlib's, which no module that only draws imports
 
 FRAME = Frame(left=0.72, top=0.46, between=0.12, below=0.42)
 AMPLITUDE, DIFFERENCE = 2.6, 1.3  # inches
+LEAST = 1e-3  # per cent: a smaller difference looks like none
 # Colours after Okabe and Ito, safe for the colour blind; each model has a style of line and a width as well,
 # so that equal lines stay visible on top of one another.
 LOOKS = (
@@ -43,10 +44,11 @@ def comparison_figure(found: Comparison) -> Figure:
     with style():
         figure = Figure()
         figure.alt = alt(found)
-        rows = [figure.add_axes((0, 0, 1, 1), label=name) for name in ("amplitude", "difference")[: len(names)]]
+        labels = ("amplitude", "difference")[: len(names)]
+        rows = [figure.add_axes((0, 0, 1, 1), label=label) for label in labels]
         _draw_amplitude(rows[0], rpm, names, [line[drawn] for line in finite])
         if len(rows) > 1:
-            _draw_difference(rows[1], rpm, names, [line[drawn] for line in apart], found.reference)
+            _draw_difference(rows[1], rpm, names, [line[drawn] for line in apart])
         for axes in rows:
             _background(axes, found)
             axes.xaxis.set_major_formatter(number)
@@ -77,14 +79,13 @@ def _draw_amplitude(axes: Axes, rpm: Array, names: list[str], lines: list[Array]
     axes.set_ylabel("Amplitude (mm)")
 
 
-def _draw_difference(axes: Axes, rpm: Array, names: list[str], lines: list[Array], reference: str) -> None:
+def _draw_difference(axes: Axes, rpm: Array, names: list[str], lines: list[Array]) -> None:
     marker = "o" if rpm.size == 1 else None
     for name, line, look in zip(names, lines, LOOKS, strict=False):
         axes.plot(rpm, line, label=name, marker=marker, **look)
     largest = max(float(np.nanmax(np.abs(line), initial=0.0)) for line in lines)
-    # Lines that are equal to rounding look equal.
-    axes.set_ylim(*(np.array([-1.1, 1.1]) * max(largest, 1e-6)))
-    axes.set_ylabel(f"From {reference} (%)")
+    axes.set_ylim(*(np.array([-1.1, 1.1]) * max(largest, LEAST)))
+    axes.set_ylabel("Difference (%)")
 
 
 def _background(axes: Axes, found: Comparison) -> None:

@@ -86,14 +86,18 @@ def summary(found: Comparison) -> list[tuple[str, str]]:
 def _told(found: Comparison, one: ModelAnswer) -> str:
     if one.result is None or one.cpu_time is None:
         return f"{REFUSED}: {one_line(one.reason)}"
-    amplitude = one.peak_amplitude
-    words = [NOT_FOUND if amplitude is None else f"{number(amplitude * MM)} mm at most"]
+    words = [f"{_size(one)} at most"]
     if one.model == found.reference:
         words.append("the reference")
     else:
         size = difference(found, one.model)
         words.append(f"difference {size}{' %' if size[0].isdigit() else ''}")
     return ", ".join([*words, f"{one.cpu_time:.2g} s of processor time"])
+
+
+def _size(one: ModelAnswer) -> str:
+    """Largest amplitude with its unit."""
+    return NOT_FOUND if one.peak_amplitude is None else f"{number(one.peak_amplitude * MM)} mm"
 
 
 def alt(found: Comparison) -> str:
@@ -103,6 +107,6 @@ def alt(found: Comparison) -> str:
     ----------
     found : the comparison
     """
-    told = [f"{one.model} {NOT_FOUND if one.peak_amplitude is None else number(one.peak_amplitude * MM)} mm" for one in found.answers if one.answered]
+    told = [f"{one.model} {_size(one)}" for one in found.answers if one.answered]
     below = "; below, their differences" if len(told) > 1 else ""
     return f"Curves of the amplitude over speed by each liquid model{below}; largest: {', '.join(told)}."

@@ -30,7 +30,13 @@ DEFAULT = Tolerance(relative=1e-12)
 EXACT = Tolerance()
 
 # (commands, paths, tolerance, reason): the first that fits holds.
-TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (("*", "*#", EXACT, "lengths of lists"),)
+TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (
+    ("*", "*#", EXACT, "lengths of lists"),
+    (
+        *("compare*", "*largest_difference*", Tolerance(absolute=2e-12)),
+        "between two amplitudes over the largest, each good to a part in 1e12",
+    ),
+)
 
 
 def tolerance_of(case: str, path: str) -> Tolerance:

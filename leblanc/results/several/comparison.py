@@ -158,7 +158,8 @@ class Comparison(Result):
 
     def to_dataset(self) -> Dataset:
         """Dataset with dimensions `model` and `speed`; nan where a model does not answer."""
-        each, over, answered = ("model",), ("model", "speed"), np.array([one.answered for one in self.answers])
+        each, over = ("model",), ("model", "speed")
+        answered = np.array([one.answered for one in self.answers])
 
         def table(take: Callable[[RunResult], Array]) -> Array:
             nothing = np.full(self.speed.shape, np.nan)
