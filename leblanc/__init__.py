@@ -11,7 +11,18 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from fluid.fill import Fill
     from fluid.liquid import Liquid
-    from leblanc.api import explain, layer, map_whirl, modes, optimise, run, run_up, volume
+    from leblanc.api import (
+        compare,
+        explain,
+        layer,
+        map_whirl,
+        modes,
+        optimise,
+        run,
+        run_up,
+        sweep,
+        volume,
+    )
     from leblanc.scene.examples import example
     from leblanc.scene.rotors import Exciter, JeffcottRotor, TubRotor, TwoPlaneRotor
     from leblanc.scene.scene import Scene, load_scene
@@ -30,6 +41,7 @@ __all__ = [
     "SceneError",
     "TubRotor",
     "TwoPlaneRotor",
+    "compare",
     "example",
     "explain",
     "layer",
@@ -39,6 +51,7 @@ __all__ = [
     "optimise",
     "run",
     "run_up",
+    "sweep",
     "volume",
 ]
 
@@ -57,10 +70,7 @@ _HOMES = {
     "TwoPlaneRotor": ("leblanc.scene.rotors", "TwoPlaneRotor"),
     "example": ("leblanc.scene.examples", "example"),
     "load_scene": ("leblanc.scene.scene", "load_scene"),
-    **{
-        name: (_API, name)
-        for name in ("explain", "layer", "map_whirl", "modes", "optimise", "run", "run_up", "volume")
-    },
+    **{name: (_API, name) for name in __all__ if name.islower() and name not in ("example", "load_scene")},
 }
 
 

@@ -8,7 +8,7 @@ itself in a notebook.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from leblanc.results.optimum import OptimumResult
     from leblanc.results.response import RunResult
     from leblanc.results.runup import RunupResult
+    from leblanc.results.several.comparison import Comparison
+    from leblanc.results.several.sweep import SweepResult
     from leblanc.results.volume import VolumeResult
     from leblanc.results.whirl_map import WhirlMap
 
@@ -214,6 +216,71 @@ def optimise(
         aim = optimisation_of(machine, objective, deflection, limit, steady, seed)
         asked = None if emulator is None else emulated_vibration(Path(emulator), machine, aim)
         return optimise_scene(machine, aim=aim, front=front, progress=progress, emulator=asked)
+
+
+def compare(scene: SceneOrPath, models: Sequence[str]) -> Comparison:
+    """The same scene answered by several liquid models, side by side, with what each takes.
+
+    Parameters
+    ----------
+    scene : the machine, or the path of its file
+    models : names of liquid models; one that does not answer `run` is listed with the reason
+
+    Raises
+    ------
+    SceneError, InputError : as for `run`; no model that answers
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> lb.compare(lb.example("horizontal_rig"), models=["statics", "linear"]).models
+    ('statics', 'linear')
+    """
+    machine = _scene(scene)
+    from leblanc.studies.compare import compare_models
+
+    with _keywords():
+        return compare_models(machine, tuple(models))
+
+
+def sweep(
+    study: str | PathLike[str],
+    out: str | PathLike[str] | None = None,
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    fresh: bool = False,
+    progress: Callable[[int, int], None] | None = None,
+) -> SweepResult:
+    """Answers of many scenes that differ in a few values; the same call goes on after a stop.
+
+    Parameters
+    ----------
+    study : path of the study file
+    out : folder of the store; out/<study name> if None
+    workers : local processes, 0 for none but this; the cores if None
+    scheduler : address of a Dask scheduler, in place of local processes
+    fresh : start anew, without what is in the store
+    progress : called with the number of samples finished and of all
+
+    Raises
+    ------
+    SceneError : with everything that is wrong with the files
+    InputError : a store of another study, a scheduler that does not answer
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> found = lb.sweep("study.toml", workers=0)  # doctest: +SKIP
+    """
+    from leblanc.cli.output import out_dir
+    from leblanc.studies.sweep.study import load_sweep
+    from leblanc.studies.sweep.summary import sweep_result
+
+    plan = load_sweep(Path(study))
+    folder = out_dir(plan.name, None if out is None else Path(out))
+    with _keywords():
+        return sweep_result(plan, folder, workers, scheduler, fresh, progress)
 
 
 def layer(

@@ -15,7 +15,7 @@ from typing import Annotated
 import typer
 from typer.main import get_command
 
-from leblanc.cli import explain, layer, map, modes, new, optimise, run, runup, sweep, view, volume
+from leblanc.cli import compare, explain, layer, map, modes, new, optimise, run, runup, sweep, view, volume
 from leblanc.cli.output import say
 from leblanc.scene.schema.faults import NotConverged, SceneFaults, escaped
 from meshes.errors import InputError
@@ -23,7 +23,7 @@ from meshes.errors import InputError
 DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED, INTERRUPTED = 0, 1, 2, 3, 130
 
 # Modules with one command each, a function of the module's name, in the order of the help.
-COMMANDS = (new, explain, run, volume, layer, modes, map, runup, optimise, sweep, view)
+COMMANDS = (new, explain, run, compare, volume, layer, modes, map, runup, optimise, sweep, view)
 
 # What typer raises for a wrong command line; its home moved between versions.
 _UsageError: type[Exception] = typer.BadParameter.__mro__[1]

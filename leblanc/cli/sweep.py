@@ -13,10 +13,9 @@ from leblanc.cli.output import out_dir, print_json, say
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from leblanc.results.several.sweep import SweepResult
     from leblanc.studies.sweep.emulator import Emulator
-    from leblanc.studies.sweep.store import Store
     from leblanc.studies.sweep.study import Sweep
-    from leblanc.studies.sweep.summary import Summary
 
 _SHOWN = 10  # kinds of reasons
 
@@ -49,24 +48,24 @@ def sweep(
     if note is not None:
         say(f"{plan.name}: {note}")
 
-    from leblanc.studies.sweep.summary import summarise, sweep_json
-
-    store = _run(plan, folder, workers, scheduler, fresh)
-    found = summarise(store, plan)
+    result = _run(plan, folder, workers, scheduler, fresh)
     if netcdf:
-        from leblanc.studies.sweep.store import write_copy
+        from leblanc.results.netcdf import write_dataset
 
-        write_copy(store, folder / "sweep.nc")
+        write_dataset(result.to_dataset(), folder / "sweep.nc")
     emulators = None
     if emulate:
         from leblanc.studies.sweep.emulator import emulated_outputs
+        from leblanc.studies.sweep.store import read_store
 
-        emulators = emulated_outputs(store, plan.seed)
+        emulators = emulated_outputs(read_store(result.store), plan.seed)
     if json:
-        print_json(sweep_json(store, plan, found) | _emulator_json(emulators))
+        print_json(result.to_json() | _emulator_json(emulators))
     else:
-        print("\n".join([*_lines(store, plan, found), *_emulator_lines(emulators)]))
-    _finish(plan, found)
+        from leblanc.text.sweep import lines
+
+        print("\n".join([*lines(result), *_emulator_lines(emulators)]))
+    _finish(result)
 
 
 def _emulator_json(emulators: dict[str, Emulator | str] | None) -> dict[str, Any]:
@@ -98,59 +97,29 @@ def _emulator_lines(emulators: dict[str, Emulator | str] | None) -> list[str]:
     return lines
 
 
-def _run(plan: Sweep, folder: Path, workers: int | None, scheduler: str | None, fresh: bool) -> Store:
+def _run(plan: Sweep, folder: Path, workers: int | None, scheduler: str | None, fresh: bool) -> SweepResult:
     """Do what is missing, with a bar on a terminal."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-    from leblanc.studies.sweep.sweep import run_sweep
+    from leblanc.studies.sweep.summary import sweep_result
 
     columns = (TextColumn("samples"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     console, quiet = Console(stderr=True), not sys.stderr.isatty()
     with Progress(*columns, console=console, transient=True, disable=quiet) as bar:
         task = bar.add_task("samples", total=None)
         show: Callable[[int, int], None] = lambda done, total: bar.update(task, completed=done, total=total)  # noqa: E731
-        return run_sweep(plan, folder, workers, scheduler, fresh, show)
+        return sweep_result(plan, folder, workers, scheduler, fresh, show)
 
 
-def _finish(plan: Sweep, found: Summary) -> None:
+def _finish(found: SweepResult) -> None:
     """Say on stderr how it went; with no sample done at all that is a failure."""
     from leblanc.scene.schema.faults import NotConverged, SceneFault, SceneFaults
 
     for reason, count in found.reasons[:_SHOWN]:
-        say(f"{plan.name}: {count} of {found.samples} samples: {reason}")
+        say(f"{found.name}: {count} of {found.samples} samples: {reason}")
     if found.not_converged == found.samples:
-        raise NotConverged([f"{plan.name}: no sample converged at every speed"])
+        raise NotConverged([f"{found.name}: no sample converged at every speed"])
     if found.failed == found.samples:
-        raise SceneFaults([SceneFault(plan.name, "vary", None, "such that some sample is a scene")])
-    say(f"{plan.name}: {found.done} of {found.samples} samples done")
-
-
-def _lines(store: Store, plan: Sweep, found: Summary) -> list[str]:
-    """Statistics and sensitivities in words."""
-    lines = [f"{'':24}{'mean':>12}{'deviation':>12}{'5 %':>12}{'50 %':>12}{'95 %':>12}  unit"]
-    for name, one in found.single.items():
-        unit = store.attributes(name)["units"].replace("s-1", "1/s")
-        numbers = [one.mean[0], one.deviation[0], *one.quantiles[0, [0, 2, 4]]]
-        lines.append(f"{name.replace('_', ' '):24}" + "".join(f"{x:12.4g}" for x in numbers) + f"  {unit}")
-    lines += _share_lines(plan, found)
-    lines.append(f"The data are in {store.path}")
-    return lines
-
-
-def _share_lines(plan: Sweep, found: Summary) -> list[str]:
-    """Shares of the variance, a line for each field."""
-    lines = []
-    for name in ("peak_amplitude", "last_amplitude", "peak_growth"):
-        one = found.sensitivities[name]
-        if one is None or (name == "peak_amplitude" and plan.scene.speeds.count == 1):
-            continue
-        lines.append(f"share of the variance of {name.replace('_', ' ')} ({one.method}):")
-        for j, field in enumerate(plan.fields):
-            line = f"  {field.path:30} first {one.first[j]:7.3f}"
-            if one.first_interval is not None:
-                line += f" +- {one.first_interval[j]:.3f}"
-            if one.total is not None and one.total_interval is not None:
-                line += f"   total {one.total[j]:7.3f} +- {one.total_interval[j]:.3f}"
-            lines.append(line)
-    return lines
+        raise SceneFaults([SceneFault(found.name, "vary", None, "such that some sample is a scene")])
+    say(f"{found.name}: {found.done} of {found.samples} samples done")

@@ -30,7 +30,7 @@ def draw_amplitude(axes: Axes, curves: Curves, result: RunResult) -> None:
         stable, unstable = other_branches(curves)
         axes.plot(*stable, **thin, label="other branches, stable")
         axes.plot(*unstable, **thin, linestyle=UNSTABLE, label="other branches, unstable")
-    value_axis(axes, curves, [curves.amplitude, curves.amplitude_dry, curves.branches.ravel()])
+    value_axis(axes, room_below(curves), [curves.amplitude, curves.amplitude_dry, curves.branches.ravel()])
     background(axes, curves, result, [curves.amplitude, curves.amplitude_dry])
     axes.set_ylabel("Amplitude (mm)")
 
@@ -38,7 +38,7 @@ def draw_amplitude(axes: Axes, curves: Curves, result: RunResult) -> None:
 def draw_offset(axes: Axes, curves: Curves, result: RunResult) -> None:
     """Distance of the liquid's centre of mass from the rotation axis."""
     reported(axes, curves, curves.offset, "liquid's centre of mass")
-    value_axis(axes, curves, [curves.offset])
+    value_axis(axes, room_below(curves), [curves.offset])
     background(axes, curves, result, [curves.offset])
     axes.set_ylabel("Liquid offset (mm)")
 
@@ -177,8 +177,20 @@ def _height(axes: Axes, y: Array) -> Array:
     return height
 
 
-def value_axis(axes: Axes, curves: Curves, lines: list[Array]) -> None:
-    """Limits that hold all lines, from zero up; logarithmic where a linear axis would show a peak alone."""
+def room_below(curves: Curves) -> float:
+    """Share of the axes' height that the strip of dry patches takes."""
+    return STRIP + 0.02 if curves.dry_patch else 0.0
+
+
+def value_axis(axes: Axes, room: float, lines: list[Array]) -> None:
+    """Limits that hold all lines, from zero up; logarithmic where a linear axis would show a peak alone.
+
+    Parameters
+    ----------
+    axes : whose values it sets
+    room : left free below the lines, a share of the height
+    lines : their values, nan allowed
+    """
     known = [line[line > 0.0] for line in lines]
     known = [line for line in known if line.size]
     if not known:
@@ -188,7 +200,6 @@ def value_axis(axes: Axes, curves: Curves, lines: list[Array]) -> None:
         return
     top = max(float(line.max()) for line in known)
     usual = min(float(np.median(line)) for line in known)
-    room = STRIP + 0.02 if curves.dry_patch else 0.0
     if top > FLAT * usual:
         low = max(min(float(line.min()) for line in known), 1e-3 * usual) / 1.5
         axes.set_yscale("log", nonpositive="mask")

@@ -36,7 +36,7 @@ MAX_CHAMBERS = 1000
 MAX_SPEEDS = 100_000
 MAX_ASSUMED = 10_000
 
-_LIQUID_MODELS = ("auto", "statics", "linear", "long_wave", "kdv", "fem")
+LIQUID_MODELS = ("auto", "statics", "linear", "long_wave", "kdv", "fem")
 _LAWS = ("none", "stokes")
 _SOME_CHAMBERS = Entries(1, MAX_CHAMBERS, "tables headed [[chambers]]")
 
@@ -117,7 +117,7 @@ class FrictionRule:
 class Model(Part):
     """How the liquid is modelled."""
 
-    liquid: Annotated[str, one_of(*_LIQUID_MODELS)] = Field("auto", description="model of the liquid")
+    liquid: Annotated[str, one_of(*LIQUID_MODELS)] = Field("auto", description="model of the liquid")
     friction: Annotated[Friction, PlainValidator(FrictionRule())] = Field(
         Friction(FrictionLaw.STOKES), description="of the liquid on the wall"
     )

@@ -131,6 +131,27 @@ def test_optimise(capsys: Capture, tmp_path: Path) -> None:
     same(lb.optimise(RIG, deflection="0.5 mm", front=False), printed)
 
 
+def test_compare(capsys: Capture, tmp_path: Path) -> None:
+    names = ["statics", "linear", "long_wave"]
+    printed = command(capsys, "compare", str(RIG), "--models", ",".join(names), "--out", str(tmp_path))
+    found = plain(lb.compare(RIG, names).to_json())
+    for entry in (*found["models"], *printed["models"]):
+        del entry["cpu_time"]  # measured
+    assert json.loads(json.dumps(found)) == printed
+
+
+def test_sweep(capsys: Capture, tmp_path: Path) -> None:
+    study = tmp_path / "rigs.toml"
+    study.write_text(
+        f'scene = "{RIG}"\nmethod = "random"\nsamples = 6\nseed = 3\n'
+        '[vary]\n"rotor.mass" = { uniform = [3.0, 5.0] }\n',
+        encoding="utf-8",
+    )
+    words = "--workers", "0", "--out", str(tmp_path / "out")
+    printed = command(capsys, "sweep", str(study), *words)
+    same(lb.sweep(study, tmp_path / "out", workers=0), printed)
+
+
 def test_faults_name_the_keyword() -> None:
     with pytest.raises(lb.InputError, match=r"^whirl_speed"):
         lb.layer(**(WHIRL | {"whirl_speed": "32 mm"}))

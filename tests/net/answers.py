@@ -36,7 +36,7 @@ def answer(case: Case, folder: Path) -> Answer:
         "stdout": _printed(case, called),
         "stderr": [_field(line) for line in called.stderr.splitlines()] if called.code in (2, 3) else None,
         "files": {name: "written" for name in _files(folder) if name not in before},
-        "data": _data(folder, before) if "--json" in case.argv else {},
+        "data": _data(folder, before, case.measured) if "--json" in case.argv else {},
     }
 
 
@@ -98,16 +98,23 @@ def _files(folder: Path) -> list[str]:
     return sorted(names)
 
 
-def _data(folder: Path, before: set[str]) -> dict[str, Any]:
-    """Variables of the netCDF files and zarr stores that are new."""
+def _data(folder: Path, before: set[str], measured: frozenset[str]) -> dict[str, Any]:
+    """Variables of the netCDF files and zarr stores that are new; of what is measured the type."""
     readers = {".nc": _netcdf, ".zarr/": _zarr}
     return {
-        name: reader(folder / name)
+        name: _held(reader(folder / name), measured)
         for name in _files(folder)
         if name not in before
         for ending, reader in readers.items()
         if name.endswith(ending)
     }
+
+
+def _held(data: dict[str, Any], measured: frozenset[str]) -> dict[str, Any]:
+    """The same with the values of what a machine measures replaced."""
+    for name in measured & data["variables"].keys():
+        data["variables"][name]["values"] = kind(data["variables"][name]["values"])
+    return data
 
 
 def _netcdf(path: Path) -> dict[str, Any]:

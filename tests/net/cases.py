@@ -15,8 +15,8 @@ ROTORS = (
 WHOLE = ("two_plane_rig", "vertical_rig", "centrifuge", "runup")  # run-ups held to their end
 DOCS = ("closed_baffles", "lobes", "smallest_scene")
 COMMANDS = (
-    *("new", "explain", "run", "volume", "layer", "modes", "map", "runup", "optimise", "sweep", "trade"),
-    *("view", "validate"),
+    *("new", "explain", "run", "compare", "volume", "layer", "modes", "map", "runup", "optimise", "sweep"),
+    *("trade", "view", "validate"),
 )
 
 
@@ -40,7 +40,7 @@ class Case:
 
 def all_cases() -> list[Case]:
     """Every command, those that take long first."""
-    slow = _long, _runs, _runups, _optimums, _maps, _sweeps
+    slow = _long, _runs, _comparisons, _runups, _optimums, _maps, _sweeps
     fast = _layers, _modes, _views, _words, _cheap, _wrong
     found = [case for part in (*slow, *fast) for case in part()]
     names = [case.name for case in found]
@@ -89,6 +89,13 @@ def _runs() -> Iterator[Case]:
     for name in ("vibratory_table", *ROTORS, *DOCS):
         yield _case(f"run-{name}", f"run {_scene(name)} --json --out out")
         yield _case(f"explain-{name}", f"explain {_scene(name)} --json")
+
+
+def _comparisons() -> Iterator[Case]:
+    cost = frozenset({"cpu_time"})
+    for name, models in (("horizontal_rig", "kdv,linear,fem,statics"), ("centrifuge", "linear,statics,auto")):
+        typed = f"compare {_scene(name)} --models {models} --json --out out"
+        yield _case(f"compare-{name}", typed, measured=cost)
 
 
 def _runups() -> Iterator[Case]:
@@ -200,6 +207,7 @@ def _words() -> Iterator[Case]:
         yield _case(f"words-{name}", f"{name} small/runup.toml{options}{out}")
     yield _case("words-exciter", "run examples/vibratory_table.toml")
     yield _case("words-exciter-explain", "explain examples/vibratory_table.toml")
+    yield _case("words-compare", "compare small/runup.toml --models linear,statics --out out")
     yield _case("words-volume", f"{_VOLUME} --volume 2e-4")
     yield _case("words-layer", f"{_WHIRL} --model linear")
     yield _case("words-layer-duration", f"{_WHIRL} --model long_wave --cells 32 --duration 2")
@@ -245,6 +253,10 @@ def _wrong() -> Iterator[Case]:
         "runup-missing": f"runup {smallest}",
         "map-volumes": f"map {rig} --volumes 0",
         "map-friction": f"map {rig} --friction sticky",
+        "compare-exciter": f"compare {table} --models statics",
+        "compare-unknown": f"compare {rig} --models statics,beauty",
+        "compare-twice": f"compare {rig} --models statics,statics",
+        "compare-none": f"compare {rig} --models long_wave,kdv",
         "optimise-objective": f"optimise {rig} --objective beauty",
         "optimise-seed": f"optimise {rig} --seed -1",
         "optimise-limit": f"optimise {rig} --objective least_mass --limit 1kg",

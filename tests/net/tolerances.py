@@ -43,6 +43,7 @@ TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (
         *("*", "*.deviation*", Tolerance(1e-12, 1e-15)),
         "of samples that are all alike it is rounding: 3e-19 m",
     ),
+    ("compare-*", "*largest_difference*", Tolerance(absolute=2e-12), "difference of answers of two models"),
     # Estimates of errors
     (
         *("modes-baffles", "*error_estimate*", Tolerance(relative=1e-4)),

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from leblanc.results.several.sweep import Sensitivity
 from meshes.arrays import Array
 
 CONFIDENCE = 0.95
@@ -14,27 +14,6 @@ _RESAMPLES = 100
 _HARMONICS = 10  # of an output sorted by a field
 _LEAST = 100  # samples; fewer do not tell ten harmonics from noise
 _MOST = 16_384  # samples taken from a larger set: the confidence interval is narrow by then
-
-
-@dataclass(frozen=True)
-class Sensitivity:
-    """Shares of an output's variance, one for each varied field.
-
-    Parameters
-    ----------
-    method : in words
-    used : samples that went in; for "saltelli" points of the design
-    first : share that the field explains by itself, shape (fields,)
-    total : share that is gone once the field is known besides all others; None where the samples do not tell
-    first_interval, total_interval : half widths of the 95 % intervals; None where the design is complete
-    """
-
-    method: str
-    used: int
-    first: Array
-    total: Array | None = None
-    first_interval: Array | None = None
-    total_interval: Array | None = None
 
 
 def sensitivity(

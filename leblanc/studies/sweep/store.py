@@ -15,17 +15,20 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.results.base import one_line, versions
-from leblanc.results.netcdf import dataset, variable, write_dataset
+from leblanc.results.netcdf import dataset, variable
 from leblanc.scene.schema.faults import shown
 from leblanc.studies.sweep.outputs import FLAG, NUMBER, OUTPUTS, PENDING, STATUS, TEXT, Output
 from leblanc.studies.sweep.study import Sweep, VariedField
 from meshes.errors import InputError
+
+if TYPE_CHECKING:
+    from leblanc.results.netcdf import Dataset
 
 STORE = "sweep.zarr"
 
@@ -300,13 +303,12 @@ def _table(value: object) -> str:
 _SINGLE = ("units", "long_name")
 
 
-def write_copy(store: Store, path: Path) -> None:
-    """Write the whole store as netCDF 4; it passes through the memory as a whole.
+def store_dataset(store: Store) -> Dataset:
+    """The whole store as a dataset with units, in memory.
 
     Parameters
     ----------
-    store : to be copied
-    path : the file to write or replace
+    store : to be read
     """
     found = {}
     for name in store.arrays:
@@ -317,4 +319,18 @@ def write_copy(store: Store, path: Path) -> None:
         one.attrs.update(said)
         found[name] = one
     speed = found.pop("speed")
-    write_dataset(dataset(found, coords={"speed": speed}, attrs=store.attributes()), path)
+    return dataset(found, coords={"speed": speed}, attrs=store.attributes())
+
+
+def read_dataset(path: Path) -> Dataset:
+    """The same from the folder of a store.
+
+    Parameters
+    ----------
+    path : its folder
+
+    Raises
+    ------
+    InputError : there is no store
+    """
+    return store_dataset(read_store(path))

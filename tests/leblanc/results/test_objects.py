@@ -23,6 +23,7 @@ from leblanc.results.response import RunResult
 from leblanc.results.volume import Coverage
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.studies.choose import choose_all
+from leblanc.studies.compare import compare_models
 from leblanc.studies.exciter import run_exciter
 from leblanc.studies.explain import explain_exciter, explain_scene
 from leblanc.studies.prepare import prepare
@@ -47,6 +48,7 @@ def run() -> RunResult:
 RESULTS = {
     "run": run,
     "map": lambda: map_scene(scene("horizontal_rig"), 5, 21),
+    "compare": lambda: compare_models(scene("horizontal_rig"), ["kdv", "linear", "statics"]),
     "explain": lambda: explain_scene(scene("runup")),
     "explain an exciter": lambda: explain_exciter(scene("vibratory_table")),
     "volume": lambda: answer_volume(CHAMBER, 1e-3, 20.0, 9.81, 3e-5),

@@ -45,7 +45,9 @@ def test_search(tmp_path: Path) -> None:
     assert true.value <= quick.value * (1.0 + 2e-6)
     assert quick.value <= true.value * (1.0 + 2.0 * quick.emulator.error.largest)
     np.testing.assert_allclose(quick.emulator.value, quick.value, rtol=2.0 * quick.emulator.error.largest)
-    assert np.all(quick.points >= 0.9e-6 * (1.0 - 1e-12)) and np.all(quick.points <= 30e-6 * (1.0 + 1e-12))
+    assert np.all(quick.candidates.volume >= 0.9e-6 * (1.0 - 1e-12)) and np.all(
+        quick.candidates.volume <= 30e-6 * (1.0 + 1e-12)
+    )
 
 
 def test_bounds(tmp_path: Path) -> None:

@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
+from leblanc.results.several.sweep import Sensitivity
 from leblanc.studies.sweep.distributions import Levels, Uniform
 from leblanc.studies.sweep.sampling import sample_rows
 from leblanc.studies.sweep.sensitivity import (
-    Sensitivity,
     given_data,
     saltelli_indices,
     sensitivity,

@@ -17,6 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from leblanc.cli import main
+from leblanc.results.several.sweep import QUANTILES
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.schema.load import read_toml
 from leblanc.scene.schema.paths import keys_of, with_values
@@ -26,12 +27,11 @@ from leblanc.studies.sweep.outputs import DONE, FAILED, NOT_CONVERGED, PENDING, 
 from leblanc.studies.sweep.sampling import sample_rows
 from leblanc.studies.sweep.scenes import make_scenes, scene_maker
 from leblanc.studies.sweep.store import STORE, block_size, locked, open_store, read_store
-from leblanc.studies.sweep.summary import QUANTILES, statistics, summarise
+from leblanc.studies.sweep.summary import statistics, summarise
 from leblanc.studies.sweep.sweep import run_sweep
 from meshes.errors import InputError
 from tests.mutants import kills
 from tests.oracles.sweeps import ROOT, STUDY, added_mass_answers, study_in, tree, write_study
-from tests.oracles.sweeps import quick as quick  # a fixture
 
 Capture = pytest.CaptureFixture[str]
 SMALL = STUDY.replace("samples = 256", "samples = 8")

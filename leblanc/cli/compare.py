@@ -1,0 +1,49 @@
+"""`leblanc compare`: the same scene by several liquid models, side by side."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from leblanc.cli.output import out_dir, print_json, print_table, say
+
+
+def compare(
+    scene: Annotated[Path, typer.Argument(help="Scene file (TOML).")],
+    models: Annotated[
+        str, typer.Option(help="Liquid models, commas between them; the last that answers is the reference.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the files [default: out/<scene name>].")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
+) -> None:
+    """The same scene by several liquid models. Table, figure, cost."""
+    from leblanc.scene.scene import load_scene
+    from leblanc.studies.compare import compare_models
+
+    machine = load_scene(scene)
+    found = compare_models(machine, [name.strip() for name in models.split(",")])
+    folder = out_dir(machine.name, out)
+
+    from leblanc.figures.comparison import comparison_figure, save
+    from leblanc.results.netcdf import write_dataset
+    from leblanc.text.comparison import HEAD, basis, reasons, rows
+
+    write_dataset(found.to_dataset(), folder / "compare.nc")
+    files = save(comparison_figure(found), folder, "compare", "Amplitude over speed by liquid model")
+    if json:
+        print_json(found.to_json())
+    else:
+        print_table(rows(found), HEAD, right=True)
+        print("\n".join([basis(found), *reasons(found)]))
+        print(f"See {files.png}; the data are in {folder / 'compare.nc'}")
+
+    lost = [name for name, one in found.results.items() if not one.converged.all()]
+    if lost:
+        from leblanc.scene.schema.faults import NotConverged
+
+        raise NotConverged([f"{scene}: no bounded deflection found at some speeds by {', '.join(lost)}"])
+    say(f"{found.name}: {len(found.results)} of {len(found.models)} models answered")

@@ -1,0 +1,110 @@
+"""How the answers of a sweep spread: amplitude over speed, or boxes of the single outputs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from leblanc.figures.curves import COLUMNS, thin
+from leblanc.figures.over_speed import DRY, WET, value_axis
+from leblanc.figures.page import Caption, Figure, Frame, add_rate_axis, lay_out, number, style
+from leblanc.results.base import one_line
+from leblanc.results.several.sweep import SweepResult
+from leblanc.text.sweep import alt
+from leblanc.units import MM, RPM
+from meshes.arrays import Array
+
+Axes = Any  # matplotlib's, which no module that only draws imports
+
+OVER_SPEED = Frame(left=0.72, top=0.46, between=0.12, below=0.42)
+BOXES = Frame(left=1.85, top=0.12, between=0.45, below=0.42)
+PANEL, ROW = 2.9, 0.32  # inches: a panel over speed, a box
+WIDE, NARROW = "#BFDCEC", "#7FB9DA"  # tints of the colour with liquid, apart in grey as well
+BARE = {"color": DRY, "linewidth": 1.0, "markerfacecolor": "white"}
+
+
+def sweep_figure(result: SweepResult) -> Figure:
+    """Amplitude over speed with the ranges of the samples; of one speed, or of speeds that differ, boxes."""
+    with style():
+        figure = Figure()
+        figure.alt = alt(result)
+        if result.speed is not None and result.speed.size > 1:
+            _over_speed(figure, result, result.speed)
+        else:
+            _boxes(figure, result)
+    return figure
+
+
+def _over_speed(figure: Figure, result: SweepResult, speed: Array) -> None:
+    """Median and two ranges at each speed, and the median without liquid."""
+    order = np.argsort(speed, kind="stable")
+    wet = result.over_speed["amplitude"].quantiles[order] * MM
+    dry = result.over_speed["amplitude_dry"].quantiles[order, 2] * MM
+    drawn = thin(np.column_stack([wet, dry]), COLUMNS)
+    rpm, wet, dry = speed[order][drawn] * RPM, wet[drawn], dry[drawn]
+    axes: Any = figure.add_axes((0, 0, 1, 1))
+    bands = {"linewidth": 0, "zorder": 1.5}
+    axes.fill_between(rpm, wet[:, 0], wet[:, 4], color=WIDE, label="5 to 95 % of the samples", **bands)
+    axes.fill_between(rpm, wet[:, 1], wet[:, 3], color=NARROW, label="25 to 75 %", **bands)
+    axes.plot(rpm, wet[:, 2], color=WET, label="median with liquid")
+    every = max(1, rpm.size // 14)
+    axes.plot(rpm, dry, label="median without liquid", marker="o", markevery=every, **BARE)
+    value_axis(axes, 0.0, [*wet.T, dry])
+    axes.set_xlim(rpm[0], rpm[-1])
+    axes.set_ylabel("Amplitude (mm)")
+    axes.set_xlabel("Speed (rpm)")
+    axes.xaxis.set_major_formatter(number)
+    axes.yaxis.set_major_formatter(number)
+    axes.yaxis.set_minor_formatter("")
+    add_rate_axis(axes)
+    text = "Amplitude of the deflection: median and ranges of the samples at each speed."
+    lay_out(figure, [[axes]], [PANEL], OVER_SPEED, _caption(result, text))
+
+
+def _boxes(figure: Figure, result: SweepResult) -> None:
+    """A box for each amplitude, and one for the growth rate on an axis of its own."""
+    last = [("last_amplitude", "with liquid"), ("last_amplitude_dry", "without liquid")]
+    if result.speeds > 1:
+        last = [(name, f"at the last speed,\n{words}") for name, words in last]
+        peaks = [("peak_amplitude", "with liquid"), ("peak_amplitude_dry", "without liquid")]
+        last = [(name, f"largest,\n{words}") for name, words in peaks] + last
+    growth = [("peak_growth", "largest growth\nof a whirl")]
+    panels = [(last, "Amplitude (mm)", MM), (growth, "Growth (1/s)", 1.0)]
+    rows, heights = [], []
+    for outputs, label, unit in panels:
+        axes: Any = figure.add_axes((0, 0, 1, 1), label=label)
+        for k, (name, _) in enumerate(outputs):
+            _box(axes, float(k), result.single[name].quantiles[0] * unit, dry=name.endswith("_dry"))
+        axes.set_yticks(range(len(outputs)), [words for _, words in outputs])
+        axes.set_ylim(len(outputs) - 0.5, -0.5)
+        axes.grid(visible=False, axis="y")
+        axes.set_xlabel(label)
+        axes.xaxis.set_major_formatter(number)
+        rows.append([axes])
+        heights.append(ROW * (len(outputs) + 0.3))
+    text = "Boxes: 25 to 75 % of the samples, with the median; lines: 5 to 95 %."
+    lay_out(figure, rows, heights, BOXES, _caption(result, text))
+
+
+def _box(axes: Axes, row: float, quantiles: Array, dry: bool) -> None:
+    """Quantiles of one output; nothing where no sample has it."""
+    if np.isnan(quantiles).any():
+        axes.text(0.5, row, "no values", transform=axes.get_yaxis_transform(), ha="center", va="center")
+        return
+    low, first, middle, third, high = quantiles.tolist()
+    colour = DRY if dry else WET
+    axes.plot([low, high], [row, row], color=colour, linewidth=1.0, marker="|", markersize=8.0)
+    face = "white" if dry else NARROW
+    axes.barh(row, third - first, left=first, height=0.5, facecolor=face, edgecolor=colour, zorder=2)
+    axes.plot([middle, middle], [row - 0.25, row + 0.25], color=colour, linewidth=2.0, zorder=3)
+
+
+def _caption(result: SweepResult, text: str) -> Caption:
+    """What is shown, the scene, the samples, what varies."""
+    varied = ", ".join(map(one_line, result.fields))
+    return Caption(
+        text,
+        f"Scene: {one_line(result.scene)}. Samples: {result.done} of {result.samples} done, {result.method}, "
+        f"seed {result.seed}. Varied: {varied}.",
+    )

@@ -1,0 +1,139 @@
+"""What many scenes answered: counts, statistics and sensitivities of the outputs of `sweep`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from leblanc.results.base import Result
+from meshes.arrays import Array
+
+if TYPE_CHECKING:
+    from leblanc.results.netcdf import Dataset
+
+QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """Of an output over the samples that have it; of arrays one for each speed.
+
+    Parameters
+    ----------
+    count : samples
+    mean, deviation : nan without samples; the deviation of a single sample is 0
+    quantiles : at the shares `QUANTILES`, the last axis
+    """
+
+    count: NDArray[np.int64]
+    mean: Array
+    deviation: Array
+    quantiles: Array
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """Shares of an output's variance, one for each varied field.
+
+    Parameters
+    ----------
+    method : in words
+    used : samples that went in; for "saltelli" points of the design
+    first : share that the field explains by itself, shape (fields,)
+    total : share that is gone once the field is known besides all others; None where the samples do not tell
+    first_interval, total_interval : half widths of the 95 % intervals; None where the design is complete
+    """
+
+    method: str
+    used: int
+    first: Array
+    total: Array | None = None
+    first_interval: Array | None = None
+    total_interval: Array | None = None
+
+
+@dataclass(frozen=True)
+class SweepResult(Result):
+    """What a sweep found.
+
+    Parameters
+    ----------
+    name : of the study
+    scene : name of the scene that the samples are made from
+    store : folder of the samples
+    method, seed : of sampling
+    fields : paths of what varies
+    speeds : at which each sample is answered, how many
+    samples, done, failed, not_converged : how many
+    reasons : why samples are not done, one example for all that differ in numbers only, and how many; the
+        most frequent first
+    speed : of all samples, rad/s; None where it differs between them
+    single : statistics of outputs that are one number a sample
+    units : of these outputs
+    over_speed : statistics of the others at each speed
+    sensitivities : of outputs that are one number a sample; None where the samples do not tell
+    digest : fingerprint of the sweep
+    read : reads the store as a dataset, each time it is called
+    """
+
+    figure: ClassVar[str] = "leblanc.figures.sweep:sweep_figure"
+    summary: ClassVar[str] = "leblanc.text.sweep:summary"
+
+    name: str
+    scene: str
+    store: Path
+    method: str
+    seed: int
+    fields: tuple[str, ...]
+    speeds: int
+    samples: int
+    done: int
+    failed: int
+    not_converged: int
+    reasons: tuple[tuple[str, int], ...]
+    speed: Array | None
+    single: Mapping[str, Statistics]
+    units: Mapping[str, str]
+    over_speed: Mapping[str, Statistics]
+    sensitivities: Mapping[str, Sensitivity | None]
+    digest: str
+    read: Callable[[], Dataset] = field(repr=False, compare=False)
+
+    def to_json(self) -> dict[str, Any]:
+        """What `sweep` prints for scripts: SI, lists over speed or over the varied fields."""
+        return {
+            "store": str(self.store),
+            "name": self.name,
+            "method": self.method,
+            "seed": self.seed,
+            "fields": list(self.fields),
+            "samples": self.samples,
+            "done": self.done,
+            "failed": self.failed,
+            "not_converged": self.not_converged,
+            "reasons": [{"reason": reason, "samples": count} for reason, count in self.reasons],
+            "outputs": {name: _statistics_json(one, single=True) for name, one in self.single.items()},
+            "over_speed": {"speed": self.speed}
+            | {name: _statistics_json(one, single=False) for name, one in self.over_speed.items()},
+            "sensitivity": self.sensitivities,
+            "digest": self.digest,
+        }
+
+    def to_dataset(self) -> Dataset:
+        """The store as a dataset with dimensions `sample` and `speed`; read whole, at each call."""
+        return self.read()
+
+
+def _statistics_json(one: Statistics, single: bool) -> dict[str, Any]:
+    parts = {
+        "samples": one.count,
+        "mean": one.mean,
+        "deviation": one.deviation,
+        **{f"quantile_{share:g}": one.quantiles[:, k] for k, share in enumerate(QUANTILES)},
+    }
+    return {name: value[0] if single else value for name, value in parts.items()}

@@ -1,0 +1,84 @@
+"""One scene answered by several liquid models, each with what it costs."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+from leblanc.results.several.comparison import Comparison, ModelAnswer
+from leblanc.scene.scene import LIQUID_MODELS, Exciter, Scene
+from leblanc.studies.run import run_scene
+from meshes.errors import InputError
+
+FIELD = "--models"
+
+
+def compare_models(scene: Scene, models: Sequence[str]) -> Comparison:
+    """Response of a scene by each of several liquid models.
+
+    A model that does not answer the scene is an entry with the reason. The processor time is that of this
+    process and includes libraries that a model alone needs and that are loaded for it.
+
+    Parameters
+    ----------
+    scene : the machine; its own liquid model does not count
+    models : names as in `model.liquid`, by rising exactness: differences are taken from the last that answers
+
+    Returns
+    -------
+    The answers side by side
+
+    Raises
+    ------
+    InputError : a name that is unknown or stands twice, no model that answers, an exciter
+
+    Examples
+    --------
+    >>> from leblanc.scene.examples import example
+    >>> found = compare_models(example("horizontal_rig"), ["kdv", "linear", "statics"])
+    >>> [one.answered for one in found.answers], found.reference
+    ([False, True, True], 'statics')
+    """
+    _check(scene, models)
+    found, refusals = [], []
+    for name in models:
+        try:
+            found.append(_answer(scene, name))
+        except InputError as error:
+            refusals.append(error)
+            found.append(ModelAnswer(name, str(error), None, None))
+    if len(refusals) == len(found):
+        raise _none(models, refusals)
+    return Comparison(scene.name, scene.source, scene.assumed, scene.digest, tuple(found))
+
+
+def _check(scene: Scene, models: Sequence[str]) -> None:
+    if isinstance(scene.rotor, Exciter):
+        raise InputError("rotor.kind", scene.rotor.kind, "jeffcott, two_plane or tub for a comparison")
+    known = ", ".join(LIQUID_MODELS)
+    if not models:
+        raise InputError(FIELD, "none", f"at least one of {known}")
+    for k, name in enumerate(models):
+        if name not in LIQUID_MODELS:
+            raise InputError(FIELD, name, f"some of {known}, with commas between them")
+        if name in models[:k]:
+            raise InputError(FIELD, ",".join(models), f"different models: {name} stands there twice")
+
+
+def _answer(scene: Scene, name: str) -> ModelAnswer:
+    """The answer by one model, and its processor time."""
+    asked = scene.altered(model=scene.model.altered(liquid=name))
+    began = time.process_time()
+    result = run_scene(asked)
+    return ModelAnswer(name, "", time.process_time() - began, result)
+
+
+def _none(models: Sequence[str], refusals: Sequence[InputError]) -> InputError:
+    """The fault where no model answers: the scene's own where all say the same of it, else the choice."""
+    first = refusals[0]
+    if all((one.field, str(one)) == (first.field, str(first)) for one in refusals) and (
+        first.field != "model.liquid"
+    ):
+        return first
+    allowed = f"at least one that answers the scene; {first.field} must be {first.allowed}"
+    return InputError(FIELD, ",".join(models), allowed)

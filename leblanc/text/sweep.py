@@ -1,0 +1,89 @@
+"""What a sweep found, in words."""
+
+from __future__ import annotations
+
+from leblanc.results.base import one_line
+from leblanc.results.several.sweep import SweepResult
+from leblanc.text.numbers import number
+from leblanc.units import MM
+
+_SHARED = ("peak_amplitude", "last_amplitude", "peak_growth")  # whose sensitivities are told
+
+
+def lines(result: SweepResult) -> list[str]:
+    """Statistics and sensitivities for a terminal.
+
+    Parameters
+    ----------
+    result : the sweep
+    """
+    found = [f"{'':24}{'mean':>12}{'deviation':>12}{'5 %':>12}{'50 %':>12}{'95 %':>12}  unit"]
+    for name, one in result.single.items():
+        unit = result.units[name].replace("s-1", "1/s")
+        numbers = [one.mean[0], one.deviation[0], *one.quantiles[0, [0, 2, 4]]]
+        found.append(f"{name.replace('_', ' '):24}" + "".join(f"{x:12.4g}" for x in numbers) + f"  {unit}")
+    return [*found, *_shares(result), f"The data are in {result.store}"]
+
+
+def _shares(result: SweepResult) -> list[str]:
+    """Shares of the variance, a line for each field."""
+    found = []
+    for name in _SHARED:
+        one = result.sensitivities[name]
+        if one is None or (name == "peak_amplitude" and result.speeds == 1):
+            continue
+        found.append(f"share of the variance of {name.replace('_', ' ')} ({one.method}):")
+        for j, field in enumerate(result.fields):
+            line = f"  {field:30} first {one.first[j]:7.3f}"
+            if one.first_interval is not None:
+                line += f" +- {one.first_interval[j]:.3f}"
+            if one.total is not None and one.total_interval is not None:
+                line += f"   total {one.total[j]:7.3f} +- {one.total_interval[j]:.3f}"
+            found.append(line)
+    return found
+
+
+def summary(result: SweepResult) -> list[tuple[str, str]]:
+    """Main numbers: label and value.
+
+    Parameters
+    ----------
+    result : the sweep
+    """
+    rows = [
+        ("Scene", one_line(result.scene)),
+        ("Samples done", f"{result.done} of {result.samples}, {result.method}, seed {result.seed}"),
+        ("Varied", ", ".join(result.fields)),
+    ]
+    if result.speeds > 1:
+        rows.append(("Largest amplitude", spread(result, "peak_amplitude")))
+        rows.append(("Largest amplitude without liquid", spread(result, "peak_amplitude_dry")))
+    rows.append(("Amplitude at the last speed", spread(result, "last_amplitude")))
+    rows.append(("The same without liquid", spread(result, "last_amplitude_dry")))
+    return rows
+
+
+def spread(result: SweepResult, name: str) -> str:
+    """Median of an amplitude and the range of nine samples in ten, mm.
+
+    Parameters
+    ----------
+    result : the sweep
+    name : of the output
+    """
+    low, middle, high = (number(float(x) * MM) for x in result.single[name].quantiles[0, [0, 2, 4]])
+    return f"{middle} mm, nine in ten from {low} to {high} mm"
+
+
+def alt(result: SweepResult) -> str:
+    """What the figure shows and the numbers a reader would take from it.
+
+    Parameters
+    ----------
+    result : the sweep
+    """
+    if result.speed is not None and result.speed.size > 1:
+        what = "Median and ranges of the amplitude over speed; largest amplitude"
+        return f"{what}: {spread(result, 'peak_amplitude')}."
+    what = "Boxes with the quantiles of the amplitudes and of the growth rate; amplitude at the last speed"
+    return f"{what}: {spread(result, 'last_amplitude')}."

@@ -1,0 +1,127 @@
+"""A comparison of made-up answers, whose differences are known in closed form."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from leblanc.cli.output import print_json
+from leblanc.figures.comparison import LOOKS
+from leblanc.results.response import RunResult
+from leblanc.results.several.comparison import Comparison, ModelAnswer
+from leblanc.text.comparison import reasons, rows
+from meshes.errors import InputError
+from tests.mutants import kills
+from tests.oracles.records import ADDED, MASS, RPM, dry_deflection, record_of, response_of
+
+SPEED = np.linspace(100.0, 2000.0, 96) * RPM
+
+
+def comparison(*answers: ModelAnswer) -> Comparison:
+    return Comparison("Rig", "a book", ("rotor.mass",), "abc", answers)
+
+
+def answer(model: str, result: RunResult | None = None) -> ModelAnswer:
+    if result is None:
+        return ModelAnswer(model, "model.liquid must be another", None, None)
+    return ModelAnswer(model, "", 0.25, result)
+
+
+def wet(added: float) -> RunResult:
+    return record_of(response_of(SPEED, added))
+
+
+def three() -> Comparison:
+    return comparison(answer("linear", wet(0.5 * ADDED)), answer("kdv"), answer("statics", wet(ADDED)))
+
+
+@kills(
+    "leblanc.results.several.comparison:Comparison.difference",
+    "own[known] - other[known]",
+    "own[known] + other[known]",
+)
+@kills(
+    "leblanc.results.several.comparison:Comparison.difference",
+    "found / size if",
+    "found / own[known].max() if",
+)
+def test_differences_of_known_answers() -> None:
+    """Half the added mass against all of it: both amplitudes are those of a dry rotor of another mass."""
+    found = three()
+    own, other = (np.abs(dry_deflection(SPEED, MASS + share * ADDED)) for share in (0.5, 1.0))
+    expected = (own - other) / other.max()
+    np.testing.assert_allclose(found.difference("linear"), expected, rtol=0.0, atol=1e-14)
+    assert found.largest_difference("linear") == pytest.approx(np.abs(expected).max(), rel=1e-12)
+    assert found.reference == "statics" and found.models == ("linear", "kdv", "statics")
+    assert not found.difference("statics").any() and found.largest_difference("statics") == 0.0
+
+
+def test_speeds_without_a_finite_amplitude_are_left_out() -> None:
+    response = response_of(SPEED)
+    broken = response.deflection.copy()
+    broken[3], broken[7] = np.inf, np.nan
+    lost = record_of(replace(response, deflection=broken))
+    found = comparison(answer("linear", lost), answer("statics", wet(ADDED)))
+    assert np.flatnonzero(np.isnan(found.difference("linear"))).tolist() == [3, 7]
+    assert found.largest_difference("linear") == 0.0
+    other_way = comparison(answer("statics", wet(ADDED)), answer("linear", lost))
+    assert other_way.largest_difference("statics") == 0.0
+    assert found.plot().axes and other_way.plot().axes
+
+
+def test_a_machine_that_does_not_move_has_no_difference_from_itself_only() -> None:
+    still = record_of(replace(response_of(SPEED), deflection=np.zeros(SPEED.size, dtype=complex)))
+    assert comparison(answer("linear", still), answer("statics", still)).largest_difference("linear") == 0.0
+    found = comparison(answer("linear", wet(ADDED)), answer("statics", still))
+    assert found.largest_difference("linear") is None
+
+
+def test_without_an_answer_there_is_no_comparison() -> None:
+    with pytest.raises(InputError, match="at least one model that answers"):
+        comparison(answer("kdv"), answer("long_wave"))
+
+
+def test_json_dataset_and_table_say_the_same(capsys: pytest.CaptureFixture[str]) -> None:
+    found = three()
+    print_json(found.to_json())
+    said = json.loads(capsys.readouterr().out)
+    assert [*said] == ["models", "reference", "speed", "amplitude_dry", "name", "digest"]
+    entries, data = said["models"], found.to_dataset()
+    keys = ["model", "answered", "reason", "cpu_time", "amplitude", "liquid_offset"]
+    assert all([*one] == [*keys, "peak_amplitude", "largest_difference"] for one in entries)
+    linear, kdv, _ = entries
+    assert kdv["reason"] and not kdv["answered"] and not linear["reason"] and linear["answered"]
+    assert [kdv[key] for key in keys[3:]] == [None] * 3 and kdv["largest_difference"] is None
+    assert dict(data.sizes) == {"model": 3, "speed": 96}
+    for key in ("amplitude", "liquid_offset", "peak_amplitude", "largest_difference", "cpu_time"):
+        assert data[key].attrs["units"] and data[key].attrs["long_name"]
+        np.testing.assert_array_equal(data[key].sel(model="linear"), linear[key])
+        assert np.isnan(data[key].sel(model="kdv")).all()
+    assert data.answered.values.tolist() == [1, 0, 1]
+    np.testing.assert_array_equal(data.amplitude_dry, said["amplitude_dry"])
+    table = rows(found)
+    assert [row[0] for row in table] == ["linear", "kdv", "statics"] and table[2][3] == "reference"
+    assert table[0][1] == f"{1e3 * linear['peak_amplitude']:.4g}"
+    assert reasons(found) == ["kdv: model.liquid must be another"]
+
+
+def test_lines_of_the_figure_are_told_apart_without_colour() -> None:
+    found = three()
+    above, below = found.plot().axes
+    curves = [line for line in above.lines if line.get_label() in found.models]
+    assert len({str(line.get_linestyle()) + str(line.get_linewidth()) for line in curves}) == 2
+    assert len({(str(look["linestyle"]), look["linewidth"]) for look in LOOKS}) == len(LOOKS)
+    for line, name in zip(curves, ("linear", "statics"), strict=True):
+        np.testing.assert_allclose(line.get_xdata(), SPEED / RPM, rtol=1e-12)
+        np.testing.assert_array_equal(line.get_ydata(), found.results[name].amplitude * 1e3)
+    drawn = below.lines[0].get_ydata()
+    np.testing.assert_array_equal(drawn, 100.0 * found.difference("linear"))
+    assert below.get_ylabel() == "Difference (%)"
+
+
+def test_one_model_needs_no_differences() -> None:
+    figure = comparison(answer("statics", wet(ADDED))).plot()
+    assert [axes.get_ylabel() for axes in figure.axes] == ["Amplitude (mm)"]

@@ -1,0 +1,119 @@
+"""One scene by several liquid models: each answers as `run` does, and who does not says why."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from leblanc.cli import main
+from leblanc.scene.examples import example
+from leblanc.scene.scene import Scene
+from leblanc.studies.compare import compare_models
+from leblanc.studies.run import run_scene
+from meshes.errors import InputError
+
+Capture = pytest.CaptureFixture[str]
+
+
+def by(scene: Scene, model: str) -> Scene:
+    return scene.replace({"model.liquid": model})
+
+
+@pytest.mark.parametrize("name", ["horizontal_rig", "centrifuge", "tub"])
+def test_a_comparison_is_the_difference_of_two_runs(name: str) -> None:
+    scene = example(name).replace({"speeds.count": 41})
+    found = compare_models(scene, ["linear", "statics"])
+    linear, statics = (run_scene(by(scene, model)).amplitude for model in ("linear", "statics"))
+    np.testing.assert_array_equal(found.difference("linear"), (linear - statics) / statics.max())
+    assert found.largest_difference("linear") == np.abs(linear - statics).max() / statics.max()
+    assert found.digest == scene.digest and found.name == scene.name
+    assert [one.result is not None and one.cpu_time is not None for one in found.answers] == [True, True]
+
+
+def test_an_empty_machine_is_the_same_by_every_model() -> None:
+    """Without liquid each answers the dry rotor, whose amplitude is known."""
+    scene = example("horizontal_rig")
+    empty = scene.replace({f"chambers.{k}.volume": 0.0 for k in range(len(scene.chambers))})
+    found = compare_models(empty, ["linear", "statics"])
+    rotor, speed = empty.rotor.machine(), found.speed  # type: ignore[union-attr]
+    stiff = rotor.stiffness - rotor.mass * speed**2
+    dry = rotor.unbalance * speed**2 / np.abs(stiff + 1j * rotor.damping * speed)
+    for one in found.results.values():
+        # Rounding of the two ways to write the same quotient.
+        np.testing.assert_allclose(one.amplitude, dry, rtol=1e-12)
+
+
+def test_a_model_by_itself_has_no_difference() -> None:
+    found = compare_models(example("centrifuge"), ["linear"])
+    assert found.reference == "linear" and found.largest_difference("linear") == 0.0
+
+
+def test_the_scenes_own_model_does_not_count() -> None:
+    scene = example("horizontal_rig")
+    one, other = (compare_models(by(scene, own), ["linear"]) for own in ("auto", "kdv"))
+    np.testing.assert_array_equal(one.results["linear"].amplitude, other.results["linear"].amplitude)
+
+
+def test_a_refusal_is_an_entry() -> None:
+    found = compare_models(example("horizontal_rig"), ["statics", "long_wave", "kdv"])
+    assert [one.answered for one in found.answers] == [True, False, False]
+    assert found.reference == "statics"
+    for one in found.answers[1:]:
+        assert f"'{one.model}'" in one.reason and "response to an unbalance" in one.reason
+
+
+@pytest.mark.parametrize(
+    ("name", "models", "field"),
+    [
+        ("horizontal_rig", [], "--models"),
+        ("horizontal_rig", ["statics", "beauty"], "--models"),
+        ("horizontal_rig", ["statics", "linear", "statics"], "--models"),
+        ("horizontal_rig", ["long_wave", "kdv"], "--models"),
+        ("vibratory_table", ["statics"], "rotor.kind"),
+    ],
+)
+def test_faults_name_the_field(name: str, models: list[str], field: str) -> None:
+    with pytest.raises(InputError) as fault:
+        compare_models(example(name), models)
+    assert fault.value.field == field
+
+
+def test_a_fault_of_the_scene_is_not_one_of_the_models() -> None:
+    halves = example("horizontal_rig").replace({"chambers.0.baffles": {"count": 2}})
+    with pytest.raises(InputError) as fault:
+        compare_models(halves, ["auto", "fem"])
+    assert fault.value.field == "chambers.0.baffles.count"
+
+
+def test_the_command_writes_what_it_prints(tmp_path: Path, capsys: Capture) -> None:
+    scene = tmp_path / "rig.toml"
+    assert main(["new", "--example", "horizontal_rig", str(scene)]) == 0
+    capsys.readouterr()
+    command = ["compare", str(scene), "--models", "kdv, linear, statics", "--out", str(tmp_path / "out")]
+    assert main([*command, "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert [one["model"] for one in said["models"]] == ["kdv", "linear", "statics"]
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {
+        "compare.nc",
+        "compare.png",
+        "compare.svg",
+    }
+    assert main(command) == 0
+    printed = capsys.readouterr().out
+    assert "does not answer" in printed and "kdv: model.liquid = 'kdv'" in printed
+    for one in said["models"][1:]:
+        assert f"{1e3 * one['peak_amplitude']:.4g}" in printed
+
+
+@pytest.mark.parametrize("models", ["kdv", "kdv,long_wave", "statics,statics", "beauty", ""])
+def test_the_command_refuses_in_one_line(models: str, tmp_path: Path, capsys: Capture) -> None:
+    scene = tmp_path / "rig.toml"
+    assert main(["new", "--example", "horizontal_rig", str(scene)]) == 0
+    capsys.readouterr()
+    assert main(["compare", str(scene), "--models", models, "--out", str(tmp_path / "out")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("leblanc: --models = ")
+    assert not (tmp_path / "out").exists()
