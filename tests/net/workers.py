@@ -15,8 +15,11 @@ import traceback
 import warnings
 from collections.abc import Iterator, Sequence
 from multiprocessing.connection import Connection, wait
+from multiprocessing.context import BaseContext
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 from types import ModuleType
+from typing import cast
 
 from tests.net.answers import Answer, answer
 from tests.net.call import ROOT, packages
@@ -50,21 +53,18 @@ def run_all(
     context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
     if len(cases) > 2 * jobs and context.get_start_method() == "fork":
         _load()
-    waiting, running = list(enumerate(cases)), {}
+    waiting = list(enumerate(cases))
+    running: dict[Connection, tuple[int, BaseProcess, float]] = {}
     done: dict[int, tuple[Answer, float]] = {}
     told = 0
     while waiting or running:
         while waiting and len(running) < jobs:
             k, case = waiting.pop(0)
-            ours, theirs = context.Pipe(duplex=False)
-            process = context.Process(target=_work, args=(theirs, case, inputs, scratch / case.name))
-            process.start()
-            theirs.close()
-            running[ours] = (k, process, time.perf_counter())
+            pipe, process = _start(context, case, inputs, scratch / case.name)
+            running[pipe] = k, process, time.perf_counter()
         for ready in wait(list(running), timeout=1.0):
-            assert isinstance(ready, Connection)
-            k, process, _ = running.pop(ready)
-            done[k] = _received(ready)
+            k, process, _ = running.pop(cast(Connection, ready))
+            done[k] = _received(cast(Connection, ready))
             process.join()
             shutil.rmtree(scratch / cases[k].name, ignore_errors=True)
         for _, process, began in running.values():
@@ -73,6 +73,15 @@ def run_all(
         while told in done:
             yield cases[told], *done.pop(told)
             told += 1
+
+
+def _start(context: BaseContext, case: Case, inputs: Path, folder: Path) -> tuple[Connection, BaseProcess]:
+    """A process that runs a command, and the end of a pipe at which its answer comes out."""
+    ours, theirs = context.Pipe(duplex=False)
+    process = context.Process(target=_work, args=(theirs, case, inputs, folder))  # type: ignore[attr-defined]
+    process.start()
+    theirs.close()  # so that the pipe ends with the process
+    return ours, process
 
 
 def _received(ours: Connection) -> tuple[Answer, float]:
