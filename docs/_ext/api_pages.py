@@ -128,7 +128,9 @@ def _page(package: str, members: list[Module]) -> str:
         lines += _table([(f":py:obj:`{one.name}`", one.summary) for one in module.members])
         for one in module.members:
             lines += [f".. {one.directive}:: {module.name}.{one.name}"]
-            lines += ["   :members:", ""] if one.directive == "autoclass" else [""]
+            # matplotlib gives each of its classes a method `set` with a docstring that is its own.
+            members = ["   :members:", "   :exclude-members: set", ""]
+            lines += members if one.directive == "autoclass" else [""]
     return "\n".join(lines)
 
 
