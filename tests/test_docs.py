@@ -360,7 +360,7 @@ class TestExamples:
         blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
         for block in blocks:
             exec(compile(block, "python.md", "exec"), {})
-        assert len(capsys.readouterr().out.splitlines()) == len(blocks) == 3
+        assert len(capsys.readouterr().out.splitlines()) == len(blocks) == 6
 
 
 def test_kept_measurements_are_those_that_the_page_tables(tmp_path: Path) -> None:
