@@ -35,7 +35,7 @@ def test_a_case_that_is_broken_fails_the_notebook(tmp_path: Path) -> None:
     cells = [one for one in text.split("\n\n# %%") if "picture(draw(" not in one]
     right, wrong = tmp_path / "right.py", tmp_path / "wrong.py"
     right.write_text("\n\n# %%".join(cells), encoding="utf-8")
-    fault = "\nfrom validation import tub\n\ntub.ECCENTRICITY = 0.02"
+    fault = "\nfrom validation.cases import tub\n\ntub.ECCENTRICITY = 0.02"
     wrong.write_text("\n\n# %%".join([cells[0], fault, *cells[1:]]), encoding="utf-8")
     passed, failed = run(right, tmp_path / "out"), run(wrong, tmp_path / "out")
     assert passed.returncode == 0, passed.stderr

@@ -11,6 +11,7 @@ from matplotlib.markers import MarkerStyle
 
 from leblanc import figures
 from leblanc.figures.wave import picture as wave
+from leblanc.figures.wave import time as wave_time
 from leblanc.results.layer import Wave, WaveFrames
 
 R, SURFACE, SPIN = 0.15, 0.135, 40.0
@@ -179,7 +180,7 @@ def test_film_is_in_the_frame_of_the_drum() -> None:
         history = running(record)
         figure = Figure()
         left, right = figure.subplots(1, 2)
-        show = figures.wave_time.film(left, right, record, history)
+        show = wave_time.film(left, right, record, history)
         for index in (0, 7, 49):
             show(index)
             direction = np.exp(1j * (math.pi / 6.0 + (whirl - SPIN) * history.time[index]))
