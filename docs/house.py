@@ -178,11 +178,12 @@ def _sum(pairs: Iterable[tuple[int, int]]) -> tuple[int, int]:
     return sum(ours), sum(others)
 
 
-def graph(modules: Iterable[Module], depth: int = 2) -> rooms.Rooms:
+def graph(modules: Sequence[Module], depth: int = 2) -> rooms.Rooms:
     """Rooms and the imports between them.
 
-    Names that a folder's `__init__` hands on from within, and what a `__main__` starts, are no imports of the
-    room that these files lie in.
+    A module beside the rooms of its package that imports one of them stands above them: it is a room of its
+    own, named with its ending. Names that a folder's `__init__` hands on from within, and what a `__main__`
+    starts, are no imports of the room that these files lie in.
 
     Parameters
     ----------
@@ -190,13 +191,28 @@ def graph(modules: Iterable[Module], depth: int = 2) -> rooms.Rooms:
     depth : folders below count as part of the room at this depth
     """
     home = {module.name: "/".join(module.room.split("/")[:depth]) for module in modules}
+    imports = {module.name: _own(module) & home.keys() for module in modules}
+    loose = {module.name for module in modules if module.room == module.package != module.name}
+    while above := {
+        name for name in loose if any("/" in home[to] and _beside(name, to) for to in imports[name])
+    }:
+        home |= {name: f"{name.replace('.', '/')}.py" for name in above}
+        loose -= above
     between: Counter[tuple[str, str]] = Counter()
-    for module in modules:
-        for target in module.imports & home.keys():
-            handed_on = target.startswith(f"{module.name}.") or module.name.endswith(".__main__")
-            if home[target] != home[module.name] and not handed_on:
-                between[home[module.name], home[target]] += 1
+    for name, targets in imports.items():
+        between.update((home[name], home[target]) for target in targets if home[target] != home[name])
     return rooms.Rooms(dict(Counter(home.values())), dict(between))
+
+
+def _beside(name: str, other: str) -> bool:
+    """Whether two modules are of one package."""
+    return name.partition(".")[0] == other.partition(".")[0]
+
+
+def _own(module: Module) -> set[str]:
+    """Imports of a module that make its room depend on another."""
+    starts = module.name.endswith(".__main__")
+    return set() if starts else {name for name in module.imports if not name.startswith(f"{module.name}.")}
 
 
 def shown(rows: Iterable[Row]) -> str:
