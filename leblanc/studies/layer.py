@@ -12,6 +12,7 @@ from fluid import kdv, waves
 from fluid.fill import Fill
 from fluid.friction import NO_FRICTION, Friction, damping_rate
 from leblanc.results import layer as notes_of
+from leblanc.results.base import Note
 from leblanc.results.layer import (
     LayerCase,
     LayerPeriodsResult,
@@ -22,7 +23,6 @@ from leblanc.results.layer import (
     angles,
     wave_amplitude,
 )
-from leblanc.results.note import Note
 from leblanc.studies.validity import judge
 from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative, require_positive

@@ -12,9 +12,9 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.liquid import Liquid
 from fluid.waves import free_wave_frequencies
-from leblanc.results import modes as notes_of
-from leblanc.results.modes import ModesResult
-from leblanc.results.note import Note
+from leblanc.results import liquid as notes_of
+from leblanc.results.base import Note
+from leblanc.results.liquid import ModesResult
 from leblanc.scene.chambers import is_outline, section_of_any_file
 from meshes.arrays import Array
 from meshes.baffles import Baffles

@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from leblanc.results.chamber import FilledChamber
+from leblanc.results import notes as run_notes
+from leblanc.results.base import FilledChamber, Note
 from leblanc.results.choice import Choice, model_spans
-from leblanc.results.note import Note
-from leblanc.results.notes import run as run_notes
 from leblanc.results.response import Motion, RestMode, RunResult, SelfExcited
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor

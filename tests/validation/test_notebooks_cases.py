@@ -9,7 +9,7 @@ from unittest import mock
 import numpy as np
 import pytest
 
-from leblanc.scene.machine import jeffcott
+from leblanc.scene.scene import jeffcott
 from leblanc.studies.prepare import axial_gravity
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.response import response

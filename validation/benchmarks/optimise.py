@@ -9,8 +9,8 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from leblanc.scene.optimise import DutyPoint, Optimisation
 from leblanc.scene.scene import Scene, load_scene
+from leblanc.scene.tasks import DutyPoint, Optimisation
 from leblanc.studies.optimise.optimise import optimise_scene
 
 _EXAMPLES = Path(__file__).resolve().parents[2] / "examples"

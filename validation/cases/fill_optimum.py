@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from leblanc.scene.machine import jeffcott
-from leblanc.scene.scene import Scene, load_scene
+from leblanc.scene.scene import Scene, jeffcott, load_scene
 from leblanc.studies.optimise.closed_form import wetting_volumes
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.prepare import axial_gravity

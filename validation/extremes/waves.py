@@ -14,7 +14,7 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.friction import Friction, FrictionLaw
 from fluid.liquid import Liquid
-from leblanc.results.note import texts
+from leblanc.results.base import texts
 from leblanc.studies.layer import answer_layer, long_wave_notes, long_wave_validity
 from meshes.chamber import Chamber
 from solvers.layer.prescribed import Numerics, Whirl

@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from pydantic import Field
 
-from leblanc.scene.machine import dry_rotor
-from leblanc.scene.scene import Exciter, Scene
+from leblanc.scene.scene import Exciter, Scene, dry_rotor
 from leblanc.studies.choose import choose, liquid_models
 from leblanc.studies.prepare import across_gravity, axial_gravity
 from leblanc.studies.runup import RunupChoice, chosen_run, drive_of, judged, planned

@@ -6,8 +6,7 @@ import math
 
 import numpy as np
 
-from leblanc.results.drawn.scale import rounded_down
-from leblanc.results.drawn.shapes import TableView
+from leblanc.results.drawn import TableView, rounded_down
 from leblanc.scene.scene import Exciter, Scene
 from meshes.errors import InputError
 from solvers.rotor.exciter.machine import platform_motion

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from fluid.fill import Fill
-from leblanc.results.drawn.shapes import ModeView
+from leblanc.results.drawn import ModeView
 from leblanc.scene.scene import Scene
 from leblanc.studies.prepare import across_gravity
 from leblanc.studies.shapes.scale import inner_room

@@ -7,8 +7,7 @@ import math
 import numpy as np
 
 from fluid.fill import Fill
-from leblanc.results.drawn.scale import Scale, rounded_down
-from leblanc.results.drawn.shapes import MachineMotion
+from leblanc.results.drawn import MachineMotion, Scale, rounded_down
 from leblanc.studies.shapes.bodies import is_cut
 from meshes.arrays import Array, Complex
 from meshes.chamber import Chamber

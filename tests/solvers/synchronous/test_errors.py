@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 
 from fluid.fill import Fill, Fills
 from fluid.liquid import KNOWN_LIQUIDS
-from leblanc.scene.machine import dry_rotor
-from leblanc.scene.scene import load_scene
+from leblanc.scene.scene import dry_rotor, load_scene
 from leblanc.studies.prepare import across_gravity, axial_gravity
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
