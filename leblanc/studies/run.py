@@ -30,9 +30,8 @@ from solvers.rotor.vibration import (
     whirl_direction,
 )
 from solvers.statics.hydrostatics import optimal_volume
-from solvers.synchronous.critical import critical_speed, wet_critical_speeds
 from solvers.synchronous.models import LINEAR, model_named
-from solvers.synchronous.response import Response, response
+from solvers.synchronous.response import Response, critical_speed, response, wet_critical_speeds
 from solvers.whirl.edges import unstable_bands
 from solvers.whirl.growth import asynchronous_growth
 

@@ -23,9 +23,18 @@ from leblanc.studies.prepare import axial_gravity
 from leblanc.studies.validity import RANGES
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
-from solvers.runup.drive import Drive, Motor, Ramp
-from solvers.runup.error import MOST_LAG, MOST_WAVE, LinearRunError, largest_wave, linear_run_error
-from solvers.runup.runup import MODELS, RunupHistory, RunupNumerics, run_up
+from solvers.runup.machine import Drive, Motor, Ramp
+from solvers.runup.runup import (
+    MODELS,
+    MOST_LAG,
+    MOST_WAVE,
+    LinearRunError,
+    RunupHistory,
+    RunupNumerics,
+    largest_wave,
+    linear_run_error,
+    run_up,
+)
 from solvers.synchronous.response import Response, response
 
 FRAMES = 180  # of a film

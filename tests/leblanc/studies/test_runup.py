@@ -36,7 +36,7 @@ from leblanc.studies.runup import (
 )
 from meshes.chamber import Chamber
 from meshes.errors import InputError
-from solvers.runup.drive import Motor, Ramp
+from solvers.runup.machine import Motor, Ramp
 from solvers.runup.runup import EnergyAudit, RunupHistory
 from tests.mutants import kills
 
