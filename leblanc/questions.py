@@ -12,11 +12,10 @@ from typing import Any
 from fluid.fill import Fill
 from fluid.friction import Friction
 from fluid.liquid import Liquid, known_liquid
-from leblanc.friction import parse_friction
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import OBJECTIVES, Optimisation
 from leblanc.studies.modes import Resolution, SectionSource
-from leblanc.units import ACCELERATION, ANGULAR_SPEED, LENGTH, TIME, VOLUME, parse_option
+from leblanc.units import ACCELERATION, ANGULAR_SPEED, LENGTH, TIME, VOLUME, parse_friction, parse_option
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.errors import InputError, require_not_negative
