@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
 import math
 import re
@@ -84,6 +85,44 @@ def test_contents_name_only_pages_that_exist() -> None:
                 if entry and not entry.startswith(":") and not entry.endswith("*"):
                     lost += [] if (page.parent / f"{entry}.md").is_file() else [entry]
     assert not lost
+
+
+def _defined() -> dict[str, set[str]]:
+    """Names that each module of the packages defines or hands on at its top level, by its dotted name."""
+    found: dict[str, set[str]] = {}
+    for package in ("meshes", "fluid", "solvers", "leblanc", "validation"):
+        for path in (ROOT / package).rglob("*.py"):
+            parts = path.relative_to(ROOT).with_suffix("").parts
+            names: set[str] = set()
+            for node in ast.parse(path.read_text(encoding="utf-8")).body:
+                if isinstance(node, ast.FunctionDef | ast.ClassDef):
+                    names.add(node.name)
+                elif isinstance(node, ast.Assign):
+                    names |= {target.id for target in node.targets if isinstance(target, ast.Name)}
+            found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = names
+    return found
+
+
+def test_what_the_architecture_page_names_exists() -> None:
+    """Modules, rooms, files; functions and classes; in the table of rooms also what stands in a row's room."""
+    defined = _defined()
+    anywhere = {name for names in defined.values() for name in names if not name.startswith("_")}
+
+    def exists(name: str, room: str) -> bool:
+        dotted, inside = name.replace("/", "."), f"{room}.{name}".replace("/", ".")
+        if dotted in defined or inside in defined or (ROOT / room / name).is_dir():
+            return True
+        module, _, last = dotted.rpartition(".")
+        return last in (defined.get(module, set()) if module else anywhere)
+
+    lost, looked_up = [], 0
+    for line in (DOCS / "architecture.md").read_text(encoding="utf-8").splitlines():
+        names = [name for name in re.findall(r"`([A-Za-z_][\w./]*)`", line) if not name.startswith("__")]
+        room = names[0] if names and line.startswith("| `") else ""
+        looked_up += len(names)
+        lost += [name for name in names if not exists(name, room)]
+    assert not lost
+    assert looked_up > 100
 
 
 def test_every_picture_has_a_recipe_and_a_place_in_the_gallery() -> None:
