@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import ast
+import doctest
 import importlib
+import inspect
 import math
 import re
 import sys
@@ -104,7 +106,7 @@ def _defined() -> dict[str, set[str]]:
 
 
 def test_what_the_architecture_page_names_exists() -> None:
-    """Modules, rooms, files; functions and classes; in the table of rooms also what stands in a row's room."""
+    """Modules, rooms, files, functions, classes; in the table of rooms also what is in the room of a row."""
     defined = _defined()
     anywhere = {name for names in defined.values() for name in names if not name.startswith("_")}
 
@@ -194,6 +196,45 @@ def test_every_public_module_is_in_the_reference(tmp_path: Path) -> None:
     }
     assert not wanted - named
     assert all(f"api/{name}" in (DOCS / "api.md").read_text(encoding="utf-8") for name in pages.PACKAGES)
+
+
+def test_public_names_and_results_are_described_once_with_an_example(tmp_path: Path) -> None:
+    import leblanc
+
+    pages = _module("api_pages", "docs/_ext")
+    written = {page.stem: page.read_text(encoding="utf-8") for page in pages.write(tmp_path)}
+    described = re.findall(
+        r"^\.\. auto(?:function|class):: (\S+)$", "\n".join(written.values()), re.MULTILINE
+    )
+    assert len(described) == len(set(described))
+    results = [member.full for member in pages.results()]
+    assert len(results) > 10
+    public = {f"leblanc.{name}" for name in leblanc.__all__} | set(results)
+    assert public == set(
+        re.findall(r"^\.\. auto(?:function|class):: (\S+)$", written["public"], re.MULTILINE)
+    )
+    for name in public - {results[0]}:  # the class that results inherit from has none of its own
+        module, _, last = name.rpartition(".")
+        assert "\nExamples\n---" in inspect.cleandoc(
+            getattr(importlib.import_module(module), last).__doc__
+        ), name
+
+
+def _modules_with_examples() -> list[str]:
+    """Modules with a docstring that shows a call and what comes back."""
+    return sorted(
+        ".".join(path.relative_to(ROOT).with_suffix("").parts)
+        for package in ("meshes", "fluid", "solvers", "leblanc", "validation")
+        for path in (ROOT / package).rglob("*.py")
+        if re.search(r"^ *>>> ", path.read_text(encoding="utf-8"), re.MULTILINE)
+    )
+
+
+@pytest.mark.parametrize("module", _modules_with_examples())
+def test_examples_of_the_docstrings(module: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    failed, tried = doctest.testmod(importlib.import_module(module))
+    assert tried > 0 and failed == 0
 
 
 def test_the_page_of_keys_is_up_to_date() -> None:

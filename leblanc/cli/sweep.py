@@ -114,12 +114,12 @@ def _run(plan: Sweep, folder: Path, workers: int | None, scheduler: str | None, 
 
 def _finish(found: SweepResult) -> None:
     """Say on stderr how it went; with no sample done at all that is a failure."""
-    from leblanc.scene.schema.load import NotConverged, SceneFault, SceneFaults
+    from leblanc.scene.schema.load import NotConverged, SceneError, SceneFault
 
     for reason, count in found.reasons[:_SHOWN]:
         say(f"{found.name}: {count} of {found.samples} samples: {reason}")
     if found.not_converged == found.samples:
         raise NotConverged([f"{found.name}: no sample converged at every speed"])
     if found.failed == found.samples:
-        raise SceneFaults([SceneFault(found.name, "vary", None, "such that some sample is a scene")])
+        raise SceneError([SceneFault(found.name, "vary", None, "such that some sample is a scene")])
     say(f"{found.name}: {found.done} of {found.samples} samples done")

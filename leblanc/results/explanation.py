@@ -68,6 +68,13 @@ class Explanation(Result):
     modes : of the dry rotor at rest; none for a planar rotor, whose only one is the critical speed
     runup : which liquid model the run-up will take, in words; empty without one
     source, assumed, digest : of the scene
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> explanation = lb.explain(lb.example("horizontal_rig"))
+    >>> sorted({span.model for span in explanation.models})
+    ['linear']
     """
 
     figure: ClassVar[str] = "leblanc.figures.explanation:model_figure"
@@ -157,6 +164,13 @@ class ExciterExplanation(Result):
         passes the resonance, rad/s; nan if there is one at every speed
     critical_speed_printed : by the source's regression, rad/s; nan outside its ranges
     source, assumed, digest : of the scene
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> explanation = lb.explain(lb.example("vibratory_table"))
+    >>> [f"{speed:.4g} rad/s" for speed in explanation.characteristic]
+    ['70.8 rad/s', '1540 rad/s', '1542 rad/s']
     """
 
     figure: ClassVar[str] = "leblanc.figures.explanation:stuck_range_figure"
@@ -249,6 +263,13 @@ class Comparison(Result):
     Raises
     ------
     InputError : no model answers
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> comparison = lb.compare(lb.example("horizontal_rig"), models=["statics", "linear", "fem"])
+    >>> [answer.model for answer in comparison.answers if answer.answered]
+    ['statics', 'linear', 'fem']
     """
 
     figure: ClassVar[str] = "leblanc.figures.comparison:comparison_figure"

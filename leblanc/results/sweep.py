@@ -80,6 +80,12 @@ class SweepResult(Result):
     sensitivities : of outputs that are one number a sample; None where the samples do not tell
     digest : fingerprint of the sweep
     read : reads the store as a dataset, each time it is called
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> found = lb.sweep("study.toml", workers=0)  # doctest: +SKIP
+    >>> found.done, found.to_dataset()["last_amplitude"]  # doctest: +SKIP
     """
 
     figure: ClassVar[str] = "leblanc.figures.sweep:sweep_figure"

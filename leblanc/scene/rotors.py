@@ -59,7 +59,17 @@ def _kind(rotor: AnyRotor) -> Row:
 
 
 class JeffcottRotor(Part):
-    """A rotor on an isotropic support, moving in one plane."""
+    """A rotor on an isotropic support, moving in one plane.
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> rotor = lb.JeffcottRotor(
+    ...     mass="4 kg", critical_speed="1000 rpm", damping_ratio=0.1, unbalance=6e-4, axis="horizontal"
+    ... )
+    >>> f"{rotor.machine().stiffness:.0f} N/m"
+    '43865 N/m'
+    """
 
     ALTERNATIVES: ClassVar = (("critical_speed", "stiffness"), ("damping_ratio", "damping"))
 
@@ -138,7 +148,24 @@ class PlaneUnbalance(Part):
 
 
 class TwoPlaneRotor(Part):
-    """A rigid rotor in supports along its axis."""
+    """A rigid rotor in supports along its axis.
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> rotor = lb.TwoPlaneRotor(
+    ...     mass="20 kg",
+    ...     transverse_inertia=0.4,
+    ...     polar_inertia=0.1,
+    ...     supports=[
+    ...         {"position": "-0.2 m", "stiffness": 1e6, "damping": 100.0},
+    ...         {"position": "0.2 m", "stiffness": 1e6, "damping": 100.0},
+    ...     ],
+    ...     axis="horizontal",
+    ... )
+    >>> rotor.machine().system().coordinates
+    ('x', 'y', 'alpha', 'beta')
+    """
 
     kind: Literal["two_plane"] = Field("two_plane", description="the kind of rotor")
     mass: Mass = Field(description=f"{_WITHOUT}")
@@ -299,7 +326,15 @@ class Damper(_Mounted):
 
 
 class TubRotor(Part):
-    """A suspended tub with its drum, which spins about y."""
+    """A suspended tub with its drum, which spins about y.
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> rotor = lb.example("tub").rotor
+    >>> len(rotor.springs), rotor.machine().system().coordinates
+    (6, ('x', 'y', 'z', 'alpha', 'beta', 'gamma'))
+    """
 
     kind: Literal["tub"] = Field("tub", description="the kind of rotor")
     tub_mass: Mass = Field(description="of the tub and all that does not spin")
@@ -399,7 +434,15 @@ class Balls(Part):
 
 
 class Exciter(Part):
-    """A platform that vibrates along one line, shaken by an unbalance and by balls in a rotating track."""
+    """A platform that vibrates along one line, shaken by an unbalance and by balls in a rotating track.
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> rotor = lb.example("vibratory_table").rotor
+    >>> rotor.balls.count, rotor.balls.name
+    (2, 'ball')
+    """
 
     kind: Literal["exciter"] = Field("exciter", description="the kind of rotor")
     platform_mass: Mass = Field(description="of all that vibrates without the balls")

@@ -17,7 +17,7 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
-from leblanc.scene.schema.load import SceneFault, SceneFaults, field_path, meant, shown
+from leblanc.scene.schema.load import SceneError, SceneFault, field_path, meant, shown
 from leblanc.scene.schema.rules import OneOf, Refused
 from meshes.errors import InputError
 
@@ -45,7 +45,7 @@ class Part(BaseModel):
 
     Raises
     ------
-    SceneFaults : with everything that is wrong
+    SceneError : with everything that is wrong
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -57,7 +57,7 @@ class Part(BaseModel):
         try:
             super().__init__(**values)
         except ValidationError as error:
-            raise SceneFaults(faults_of(error, type(self).__name__, type(self))) from None
+            raise SceneError(faults_of(error, type(self).__name__, type(self))) from None
 
     # Tables within tables are made by the validator, which collects the faults of all.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]

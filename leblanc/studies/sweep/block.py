@@ -19,7 +19,7 @@ from pydantic import ValidationError
 from leblanc.results.base import versions
 from leblanc.scene.chambers import Chamber
 from leblanc.scene.scene import Scene, scene_from_table
-from leblanc.scene.schema.load import SceneFaults, escaped
+from leblanc.scene.schema.load import SceneError, escaped
 from leblanc.scene.schema.part import Part, rule_of
 from leblanc.scene.schema.paths import Keys, tables_of, with_values
 from leblanc.scene.schema.rules import Quantity
@@ -149,7 +149,7 @@ def scene_maker(table: Mapping[str, Any], paths: Sequence[Keys]) -> Maker:
 
     Returns
     -------
-    Function of the values at those paths. It raises SceneFaults where the whole table would.
+    Function of the values at those paths. It raises SceneError where the whole table would.
     """
     base = {key: value for key, value in table.items() if key not in _WORDS_ONLY}
     scene = scene_from_table(base)
@@ -206,7 +206,7 @@ def make_scenes(make: Maker, rows: Iterable[Sequence[Any]]) -> tuple[list[Scene 
         try:
             scenes.append(make(row))
             reasons.append("")
-        except SceneFaults as error:
+        except SceneError as error:
             scenes.append(None)
             reasons.append("; ".join(_without_file(str(fault), fault.file) for fault in error.faults))
     return scenes, reasons

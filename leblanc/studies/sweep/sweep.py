@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.scene.schema.load import NotConverged, SceneFault, SceneFaults, shown
+from leblanc.scene.schema.load import NotConverged, SceneError, SceneFault, shown
 from leblanc.studies.sweep.block import PENDING, Block, BlockAnswer, answer_block, own_versions, reason_of
 from leblanc.studies.sweep.sampling import Rows, sample_rows
 from leblanc.studies.sweep.store import Store, field_values, locked, open_store, write_block
@@ -217,7 +217,7 @@ def run_sweep(
     Raises
     ------
     InputError : another process works on the store, it belongs to another sweep, the cluster does not fit
-    SceneFaults : the scene asks for what no sample can answer
+    SceneError : the scene asks for what no sample can answer
     NotConverged : the cluster was lost
     """
     if fresh and scheduler is not None:
@@ -297,7 +297,7 @@ def _probe(sweep: Sweep) -> None:
     try:
         answer_scenes([sweep.scene])
     except InputError as error:
-        raise SceneFaults(
+        raise SceneError(
             [SceneFault(sweep.scene_path, error.field, shown(error.value), error.allowed)]
         ) from error
 
