@@ -201,10 +201,11 @@ class TwoPlaneRotor(Part):
             transverse_inertia=self.transverse_inertia,
             polar_inertia=self.polar_inertia,
             supports=tuple(
-                two_plane.Support(one.position, one.stiffness, one.damping) for one in self.supports
+                two_plane.Support(support.position, support.stiffness, support.damping)
+                for support in self.supports
             ),
             unbalances=tuple(
-                two_plane.PlaneUnbalance(one.position, one.size, one.angle) for one in self.unbalances
+                two_plane.PlaneUnbalance(part.position, part.size, part.angle) for part in self.unbalances
             ),
         )
 
@@ -227,20 +228,20 @@ class TwoPlaneRotor(Part):
         supports = tuple(
             (
                 Value(f"{k + 1}"),
-                Value(number(one.position * MM), (f"rotor.supports.{k}.position",)),
-                Value(number(one.stiffness), (f"rotor.supports.{k}.stiffness",)),
-                Value(number(one.damping), (f"rotor.supports.{k}.damping",)),
+                Value(number(support.position * MM), (f"rotor.supports.{k}.position",)),
+                Value(number(support.stiffness), (f"rotor.supports.{k}.stiffness",)),
+                Value(number(support.damping), (f"rotor.supports.{k}.damping",)),
             )
-            for k, one in enumerate(self.supports)
+            for k, support in enumerate(self.supports)
         )
         unbalances = tuple(
             (
                 Value(f"{k + 1}"),
-                Value(number(one.position * MM), (f"rotor.unbalances.{k}.position",)),
-                Value(number(one.size * 1e6), (f"rotor.unbalances.{k}.size",)),
-                Value(degrees(one.angle), (f"rotor.unbalances.{k}.angle",)),
+                Value(number(part.position * MM), (f"rotor.unbalances.{k}.position",)),
+                Value(number(part.size * 1e6), (f"rotor.unbalances.{k}.size",)),
+                Value(degrees(part.angle), (f"rotor.unbalances.{k}.angle",)),
             )
-            for k, one in enumerate(self.unbalances)
+            for k, part in enumerate(self.unbalances)
         )
         found = [RowTable(("Support", "at (mm)", "stiffness (N/m)", "damping (N s/m)"), supports)]
         if unbalances:
@@ -270,11 +271,11 @@ class _Mounted(Part):
         if not {"direction", key} <= values.keys():
             return
         if isinstance(values[key], tuple) == (along is not None):
-            several, one = (
+            several, single = (
                 "a list of three, along x, y, z, where no direction is given",
                 "a single value, along the direction that is given",
             )
-            yield Conflict((key,), several if along is None else one)
+            yield Conflict((key,), several if along is None else single)
 
     def mount(self) -> Mount:
         """As the solvers take it."""
@@ -370,8 +371,8 @@ class TubRotor(Part):
             drum_position=self.drum_position,
             unbalance=self.unbalance,
             unbalance_position=self.unbalance_position,
-            springs=tuple(one.mount() for one in self.springs),
-            dampers=tuple(one.mount() for one in self.dampers),
+            springs=tuple(spring.mount() for spring in self.springs),
+            dampers=tuple(damper.mount() for damper in self.dampers),
         )
 
     def machine(self) -> Tub:
@@ -403,7 +404,8 @@ class TubRotor(Part):
         found = []
         for name, unit, parts in mounts:
             lines = tuple(
-                (Value(f"{k + 1}"), *one.values(f"rotor.{name.lower()}s.{k}")) for k, one in enumerate(parts)
+                (Value(f"{k + 1}"), *part.values(f"rotor.{name.lower()}s.{k}"))
+                for k, part in enumerate(parts)
             )
             if lines:
                 head = (name, "at x, y, z (mm)", f"{parts[0].COEFFICIENT} ({unit})", "direction")

@@ -185,7 +185,7 @@ class Scene(Part):
     @cached_property
     def fills(self) -> tuple[Fill, ...]:
         """The chambers with their liquids, as the solvers take them."""
-        return tuple(one.fill() for one in self.chambers)
+        return tuple(chamber.fill() for chamber in self.chambers)
 
     def speed_array(self) -> NDArray[np.float64]:
         """Spin speeds, rad/s, shape (count,)."""
@@ -410,7 +410,7 @@ def optimise_content(wanted: Optimisation) -> dict[str, Any]:
     ----------
     wanted : of a scene
     """
-    duty = [(one.speed, one.weight) for one in wanted.duty]
+    duty = [(stage.speed, stage.weight) for stage in wanted.duty]
     return wanted.model_dump(exclude={"duty"}) | {"duty": duty}
 
 

@@ -219,7 +219,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         found.append(cold_start(command, chosen.repeats))
         print(f"\n{text(found[-1])}", flush=True)
     if chosen.json is not None:
-        rows = [asdict(one) | {"notes": [[*key, share] for key, share in one.notes.items()]} for one in found]
+        rows = [
+            asdict(command) | {"notes": [[*key, share] for key, share in command.notes.items()]}
+            for command in found
+        ]
         kept = json.dumps({"imports": doors, "commands": rows}, indent=1)
         chosen.json.write_text(kept + "\n", encoding="utf-8")
     return 0

@@ -197,7 +197,7 @@ def read_scene(path: str | PathLike[str]) -> dict[str, Any]:
     """
     table = read_toml(path)
     chambers = table.get("chambers")
-    for one in chambers if isinstance(chambers, list) else ():
-        if isinstance(one, dict) and isinstance(one.get("section"), str) and one["section"]:
-            one["section"] = str(Path(path).parent / one["section"])
+    for chamber in chambers if isinstance(chambers, list) else ():
+        if isinstance(chamber, dict) and isinstance(chamber.get("section"), str) and chamber["section"]:
+            chamber["section"] = str(Path(path).parent / chamber["section"])
     return table

@@ -183,7 +183,7 @@ def _in_si(table: Mapping[str, Any], place: tuple[str, ...], tables: _Tables) ->
     for key, value in table.items():
         below = (*place, key)
         if isinstance(value, list) and (*below, "*") in tables:
-            plain[key] = [_in_si(one, (*below, "*"), tables) for one in value]
+            plain[key] = [_in_si(entry, (*below, "*"), tables) for entry in value]
         elif isinstance(value, dict) and below in tables:
             plain[key] = _in_si(value, below, tables)
         elif isinstance(value, str):
@@ -276,7 +276,7 @@ def answer_block(block: Block) -> BlockAnswer:
         kept = [k for k, scene in enumerate(scenes) if scene is not None]
         pieces = _answer([scene for scene in scenes if scene is not None])
     speeds = int(block.table["speeds"]["count"])
-    values = {one.name: blank(one, len(scenes), speeds) for one in OUTPUTS}
+    values = {output.name: blank(output, len(scenes), speeds) for output in OUTPUTS}
     status = np.full(len(scenes), FAILED, dtype=np.int8)
     done = 0
     for count, found in pieces:

@@ -79,7 +79,7 @@ class Choice:
     @property
     def words(self) -> bool:
         """Some option is no number."""
-        return not all(isinstance(one, float | int) for one in self.options)
+        return not all(isinstance(option, float | int) for option in self.options)
 
     def at(self, u: Array) -> Array:
         """Number of the option at the share u [theory: sampling, eq. 4]."""
@@ -349,7 +349,8 @@ class Sweep:
             "points": self.points,
             "seed": self.seed,
             "fields": [
-                [one.path, type(one.distribution).__name__, asdict(one.distribution)] for one in self.fields
+                [field.path, type(field.distribution).__name__, asdict(field.distribution)]
+                for field in self.fields
             ],
         }
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
@@ -382,7 +383,7 @@ def load_sweep(path: str | PathLike[str]) -> Sweep:
     fields = _fields(table.vary, scene_table, table.method, file)
     points = table.samples
     if points is None:
-        points = math.prod(_levels(one.distribution) for one in fields)
+        points = math.prod(_levels(field.distribution) for field in fields)
     sweep = Sweep(
         name=Path(path).stem,
         scene_path=table.scene,
@@ -433,7 +434,7 @@ def _fields(
 
 def _kind(given: object, method: str) -> str:
     """Which distribution a field has."""
-    names = [one for one in KINDS if (one in ("linspace", "choice")) or method != "grid"]
+    names = [kind for kind in KINDS if (kind in ("linspace", "choice")) or method != "grid"]
     if method != "grid":
         names.remove("linspace")
     if not isinstance(given, Mapping) or len(given) != 1 or next(iter(given)) not in names:

@@ -142,7 +142,7 @@ def _answers(client: Any, blocks: Iterable[Block]) -> Iterator[BlockAnswer]:
         with _cluster_faults():
             threads = max(1, sum(client.nthreads().values()))  # workers come and go
             room = max(0, _AHEAD * threads - len(flying))
-            flying |= {client.submit(answer_block, one, pure=False) for one in islice(waiting, room)}
+            flying |= {client.submit(answer_block, block, pure=False) for block in islice(waiting, room)}
             if not flying:
                 return
             done = wait(flying, return_when="FIRST_COMPLETED").done
@@ -292,7 +292,7 @@ def _probe(sweep: Sweep) -> None:
     """Answer the scene itself: what no sample can answer is one fault then, not as many as samples."""
     from leblanc.studies.batch import answer_scenes
 
-    if any(one.path == "model.liquid" for one in sweep.fields):
+    if any(field.path == "model.liquid" for field in sweep.fields):
         return
     try:
         answer_scenes([sweep.scene])
@@ -305,7 +305,7 @@ def _probe(sweep: Sweep) -> None:
 def _block(sweep: Sweep, store: Store, rows: Rows, number: int) -> Block:
     drawn = rows(*store.bounds(number))
     values = tuple(
-        tuple(field.value(one) for field, one in zip(sweep.fields, row, strict=True)) for row in drawn
+        tuple(field.value(value) for field, value in zip(sweep.fields, row, strict=True)) for row in drawn
     )
     return Block(number, sweep.table, tuple(field.keys for field in sweep.fields), values)
 
