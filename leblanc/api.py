@@ -22,15 +22,13 @@ if TYPE_CHECKING:
     from fluid.liquid import Liquid
     from leblanc.questions import Quantity
     from leblanc.results.exciter import ExciterResult
-    from leblanc.results.explanation import ExciterExplanation, Explanation
+    from leblanc.results.explanation import Comparison, ExciterExplanation, Explanation
     from leblanc.results.layer import LayerPeriodsResult, LayerResult
-    from leblanc.results.modes import ModesResult
+    from leblanc.results.liquid import ModesResult, VolumeResult
     from leblanc.results.optimum import OptimumResult
     from leblanc.results.response import RunResult
     from leblanc.results.runup import RunupResult
-    from leblanc.results.several.comparison import Comparison
-    from leblanc.results.several.sweep import SweepResult
-    from leblanc.results.volume import VolumeResult
+    from leblanc.results.sweep import SweepResult
     from leblanc.results.whirl_map import WhirlMap
 
 SceneOrPath = Scene | str | PathLike[str]

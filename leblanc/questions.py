@@ -13,14 +13,14 @@ from fluid.fill import Fill
 from fluid.friction import Friction
 from fluid.liquid import Liquid, known_liquid
 from leblanc.friction import parse_friction
-from leblanc.scene.optimise import OBJECTIVES, Optimisation
 from leblanc.scene.scene import Scene
+from leblanc.scene.tasks import OBJECTIVES, Optimisation
 from leblanc.studies.modes import Resolution, SectionSource
 from leblanc.units import ACCELERATION, ANGULAR_SPEED, LENGTH, TIME, VOLUME, parse_option
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.errors import InputError, require_not_negative
-from solvers.layer.prescribed import Numerics
+from solvers.layer.state import Numerics
 
 Quantity = str | float
 _MOST_BAFFLES = 64

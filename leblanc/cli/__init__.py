@@ -17,7 +17,7 @@ from typer.main import get_command
 
 from leblanc.cli import compare, explain, layer, map, modes, new, optimise, run, runup, sweep, view, volume
 from leblanc.cli.output import say
-from leblanc.scene.schema.faults import NotConverged, SceneFaults, escaped
+from leblanc.scene.schema.load import NotConverged, SceneFaults, escaped
 from meshes.errors import InputError
 
 DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED, INTERRUPTED = 0, 1, 2, 3, 130

@@ -30,7 +30,7 @@ def compare(
 
     from leblanc.figures.comparison import comparison_figure, save
     from leblanc.results.netcdf import write_dataset
-    from leblanc.text.comparison import HEAD, basis, reasons, rows
+    from leblanc.text.explanation import HEAD, basis, reasons, rows
 
     write_dataset(found.to_dataset(), folder / "compare.nc")
     files = save(comparison_figure(found), folder, "compare", "Amplitude over speed by liquid model")
@@ -43,7 +43,7 @@ def compare(
 
     lost = [name for name, one in found.results.items() if not one.converged.all()]
     if lost:
-        from leblanc.scene.schema.faults import NotConverged
+        from leblanc.scene.schema.load import NotConverged
 
         raise NotConverged([f"{scene}: no bounded deflection found at some speeds by {', '.join(lost)}"])
     say(f"{found.name}: {len(found.results)} of {len(found.models)} models answered")

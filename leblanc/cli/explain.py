@@ -40,9 +40,9 @@ def explain(
 
 def _print(answer: Explanation) -> None:
     """The explanation in words."""
-    from leblanc.results.note import percent
+    from leblanc.results.base import percent
     from leblanc.text.explanation import layer_rows, machine_rows, mode_rows, span_heading, span_rows
-    from leblanc.text.models import described
+    from leblanc.text.run import described
 
     print(answer.name)
     print_table(machine_rows(answer), indent=2)

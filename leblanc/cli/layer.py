@@ -51,7 +51,7 @@ def layer(
 ) -> None:
     """Force and centre of mass of a liquid layer under a whirl. In the plane, the whirl being prescribed."""
     from leblanc.questions import layer_question
-    from leblanc.scene.schema.faults import NotConverged
+    from leblanc.scene.schema.load import NotConverged
     from leblanc.studies.layer import answer_layer, layer_history
 
     question = layer_question(

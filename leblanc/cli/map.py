@@ -50,7 +50,7 @@ def map(
 
     from leblanc.figures.whirl_map import map_figure, save
     from leblanc.report.page import about, command_line
-    from leblanc.report.whirl_map import write_map_report
+    from leblanc.report.run import write_map_report
     from leblanc.results.netcdf import write_dataset
     from leblanc.studies.whirl_map import SPEEDS, VOLUMES
 
@@ -76,7 +76,7 @@ def map(
 
     lost = int((found.growth != found.growth).sum())
     if lost:
-        from leblanc.scene.schema.faults import NotConverged
+        from leblanc.scene.schema.load import NotConverged
 
         raise NotConverged([f"{scene}: modes not found at {lost} of {found.growth.size} points"])
     say(f"{found.name}: {found.volume.size} volumes by {found.speed.size} speeds done")

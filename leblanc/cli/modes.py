@@ -10,7 +10,7 @@ import typer
 from leblanc.cli.output import out_dir, print_json, say
 
 if TYPE_CHECKING:
-    from leblanc.results.modes import ModesResult
+    from leblanc.results.liquid import ModesResult
 
 
 def modes(
@@ -45,9 +45,9 @@ def modes(
     Frequencies are relative to the drum, positive with the spin.
     """
     from leblanc.questions import modes_question
-    from leblanc.scene.schema.faults import NotConverged
+    from leblanc.scene.schema.load import NotConverged
     from leblanc.studies.modes import answer_modes
-    from leblanc.text.modes import table_lines
+    from leblanc.text.liquid import modes_table
 
     question = modes_question(
         radius=radius,
@@ -71,7 +71,7 @@ def modes(
         print_json(result.to_json())
     else:
         print(f"{result.title}; free surface at {result.surface_radius * 1e3:.6g} mm; {liquid}")
-        print("\n".join(table_lines(result)))
+        print("\n".join(modes_table(result)))
         print(f"force ratio of a synchronous whirl {result.synchronous_force_ratio:.6g}")
         for note in result.notes:
             print(f"note: {note.text}")
@@ -84,7 +84,7 @@ def modes(
 
 def _draw(result: ModesResult, folder: Path) -> None:
     """The shapes of the slowest modes."""
-    from leblanc.figures.modes import modes_figure, save
+    from leblanc.figures.liquid import modes_figure, save
 
     files = save(modes_figure(result), folder, "modes", "Shapes of the liquid's modes")
     say(f"wrote {files.png}")

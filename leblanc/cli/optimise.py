@@ -12,8 +12,8 @@ from leblanc.cli.output import out_dir, print_json, say
 
 if TYPE_CHECKING:
     from leblanc.results.optimum import OptimumResult
-    from leblanc.scene.optimise import Optimisation
     from leblanc.scene.scene import Scene
+    from leblanc.scene.tasks import Optimisation
 
 
 def optimise(

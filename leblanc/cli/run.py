@@ -52,7 +52,7 @@ def run(
         print(f"Read {folder / 'summary.html'}; the data are in {folder / 'response.nc'}")
 
     if not result.converged.all():
-        from leblanc.scene.schema.faults import NotConverged
+        from leblanc.scene.schema.load import NotConverged
 
         lost = result.speed[~result.converged]
         raise NotConverged(
@@ -68,8 +68,8 @@ def run(
 def _run_exciter(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
     """Stuck speeds and vibration of a table with balls."""
     from leblanc.figures.exciter import write_exciter_figure
-    from leblanc.report.exciter import write_exciter_report
     from leblanc.report.page import about, command_line
+    from leblanc.report.run import write_exciter_report
     from leblanc.studies.exciter import run_exciter
     from leblanc.text.exciter import lines
 
@@ -83,7 +83,7 @@ def _run_exciter(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
         print("\n".join(lines(result)))
         print(f"Read {folder / 'summary.html'}")
     if not result.converged:
-        from leblanc.scene.schema.faults import NotConverged
+        from leblanc.scene.schema.load import NotConverged
 
         raise NotConverged([f"{result.name}: a time integration beside the formulas did not stay finite"])
     say(f"{result.name}: {result.speed.size} speeds done")

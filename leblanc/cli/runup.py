@@ -49,7 +49,7 @@ def runup(
     folder = out_dir(machine.name, out)
     result = _run(machine, cells, samples, not no_check, animate is not None)
 
-    from leblanc.figures.runup.curves import write_figures
+    from leblanc.figures.runup import write_figures
     from leblanc.report.page import about, command_line
     from leblanc.report.runup import write_runup_report
     from leblanc.results.runup import write_runup
@@ -87,7 +87,7 @@ def _film(result: RunupResult, path: Path) -> None:
     """The film of the layers that the run kept."""
     from rich.progress import Progress
 
-    from leblanc.figures.runup.film import animate
+    from leblanc.figures.films import animate
 
     assert result.frames is not None
     with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
@@ -116,7 +116,7 @@ def _tell(result: RunupResult, folder: Path) -> None:
 def _finish(result: RunupResult, scene: Path) -> None:
     """Say what did not come to its end, after all that was reached is written."""
     from leblanc.results.runup import RunupEnd
-    from leblanc.scene.schema.faults import NotConverged
+    from leblanc.scene.schema.load import NotConverged
 
     if result.end is RunupEnd.INTERRUPTED:
         raise KeyboardInterrupt

@@ -13,7 +13,7 @@ from leblanc.cli.output import out_dir, print_json, say
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from leblanc.results.several.sweep import SweepResult
+    from leblanc.results.sweep import SweepResult
     from leblanc.studies.sweep.emulator import Emulator
     from leblanc.studies.sweep.study import Sweep
 
@@ -114,7 +114,7 @@ def _run(plan: Sweep, folder: Path, workers: int | None, scheduler: str | None, 
 
 def _finish(found: SweepResult) -> None:
     """Say on stderr how it went; with no sample done at all that is a failure."""
-    from leblanc.scene.schema.faults import NotConverged, SceneFault, SceneFaults
+    from leblanc.scene.schema.load import NotConverged, SceneFault, SceneFaults
 
     for reason, count in found.reasons[:_SHOWN]:
         say(f"{found.name}: {count} of {found.samples} samples: {reason}")

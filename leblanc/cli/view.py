@@ -12,7 +12,7 @@ import typer
 from leblanc.cli.output import out_dir, print_json, say
 
 if TYPE_CHECKING:
-    from leblanc.results.drawn.shapes import ModeView
+    from leblanc.results.drawn import ModeView
     from leblanc.scene.scene import Scene
     from leblanc.view.film import Film
     from leblanc.view.parts import Picture
@@ -124,7 +124,7 @@ def _mode(machine: Scene, number: int, speed: float | None, chamber: int) -> Mod
 
 def _of_mode(wave: ModeView) -> tuple[Picture, dict[str, object]]:
     """Picture of a sloshing mode and its numbers."""
-    from leblanc.view.modes import mode_picture
+    from leblanc.view.film import mode_picture
 
     return mode_picture(wave), wave.to_json()
 
@@ -138,7 +138,7 @@ def _still(machine: Scene, speed: float | None, factor: float | None) -> tuple[P
         table = table_view(machine, speed)
         return table_picture(table), table.to_json()
     from leblanc.studies.shapes.machine import machine_view
-    from leblanc.view.still import still
+    from leblanc.view.scene import still
 
     found = machine_view(machine, speed, factor)
     return still(found.motion, -1, found.liquid), found.to_json()
@@ -181,7 +181,7 @@ def _film(
     with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
         task = bar.add_task("solving", total=1.0)
         if wave is not None:
-            from leblanc.view.modes import ROUND, mode_film
+            from leblanc.view.film import ROUND, mode_film
 
             film = mode_film(wave, frames or ROUND)
         else:
@@ -211,7 +211,7 @@ def _serve(machine: Scene, speed: float | None, factor: float | None, host: str,
     """Serve the page until interrupted."""
     from leblanc.studies.shapes.machine import drawn_liquid, dry_walls, machine_motion
     from leblanc.studies.shapes.scale import scale_at, scale_of
-    from leblanc.view.browser import frames_of_speeds, require_trame, serve
+    from leblanc.view.files import frames_of_speeds, require_trame, serve
 
     require_trame()
     motion = machine_motion(machine)

@@ -21,10 +21,10 @@ def volume(
 ) -> None:
     """Volume that just covers the wall at a deflection. Also the surface of a given volume."""
     from leblanc.questions import volume_question
-    from leblanc.scene.schema.faults import NotConverged
+    from leblanc.scene.schema.load import NotConverged
     from leblanc.studies.volume import answer_volume
-    from leblanc.text.volume import facts
-    from leblanc.text.volume import question as described
+    from leblanc.text.liquid import facts
+    from leblanc.text.liquid import question as described
 
     question = volume_question(
         radius=radius,

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 
 from leblanc.figures.curves import COLUMNS, spans, thin
-from leblanc.figures.over_speed import DRY, OUT_OF_RANGE, SHADE, value_axis
 from leblanc.figures.page import Caption, Figure, Frame, add_rate_axis, lay_out, number, style
 from leblanc.figures.page import save as save  # a figure is drawn and written together
+from leblanc.figures.response import DRY, OUT_OF_RANGE, SHADE, value_axis
 from leblanc.results.base import one_line
-from leblanc.results.several.comparison import Comparison
-from leblanc.text.comparison import alt
+from leblanc.results.explanation import Comparison
+from leblanc.text.explanation import alt
 from leblanc.units import MM, RPM
 from meshes.arrays import Array
 

@@ -6,10 +6,9 @@ import math
 from typing import Any
 
 from leblanc.figures.page import Caption, Figure, Frame, add_rate_axis, lay_out, number, style
-from leblanc.results.base import one_line
+from leblanc.results.base import EXACT, one_line
 from leblanc.results.explanation import ExciterExplanation, Explanation
-from leblanc.results.note import EXACT
-from leblanc.text.models import error_words, speeds_words
+from leblanc.text.run import error_words, speeds_words
 from leblanc.units import RPM
 
 FRAME = Frame(left=0.72, top=0.46, between=0.12, below=0.42)

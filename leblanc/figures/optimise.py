@@ -20,8 +20,7 @@ from leblanc.figures.page import (
     save,
     style,
 )
-from leblanc.results.base import one_line
-from leblanc.results.note import texts
+from leblanc.results.base import one_line, texts
 from leblanc.results.optimum import OptimumResult
 from leblanc.text.numbers import number as short
 from leblanc.units import MM, RPM

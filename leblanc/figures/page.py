@@ -21,7 +21,9 @@ from matplotlib.font_manager import findfont, get_font
 from matplotlib.ticker import MultipleLocator as MultipleLocator  # handed on: this is the only door
 from numpy.typing import ArrayLike
 
+from leblanc.results.base import one_line
 from leblanc.results.netcdf import replacing
+from leblanc.results.response import RunResult
 from leblanc.units import RPM
 from meshes.errors import InputError
 
@@ -287,3 +289,16 @@ def write_film(
                     drawn(count, len(frames))
         shutil.copyfile(whole, part)
     return len(frames)
+
+
+def caption(result: RunResult, text: str) -> Caption:
+    """What the figure shows, the scene, the model and the values it assumes."""
+    assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
+    model = ", ".join(result.models_used)
+    return Caption(text, f"Scene: {one_line(result.name)}. Liquid model: {model}. Assumed: {assumed}.")
+
+
+def zero_of(result: RunResult) -> str:
+    """What angles count from."""
+    motion = result.motion
+    return "the unbalance" if motion is None or motion.zero == "unbalance" else motion.zero

@@ -1,4 +1,4 @@
-"""The figures of a response to an unbalance: amplitude, liquid and phase over speed."""
+"""The figures of a response: amplitude, liquid and phase over speed; the dry rotor's Campbell diagram."""
 
 from __future__ import annotations
 
@@ -6,25 +6,27 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from leblanc.figures.campbell import campbell_figure
-from leblanc.figures.caption import caption, zero_of
-from leblanc.figures.chambers.along_axis import chamber_figure
-from leblanc.figures.curves import Curves, prepare
-from leblanc.figures.over_speed import draw_amplitude, draw_angle, draw_offset, draw_phase
+import numpy as np
+
+from leblanc.figures.chambers import chamber_figure
+from leblanc.figures.curves import Curves, gapped, joined, lonely, other_branches, prepare, widened
 from leblanc.figures.page import (
     Figure,
     FigureFiles,
     Frame,
     MultipleLocator,
     add_rate_axis,
+    caption,
     lay_out,
     number,
     save,
     style,
+    zero_of,
 )
 from leblanc.results.response import RunResult
 from leblanc.text.run import alts
-from leblanc.units import MM
+from leblanc.units import MM, RPM
+from meshes.arrays import Array, Flags
 
 Draw = Callable[[Any, Curves, RunResult], None]
 
@@ -96,3 +98,302 @@ def _over_speed(result: RunResult, name: str, panels: Sequence[tuple[float, Draw
         add_rate_axis(rows[0][0])
         lay_out(figure, rows, [height for height, _ in panels], FRAME, caption(result, text))
     return figure
+
+
+Axes = Any  # matplotlib's, which no module that only draws imports
+
+WET, DRY, SHADE = "#0072B2", "#D55E00", "0.90"  # after Okabe and Ito: safe for the colour blind
+UNSTABLE = (0, (3.5, 1.5))
+STRIP = 0.055  # height of the dry-patch strip over that of the axes
+FLAT = 100.0  # a peak so many times the usual value flattens all the rest on a linear axis
+MARKS = 14  # along a line
+OUT_OF_RANGE = "model out of range"
+
+
+def draw_amplitude(axes: Axes, curves: Curves, result: RunResult) -> None:
+    """Deflection amplitude with and without liquid, all branches."""
+    reported(axes, curves, curves.amplitude, "with liquid")
+    without(axes, curves, curves.amplitude_dry)
+    if np.any(np.count_nonzero(curves.chain >= 0, axis=1) > 1):
+        thin = {"color": WET, "linewidth": 0.8, "zorder": 1.9}
+        stable, unstable = other_branches(curves)
+        axes.plot(*stable, **thin, label="other branches, stable")
+        axes.plot(*unstable, **thin, linestyle=UNSTABLE, label="other branches, unstable")
+    value_axis(axes, room_below(curves), [curves.amplitude, curves.amplitude_dry, curves.branches.ravel()])
+    background(axes, curves, result, [curves.amplitude, curves.amplitude_dry])
+    axes.set_ylabel("Amplitude (mm)")
+
+
+def draw_offset(axes: Axes, curves: Curves, result: RunResult) -> None:
+    """Distance of the liquid's centre of mass from the rotation axis."""
+    reported(axes, curves, curves.offset, "liquid's centre of mass")
+    value_axis(axes, room_below(curves), [curves.offset])
+    background(axes, curves, result, [curves.offset])
+    axes.set_ylabel("Liquid offset (mm)")
+
+
+def draw_angle(axes: Axes, curves: Curves, result: RunResult) -> None:
+    """Angle of the liquid's centre of mass from the unbalance."""
+    reported(axes, curves, curves.angle, "liquid's centre of mass")
+    angle_axis(axes, curves, [curves.angle])
+    background(axes, curves, result, [curves.angle])
+    axes.set_ylabel("Liquid angle (deg)")
+
+
+def draw_phase(axes: Axes, curves: Curves, result: RunResult) -> None:
+    """Angle from the unbalance to the deflection, with and without liquid."""
+    reported(axes, curves, curves.phase, "with liquid")
+    without(axes, curves, curves.phase_dry)
+    angle_axis(axes, curves, [curves.phase, curves.phase_dry])
+    background(axes, curves, result, [curves.phase, curves.phase_dry])
+    axes.set_ylabel("Phase of the deflection (deg)")
+
+
+def reported(axes: Axes, curves: Curves, y: Array, label: str) -> None:
+    """The branch reported: heavy, dashed where unstable, jumps between branches dotted."""
+    jumps = np.diff(curves.reported) != 0
+    jumps &= (curves.reported[1:] >= 0) & (curves.reported[:-1] >= 0)
+    breaks = jumps | _turns(y)
+    unstable = ~curves.stable & ~np.isnan(y)
+    x_solid, solid = gapped(curves.rpm, np.where(curves.stable, y, np.nan), breaks)
+    dots = np.flatnonzero(lonely(solid)).tolist()
+    axes.plot(x_solid, solid, color=WET, label=label, marker="o" if dots else None, markevery=dots or None)
+    if unstable.any():
+        x, dashed = gapped(curves.rpm, np.where(widened(unstable), y, np.nan), breaks)
+        dots = np.flatnonzero(lonely(dashed)).tolist()
+        axes.plot(
+            *(x, dashed),
+            color=WET,
+            linestyle=UNSTABLE,
+            marker="s" if dots else None,
+            markevery=dots or None,
+            label=f"{label}, unstable",
+        )
+    steps = [(curves.rpm[i : i + 2], y[i : i + 2]) for i in np.flatnonzero(jumps & ~_turns(y)).tolist()]
+    if steps:
+        axes.plot(*joined(steps), color=WET, linewidth=0.9, linestyle=":", label="jump between branches")
+
+
+def without(axes: Axes, curves: Curves, y: Array) -> None:
+    """The same rotor without liquid: light, with open marks."""
+    x, line = gapped(curves.rpm, y, _turns(y))
+    known = np.flatnonzero(~np.isnan(line))
+    even = np.linspace(*curves.limits, MARKS)[1:-1]
+    marks = set(known[np.clip(np.searchsorted(x[known], even), 0, known.size - 1)] if known.size else [])
+    marks |= set(np.flatnonzero(lonely(line)))
+    axes.plot(
+        *(x, line),
+        color=DRY,
+        linewidth=1.0,
+        marker="o",
+        markerfacecolor="white",
+        markevery=sorted(map(int, marks)) or None,
+        label="without liquid",
+    )
+
+
+def _turns(degrees: Array) -> Flags:
+    """Steps of more than half a turn: the angle leaves the picture and comes back on its other side."""
+    step = np.diff(degrees)
+    return np.abs(np.where(np.isnan(step), 0.0, step)) > 180.0
+
+
+def background(axes: Axes, curves: Curves, result: RunResult, lines: list[Array]) -> None:
+    """Ranges of speed and marked speeds, behind the lines."""
+    low, high = curves.limits
+    axes.set_xlim(low, high)
+    for i, (left, right) in enumerate(curves.out_of_range):
+        label = "_" if i else OUT_OF_RANGE
+        axes.axvspan(left, right, color=SHADE, linewidth=0, zorder=0, label=label)
+        if right - left > 0.04 * (high - low):
+            _name_range(axes, curves, lines, (left, right))
+    bars = {"transform": axes.get_xaxis_transform(), "color": "0.35", "linewidth": 5, "zorder": 1}
+    for marked, height, dashes, label in (
+        (curves.dry_patch, 0.5 * STRIP, (0, (0.2, 0.3)), "dry patch on the wall"),
+        (curves.not_converged, 1.0 - 0.5 * STRIP, (0, (1, 0.6)), "not converged"),
+    ):
+        if marked:
+            x, y = joined([(np.array(span), np.full(2, height)) for span in marked])
+            axes.plot(x, y, linestyle=dashes, label=label, **bars)
+    for speed, line, color, label in (
+        (result.critical_speed_wet, (0, (6, 1.5, 1, 1.5, 1, 1.5)), WET, "critical speed with liquid,"),
+        (result.critical_speed_dry, (0, (6, 1.5, 1, 1.5)), DRY, "critical speed without liquid,"),
+        (result.capture_speed, (0, (8, 3)), "0.3", "liquid captured from"),
+    ):
+        if speed is not None and low <= speed * RPM <= high:
+            text = f"{label} {speed * RPM:.4g} rpm"
+            axes.axvline(speed * RPM, color=color, linewidth=0.9, linestyle=line, label=text, zorder=1)
+
+
+def _name_range(axes: Axes, curves: Curves, lines: list[Array], span: tuple[float, float]) -> None:
+    """Name a shaded range inside it, in the place that is farthest from the lines."""
+    low, high = curves.limits
+    left, right = ((edge - low) / (high - low) for edge in span)
+    wide = right - left > 0.25
+    half_width, half_height = (0.11, 0.02) if wide else (0.02, 0.3)
+    columns = np.linspace(left + 0.13, right - 0.13, 3) if wide else [0.5 * (left + right)]
+    x = (curves.rpm - low) / (high - low)
+    heights = np.concatenate([_height(axes, line) for line in lines])
+    rows = (0.96 - STRIP * bool(curves.not_converged), STRIP + 0.04)
+
+    def clearance(place: tuple[float, float]) -> float:
+        middle = place[1] + (-half_height if place[1] > 0.5 else half_height)
+        near = heights[np.tile(np.abs(x - place[0]) < half_width, len(lines))]
+        apart = np.abs(near[~np.isnan(near)] - middle) - half_height
+        return float(apart.min(initial=0.2))
+
+    column, row = max(((column, row) for row in rows for column in columns), key=clearance)
+    axes.text(
+        *(column, row, OUT_OF_RANGE),
+        transform=axes.transAxes,
+        rotation="horizontal" if wide else "vertical",
+        horizontalalignment="center",
+        verticalalignment="top" if row > 0.5 else "bottom",
+        fontsize=7,
+        color="0.3",
+        bbox={"facecolor": SHADE, "edgecolor": "none", "pad": 1.0},
+        zorder=1.5,
+    )
+
+
+def _height(axes: Axes, y: Array) -> Array:
+    """Place of values on their axis, 0 at the bottom and 1 at the top."""
+    low, high = axes.get_ylim()
+    if axes.get_yscale() == "linear":
+        height: Array = (y - low) / (high - low)
+    else:
+        height = np.log(np.maximum(y, low) / low) / np.log(high / low)
+    return height
+
+
+def room_below(curves: Curves) -> float:
+    """Share of the axes' height that the strip of dry patches takes."""
+    return STRIP + 0.02 if curves.dry_patch else 0.0
+
+
+def value_axis(axes: Axes, room: float, lines: list[Array]) -> None:
+    """Limits that hold all lines, from zero up; logarithmic where a linear axis would show a peak alone.
+
+    Parameters
+    ----------
+    axes : whose values it sets
+    room : left free below the lines, a share of the height
+    lines : their values, nan allowed
+    """
+    known = [line[line > 0.0] for line in lines]
+    known = [line for line in known if line.size]
+    if not known:
+        axes.set_ylim(-0.1, 1.0)  # a line of zeros stays clear of the frame
+        if not any(np.any(line == 0.0) for line in lines):
+            _say_empty(axes)
+        return
+    top = max(float(line.max()) for line in known)
+    usual = min(float(np.median(line)) for line in known)
+    if top > FLAT * usual:
+        low = max(min(float(line.min()) for line in known), 1e-3 * usual) / 1.5
+        axes.set_yscale("log", nonpositive="mask")
+        axes.set_ylim(low * (low / top) ** room, 2.0 * top)
+    else:
+        axes.set_ylim(-1.08 * top * room, 1.08 * top)
+
+
+def angle_axis(axes: Axes, curves: Curves, lines: list[Array]) -> None:
+    """Limits from 10 to -190 degrees, wider if a line needs it."""
+    every = np.concatenate(lines)
+    every = every[~np.isnan(every)]
+    low, high = min(-180.0, every.min(initial=0.0)) - 10.0, max(0.0, every.max(initial=-180.0)) + 10.0
+    if not every.size:
+        _say_empty(axes)
+    axes.set_ylim(low - (STRIP + 0.02) * (high - low) * bool(curves.dry_patch), high)
+
+
+def _say_empty(axes: Axes) -> None:
+    box = {"facecolor": "white", "edgecolor": "none"}
+    axes.text(0.5, 0.5, "no values", transform=axes.transAxes, horizontalalignment="center", bbox=box)
+
+
+FORWARD, BACKWARD, STRAIGHT, SPIN = "#0072B2", "#D55E00", "0.35", "0.2"  # after Okabe and Ito
+CLEAR = 0.2  # from here on a whirl is drawn as one with or against the spin
+HZ = 60.0  # rpm in one hertz
+# Colour, dashes and marker of each sense of whirl.
+STYLES = (
+    ("with the spin", 1.0, FORWARD, "solid", "^"),
+    ("against the spin", -1.0, BACKWARD, (0, (5, 1.5)), "v"),
+    ("to and fro", 0.0, STRAIGHT, (0, (1, 1.2)), "o"),
+)
+
+
+def campbell_figure(result: RunResult) -> Figure:
+    """Natural frequencies of the dry rotor over its speed."""
+    with style():
+        figure = Figure()
+        figure.alt = alts(result)["campbell"]
+        axes: Axes = figure.add_axes((0, 0, 1, 1))
+        draw_campbell(axes, result)
+        for scale in (axes.xaxis, axes.yaxis):
+            scale.set_major_formatter(number)
+        add_rate_axis(axes)
+        text = "Damped natural frequencies without liquid, by the sense in which the axis goes round."
+        lay_out(figure, [[axes]], [2.75], FRAME, caption(result, text))
+    return figure
+
+
+def draw_campbell(axes: Axes, result: RunResult) -> None:
+    """Natural frequencies over speed, forward and backward told apart, and where the spin meets them.
+
+    Parameters
+    ----------
+    axes : an empty drawing
+    result : of a rotor that is not planar
+    """
+    assert result.motion is not None
+    diagram = result.motion.campbell
+    rpm, hertz = diagram.spin * RPM, diagram.frequency * RPM / HZ
+    overdamped = hertz <= 0.0
+    direction = diagram.direction.copy()
+    if diagram.spin.size > 1 and diagram.spin[0] == 0.0:
+        # At rest modes of one frequency mix at will; turning a little tells them apart.
+        direction[0] = direction[1]
+    for name, sense, color, dashes, marker in STYLES:
+        lines = []
+        for k in range(hertz.shape[1]):
+            mine = (_sense(direction[:, k]) == sense) & ~overdamped[:, k]
+            lines.append(gapped(*_runs(rpm, hertz[:, k], mine)))
+        x, y = joined(lines)
+        if np.isfinite(y).any():
+            axes.plot(x, y, color=color, linestyle=dashes, label=f"whirl {name}")
+        met = _sense(diagram.crossing_direction) == sense
+        if met.any():
+            place = diagram.crossing[met] * RPM
+            axes.plot(
+                *(place, place / HZ, marker),
+                color=color,
+                markerfacecolor="white",
+                markersize=6,
+                zorder=4,
+                label=f"spin meets it, {name}",
+            )
+    top = float(rpm[-1])
+    axes.plot([0.0, top], [0.0, top / HZ], color=SPIN, linewidth=0.9, label="once a turn")
+    low, high = result.response.speed[[0, -1]] * RPM
+    if min(low, high) > 0.02 * top:
+        axes.axvspan(
+            0.0, min(low, high), color="0.92", linewidth=0, zorder=0, label="below the speeds studied"
+        )
+    axes.set_xlim(0.0, top)
+    axes.set_ylim(0.0, 1.15 * max(float(hertz.max(initial=0.0)), 0.1))
+    axes.set_xlabel("Speed (rpm)")
+    axes.set_ylabel("Natural frequency (Hz)")
+
+
+def _sense(direction: Array) -> Array:
+    """1 with the spin, -1 against it, 0 for ellipses that are nearly lines."""
+    return np.where(np.abs(direction) < CLEAR, 0.0, np.sign(direction))
+
+
+def _runs(x: Array, y: Array, mask: np.ndarray) -> tuple[Array, Array, np.ndarray]:
+    """The line where the mask holds and one point farther, so that no gap opens where it changes."""
+    wide = mask.copy()
+    wide[1:] |= mask[:-1]
+    shown = np.where(wide & (y > 0.0), y, np.nan)
+    return x, shown, np.zeros(x.size - 1, dtype=bool)

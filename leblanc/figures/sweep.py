@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from leblanc.figures.curves import COLUMNS, thin
-from leblanc.figures.over_speed import DRY, WET, value_axis
 from leblanc.figures.page import Caption, Figure, Frame, add_rate_axis, lay_out, number, style
+from leblanc.figures.response import DRY, WET, value_axis
 from leblanc.results.base import one_line
-from leblanc.results.several.sweep import SweepResult
+from leblanc.results.sweep import SweepResult
 from leblanc.text.sweep import alt
 from leblanc.units import MM, RPM
 from meshes.arrays import Array

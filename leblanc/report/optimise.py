@@ -11,8 +11,8 @@ import numpy as np
 
 from leblanc.report.page import About, models, notes, why, write_page
 from leblanc.report.parts import Cell, Table, picture, table
-from leblanc.report.run import checks as response_checks
-from leblanc.results.note import texts
+from leblanc.report.run import response_checks as response_checks
+from leblanc.results.base import texts
 from leblanc.results.optimum import OptimumResult
 from leblanc.text.numbers import number
 from leblanc.text.optimum import shown

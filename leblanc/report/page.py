@@ -10,16 +10,14 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from leblanc.report.inputs import Inputs, scene_inputs
-from leblanc.report.parts import Table, table
+from leblanc.report.parts import Inputs, Table, scene_inputs, table
 from leblanc.results import base as provenance
-from leblanc.results.base import one_line
+from leblanc.results.base import Note, NoteCode, one_line
 from leblanc.results.choice import ModelSpan
 from leblanc.results.netcdf import replacing
-from leblanc.results.note import Note, NoteCode
-from leblanc.scene.optimise import Optimisation
 from leblanc.scene.scene import Scene
-from leblanc.text.models import described, error_words, speeds_words
+from leblanc.scene.tasks import Optimisation
+from leblanc.text.run import described, error_words, speeds_words
 
 # What the numbers, the files and the figures come from.
 PACKAGES = (

@@ -1,25 +1,38 @@
-"""The report of `run`: the answer, where it holds, figures, models and why."""
+"""The reports of `run` (rotors, exciters) and `map`: the answer, where it holds, figures, models and why."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from leblanc.report.page import About, models, notes, why, write_page
 from leblanc.report.parts import Cell, Table, picture, table
-from leblanc.results.notes.run import OF_MODELS
+from leblanc.results.exciter import ExciterResult
+from leblanc.results.notes import OF_MODELS
 from leblanc.results.response import RunResult
-from leblanc.text.numbers import ranges
-from leblanc.text.run import answer, comparisons, facts, limits, machine, remarks
+from leblanc.results.whirl_map import WhirlMap
+from leblanc.text.exciter import NUMBERS
+from leblanc.text.exciter import answer as exciter_answer
+from leblanc.text.exciter import facts as exciter_facts
+from leblanc.text.numbers import number, ranges
+from leblanc.text.run import BALLS, WHIRL, answer, comparisons, facts, limits, machine, remarks
+from leblanc.text.whirl_map import answer as whirl_map_answer
+from leblanc.text.whirl_map import band_words
+from leblanc.text.whirl_map import facts as whirl_map_facts
+from leblanc.units import ML, MM, RPM
 
 if TYPE_CHECKING:
     from leblanc.figures.page import FigureFiles
 
+
 SHOWN = 4  # figures, of which the phase stands in its own file only; with more, all
 
 
-def checks(result: RunResult) -> Table:
+def response_checks(result: RunResult) -> Table:
     """Where the answer is not what it seems, as a table."""
     rows = [(limit.label, Cell(limit.where, warning=limit.failed)) for limit in limits(result)]
     return table("", ("Limits of the answer", "at"), rows)
@@ -47,7 +60,7 @@ def write_run_report(result: RunResult, what: About, figures: Sequence[FigureFil
             [(one.label, one.wet, one.dry, one.ratio) for one in comparisons(result)],
         ),
         "facts": table("", (), facts(result)),
-        "checks": checks(result),
+        "checks": response_checks(result),
         "pictures": [picture(one) for one in shown],
         "why": why(result.models) if result.models else _used(result),
         "models": models(result.models_used),
@@ -60,3 +73,140 @@ def _used(result: RunResult) -> Table:
     """The models and their speeds, where no reasons are known."""
     rows = [(name, ranges(result.speed, result.model == name)) for name in result.models_used]
     return table("", ("Model", "Speeds"), rows, True)
+
+
+def exciter_numbers(result: ExciterResult) -> Table:
+    """Dimensionless numbers of the machine."""
+    rows = [(text, number(getattr(result.numbers, name))) for name, text in NUMBERS.items()]
+    return table("", ("Dimensionless numbers", ""), rows)
+
+
+def integrations(result: ExciterResult) -> Table:
+    """Time integrations beside the formulas."""
+    rows: list[Sequence[str | Cell]] = []
+    for one in result.checks:
+        stay = Cell("stay" if one.holds else "leave", warning=not one.converged)
+        stuck = number(one.stuck_speed * RPM) if one.holds else ""
+        both = [number(x * MM) if one.holds and math.isfinite(x) else "" for x in (one.slow, one.fast)]
+        rows.append((number(one.speed * RPM), stay, stuck, *both))
+    head = ("Shaft (rpm)", "balls", "at (rpm)", "platform with them (mm)", "with the shaft (mm)")
+    return table("Integrated in time", head, rows)
+
+
+def exciter_checks(result: ExciterResult) -> Table:
+    """Where the answer is not what it seems."""
+    lost = [one.speed for one in result.checks if not one.converged]
+    words = ", ".join(f"{number(speed * RPM)} rpm" for speed in lost) or "none"
+    beyond = ~result.dual_frequency
+    outside = not math.isfinite(result.printed_critical)
+    rows = [
+        ("Time integration not finite", Cell(words, warning=bool(lost))),
+        ("Balls do not stick", Cell(ranges(result.speed, beyond), warning=bool(np.any(beyond)))),
+        ("Regression of the source", Cell("outside its ranges" if outside else "inside", warning=outside)),
+    ]
+    return table("", ("Limits of the answer", "at"), rows)
+
+
+def write_exciter_report(result: ExciterResult, what: About, figure: FigureFiles, path: Path) -> None:
+    """Write the report.
+
+    Parameters
+    ----------
+    result : the answer
+    what : it is about
+    figure : of it
+    path : the file to write or replace
+    """
+    low, high = number(float(result.speed[0]) * RPM), number(float(result.speed[-1]) * RPM)
+    start = result.start
+    machine = (
+        f"A platform with {result.machine.ball_count} balls in the track of its shaft, shaken from {low} to "
+        f"{high} rpm in {result.speed.size} speeds."
+    )
+    began = (
+        f"The critical speed depends on the start: here {start.kind}, {number(start.separation)} rad apart."
+    )
+    parts = {
+        "title": "Stuck speeds of the balls and vibration of the platform",
+        "machine": machine,
+        "answer": exciter_answer(result),
+        "facts": table("", (), exciter_facts(result)),
+        "numbers": exciter_numbers(result),
+        "integrations": integrations(result),
+        "checks": exciter_checks(result),
+        "pictures": [picture(figure)],
+        "models": [("balls", " ".join(BALLS))],
+        "remarks": [began, "The numbers over speed are printed by the same command with --json."],
+    }
+    write_page("exciter", what, parts, path)
+
+
+LISTED = 11  # volumes of the table of bands
+
+
+def bands(result: WhirlMap) -> Table:
+    """Bands of speed in which a whirl grows, for a few volumes spread over the map."""
+    rows = []
+    for k in np.unique(np.linspace(0, result.volume.size - 1, LISTED).round().astype(int)).tolist():
+        growth = result.growth[k]
+        lost = bool(np.isnan(growth).any())
+        most = float(np.nanmax(growth)) if not np.isnan(growth).all() else np.nan
+        rows.append(
+            (
+                number(float(result.volume[k]) * ML),
+                Cell(band_words(result.edges[k]), warning=lost),
+                number(most),
+            )
+        )
+    head = ("Liquid (ml)", "a whirl grows between (rpm)", "largest growth (1/s)")
+    return table("", head, rows)
+
+
+def map_checks(result: WhirlMap) -> Table:
+    """Where the map is not what it seems, in shares of its points."""
+    lost, out = np.isnan(result.growth), ~result.in_range
+    rows = [
+        (label, Cell(_share(mask), warning=bool(mask.any())))
+        for label, mask in (
+            ("Modes not found", lost),
+            ("Model out of range", out),
+            ("Grows where out of range", out & (result.growth > 0.0)),
+        )
+    ]
+    own = band_words(result.scene_edges)
+    rows.append(("Unstable with the scene's volume (rpm)", Cell(own, warning=bool(result.scene_edges))))
+    return table("", ("Limits of the answer", "at"), rows)
+
+
+def _share(mask: np.ndarray) -> str:
+    """How many of the points."""
+    count = int(np.count_nonzero(mask))
+    return f"{count} of {mask.size} points ({number(100.0 * count / mask.size)} %)" if count else "none"
+
+
+def write_map_report(result: WhirlMap, what: About, figure: FigureFiles, path: Path) -> None:
+    """Write the report.
+
+    Parameters
+    ----------
+    result : the map
+    what : it is about
+    figure : of it
+    path : the file to write or replace
+    """
+    told = dict(whirl_map_facts(result))
+    low, high = (number(float(speed) * RPM) for speed in (result.speed[0], result.speed[-1]))
+    parts = {
+        "title": "Self-excited whirl over speed and volume",
+        "machine": f"Whirls that grow by themselves from {low} to {high} rpm, from no liquid to "
+        f"{told['Most liquid, all chambers']}.",
+        "answer": whirl_map_answer(result),
+        "facts": table("", (), whirl_map_facts(result)),
+        "checks": map_checks(result),
+        "bands": bands(result),
+        "pictures": [picture(figure)],
+        "models": [("linear", " ".join(WHIRL))],
+        "reason": "No other model answers this for any growth and any whirl speed.",
+        "remarks": notes(result.notes),
+    }
+    write_page("map", what, parts, path)

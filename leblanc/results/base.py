@@ -1,4 +1,4 @@
-"""What every result can do: become JSON, a dataset, a figure, a block of a notebook."""
+"""What every result can do (become JSON, a dataset, a figure, a block of a notebook), notes, chambers."""
 
 from __future__ import annotations
 
@@ -7,13 +7,64 @@ import io
 from abc import ABC, abstractmethod
 from base64 import b64encode
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
 from importlib import import_module, metadata
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
-from leblanc.results.note import Note
+from meshes.baffles import Baffles
+from meshes.chamber_section import ChamberSection, layer_depth
 
 if TYPE_CHECKING:
     from leblanc.results.netcdf import Dataset
+
+
+class NoteCode(StrEnum):
+    """What a note says; each result has an enumeration of its own."""
+
+
+@dataclass(frozen=True)
+class Note:
+    """One thing that a reader of a result must know.
+
+    A program asks for `code` and `data`, a reader reads `text`. A sentence is written in one place: the
+    function that makes the note.
+
+    Parameters
+    ----------
+    code : what is said
+    data : the numbers of the sentence, SI
+    text : the sentence
+    """
+
+    code: NoteCode
+    data: Mapping[str, object] = field(hash=False)
+    text: str
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "data", MappingProxyType(dict(self.data)))
+
+    def __str__(self) -> str:
+        return self.text
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return Note, (self.code, dict(self.data), self.text)
+
+
+def texts(notes: Iterable[Note]) -> tuple[str, ...]:
+    """The sentences of notes, in their order."""
+    return tuple(note.text for note in notes)
+
+
+EXACT = 1e-9  # a relative error that is nothing but rounding
+
+
+def percent(value: float) -> str:
+    """A share in per cent, two digits; in words where it is the whole or nothing."""
+    if value >= 0.995:
+        return "about 100 % or more"
+    return "rounding" if value < EXACT else f"{100.0 * value:.2g} %"
 
 
 def one_line(text: str) -> str:
@@ -126,3 +177,36 @@ class Result(ABC):
         address = b64encode(drawing.getvalue()).decode("ascii")
         alt = html.escape(getattr(figure, "alt", ""))
         return f'<table>{rows}</table><img alt="{alt}" src="data:image/svg+xml;base64,{address}">'
+
+
+@dataclass(frozen=True)
+class FilledChamber:
+    """One chamber with its liquid.
+
+    Parameters
+    ----------
+    radius, inner_radius, height, mean_surface_radius : m; the last one of the undisturbed layer
+    volume : of the liquid, m^3
+    liquid_name : as the scene names it
+    plane : position along the axis where that matters, m
+    baffles : None without any
+    section : None for circular walls
+    """
+
+    radius: float
+    inner_radius: float
+    height: float
+    volume: float
+    liquid_name: str
+    mean_surface_radius: float
+    plane: float = 0.0
+    baffles: Baffles | None = None
+    section: ChamberSection | None = None
+
+    @property
+    def least_depth(self) -> float:
+        """Depth of the undisturbed layer where it is thinnest, m."""
+        area = self.volume / self.height
+        if self.section is not None and 0.0 < area < self.section.area:
+            return layer_depth(self.section, area)
+        return self.radius - self.mean_surface_radius

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.note import EXACT, percent
+from leblanc.results.base import EXACT, percent
 from meshes.arrays import Array, Flags, Index
 
 if TYPE_CHECKING:

@@ -12,12 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from leblanc.results.base import Result, one_line, versions
+from leblanc.results.base import Note, NoteCode, Result, one_line, texts, versions
 from leblanc.results.netcdf import dataset, variable
-from leblanc.results.note import Note, NoteCode, texts
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative, require_positive
-from solvers.layer.prescribed import LayerHistory
+from solvers.layer.state import LayerHistory
 
 if TYPE_CHECKING:
     from leblanc.results.netcdf import Dataset
@@ -147,8 +146,8 @@ class LayerResult(Result):
     captured: bool
     validity: tuple[Number, ...]
 
-    figure = "leblanc.figures.wave.page:layer_figure"
-    summary = "leblanc.text.layer:summary"
+    figure = "leblanc.figures.wave:layer_figure"
+    summary = "leblanc.text.liquid:layer_summary"
 
     def wave(self) -> Wave:
         """The layer as figures show it."""
@@ -219,8 +218,8 @@ class LayerPeriodsResult(Result):
     notes: tuple[Note, ...]
     validity: tuple[Number, ...]
 
-    figure = "leblanc.figures.wave.page:periods_figure"
-    summary = "leblanc.text.layer:periods_summary"
+    figure = "leblanc.figures.wave:periods_figure"
+    summary = "leblanc.text.liquid:periods_summary"
 
     @property
     def converged(self) -> bool:

@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fluid.friction import Friction
-from leblanc.results.base import Result, attributes
+from leblanc.results.base import Note, NoteCode, Result, attributes, texts
 from leblanc.results.choice import ModelSpan
 from leblanc.results.netcdf import dataset, flags, write_dataset
 from leblanc.results.netcdf import variable as var
-from leblanc.results.note import Note, NoteCode, texts
 from leblanc.results.response import RunResult
 from leblanc.units import MM, RPM
 from meshes.arrays import Array, Flags

@@ -10,12 +10,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.base import Result, attributes, one_line
-from leblanc.results.chamber import FilledChamber
+from leblanc.results.base import FilledChamber, Note, Result, attributes, one_line, texts
 from leblanc.results.choice import ModelSpan
 from leblanc.results.netcdf import dataset, flags
 from leblanc.results.netcdf import variable as var
-from leblanc.results.note import Note, texts
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.rotor.campbell import Campbell

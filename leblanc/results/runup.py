@@ -14,10 +14,8 @@ from numpy.typing import NDArray
 
 from fluid.friction import Friction
 from leblanc.friction import friction_words
-from leblanc.results.base import Result, attributes, one_line
-from leblanc.results.chamber import FilledChamber
+from leblanc.results.base import FilledChamber, Note, Result, attributes, one_line, texts
 from leblanc.results.netcdf import dataset, flags, variable, write_dataset
-from leblanc.results.note import Note, texts
 from leblanc.results.response import phase
 from meshes.arrays import Array, Complex, Flags
 from solvers.runup.runup import EnergyAudit, RunupHistory
@@ -140,7 +138,7 @@ class RunupResult(Result):
     notes: tuple[Note, ...]
     frames: RunupFrames | None = None
 
-    figure = "leblanc.figures.runup.curves:speed_figure"
+    figure = "leblanc.figures.runup:speed_figure"
     summary = "leblanc.text.runup:summary"
 
     @property

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from leblanc.results.base import Result, attributes
+from leblanc.results.base import Note, Result, attributes, texts
 from leblanc.results.netcdf import dataset, flags
 from leblanc.results.netcdf import variable as var
-from leblanc.results.note import Note, texts
 from meshes.arrays import Array, Flags
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from pydantic import Field, PlainValidator
 from fluid.fill import Fill
 from fluid.liquid import KNOWN_LIQUIDS, Liquid
 from leblanc import units
-from leblanc.scene.schema.faults import meant
+from leblanc.scene.schema.load import meant
 from leblanc.scene.schema.part import Conflict, Part, allowed_at
 from leblanc.scene.schema.rules import LENGTH, Length, Position, Refused, quantity, whole
 from meshes.baffles import Baffles as Plates

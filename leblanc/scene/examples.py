@@ -6,8 +6,7 @@ import re
 from pathlib import Path
 
 from leblanc.scene.scene import Scene, load_scene
-from leblanc.scene.schema.faults import meant
-from leblanc.scene.schema.load import read_toml
+from leblanc.scene.schema.load import meant, read_toml
 from meshes.errors import InputError
 
 _COMMENT = re.compile(r"#\s*(.+)")

@@ -8,12 +8,11 @@ from dataclasses import dataclass
 from fluid.fill import Fill
 from fluid.liquid import KNOWN_LIQUIDS
 from leblanc.friction import friction_words
-from leblanc.scene.optimise import Optimisation
 from leblanc.scene.rotors import JeffcottRotor
 from leblanc.scene.rows import Row, RowTable, Value, degrees, mm, row, rpm
-from leblanc.scene.runup import Runup
 from leblanc.scene.scene import Scene
-from leblanc.scene.schema.faults import escaped
+from leblanc.scene.schema.load import escaped
+from leblanc.scene.tasks import Optimisation, Runup
 from leblanc.units import MINUS, ML, MM, RPM, number
 from meshes.baffles import Baffles
 from meshes.chamber_section import ChamberSection

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from functools import cached_property
@@ -14,23 +16,27 @@ from fluid.fill import Fill
 from fluid.friction import Friction, FrictionLaw
 from leblanc import units
 from leblanc.scene.chambers import Chamber
-from leblanc.scene.digest import chamber_content, fingerprint, optimise_content, rotor_content
-from leblanc.scene.optimise import Optimisation
 from leblanc.scene.rotors import AnyRotor
 from leblanc.scene.rotors import Exciter as Exciter  # what a scene's rotor may be
 from leblanc.scene.rotors import JeffcottRotor as JeffcottRotor
 from leblanc.scene.rotors import TubRotor as TubRotor
 from leblanc.scene.rotors import TwoPlaneRotor as TwoPlaneRotor
-from leblanc.scene.runup import Runup as Runup
-from leblanc.scene.schema.faults import SceneFault, SceneFaults, meant, shown
-from leblanc.scene.schema.load import read_scene
+from leblanc.scene.schema.load import SceneFault, SceneFaults, meant, read_scene, shown
 from leblanc.scene.schema.part import Conflict, Part, faults_of
 from leblanc.scene.schema.paths import keys_of, require_field, with_values
 from leblanc.scene.schema.rules import Entries, Refused, Speed, Text, entries, one_of, quantity, whole
+from leblanc.scene.tasks import Optimisation
+from leblanc.scene.tasks import Runup as Runup
+from meshes.errors import InputError
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+    from solvers.rotor.jeffcott import Jeffcott
+    from solvers.rotor.tub import Tub
+    from solvers.rotor.two_plane import TwoPlane
+
 
 MAX_CHAMBERS = 1000
 MAX_SPEEDS = 100_000
@@ -294,3 +300,118 @@ def scene_from_table(table: Mapping[str, Any], file: str = "scene") -> Scene:
         return Scene.model_validate(table)
     except ValidationError as error:
         raise SceneFaults(faults_of(error, file, Scene)) from error
+
+
+def jeffcott(scene: Scene) -> Jeffcott:
+    """The scene's planar rotor without liquid.
+
+    Raises
+    ------
+    InputError : the scene's rotor is of another kind
+    """
+    if not isinstance(scene.rotor, JeffcottRotor):
+        raise InputError("rotor.kind", scene.rotor.kind, "jeffcott for this")
+    return scene.rotor.machine()
+
+
+def require_clear(scene: Scene, what: str) -> None:
+    """Refuse baffles and sections of other shapes where nothing knows them.
+
+    Parameters
+    ----------
+    scene : the machine
+    what : what is asked for, in words that follow "left out for"
+
+    Raises
+    ------
+    InputError : a chamber with baffles or a section from a file
+    """
+    for k, fill in enumerate(scene.fills):
+        if fill.chamber.section is not None:
+            raise InputError(f"chambers.{k}.section", fill.chamber.section.name, f"left out for {what}")
+        if fill.chamber.baffles is not None:
+            raise InputError(
+                f"chambers.{k}.baffles", f"{fill.chamber.baffles.count} of them", f"left out for {what}"
+            )
+
+
+def dry_rotor(scene: Scene) -> Jeffcott | TwoPlane | Tub:
+    """The scene's rotor without liquid, whose `system()` gives its equations of motion.
+
+    Raises
+    ------
+    InputError : the scene is that of an exciter, which has no linear equations of motion
+    """
+    if isinstance(scene.rotor, Exciter):
+        raise InputError("rotor.kind", scene.rotor.kind, "jeffcott, two_plane or tub for this")
+    return scene.rotor.machine()
+
+
+_DIGITS = 10  # of each number; spellings of one value differ in the sixteenth
+
+
+def fingerprint(content: dict[str, Any]) -> str:
+    """SHA-256 of what a scene says.
+
+    Parameters
+    ----------
+    content : tables, lists and values
+    """
+    return hashlib.sha256(json.dumps(_rounded(content), sort_keys=True).encode()).hexdigest()
+
+
+def rotor_content(rotor: AnyRotor) -> dict[str, Any]:
+    """What the machine is, whichever of two alternatives says so.
+
+    Parameters
+    ----------
+    rotor : of a scene
+    """
+    if isinstance(rotor, JeffcottRotor):
+        return asdict(rotor.machine()) | {"kind": rotor.kind, "axis": rotor.axis}
+    if isinstance(rotor, Exciter):
+        balls = rotor.balls.model_dump()
+        balls |= {"kind": rotor.balls.name, "pendulum_inertia": rotor.balls.pendulum_inertia or 0.0}
+        return rotor.model_dump(exclude={"balls"}) | {"balls": balls}
+    return {"kind": rotor.kind, "machine": asdict(rotor.machine()), "axis": rotor.axis}
+
+
+def chamber_content(fill: Fill) -> dict[str, Any]:
+    """What a chamber is and holds; a part that came later counts only where there is one.
+
+    Parameters
+    ----------
+    fill : of a scene
+    """
+    chamber = fill.chamber
+    walls: dict[str, Any] = {
+        "radius": chamber.radius,
+        "height": chamber.height,
+        "inner_radius": chamber.inner_radius,
+        "plane": chamber.plane,
+    }
+    if chamber.baffles is not None:
+        walls["baffles"] = asdict(chamber.baffles)
+    if chamber.section is not None:
+        walls["section"] = chamber.section.digest
+    return {"chamber": walls, "liquid": asdict(fill.liquid), "volume": fill.volume}
+
+
+def optimise_content(wanted: Optimisation) -> dict[str, Any]:
+    """What the liquid is chosen for.
+
+    Parameters
+    ----------
+    wanted : of a scene
+    """
+    duty = [(one.speed, one.weight) for one in wanted.duty]
+    return wanted.model_dump(exclude={"duty"}) | {"duty": duty}
+
+
+def _rounded(value: Any) -> Any:
+    """The same with every float as a text of a few digits."""
+    if isinstance(value, dict):
+        return {key: _rounded(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [_rounded(entry) for entry in value]
+    return f"{value:.{_DIGITS}g}" if isinstance(value, float) else value

@@ -17,8 +17,7 @@ from meshes.arrays import Array
 from meshes.chamber_section import rest_offset, surface_is_whole
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.synchronous.errors import ROUNDING, LinearError
-from solvers.synchronous.estimate import error_estimate, machine_errors
+from solvers.synchronous.errors import ROUNDING, LinearError, error_estimate, machine_errors
 from solvers.synchronous.models import MODEL_NAMES, LiquidModel, model_named
 
 _NO_DEPTH = 1e-6  # over the surface's radius: a slit that reaches the surface leaves the circle whole

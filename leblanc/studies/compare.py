@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 
-from leblanc.results.several.comparison import Comparison, ModelAnswer
+from leblanc.results.explanation import Comparison, ModelAnswer
 from leblanc.scene.scene import LIQUID_MODELS, Exciter, Scene
 from leblanc.studies.run import run_scene
 from meshes.errors import InputError

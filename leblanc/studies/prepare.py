@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fluid.friction import Friction
-from leblanc.scene.machine import dry_rotor
-from leblanc.scene.scene import Scene
+from leblanc.scene.scene import Scene, dry_rotor
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott

@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from leblanc.results.chamber import FilledChamber
+from leblanc.results import notes as run_notes
+from leblanc.results.base import FilledChamber, Note
 from leblanc.results.choice import Choice, model_spans
-from leblanc.results.note import Note
-from leblanc.results.notes import run as run_notes
 from leblanc.results.response import Motion, RestMode, RunResult, SelfExcited
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
@@ -31,9 +30,8 @@ from solvers.rotor.vibration import (
     whirl_direction,
 )
 from solvers.statics.hydrostatics import optimal_volume
-from solvers.synchronous.critical import critical_speed, wet_critical_speeds
 from solvers.synchronous.models import LINEAR, model_named
-from solvers.synchronous.response import Response, response
+from solvers.synchronous.response import Response, critical_speed, response, wet_critical_speeds
 from solvers.whirl.edges import unstable_bands
 from solvers.whirl.growth import asynchronous_growth
 

@@ -12,22 +12,29 @@ from numpy.typing import ArrayLike
 from fluid.fill import Fill
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
-from leblanc.results.chamber import FilledChamber
-from leblanc.results.note import Note, percent
-from leblanc.results.notes import runup as runup_notes
-from leblanc.results.notes.runup import RunupCode
+from leblanc.results import notes as runup_notes
+from leblanc.results.base import FilledChamber, Note, percent
+from leblanc.results.notes import RunupCode
 from leblanc.results.runup import Bands, RunupFrames, RunupResult
 from leblanc.scene.inputs import runup_rows
-from leblanc.scene.machine import dry_rotor, jeffcott, require_clear
-from leblanc.scene.scene import JeffcottRotor, Runup, Scene
+from leblanc.scene.scene import JeffcottRotor, Runup, Scene, dry_rotor, jeffcott, require_clear
 from leblanc.studies.prepare import across_gravity as across_gravity  # of a run-up, asked for with it
 from leblanc.studies.prepare import axial_gravity
 from leblanc.studies.validity import RANGES
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
-from solvers.runup.drive import Drive, Motor, Ramp
-from solvers.runup.error import MOST_LAG, MOST_WAVE, LinearRunError, largest_wave, linear_run_error
-from solvers.runup.runup import MODELS, RunupHistory, RunupNumerics, run_up
+from solvers.runup.machine import Drive, Motor, Ramp
+from solvers.runup.runup import (
+    MODELS,
+    MOST_LAG,
+    MOST_WAVE,
+    LinearRunError,
+    RunupHistory,
+    RunupNumerics,
+    largest_wave,
+    linear_run_error,
+    run_up,
+)
 from solvers.synchronous.response import Response, response
 
 FRAMES = 180  # of a film
@@ -342,7 +349,7 @@ def _notes(scene: Scene, taken: RunupChoice, steady: Response | None, bands: Ban
             runup_notes.capture(j, bool(h.captured[k, j]), float(h.time[k]), float(h.speed[k]))
             for k, j in switched
         ),
-        runup_notes.self_excited(bands, scene.model.friction),
+        runup_notes.self_excited_on_the_way(bands, scene.model.friction),
     ]
     return [note for note in notes if note is not None]
 

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from fluid.printed import optimal_volume_as_printed, optimal_volume_disc_corrected
-from leblanc.results.volume import Coverage, Surface, VolumeResult
+from leblanc.results.liquid import Coverage, Surface, VolumeResult
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.statics.hydrostatics import equilibrium, optimal_volume

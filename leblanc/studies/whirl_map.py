@@ -12,8 +12,8 @@ from fluid.friction import Friction
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
 from leblanc.friction import friction_words
-from leblanc.results.note import Note
-from leblanc.results.notes import whirl_map as map_notes
+from leblanc.results import notes as map_notes
+from leblanc.results.base import Note
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import Scene
 from leblanc.studies.prepare import Prepared, prepare

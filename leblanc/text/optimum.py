@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from leblanc.results.note import texts
+from leblanc.results.base import texts
 from leblanc.results.optimum import OptimumResult
 from leblanc.text.numbers import number
 from leblanc.units import ML, MM, RPM

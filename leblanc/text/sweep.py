@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from leblanc.results.base import one_line
-from leblanc.results.several.sweep import SweepResult
+from leblanc.results.sweep import SweepResult
 from leblanc.text.numbers import number
 from leblanc.units import MM
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from leblanc.results.base import one_line
-from leblanc.results.drawn.shapes import TableView
+from leblanc.results.drawn import TableView
 from leblanc.units import MM, RPM
 from leblanc.view.parts import NO_CELLS, Label, Picture, Piece, bar_length, circle, line
 from meshes.arrays import Array, Indices

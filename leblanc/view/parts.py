@@ -8,8 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fluid.fill import Fill
-from leblanc.results.drawn.scale import Scale
-from leblanc.results.drawn.shapes import Liquid
+from leblanc.results.drawn import Liquid, Scale
 from leblanc.units import MM
 from meshes.arrays import Array, Complex, Indices
 

@@ -1,13 +1,21 @@
-"""The three-dimensional picture of a machine at one instant: chambers, liquid, marks."""
+"""The three-dimensional picture of a machine at one instant: chambers, walls, liquid, marks; stills."""
 
 from __future__ import annotations
 
+import cmath
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.drawn.shapes import LiquidBodies, LiquidShape, strips
+from leblanc.figures.chambers import plates
+from leblanc.figures.page import zero_of
+from leblanc.results.base import one_line
+from leblanc.results.drawn import DrawnLiquid, LiquidBodies, LiquidShape, MachineMotion, Scale, strips
+from leblanc.units import MM, RPM
 from leblanc.view.parts import (
     ABOVE,
     AWAY,
@@ -23,10 +31,169 @@ from leblanc.view.parts import (
     marks,
     placed,
 )
-from leblanc.view.walls import baffles, plates_of, section_walls, straight
 from meshes.arrays import Array, Complex, Indices
 from meshes.bodies.body import WALL_PARTS
 from meshes.chamber import Chamber
+from meshes.chamber_section import ChamberSection
+from meshes.liquid_section import free_sides
+from meshes.section import Section
+
+STEPS = 4  # straight pieces of a curved side
+_SAME = 1e-9  # of the farthest point: ends nearer to each other are one
+_PARTS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])  # of a curved triangle
+
+
+@dataclass(frozen=True)
+class Outline:
+    """Sides of a section, each as straight pieces with k points, from the geometric axis.
+
+    Parameters
+    ----------
+    walls : complex, m, shape (n, k), with the section on the left
+    outwards : unit vectors out of the section at these points, complex, shape (n, k)
+    plates : both sides of baffles without thickness, each pair once, m, shape (m, k)
+    """
+
+    walls: Complex
+    outwards: Complex
+    plates: Complex
+
+
+def outline(section: Section) -> Outline:
+    """Walls of a section, those without thickness apart.
+
+    Parameters
+    ----------
+    section : about the geometric axis
+    """
+    sides = free_sides(section.triangles)
+    plane = section.points[:, 0] + 1j * section.points[:, 1]
+    curved = sides.shape[1] == 3
+    start, end = plane[sides[:, 0]], plane[sides[:, 1]]
+    middle = plane[sides[:, 2]] if curved else 0.5 * (start + end)
+    t = np.linspace(0.0, 1.0, STEPS + 1 if curved else 2)
+    at = np.stack([(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)])
+    slope = np.stack([4 * t - 3, 4 - 8 * t, 4 * t - 1])
+    nodes = np.stack([start, middle, end], axis=1)
+    points, along = nodes @ at, nodes @ slope
+    out = -1j * along / np.abs(along)
+    double = _double(start, end, _SAME * float(np.abs(plane).max()))
+    # One direction where two sides meet.
+    total = np.zeros(plane.size, dtype=complex)
+    for k, column in ((0, 0), (1, -1)):
+        np.add.at(total, sides[~double, k], out[~double, column])
+    size = np.abs(total)
+    mean = np.divide(total, size, out=np.zeros_like(total), where=size > 0.0)
+    out[:, 0], out[:, -1] = mean[sides[:, 0]], mean[sides[:, 1]]
+    first = double & (np.arange(len(sides)) == _first(start, end, _SAME * float(np.abs(plane).max())))
+    walls, outwards, plates = (
+        np.asarray(one, dtype=complex) for one in (points[~double], out[~double], points[first])
+    )
+    return Outline(walls, outwards, plates)
+
+
+def _pairs(start: Complex, end: Complex, same: float) -> NDArray[np.int64]:
+    """Number of each side, alike for two between the same ends."""
+    grid = np.stack([start.real, start.imag, end.real, end.imag], axis=1)
+    cells = np.rint(grid / same).astype(np.int64)
+    swap = (cells[:, 0] > cells[:, 2]) | ((cells[:, 0] == cells[:, 2]) & (cells[:, 1] > cells[:, 3]))
+    cells[swap] = cells[swap][:, [2, 3, 0, 1]]
+    return np.unique(cells, axis=0, return_inverse=True)[1].ravel().astype(np.int64)
+
+
+def _double(start: Complex, end: Complex, same: float) -> NDArray[np.bool_]:
+    """Sides at the place of another one: the two faces of a baffle."""
+    number = _pairs(start, end, same)
+    return np.asarray(np.bincount(number)[number] == 2)
+
+
+def _first(start: Complex, end: Complex, same: float) -> NDArray[np.int64]:
+    """The first side of the number that each has."""
+    number = _pairs(start, end, same)
+    return np.unique(number, return_index=True)[1][number].astype(np.int64)
+
+
+def plates_of(chamber: Chamber, depth: float) -> Complex:
+    """Baffles as lines from the geometric axis, m, shape (m, k).
+
+    Parameters
+    ----------
+    chamber : with baffles of its own or in its section
+    depth : by which the liquid layer is drawn deeper; distances of baffles from the wall grow with it
+    """
+    if chamber.section is not None:
+        return outline(chamber.section.mesh).plates
+    if chamber.baffles is None:
+        return np.empty((0, 2), dtype=complex)
+    ends = np.array(plates(chamber.baffles, chamber.radius, depth))
+    inner = np.maximum(np.abs(ends[:, :1]), chamber.inner_radius) * np.exp(1j * np.angle(ends[:, 1:]))
+    return np.concatenate([inner, ends[:, 1:]], axis=1)
+
+
+def baffles(stage: Stage, lines: Complex, k: int, centre: complex, floor: float, lid: float) -> list[Piece]:
+    """Plates over the whole height.
+
+    Parameters
+    ----------
+    stage : what stands still
+    lines : as from `plates_of`
+    k : number of the chamber, from 0
+    centre : of the chamber as drawn, m
+    floor, lid : places along the axis, m
+    """
+    return [_ruled(stage, f"baffle {k + 1}", "metal", centre + one[None], floor, lid) for one in lines]
+
+
+def section_walls(
+    stage: Stage, section: ChamberSection, k: int, centre: complex, floor: float, lid: float, skin: float
+) -> list[Piece]:
+    """Walls, floor, lid and their rims.
+
+    Parameters
+    ----------
+    stage : what stands still
+    section : of the chamber
+    k : number of the chamber, from 0
+    centre : of the chamber as drawn, m
+    floor, lid : places along the axis, m
+    skin : how much outside the liquid walls are drawn, m
+    """
+    sides = outline(section.mesh)
+    walls = centre + sides.walls + skin * sides.outwards
+    mesh = section.mesh
+    across = centre + mesh.points[:, 0] + 1j * mesh.points[:, 1]
+    number = np.arange(walls.size).reshape(walls.shape)
+    edges = np.stack([number[:, :-1].ravel(), number[:, 1:].ravel()], axis=-1).astype(np.int64)
+    return [
+        _ruled(stage, f"wall {k + 1}", "wall", walls, floor, lid),
+        Piece(f"floor {k + 1}", placed(stage, across, floor), straight(mesh.triangles), "floor"),
+        Piece(f"lid {k + 1}", placed(stage, across, lid), straight(mesh.triangles), "lid"),
+        *(
+            Piece(f"rim {k + 1}", placed(stage, walls.ravel(), height), edges, "rim")
+            for height in (floor, lid)
+        ),
+    ]
+
+
+def straight(triangles: Indices) -> Indices:
+    """Triangles with straight sides, four for one with curved sides.
+
+    Parameters
+    ----------
+    triangles : node numbers, shape (m, 3) or (m, 6)
+    """
+    return triangles if triangles.shape[1] == 3 else triangles[:, _PARTS].reshape(-1, 3)
+
+
+def _ruled(stage: Stage, name: str, look: str, lines: Complex, floor: float, lid: float) -> Piece:
+    """Upright faces on lines across the axis, shape (n, k)."""
+    low = np.arange(lines.size).reshape(lines.shape)
+    one, other = low[:, :-1].ravel(), low[:, 1:].ravel()
+    cells: Indices = np.stack([one, other, other + lines.size, one + lines.size], axis=-1).astype(np.int64)
+    plane = lines.ravel()
+    points = np.concatenate([placed(stage, plane, floor), placed(stage, plane, lid)])
+    return Piece(name, points, cells, look)
+
 
 SKIN = 0.003  # walls are drawn so much outside the liquid, over the radius, so that the two do not coincide
 _ON_PLATE = 1e-6  # of a plate's length, that a face may be off it
@@ -183,3 +350,143 @@ def _shore(surface: Indices, wall: Indices) -> Indices:
     number = max(int(one.max(initial=0)) for one in edges) + 1
     open_, closed = (one[:, 0] * number + one[:, 1] for one in edges)
     return np.asarray(edges[0][np.isin(open_, closed)], dtype=np.int64)
+
+
+MINUS, DEGREE = "\N{MINUS SIGN}", "\N{DEGREE SIGN}"
+
+
+def stage_of(motion: MachineMotion, scale: Scale) -> Stage:
+    """What stands still in pictures of a machine.
+
+    Parameters
+    ----------
+    motion : the machine
+    scale : common to all pictures
+    """
+    size = np.nan_to_num(np.abs(motion.deflection))
+    tilting = motion.response.motion
+    return Stage(
+        fills=motion.fills,
+        places=motion.places,
+        lying=motion.response.axis == "horizontal",
+        scale=scale,
+        swing=scale.deflection * float(size.max(initial=0.0)),
+        zero="unbalance" if tilting is None or tilting.zero == "unbalance" else "angle 0",
+    )
+
+
+def still(motion: MachineMotion, index: int, liquid: DrawnLiquid, stage: Stage | None = None) -> Picture:
+    """Picture of a machine at one of its speeds.
+
+    Parameters
+    ----------
+    motion : the machine
+    index : of the speed
+    liquid : as drawn at that speed
+    stage : of several pictures, for this one alone if None
+    """
+    found = motion.deflection[index]
+    deflection = np.where(np.isfinite(found), found, 0.0)
+    lean = complex(motion.lean[index])
+    instant = Instant(
+        deflection=tuple(map(complex, deflection)),
+        lean=lean if cmath.isfinite(lean) else 0j,
+        bodies=liquid.bodies,
+        title=describe_speed(motion.response.name, float(motion.speed[index])),
+        state="\n".join(describe_state(motion, index, liquid.dry)),
+        caption=" ".join(describe_drawing(motion, index, liquid)),
+    )
+    return compose(stage_of(motion, liquid.scale) if stage is None else stage, instant)
+
+
+def describe_speed(name: str, speed: float) -> str:
+    """Title of a picture.
+
+    Parameters
+    ----------
+    name : of the scene
+    speed : rad/s
+    """
+    return f"{one_line(name)}: {speed * RPM:.4g} rpm ({speed:.4g} rad/s)"
+
+
+def describe_state(motion: MachineMotion, index: int, dry: Sequence[bool]) -> list[str]:
+    """Deflection and liquid of a machine at one of its speeds, a line each.
+
+    Parameters
+    ----------
+    motion, index : the machine, which speed
+    dry : the wall of each chamber is dry in part there
+    """
+    found, answer = motion.deflection[index], motion.response.response
+    if not np.isfinite(found).all():
+        return ["no bounded deflection found: the axis is drawn at rest"]
+    lines = []
+    several = len({round(abs(one), 12) for one in found}) > 1
+    for k, one in enumerate(found):
+        if k == 0 or several:
+            name = f"chamber {k + 1}: deflection" if several else "deflection"
+            lines.append(f"{name} {place_in_words(complex(one), zero_of(motion.response))}")
+    if not motion.fills:
+        return [*lines, "no liquid"]
+    which = [str(k + 1) for k, here in enumerate(dry) if here]
+    wall = "wall wet all round" if not which else "wall dry in part"
+    if which and len(motion.fills) > 1:
+        wall += f" in chamber{'s' if len(which) > 1 else ''} {', '.join(which)}"
+    lines.append(f"{wall}; liquid model {answer.model[index]}")
+    if not answer.in_range[index]:
+        lines.append("out of the range in which the models hold")
+    if not answer.stable[index]:
+        lines.append("not stable: this motion would not last")
+    return lines
+
+
+def place_in_words(deflection: complex, zero: str) -> str:
+    """Size and angle of a deflection.
+
+    Parameters
+    ----------
+    deflection : m
+    zero : what angles count from
+    """
+    if deflection == 0.0:
+        return "none"
+    angle = f"{math.degrees(cmath.phase(deflection)):.0f}"
+    angle = "0" if angle == "-0" else angle.replace("-", MINUS)
+    return f"{abs(deflection) * MM:.3g} mm at {angle}{DEGREE} from {zero}"
+
+
+def describe_drawing(motion: MachineMotion, index: int, liquid: DrawnLiquid) -> list[str]:
+    """How a still is drawn, sentence by sentence.
+
+    Parameters
+    ----------
+    motion, index, liquid : the machine, which speed, its liquid as drawn
+    """
+    scale = liquid.scale
+    words = [scale.in_words(), "Seen from the drum."]
+    if motion.fills and scale != Scale():
+        words.append("The liquid is in equilibrium with the deflection as drawn.")
+    wrong = [here for there, here in zip(liquid.dry, liquid.drawn_dry, strict=True) if here != there]
+    if wrong:
+        words.append(f"A wall is {'dry in part' if wrong[0] else 'wet all round'} in the picture alone.")
+    if any(fill.compartments > 1 for fill in motion.fills):
+        words.append("Baffles close the compartments: each keeps its volume.")
+    open_ = [fill for fill in motion.fills if fill.chamber.baffles is not None and fill.compartments == 1]
+    if scale.depth > 1.0 and open_:
+        words.append("Distances of the baffles from the wall grow with the depth.")
+    if names := dict.fromkeys(
+        one.chamber.section.name for one in motion.fills if one.chamber.section is not None
+    ):
+        words.append(f"Section from {', '.join(names)}.")
+    if motion.moved:
+        words.append("Chambers drawn one behind the other; the scene does not say where they are.")
+    tilting, answer = motion.response.motion, motion.response.response
+    if tilting is not None and abs(tilting.backward[index]) > 0.01 * abs(answer.deflection[index]):
+        words.append(
+            f"Drawn is the part that turns with the spin; {abs(tilting.backward[index]) * MM:.2g} mm "
+            "turn against it."
+        )
+    if motion.response.assumed:
+        words.append("Some values of the scene are assumed.")
+    return words

@@ -8,8 +8,8 @@ import numpy as np
 
 from fluid.liquid import known_liquid
 from leblanc.scene.chambers import Chamber
-from leblanc.scene.optimise import Optimisation
 from leblanc.scene.scene import JeffcottRotor, Model, Scene, Speeds
+from leblanc.scene.tasks import Optimisation
 from leblanc.studies.batch import answer_scenes
 from leblanc.studies.optimise.answers import with_volumes
 from meshes.arrays import Array

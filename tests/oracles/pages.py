@@ -7,9 +7,8 @@ import math
 from html.parser import HTMLParser
 from pathlib import Path
 
-from leblanc.report.inputs import Entry, Inputs
 from leblanc.report.page import About
-from leblanc.report.parts import Cell
+from leblanc.report.parts import Cell, Entry, Inputs
 from leblanc.results.base import one_line
 from leblanc.results.response import RunResult
 from leblanc.scene.rows import Value

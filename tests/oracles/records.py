@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.chamber import FilledChamber
-from leblanc.results.notes import run as run_notes
+from leblanc.results import notes as run_notes
+from leblanc.results.base import FilledChamber
 from leblanc.results.response import RunResult
 from meshes.arrays import Array
 from solvers.synchronous.response import Response

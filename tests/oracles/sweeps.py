@@ -12,8 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from leblanc.scene.machine import jeffcott
-from leblanc.scene.scene import Scene
+from leblanc.scene.scene import Scene, jeffcott
 from leblanc.studies.batch import Answers
 from leblanc.studies.sweep.study import Sweep, load_sweep
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from leblanc.scene.examples import example
-from leblanc.scene.machine import jeffcott
+from leblanc.scene.scene import jeffcott
 from leblanc.studies.prepare import axial_gravity
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.response import response

@@ -8,8 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from leblanc.scene.machine import dry_rotor
-from leblanc.scene.scene import load_scene
+from leblanc.scene.scene import dry_rotor, load_scene
 from solvers.rotor.tub import Tub
 from solvers.rotor.vibration import critical_speeds, unbalance_response
 from tests.mutants import kills

@@ -11,8 +11,8 @@ import numpy as np
 
 from fluid.friction import Friction, FrictionLaw
 from meshes.arrays import Array
-from solvers.layer.prescribed import Numerics, Whirl
 from solvers.layer.settle import simulate
+from solvers.layer.state import Numerics, Whirl
 from validation.benchmarks.ours import CODE
 from validation.benchmarks.problems import SPIN, fill
 from validation.benchmarks.timing import Answer, Contestant, Go

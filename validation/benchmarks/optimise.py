@@ -9,8 +9,8 @@ import time
 from dataclasses import dataclass
 
 from leblanc.scene.examples import example
-from leblanc.scene.optimise import DutyPoint, Optimisation
 from leblanc.scene.scene import Scene
+from leblanc.scene.tasks import DutyPoint, Optimisation
 from leblanc.studies.optimise.optimise import optimise_scene
 
 SCENES = ("runup", "centrifuge", "washing_machine", "horizontal_rig", "vertical_rig")

@@ -8,9 +8,9 @@ from collections.abc import Callable
 import numpy as np
 
 from meshes.arrays import Array, Complex
-from solvers.waves.periodic import solve
+from solvers.waves.modes import WaveTerms, wave_split
+from solvers.waves.steady import solve
 from solvers.waves.stepper import Control, advance_adaptive, advance_fixed, to_spectrum
-from solvers.waves.terms import WaveTerms, wave_split
 from validation.benchmarks.problems import (
     METHOD,
     SteadyProblem,

@@ -7,8 +7,7 @@ machine has with a full chamber's mass added to it: both follow without a search
 from __future__ import annotations
 
 from leblanc.scene.examples import example
-from leblanc.scene.machine import jeffcott
-from leblanc.scene.scene import Scene
+from leblanc.scene.scene import Scene, jeffcott
 from leblanc.studies.optimise.closed_form import wetting_volumes
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.prepare import axial_gravity

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from solvers.rotor.bearing import cage_speed
+from solvers.rotor.system import cage_speed
 from solvers.rotor.vibration import modes, orbit, unbalance_response
 from validation.cases.case import Case, compare
 from validation.cases.suspended_tub import (

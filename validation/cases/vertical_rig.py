@@ -6,8 +6,7 @@ import math
 
 import numpy as np
 
-from solvers.synchronous.critical import critical_speed
-from solvers.synchronous.response import response
+from solvers.synchronous.response import critical_speed, response
 from validation.cases.case import Case
 from validation.cases.scenes import data, vertical_rig, vertical_rotor
 

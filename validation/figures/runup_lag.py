@@ -20,7 +20,7 @@ import numpy as np
 from fluid.friction import Friction, FrictionLaw
 from leblanc.results.runup import turn_mean
 from meshes.arrays import Array, Complex
-from solvers.runup.drive import Ramp
+from solvers.runup.machine import Ramp
 from solvers.runup.runup import RunupNumerics, run_up
 from solvers.synchronous.response import response
 from validation.cases.scenes import data, horizontal_rig, horizontal_rotor

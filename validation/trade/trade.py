@@ -15,8 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from leblanc.results.base import one_line
-from leblanc.scene.machine import require_clear
-from leblanc.scene.scene import Scene
+from leblanc.scene.scene import Scene, require_clear
 from validation.trade.answers import Answer, Case, answer, taste
 from validation.trade.cases import Question, questions
 from validation.trade.judge import Comparison, Run, compare, errors

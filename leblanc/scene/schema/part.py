@@ -17,7 +17,7 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
-from leblanc.scene.schema.faults import SceneFault, SceneFaults, field_path, meant, shown
+from leblanc.scene.schema.load import SceneFault, SceneFaults, field_path, meant, shown
 from leblanc.scene.schema.rules import OneOf, Refused
 from meshes.errors import InputError
 

@@ -8,7 +8,7 @@ from typing import Annotated, Any, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
-from leblanc.scene.schema.faults import field_path, meant
+from leblanc.scene.schema.load import field_path, meant
 from leblanc.scene.schema.part import Part, is_list_of_parts, parts_of, rule_of
 from leblanc.scene.schema.rules import Entries, Refused, Several
 

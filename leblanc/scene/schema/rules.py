@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, PlainValidator
 
 from leblanc import units
-from leblanc.scene.schema.faults import meant
+from leblanc.scene.schema.load import meant
 from leblanc.units import Dimension, parse
 
 

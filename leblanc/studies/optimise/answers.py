@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from leblanc.scene.machine import jeffcott
-from leblanc.scene.scene import JeffcottRotor, Scene, Speeds
+from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, jeffcott
 from leblanc.studies.batch import answer_scenes
 from leblanc.studies.prepare import axial_gravity
 from meshes.arrays import Array, Flags

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fluid.fill import Fill
-from leblanc.results.note import Note
+from leblanc.results.base import Note
 from leblanc.results.optimum import ConstraintValue, WettingVolumes, given_deflection
 from leblanc.scene.scene import Scene
 from leblanc.studies.optimise.answers import with_volumes

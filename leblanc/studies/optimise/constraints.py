@@ -9,8 +9,7 @@ import numpy as np
 
 from fluid.fill import Fill
 from leblanc.results.optimum import ConstraintValue
-from leblanc.scene.machine import dry_rotor
-from leblanc.scene.scene import Scene
+from leblanc.scene.scene import Scene, dry_rotor
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.objectives import PeakOver, Vibration
 from leblanc.studies.optimise.robust import Robust

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.results.optimum import EmulatedAnswer, EmulatorError
-from leblanc.scene.optimise import Optimisation
 from leblanc.scene.scene import Scene
+from leblanc.scene.tasks import Optimisation
 from leblanc.studies.sweep.emulator import Emulator, emulate_store, varied_fields
 from leblanc.studies.sweep.store import read_store
 from meshes.arrays import Array

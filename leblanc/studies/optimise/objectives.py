@@ -95,7 +95,7 @@ class RunupPeak(AlwaysExact):
         return np.array([self._one(np.ascontiguousarray(row)) for row in volumes])
 
     def _one(self, volumes: Array) -> float:
-        from leblanc.scene.machine import dry_rotor
+        from leblanc.scene.scene import dry_rotor
         from solvers.runup.runup import run_up
 
         key = volumes.tobytes()

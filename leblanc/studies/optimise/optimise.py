@@ -9,8 +9,8 @@ import numpy as np
 
 from fluid.whirl import is_full
 from leblanc.results import optimum
+from leblanc.results.base import Note
 from leblanc.results.choice import ModelSpan
-from leblanc.results.note import Note
 from leblanc.results.optimum import (
     CandidateChamber,
     Candidates,
@@ -19,9 +19,8 @@ from leblanc.results.optimum import (
     OptimumResult,
     WettingVolumes,
 )
-from leblanc.scene.machine import require_clear
-from leblanc.scene.optimise import Optimisation
-from leblanc.scene.scene import Scene, Speeds
+from leblanc.scene.scene import Scene, Speeds, require_clear
+from leblanc.scene.tasks import Optimisation
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.at_deflection import WettedWalls, wet_walls
 from leblanc.studies.optimise.closed_form import wetting_volumes

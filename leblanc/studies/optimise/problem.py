@@ -9,9 +9,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from leblanc.results import optimum
-from leblanc.results.note import Note
-from leblanc.scene.optimise import OBJECTIVES, Optimisation
+from leblanc.results.base import Note
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds
+from leblanc.scene.tasks import OBJECTIVES, Optimisation
 from leblanc.studies.optimise.answers import FilledMachine
 from leblanc.studies.optimise.constraints import (
     BEYOND,

@@ -8,9 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from leblanc.scene.machine import jeffcott
-from leblanc.scene.optimise import Optimisation
-from leblanc.scene.scene import JeffcottRotor, Scene
+from leblanc.scene.scene import JeffcottRotor, Scene, jeffcott
+from leblanc.scene.tasks import Optimisation
 from leblanc.studies.optimise.closed_form import wetting_volumes
 from leblanc.studies.optimise.objectives import PeakOver, RunupPeak
 from leblanc.studies.optimise.problem import Problem

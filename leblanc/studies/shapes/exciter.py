@@ -6,12 +6,10 @@ import math
 
 import numpy as np
 
-from leblanc.results.drawn.scale import rounded_down
-from leblanc.results.drawn.shapes import TableView
+from leblanc.results.drawn import TableView, rounded_down
 from leblanc.scene.scene import Exciter, Scene
 from meshes.errors import InputError
-from solvers.rotor.exciter.machine import platform_motion
-from solvers.rotor.exciter.stuck import stuck_speeds
+from solvers.rotor.exciter.machine import platform_motion, stuck_speeds
 
 SWING, MOST = 0.35, 100.0  # vibration as drawn over the track's radius, and the largest factor
 

@@ -11,8 +11,7 @@ import math
 
 import numpy as np
 
-from leblanc.results.drawn.scale import chord, half_angle
-from leblanc.results.drawn.shapes import LiquidShape
+from leblanc.results.drawn import LiquidShape, chord, half_angle
 from meshes.arrays import Array
 from meshes.chamber import Chamber
 from meshes.errors import InputError

@@ -8,11 +8,9 @@ import math
 import numpy as np
 
 from fluid.fill import Fill
-from leblanc.results.drawn.scale import Scale
-from leblanc.results.drawn.shapes import DrawnLiquid, Liquid, MachineMotion, MachineView
+from leblanc.results.drawn import DrawnLiquid, Liquid, MachineMotion, MachineView, Scale
 from leblanc.results.response import RunResult
-from leblanc.scene.machine import dry_rotor
-from leblanc.scene.scene import JeffcottRotor, Scene, Speeds
+from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, dry_rotor
 from leblanc.studies.choose import choose, liquid_models
 from leblanc.studies.prepare import axial_gravity
 from leblanc.studies.run import run_scene

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from fluid.fill import Fill
-from leblanc.results.drawn.shapes import ModeView
+from leblanc.results.drawn import ModeView
 from leblanc.scene.scene import Scene
 from leblanc.studies.prepare import across_gravity
 from leblanc.studies.shapes.scale import inner_room
@@ -16,7 +16,7 @@ from meshes.arrays import Complex
 from meshes.chamber_section import surface_is_whole
 from meshes.errors import InputError
 from meshes.liquid_section import LiquidSection
-from meshes.refine.waterline_cut import liquid_outside
+from meshes.refine.waterline import liquid_outside
 from meshes.rings.quadrilaterals import ring
 from solvers.sloshing.modes import SloshingModes, sloshing_modes
 from solvers.sloshing.system import condense

@@ -7,8 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from fluid.fill import Fill
-from leblanc.results.drawn.scale import Scale, film_factor
-from leblanc.results.drawn.shapes import Liquid, RunupView
+from leblanc.results.drawn import Liquid, RunupView, Scale, film_factor
 from leblanc.results.runup import RunupFrames, RunupResult
 from leblanc.scene.scene import Scene
 from leblanc.studies.runup import runup_scene

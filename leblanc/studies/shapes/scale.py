@@ -7,14 +7,13 @@ import math
 import numpy as np
 
 from fluid.fill import Fill
-from leblanc.results.drawn.scale import Scale, rounded_down
-from leblanc.results.drawn.shapes import MachineMotion
+from leblanc.results.drawn import MachineMotion, Scale, rounded_down
 from leblanc.studies.shapes.bodies import is_cut
 from meshes.arrays import Array, Complex
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from meshes.liquid_section import free_sides
-from meshes.refine.waterline_cut import area_outside
+from meshes.refine.waterline import area_outside
 from solvers.statics.hydrostatics import optimal_volume
 
 SHOWN = 0.15  # deflection as drawn over the widest chamber's radius, if there is room

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from leblanc.results.base import versions
 from leblanc.scene.scene import Scene
-from leblanc.scene.schema.faults import escaped
+from leblanc.scene.schema.load import escaped
 from leblanc.scene.schema.paths import Keys
 from leblanc.studies.sweep.outputs import DONE, FAILED, NOT_CONVERGED, OUTPUTS, blank, values_of
 from leblanc.studies.sweep.scenes import make_scenes, scene_maker

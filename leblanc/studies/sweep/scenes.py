@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from leblanc.scene.chambers import Chamber
 from leblanc.scene.scene import Scene, scene_from_table
-from leblanc.scene.schema.faults import SceneFaults, escaped
+from leblanc.scene.schema.load import SceneFaults, escaped
 from leblanc.scene.schema.part import Part, rule_of
 from leblanc.scene.schema.paths import Keys, tables_of, with_values
 from leblanc.scene.schema.rules import Quantity

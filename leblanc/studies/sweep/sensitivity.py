@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from leblanc.results.several.sweep import Sensitivity
+from leblanc.results.sweep import Sensitivity
 from meshes.arrays import Array
 
 CONFIDENCE = 0.95

@@ -14,8 +14,7 @@ from typing import Annotated, Any
 from pydantic import Field, PlainValidator, ValidationError
 
 from leblanc.scene.scene import Exciter, Scene, scene_from_table
-from leblanc.scene.schema.faults import SceneFault, SceneFaults, field_path, shown
-from leblanc.scene.schema.load import read_scene, read_toml
+from leblanc.scene.schema.load import SceneFault, SceneFaults, field_path, read_scene, read_toml, shown
 from leblanc.scene.schema.part import Conflict, Part, allowed_at, faults_of
 from leblanc.scene.schema.paths import Keys, keys_of, rule_at
 from leblanc.scene.schema.rules import Quantity, Refused, Text, one_of, whole

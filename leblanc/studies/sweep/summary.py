@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from leblanc.results.several.sweep import QUANTILES, Statistics, SweepResult
+from leblanc.results.sweep import QUANTILES, Statistics, SweepResult
 from leblanc.studies.sweep.outputs import DONE, FAILED, NOT_CONVERGED, SINGLE
 from leblanc.studies.sweep.sampling import sample_rows
 from leblanc.studies.sweep.sensitivity import sensitivity

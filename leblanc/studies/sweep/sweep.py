@@ -12,7 +12,7 @@ from types import FrameType
 
 import numpy as np
 
-from leblanc.scene.schema.faults import SceneFault, SceneFaults, shown
+from leblanc.scene.schema.load import SceneFault, SceneFaults, shown
 from leblanc.studies.sweep.block import Block, BlockAnswer
 from leblanc.studies.sweep.outputs import PENDING
 from leblanc.studies.sweep.sampling import Rows, sample_rows

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from itertools import islice
 from typing import Any
 
-from leblanc.scene.schema.faults import NotConverged
+from leblanc.scene.schema.load import NotConverged
 from leblanc.studies.sweep.block import Block, BlockAnswer, answer_block, own_versions, reason_of
 from meshes.errors import InputError
 

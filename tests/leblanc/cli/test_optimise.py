@@ -15,9 +15,9 @@ from leblanc import units
 from leblanc.cli import main
 from leblanc.figures.optimise import write_figures
 from leblanc.results.optimum import OptimumResult
-from leblanc.scene.optimise import Optimisation
 from leblanc.scene.scene import load_scene, scene_from_table
-from leblanc.scene.schema.faults import SceneFaults
+from leblanc.scene.schema.load import SceneFaults
+from leblanc.scene.tasks import Optimisation
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.text.optimum import describe_optimum
 

@@ -15,7 +15,7 @@ import typer
 from leblanc import cli
 from leblanc.cli import exit_code, main
 from leblanc.scene.scene import load_scene
-from leblanc.scene.schema.faults import NotConverged, SceneFault, SceneFaults
+from leblanc.scene.schema.load import NotConverged, SceneFault, SceneFaults
 from meshes.errors import InputError
 
 Capture = pytest.CaptureFixture[str]

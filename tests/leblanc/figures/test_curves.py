@@ -8,9 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from leblanc import figures
-from leblanc.figures import curves
-from leblanc.figures.chambers import section
-from leblanc.results.chamber import FilledChamber
+from leblanc.figures import chambers, curves
+from leblanc.results.base import FilledChamber
 from tests.oracles.records import folded, rig
 
 CHAMBER = FilledChamber(
@@ -76,7 +75,7 @@ def test_spans_reach_half_way() -> None:
 
 def _moments(chamber: FilledChamber, centre: complex, depth: float) -> tuple[float, complex]:
     """Area and first moment of the outline by the polygon formulas."""
-    angle, inner, outer = section.liquid_outline(chamber, centre, depth)
+    angle, inner, outer = chambers.liquid_outline(chamber, centre, depth)
     z = np.concatenate([outer * np.exp(1j * angle), (inner * np.exp(1j * angle))[::-1]])
     cross = (np.conj(z) * np.roll(z, -1)).imag
     moment = np.sum((z + np.roll(z, -1)) * cross) / 6.0
@@ -102,9 +101,9 @@ def test_drawn_liquid_has_its_area_and_moment() -> None:
 def test_chords_end_on_the_circle() -> None:
     angle = np.linspace(-3.0, 3.0, 13)
     centre = 0.3 - 0.2j
-    ends = section.chord(1.0, centre, angle) * np.exp(1j * angle)
+    ends = chambers.chord(1.0, centre, angle) * np.exp(1j * angle)
     np.testing.assert_allclose(np.abs(ends - centre), 1.0, rtol=1e-14)
-    assert np.all(section.chord(1.0, centre, angle) > 0.0)
+    assert np.all(chambers.chord(1.0, centre, angle) > 0.0)
 
 
 def test_drawing_keeps_wet_wet_and_dry_dry() -> None:
@@ -112,7 +111,7 @@ def test_drawing_keeps_wet_wet_and_dry_dry() -> None:
     depth = CHAMBER.radius - CHAMBER.mean_surface_radius
     for sizes in ((0.1, 0.4), (0.4, 0.9999), (1.2, 0.1), (3.0, 0.8), (30.0, 2.0), (1e-9, 0.0), (100.0, 1.01)):
         deflections = tuple(size * depth for size in sizes)
-        scale = section.exaggeration((CHAMBER,), deflections)
+        scale = chambers.exaggeration((CHAMBER,), deflections)
         for w in deflections:
             drawn_w, drawn_depth = w * scale.deflection, depth * scale.depth
             assert (drawn_w < drawn_depth) == (w < depth)

@@ -18,9 +18,9 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
 from leblanc import figures
+from leblanc.figures import chambers as chamber
 from leblanc.figures import curves
-from leblanc.figures.chambers import along_axis as chamber
-from leblanc.results.chamber import FilledChamber
+from leblanc.results.base import FilledChamber
 from tests.oracles.records import EXTREMES, RPM, dry_deflection, folded, record_of, response_of, rig
 
 DRAW = (figures.amplitude_figure, figures.liquid_figure, figures.phase_figure, figures.chamber_figure)

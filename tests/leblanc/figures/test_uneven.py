@@ -7,9 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from leblanc.figures.chambers.section import exaggeration
-from leblanc.figures.chambers.uneven import bodies, is_uneven, plates, wall_line
-from leblanc.results.chamber import FilledChamber
+from leblanc.figures.chambers import bodies, exaggeration, is_uneven, plates, wall_line
+from leblanc.results.base import FilledChamber
 from meshes.baffles import Baffles
 from meshes.chamber_section import chamber_section
 from meshes.section import Section, annulus, disc

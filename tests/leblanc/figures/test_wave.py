@@ -16,8 +16,8 @@ from matplotlib.transforms import Bbox
 from PIL import Image
 
 from leblanc import figures
-from leblanc.figures.wave import page as wave_page
-from leblanc.figures.wave import picture as wave
+from leblanc.figures import wave
+from leblanc.figures import wave as wave_page
 from leblanc.results.layer import Wave, WaveFrames
 from meshes.errors import InputError
 from tests.leblanc.figures.test_wave_values import (

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.markers import MarkerStyle
 
 from leblanc import figures
-from leblanc.figures.wave import picture as wave
-from leblanc.figures.wave import time as wave_time
+from leblanc.figures import wave
+from leblanc.figures import wave as wave_time
 from leblanc.results.layer import Wave, WaveFrames
 
 R, SURFACE, SPIN = 0.15, 0.135, 40.0

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from leblanc.report.inputs import Inputs, scene_inputs
+from leblanc.report.parts import Inputs, scene_inputs
 from leblanc.scene.chambers import Chamber
 from leblanc.scene.inputs import optimise_rows
-from leblanc.scene.optimise import Optimisation
 from leblanc.scene.rows import row
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.schema.paths import tables_of
+from leblanc.scene.tasks import Optimisation
 from meshes.chamber_section import chamber_section
 from meshes.section import Section
 from tests.oracles.pages import printed

@@ -16,13 +16,13 @@ import pytest
 
 from leblanc.cli import main
 from leblanc.figures.exciter import write_exciter_figure
-from leblanc.report import exciter as report_exciter
 from leblanc.report import optimise as report_optimise
+from leblanc.report import run as report_exciter
+from leblanc.report import run as report_map
 from leblanc.report import runup as report_runup
-from leblanc.report import whirl_map as report_map
 from leblanc.report.page import about
 from leblanc.results.exciter import ExciterResult
-from leblanc.results.notes.runup import IN_TABLES
+from leblanc.results.notes import IN_TABLES
 from leblanc.results.optimum import ConstraintValue, Feasibility, OptimumResult
 from leblanc.results.runup import RunupResult
 from leblanc.results.whirl_map import WhirlMap
@@ -34,7 +34,7 @@ from leblanc.studies.runup import runup_scene
 from leblanc.studies.whirl_map import map_scene
 from leblanc.text import exciter as text_exciter
 from leblanc.text import whirl_map as text_map
-from leblanc.text.models import MODELS
+from leblanc.text.run import MODELS
 from tests.leblanc.studies.test_runup import lying
 from tests.leblanc.studies.test_runup import table as machine
 from tests.oracles.pages import Page, printed, read_page
@@ -125,7 +125,7 @@ def test_map_warnings() -> None:
     calm = replace(
         record, growth=-np.ones_like(record.growth), scene_edges=(), in_range=np.ones_like(record.in_range)
     )
-    assert not any(cell.warning for row in report_map.checks(calm).rows for cell in row)
+    assert not any(cell.warning for row in report_map.map_checks(calm).rows for cell in row)
     some = np.zeros_like(record.in_range)
     some[1, :7] = True
     lost = np.where(some, np.nan, -1.0)
@@ -139,10 +139,10 @@ def test_map_warnings() -> None:
             replace(calm, scene_edges=((600 / RPM, 900 / RPM),)),
         ),
     ):
-        rows = report_map.checks(troubled).rows
+        rows = report_map.map_checks(troubled).rows
         assert [(row[0].text, row[1].text) for row in rows if row[1].warning] == [(heading, text)]
     both = replace(calm, in_range=~some, growth=np.where(some, 1.0, -1.0))
-    marked = {row[0].text for row in report_map.checks(both).rows if row[1].warning}
+    marked = {row[0].text for row in report_map.map_checks(both).rows if row[1].warning}
     assert marked == {"Model out of range", "Grows where out of range"}
 
 
@@ -526,7 +526,7 @@ def test_exciter_numbers() -> None:
 def test_exciter_warnings() -> None:
     record = exciter()
     calm = replace(record, dual_frequency=np.ones_like(record.dual_frequency))
-    assert not any(cell.warning for row in report_exciter.checks(calm).rows for cell in row)
+    assert not any(cell.warning for row in report_exciter.exciter_checks(calm).rows for cell in row)
     lost = tuple(replace(one, converged=k != 1) for k, one in enumerate(record.checks))
     at = f"{printed(record.checks[1].speed * RPM)} rpm"
     beyond = f"{printed(record.speed[-1] * RPM)} rpm"
@@ -536,7 +536,7 @@ def test_exciter_warnings() -> None:
         ("Balls do not stick", beyond, replace(calm, dual_frequency=few)),
         ("Regression of the source", "outside its ranges", replace(calm, printed_critical=math.nan)),
     ):
-        rows = report_exciter.checks(troubled).rows
+        rows = report_exciter.exciter_checks(troubled).rows
         assert [(row[0].text, row[1].text) for row in rows if row[1].warning] == [(heading, text)]
 
 

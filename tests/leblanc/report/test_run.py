@@ -18,15 +18,14 @@ from leblanc.figures.page import FigureFiles
 from leblanc.report import page as report
 from leblanc.report import run as report_run
 from leblanc.report.parts import LIGHT, picture
-from leblanc.results.chamber import FilledChamber
-from leblanc.results.note import Note
-from leblanc.results.notes.run import OF_MODELS, RunCode
+from leblanc.results.base import FilledChamber, Note
+from leblanc.results.notes import OF_MODELS, RunCode
 from leblanc.results.response import RunResult, SelfExcited
 from leblanc.scene.scene import load_scene
 from leblanc.studies.run import run_scene
 from leblanc.text import run as words
-from leblanc.text.models import MODELS
 from leblanc.text.numbers import number, ranges
+from leblanc.text.run import MODELS
 from tests.oracles.pages import WARNING, Page, about_record, printed, read_page
 from tests.oracles.records import RPM, folded, record_of, response_of, rig
 
@@ -131,10 +130,10 @@ def troubled() -> dict[str, tuple[RunResult, str]]:
 
 
 def test_warnings() -> None:
-    calm = report_run.checks(replace(quiet(), tolerance=1e-3))
+    calm = report_run.response_checks(replace(quiet(), tolerance=1e-3))
     assert not any(cell.warning for row in calm.rows for cell in row)
     for heading, (record, where) in troubled().items():
-        rows = report_run.checks(replace(record, tolerance=1e-3)).rows
+        rows = report_run.response_checks(replace(record, tolerance=1e-3)).rows
         assert [row[0].text for row in rows if row[1].warning] == [heading]
         (text,) = [row[1].text for row in rows if row[0].text == heading]
         assert text == where, heading
@@ -154,7 +153,7 @@ def test_whirl_that_was_not_found_is_a_warning() -> None:
     record = quiet()
     assert record.whirl is not None
     lost = replace(record, whirl=replace(record.whirl, growth=np.where(some(0, 1), np.nan, -1.0)))
-    (row,) = [row for row in report_run.checks(lost).rows if row[1].warning]
+    (row,) = [row for row in report_run.response_checks(lost).rows if row[1].warning]
     assert row[1].text == "not found at 100 to 109.5 rpm"
 
 

@@ -16,11 +16,11 @@ import pytest
 
 from leblanc.cli import main
 from leblanc.cli.output import print_json
+from leblanc.figures.liquid import surface_figure
 from leblanc.figures.page import Figure
-from leblanc.figures.volume import surface_figure
 from leblanc.results.base import Result
+from leblanc.results.liquid import Coverage
 from leblanc.results.response import RunResult
-from leblanc.results.volume import Coverage
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.studies.choose import choose_all
 from leblanc.studies.compare import compare_models

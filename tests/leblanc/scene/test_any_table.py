@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from leblanc.scene.scene import Exciter, Scene, scene_from_table
-from leblanc.scene.schema.faults import SceneFaults
+from leblanc.scene.schema.load import SceneFaults
 from leblanc.scene.schema.part import parts_of
 from leblanc.scene.schema.paths import tables_of
 from tests.leblanc.scene.test_scene import TEXT

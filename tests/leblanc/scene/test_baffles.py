@@ -10,10 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from leblanc.scene.machine import jeffcott
-from leblanc.scene.scene import Scene, load_scene, scene_from_table
-from leblanc.scene.schema.faults import SceneFaults
-from leblanc.scene.schema.load import read_toml
+from leblanc.scene.scene import Scene, jeffcott, load_scene, scene_from_table
+from leblanc.scene.schema.load import SceneFaults, read_toml
 from leblanc.studies.batch import answer_scenes
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.run import run_scene

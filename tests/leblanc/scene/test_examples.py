@@ -12,8 +12,7 @@ import pytest
 from leblanc.cli import main
 from leblanc.scene import scene as scene_module
 from leblanc.scene.examples import example, example_names, example_path, example_title
-from leblanc.scene.machine import jeffcott
-from leblanc.scene.scene import Scene, load_scene
+from leblanc.scene.scene import Scene, jeffcott, load_scene
 from leblanc.scene.schema.load import read_toml
 from leblanc.studies.sweep.study import load_sweep
 from meshes.errors import InputError

@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from leblanc.scene.scene import load_scene
-from leblanc.scene.schema.faults import SceneFaults
-from leblanc.scene.schema.load import MAX_BYTES
+from leblanc.scene.schema.load import MAX_BYTES, SceneFaults
 from tests.leblanc.scene.test_faulty_scenes import CHAMBER, GOOD, shell
 
 FILES = {

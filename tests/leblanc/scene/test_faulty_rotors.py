@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from leblanc.scene.scene import load_scene
-from leblanc.scene.schema.faults import SceneFaults
+from leblanc.scene.schema.load import SceneFaults
 from tests.leblanc.scene.test_faulty_scenes import Case, case, check, shell
 from tests.leblanc.scene.test_rotors import EXCITER, HEAD, MOTOR, TUB, TWO_PLANE
 

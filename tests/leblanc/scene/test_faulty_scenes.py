@@ -9,7 +9,7 @@ import pytest
 
 from leblanc.cli import exit_code, main
 from leblanc.scene.scene import load_scene
-from leblanc.scene.schema.faults import SceneFaults
+from leblanc.scene.schema.load import SceneFaults
 
 # A command that reads a scene; without one, the shell around what all such commands do first.
 COMMAND: str | None = "run"

@@ -15,7 +15,7 @@ from leblanc.scene.chambers import Chamber
 from leblanc.scene.examples import example, example_names
 from leblanc.scene.rotors import JeffcottRotor, Spring
 from leblanc.scene.scene import Scene, Speeds, scene_from_table
-from leblanc.scene.schema.faults import SceneFaults
+from leblanc.scene.schema.load import SceneFaults
 from tests.leblanc.scene.test_rotors import EXCITER, HEAD, MOTOR, TUB, TWO_PLANE
 from tests.leblanc.scene.test_scene import TEXT, read
 

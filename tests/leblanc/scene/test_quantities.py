@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from leblanc import units
-from leblanc.scene.machine import jeffcott
-from leblanc.scene.scene import scene_from_table
+from leblanc.scene.scene import jeffcott, scene_from_table
 from tests.mutants import kills
 
 _SCENE = """

@@ -8,10 +8,18 @@ from typing import Any
 
 import pytest
 
-from leblanc.scene.machine import dry_rotor, jeffcott
 from leblanc.scene.rotors import Balls
-from leblanc.scene.runup import Motor
-from leblanc.scene.scene import Exciter, Runup, Scene, TubRotor, TwoPlaneRotor, scene_from_table
+from leblanc.scene.scene import (
+    Exciter,
+    Runup,
+    Scene,
+    TubRotor,
+    TwoPlaneRotor,
+    dry_rotor,
+    jeffcott,
+    scene_from_table,
+)
+from leblanc.scene.tasks import Motor
 from meshes.errors import InputError
 from solvers.rotor.exciter.machine import Exciter as Machine
 from solvers.rotor.tub import Mount, Tub

@@ -13,8 +13,16 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from fluid.liquid import KNOWN_LIQUIDS, Liquid
-from leblanc.scene.machine import jeffcott
-from leblanc.scene.scene import Friction, JeffcottRotor, Runup, Scene, Speeds, load_scene, scene_from_table
+from leblanc.scene.scene import (
+    Friction,
+    JeffcottRotor,
+    Runup,
+    Scene,
+    Speeds,
+    jeffcott,
+    load_scene,
+    scene_from_table,
+)
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
 

@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 
 from leblanc.cli import main
+from leblanc.results.base import percent
 from leblanc.results.choice import model_spans
-from leblanc.results.note import percent
-from leblanc.results.notes.run import RunCode
-from leblanc.scene.machine import dry_rotor, jeffcott
-from leblanc.scene.scene import Scene, load_scene
+from leblanc.results.notes import RunCode
+from leblanc.scene.scene import Scene, dry_rotor, jeffcott, load_scene
 from leblanc.studies.choose import choose, choose_all
 from leblanc.studies.explain import explain_scene
 from leblanc.studies.prepare import axial_gravity, prepare

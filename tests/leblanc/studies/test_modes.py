@@ -14,12 +14,12 @@ import pytest
 from fluid.liquid import known_liquid
 from leblanc.cli import main
 from leblanc.studies.modes import Resolution, SectionSource, answer_modes
-from leblanc.text.modes import table_lines
+from leblanc.text.liquid import modes_table
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.files.exchange import write_section
 from meshes.section import Section, disc
-from solvers.sloshing.damping import mode_damping
+from solvers.sloshing.forced import mode_damping
 from solvers.sloshing.system import condense
 from tests.mutants import kills
 from tests.oracles.sloshing import ring_decay, sector_frequencies
@@ -58,7 +58,7 @@ def test_ring() -> None:
     assert answer.converged and not answer.notes
 
 
-@kills("leblanc.text.modes:table_lines", "k += same", "k += 1")
+@kills("leblanc.text.liquid:modes_table", "k += same", "k += 1")
 def test_closed_sectors() -> None:
     """Six compartments: one frequency six times, against the series of sines."""
     chamber = Chamber(R, H, baffles=Baffles(6))
@@ -69,7 +69,7 @@ def test_closed_sectors() -> None:
     assert np.allclose(np.abs(answer.frequency), [first] * 6 + [second] * 2, rtol=1e-4)
     assert answer.multiplicity.tolist() == [6] * 8 and answer.exact == (None,) * 8
     assert np.all(np.abs(answer.travelling) < 0.5)
-    lines = table_lines(answer)
+    lines = modes_table(answer)
     assert len(lines) == 3 and "stands" in lines[1] and " 6 " in lines[1]
 
 

@@ -13,10 +13,9 @@ import xarray as xr
 
 from leblanc.cli import main
 from leblanc.figures import amplitude_figure, campbell_figure, chamber_figure
-from leblanc.figures.chambers.section import side_by_side
+from leblanc.figures.chambers import side_by_side
 from leblanc.report.run import comparisons, facts
-from leblanc.scene.machine import dry_rotor
-from leblanc.scene.scene import Scene, load_scene, scene_from_table
+from leblanc.scene.scene import Scene, dry_rotor, load_scene, scene_from_table
 from leblanc.studies.explain import explain_scene
 from leblanc.studies.run import run_scene
 from solvers.rotor.vibration import orbit, unbalance_response

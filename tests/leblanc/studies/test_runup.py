@@ -17,13 +17,13 @@ import leblanc.studies.runup as runup_module
 from fluid.fill import Fill
 from fluid.liquid import known_liquid
 from leblanc.cli.runup import runup
-from leblanc.figures.runup import curves as figures
-from leblanc.figures.runup import film as film_figures
-from leblanc.results.drawn.scale import film_factor, half_angle
-from leblanc.results.notes.runup import RunupCode
+from leblanc.figures import films as film_figures
+from leblanc.figures import runup as figures
+from leblanc.results.drawn import film_factor, half_angle
+from leblanc.results.notes import RunupCode
 from leblanc.results.runup import RunupFrames, RunupResult, turn_mean, write_runup
 from leblanc.scene.scene import Scene, scene_from_table
-from leblanc.scene.schema.faults import NotConverged
+from leblanc.scene.schema.load import NotConverged
 from leblanc.studies.runup import (
     drive_of,
     held_from,
@@ -36,7 +36,7 @@ from leblanc.studies.runup import (
 )
 from meshes.chamber import Chamber
 from meshes.errors import InputError
-from solvers.runup.drive import Motor, Ramp
+from solvers.runup.machine import Motor, Ramp
 from solvers.runup.runup import EnergyAudit, RunupHistory
 from tests.mutants import kills
 

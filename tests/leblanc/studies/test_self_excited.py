@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from fluid.friction import Friction
-from leblanc.results.notes.run import self_excited as note_of
+from leblanc.results.notes import self_excited as note_of
 from leblanc.results.response import SelfExcited
-from leblanc.scene.machine import dry_rotor
-from leblanc.scene.scene import load_scene
+from leblanc.scene.scene import dry_rotor, load_scene
 from leblanc.studies.prepare import prepare
 from leblanc.studies.run import self_excited
 from solvers.whirl.growth import asynchronous_growth
@@ -29,7 +28,7 @@ def test_stability() -> None:
     np.testing.assert_array_equal(whirl.leaves_stable(np.ones(3, dtype=bool)), [True, True, False])
 
 
-@kills("leblanc.results.notes.run:self_excited", "np.argmax(whirl", "np.argmin(whirl")
+@kills("leblanc.results.notes:self_excited", "np.argmax(whirl", "np.argmin(whirl")
 def test_words() -> None:
     """Edges and the fastest whirl in rpm."""
     text = note_of(found([-1.0, 0.25, 0.5], ((20.0 * np.pi, 30.0 * np.pi),))).text

@@ -19,10 +19,9 @@ from leblanc.cli import main
 from leblanc.cli.map import map as map_command
 from leblanc.figures.whirl_map import map_figure, signed_distance
 from leblanc.results.netcdf import write_dataset
-from leblanc.results.notes.whirl_map import MapCode
+from leblanc.results.notes import MapCode
 from leblanc.results.whirl_map import WhirlMap
-from leblanc.scene.machine import dry_rotor
-from leblanc.scene.scene import Scene, load_scene
+from leblanc.scene.scene import Scene, dry_rotor, load_scene
 from leblanc.studies.whirl_map import SPEEDS, VOLUMES, fills_over_volume, map_scene
 from meshes.errors import InputError
 from solvers.whirl.growth import asynchronous_growth

@@ -149,7 +149,7 @@ def test_no_ffmpeg(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_page_without_its_extra(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
-    from leblanc.view import browser as view_browser
+    from leblanc.view import files as view_browser
 
     monkeypatch.setattr(view_browser, "find_spec", lambda name: None)
     assert main(["view", RUNUP, "--browser"]) == 2

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from fluid.waves import free_wave_frequencies
-from leblanc.results.drawn.scale import Scale
-from leblanc.results.drawn.shapes import LiquidShape
+from leblanc.results.drawn import LiquidShape, Scale
 from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.studies.run import run_scene
 from leblanc.studies.shapes.exciter import table_view
@@ -19,8 +18,7 @@ from leblanc.studies.shapes.modes import mode_view
 from leblanc.studies.shapes.scale import scale_of
 from leblanc.view.exciter import table_picture
 from leblanc.view.files import write_picture
-from leblanc.view.film import Film, write_film
-from leblanc.view.modes import mode_film, mode_picture, shape_of
+from leblanc.view.film import Film, mode_film, mode_picture, shape_of, write_film
 from leblanc.view.parts import Picture
 from leblanc.view.picture import SIZE, VIEWS, aim, fill, pixels, plotter, prepare_off_screen
 from meshes.errors import InputError

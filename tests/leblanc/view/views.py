@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from leblanc.results.drawn.scale import Scale
-from leblanc.results.drawn.shapes import DrawnLiquid, MachineMotion
+from leblanc.results.drawn import DrawnLiquid, MachineMotion, Scale
 from leblanc.scene.scene import Scene
 from leblanc.studies.shapes.machine import drawn_liquid, machine_view
 from leblanc.view.film import Film, sweep_film
 from leblanc.view.parts import Picture
-from leblanc.view.still import still
+from leblanc.view.scene import still
 
 
 @dataclass(frozen=True)

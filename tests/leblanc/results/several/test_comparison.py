@@ -10,9 +10,9 @@ import pytest
 
 from leblanc.cli.output import print_json
 from leblanc.figures.comparison import LOOKS
+from leblanc.results.explanation import Comparison, ModelAnswer
 from leblanc.results.response import RunResult
-from leblanc.results.several.comparison import Comparison, ModelAnswer
-from leblanc.text.comparison import reasons, rows
+from leblanc.text.explanation import reasons, rows
 from meshes.errors import InputError
 from tests.mutants import kills
 from tests.oracles.records import ADDED, MASS, RPM, dry_deflection, record_of, response_of
@@ -39,12 +39,12 @@ def three() -> Comparison:
 
 
 @kills(
-    "leblanc.results.several.comparison:Comparison.difference",
+    "leblanc.results.explanation:Comparison.difference",
     "own[known] - other[known]",
     "own[known] + other[known]",
 )
 @kills(
-    "leblanc.results.several.comparison:Comparison.difference",
+    "leblanc.results.explanation:Comparison.difference",
     "found / size if",
     "found / own[known].max() if",
 )

@@ -12,7 +12,7 @@ import xarray as xr
 
 from leblanc.cli import main
 from leblanc.cli.output import print_json
-from leblanc.results.several.sweep import QUANTILES, SweepResult
+from leblanc.results.sweep import QUANTILES, SweepResult
 from leblanc.studies.run import run_scene
 from leblanc.studies.sweep.store import STORE
 from leblanc.studies.sweep.summary import sweep_result

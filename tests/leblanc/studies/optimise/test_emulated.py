@@ -11,8 +11,8 @@ import pytest
 
 from leblanc.cli import main
 from leblanc.results.optimum import emulated
-from leblanc.scene.optimise import Optimisation
 from leblanc.scene.scene import Scene, load_scene
+from leblanc.scene.tasks import Optimisation
 from leblanc.studies.batch import answer_scenes
 from leblanc.studies.optimise.answers import with_volumes
 from leblanc.studies.optimise.emulated import EmulatedVibration, emulated_vibration

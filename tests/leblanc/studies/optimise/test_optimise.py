@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from fluid.fill import Fill
 from fluid.liquid import known_liquid
-from leblanc.scene.optimise import Optimisation
 from leblanc.scene.scene import Scene, Speeds, load_scene
+from leblanc.scene.tasks import Optimisation
 from leblanc.studies.optimise.answers import FilledMachine
 from leblanc.studies.optimise.closed_form import (
     full_volume,

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from leblanc.results.several.sweep import Sensitivity
+from leblanc.results.sweep import Sensitivity
 from leblanc.studies.sweep.distributions import Levels, Uniform
 from leblanc.studies.sweep.sampling import sample_rows
 from leblanc.studies.sweep.sensitivity import (

@@ -10,7 +10,7 @@ import pytest
 
 from leblanc.cli import main
 from leblanc.scene.scene import Scene, scene_from_table
-from leblanc.scene.schema.faults import SceneFaults
+from leblanc.scene.schema.load import SceneFaults
 from leblanc.scene.schema.paths import keys_of, rule_at, with_values
 from leblanc.studies.sweep.study import load_sweep
 from tests.oracles.sweeps import SCENE, STUDY, study_in, write_study

@@ -17,7 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from leblanc.cli import main
-from leblanc.results.several.sweep import QUANTILES
+from leblanc.results.sweep import QUANTILES
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.schema.load import read_toml
 from leblanc.scene.schema.paths import keys_of, with_values

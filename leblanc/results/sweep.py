@@ -16,6 +16,7 @@ from meshes.arrays import Array
 if TYPE_CHECKING:
     from leblanc.results.netcdf import Dataset
 
+
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 
 

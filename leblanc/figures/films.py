@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.figures import wave
 from leblanc.figures.page import FILM_DPI, RIGHT, WIDTH, Figure, Frame, lay_out, number, style, write_film
-from leblanc.figures.runup.curves import caption
-from leblanc.figures.wave import picture as wave
-from leblanc.results.chamber import FilledChamber
-from leblanc.results.drawn.scale import film_factor, half_angle
+from leblanc.figures.runup import caption
+from leblanc.results.base import FilledChamber
+from leblanc.results.drawn import film_factor, half_angle
 from leblanc.results.runup import RunupFrames, RunupResult
 from leblanc.units import MM, RPM
 from meshes.arrays import Array

@@ -1,4 +1,7 @@
-"""The figures of a run-up: amplitude over speed, everything over time, where the energy went."""
+"""The figures of a run-up: amplitude over speed, everything over time, where the energy went.
+
+The figures of a run-up and its film.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from leblanc.figures.curves import gapped, joined, lag_degrees, link, spans, widened
-from leblanc.figures.over_speed import DRY, SHADE, UNSTABLE, WET
 from leblanc.figures.page import WIDTH, Caption, Figure, FigureFiles, Frame, lay_out, number, save, style
+from leblanc.figures.response import DRY, SHADE, UNSTABLE, WET
 from leblanc.friction import friction_words
 from leblanc.results.base import one_line
 from leblanc.results.runup import RunupResult

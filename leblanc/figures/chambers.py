@@ -1,4 +1,4 @@
-"""Chambers seen along the axis."""
+"""Chambers seen along the axis, drawn on axes that are handed in: wall and liquid, enlarged as needed."""
 
 from __future__ import annotations
 
@@ -9,15 +9,205 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.caption import caption
-from leblanc.figures.chambers.section import Exaggeration, exaggeration, liquid_outline, side_by_side
-from leblanc.figures.chambers.uneven import bodies, is_uneven, plates, wall_line
-from leblanc.figures.page import MOST_LINES, RIGHT, WIDTH, Figure, Frame, lay_out, style
-from leblanc.results.chamber import FilledChamber
+from leblanc.figures.page import MOST_LINES, RIGHT, WIDTH, Figure, Frame, caption, lay_out, style
+from leblanc.results.base import FilledChamber
+from leblanc.results.drawn import chord, rounded_down
 from leblanc.results.response import RunResult, peak, phase
 from leblanc.text.run import alts
 from leblanc.units import MM, RPM
-from meshes.arrays import Array
+from meshes.arrays import Array, Complex
+from meshes.baffles import Baffles
+from meshes.chamber_section import ChamberSection
+from meshes.liquid_section import free_sides
+
+RAYS = 361  # one degree apart, closed
+BISECTIONS = 60  # from the radius down to rounding
+
+
+@dataclass(frozen=True)
+class Exaggeration:
+    """Factors that the drawing applies.
+
+    Parameters
+    ----------
+    deflection, depth : of the geometric centre and of the mean layer
+    """
+
+    deflection: float
+    depth: float
+
+
+def liquid_outline(chamber: FilledChamber, centre: complex, depth: float) -> tuple[Array, Array, Array]:
+    """Liquid between the wall and the circle about the rotation axis that leaves the right area of it.
+
+    Parameters
+    ----------
+    chamber : its walls are drawn to scale
+    centre : geometric centre as drawn, so near that the rotation axis lies inside the inner wall, m
+    depth : mean depth of the layer as drawn, m
+
+    Returns
+    -------
+    Angles of rays about the rotation axis, rad; inner and outer end of the liquid on each, m; shape (361,).
+    """
+    angle = np.linspace(-math.pi, math.pi, RAYS)
+    outer = chord(chamber.radius, centre, angle)
+    floor = np.zeros_like(outer)
+    if chamber.inner_radius > 0.0:
+        floor = chord(chamber.inner_radius, centre, angle)
+    wanted = math.pi * depth * (2.0 * chamber.radius - depth)
+    low, high = 0.0, float(outer.max())
+    for _ in range(BISECTIONS):
+        surface = 0.5 * (low + high)
+        inner = np.clip(surface, floor, outer)
+        # The rays are equally spaced over a turn, where the mean is exact for smooth outlines.
+        area = math.pi * float(np.mean((outer**2 - inner**2)[1:]))
+        low, high = (surface, high) if area > wanted else (low, surface)
+    return angle, np.clip(0.5 * (low + high), floor, outer), outer
+
+
+def exaggeration(chambers: tuple[FilledChamber, ...], deflections: tuple[float, ...]) -> Exaggeration:
+    """Factors that make deflection and layer visible and keep wet walls wet and dry patches dry.
+
+    Parameters
+    ----------
+    chambers : those that are drawn
+    deflections : amplitudes that are drawn, m, 0 or above
+    """
+    layers = [(c.least_depth, c) for c in chambers]
+    layers = [(depth, c) for depth, c in layers if depth > 0.0]
+    depth_factor = 1.0
+    if layers:
+        fits = min(0.5 * (c.radius - c.inner_radius) / depth for depth, c in layers)
+        shows = max(0.15 * c.radius / depth for depth, c in layers)
+        depth_factor = rounded_down(max(1.0, min(fits, shows)))
+    sizes = [w for w in deflections if w > 0.0]
+    if not sizes:
+        return Exaggeration(1.0, depth_factor)
+    inner = [0.9 * c.inner_radius for c in chambers if c.inner_radius > 0.0]
+    widest = min([0.35 * c.radius for c in chambers] + inner) / max(sizes)
+    wet = [0.9 * depth_factor * depth / w for depth, _ in layers for w in sizes if w < depth]
+    factor = rounded_down(min([widest, *wet]))
+    dry = [factor * w / depth for depth, _ in layers for w in sizes if w >= depth]
+    # Equal factors keep what is dry dry; with unequal ones a thick layer would cover it.
+    return Exaggeration(factor, factor if dry and min(dry) < depth_factor else depth_factor)
+
+
+def side_by_side(chambers: tuple[FilledChamber, ...]) -> list[tuple[FilledChamber, ...]]:
+    """Chambers sorted into drawings: those that lie inside one another share one, equal ones are drawn once.
+
+    Parameters
+    ----------
+    chambers : of the rotor, in any order
+    """
+    drawings: list[list[FilledChamber]] = []
+    for chamber in sorted(dict.fromkeys(chambers), key=lambda c: -c.radius):
+        for drawing in drawings:
+            if chamber.radius <= drawing[-1].inner_radius and chamber.plane == drawing[-1].plane:
+                drawing.append(chamber)
+                break
+        else:
+            drawings.append([chamber])
+    return [tuple(drawing) for drawing in drawings]
+
+
+UNEVEN_RAYS = 721
+
+
+def is_uneven(chamber: FilledChamber) -> bool:
+    """Baffles or a section of its own."""
+    return chamber.baffles is not None or chamber.section is not None
+
+
+def wall_line(section: ChamberSection) -> list[Array]:
+    """Walls of a section as closed or open lines of points, m.
+
+    Parameters
+    ----------
+    section : of the chamber
+    """
+    sides = free_sides(section.mesh.triangles)
+    ordered = sides[:, [0, 2, 1]] if sides.shape[1] == 3 else sides
+    return [section.mesh.points[one] for one in ordered]
+
+
+def bodies(chamber: FilledChamber, centre: complex, depth: float) -> list[Array]:
+    """Outline of each body of liquid, m, as closed lines of points, shape (k, 2).
+
+    Parameters
+    ----------
+    chamber : its walls are drawn to scale
+    centre : geometric centre as drawn, from the rotation axis, m
+    depth : of the undisturbed layer as drawn, m
+    """
+    found = []
+    for angle in _sectors(chamber):
+        wall = _wall(chamber, angle)
+        rest = np.minimum(chamber.radius - depth, wall)
+        wanted = np.trapezoid(wall**2 - rest**2, angle)
+        low, high = 0.0, float(wall.max()) + abs(centre)
+        for _ in range(BISECTIONS):
+            level = 0.5 * (low + high)
+            inner = np.clip(_surface(level, centre, angle), chamber.inner_radius, wall)
+            enough = np.trapezoid(wall**2 - inner**2, angle) > wanted
+            low, high = (level, high) if enough else (low, level)
+        around = np.concatenate([wall * np.exp(1j * angle), (inner * np.exp(1j * angle))[::-1]]) + centre
+        found.append(np.stack([around.real, around.imag], axis=1))
+    return found
+
+
+def plates(baffles: Baffles, radius: float, depth_factor: float) -> list[tuple[complex, complex]]:
+    """Ends of each baffle from the geometric centre, m; distances from the wall grow as the layer does.
+
+    Parameters
+    ----------
+    baffles : of the chamber
+    radius : of its wall, m
+    depth_factor : by which layers are drawn deeper
+    """
+    inner = max(radius - (radius - baffles.tip_radius) * depth_factor, 0.0)
+    outer = max(radius - baffles.wall_gap * depth_factor, inner)
+    return [(inner * complex(turn), outer * complex(turn)) for turn in np.exp(1j * baffles.angles)]
+
+
+def _sectors(chamber: FilledChamber) -> list[Array]:
+    """Angles of each body of liquid that cannot mix with the others."""
+    baffles = chamber.baffles
+    whole = np.linspace(-math.pi, math.pi, UNEVEN_RAYS)
+    if baffles is None:
+        return [whole]
+    span = baffles.wetted_span(chamber.radius, chamber.mean_surface_radius)
+    if span != (chamber.mean_surface_radius, chamber.radius):
+        return [whole]
+    width = 2.0 * math.pi / baffles.count
+    return [start + np.linspace(0.0, width, UNEVEN_RAYS) for start in baffles.angles]
+
+
+def _wall(chamber: FilledChamber, angle: Array) -> Array:
+    """Distance of the outermost wall in each direction, m."""
+    if chamber.section is None:
+        return np.full(angle.shape, chamber.radius)
+    lines = np.stack(wall_line(chamber.section))
+    nodes = lines[..., 0] + 1j * lines[..., 1]
+    return _outermost(nodes[:, :-1].ravel(), nodes[:, 1:].ravel(), angle)
+
+
+def _outermost(start: Complex, stop: Complex, angle: Array) -> Array:
+    """Distance along each ray of the outermost of many straight sides, given by their ends x + i y, m."""
+    turn = np.exp(-1j * angle)[:, None]
+    one, other = start * turn, stop * turn
+    meets = (one.imag * other.imag <= 0.0) & (one.imag != other.imag)
+    share = np.divide(one.imag, one.imag - other.imag, where=meets, out=np.zeros(meets.shape))
+    away = np.where(meets, one.real + share * (other.real - one.real), 0.0)
+    return np.asarray(away.max(axis=1))
+
+
+def _surface(level: float, centre: complex, angle: Array) -> Array:
+    """Distance from the geometric centre to a circle about the rotation axis; 0 where a ray misses it, m."""
+    toward = -centre * np.exp(-1j * angle)
+    square = level**2 - toward.imag**2
+    return np.asarray(np.maximum(toward.real + np.sqrt(np.maximum(square, 0.0)), 0.0))
+
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 

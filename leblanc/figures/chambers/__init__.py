@@ -1,1 +1,0 @@
-"""Chambers seen along the axis, drawn on axes that are handed in."""

@@ -1,1 +1,0 @@
-"""The wave of a liquid layer: picture, curves over time, film."""

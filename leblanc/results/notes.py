@@ -1,0 +1,419 @@
+"""Notes: what a result says besides its numbers, as a code, the numbers of the sentence, and the sentence.
+
+One function a sentence: limits of validity and findings of the response, the run-up and the map.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fluid.friction import Friction
+from leblanc.friction import friction_words
+from leblanc.results.base import Note, NoteCode, percent
+from leblanc.results.choice import Choice
+from leblanc.results.response import SelfExcited, peak
+from leblanc.units import ML, MM, RPM
+from meshes.arrays import Array, Flags
+from solvers.runup.runup import RunupHistory
+from solvers.synchronous.response import Response
+
+if TYPE_CHECKING:
+    from solvers.whirl.edges import Bands
+
+
+class RunCode(NoteCode):
+    """What the notes of a response say."""
+
+    LIQUID_MODEL = "liquid_model"
+    TOLERANCE_MISSED = "tolerance_missed"
+    NOT_CARRIED = "not_carried"
+    SLOW_DISTURBANCES = "slow_disturbances"
+    PLANE = "plane"
+    AGAINST_SPIN = "against_spin"
+    SELF_EXCITED = "self_excited"
+    SEVERAL_ANSWERS = "several_answers"
+    WALL = "wall"
+    MESH = "mesh"
+
+
+# What a page that shows the table of models says there already.
+OF_MODELS = (RunCode.LIQUID_MODEL, RunCode.TOLERANCE_MISSED)
+
+
+def liquid_models(choice: Choice) -> Note | None:
+    """How many speeds each model answers; None where the scene names the model."""
+    if choice.cut:
+        text = "Liquid model: finite elements for small disturbances; their error is not estimated."
+        return Note(RunCode.LIQUID_MODEL, {"fem": choice.models.size}, text)
+    if choice.asked:
+        return None
+    exact, count = int(np.count_nonzero(choice.models == "statics")), choice.models.size
+    text = (
+        f"Liquid model: linear theory at {count - exact} of {count} speeds, where it is within "
+        f"{percent(choice.tolerance)}; exact equilibrium at {exact}."
+    )
+    return Note(RunCode.LIQUID_MODEL, {"linear": count - exact, "statics": exact}, text)
+
+
+def tolerance_missed(choice: Choice, speed: Array) -> Note | None:
+    """Where the estimated error is larger than the tolerance; None where it is nowhere.
+
+    Parameters
+    ----------
+    choice : the models
+    speed : rad/s, shape (n,)
+    """
+    missed = choice.missed & choice.in_range
+    if choice.cut or not missed.any():
+        return None
+    (first, last), worst = speed[missed][[0, -1]], choice.error[missed].max()
+    size = f"up to {percent(worst)}" if np.isfinite(worst) else "without a bound"
+    whose = " of the model asked for" if choice.asked else ""
+    text = (
+        f"Between {first * RPM:.4g} and {last * RPM:.4g} rpm the estimated error{whose} is {size}, more than "
+        f"the tolerance of {percent(choice.tolerance)}."
+    )
+    return Note(RunCode.TOLERANCE_MISSED, {"first": first, "last": last, "error": worst}, text)
+
+
+def not_carried(below: float) -> Note:
+    """Gravity across the axis holds the liquid back.
+
+    Parameters
+    ----------
+    below : speed above which the liquid rides with the drum, rad/s
+    """
+    text = (
+        f"Below {below * RPM:.3g} rpm gravity across the axis keeps the liquid from riding with the drum: "
+        "out of range."
+    )
+    return Note(RunCode.NOT_CARRIED, {"below": below}, text)
+
+
+def slow_disturbances() -> Note:
+    """What the stability of branches of a planar rotor means."""
+    text = "Branches are judged against slow disturbances, the liquid always in equilibrium."
+    return Note(RunCode.SLOW_DISTURBANCES, {}, text)
+
+
+def plane(position: float, zero: str, chambers: bool) -> Note:
+    """Where the motion of a rotor that tilts is measured.
+
+    Parameters
+    ----------
+    position : of the plane, m
+    zero : what angles count from
+    chambers : the plane is that of the first chamber
+    """
+    place = "the first chamber" if chambers else "the origin of positions"
+    start = "the unbalance" if zero == "unbalance" else zero
+    text = (
+        f"Amplitude: largest radius of the orbit at {place}, {position * MM:.4g} mm. Angles: of its part "
+        f"that turns with the spin, from {start}."
+    )
+    return Note(RunCode.PLANE, {"position": position}, text)
+
+
+def against_spin(share: float, speed: float) -> Note:
+    """How far the orbit is from a circle.
+
+    Parameters
+    ----------
+    share : of the orbit that goes against the spin, at most
+    speed : where it does, rad/s
+    """
+    text = (
+        f"Up to {share:.2g} of the orbit goes against the spin, at {speed * RPM:.4g} rpm; the liquid answers "
+        "that part by linear theory."
+    )
+    return Note(RunCode.AGAINST_SPIN, {"share": share, "speed": speed}, text)
+
+
+def self_excited(whirl: SelfExcited) -> Note:
+    """Whether a whirl grows by itself, where, and how fast at most."""
+    theory = f"linear theory of an even layer, liquid friction: {whirl.friction}"
+    data: dict[str, object] = {"bands": whirl.bands}
+    if np.isnan(whirl.growth).any():
+        text = f"Whether a whirl grows by itself was not found at every speed ({theory})."
+        return Note(RunCode.SELF_EXCITED, data, text)
+    if not whirl.bands:
+        text = f"No whirl grows by itself at these speeds ({theory})."
+        return Note(RunCode.SELF_EXCITED, data, text)
+    listed = ", ".join(f"{low * RPM:.5g} to {high * RPM:.5g} rpm" for low, high in whirl.bands)
+    most, fastest = int(np.argmax(whirl.growth)), ""
+    if whirl.growth[most] > 0.0:
+        growth, turning = float(whirl.growth[most]), float(whirl.whirl_speed[most])
+        data |= {"growth": growth, "whirl_speed": turning}
+        fastest = f", fastest at {growth:.3g} 1/s, whirling at {turning * RPM:.4g} rpm"
+    text = f"A whirl grows by itself from {listed}{fastest}: unstable there ({theory})."
+    return Note(RunCode.SELF_EXCITED, data, text)
+
+
+def several_answers(first: float, last: float, stable: bool) -> Note:
+    """More than one deflection satisfies the balance.
+
+    Parameters
+    ----------
+    first, last : speeds between which they do, rad/s
+    stable : the largest stable one is reported; else the largest
+    """
+    which = "largest stable one" if stable else "largest"
+    text = (
+        f"Several deflections satisfy the balance between {first * RPM:.4g} and {last * RPM:.4g} rpm; "
+        f"reported is the {which}, where a slow run-up arrives."
+    )
+    return Note(RunCode.SEVERAL_ANSWERS, {"first": first, "last": last}, text)
+
+
+def wall(chamber: int, speed: float, volume: float, enough: float, deflection: float) -> Note:
+    """How much liquid just covers the wall of a chamber.
+
+    Parameters
+    ----------
+    chamber : its number, from 0
+    speed : rad/s
+    volume, enough : of the liquid, and what just covers the wall, m^3
+    deflection : of the axis there, m
+    """
+    has = "wet all round" if volume > enough else "dry in part"
+    text = (
+        f"Chamber {chamber + 1} at {speed * RPM:.4g} rpm: wall {has} with {volume * ML:.4g} ml; "
+        f"{enough * ML:.4g} ml just cover it, deflection {deflection * MM:.3g} mm."
+    )
+    data = {"chamber": chamber, "speed": speed, "volume": volume, "enough": enough, "deflection": deflection}
+    return Note(RunCode.WALL, data, text)
+
+
+def mesh(chamber: int, finding: str) -> Note:
+    """What is poor in the mesh of a chamber's section.
+
+    Parameters
+    ----------
+    chamber : its number, from 0
+    finding : in words
+    """
+    return Note(RunCode.MESH, {"chamber": chamber}, f"Mesh of chamber {chamber + 1}: {finding}.")
+
+
+CLOSURE = 1e-3  # of the work: what the energy balance may leave
+ERROR = 0.02  # of the largest amplitude: an error estimate to speak of
+
+
+class RunupCode(NoteCode):
+    """What the notes of a run-up say."""
+
+    LIQUID_MODEL = "liquid_model"
+    STOPPED = "stopped"
+    ERROR_UNKNOWN = "error_unknown"
+    ROUGH = "rough"
+    ENERGY = "energy"
+    PEAK = "peak"
+    PEAK_STEADY = "peak_steady"
+    CAPTURED = "captured"
+    FALLS_BACK = "falls_back"
+    SELF_EXCITED = "self_excited"
+    TOO_SLOW = "too_slow"
+    INNER_WALL = "inner_wall"
+    TOO_DEEP = "too_deep"
+    TOO_HIGH = "too_high"
+
+
+# What the tables of a report say as well.
+IN_TABLES = (
+    RunupCode.LIQUID_MODEL,
+    RunupCode.ROUGH,
+    RunupCode.ENERGY,
+    RunupCode.PEAK_STEADY,
+    RunupCode.CAPTURED,
+    RunupCode.FALLS_BACK,
+    RunupCode.SELF_EXCITED,
+)
+
+
+def liquid_model(model: str, reason: str) -> Note:
+    """Which liquid model the run-up took, and why."""
+    return Note(RunupCode.LIQUID_MODEL, {"model": model}, f"Liquid model: {reason}")
+
+
+def stopped(reason: str) -> Note:
+    """The run did not come to its end."""
+    return Note(RunupCode.STOPPED, {}, f"The run stopped: {reason}.")
+
+
+def numerical_error(error: float) -> Note | None:
+    """Error of the amplitude over its largest; None where it is small."""
+    if math.isnan(error):
+        return Note(RunupCode.ERROR_UNKNOWN, {}, "The error of the amplitude was not estimated.")
+    if error <= ERROR:
+        return None
+    text = (
+        f"With half the cells the amplitude differs by up to {error:.1%} of its largest: "
+        "more cells would sharpen it."
+    )
+    return Note(RunupCode.ROUGH, {"error": error}, text)
+
+
+def energy_left(closure: float) -> Note | None:
+    """What the energy balance leaves over the work; None where that is little."""
+    if closure <= CLOSURE:
+        return None
+    text = f"The energy balance leaves {closure:.1%} of the work unaccounted for."
+    return Note(RunupCode.ENERGY, {"closure": closure}, text)
+
+
+def largest_amplitude(history: RunupHistory, steady: Response | None) -> Note:
+    """The largest amplitude beside that of the steady response, where there is one."""
+    k = int(np.argmax(history.amplitude))
+    size, speed = float(history.amplitude[k]), float(history.speed[k])
+    data = {"amplitude": size, "speed": speed}
+    text = f"Largest amplitude {size * MM:.4g} mm at {speed * RPM:.4g} rpm"
+    highest = None if steady is None else peak(steady.deflection)
+    if steady is None or highest is None:
+        return Note(RunupCode.PEAK, data, f"{text}.")
+    most, at = float(abs(steady.deflection[highest])), float(steady.speed[highest])
+    text = f"{text}; in the steady response it is {most * MM:.4g} mm at {at * RPM:.4g} rpm."
+    return Note(RunupCode.PEAK_STEADY, data | {"steady_amplitude": most, "steady_speed": at}, text)
+
+
+def capture(chamber: int, captured: bool, time: float, speed: float) -> Note:
+    """When the liquid of a chamber, counted from 0, began or ceased to ride with the drum."""
+    text = (
+        f"Chamber {chamber + 1}: its liquid {'is captured' if captured else 'falls back'} at "
+        f"{time:.4g} s, {speed * RPM:.4g} rpm."
+    )
+    code = RunupCode.CAPTURED if captured else RunupCode.FALLS_BACK
+    return Note(code, {"chamber": chamber + 1, "time": time, "speed": speed}, text)
+
+
+def self_excited_on_the_way(bands: tuple[tuple[float, float], ...], friction: Friction) -> Note | None:
+    """Speeds at which whirl grows by itself, rad/s; None where there are none."""
+    if not bands:
+        return None
+    listed = ", ".join(f"{low * RPM:.4g} to {high * RPM:.4g} rpm" for low, high in bands)
+    law = friction_words(friction)
+    text = f"By linear theory with liquid friction {law}, some whirl grows by itself at {listed}."
+    return Note(RunupCode.SELF_EXCITED, {"bands": bands}, text)
+
+
+def out_of_range(code: RunupCode, chamber: int, holds: Flags, limit: float = math.nan) -> Note | None:
+    """At what share of the samples the layer of a chamber is no fair picture of its liquid; None if nowhere.
+
+    Parameters
+    ----------
+    code : TOO_SLOW, INNER_WALL, TOO_DEEP or TOO_HIGH
+    chamber : index from 0
+    holds : where the layer is a fair picture, shape (k,)
+    limit : depth over radius, or rise over depth, that is too much
+    """
+    if holds.all():
+        return None
+    label, high = f"chamber {chamber + 1}", f"higher than {limit:g} of the depth"
+    why = {
+        RunupCode.TOO_SLOW: f"the liquid in {label} turns too slowly to stand round the wall against gravity",
+        RunupCode.INNER_WALL: f"the surface reaches the inner wall of {label}",
+        RunupCode.TOO_DEEP: f"the layer in {label} is deeper than {limit:g} of its radius",
+        RunupCode.TOO_HIGH: f"the wave in {label} is {high}, beyond linear theory",
+    }[code]
+    share = float(1.0 - np.mean(holds))
+    text = f"Out of range for {1.0 - np.mean(holds):.0%} of the samples: {why}."
+    return Note(code, {"chamber": chamber + 1, "share": share}, text)
+
+
+def linear_layers(wave: float, lag: float, touches: bool, error: float, limits: tuple[float, float]) -> str:
+    """What a run with linear layers says of its own error.
+
+    Parameters
+    ----------
+    wave, lag : rise of the surface over the depth; lag of the liquid over the spin; largest each
+    touches : a surface comes to an inner wall
+    error : estimated from them; infinite where there is none
+    limits : of wave and lag up to which an error is estimated
+    """
+    size = f"waves reach {percent(wave)} of the depth and the liquid lags by up to {percent(lag)} of the spin"
+    if touches:
+        return f"{size}, and a surface touches an inner wall, beyond any estimate"
+    if math.isfinite(error):
+        return f"{size}, an estimated error of {percent(error)} against long waves"
+    most = " and ".join(map(percent, limits))
+    return f"{size}, beyond the {most} up to which an error is estimated"
+
+
+class MapCode(NoteCode):
+    """What the notes of a map say."""
+
+    OWN_VOLUME = "own_volume"
+    QUADRATIC = "quadratic"
+    WITHOUT_FRICTION = "without_friction"
+    COMMON_FACTOR = "common_factor"
+    NOT_HELD = "not_held"
+    THICK_WALL_LAYER = "thick_wall_layer"
+
+
+def own_volume(volume: float, bands: Bands) -> Note:
+    """Where a whirl grows with the volume of the scene.
+
+    Parameters
+    ----------
+    volume : of liquid in all chambers, m^3
+    bands : of speed, rad/s
+    """
+    with_it = f"With the scene's {volume * ML:.4g} ml"
+    text = f"{with_it} no whirl grows by itself at these speeds."
+    if bands:
+        listed = ", ".join(f"{low * RPM:.5g} to {high * RPM:.5g} rpm" for low, high in bands)
+        text = f"{with_it} a whirl grows by itself from {listed}."
+    return Note(MapCode.OWN_VOLUME, {"volume": volume, "bands": tuple(bands)}, text)
+
+
+def quadratic() -> Note:
+    """Quadratic friction does nothing to a small whirl."""
+    text = "Quadratic friction vanishes for small motions: the map is that without it. It bounds what grows."
+    return Note(MapCode.QUADRATIC, {}, text)
+
+
+def without_friction() -> Note:
+    """The damping of the support alone makes a wave grow."""
+    text = (
+        "Without liquid friction the support's damping feeds the wave against the spin, whose energy is "
+        "negative: a weak growth remains at almost every speed."
+    )
+    return Note(MapCode.WITHOUT_FRICTION, {}, text)
+
+
+def common_factor() -> Note:
+    """How the volumes of several chambers grow."""
+    text = "The volumes of the chambers grow by a common factor until the first is full."
+    return Note(MapCode.COMMON_FACTOR, {}, text)
+
+
+def not_held(share: float, horizontal: bool) -> Note:
+    """Points at which the liquid does not lie all round its wall.
+
+    Parameters
+    ----------
+    share : of the points
+    horizontal : the axis lies
+    """
+    why = "a paraboloid leaves part of a wall dry or reaches an inner wall"
+    if horizontal:
+        why = "gravity across the axis outweighs the spin"
+    text = f"At {100.0 * share:.2g} % of the points {why}: out of range."
+    return Note(MapCode.NOT_HELD, {"share": share}, text)
+
+
+def thick_wall_layer(share: float, limit: float) -> Note:
+    """Points at which the laminar layer is thicker than its law allows.
+
+    Parameters
+    ----------
+    share : of the points
+    limit : thickness over the liquid's depth
+    """
+    text = (
+        f"At {100.0 * share:.2g} % of the points the laminar layer at the wall is thicker than {limit:g} of "
+        "the liquid's depth: out of range."
+    )
+    return Note(MapCode.THICK_WALL_LAYER, {"share": share, "limit": limit}, text)

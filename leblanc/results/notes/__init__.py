@@ -1,1 +1,0 @@
-"""What results say besides their numbers: a code, the numbers of the sentence, and the sentence."""

@@ -1,1 +1,0 @@
-"""Answers to one question asked of several scenes."""
