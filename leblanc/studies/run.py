@@ -14,8 +14,7 @@ from leblanc.results.choice import Choice, model_spans
 from leblanc.results.response import Motion, RestMode, RunResult, SelfExcited
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
-from leblanc.studies.choose import choose_all, liquid_models
-from leblanc.studies.prepare import Prepared, prepare
+from leblanc.studies.choose import Prepared, choose_all, liquid_models, prepare
 from leblanc.studies.whirl_map import small_whirl_friction
 from meshes.arrays import Complex
 from meshes.chamber_section import liquid_of

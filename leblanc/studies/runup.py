@@ -18,8 +18,8 @@ from leblanc.results.notes import RunupCode
 from leblanc.results.runup import Bands, RunupFrames, RunupResult
 from leblanc.scene.inputs import runup_rows
 from leblanc.scene.scene import JeffcottRotor, Runup, Scene, dry_rotor, jeffcott, require_clear
-from leblanc.studies.prepare import across_gravity as across_gravity  # of a run-up, asked for with it
-from leblanc.studies.prepare import axial_gravity
+from leblanc.studies.choose import across_gravity as across_gravity  # of a run-up, asked for with it
+from leblanc.studies.choose import axial_gravity
 from leblanc.studies.validity import RANGES
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError

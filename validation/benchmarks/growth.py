@@ -18,7 +18,7 @@ from leblanc.studies.layer import answer_layer
 from solvers.layer.settle import simulate
 from solvers.layer.state import Numerics, Whirl
 from solvers.waves.steady import respond, solve
-from validation.benchmarks.layers import AMPLITUDE, SPEED
+from validation.benchmarks.ours import AMPLITUDE, SPEED
 from validation.benchmarks.problems import SPIN, fill, response_speeds, steady_problem
 
 # Cells of the waves in a sweep over speeds, and the whirl periods that each speed is given.

@@ -21,7 +21,7 @@ from meshes.chamber import Chamber
 from solvers.layer.settle import settle, simulate
 from solvers.layer.state import LayerHistory, Numerics, Whirl
 from validation.cases.case import Case, Verdict
-from validation.cases.scenes import data
+from validation.cases.rigs import data
 
 _SOURCE = "interFoam, openfoam_layer.json"
 _HEIGHT = 0.01  # the flow is plane: any height will do

@@ -44,8 +44,8 @@ import math
 import leblanc as lb
 from leblanc.figures import amplitude_figure, liquid_figure
 from leblanc.studies.run import run_scene
-from validation.cases import horizontal_rig, vector_model, vertical_rig
-from validation.cases.scenes import data
+from validation.cases import rigs, vector_model
+from validation.cases.rigs import data
 from validation.figures import runup_lag
 from validation.figures.rigs import angle_figure
 from validation.notebook_page import Table, case_table, picture, verdicts
@@ -61,7 +61,7 @@ damping_ratio = runup_lag.fitted_damping()
 picture(angle_figure(damping_ratio))
 
 # %%
-horizontal = horizontal_rig.cases()
+horizontal = rigs.horizontal_cases()
 case_table(horizontal)
 
 # %% [markdown]
@@ -92,7 +92,7 @@ picture(amplitude_figure(record))
 picture(liquid_figure(record))
 
 # %%
-vertical = vertical_rig.cases()
+vertical = rigs.vertical_cases()
 case_table(vertical)
 
 # %% [markdown]

@@ -9,8 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from leblanc.scene.scene import Exciter, Scene, dry_rotor
-from leblanc.studies.choose import choose, liquid_models
-from leblanc.studies.prepare import across_gravity, axial_gravity
+from leblanc.studies.choose import across_gravity, axial_gravity, choose, liquid_models
 from leblanc.studies.runup import RunupChoice, chosen_run, drive_of, judged, planned
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError

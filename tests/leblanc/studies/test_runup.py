@@ -560,7 +560,7 @@ def shoelace(edge: np.ndarray) -> float:
 
 
 @kills(
-    "leblanc.studies.prepare:across_gravity",
+    "leblanc.studies.choose:across_gravity",
     'scene.gravity if scene.rotor.axis == "horizontal"',
     'scene.gravity if scene.rotor.axis == "vertical"',
 )

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from fluid.fill import Fill, Fills
 from fluid.liquid import KNOWN_LIQUIDS
 from leblanc.scene.scene import dry_rotor, load_scene
-from leblanc.studies.prepare import across_gravity, axial_gravity
+from leblanc.studies.choose import across_gravity, axial_gravity
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
 from solvers.runup.runup import MOST_LAG, MOST_WAVE, linear_run_error
