@@ -93,7 +93,7 @@ def require_jupyter() -> None:
 
     for name in _NEEDED:
         if find_spec(name) is None:
-            raise InputError("notebooks", f"no {name}", "with the extra: pip install leblanc[notebooks]")
+            raise InputError("notebooks", f"no {name}", "run with the extra: pip install leblanc[notebooks]")
 
 
 def execute(path: Path, out: Path) -> str:
