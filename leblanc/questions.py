@@ -20,7 +20,7 @@ from leblanc.units import ACCELERATION, ANGULAR_SPEED, LENGTH, TIME, VOLUME, par
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.errors import InputError, require_not_negative
-from solvers.layer.prescribed import Numerics
+from solvers.layer.state import Numerics
 
 Quantity = str | float
 _MOST_BAFFLES = 64

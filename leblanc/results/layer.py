@@ -16,7 +16,7 @@ from leblanc.results.base import Note, NoteCode, Result, one_line, texts, versio
 from leblanc.results.netcdf import dataset, variable
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative, require_positive
-from solvers.layer.prescribed import LayerHistory
+from solvers.layer.state import LayerHistory
 
 if TYPE_CHECKING:
     from leblanc.results.netcdf import Dataset

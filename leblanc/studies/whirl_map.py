@@ -16,7 +16,7 @@ from leblanc.results import notes as map_notes
 from leblanc.results.base import Note
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import Scene
-from leblanc.studies.prepare import Prepared, prepare
+from leblanc.studies.choose import Prepared, prepare
 from leblanc.studies.validity import RANGES
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError

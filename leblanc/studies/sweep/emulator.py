@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from leblanc.results.sweep import EmulatorError
-from leblanc.studies.sweep.outputs import DONE, SINGLE
+from leblanc.studies.sweep.block import DONE, SINGLE
 from leblanc.studies.sweep.store import Store, read_store
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
