@@ -97,15 +97,16 @@ def optimise_scene(
         return best_volumes(scene, problem, low, high, progress)
 
     problem = problem_of(scene, wish, machine, solve)
-    if emulator is None:
-        chosen, exact = on_all_cells(scene, problem, solve(problem))
-        result = _result(scene, wish, exact, machine, chosen)
-    else:
+    exact, quick = on_all_cells(scene, problem), problem
+    if emulator is not None:
         low, high = emulator.inside(low, high, np.array([fill.volume for fill in scene.fills]))
         quick = replace(problem, evaluate=replace(problem.evaluate, vibration=emulator), costly=False)
-        chosen = evaluated_again(problem, best_volumes(scene, quick, low, high, progress))
+    chosen = best_volumes(scene, quick, low, high, progress)
+    if quick is not exact:
+        chosen = evaluated_again(exact, chosen)
+    result = _result(scene, wish, exact, machine, chosen)
+    if emulator is not None:
         answer = emulator.answer(chosen.point)
-        result = _result(scene, wish, problem, machine, chosen)
         result = replace(result, emulator=answer, notes=(optimum.emulated(answer), *result.notes))
     if front:
         edge, sweep = front_around(scene, problem, chosen, result.vibration, growth_speeds(scene, wish))
