@@ -9,8 +9,8 @@ from __future__ import annotations
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene, jeffcott
 from leblanc.studies.choose import axial_gravity
-from leblanc.studies.optimise.closed_form import wetting_volumes
 from leblanc.studies.optimise.optimise import optimise_scene
+from leblanc.studies.optimise.wetting import wetting_volumes
 from leblanc.units import MM
 from validation.cases.case import Case, compare
 
