@@ -15,7 +15,6 @@ from validation.cases.case import Case, Value, Verdict
 
 if TYPE_CHECKING:
     from leblanc.figures.page import Figure
-    from leblanc.scene.scene import Scene
 
 _DPI, _WIDE = 160, 110  # dots of a file and of the screen to an inch
 _PLAIN = 10.0  # relative differences below are told in per cent, larger ones as factors
@@ -140,18 +139,6 @@ def drawn(draw: Callable[[Path], Path]) -> Picture:
     """
     with TemporaryDirectory() as folder:
         return picture(draw(Path(folder)))
-
-
-def example(name: str) -> Scene:
-    """A scene of the folder `examples` beside this package.
-
-    Parameters
-    ----------
-    name : stem of the file
-    """
-    from leblanc.scene.scene import load_scene
-
-    return load_scene(Path(__file__).parents[1] / "examples" / f"{name}.toml")
 
 
 def _lines(words: str) -> str:

@@ -16,6 +16,7 @@ from leblanc.results.choice import ModelSpan
 from leblanc.results.netcdf import dataset, flags, write_dataset
 from leblanc.results.netcdf import variable as var
 from leblanc.results.response import RunResult
+from leblanc.results.sweep import EmulatorError
 from leblanc.units import MM, RPM
 from meshes.arrays import Array, Flags
 
@@ -193,25 +194,6 @@ class Candidates:
     vibration: Array
     mass: Array
     exact: Flags
-
-
-@dataclass(frozen=True)
-class EmulatorError:
-    """Error of an emulator on samples that it was not shown [theory: emulator, eq. 4].
-
-    Parameters
-    ----------
-    root_mean_square, largest : relative to the output for positive outputs, otherwise to its spread
-    spread : standard deviation of the output in the same measure, what knowing nothing leaves
-    within_two : share of the samples within two of the standard deviations that the emulator itself claims
-    samples : that were predicted
-    """
-
-    root_mean_square: float
-    largest: float
-    spread: float
-    within_two: float
-    samples: int
 
 
 @dataclass(frozen=True)

@@ -59,6 +59,25 @@ class Sensitivity:
 
 
 @dataclass(frozen=True)
+class EmulatorError:
+    """Error of an emulator on samples that it was not shown [theory: emulator, eq. 4].
+
+    Parameters
+    ----------
+    root_mean_square, largest : relative to the output for positive outputs, otherwise to its spread
+    spread : standard deviation of the output in the same measure, what knowing nothing leaves
+    within_two : share of the samples within two of the standard deviations that the emulator itself claims
+    samples : that were predicted
+    """
+
+    root_mean_square: float
+    largest: float
+    spread: float
+    within_two: float
+    samples: int
+
+
+@dataclass(frozen=True)
 class SweepResult(Result):
     """What a sweep found.
 

@@ -14,11 +14,11 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+from leblanc.scene.examples import example_path
 from leblanc.scene.schema.load import read_toml
 from leblanc.studies.sweep.study import Sweep, load_sweep
 from leblanc.studies.sweep.sweep import run_sweep
 
-_EXAMPLES = Path(__file__).parents[2] / "examples"
 _STUDY = """
 scene = "scene.toml"
 method = "sobol"
@@ -61,7 +61,7 @@ def one_speed_study(folder: Path, samples: int) -> Sweep:
     """
     import json
 
-    table = read_toml(_EXAMPLES / "horizontal_rig.toml")
+    table = read_toml(example_path("horizontal_rig"))
     table["speeds"] = {"start": "1500 rpm", "stop": "1500 rpm", "count": 1}
     table["model"]["liquid"] = "statics"
     lines = [f"{key} = {json.dumps(table[key])}" for key in ("name", "source")]

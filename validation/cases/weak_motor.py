@@ -1,4 +1,4 @@
-"""A motor that hangs at the resonance without liquid and gets through with it: `examples/weak_motor.toml`.
+"""A motor that hangs at the resonance without liquid and gets through with it: the example `weak_motor`.
 
 `python -m validation.cases.weak_motor --out docs/images` draws the figure of docs/runup.md.
 """
@@ -9,12 +9,11 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from leblanc.scene.scene import Scene, load_scene
+from leblanc.scene.examples import example
+from leblanc.scene.scene import Scene
 from leblanc.studies.runup import runup_scene
 from leblanc.units import MM, RPM
 from solvers.runup.runup import RunupHistory
-
-SCENE = Path(__file__).parents[2] / "examples" / "weak_motor.toml"
 
 
 def with_and_without(scene: Scene, check: bool = False) -> tuple[RunupHistory, RunupHistory]:
@@ -81,7 +80,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m validation.cases.weak_motor", description=__doc__)
     parser.add_argument("--out", type=Path, required=True, help="folder of the figure")
     chosen = parser.parse_args(arguments)
-    scene = load_scene(SCENE)
+    scene = example("weak_motor")
     wet, dry = with_and_without(scene)
     draw(wet, dry, scene, chosen.out)
     for name, history in (("with liquid", wet), ("without", dry)):

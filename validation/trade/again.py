@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
-from leblanc.scene.scene import load_scene
+from leblanc.scene.examples import example
 from validation.cases.case import Case, compare
 from validation.trade import kept, names
 from validation.trade.cases import Question, questions
 from validation.trade.judge import Comparison, Row
 from validation.trade.trade import TradeRecord, error_table
 
-_EXAMPLES = Path(__file__).parents[2] / "examples"
 # Errors are made again on two scenes, up to so many cells.
 _SCENES, _CELLS = ("centrifuge", "runup"), 32
 # Another order of sums changes an answer by some 1e-13; below that an error is rounding.
@@ -24,7 +22,7 @@ def cases() -> list[Case]:
     """The kept error beside the one found now, and for each scene whether the default is beaten."""
     found = []
     for name in _SCENES:
-        scene = load_scene(_EXAMPLES / f"{name}.toml")
+        scene = example(name)
         for question in questions(scene):
             found += _errors(name, question)
     return [
