@@ -211,9 +211,9 @@ def optimise(
     from leblanc.studies.optimise.optimise import optimise_scene
 
     with _keywords():
-        aim = optimisation_of(machine, objective, deflection, limit, steady, seed)
-        asked = None if emulator is None else emulated_vibration(Path(emulator), machine, aim)
-        return optimise_scene(machine, aim=aim, front=front, progress=progress, emulator=asked)
+        task = optimisation_of(machine, objective, deflection, limit, steady, seed)
+        surrogate = None if emulator is None else emulated_vibration(Path(emulator), machine, task)
+        return optimise_scene(machine, task=task, front=front, progress=progress, emulator=surrogate)
 
 
 def compare(scene: SceneOrPath, models: Sequence[str]) -> Comparison:

@@ -141,9 +141,9 @@ def drawn(draw: Callable[[Path], Path]) -> Picture:
         return picture(draw(Path(folder)))
 
 
-def _lines(words: str) -> str:
+def _lines(text: str) -> str:
     """A cell's words in HTML, their line breaks kept, with places where long names may break."""
-    return _BREAK.sub("<wbr>", escape(words)).replace("\n", "<br>")
+    return _BREAK.sub("<wbr>", escape(text)).replace("\n", "<br>")
 
 
 def _shown(value: Value) -> str:

@@ -265,10 +265,10 @@ def chamber_figure(result: RunResult) -> Figure:
         rows = [drawn[i : i + columns] for i in range(0, len(drawn), columns)]
         sides = [min(2.7, (WIDTH - FRAME.left - RIGHT) / columns)] * len(rows)
         part = "" if result.motion is None else " Drawn is the part of the motion that turns with the spin."
-        words = caption(result, f"Chamber seen along the axis. {describe_scale(views)}{part}")
+        text = caption(result, f"Chamber seen along the axis. {describe_scale(views)}{part}")
         more = HEADING_ROW * more_heading_rows(result, views)
         frame = replace(FRAME, top=FRAME.top + more, between=FRAME.between + more)
-        lay_out(figure, rows, sides, frame, words, MOST_LINES if result.motion is None else NOTED_LINES)
+        lay_out(figure, rows, sides, frame, text, MOST_LINES if result.motion is None else NOTED_LINES)
     return figure
 
 

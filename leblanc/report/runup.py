@@ -188,7 +188,7 @@ def why(result: RunupResult) -> Table:
     text, taken = one_line(result.model_reason), describe_model(result.model, result.cells, result.dispersion)
     reason = f"{text[:1].upper()}{text[1:]} Taken as {taken}."
     head = ("Speeds (rpm)", "Model", "Estimated error", "Why")
-    return table("", head, [(span, result.model, error, reason)], words=True)
+    return table("", head, [(span, result.model, error, reason)], sentences=True)
 
 
 def write_runup_report(result: RunupResult, what: About, figures: Sequence[FigureFiles], path: Path) -> None:

@@ -386,11 +386,11 @@ class Comparison(Result):
         )
         amplitude, offset = table(lambda result: result.amplitude), table(lambda result: result.liquid_offset)
         dry, reference = self.amplitude_dry, f"from {self.reference}, over its largest amplitude"
-        words = np.array([answer.reason for answer in self.answers], dtype=object)
+        reasons = np.array([answer.reason for answer in self.answers], dtype=object)
         return dataset(
             {
                 "answered": flags(each, answered, "no yes", "answered", "the model answers this scene"),
-                "reason": var(each, words, "1", "reason", "why the model does not answer"),
+                "reason": var(each, reasons, "1", "reason", "why the model does not answer"),
                 "cpu_time": var(each, numbers(times), "s", "processor time", "that the answer took"),
                 "amplitude": var(over, amplitude, "m", "amplitude", "of the branch reported"),
                 "amplitude_dry": var(("speed",), dry, "m", "amplitude", "without liquid"),

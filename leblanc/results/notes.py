@@ -47,7 +47,7 @@ def liquid_models(choice: Choice) -> Note | None:
     if choice.cut:
         text = "Liquid model: finite elements for small disturbances; their error is not estimated."
         return Note(RunCode.LIQUID_MODEL, {"fem": choice.models.size}, text)
-    if choice.asked:
+    if choice.prescribed:
         return None
     exact, count = int(np.count_nonzero(choice.models == "statics")), choice.models.size
     text = (
@@ -70,7 +70,7 @@ def tolerance_missed(choice: Choice, speed: Array) -> Note | None:
         return None
     (first, last), worst = speed[missed][[0, -1]], choice.error[missed].max()
     size = f"up to {percent(worst)}" if np.isfinite(worst) else "without a bound"
-    whose = " of the model asked for" if choice.asked else ""
+    whose = " of the model asked for" if choice.prescribed else ""
     text = (
         f"Between {first * RPM:.4g} and {last * RPM:.4g} rpm the estimated error{whose} is {size}, more than "
         f"the tolerance of {percent(choice.tolerance)}."

@@ -345,7 +345,7 @@ def _columns(result: RunupResult) -> dict[str, Any]:
 
     drum = "in the drum frame, from its zero mark, positive with the spin"
     here = "liquid's centre of mass from the axis"
-    held = "the liquid rides with the drum as a layer"
+    captured = "the liquid rides with the drum as a layer"
     columns = {
         "time": variable(over, h.time, "s", "time"),
         "chamber": variable(("chamber",), np.arange(1, count + 1, dtype=np.int32), "1", "chamber"),
@@ -357,7 +357,7 @@ def _columns(result: RunupResult) -> dict[str, Any]:
         "liquid_angle": variable(over, np.angle(h.liquid_position), "rad", f"angle of that place {drum}"),
         "in_range": flags(over, result.in_range, "no yes", "the layer is a fair picture of the liquid"),
         "coordinates": variable(("time", "coordinate"), h.coordinates, "1", "of the rotor, m or rad"),
-        "captured": flags(("time", "chamber"), h.captured[:, :count], "no yes", held),
+        "captured": flags(("time", "chamber"), h.captured[:, :count], "no yes", captured),
         "depth_min": each(h.depth_min, "m", "least depth around the wall"),
         "depth_max": each(h.depth_max, "m", "largest depth around the wall"),
         "mean_rotation": each(h.mean_rotation, "rad s-1", "mean rotation of the liquid in the drum"),

@@ -79,13 +79,13 @@ class WhirlMap(Result):
         for row, found in zip(ends, self.edges, strict=True):
             row[: len(found)] = np.reshape(found, (len(found), 2))
         mode = "of the whirl that grows most"
-        held = flags(over, self.in_range, "no yes", "in range", "the plane layer holds there")
+        valid = flags(over, self.in_range, "no yes", "in range", "the plane layer holds there")
         edge = "of a band in which a whirl grows; the ends of the range of speeds count as edges"
         return dataset(
             {
                 "growth": var(over, self.growth, "s-1", "growth rate", f"{mode}; above 0 unstable"),
                 "whirl_speed": var(over, self.whirl_speed, "rad s-1", "whirl speed", f"{mode}, in space"),
-                "in_range": held,
+                "in_range": valid,
                 "edge_low": var(("volume", "band"), ends[..., 0], "rad s-1", "lower edge", edge),
                 "edge_high": var(("volume", "band"), ends[..., 1], "rad s-1", "upper edge", edge),
             },

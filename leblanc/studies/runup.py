@@ -97,10 +97,10 @@ def liquid_model(scene: Scene) -> str:
     ------
     InputError : the scene asks for a model that does not go through time
     """
-    asked = scene.model.liquid
-    if asked not in ("auto", *MODELS):
-        raise InputError("model.liquid", asked, "auto, " + " or ".join(MODELS) + " for a run-up")
-    return "long_wave" if asked == "auto" else asked
+    liquid = scene.model.liquid
+    if liquid not in ("auto", *MODELS):
+        raise InputError("model.liquid", liquid, "auto, " + " or ".join(MODELS) + " for a run-up")
+    return "long_wave" if liquid == "auto" else liquid
 
 
 def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tuple[Flags, tuple[Note, ...]]:
@@ -128,7 +128,7 @@ def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tup
             continue
         wall = fill.chamber
         own = history.speed + history.mean_rotation[:, k]
-        held = history.captured[:, k] & (np.abs(own) > held_from(scene, fill))
+        carried = history.captured[:, k] & (np.abs(own) > held_from(scene, fill))
         reached = np.nan_to_num(history.depth_max[:, k]) >= wall.radius - wall.inner_radius
         touches = reached & (wall.inner_radius > 0.0)
         # The exact linear theory holds at any depth.
@@ -136,7 +136,7 @@ def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tup
         rise = np.nan_to_num(history.depth_max[:, k] - fill.depth)
         small = ~(linear & (rise > highest * fill.depth))
         for code, holds, limit in (
-            (RunupCode.TOO_SLOW, held, math.nan),
+            (RunupCode.TOO_SLOW, carried, math.nan),
             (RunupCode.INNER_WALL, ~touches, math.nan),
             (RunupCode.TOO_DEEP, np.full(good.shape, shallow), deepest),
             (RunupCode.TOO_HIGH, small, highest),
@@ -152,8 +152,8 @@ def held_from(scene: Scene, fill: Fill) -> float:
     Its centrifugal acceleration at the surface must exceed gravity [theory: waves, eq. 11]; if the axis
     stands, the paraboloid must also cover the wall's height and leave an inner wall clear.
     """
-    held = float(capture_speed(fill.surface_radius, scene.gravity))
-    return max(held, covering_speed(fill, axial_gravity(scene)))
+    slowest = float(capture_speed(fill.surface_radius, scene.gravity))
+    return max(slowest, covering_speed(fill, axial_gravity(scene)))
 
 
 Progress = Callable[[float], None] | None
@@ -231,13 +231,13 @@ def chosen_run(
 
 def runup_outlook(scene: Scene) -> str:
     """Which liquid model the run-up of a scene will take, as far as that is known before, in words."""
-    asked, tolerance = scene.model.liquid, scene.model.tolerance
+    liquid, tolerance = scene.model.liquid, scene.model.tolerance
     if scene.runup is None:
         return ""
-    if asked not in ("auto", *MODELS):
-        return f"none: {asked} does not go through time; ask for auto, long_wave or linear"
-    if asked != "auto":
-        return f"{asked}, as the scene asks"
+    if liquid not in ("auto", *MODELS):
+        return f"none: {liquid} does not go through time; ask for auto, long_wave or linear"
+    if liquid != "auto":
+        return f"{liquid}, as the scene asks"
     ruled_out, wave = _ruled_out(scene), largest_wave(tolerance)
     if ruled_out:
         return f"long waves: {ruled_out}"

@@ -204,13 +204,13 @@ def summary(found: Comparison) -> list[tuple[str, str]]:
 def _told(found: Comparison, answer: ModelAnswer) -> str:
     if answer.result is None or answer.cpu_time is None:
         return f"{REFUSED}: {one_line(answer.reason)}"
-    words = [f"{_size(answer)} at most"]
+    parts = [f"{_size(answer)} at most"]
     if answer.model == found.reference:
-        words.append("the reference")
+        parts.append("the reference")
     else:
         size = difference(found, answer.model)
-        words.append(f"difference {size}{' %' if size[0].isdigit() else ''}")
-    return ", ".join([*words, f"{answer.cpu_time:.2g} s of processor time"])
+        parts.append(f"difference {size}{' %' if size[0].isdigit() else ''}")
+    return ", ".join([*parts, f"{answer.cpu_time:.2g} s of processor time"])
 
 
 def _size(answer: ModelAnswer) -> str:
@@ -225,6 +225,6 @@ def alt(found: Comparison) -> str:
     ----------
     found : the comparison
     """
-    told = [f"{answer.model} {_size(answer)}" for answer in found.answers if answer.answered]
-    below = "; below, their differences" if len(told) > 1 else ""
-    return f"Curves of the amplitude over speed by each liquid model{below}; largest: {', '.join(told)}."
+    peaks = [f"{answer.model} {_size(answer)}" for answer in found.answers if answer.answered]
+    below = "; below, their differences" if len(peaks) > 1 else ""
+    return f"Curves of the amplitude over speed by each liquid model{below}; largest: {', '.join(peaks)}."

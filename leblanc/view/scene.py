@@ -466,29 +466,29 @@ def describe_drawing(motion: MachineMotion, index: int, liquid: DrawnLiquid) -> 
     motion, index, liquid : the machine, which speed, its liquid as drawn
     """
     scale = liquid.scale
-    words = [scale.in_words(), "Seen from the drum."]
+    parts = [scale.in_words(), "Seen from the drum."]
     if motion.fills and scale != Scale():
-        words.append("The liquid is in equilibrium with the deflection as drawn.")
+        parts.append("The liquid is in equilibrium with the deflection as drawn.")
     wrong = [here for there, here in zip(liquid.dry, liquid.drawn_dry, strict=True) if here != there]
     if wrong:
-        words.append(f"A wall is {'dry in part' if wrong[0] else 'wet all round'} in the picture alone.")
+        parts.append(f"A wall is {'dry in part' if wrong[0] else 'wet all round'} in the picture alone.")
     if any(fill.compartments > 1 for fill in motion.fills):
-        words.append("Baffles close the compartments: each keeps its volume.")
+        parts.append("Baffles close the compartments: each keeps its volume.")
     open_ = [fill for fill in motion.fills if fill.chamber.baffles is not None and fill.compartments == 1]
     if scale.depth > 1.0 and open_:
-        words.append("Distances of the baffles from the wall grow with the depth.")
+        parts.append("Distances of the baffles from the wall grow with the depth.")
     if names := dict.fromkeys(
         fill.chamber.section.name for fill in motion.fills if fill.chamber.section is not None
     ):
-        words.append(f"Section from {', '.join(names)}.")
+        parts.append(f"Section from {', '.join(names)}.")
     if motion.moved:
-        words.append("Chambers drawn one behind the other; the scene does not say where they are.")
+        parts.append("Chambers drawn one behind the other; the scene does not say where they are.")
     tilting, answer = motion.response.motion, motion.response.response
     if tilting is not None and abs(tilting.backward[index]) > 0.01 * abs(answer.deflection[index]):
-        words.append(
+        parts.append(
             f"Drawn is the part that turns with the spin; {abs(tilting.backward[index]) * MM:.2g} mm "
             "turn against it."
         )
     if motion.response.assumed:
-        words.append("Some values of the scene are assumed.")
-    return words
+        parts.append("Some values of the scene are assumed.")
+    return parts

@@ -98,8 +98,8 @@ def processor_time(command: Sequence[str], given: str = "") -> float:
         process.returncode = os.waitstatus_to_exitcode(status)
         if process.returncode != 0:
             said.seek(0)
-            words = said.read().decode(errors="replace")
-            raise RuntimeError(f"{' '.join(command)} ended with code {process.returncode}\n{words}")
+            message = said.read().decode(errors="replace")
+            raise RuntimeError(f"{' '.join(command)} ended with code {process.returncode}\n{message}")
     return usage.ru_utime + usage.ru_stime
 
 

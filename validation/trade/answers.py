@@ -139,14 +139,14 @@ def _response(scene: Scene, case: Case) -> Answer:
     from solvers.synchronous.models import Fem, LongWave
 
     size = case.resolution
-    models, held = chosen_models(scene, "statics" if size else case.model)
+    models, in_range = chosen_models(scene, "statics" if size else case.model)
     if size is None:
         amplitude, _, good, used = steady(scene, models)
     else:
         model: LiquidModel = LongWave(size) if case.model == "long_wave" else Fem(size, int(case.variant[-1]))
         amplitude, _, good, _ = steady(scene, model)
         used = (case.model,)
-    good = good & held
+    good = good & in_range
     bad = not np.isfinite(amplitude).all()
     return Answer(amplitude, bool(good.all()), "no bounded answer" if bad else "", used)
 
@@ -170,8 +170,8 @@ def taken_run(scene: Scene, model: str, cells: int, dispersion: bool) -> RunupCh
     """
     plan = planned(scene)
     numerics = RunupNumerics(cells, plan.samples, dispersion, companion=False)
-    asked = scene.altered(model=scene.model.altered(liquid=model))
-    return chosen_run(asked, drive_of(plan), across_gravity(scene), numerics)
+    variant = scene.altered(model=scene.model.altered(liquid=model))
+    return chosen_run(variant, drive_of(plan), across_gravity(scene), numerics)
 
 
 def _exciter(scene: Scene, case: Case) -> Answer:
@@ -189,8 +189,10 @@ def _exciter(scene: Scene, case: Case) -> Answer:
         return Answer(np.ravel(both) * machine.length, True, "", (case.model,))
     runs = [integrate(numbers, float(n), machine.ball_count, steps=case.resolution) for n in ratio]
     values = np.array([(run.slow, run.fast) for run in runs]).ravel() * machine.length
-    held = all(run.holds for run in runs)
-    return Answer(values, held, "" if np.isfinite(values).all() else "the balls break away", (case.model,))
+    in_range = all(run.holds for run in runs)
+    return Answer(
+        values, in_range, "" if np.isfinite(values).all() else "the balls break away", (case.model,)
+    )
 
 
 _ANSWERS: dict[str, Callable[[Scene, Case], Answer]] = {

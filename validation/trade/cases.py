@@ -71,10 +71,10 @@ def questions(scene: Scene, quick: bool = False) -> tuple[Question, ...]:
     """
     if isinstance(scene.rotor, Exciter):
         return (exciter_question(scene, quick),)
-    asked = [response_question(scene, quick)]
+    found = [response_question(scene, quick)]
     if scene.runup is not None:
-        asked.append(runup_question(scene, quick))
-    return tuple(asked)
+        found.append(runup_question(scene, quick))
+    return tuple(found)
 
 
 def response_question(scene: Scene, quick: bool = False) -> Question:
@@ -113,10 +113,10 @@ def telling_speeds(scene: Scene, count: int = SPEEDS) -> Array:
     -------
     rad/s, rising, shape (k,)
     """
-    models, held = chosen_models(scene, "statics")
+    models, in_range = chosen_models(scene, "statics")
     speed, amplitude, dry = scene.speed_array(), *steady(scene, models)[:2]
-    if held.any():
-        speed, amplitude, dry = speed[held], amplitude[held], dry[held]
+    if in_range.any():
+        speed, amplitude, dry = speed[in_range], amplitude[in_range], dry[in_range]
     if speed.size <= count:
         return speed
     top = int(np.argmax(amplitude))
@@ -195,8 +195,8 @@ def passage(scene: Scene) -> tuple[Runup, str]:
 
 def _capture(scene: Scene) -> float:
     """Speed above which every layer rides with the drum against gravity across the axis, rad/s."""
-    held = [layer_capture(fill, across_gravity(scene)) for fill in scene.fills]
-    return max((speed for speed in held if math.isfinite(speed)), default=0.0)
+    captured = [layer_capture(fill, across_gravity(scene)) for fill in scene.fills]
+    return max((speed for speed in captured if math.isfinite(speed)), default=0.0)
 
 
 def exciter_question(scene: Scene, quick: bool = False) -> Question:

@@ -65,11 +65,11 @@ def trade_scene(
     tell = progress or (lambda _, __: None)
     tolerance = scene.model.tolerance
     found = []
-    asked = questions(scene, quick)
-    for k, question in enumerate(asked):
+    cases = questions(scene, quick)
+    for k, question in enumerate(cases):
 
         def said(text: str, share: float, k: int = k) -> None:
-            tell(text, (k + share) / len(asked))
+            tell(text, (k + share) / len(cases))
 
         runs = measure(question, repeats, said)
         found.append(compare(question, runs, tolerance))
@@ -136,8 +136,8 @@ def alone(scene: Scene, case: Case) -> Run:
         check=False,
     )
     if done.returncode != 0:
-        words = done.stderr.decode(errors="replace").strip().splitlines() or ["no message"]
-        raise RuntimeError(f"{case.label}: the process ended with {done.returncode}: {words[-1]}")
+        message = done.stderr.decode(errors="replace").strip().splitlines() or ["no message"]
+        raise RuntimeError(f"{case.label}: the process ended with {done.returncode}: {message[-1]}")
     read = json.loads(done.stdout)
     found = Answer(np.array(read["values"]), read["in_range"], read["reason"], tuple(read["used"]))
     return Run(found, (read["time"],), read["first"], read["memory"])

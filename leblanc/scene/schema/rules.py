@@ -99,20 +99,20 @@ class Whole:
 
 @dataclass(frozen=True)
 class OneOf:
-    """One of a few words."""
+    """One of a few names."""
 
-    words: tuple[str, ...]
+    names: tuple[str, ...]
 
     @property
     def allowed(self) -> str:
         """The rule in words."""
-        return "one of: " + ", ".join(self.words)
+        return "one of: " + ", ".join(self.names)
 
     def __call__(self, value: object) -> str:
         """The word."""
-        if isinstance(value, str) and value in self.words:
+        if isinstance(value, str) and value in self.names:
             return value
-        raise Refused(self.allowed + meant(value, self.words))
+        raise Refused(self.allowed + meant(value, self.names))
 
 
 @dataclass(frozen=True)
@@ -223,14 +223,14 @@ def whole(low: int, high: int) -> PlainValidator:
     return PlainValidator(Whole(low, high))
 
 
-def one_of(*words: str) -> PlainValidator:
-    """Rule of one of a few words, for an annotation.
+def one_of(*names: str) -> PlainValidator:
+    """Rule of one of a few names, for an annotation.
 
     Parameters
     ----------
-    words : that may be written
+    names : that may be written
     """
-    return PlainValidator(OneOf(words))
+    return PlainValidator(OneOf(names))
 
 
 # Rules that several tables share; the plain names are those of optional values.

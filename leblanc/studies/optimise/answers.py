@@ -50,11 +50,6 @@ class FilledMachine:
         """The rotor moves in one plane, so that a single speed costs no more than its share of many."""
         return isinstance(self.scene.rotor, JeffcottRotor)
 
-    @property
-    def asked(self) -> int:
-        """How many pairs of volumes and speed were answered."""
-        return len(self._known)
-
     def at(self, volumes: Array, speed: Array) -> FillAnswers:
         """Answers at m pairs.
 

@@ -193,7 +193,7 @@ def _create(path: Path, sweep: Sweep) -> None:
         fill = {NUMBER: np.nan, FLAG: -1, TEXT: ""}[output.kind]
         array(output.name, output.kind, output.over_speed, fill, _output_attributes(output))
     for field in sweep.fields:
-        kind, empty = (TEXT, "") if field.words else (NUMBER, np.nan)
+        kind, empty = (TEXT, "") if field.categorical else (NUMBER, np.nan)
         said = {"units": field.unit, "long_name": field.path, "description": "varied field of the scene"}
         array(field.path, kind, False, empty, said)
     states = {"flag_values": list(range(len(STATUS))), "flag_meanings": " ".join(STATUS)}
@@ -291,7 +291,7 @@ def field_values(field: VariedField, drawn: NDArray[np.float64]) -> NDArray[Any]
     drawn : sampled numbers, shape (n,)
     """
     values = [field.value(level) for level in drawn]
-    if not field.words:
+    if not field.categorical:
         return np.array(values, dtype=np.float64)
     return np.array([value if isinstance(value, str) else _table(value) for value in values], dtype=object)
 

@@ -278,10 +278,10 @@ def _missing(store: Store) -> list[int]:
     return np.flatnonzero(store.read("status")[:: store.block] == PENDING).tolist()
 
 
-def _workers(asked: int | None, blocks: int) -> int:
+def _workers(wanted: int | None, blocks: int) -> int:
     """As many as there are cores and work; a process of its own is not worth one block."""
-    if asked is not None:
-        return asked
+    if wanted is not None:
+        return wanted
     import os
 
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
