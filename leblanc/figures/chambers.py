@@ -14,7 +14,7 @@ from leblanc.results.base import FilledChamber
 from leblanc.results.drawn import chord, rounded_down
 from leblanc.results.response import RunResult, peak, phase
 from leblanc.text.run import alts
-from leblanc.units import MM, RPM
+from leblanc.units import DEGREE, MINUS, MM, RPM, TIMES
 from meshes.arrays import Array, Complex
 from meshes.baffles import Baffles
 from meshes.chamber_section import ChamberSection
@@ -22,6 +22,16 @@ from meshes.liquid_section import free_sides
 
 RAYS = 361  # one degree apart, closed
 BISECTIONS = 60  # from the radius down to rounding
+
+UNEVEN_RAYS = 721
+
+Axes = Any  # matplotlib's, which no module that only draws imports
+
+WALL, LIQUID, CENTRE, UNBALANCE = "0.15", "#56B4E9", "#D55E00", "0.15"
+MOST_DRAWINGS = 3  # side by side
+FRAME = Frame(left=0.15, top=0.26, between=0.6, below=0.36)
+HEADING_ROW = 0.14  # inches
+NOTED_LINES = 10  # of a caption with notes
 
 
 @dataclass(frozen=True)
@@ -109,9 +119,6 @@ def side_by_side(chambers: tuple[FilledChamber, ...]) -> list[tuple[FilledChambe
         else:
             drawings.append([chamber])
     return [tuple(drawing) for drawing in drawings]
-
-
-UNEVEN_RAYS = 721
 
 
 def is_uneven(chamber: FilledChamber) -> bool:
@@ -207,16 +214,6 @@ def _surface(level: float, centre: complex, angle: Array) -> Array:
     toward = -centre * np.exp(-1j * angle)
     square = level**2 - toward.imag**2
     return np.asarray(np.maximum(toward.real + np.sqrt(np.maximum(square, 0.0)), 0.0))
-
-
-Axes = Any  # matplotlib's, which no module that only draws imports
-
-WALL, LIQUID, CENTRE, UNBALANCE = "0.15", "#56B4E9", "#D55E00", "0.15"
-MOST_DRAWINGS = 3  # side by side
-TIMES, MINUS = "\N{MULTIPLICATION SIGN}", "\N{MINUS SIGN}"
-FRAME = Frame(left=0.15, top=0.26, between=0.6, below=0.36)
-HEADING_ROW = 0.14  # inches
-NOTED_LINES = 10  # of a caption with notes
 
 
 @dataclass(frozen=True)
@@ -329,13 +326,13 @@ def describe_state(result: RunResult, index: int) -> str:
     w, offset = r.deflection[index], r.liquid_offset[index]
     if w == 0.0:
         return "no deflection"
-    place = f"{abs(w) * MM:.3g} mm at {_degrees(float(phase(w)))}\N{DEGREE SIGN}"
+    place = f"{abs(w) * MM:.3g} mm at {_degrees(float(phase(w)))}{DEGREE}"
     text = f"deflection {place}"
     if result.motion is not None:
         several = len({chamber.plane for chamber in result.chambers}) > 1
         text = f"{'first chamber' if several else 'deflection'} {place}"
     if offset > 0.0:
-        text += f"\nliquid {offset * MM:.3g} mm at {_degrees(float(r.liquid_angle[index]))}\N{DEGREE SIGN}"
+        text += f"\nliquid {offset * MM:.3g} mm at {_degrees(float(r.liquid_angle[index]))}{DEGREE}"
     return text
 
 

@@ -27,7 +27,7 @@ from leblanc.figures.response import STRIP
 from leblanc.results.base import one_line
 from leblanc.results.drawn import FILLED, LARGEST_FACTOR, rounded_down
 from leblanc.results.layer import LayerPeriodsResult, LayerResult, Wave, WaveFrames
-from leblanc.units import MM, RPM
+from leblanc.units import DEGREE, MINUS, MM, RPM, TIMES
 from meshes.arrays import Array
 
 RAYS = 721  # half a degree apart, closed
@@ -36,6 +36,29 @@ SHOWN = 0.2  # mean depth as drawn, over the wall's radius
 MOST_FRAMES = 120  # of a film
 TURN = 0.25 * math.pi  # of the deflection from frame to frame: more of it and the eye sees it run backwards
 FRAME_RATE = 20  # 1/s; a GIF counts in hundredths of a second
+
+Axes = Any  # matplotlib's, which no module that only draws imports
+
+WALL, LIQUID, SURFACE, FORCE, DEFLECTION = "0.15", "#56B4E9", "#0072B2", "#D55E00", "0.15"
+BOUND = "\N{NO-BREAK SPACE}"
+REACH = 1.33  # of the drawing, over the wall's radius
+ARROW = 0.42  # length of the force's arrow, over the wall's radius
+OUTSIDE = (1.08, 1.27)  # ends of the deflection's arrow, over the wall's radius
+DRY_BAR = {"color": "0.35", "linewidth": 5, "linestyle": (0, (0.2, 0.3)), "label": "dry patch on the wall"}
+MEAN_LINE = {"color": "0.25", "linewidth": 1.0, "linestyle": (0, (5, 2)), "label": "mean depth"}
+
+Show = Callable[[int], None]
+
+TURNED = "#D55E00"
+
+DrawTime = Callable[[Axes, Wave, WaveFrames], None]
+
+WAVE_FRAME = Frame(left=0.1, top=0.1, between=0.0, below=0.44)
+FILM_FRAME = Frame(left=0.1, top=0.28, between=0.0, below=0.26)
+TIME_FRAME = Frame(left=0.72, top=0.12, between=0.12, below=0.4)
+WAVE_HEIGHT, PROFILE_LEFT, PROFILE_BELOW, ASIDE = 2.75, 3.55, 0.15, 0.15  # inches
+NOTED_LINES = 10  # of a caption with notes
+RPM_ROOM = 0.42  # for a second axis on the right, inches
 
 
 def unrolled(theta: Array, depth: Array) -> tuple[Array, Array]:
@@ -145,18 +168,6 @@ def frames(wave: Wave, history: WaveFrames) -> NDArray[np.intp]:
     wanted = np.linspace(time[-1] - span, time[-1], MOST_FRAMES)
     middle = 0.5 * (time[1:] + time[:-1])
     return np.unique(np.searchsorted(middle, wanted, side="left"))
-
-
-Axes = Any  # matplotlib's, which no module that only draws imports
-
-WALL, LIQUID, SURFACE, FORCE, DEFLECTION = "0.15", "#56B4E9", "#0072B2", "#D55E00", "0.15"
-MINUS, DEGREE, TIMES = "\N{MINUS SIGN}", "\N{DEGREE SIGN}", "\N{MULTIPLICATION SIGN}"
-BOUND = "\N{NO-BREAK SPACE}"
-REACH = 1.33  # of the drawing, over the wall's radius
-ARROW = 0.42  # length of the force's arrow, over the wall's radius
-OUTSIDE = (1.08, 1.27)  # ends of the deflection's arrow, over the wall's radius
-DRY_BAR = {"color": "0.35", "linewidth": 5, "linestyle": (0, (0.2, 0.3)), "label": "dry patch on the wall"}
-MEAN_LINE = {"color": "0.25", "linewidth": 1.0, "linestyle": (0, (5, 2)), "label": "mean depth"}
 
 
 def draw_annulus(axes: Axes, wave: Wave, factor: float) -> None:
@@ -407,11 +418,6 @@ def _speed(rate: float) -> str:
     return f"{signed(rate)}{BOUND}rad/s ({signed(rate * RPM)}{BOUND}rpm)"
 
 
-Show = Callable[[int], None]
-
-TURNED = "#D55E00"
-
-
 def draw_force(axes: Axes, _wave: Wave, history: WaveFrames) -> None:
     """Both parts of the force ratio, a point for each period."""
     if history.force_ratio is None or history.period_time is None:
@@ -547,16 +553,6 @@ def describe_film(wave: Wave, history: WaveFrames) -> str:
         if abs(wave.seen_from_the_drum) * float(np.max(np.diff(time))) > 2.0 * TURN:
             text += " The frames are too far apart to follow the deflection."
     return text
-
-
-DrawTime = Callable[[Axes, Wave, WaveFrames], None]
-
-WAVE_FRAME = Frame(left=0.1, top=0.1, between=0.0, below=0.44)
-FILM_FRAME = Frame(left=0.1, top=0.28, between=0.0, below=0.26)
-TIME_FRAME = Frame(left=0.72, top=0.12, between=0.12, below=0.4)
-WAVE_HEIGHT, PROFILE_LEFT, PROFILE_BELOW, ASIDE = 2.75, 3.55, 0.15, 0.15  # inches
-NOTED_LINES = 10  # of a caption with notes
-RPM_ROOM = 0.42  # for a second axis on the right, inches
 
 
 def wave_figure(wave: Wave) -> Figure:

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 SHOWN = 4  # figures, of which the phase stands in its own file only; with more, all
 
+LISTED = 11  # volumes of the table of bands
+
 
 def response_checks(result: RunResult) -> Table:
     """Where the answer is not what it seems, as a table."""
@@ -139,9 +141,6 @@ def write_exciter_report(result: ExciterResult, what: About, figure: FigureFiles
         "remarks": [began, "The numbers over speed are printed by the same command with --json."],
     }
     write_page("exciter", what, parts, path)
-
-
-LISTED = 11  # volumes of the table of bands
 
 
 def bands(result: WhirlMap) -> Table:

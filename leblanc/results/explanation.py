@@ -273,7 +273,7 @@ class Comparison(Result):
     """
 
     figure: ClassVar[str] = "leblanc.figures.comparison:comparison_figure"
-    summary: ClassVar[str] = "leblanc.text.explanation:summary"
+    summary: ClassVar[str] = "leblanc.text.explanation:comparison_facts"
 
     name: str
     source: str

@@ -155,7 +155,7 @@ class ModesCode(NoteCode):
     SHARP_EDGES = "sharp_edges"
 
 
-def of_mesh(finding: Finding) -> Note:
+def mesh_finding(finding: Finding) -> Note:
     """What is found in a mesh."""
     return Note(ModesCode.MESH, asdict(finding), f"mesh: {finding}")
 
@@ -177,7 +177,7 @@ def baffles_clear() -> Note:
     return Note(ModesCode.BAFFLES_CLEAR, {}, "the baffles stand clear of the liquid")
 
 
-def coarse(error: float) -> Note:
+def coarse_mesh(error: float) -> Note:
     """The relative error of the fastest mode is worth more segments."""
     text = f"the mesh is coarse for the fastest of these modes (error about {error:.1g}): more --segments"
     return Note(ModesCode.COARSE, {"error": error}, text)

@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     from solvers.whirl.edges import Bands
 
 
+CLOSURE = 1e-3  # of the work: what the energy balance may leave
+ERROR = 0.02  # of the largest amplitude: an error estimate to speak of
+
+
 class RunCode(NoteCode):
     """What the notes of a response say."""
 
@@ -195,10 +199,6 @@ def mesh(chamber: int, finding: str) -> Note:
     finding : in words
     """
     return Note(RunCode.MESH, {"chamber": chamber}, f"Mesh of chamber {chamber + 1}: {finding}.")
-
-
-CLOSURE = 1e-3  # of the work: what the energy balance may leave
-ERROR = 0.02  # of the largest amplitude: an error estimate to speak of
 
 
 class RunupCode(NoteCode):

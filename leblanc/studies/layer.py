@@ -11,7 +11,6 @@ import numpy as np
 from fluid import kdv, waves
 from fluid.fill import Fill
 from fluid.friction import NO_FRICTION, Friction, damping_rate
-from leblanc.results import layer as notes_of
 from leblanc.results.base import Note
 from leblanc.results.layer import (
     LayerCase,
@@ -20,7 +19,12 @@ from leblanc.results.layer import (
     Number,
     Wave,
     WaveFrames,
+    against_whirl,
     angles,
+    dry_wall,
+    inner_wall,
+    no_answer,
+    out_of_range,
     wave_amplitude,
 )
 from leblanc.studies.validity import judge
@@ -73,11 +77,11 @@ def fem_answer(fill: Fill, whirl: Whirl, friction: Friction, cells: int) -> Laye
     offset = complex(0.5 * (moment @ FORWARD.conj())) if whirl.amplitude > 0.0 else 0j
     height = float(np.abs(displacement).max())
     validity = judge("linear", fill, whirl, {"wave_amplitude": height / fill.depth})
-    notes = [*notes_of.out_of_range(validity)]
+    notes = [*out_of_range(validity)]
     if abs(counter) > _ONE_WAY * abs(onward):
-        notes.append(notes_of.against_whirl(float(abs(counter) / abs(onward))))
+        notes.append(against_whirl(float(abs(counter) / abs(onward))))
     if inner - height < chamber.inner_radius:
-        notes.append(notes_of.inner_wall())
+        notes.append(inner_wall())
     theta, drawn = _profile(system.section.points[nodes], displacement)
     return LayerResult(
         case=_case(fill, whirl, "fem"),
@@ -259,9 +263,9 @@ def long_wave_notes(fill: Fill, history: LayerHistory, validity: tuple[Number, .
     chamber = fill.chamber
     reached = history.depth.size and history.depth.max() > chamber.radius - chamber.inner_radius
     return (
-        *([notes_of.no_answer(history.reason)] if history.reason else []),
-        *notes_of.out_of_range(validity),
-        *([notes_of.inner_wall()] if reached else []),
+        *([no_answer(history.reason)] if history.reason else []),
+        *out_of_range(validity),
+        *([inner_wall()] if reached else []),
     )
 
 
@@ -297,7 +301,7 @@ def kdv_answer(fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics)
     # Below nothing and above all that the drum holds there is no layer, whatever the equation says.
     possible = float(size.thinnest) > 0.0 and float(eta.max()) < 0.5 * surface**2
     reason = wave.reason if possible else "the wave would run the wall dry or fill the drum"
-    notes = (*([notes_of.no_answer(reason)] if reason else []), *notes_of.out_of_range(validity))
+    notes = (*([no_answer(reason)] if reason else []), *out_of_range(validity))
     return LayerResult(
         case=_case(fill, whirl, "kdv"),
         force_ratio=complex(kdv.force_ratio(family, offset, whirl.amplitude)) if whirl.amplitude else 0j,
@@ -433,7 +437,7 @@ def _statics(fill: Fill, whirl: Whirl, friction: Friction) -> LayerResult:
         wall_time=0.0,
         theta=theta,
         depth=depth,
-        notes=(notes_of.dry_wall(),) if bool(state.dry_patch) else (),
+        notes=(dry_wall(),) if bool(state.dry_patch) else (),
         gravity_offset=0.0,
         captured=True,
         validity=judge("statics", fill, whirl, {"wave_amplitude": wave_amplitude(depth, fill.depth)}),
@@ -457,10 +461,10 @@ def _linear(fill: Fill, whirl: Whirl, friction: Friction) -> LayerResult:
     found = {"wave_amplitude": abs(displacement) / fill.depth}
     # A synchronous whirl's linear surface is the exact circle, to the square of its own offset, while wet.
     validity = judge("linear", fill, whirl, found, {} if whirl.slip else {"wave_amplitude": (0.0, 1.0)})
-    unbounded = notes_of.no_answer("the whirl meets a free wave, the linear force is unbounded")
-    notes = [*([] if converged else [unbounded]), *notes_of.out_of_range(validity)]
+    unbounded = no_answer("the whirl meets a free wave, the linear force is unbounded")
+    notes = [*([] if converged else [unbounded]), *out_of_range(validity)]
     if surface - abs(displacement) < chamber.inner_radius:
-        notes.append(notes_of.inner_wall())
+        notes.append(inner_wall())
     theta = angles()
     drawn = surface + displacement * np.cos(theta) if converged else np.full(theta.shape, surface)
     lost = 0.5 * displacement**2 / (chamber.radius**2 - surface**2) if converged else math.nan

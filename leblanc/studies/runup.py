@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from fluid.fill import Fill
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
-from leblanc.results import notes as runup_notes
+from leblanc.results import notes
 from leblanc.results.base import FilledChamber, Note, percent
 from leblanc.results.notes import RunupCode
 from leblanc.results.runup import Bands, RunupFrames, RunupResult
@@ -120,7 +120,7 @@ def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tup
     Truth values, shape (k,), and one note for each reason
     """
     good = np.ones(history.time.shape, dtype=bool)
-    notes: list[Note | None] = []
+    found: list[Note | None] = []
     deepest, highest = RANGES["long_wave"]["relative_depth"][1], RANGES["linear"]["wave_amplitude"][1]
     linear = (model or liquid_model(scene)) == "linear"
     for k, fill in enumerate(scene.fills):
@@ -142,8 +142,8 @@ def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tup
             (RunupCode.TOO_HIGH, small, highest),
         ):
             good &= holds
-            notes.append(runup_notes.out_of_range(code, k, holds, limit))
-    return good, tuple(note for note in notes if note is not None)
+            found.append(notes.out_of_range(code, k, holds, limit))
+    return good, tuple(note for note in found if note is not None)
 
 
 def held_from(scene: Scene, fill: Fill) -> float:
@@ -261,7 +261,7 @@ def _ruled_out(scene: Scene) -> str:
 def _judged_by(found: LinearRunError) -> str:
     """What a linear run says of its own error."""
     limits = MOST_WAVE, MOST_LAG
-    return runup_notes.linear_layers(found.wave, found.lag, found.touches, found.estimate, limits)
+    return notes.linear_layers(found.wave, found.lag, found.touches, found.estimate, limits)
 
 
 STEADY_SPEEDS = 401  # of the steady response drawn behind the run-up
@@ -339,19 +339,16 @@ def _notes(scene: Scene, taken: RunupChoice, steady: Response | None, bands: Ban
     h = taken.history
     after, which = np.nonzero(np.diff(h.captured.astype(np.int8), axis=0))
     switched = [(k + 1, j) for k, j in zip(after.tolist(), which.tolist(), strict=True)]
-    notes = [
-        runup_notes.liquid_model(taken.model, taken.reason),
-        None if h.converged else runup_notes.stopped(h.reason),
-        runup_notes.numerical_error(h.error_estimate),
-        runup_notes.energy_left(h.audit.closure),
-        runup_notes.largest_amplitude(h, steady),
-        *(
-            runup_notes.capture(j, bool(h.captured[k, j]), float(h.time[k]), float(h.speed[k]))
-            for k, j in switched
-        ),
-        runup_notes.self_excited_on_the_way(bands, scene.model.friction),
+    found = [
+        notes.liquid_model(taken.model, taken.reason),
+        None if h.converged else notes.stopped(h.reason),
+        notes.numerical_error(h.error_estimate),
+        notes.energy_left(h.audit.closure),
+        notes.largest_amplitude(h, steady),
+        *(notes.capture(j, bool(h.captured[k, j]), float(h.time[k]), float(h.speed[k])) for k, j in switched),
+        notes.self_excited_on_the_way(bands, scene.model.friction),
     ]
-    return [note for note in notes if note is not None]
+    return [note for note in found if note is not None]
 
 
 def planned(scene: Scene) -> Runup:

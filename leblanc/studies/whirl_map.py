@@ -11,7 +11,7 @@ from fluid.fill import Fill
 from fluid.friction import Friction
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
-from leblanc.results import notes as map_notes
+from leblanc.results import notes
 from leblanc.results.base import Note
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import Scene
@@ -170,15 +170,15 @@ def _damping(machine: Prepared) -> str:
 def _notes(machine: Prepared, law: Friction, own: Bands, carried: Flags, thin: Flags) -> tuple[Note, ...]:
     """Limits of validity and findings."""
     scene = machine.scene
-    notes = [map_notes.own_volume(sum(fill.volume for fill in scene.chambers), own)]
+    found = [notes.own_volume(sum(fill.volume for fill in scene.chambers), own)]
     if law.law == "quadratic":
-        notes.append(map_notes.quadratic())
+        found.append(notes.quadratic())
     if law.law in ("none", "quadratic") and np.any(machine.system.damping):
-        notes.append(map_notes.without_friction())
+        found.append(notes.without_friction())
     if len(scene.fills) > 1:
-        notes.append(map_notes.common_factor())
+        found.append(notes.common_factor())
     if not carried.all():
-        notes.append(map_notes.not_held(float(np.mean(~carried)), scene.rotor.axis == "horizontal"))
+        found.append(notes.not_held(float(np.mean(~carried)), scene.rotor.axis == "horizontal"))
     if not thin.all():
-        notes.append(map_notes.thick_wall_layer(float(np.mean(~thin)), _THIN))
-    return tuple(notes)
+        found.append(notes.thick_wall_layer(float(np.mean(~thin)), _THIN))
+    return tuple(found)

@@ -24,6 +24,9 @@ Rows = list[tuple[str, str]]
 _CYLINDER = 1e20  # steepness from which the surface is drawn as a cylinder
 _HZ = 60.0  # rpm in one hertz
 
+COMPARISON_HEAD = ("model", "largest amplitude (mm)", "at (rpm)", "difference (%)", "CPU time (s)")
+REFUSED = "does not answer"
+
 
 def machine_rows(answer: Explanation) -> Rows:
     """The rotor as a whole: label and words."""
@@ -124,21 +127,17 @@ def _rpm(speed: float) -> str:
     return f"{speed * RPM:.5g} rpm" if math.isfinite(speed) else "none"
 
 
-HEAD = ("model", "largest amplitude (mm)", "at (rpm)", "difference (%)", "CPU time (s)")
-REFUSED = "does not answer"
-
-
-def rows(found: Comparison) -> list[tuple[str, ...]]:
-    """A row of the table for each model, as `HEAD` says.
+def comparison_rows(found: Comparison) -> list[tuple[str, ...]]:
+    """A row of the table for each model, as `COMPARISON_HEAD` says.
 
     Parameters
     ----------
     found : the comparison
     """
-    return [_row(found, answer) for answer in found.answers]
+    return [_comparison_row(found, answer) for answer in found.answers]
 
 
-def _row(found: Comparison, answer: ModelAnswer) -> tuple[str, ...]:
+def _comparison_row(found: Comparison, answer: ModelAnswer) -> tuple[str, ...]:
     if answer.result is None or answer.cpu_time is None:
         return answer.model, REFUSED, "", "", ""
     at, amplitude = peak(answer.result.amplitude), answer.peak_amplitude
@@ -165,7 +164,7 @@ def difference(found: Comparison, model: str) -> str:
     return "rounding" if 0.0 < size < EXACT else f"{100.0 * size:.2g}"
 
 
-def reasons(found: Comparison) -> list[str]:
+def refusals(found: Comparison) -> list[str]:
     """Why models do not answer, a line for each.
 
     Parameters
@@ -188,7 +187,7 @@ def basis(found: Comparison) -> str:
     )
 
 
-def summary(found: Comparison) -> list[tuple[str, str]]:
+def comparison_facts(found: Comparison) -> list[tuple[str, str]]:
     """Main numbers: label and value.
 
     Parameters
@@ -197,11 +196,11 @@ def summary(found: Comparison) -> list[tuple[str, str]]:
     """
     return [
         ("Scene", one_line(found.name)),
-        *((answer.model, _told(found, answer)) for answer in found.answers),
+        *((answer.model, _fact(found, answer)) for answer in found.answers),
     ]
 
 
-def _told(found: Comparison, answer: ModelAnswer) -> str:
+def _fact(found: Comparison, answer: ModelAnswer) -> str:
     if answer.result is None or answer.cpu_time is None:
         return f"{REFUSED}: {one_line(answer.reason)}"
     parts = [f"{_size(answer)} at most"]
@@ -218,7 +217,7 @@ def _size(answer: ModelAnswer) -> str:
     return NOT_FOUND if answer.peak_amplitude is None else f"{number(answer.peak_amplitude * MM)} mm"
 
 
-def alt(found: Comparison) -> str:
+def comparison_alt(found: Comparison) -> str:
     """What the figure shows and the numbers a reader would take from it.
 
     Parameters

@@ -45,6 +45,18 @@ CLOSED = (
     "'unsafe-inline' 'unsafe-eval'\">"
 )
 
+PAGE_SIZE = (1200, 900)  # pixels, until the browser tells its own
+STYLE = """
+html, body, #app { margin: 0; height: 100%; }
+.page { display: flex; flex-direction: column; height: 100vh; font: 15px sans-serif; color: #262626; }
+.tools { display: flex; flex-wrap: wrap; gap: 0.8em; align-items: center; padding: 0.6em 1em;
+  border-bottom: 1px solid #cccccc; background: #f6f6f6; }
+.tools input[type=range] { flex: 1 1 20em; min-width: 12em; }
+.tools output { min-width: 13em; font-variant-numeric: tabular-nums; }
+.words { padding: 0.4em 1em; min-height: 1.4em; }
+.sight { flex: 1 1 auto; min-height: 0; position: relative; }
+"""
+
 
 def write_picture(picture: Picture, path: Path) -> None:
     """Write a picture as PNG, or as a page that turns it in a browser.
@@ -150,19 +162,6 @@ def _in_perspective(plot: Plotter) -> None:
     for actor in plot.actors.values():
         if hasattr(actor, "prop") and hasattr(actor.prop, "line_width"):
             actor.prop.line_width = max(1.0, 0.5 * actor.prop.line_width)
-
-
-PAGE_SIZE = (1200, 900)  # pixels, until the browser tells its own
-STYLE = """
-html, body, #app { margin: 0; height: 100%; }
-.page { display: flex; flex-direction: column; height: 100vh; font: 15px sans-serif; color: #262626; }
-.tools { display: flex; flex-wrap: wrap; gap: 0.8em; align-items: center; padding: 0.6em 1em;
-  border-bottom: 1px solid #cccccc; background: #f6f6f6; }
-.tools input[type=range] { flex: 1 1 20em; min-width: 12em; }
-.tools output { min-width: 13em; font-variant-numeric: tabular-nums; }
-.words { padding: 0.4em 1em; min-height: 1.4em; }
-.sight { flex: 1 1 auto; min-height: 0; position: relative; }
-"""
 
 
 @dataclass(frozen=True)

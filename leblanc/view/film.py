@@ -35,6 +35,8 @@ FRAMES, MOST_FRAMES, RATE = 60, 600, 15  # frames a second; a GIF counts in hund
 FILM_SIZE = (800, 600)  # pixels; video codecs want even numbers
 COLOURS = 128  # of a GIF
 
+ROUND = 48  # frames of a period
+
 
 @dataclass(frozen=True)
 class Film:
@@ -221,9 +223,6 @@ def _write_mp4(shown: Sequence[Pixels], path: Path) -> None:
             reason = said[-1] if said else "ffmpeg failed"
             raise InputError("--animate", str(path), f"a .gif, since ffmpeg cannot write this: {reason}")
         shutil.copyfile(whole, part)
-
-
-ROUND = 48  # frames of a period
 
 
 def _moment(displacement: Complex, phase: float, lift: float) -> Array:

@@ -15,7 +15,7 @@ from leblanc.figures.chambers import plates
 from leblanc.figures.page import zero_of
 from leblanc.results.base import one_line
 from leblanc.results.drawn import DrawnLiquid, LiquidBodies, LiquidShape, MachineMotion, Scale, strips
-from leblanc.units import MM, RPM
+from leblanc.units import DEGREE, MINUS, MM, RPM
 from leblanc.view.parts import (
     ABOVE,
     AWAY,
@@ -41,6 +41,9 @@ from meshes.section import Section
 STEPS = 4  # straight pieces of a curved side
 _SAME = 1e-9  # of the farthest point: ends nearer to each other are one
 _PARTS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])  # of a curved triangle
+
+SKIN = 0.003  # walls are drawn so much outside the liquid, over the radius, so that the two do not coincide
+_ON_PLATE = 1e-6  # of a plate's length, that a face may be off it
 
 
 @dataclass(frozen=True)
@@ -197,10 +200,6 @@ def _ruled(stage: Stage, name: str, look: str, lines: Complex, floor: float, lid
     return Piece(name, points, cells, look)
 
 
-SKIN = 0.003  # walls are drawn so much outside the liquid, over the radius, so that the two do not coincide
-_ON_PLATE = 1e-6  # of a plate's length, that a face may be off it
-
-
 def compose(stage: Stage, instant: Instant) -> Picture:
     """Picture of a machine at one instant.
 
@@ -352,9 +351,6 @@ def _shore(surface: Indices, wall: Indices) -> Indices:
     number = max(int(edge.max(initial=0)) for edge in edges) + 1
     open_, closed = (edge[:, 0] * number + edge[:, 1] for edge in edges)
     return np.asarray(edges[0][np.isin(open_, closed)], dtype=np.int64)
-
-
-MINUS, DEGREE = "\N{MINUS SIGN}", "\N{DEGREE SIGN}"
 
 
 def stage_of(motion: MachineMotion, scale: Scale) -> Stage:

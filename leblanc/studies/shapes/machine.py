@@ -46,6 +46,14 @@ from solvers.synchronous.response import response
 
 GAP = 0.25  # between chambers moved apart, over the wider one's radius
 
+SWING, MOST = 0.35, 100.0  # vibration as drawn over the track's radius, and the largest factor
+
+VISIBLE = 0.04  # a largest deflection smaller than this over the radius is drawn larger
+
+MOST_MODES = 40
+AROUND_MODE, ACROSS = 120, 4  # elements around and across the layer
+LIFT = 0.6  # of the layer's depth, or of the room inside it: displacement as drawn
+
 
 def machine_motion(scene: Scene, speed: float | None = None) -> MachineMotion:
     """Answer of a scene at one speed, or at all its own.
@@ -219,9 +227,6 @@ def _is_dry(fill: Fill, moved: complex, volume: float, speed: float, gravity: fl
     return bool(volume < optimal_volume(fill.chamber, abs(moved), speed, gravity))
 
 
-SWING, MOST = 0.35, 100.0  # vibration as drawn over the track's radius, and the largest factor
-
-
 def table_view(scene: Scene, speed: float | None = None) -> TableView:
     """A table with balls at the moment when balls and unbalance both point along the vibration.
 
@@ -257,9 +262,6 @@ def table_view(scene: Scene, speed: float | None = None) -> TableView:
         kind=rotor.balls.name,
         factor=factor,
     )
-
-
-VISIBLE = 0.04  # a largest deflection smaller than this over the radius is drawn larger
 
 
 def runup_view(
@@ -318,11 +320,6 @@ def _liquid(fill: Fill, scale: Scale, frames: RunupFrames, k: int, j: int) -> Li
     if np.isnan(depth).any():
         return body_of_pool(fill.chamber, fill.volume, moved, float(frames.pool[k]))
     return body_of_layer(fill.chamber, moved, frames.theta, scale.depth * depth)
-
-
-MOST_MODES = 40
-AROUND_MODE, ACROSS = 120, 4  # elements around and across the layer
-LIFT = 0.6  # of the layer's depth, or of the room inside it: displacement as drawn
 
 
 def mode_view(scene: Scene, number: int, speed: float | None = None, chamber: int = 1) -> ModeView:
