@@ -20,7 +20,7 @@ from meshes.baffles import Baffles  # noqa: E402
 from meshes.bodies.paraboloid import paraboloid_body  # noqa: E402
 from meshes.bodies.wave import wave_body  # noqa: E402
 from meshes.grids import boundary_grid, grid, wall_grid  # noqa: E402
-from meshes.refine.waterline_cut import liquid_outside  # noqa: E402
+from meshes.refine.waterline import liquid_outside  # noqa: E402
 from meshes.rings.sectors import compartment  # noqa: E402
 from meshes.rings.triangles import ring  # noqa: E402
 from meshes.section import Section, annulus, disc  # noqa: E402

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from fluid.moments import lens_moments
+from fluid.paraboloid import lens_moments
 from meshes.chamber import Chamber
 from meshes.errors import InputError, require_not_negative, require_positive
 

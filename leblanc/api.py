@@ -332,29 +332,12 @@ def layer(
     >>> found.converged
     True
     """
-    from leblanc.questions import layer_question
+    given = locals()
+    from leblanc.questions import ask, layer_question
     from leblanc.studies.layer import answer_layer, layer_history
 
     with _keywords():
-        question = layer_question(
-            radius=radius,
-            volume=volume,
-            height=height,
-            speed=speed,
-            whirl_speed=whirl_speed,
-            whirl_amplitude=whirl_amplitude,
-            model=model,
-            cells=cells,
-            baffles=baffles,
-            baffle_tip_radius=baffle_tip_radius,
-            baffle_wall_gap=baffle_wall_gap,
-            dispersion=dispersion,
-            friction=friction,
-            gravity=gravity,
-            liquid=liquid,
-            duration=duration,
-            ramp=ramp,
-        )
+        question = ask(layer_question, given)
         if question.duration is None:
             return answer_layer(**question.whirl)
         return layer_history(**question.whirl, duration=question.duration, ramp=question.ramp)
@@ -402,27 +385,12 @@ def modes(
     >>> found.frequency.shape
     (2,)
     """
-    from leblanc.questions import modes_question
+    given = locals()
+    from leblanc.questions import ask, modes_question
     from leblanc.studies.modes import answer_modes
 
     with _keywords():
-        question = modes_question(
-            radius=radius,
-            volume=volume,
-            height=height,
-            speed=speed,
-            count=count,
-            baffles=baffles,
-            baffle_tip_radius=baffle_tip_radius,
-            baffle_wall_gap=baffle_wall_gap,
-            mesh=None if mesh is None else Path(mesh),
-            mesh_unit=mesh_unit,
-            mesh_size=mesh_size,
-            liquid=liquid,
-            segments=segments,
-            layers=layers,
-            order=order,
-        )
+        question = ask(modes_question, given)
         return answer_modes(**question)
 
 
@@ -457,19 +425,12 @@ def volume(
     >>> f"{1e6 * best.optimal_volume:.4f} ml"
     '54.4396 ml'
     """
-    from leblanc.questions import volume_question
+    given = locals()
+    from leblanc.questions import ask, volume_question
     from leblanc.studies.volume import answer_volume
 
     with _keywords():
-        question = volume_question(
-            radius=radius,
-            height=height,
-            eccentricity=eccentricity,
-            speed=speed,
-            volume=volume,
-            gravity=gravity,
-            inner_radius=inner_radius,
-        )
+        question = ask(volume_question, given)
         return answer_volume(**question)
 
 

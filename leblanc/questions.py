@@ -5,25 +5,38 @@ Quantities are numbers in SI units or texts with a unit. Faults name the option,
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from inspect import signature
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from fluid.fill import Fill
 from fluid.friction import Friction
 from fluid.liquid import Liquid, known_liquid
-from leblanc.friction import parse_friction
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import OBJECTIVES, Optimisation
 from leblanc.studies.modes import Resolution, SectionSource
-from leblanc.units import ACCELERATION, ANGULAR_SPEED, LENGTH, TIME, VOLUME, parse_option
+from leblanc.units import ACCELERATION, ANGULAR_SPEED, LENGTH, TIME, VOLUME, parse_friction, parse_option
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.errors import InputError, require_not_negative
-from solvers.layer.prescribed import Numerics
+from solvers.layer.state import Numerics
 
 Quantity = str | float
+Question = TypeVar("Question")
 _MOST_BAFFLES = 64
+
+
+def ask(question: Callable[..., Question], given: Mapping[str, Any]) -> Question:
+    """A question from those of the values that it has parameters for.
+
+    Parameters
+    ----------
+    question : one of this module's functions
+    given : values by their names, as `locals()` of a command or call that has the same parameters and more
+    """
+    return question(**{name: given[name] for name in signature(question).parameters})
 
 
 @dataclass(frozen=True)

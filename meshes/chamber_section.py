@@ -81,7 +81,7 @@ def level(section: ChamberSection, liquid_area: float) -> tuple[float, float]:
     -------
     Radius a of the surface, m, and the part of the circle r = a inside the section, 1 if it meets no wall
     """
-    from meshes.refine.waterline_cut import area_outside, surface_radius_of
+    from meshes.refine.waterline import area_outside, surface_radius_of
 
     radius = surface_radius_of(section.mesh, liquid_area)
     step = min(_STEP, 0.1 * (section.farthest - radius) / radius) * radius
@@ -117,7 +117,7 @@ def liquid_of(section: ChamberSection, surface_radius: float) -> LiquidSection:
     section : of the chamber
     surface_radius : a, m
     """
-    from meshes.refine.waterline_cut import liquid_outside
+    from meshes.refine.waterline import liquid_outside
 
     size = min(2.0 * math.pi * surface_radius / 64.0, 0.5 * (section.farthest - surface_radius))
     return liquid_outside(section.mesh, surface_radius, order=2, surface_size=size, wall_size=size)

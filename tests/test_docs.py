@@ -166,8 +166,7 @@ def test_the_page_of_keys_is_up_to_date() -> None:
 def test_every_key_has_its_line_and_a_meaning() -> None:
     from leblanc.scene.scene import Scene
     from leblanc.scene.schema.paths import tables_of
-    from leblanc.studies.sweep.distributions import FORMS, KINDS
-    from leblanc.studies.sweep.study import Study
+    from leblanc.studies.sweep.study import FORMS, KINDS, Study
 
     keys = _module("scene_keys", "docs/_ext")
     text = (DOCS / keys.NAME).read_text(encoding="utf-8")
@@ -364,9 +363,7 @@ class TestExamples:
 
 
 def test_kept_measurements_are_those_that_the_page_tables(tmp_path: Path) -> None:
-    from validation.benchmarks.keep import keep, kept_results
-    from validation.benchmarks.report import _figures
-    from validation.benchmarks.table import _row, growth_markdown
+    from validation.benchmarks.report import _figures, _row, growth_markdown, keep, kept_results
 
     page = (DOCS / "benchmarks.md").read_text(encoding="utf-8")
     results = kept_results()

@@ -50,29 +50,12 @@ def layer(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Force and centre of mass of a liquid layer under a whirl. In the plane, the whirl being prescribed."""
-    from leblanc.questions import layer_question
+    given = locals()
+    from leblanc.questions import ask, layer_question
     from leblanc.scene.schema.load import NotConverged
     from leblanc.studies.layer import answer_layer, layer_history
 
-    question = layer_question(
-        radius=radius,
-        volume=volume,
-        height=height,
-        speed=speed,
-        whirl_speed=whirl_speed,
-        whirl_amplitude=whirl_amplitude,
-        model=model,
-        cells=cells,
-        baffles=baffles,
-        baffle_tip_radius=baffle_tip_radius,
-        baffle_wall_gap=baffle_wall_gap,
-        dispersion=dispersion,
-        friction=friction,
-        gravity=gravity,
-        liquid=liquid,
-        duration=duration,
-        ramp=ramp,
-    )
+    question = ask(layer_question, given)
     result: LayerResult | LayerPeriodsResult
     if question.duration is not None:
         result = layer_history(**question.whirl, duration=question.duration, ramp=question.ramp)

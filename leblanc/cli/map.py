@@ -28,9 +28,8 @@ def map(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Growth of self-excited whirl over speed and volume. Edges of the unstable bands, figure, report."""
-    from leblanc.friction import parse_friction
     from leblanc.scene.scene import load_scene
-    from leblanc.units import VOLUME, parse_option
+    from leblanc.units import VOLUME, parse_friction, parse_option
 
     machine = load_scene(scene)
     law = None if friction is None else parse_friction(friction, "--friction")

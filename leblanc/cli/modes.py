@@ -44,28 +44,13 @@ def modes(
 
     Frequencies are relative to the drum, positive with the spin.
     """
-    from leblanc.questions import modes_question
+    given = locals()
+    from leblanc.questions import ask, modes_question
     from leblanc.scene.schema.load import NotConverged
     from leblanc.studies.modes import answer_modes
     from leblanc.text.liquid import modes_table
 
-    question = modes_question(
-        radius=radius,
-        volume=volume,
-        height=height,
-        speed=speed,
-        count=count,
-        baffles=baffles,
-        baffle_tip_radius=baffle_tip_radius,
-        baffle_wall_gap=baffle_wall_gap,
-        mesh=mesh,
-        mesh_unit=mesh_unit,
-        mesh_size=mesh_size,
-        liquid=liquid,
-        segments=segments,
-        layers=layers,
-        order=order,
-    )
+    question = ask(modes_question, given)
     result = answer_modes(**question)
     if json:
         print_json(result.to_json())

@@ -117,7 +117,7 @@ def _check_choices(
 
 def _mode(machine: Scene, number: int, speed: float | None, chamber: int) -> ModeView:
     """A sloshing mode as drawn."""
-    from leblanc.studies.shapes.modes import mode_view
+    from leblanc.studies.shapes.machine import mode_view
 
     return mode_view(machine, number, speed, chamber)
 
@@ -132,7 +132,7 @@ def _of_mode(wave: ModeView) -> tuple[Picture, dict[str, object]]:
 def _still(machine: Scene, speed: float | None, factor: float | None) -> tuple[Picture, dict[str, object]]:
     """Picture of a machine at one speed and its numbers."""
     if machine.rotor.kind == "exciter":
-        from leblanc.studies.shapes.exciter import table_view
+        from leblanc.studies.shapes.machine import table_view
         from leblanc.view.exciter import table_picture
 
         table = table_view(machine, speed)
@@ -196,7 +196,7 @@ def _film_of(machine: Scene, frames: int, factor: float | None, progress: Callab
     from leblanc.view.film import runup_film, sweep_film
 
     if machine.runup is not None and machine.rotor.kind != "exciter":
-        from leblanc.studies.shapes.runup import runup_view
+        from leblanc.studies.shapes.machine import runup_view
 
         return runup_film(runup_view(machine, frames, factor, progress))
     from leblanc.studies.shapes.machine import drawn_liquid, machine_motion

@@ -20,21 +20,14 @@ def volume(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Volume that just covers the wall at a deflection. Also the surface of a given volume."""
-    from leblanc.questions import volume_question
+    given = locals()
+    from leblanc.questions import ask, volume_question
     from leblanc.scene.schema.load import NotConverged
     from leblanc.studies.volume import answer_volume
     from leblanc.text.liquid import facts
     from leblanc.text.liquid import question as described
 
-    question = volume_question(
-        radius=radius,
-        height=height,
-        eccentricity=eccentricity,
-        speed=speed,
-        volume=volume,
-        gravity=gravity,
-        inner_radius=inner_radius,
-    )
+    question = ask(volume_question, given)
     answer = answer_volume(**question)
     if json:
         print_json(answer.to_json())

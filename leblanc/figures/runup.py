@@ -14,11 +14,10 @@ import numpy as np
 from leblanc.figures.curves import gapped, joined, lag_degrees, link, spans, widened
 from leblanc.figures.page import WIDTH, Caption, Figure, FigureFiles, Frame, lay_out, number, save, style
 from leblanc.figures.response import DRY, SHADE, UNSTABLE, WET
-from leblanc.friction import friction_words
 from leblanc.results.base import one_line
 from leblanc.results.runup import RunupResult
 from leblanc.text.runup import describe_model, largest
-from leblanc.units import MM, RPM
+from leblanc.units import MM, RPM, friction_words
 from meshes.arrays import Array, Flags
 
 Axes = Any  # matplotlib's, which no module that only draws imports

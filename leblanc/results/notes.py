@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fluid.friction import Friction
-from leblanc.friction import friction_words
 from leblanc.results.base import Note, NoteCode, percent
 from leblanc.results.choice import Choice
 from leblanc.results.response import SelfExcited, peak
-from leblanc.units import ML, MM, RPM
+from leblanc.units import ML, MM, RPM, friction_words
 from meshes.arrays import Array, Flags
 from solvers.runup.runup import RunupHistory
 from solvers.synchronous.response import Response

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.friction import Friction
-from leblanc.friction import friction_words
 from leblanc.results.base import FilledChamber, Note, Result, attributes, one_line, texts
 from leblanc.results.netcdf import NamedArrays, flags, variable
 from leblanc.results.response import phase
+from leblanc.units import friction_words
 from meshes.arrays import Array, Complex, Flags
 from solvers.runup.runup import EnergyAudit, RunupHistory
 from solvers.synchronous.response import Response

@@ -7,13 +7,12 @@ from dataclasses import dataclass
 
 from fluid.fill import Fill
 from fluid.liquid import KNOWN_LIQUIDS
-from leblanc.friction import friction_words
 from leblanc.scene.rotors import JeffcottRotor
 from leblanc.scene.rows import Row, RowTable, Value, degrees, mm, row, rpm
 from leblanc.scene.scene import Scene
 from leblanc.scene.schema.load import escaped
 from leblanc.scene.tasks import Optimisation, Runup
-from leblanc.units import MINUS, ML, MM, RPM, number
+from leblanc.units import MINUS, ML, MM, RPM, friction_words, number
 from meshes.baffles import Baffles
 from meshes.chamber_section import ChamberSection
 

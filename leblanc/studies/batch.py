@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from leblanc.results.response import phase
 from leblanc.scene.scene import JeffcottRotor, Scene
-from leblanc.studies.choose import choose_all
-from leblanc.studies.prepare import prepare
+from leblanc.studies.choose import choose_all, prepare
 from leblanc.studies.run import run_scene
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError

@@ -1,25 +1,96 @@
-"""Which liquid model a scene needs at each speed: the cheapest within the tolerance."""
+"""A scene made ready for the solvers: rotor, speeds, gravity, the cheapest liquid model within tolerance."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fluid.fill import Fill
+from fluid.friction import Friction
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed
 from leblanc.results.choice import Choice
-from leblanc.scene.scene import Scene
-from leblanc.studies.prepare import Prepared, prepare
+from leblanc.scene.scene import Scene, dry_rotor
 from meshes.arrays import Array
 from meshes.chamber_section import rest_offset, surface_is_whole
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.synchronous.errors import ROUNDING, LinearError
-from solvers.synchronous.estimate import error_estimate, machine_errors
+from solvers.synchronous.errors import ROUNDING, LinearError, error_estimate, machine_errors
 from solvers.synchronous.models import MODEL_NAMES, LiquidModel, model_named
+
+if TYPE_CHECKING:
+    from solvers.rotor.system import RotorSystem
+    from solvers.rotor.tub import Tub
+    from solvers.rotor.two_plane import TwoPlane
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A machine as solvers take it; every step of a study takes the same one.
+
+    Parameters
+    ----------
+    scene : the machine
+    rotor : without liquid
+    system : its equations of motion
+    speed : spin speeds, rad/s, shape (n,)
+    axial_gravity, across_gravity : along and across the axis, m/s^2
+    friction : of the liquid
+    """
+
+    scene: Scene
+    rotor: Jeffcott | TwoPlane | Tub
+    system: RotorSystem
+    speed: Array
+    axial_gravity: float
+    across_gravity: float
+    friction: Friction
+
+    @property
+    def planar(self) -> Jeffcott:
+        """The rotor, where it is planar.
+
+        Raises
+        ------
+        InputError : it is of another kind
+        """
+        if not isinstance(self.rotor, Jeffcott):
+            raise InputError("rotor.kind", self.scene.rotor.kind, "jeffcott for this")
+        return self.rotor
+
+
+def prepare(scene: Scene) -> Prepared:
+    """The scene's machine as solvers take it.
+
+    Raises
+    ------
+    InputError : the scene is that of an exciter
+    """
+    rotor = dry_rotor(scene)
+    return Prepared(
+        scene=scene,
+        rotor=rotor,
+        system=rotor.system(),
+        speed=scene.speed_array(),
+        axial_gravity=axial_gravity(scene),
+        across_gravity=across_gravity(scene),
+        friction=scene.model.friction,
+    )
+
+
+def axial_gravity(scene: Scene) -> float:
+    """Gravity along the rotor's axis, m/s^2: none if the axis lies."""
+    return scene.gravity if scene.rotor.axis == "vertical" else 0.0
+
+
+def across_gravity(scene: Scene) -> float:
+    """Gravity across the rotor's axis, m/s^2: none if the axis stands."""
+    return scene.gravity if scene.rotor.axis == "horizontal" else 0.0
+
 
 _NO_DEPTH = 1e-6  # over the surface's radius: a slit that reaches the surface leaves the circle whole
 _BALANCED = 1e-3  # of the surface's radius, that the liquid at rest may lie off the axis

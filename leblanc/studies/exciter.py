@@ -12,9 +12,14 @@ from numpy.typing import ArrayLike
 from leblanc.results.exciter import Check, ExciterResult
 from meshes.arrays import Array
 from meshes.errors import InputError
-from solvers.rotor.exciter.machine import Dimensionless, Exciter, platform_motion
+from solvers.rotor.exciter.machine import (
+    Dimensionless,
+    Exciter,
+    characteristic_speeds,
+    platform_motion,
+    stuck_speeds,
+)
 from solvers.rotor.exciter.motion import RANGES, Start, critical_speed, integrate, printed_critical_speed
-from solvers.rotor.exciter.stuck import characteristic_speeds, stuck_speeds
 
 if TYPE_CHECKING:
     from leblanc.scene.scene import Scene

@@ -15,17 +15,16 @@ from leblanc.results.response import RestMode
 from leblanc.scene.rotors import Exciter as ExciterOfScene
 from leblanc.scene.rows import baffle_words
 from leblanc.scene.scene import Scene
-from leblanc.studies.choose import choose_all
+from leblanc.studies.choose import Prepared, choose_all, prepare
 from leblanc.studies.exciter import printed_critical
-from leblanc.studies.prepare import Prepared, prepare
 from leblanc.studies.run import main_critical_speeds, rest_modes
 from meshes.errors import InputError
-from solvers.rotor.exciter.stuck import characteristic_speeds
+from solvers.rotor.exciter.machine import characteristic_speeds
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import critical_speeds, modes, orbit, unbalance_response
 from solvers.statics.hydrostatics import optimal_volume
-from solvers.synchronous.critical import critical_speed, wet_critical_speeds
 from solvers.synchronous.models import model_named
+from solvers.synchronous.response import critical_speed, wet_critical_speeds
 
 
 def explain_exciter(scene: Scene) -> ExciterExplanation:

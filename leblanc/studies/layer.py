@@ -26,8 +26,8 @@ from leblanc.results.layer import (
 from leblanc.studies.validity import judge
 from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative, require_positive
-from solvers.layer.prescribed import LayerHistory, Numerics, Whirl
 from solvers.layer.settle import film, settle, simulate
+from solvers.layer.state import LayerHistory, Numerics, Whirl
 from solvers.statics.hydrostatics import equilibrium
 
 MOST_CELLS = 600  # around; the matrices of the free surface are dense
@@ -272,7 +272,7 @@ def kdv_answer(fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics)
     ------
     InputError : gravity across the axis, quadratic friction, no free surface
     """
-    from solvers.waves.periodic import family_problem, solve
+    from solvers.waves.steady import family_problem, solve
 
     chamber, surface = fill.chamber, fill.surface_radius
     if whirl.gravity != 0.0:

@@ -22,8 +22,7 @@ from meshes.chamber import Chamber
 from meshes.errors import InputError, require_positive
 from meshes.findings import wave_findings
 from meshes.liquid_section import LiquidSection
-from solvers.sloshing.damping import ModeDamping, mode_damping
-from solvers.sloshing.forced import forced_response
+from solvers.sloshing.forced import ModeDamping, forced_response, mode_damping
 from solvers.sloshing.modes import SloshingModes, first_largest, sloshing_modes, spectrum
 from solvers.sloshing.system import LiquidSystem, condense
 
@@ -152,7 +151,7 @@ def section_of_file(
     """
     from meshes.findings import mesh_findings
     from meshes.refine.bisection import halved, straightened
-    from meshes.refine.waterline_cut import liquid_outside, surface_radius_of
+    from meshes.refine.waterline import liquid_outside, surface_radius_of
 
     if source.unit is not None:
         require_positive("--mesh-unit", source.unit)

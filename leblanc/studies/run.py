@@ -14,8 +14,7 @@ from leblanc.results.choice import Choice, model_spans
 from leblanc.results.response import Motion, RestMode, RunResult, SelfExcited
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
-from leblanc.studies.choose import choose_all, liquid_models
-from leblanc.studies.prepare import Prepared, prepare
+from leblanc.studies.choose import Prepared, choose_all, liquid_models, prepare
 from leblanc.studies.whirl_map import small_whirl_friction
 from meshes.arrays import Complex
 from meshes.chamber_section import liquid_of
@@ -30,9 +29,8 @@ from solvers.rotor.vibration import (
     whirl_direction,
 )
 from solvers.statics.hydrostatics import optimal_volume
-from solvers.synchronous.critical import critical_speed, wet_critical_speeds
 from solvers.synchronous.models import LINEAR, model_named
-from solvers.synchronous.response import Response, response
+from solvers.synchronous.response import Response, critical_speed, response, wet_critical_speeds
 from solvers.whirl.edges import unstable_bands
 from solvers.whirl.growth import asynchronous_growth
 

@@ -18,14 +18,23 @@ from leblanc.results.notes import RunupCode
 from leblanc.results.runup import Bands, RunupFrames, RunupResult
 from leblanc.scene.inputs import runup_rows
 from leblanc.scene.scene import JeffcottRotor, Runup, Scene, dry_rotor, jeffcott, require_clear
-from leblanc.studies.prepare import across_gravity as across_gravity  # of a run-up, asked for with it
-from leblanc.studies.prepare import axial_gravity
+from leblanc.studies.choose import across_gravity as across_gravity  # of a run-up, asked for with it
+from leblanc.studies.choose import axial_gravity
 from leblanc.studies.validity import RANGES
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
-from solvers.runup.drive import Drive, Motor, Ramp
-from solvers.runup.error import MOST_LAG, MOST_WAVE, LinearRunError, largest_wave, linear_run_error
-from solvers.runup.runup import MODELS, RunupHistory, RunupNumerics, run_up
+from solvers.runup.machine import Drive, Motor, Ramp
+from solvers.runup.runup import (
+    MODELS,
+    MOST_LAG,
+    MOST_WAVE,
+    LinearRunError,
+    RunupHistory,
+    RunupNumerics,
+    largest_wave,
+    linear_run_error,
+    run_up,
+)
 from solvers.synchronous.response import Response, response
 
 FRAMES = 180  # of a film

@@ -9,7 +9,7 @@ from dataclasses import asdict
 from fluid.fill import Fill
 from fluid.numbers import whirl_numbers
 from leblanc.results.layer import Number
-from solvers.layer.prescribed import Whirl
+from solvers.layer.state import Whirl
 
 MEANING = {
     "relative_depth": "mean depth over radius",

@@ -11,13 +11,13 @@ from fluid.fill import Fill
 from fluid.friction import Friction
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
-from leblanc.friction import friction_words
 from leblanc.results import notes as map_notes
 from leblanc.results.base import Note
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import Scene
-from leblanc.studies.prepare import Prepared, prepare
+from leblanc.studies.choose import Prepared, prepare
 from leblanc.studies.validity import RANGES
+from leblanc.units import friction_words
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott

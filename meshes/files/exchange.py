@@ -18,7 +18,7 @@ from meshes.bodies.body import Body
 from meshes.errors import InputError, require_positive
 from meshes.liquid_section import LiquidSection, free_sides, liquid_section
 from meshes.quality import cell_areas
-from meshes.rings.slits import open_slits
+from meshes.rings.triangles import open_slits
 from meshes.section import Section
 
 SUFFIXES = (".msh", ".vtu", ".xdmf")

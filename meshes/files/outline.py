@@ -17,7 +17,7 @@ from meshes.arrays import Array, Indices
 from meshes.errors import InputError, require_positive
 from meshes.files.drawing import Curve, closed_loops, extent, meet, read_drawing
 from meshes.quality import cell_areas
-from meshes.rings.slits import open_slits
+from meshes.rings.triangles import open_slits
 from meshes.section import Section
 
 

@@ -16,7 +16,7 @@ from meshes.arrays import Array, Indices
 from meshes.baffles import Baffles
 from meshes.errors import InputError, require_positive
 from meshes.liquid_section import LiquidSection, liquid_section
-from meshes.rings.slits import open_slits
+from meshes.rings.triangles import open_slits
 
 # Distances from the edge of a baffle grow as this power of the cell's number. The flow there goes as the root
 # of the distance, and elements of degree p keep their order with any power above 2 p.

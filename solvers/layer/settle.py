@@ -14,8 +14,16 @@ from fluid.fill import Fill
 from fluid.friction import NO_FRICTION, Friction, FrictionLaw
 from meshes.arrays import Complex
 from meshes.errors import require_positive
-from solvers.layer.prescribed import LayerFilm, LayerHistory, Numerics, Whirl
-from solvers.layer.state import MovingLayer, depth, settle_statics, start
+from solvers.layer.state import (
+    LayerFilm,
+    LayerHistory,
+    MovingLayer,
+    Numerics,
+    Whirl,
+    depth,
+    settle_statics,
+    start,
+)
 
 _PERIODS = 400
 _TURNS = 20_000.0  # rad of spin

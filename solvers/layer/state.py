@@ -1,22 +1,181 @@
-"""A finite-volume layer with what drives it: its start, its equilibrium, its way through whirl periods.
+"""A finite-volume layer with what drives it: its start, equilibrium, loads, way through periods.
 
-Lengths over R, times over 1/Omega.
+Lengths over R, times over 1/Omega; complex numbers: along the deflection, 90 deg ahead of it.
 """
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from fluid.fill import Fill
 from fluid.friction import QUADRATIC, Friction
 from meshes.arrays import Array, Complex
-from meshes.errors import InputError
-from solvers.layer.loads import means, offset, ring
-from solvers.layer.prescribed import Numerics, Whirl
-from solvers.layer.records import LOADS, Drive, LayerOutcome, Wall, records
+from meshes.errors import InputError, require_not_negative, require_positive
+from solvers.layer.records import LOADS, Drive, LayerOutcome, Record, Wall, records
+
+
+@lru_cache(maxsize=16)
+def ring(cells: int) -> Array:
+    """Cosine and sine at the cells' middles and at their left faces, shape (4, n); the first cell from 0."""
+    edge = 2.0 * math.pi * np.arange(cells) / cells
+    middle = edge + math.pi / cells
+    return np.stack([np.cos(middle), np.sin(middle), np.cos(edge), np.sin(edge)])
+
+
+def offset(area: Array, drive: Drive, angles: Array, time: float) -> complex:
+    """Offset of the liquid's centre of mass from the drum's axis at a time.
+
+    Parameters
+    ----------
+    area : A, shape (n,)
+    drive, angles : as for `solvers.layer.step.advance`
+    time : at which the deflection has turned by the slip times it
+    """
+    surface = np.sqrt(np.maximum(1.0 - 2.0 * area, 0.0))
+    lever = (1.0 - surface) * (1.0 + surface + surface * surface) / 3.0
+    found = complex(lever @ angles[0], lever @ angles[1]) / float(area.sum())
+    return found * cmath.exp(-1j * drive.slip * time)
+
+
+def means(
+    sums: Record, length: float, mass: float, whirl_speed: float, offsets: tuple[complex, complex]
+) -> Complex:
+    """Means over a time [theory: long_wave, eq. 7].
+
+    Parameters
+    ----------
+    sums : a record LOADS of `solvers.layer.records`
+    length : of the time
+    mass : of the liquid, over rho h_c R^2
+    whirl_speed : omega_w
+    offsets : at the beginning and at the end
+
+    Returns
+    -------
+    Force by the liquid's momentum and offset, turning, least and largest depth, force by the pressure on the
+    wall, shape (6,); forces are over rho h_c R^3
+    """
+    pressure = complex(sums.force_x, sums.force_y) / length
+    moved = complex(sums.offset_x, sums.offset_y) / length
+    push = complex(sums.push_x, sums.push_y) / length
+    drift = (offsets[1] - offsets[0]) / length
+    # The liquid as a whole: what pushes it, the centripetal and the Coriolis part.
+    inertia = mass * (push + whirl_speed**2 * moved - 2j * whirl_speed * drift)
+    rest = sums.turning / length, sums.depth_min / length, sums.depth_max / length
+    return np.array([inertia, moved, *rest, pressure], dtype=np.complex128)
+
+
+@dataclass(frozen=True)
+class Whirl:
+    """A circular whirl of the drum's axis.
+
+    Parameters
+    ----------
+    spin : Omega, rad/s, > 0
+    speed : omega_w in space, rad/s
+    amplitude : m
+    ramp : time over which the amplitude grows from nothing, s
+    gravity : across the axis, m/s^2
+    """
+
+    spin: float
+    speed: float
+    amplitude: float
+    ramp: float = 0.0
+    gravity: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_positive("speed", self.spin)
+        require_not_negative("whirl_amplitude", self.amplitude)
+        require_not_negative("ramp", self.ramp)
+        require_not_negative("gravity", self.gravity)
+        if not math.isfinite(self.speed) or self.speed == 0.0:
+            raise InputError("whirl_speed", self.speed, "a finite number other than 0")
+
+    @property
+    def slip(self) -> float:
+        """Whirl speed seen from the drum, s = omega_w - Omega, rad/s."""
+        return self.speed - self.spin
+
+    @property
+    def period(self) -> float:
+        """Time of one whirl seen from the drum, or of one turn of a synchronous one, s."""
+        return 2.0 * math.pi / (abs(self.slip) or self.spin)
+
+
+@dataclass(frozen=True)
+class Numerics:
+    """How the layer is resolved.
+
+    Parameters
+    ----------
+    cells : finite volumes round the wall, at least 8
+    dispersion : add the finite depth's dispersion [theory: long_wave, eq. 12]
+    """
+
+    cells: int = 256
+    dispersion: bool = False
+
+    def __post_init__(self) -> None:
+        if not 8 <= self.cells <= 65536:
+            raise InputError("cells", self.cells, "from 8 to 65536")
+
+
+@dataclass(frozen=True)
+class LayerHistory:
+    """Whirl periods of a layer; k of them, n cells. Complex: along the deflection, 90 deg ahead of it.
+
+    Parameters
+    ----------
+    time : middle of each period, s, shape (k,)
+    force_ratio : mean force on the drum over m_f omega_w^2 A, by the liquid's momentum, shape (k,)
+    pressure_ratio : the same by the pressure on the wall; the two differ by the model's error, shape (k,)
+    offset : mean offset of the liquid's centre of mass from the drum's axis, m, shape (k,)
+    mean_rotation : mean turning of the liquid relative to the drum, rad/s, shape (k,)
+    depth_max, depth_min : mean over the period of the largest and the least depth, m, shape (k,)
+    theta : angle from the deflection at the end, rad, ascending, shape (n,)
+    depth : depth of the layer there, m, shape (n,)
+    mass_error : relative change of the liquid's volume
+    converged : every period was finished; for `settle`, and the last two agree
+    reason : why it is not, or empty
+    """
+
+    time: Array
+    force_ratio: Complex
+    pressure_ratio: Complex
+    offset: Complex
+    mean_rotation: Array
+    depth_max: Array
+    depth_min: Array
+    theta: Array
+    depth: Array
+    mass_error: float
+    converged: bool
+    reason: str
+
+
+@dataclass(frozen=True)
+class LayerFilm:
+    """Pictures of a layer in the drum frame; k of them, n cells.
+
+    Parameters
+    ----------
+    time : s, shape (k,)
+    theta : angle in the drum, rad, shape (n,)
+    depth : m, shape (k, n)
+    deflection : of the drum's axis, seen from the drum, m, complex, shape (k,)
+    """
+
+    time: Array
+    theta: Array
+    depth: Array
+    deflection: Complex
+
 
 _COURANT = 0.8
 _STEPS = 20_000_000  # in one whirl period
@@ -47,7 +206,7 @@ class MovingLayer:
     reason: str = ""
 
     def periods(self, count: float) -> Complex | None:
-        """Advance by whirl periods; `solvers.layer.loads.means` over them, or None with a `reason`."""
+        """Advance by whirl periods; `solvers.layer.state.means` over them, or None with a `reason`."""
         from solvers.layer.step import advance
 
         length = self.whirl.period * self.whirl.spin * count

@@ -14,8 +14,17 @@ from numba import njit
 from numpy.typing import NDArray
 
 from fluid import friction, long_wave
-from solvers.layer.face_flux import COMPILED, DRY, NEAREST, faded_velocity, log_of_surface
-from solvers.layer.finite_volume import FULL, GHOSTS, WORK, ring_rates
+from solvers.layer.finite_volume import (
+    COMPILED,
+    DRY,
+    FULL,
+    GHOSTS,
+    NEAREST,
+    WORK,
+    faded_velocity,
+    log_of_surface,
+    ring_rates,
+)
 from solvers.layer.records import LayerOutcome
 
 _jit: Any = njit(**COMPILED)

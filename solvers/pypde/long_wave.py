@@ -23,9 +23,9 @@ from fluid.fill import Fill
 from fluid.friction import NO_FRICTION, Friction
 from meshes.arrays import Array
 from meshes.errors import InputError
-from solvers.layer.prescribed import Whirl
 from solvers.layer.records import LayerOutcome
-from solvers.pypde import readings
+from solvers.layer.state import Whirl
+from solvers.pypde import terms
 from solvers.pypde import terms as layer
 from solvers.pypde.terms import LongWaveTerms
 
@@ -89,34 +89,34 @@ class AnnularLongWavePDE(PDEBase):  # type: ignore[no-untyped-call]
             raise InputError("depth", float(h.min()), "finite numbers, 0 or above")
         if not np.isfinite(u).all():
             raise InputError("velocity", velocity, "finite numbers")
-        area = readings.area_at(self.terms, np.minimum(h, fill.chamber.radius))
-        momentum = readings.momentum_at(self.terms, area, u, time)
+        area = terms.area_at(self.terms, np.minimum(h, fill.chamber.radius))
+        momentum = terms.momentum_at(self.terms, area, u, time)
         layer.require_layer(self.terms, area, momentum)
         return _collection(grid, area, momentum)
 
     def surface_radius(self, state: Any) -> Array:
         """Free-surface radius r_s of each cell, m, shape (n,); beyond the wall in cells below zero."""
-        return readings.surface_radius(self.terms, _parts(state)[0])
+        return terms.surface_radius(self.terms, _parts(state)[0])
 
     def depth(self, state: Any) -> Array:
         """Depth R - r_s of each cell, m, shape (n,)."""
-        return readings.depth(self.terms, _parts(state)[0])
+        return terms.depth(self.terms, _parts(state)[0])
 
     def velocity(self, state: Any, t: float) -> Array:
         """Velocity u along the wall relative to the drum, m/s, shape (n,); 0 where dry."""
-        return readings.velocity(self.terms, *_parts(state), t)
+        return terms.velocity(self.terms, *_parts(state), t)
 
     def offset(self, state: Any) -> complex:
         """Liquid's centre of mass from the drum's axis, m, in the drum frame, real along theta = 0."""
-        return readings.liquid_offset(self.terms, _parts(state)[0])
+        return terms.liquid_offset(self.terms, _parts(state)[0])
 
     def force(self, state: Any, t: float) -> complex:
         """Force on the drum by the pressure on its wall, N, in the drum frame [theory: long_wave, eq. 7]."""
-        return readings.pressure_force(self.terms, *_parts(state), t)
+        return terms.pressure_force(self.terms, *_parts(state), t)
 
     def angular_momentum(self, state: Any, t: float) -> float:
         """Angular momentum of the liquid in space about the drum's axis, kg m^2/s."""
-        return readings.angular_momentum(self.terms, *_parts(state), t)
+        return terms.angular_momentum(self.terms, *_parts(state), t)
 
     def evolution_rate(self, state: Any, t: float = 0.0) -> Any:
         """Right-hand side of the equation, for py-pde's own solvers.

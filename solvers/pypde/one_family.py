@@ -21,9 +21,16 @@ from pde.solvers.base import ConvergenceError, SolverBase
 
 from fluid.kdv import KdvCoefficients
 from meshes.errors import InputError, require_positive
-from solvers.waves.exponential import find_method
-from solvers.waves.stepper import Advance, Control, Split, advance_adaptive, advance_fixed, to_spectrum
-from solvers.waves.terms import WaveTerms, wave_split
+from solvers.waves.modes import WaveTerms, wave_split
+from solvers.waves.stepper import (
+    Advance,
+    Control,
+    Split,
+    advance_adaptive,
+    advance_fixed,
+    find_method,
+    to_spectrum,
+)
 
 
 def circle(points: int) -> CartesianGrid:
@@ -71,7 +78,7 @@ class KdvBurgersPDE(SplitPDE):  # type: ignore[no-untyped-call]
     Parameters
     ----------
     c : speed, steepening, dispersion of the family
-    whitham, viscosity, damping, forcing, whirl_speed : as in `solvers.waves.terms.WaveTerms`
+    whitham, viscosity, damping, forcing, whirl_speed : as in `solvers.waves.modes.WaveTerms`
 
     Raises
     ------
@@ -101,7 +108,7 @@ class KdvBurgersPDE(SplitPDE):  # type: ignore[no-untyped-call]
 
         Returns
         -------
-        As from `solvers.waves.terms.wave_split`
+        As from `solvers.waves.modes.wave_split`
 
         Raises
         ------

@@ -14,8 +14,16 @@ from numba import njit
 from numpy.typing import NDArray
 
 from fluid.friction import STOKES
-from solvers.layer.face_flux import COMPILED, DRY, NEAREST, faded_velocity, log_of_surface
-from solvers.layer.finite_volume import GHOSTS, WORK, ring_rates
+from solvers.layer.finite_volume import (
+    COMPILED,
+    DRY,
+    GHOSTS,
+    NEAREST,
+    WORK,
+    faded_velocity,
+    log_of_surface,
+    ring_rates,
+)
 from solvers.layer.step import LARGEST, calm, copy, correct, predict, pull, surface_radius, wall_friction
 from solvers.runup.machine import Outcome
 

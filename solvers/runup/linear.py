@@ -13,12 +13,11 @@ from fluid.fill import Fill
 from fluid.friction import Friction, FrictionLaw, damping_rate
 from meshes.arrays import Array
 from meshes.errors import require_not_negative
-from solvers.layer.loads import ring
 from solvers.layer.records import records
+from solvers.layer.state import ring
 from solvers.rotor.system import RotorSystem
-from solvers.runup.chamber import RELEASE, layer_capture, layer_properties, mean_area, pool_offset
 from solvers.runup.machine import Outcome, Reading
-from solvers.runup.state import SHAFT, SUMS
+from solvers.runup.state import RELEASE, SHAFT, SUMS, layer_capture, layer_properties, mean_area, pool_offset
 
 if TYPE_CHECKING:
     from solvers.runup.linear_kernel import LinearMachine

@@ -12,7 +12,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from meshes.arrays import Array
-from solvers.layer.face_flux import COMPILED
+from solvers.layer.finite_volume import COMPILED
 from solvers.layer.records import Record, floats
 from solvers.runup.kernel import motor_torque, solve
 from solvers.runup.machine import Outcome

@@ -12,21 +12,25 @@ from fluid.fill import Fill
 from fluid.friction import Friction
 from meshes.arrays import Array, Flags
 from meshes.errors import require_not_negative
-from solvers.layer.loads import ring
 from solvers.layer.records import Record, records
+from solvers.layer.state import ring
 from solvers.rotor.system import RotorSystem
-from solvers.runup.chamber import RELEASE, layer_capture, layer_properties, mean_area, pool_offset
 from solvers.runup.machine import Outcome, Reading
 from solvers.runup.state import (
     GAINS,
     LAYER,
     MEASURES,
     PACE,
+    RELEASE,
     SHAFT,
     SUMS,
     Machine,
     Room,
     State,
+    layer_capture,
+    layer_properties,
+    mean_area,
+    pool_offset,
 )
 
 # A layer that gravity has thrown down is caught again at a speed higher by this factor.

@@ -303,7 +303,7 @@ def wall_drag(section: LiquidSection, motions: Array, cut: float = 0.0) -> Array
     -------
     Shape (m, m), 1/m for motions without unit.
     """
-    from solvers.sloshing.damping import wall_weights
+    from solvers.sloshing.forced import wall_weights
 
     slope, weights = wall_weights(section, np.array(cut))
     along = np.asarray(slope @ motions.T)

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.optimize import brentq
 from skfem import CellBasis, ElementTriP0, Functional, MeshTri1, MeshTri2
 
-from fluid.moments import Moments
+from fluid.paraboloid import Moments
 from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative, require_positive
 from meshes.refine.waterline import Arcs, beyond, distance_range, monotone_arcs

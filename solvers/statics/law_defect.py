@@ -13,8 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fluid.fill import Fills
-from fluid.moments import lens_moments
-from fluid.paraboloid import steepness
+from fluid.paraboloid import lens_moments, steepness
 from meshes.arrays import Array, Index
 
 # Above this steepness the surface is taken as a cylinder: the heights' sum is off by its power -3/2, as the

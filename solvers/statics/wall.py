@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fluid.moments import Moments
+from fluid.paraboloid import Moments
 from meshes.arrays import Array, Index
 
 # The wall is divided at v = pi - psi = pi/4. Far part: the nearest singularity (v = 0 when the rotation axis

@@ -1,6 +1,8 @@
 """Harmonic balance of any rotor with liquid in its chambers [theory: rotor, eq. 28 and 29].
 
-The forward part of the orbit at each chamber meets the liquid model, the backward part a mass.
+The forward part of the orbit at each chamber meets the liquid model, the backward part a mass. That mass
+follows from linear theory whatever the model; where baffles stand in the liquid or the section is no circle
+it takes finite elements, which is all that the synchronous answer takes from sloshing.
 """
 
 from __future__ import annotations
@@ -11,11 +13,31 @@ from dataclasses import dataclass
 import numpy as np
 
 from fluid.fill import Fill, Fills
+from fluid.friction import NO_FRICTION
+from fluid.waves import force_ratio
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.vibration import dynamic_stiffness, solve_each
-from solvers.synchronous.backward import backward_mass
+from solvers.sloshing.reduced import section_layer
 from solvers.synchronous.models import LiquidModel
+
+
+def backward_mass(fill: Fill) -> float:
+    """Mass with which a layer resists a backward whirl at the speed of its spin, kg.
+
+    m_f G(kappa, -1), G = 1 - 8/(1 + 7 kappa) [theory: rotor, eq. 28]; that of the liquid where it fills its
+    chamber; with baffles in the liquid the part of the answer that turns with the whirl.
+    """
+    full = fill.volume >= fill.chamber.capacity * (1.0 - 1e-9)
+    if full or fill.surface_radius == 0.0:
+        return fill.mass
+    if fill.uneven:
+        layer = section_layer(fill, NO_FRICTION)
+        assert layer is not None
+        whole = layer.density * layer.liquid.enclosed_area
+        return whole * float(layer.liquid.force_ratio([-2.0])[0])
+    curvature = (fill.chamber.radius / fill.surface_radius) ** 2
+    return fill.full_mass * float(force_ratio(curvature, -1.0)) if curvature > 1.0 else 0.0
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy as np
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.rotor.vibration import solve_each
 from solvers.synchronous.balance import Balance
-from solvers.synchronous.branches import branches_beyond, over
+from solvers.synchronous.planar import branches_beyond, over
 
 # Shares of the full added mass from which Newton starts where walls run dry: 1 is the wall wet all over, 0 a
 # liquid that the deflection has left behind.

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fluid.moments import Lens, lens_moments
+from fluid.paraboloid import Lens, lens_moments
 from meshes.errors import InputError
 from tests.mutants import kills
 
@@ -65,7 +65,7 @@ def test_any_circles_match_quadrature(radius: float, ratio: float, r: float) -> 
     assert_matches_quadrature(r, radius, ratio * radius)
 
 
-@kills("fluid.moments:lens_moments", "0.5 * np.pi * whole**4", "0.25 * np.pi * whole**4")
+@kills("fluid.paraboloid:lens_moments", "0.5 * np.pi * whole**4", "0.25 * np.pi * whole**4")
 def test_disc_inside_the_chamber() -> None:
     lens = lens_moments(0.3, 1.0, 0.5)
     np.testing.assert_allclose(four(lens), [np.pi * 0.09, 0.0, np.pi / 2 * 0.3**4, 0.0], rtol=4 * EPS)
@@ -134,11 +134,11 @@ def test_bad_input(arguments: tuple[float, float, float], field: str) -> None:
     assert caught.value.field == field
 
 
-@kills("fluid.moments:_own_segment", "return r**2 * area, r**4", "return r**2 * area / 2.0, r**4")
-@kills("fluid.moments:lens_moments", "first = (2.0 / 3.0)", "first = (1.0 / 3.0)")
-@kills("fluid.moments:lens_moments", "- 2.0 * e * first + polar", "+ 2.0 * e * first + polar")
-@kills("fluid.moments:lens_moments", "0.0, e * area)", "0.0, 0.5 * e * area)")
-@kills("fluid.moments:lens_moments", "across - radius * cos * first", "across + radius * cos * first")
+@kills("fluid.paraboloid:_own_segment", "return r**2 * area, r**4", "return r**2 * area / 2.0, r**4")
+@kills("fluid.paraboloid:lens_moments", "first = (2.0 / 3.0)", "first = (1.0 / 3.0)")
+@kills("fluid.paraboloid:lens_moments", "- 2.0 * e * first + polar", "+ 2.0 * e * first + polar")
+@kills("fluid.paraboloid:lens_moments", "0.0, e * area)", "0.0, 0.5 * e * area)")
+@kills("fluid.paraboloid:lens_moments", "across - radius * cos * first", "across + radius * cos * first")
 def test_three_pairs_of_circles_match_quadrature() -> None:
     for r, e in ((0.8, 0.5), (1.3, 0.5), (1.4, 1.2)):
         assert_matches_quadrature(r, 1.0, e)

@@ -6,7 +6,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy import integrate
 
-from fluid.moments import lens_moments
+from fluid.paraboloid import lens_moments
 from fluid.printed import (
     dry_radius_as_printed,
     dry_volume_as_printed,

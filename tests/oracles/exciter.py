@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 from meshes.errors import InputError
-from solvers.rotor.exciter.machine import Dimensionless
-from solvers.rotor.exciter.stuck import CharacteristicSpeeds, lag_number
+from solvers.rotor.exciter.machine import CharacteristicSpeeds, Dimensionless, lag_number
 
 
 def approximate_speeds(machine: Dimensionless, together: float = 1.0) -> CharacteristicSpeeds:

@@ -11,7 +11,9 @@ import numpy as np
 import pytest
 
 from tests.mutants import kills
-from validation.benchmarks import layers, ours, peer_pypde, report, table, timing
+from validation.benchmarks import ours, peer_pypde, report, timing
+from validation.benchmarks import ours as layers
+from validation.benchmarks import report as table
 from validation.benchmarks.__main__ import PEERS
 from validation.benchmarks.growth import Growth
 from validation.benchmarks.problems import (
@@ -22,7 +24,7 @@ from validation.benchmarks.problems import (
     steady_problem,
     travelling_problem,
 )
-from validation.benchmarks.table import Section
+from validation.benchmarks.report import Section
 from validation.benchmarks.timing import Contestant, Go, Sample
 
 
@@ -179,11 +181,11 @@ def test_errors_fall() -> None:
 
 
 @kills(
-    "validation.benchmarks.layers:offset",
+    "validation.benchmarks.ours:offset",
     "np.power(1.0 - 2.0 * area, 1.5)",
     "np.power(1.0 - 2.0 * area, 0.5)",
 )
-@kills("validation.benchmarks.layers:_integral", "+ turns * sums[-1]", "")
+@kills("validation.benchmarks.ours:_integral", "+ turns * sums[-1]", "")
 def test_layer_problem() -> None:
     """A shifted profile has the offset and the error of its shift; a finer grid is nearer to a fine one."""
     theta = 2.0 * np.pi * (np.arange(256) + 0.5) / 256
@@ -209,9 +211,9 @@ def test_layer_problem() -> None:
     assert errors[1] < 0.5 * errors[0] and errors[2] < 0.5 * errors[1]
 
 
-@kills("validation.benchmarks.layers:LayerProblem.force", "grown * cmath.exp(1j *", "grown * cmath.exp(-1j *")
+@kills("validation.benchmarks.ours:LayerProblem.force", "grown * cmath.exp(1j *", "grown * cmath.exp(-1j *")
 @kills(
-    "validation.benchmarks.layers:LayerProblem.force",
+    "validation.benchmarks.ours:LayerProblem.force",
     "/ (2.0 * math.pi)\n        size",
     "/ math.pi\n        size",
 )

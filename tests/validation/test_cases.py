@@ -10,7 +10,7 @@ import pytest
 from leblanc.cli import main
 from leblanc.scene.scene import jeffcott, load_scene
 from meshes.errors import InputError
-from validation.cases.scenes import horizontal_rig, horizontal_rotor, vertical_rig, vertical_rotor
+from validation.cases.rigs import horizontal_rig, horizontal_rotor, vertical_rig, vertical_rotor
 from validation.command import GROUPS, all_cases
 
 

@@ -9,7 +9,7 @@ from meshes.errors import InputError
 from tests.mutants import kills
 from validation.cases import errata
 from validation.cases.case import Case, compare
-from validation.cases.errata_tub import tub_matrices
+from validation.cases.errata import tub_matrices
 
 
 @cache
@@ -84,7 +84,7 @@ def test_stiffness_entries_are_exchanged() -> None:
 
 
 @kills(
-    "validation.cases.errata_tub:tub_matrices",
+    "validation.cases.errata:tub_matrices",
     "sp.Matrix(q[:3]) + turn * place - place",
     "sp.Matrix(q[:3]) - turn * place + place",
 )
@@ -104,7 +104,7 @@ def test_tub_matrices_against_rigid_body_kinematics() -> None:
     np.testing.assert_array_equal(gyroscopic, -gyroscopic.T)
 
 
-@kills("validation.cases.errata_tub:tub_matrices", "spin[0, 2] + omega", "spin[0, 2] + 2 * omega")
+@kills("validation.cases.errata:tub_matrices", "spin[0, 2] + omega", "spin[0, 2] + 2 * omega")
 def test_gyroscopic_coupling_is_the_torque_that_turns_the_spin() -> None:
     """d/dt of J_b omega n, n the spin axis tilted by alpha about x and gamma about z."""
     matrices = tub_matrices()

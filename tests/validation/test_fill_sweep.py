@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from validation.cases.fill_sweep import cases, model_curves
-from validation.cases.scenes import data
+from validation.cases.rigs import data
 
 
 def test_the_measured_sweep_has_the_shape_that_is_claimed() -> None:

@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 
 from leblanc.scene.scene import jeffcott
-from leblanc.studies.prepare import axial_gravity
+from leblanc.studies.choose import axial_gravity
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.response import response
 from tests.mutants import kills
 from validation.cases import errata, fill_optimum, layer, tub
 from validation.cases import runup as runup_given
 from validation.cases.case import Case, compare
+from validation.cases.rigs import data
 from validation.cases.runup import GIVEN, Point
-from validation.cases.scenes import data
 from validation.figures import rigs as rig_figures
 from validation.figures import volume as volume_figures
 from validation.figures import whirl as whirl_figures

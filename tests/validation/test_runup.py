@@ -14,7 +14,7 @@ import pytest
 from fluid.fill import Fill
 from tests.mutants import kills
 from validation.cases import runup
-from validation.cases.scenes import horizontal_rig
+from validation.cases.rigs import horizontal_rig
 from validation.figures import runup_lag, runup_trends
 
 RPM = math.pi / 30.0

@@ -45,7 +45,7 @@ def main(arguments: list[str] | None = None) -> int:
     (chosen.out / "results.json").write_text(json.dumps(asdict(results), indent=1) + "\n", encoding="utf-8")
     write(results, chosen.out, "one core" if core is not None else "cores not held")
     if chosen.keep:
-        from validation.benchmarks.keep import keep
+        from validation.benchmarks.report import keep
 
         keep(results)
     return 0

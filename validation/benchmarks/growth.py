@@ -15,11 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.studies.layer import answer_layer
-from solvers.layer.prescribed import Numerics, Whirl
 from solvers.layer.settle import simulate
-from solvers.waves.continuation import respond
-from solvers.waves.periodic import solve
-from validation.benchmarks.layers import AMPLITUDE, SPEED
+from solvers.layer.state import Numerics, Whirl
+from solvers.waves.steady import respond, solve
+from validation.benchmarks.ours import AMPLITUDE, SPEED
 from validation.benchmarks.problems import SPIN, fill, response_speeds, steady_problem
 
 # Cells of the waves in a sweep over speeds, and the whirl periods that each speed is given.

@@ -1,24 +1,175 @@
-"""This package on the benchmarks' problems."""
+"""This package on the benchmarks' problems: one family of waves, and the layer's long waves under a whirl."""
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
+from fluid.friction import Friction, FrictionLaw
 from meshes.arrays import Array, Complex
-from solvers.waves.periodic import solve
+from solvers.layer.settle import simulate
+from solvers.layer.state import Numerics, Whirl
+from solvers.waves.modes import WaveTerms, wave_split
+from solvers.waves.steady import solve
 from solvers.waves.stepper import Control, advance_adaptive, advance_fixed, to_spectrum
-from solvers.waves.terms import WaveTerms, wave_split
 from validation.benchmarks.problems import (
     METHOD,
+    SPIN,
     SteadyProblem,
     TravellingProblem,
+    fill,
     seen_from_whirl,
     whirl_split,
 )
-from validation.benchmarks.timing import Contestant, Go
+from validation.benchmarks.timing import Answer, Contestant, Go
+
+# The axis turns at the layer's retrograde resonance; half the depth off would be dry.
+SPEED, AMPLITUDE, RAMP = 30.575880656422154, 7.5e-4, 0.6
+FRICTION = 1.0  # 1/s, linear
+
+
+@dataclass(frozen=True)
+class LayerProblem:
+    """A layer from rest under a whirl at its resonance, a bore after some periods; friction lets it settle.
+
+    Parameters
+    ----------
+    periods : whirl periods, seen from the drum
+    """
+
+    periods: int
+
+    @property
+    def whirl(self) -> Whirl:
+        """What drives it."""
+        return Whirl(SPIN, SPEED, AMPLITUDE, RAMP)
+
+    @property
+    def duration(self) -> float:
+        """Time of the run, 1/Omega."""
+        return self.periods * self.whirl.period * SPIN
+
+    @property
+    def friction(self) -> float:
+        """Coefficient of the linear law, Omega."""
+        return FRICTION / SPIN
+
+    @property
+    def area(self) -> float:
+        """Liquid area per radian at rest, R^2."""
+        layer = fill()
+        return layer.volume / (2.0 * math.pi * layer.chamber.height * layer.chamber.radius**2)
+
+    def force(self, time: float) -> complex:
+        """Body force in the drum frame at a time in 1/Omega, Omega^2 R [theory: long_wave, eq. 8]."""
+        whirl, seconds = self.whirl, time / SPIN
+        part = min(seconds / whirl.ramp, 1.0)
+        grown = part - math.sin(2.0 * math.pi * part) / (2.0 * math.pi)
+        size = whirl.amplitude / fill().chamber.radius * (whirl.speed / SPIN) ** 2
+        return size * grown * cmath.exp(1j * whirl.slip * seconds)
+
+    def in_whirl_frame(self, area: Array) -> Array:
+        """Areas of the cells that stand in the drum at the end, and the angles of their middles.
+
+        Parameters
+        ----------
+        area : over R^2, shape (n,)
+
+        Returns
+        -------
+        Angles from the deflection in the first row, areas in the second, shape (2, n)
+        """
+        middle = 2.0 * math.pi * (np.arange(area.size) + 0.5) / area.size
+        return np.stack([middle - self.whirl.slip * self.duration / SPIN, area])
+
+
+def ours(problem: LayerProblem, cells: tuple[int, ...]) -> list[Contestant]:
+    """The finite-volume solver on several grids."""
+    return [Contestant(CODE, f"{n} cells", _builder(problem, n), size=n) for n in cells]
+
+
+def answer(problem: LayerProblem, cells: int) -> Array:
+    """The layer at the end of the problem by this package.
+
+    Parameters
+    ----------
+    problem : what to run
+    cells : of the grid
+
+    Returns
+    -------
+    As from `LayerProblem.in_whirl_frame`
+
+    Raises
+    ------
+    RuntimeError : the surface came to the axis
+    """
+    layer, whirl = fill(), problem.whirl
+    history = simulate(
+        layer, whirl, problem.periods * whirl.period, Friction(FrictionLaw.LINEAR, FRICTION), Numerics(cells)
+    )
+    if not history.converged:
+        raise RuntimeError("the surface came to the axis")
+    surface = 1.0 - history.depth / layer.chamber.radius
+    return np.stack([history.theta, 0.5 * (1.0 - surface * surface)])
+
+
+def _builder(problem: LayerProblem, cells: int) -> Callable[[], Callable[[], Go]]:
+    return lambda: lambda: lambda: answer(problem, cells)
+
+
+def profile_error(found: Answer, reference: Answer) -> float:
+    """L1 distance of two profiles over the departure of the second from the mean.
+
+    The reference is averaged over the cells of the one found.
+
+    Parameters
+    ----------
+    found, reference : angles of the cells' middles and areas, shape (2, n) and (2, m)
+    """
+    area = np.real(found[1])
+    cells = area.size
+    edges = np.real(found[0]) - math.pi / cells
+    exact = (
+        (_integral(reference, edges + 2.0 * math.pi / cells) - _integral(reference, edges))
+        * cells
+        / (2.0 * math.pi)
+    )
+    return float(np.sum(np.abs(area - exact)) / np.sum(np.abs(exact - np.mean(exact))))
+
+
+def force_error(found: Answer, reference: Answer) -> float:
+    """Distance of the liquid's centres of mass, to which the forces on the drum go, over the reference's."""
+    near, exact = offset(found), offset(reference)
+    return abs(near - exact) / abs(exact)
+
+
+def offset(profile: Answer) -> complex:
+    """Distance of the liquid's centre of mass from the drum's axis, R; real along the deflection.
+
+    Parameters
+    ----------
+    profile : angles of the cells' middles and areas, shape (2, n)
+    """
+    theta, area = np.real(profile[0]), np.real(profile[1])
+    moment = np.sum((1.0 - np.power(1.0 - 2.0 * area, 1.5)) / 3.0 * np.exp(1j * theta))
+    return complex(moment / np.sum(area))
+
+
+def _integral(profile: Answer, angle: Array) -> Array:
+    """Integral of a piecewise constant periodic profile from the left edge of its first cell."""
+    order = np.argsort(np.mod(np.real(profile[0]), 2.0 * math.pi))
+    middle, area = np.mod(np.real(profile[0]), 2.0 * math.pi)[order], np.real(profile[1])[order]
+    width = 2.0 * math.pi / area.size
+    edges = middle[0] - 0.5 * width + width * np.arange(area.size + 1)
+    sums = np.concatenate(([0.0], np.cumsum(area) * width))
+    turns = np.floor((angle - edges[0]) / (2.0 * math.pi))
+    return np.asarray(np.interp(angle - 2.0 * math.pi * turns, edges, sums) + turns * sums[-1])
+
 
 CODE = "leblanc"
 

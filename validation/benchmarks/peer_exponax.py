@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from meshes.arrays import Array
-from solvers.waves.exponential import phi_functions
+from solvers.waves.stepper import phi_functions
 from validation.benchmarks.problems import SteadyProblem, TravellingProblem, spectrum
 from validation.benchmarks.timing import Contestant, Go
 

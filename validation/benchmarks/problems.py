@@ -17,11 +17,10 @@ from fluid.kdv import KdvCoefficients
 from fluid.liquid import Liquid
 from meshes.arrays import Array, Complex
 from meshes.chamber import Chamber
-from solvers.layer.prescribed import Whirl
-from solvers.waves.modes import WaveProblem
-from solvers.waves.periodic import family_problem, solve
+from solvers.layer.state import Whirl
+from solvers.waves.modes import WaveProblem, WaveTerms, wave_split
+from solvers.waves.steady import family_problem, solve
 from solvers.waves.stepper import Advance, Control, Split, advance_adaptive
-from solvers.waves.terms import WaveTerms, wave_split
 
 # One drum for all: a tenth of its radius is filled, water, a low chamber.
 RADIUS, SURFACE, SPIN, HEIGHT = 0.15, 0.135, 40.0, 0.01

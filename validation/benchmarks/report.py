@@ -1,20 +1,283 @@
-"""All benchmarks in one run, and what is written of them."""
+"""All benchmarks in one run, the run that is kept with the package, and both in tables, ratios, figures."""
 
 from __future__ import annotations
 
 import importlib
+import json
 import logging
+import math
 import platform
 import sys
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict, dataclass, replace
+from importlib import resources
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
-from validation.benchmarks import growth, layers, ours
+import numpy as np
+
+from leblanc.figures.page import Figure, Frame, lay_out, save, style
+from validation.benchmarks import growth, ours
+from validation.benchmarks import ours as layers
+from validation.benchmarks.growth import Growth
 from validation.benchmarks.problems import WANTED, distance, steady_problem, travelling_problem
-from validation.benchmarks.table import Section, at_equal_error, duration, growth_markdown, markdown
 from validation.benchmarks.timing import Answer, Contestant, Sample, measure, version
+
+_FILE = "results.json"
+
+
+def keep(results: Results, folder: Path | None = None) -> Path:
+    """Write a run so that any JSON reader takes it: null for what is not a number.
+
+    Parameters
+    ----------
+    results : of all codes side by side
+    folder : where to; None: beside this module
+
+    Returns
+    -------
+    The file
+    """
+    file = (folder or Path(__file__).parent) / _FILE
+    text = json.dumps(_without_nan(asdict(results)), indent=1, allow_nan=False)
+    file.write_text(text + "\n", encoding="utf-8")
+    return file
+
+
+def kept_results(folder: Path | None = None) -> Results:
+    """Read a run that was kept.
+
+    Parameters
+    ----------
+    folder : see `keep`
+    """
+    place = resources.files("validation.benchmarks") if folder is None else folder
+    found: dict[str, Any] = json.loads(place.joinpath(_FILE).read_text(encoding="utf-8"))
+    sections = []
+    for one in found["sections"]:
+        samples = tuple(Sample(**_with_nan(row)) for row in one["samples"])
+        sections.append(Section(**(one | {"samples": samples, "missing": tuple(one["missing"])})))
+    grown = {name: [Growth(**one) for one in found[name]] for name in ("over_cells", "over_speeds")}
+    return Results(**(found | {"sections": sections} | grown))
+
+
+def _without_nan(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _without_nan(one) for key, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_without_nan(one) for one in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _with_nan(row: dict[str, Any]) -> dict[str, Any]:
+    return {key: math.nan if value is None else value for key, value in row.items()}
+
+
+@dataclass(frozen=True)
+class Section:
+    """One problem and everybody's samples.
+
+    Parameters
+    ----------
+    name : stem of its figure
+    title : what was solved
+    error : what the error is
+    samples : of all codes
+    missing : codes that are not installed
+    target : error at which the codes are compared
+    """
+
+    name: str
+    title: str
+    error: str
+    samples: tuple[Sample, ...]
+    missing: tuple[str, ...]
+    target: float
+
+
+def markdown(section: Section, ours: str) -> str:
+    """Table of a section, and below it who is how much slower at the target.
+
+    Parameters
+    ----------
+    section : to show
+    ours : the code that the others are compared with
+    """
+    head = f"## {section.title}\n\n| code | setting | time | {section.error} | first call |\n"
+    head += "|---|---|---:|---:|---:|\n"
+    rows = [_row(sample) for sample in section.samples]
+    rows += [f"| {code} | not installed | | | |" for code in section.missing]
+    return head + "\n".join(rows) + "\n\n" + _comparison(section, ours)
+
+
+def _row(sample: Sample) -> str:
+    time = duration(sample.seconds) if math.isfinite(sample.seconds) else sample.note or "failed"
+    error = f"{sample.error:.1e}" if math.isfinite(sample.error) else ""
+    return f"| {sample.code} | {sample.setting} | {time} | {error} | {duration(sample.first)} |"
+
+
+def duration(seconds: float) -> str:
+    """A time with three digits and its unit."""
+    units = (("s", 1.0), ("ms", 1e-3), ("us", 1e-6))
+    unit, scale = next((one for one in units if seconds >= one[1]), units[-1])
+    return f"{seconds / scale:.3g} {unit}"
+
+
+def cheapest(samples: Iterable[Sample], code: str, target: float) -> Sample | None:
+    """The fastest sample of a code with an error of the target or less; None if there is none."""
+    good = [one for one in samples if one.code == code and one.error <= target]
+    return min(good, key=lambda one: one.seconds, default=None)
+
+
+def _comparison(section: Section, ours: str) -> str:
+    reference = cheapest(section.samples, ours, section.target)
+    if reference is None:
+        return f"Within {section.target:g} there is no answer of {ours}.\n"
+    text = [f"Cheapest within {section.target:g}: {ours} {duration(reference.seconds)} ({reference.setting})"]
+    for code in dict.fromkeys(one.code for one in section.samples):
+        other = cheapest(section.samples, code, section.target)
+        if code == ours:
+            continue
+        if other is None:
+            text.append(f"{code} does not get there")
+        else:
+            ratio = other.seconds / reference.seconds
+            text.append(f"{code} {duration(other.seconds)} ({other.setting}), {ratio:.3g} times that")
+    return "; ".join(text) + ".\n"
+
+
+def front(samples: Iterable[Sample]) -> list[Sample]:
+    """Samples that no other one beats in both time and error, the fastest first."""
+    kept: list[Sample] = []
+    for one in sorted((s for s in samples if s.error > 0.0), key=lambda s: (s.seconds, s.error)):
+        if not kept or one.error < kept[-1].error:
+            kept.append(one)
+    return kept
+
+
+def at_equal_error(ours: Iterable[Sample], other: Iterable[Sample]) -> list[tuple[float, float]]:
+    """Time of the other code over ours where both have the same error.
+
+    Ours is interpolated along its front in the logarithms of both; beyond it nothing is said.
+
+    Parameters
+    ----------
+    ours, other : samples of one code each
+
+    Returns
+    -------
+    Errors and ratios, a pair for each sample of the other code's front that lies within ours
+    """
+    mine = front(ours)[::-1]
+    if len(mine) < 2:
+        return []
+    errors, times = np.log([one.error for one in mine]), np.log([one.seconds for one in mine])
+    within = [one for one in front(other) if mine[0].error <= one.error <= mine[-1].error]
+    return [
+        (one.error, one.seconds / math.exp(np.interp(math.log(one.error), errors, times))) for one in within
+    ]
+
+
+def growth_markdown(growths: Sequence[Growth]) -> str:
+    """Table of costs over one number."""
+    counts = sorted({n for one in growths for n in one.counts})
+    head = (
+        f"| {growths[0].over} | "
+        + " | ".join(one.name for one in growths)
+        + " |\n|---:"
+        + "|---:" * len(growths)
+        + "|\n"
+    )
+    rows = []
+    for n in counts:
+        cells = [duration(one.seconds[one.counts.index(n)]) if n in one.counts else "" for one in growths]
+        rows.append(f"| {n} | " + " | ".join(cells) + " |")
+    return head + "\n".join(rows) + "\n"
+
+
+_RAISED = str.maketrans("-0123456789", "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079")
+_FRAME = Frame(left=0.72, top=0.15, between=0.0, below=0.45)
+_MARKS = "osD^vP"
+_LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3)))
+
+
+def accuracy_figure(section: Section, directory: Path) -> Path:
+    """Error over time, one mark for each sample; what no other setting of its code beats is joined by a line.
+
+    Parameters
+    ----------
+    section : to draw
+    directory : where the PNG and SVG go
+    """
+    with style():
+        figure = Figure()
+        axes = figure.add_axes((0, 0, 1, 1))
+        for k, code in enumerate(dict.fromkeys(one.code for one in section.samples)):
+            mine = [one for one in section.samples if one.code == code and one.error > 0.0]
+            best = front(mine)
+            look: dict[str, Any] = {"color": f"C{k}", "marker": _MARKS[k % len(_MARKS)]}
+            times, errors = ([getattr(one, name) for one in mine] for name in ("seconds", "error"))
+            axes.plot(times, errors, linestyle="none", markerfacecolor="white", **look)
+            times, errors = ([getattr(one, name) for one in best] for name in ("seconds", "error"))
+            line: dict[str, Any] = {"linestyle": _LINES[k % len(_LINES)], "linewidth": 1.1, "label": code}
+            axes.plot(times, errors, **line, **look)
+        _logarithmic(axes)
+        axes.set_xlabel("Time of one answer (s)")
+        axes.set_ylabel(f"{section.error[0].upper()}{section.error[1:]} (\N{EN DASH})")
+        text = (
+            f"{section.title}. One core, best of several repeats taken in turn, without compilation. "
+            "Filled: no other setting of that code is both faster and better."
+        )
+        lay_out(figure, [[axes]], [3.0], _FRAME, text)
+    return save(figure, directory, section.name, section.title).png
+
+
+def _logarithmic(axes: Any) -> None:
+    """Both axes, labelled at powers of ten as the house style writes them, upwards at two at least."""
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    low, high = (math.log10(value) for value in axes.get_ylim())
+    if math.floor(high) - math.ceil(low) < 1:
+        axes.set_ylim(10.0 ** math.floor(low), 10.0 ** math.ceil(high))
+    axes.minorticks_off()
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter(_power)
+
+
+def _power(value: float, _position: int | None = None) -> str:
+    return "10" + str(round(math.log10(value))).translate(_RAISED)
+
+
+def growth_figure(growths: Sequence[Growth], name: str, directory: Path) -> Path:
+    """Cost over one number, both logarithmic.
+
+    Parameters
+    ----------
+    growths : over the same number
+    name : stem of the files
+    directory : where they go
+    """
+    with style():
+        figure = Figure()
+        axes = figure.add_axes((0, 0, 1, 1))
+        for k, one in enumerate(growths):
+            look: dict[str, Any] = {
+                "color": f"C{k}",
+                "marker": _MARKS[k % len(_MARKS)],
+                "linestyle": _LINES[k % len(_LINES)],
+            }
+            axes.plot(one.counts, one.seconds, linewidth=1.1, label=one.name, **look)
+        _logarithmic(axes)
+        counts = sorted({n for one in growths for n in one.counts})
+        axes.set_xticks(counts, [str(n) for n in counts])
+        over = " or ".join(dict.fromkeys(one.over for one in growths))
+        axes.set_xlabel(f"Number of {over} (\N{EN DASH})")
+        axes.set_ylabel("Time (s)")
+        text = f"Growth of the cost with the number of {over}. One core, best of several repeats."
+        lay_out(figure, [[axes]], [2.8], _FRAME, text)
+    return save(figure, directory, name, text).png
+
 
 _MODULE = "validation.benchmarks.peer_"
 # Cells of the long-wave runs, of the slow Python kernel, and of the reference.
@@ -180,7 +443,7 @@ def write(results: Results, directory: Path, held: str) -> None:
     directory : where `benchmarks.md` and the figures go
     held : how the processor was shared, in words
     """
-    from validation.benchmarks.plots import accuracy_figure, growth_figure
+    pass  # JOINED
 
     text = [
         "# Results of one run",

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from solvers.rotor.exciter.machine import Dimensionless, Exciter, platform_motion
+from solvers.rotor.exciter.machine import (
+    Dimensionless,
+    Exciter,
+    characteristic_speeds,
+    platform_motion,
+    stuck_speeds,
+)
 from solvers.rotor.exciter.motion import Start, critical_speed, integrate, printed_critical_speed
-from solvers.rotor.exciter.stuck import characteristic_speeds, stuck_speeds
 from validation.cases.case import Case, compare
 
 # The typical experiment [YF17, section 5.3].

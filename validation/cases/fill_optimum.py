@@ -9,9 +9,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from leblanc.scene.scene import Scene, jeffcott, load_scene
+from leblanc.studies.choose import axial_gravity
 from leblanc.studies.optimise.closed_form import wetting_volumes
 from leblanc.studies.optimise.optimise import optimise_scene
-from leblanc.studies.prepare import axial_gravity
 from leblanc.units import MM
 from validation.cases.case import Case, compare
 

@@ -17,7 +17,7 @@ from leblanc.studies.optimise.objectives import RunupPeak
 from leblanc.units import RPM
 from meshes.arrays import Array
 from validation.cases.case import Case, Verdict
-from validation.cases.scenes import data
+from validation.cases.rigs import data
 
 _ML = 1e-6  # m^3
 _GROUP, _SOURCE = "fill_sweep", "washing machine with a balance ring, see fill_sweep.json"

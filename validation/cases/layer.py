@@ -18,10 +18,10 @@ from fluid.friction import NO_FRICTION, Friction, FrictionLaw
 from fluid.liquid import Liquid
 from fluid.waves import force_ratio
 from meshes.chamber import Chamber
-from solvers.layer.prescribed import LayerHistory, Numerics, Whirl
 from solvers.layer.settle import settle, simulate
+from solvers.layer.state import LayerHistory, Numerics, Whirl
 from validation.cases.case import Case, Verdict
-from validation.cases.scenes import data
+from validation.cases.rigs import data
 
 _SOURCE = "interFoam, openfoam_layer.json"
 _HEIGHT = 0.01  # the flow is plane: any height will do

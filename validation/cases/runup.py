@@ -16,7 +16,7 @@ from leblanc.units import LITRE, MM
 from meshes.arrays import Array
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.runup.drive import Ramp
+from solvers.runup.machine import Ramp
 from solvers.runup.runup import RunupNumerics, run_up
 from solvers.statics.hydrostatics import optimal_volume
 from solvers.synchronous.response import response

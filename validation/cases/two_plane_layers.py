@@ -14,7 +14,7 @@ from meshes.chamber import Chamber
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.two_plane_balance import dynamic_balancing, of_two_planes
 from solvers.rotor.vibration import unbalance_response
-from solvers.runup.drive import Ramp
+from solvers.runup.machine import Ramp
 from solvers.runup.runup import RunupNumerics, run_up
 from validation.cases.case import Case
 

@@ -12,7 +12,7 @@ from solvers.rotor.vector_model import balance_residual, deflection_lag, unbalan
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.response import response
 from validation.cases.case import Case
-from validation.cases.scenes import horizontal_rig, horizontal_rotor
+from validation.cases.rigs import horizontal_rig, horizontal_rotor
 
 _RPM = 2.0 * math.pi / 60.0
 

@@ -15,14 +15,12 @@ from fluid.friction import Friction, FrictionLaw
 from fluid.liquid import KNOWN_LIQUIDS
 from meshes.arrays import Array
 from meshes.chamber import Chamber
-from solvers.layer.prescribed import Numerics, Whirl
 from solvers.layer.settle import settle
+from solvers.layer.state import Numerics, Whirl
 from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
-from solvers.runup.drive import Ramp
-from solvers.runup.error import linear_run_error
-from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
-from solvers.synchronous.enclosure import planar_enclosure
-from solvers.synchronous.errors import LinearError, law_error
+from solvers.runup.machine import Ramp
+from solvers.runup.runup import RunupHistory, RunupNumerics, linear_run_error, run_up
+from solvers.synchronous.errors import LinearError, law_error, planar_enclosure
 from solvers.synchronous.models import LINEAR, STATICS
 from solvers.synchronous.pairs import pair_machines
 from solvers.synchronous.response import Response, machine_responses

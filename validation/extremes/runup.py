@@ -16,7 +16,7 @@ from fluid.friction import Friction, FrictionLaw
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.runup.drive import Ramp
+from solvers.runup.machine import Ramp
 from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
 
 _MASS, _NATURAL, _CHAMBER = 30.0, 25.0, Chamber(0.25, 0.04)

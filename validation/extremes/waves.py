@@ -17,8 +17,8 @@ from fluid.liquid import Liquid
 from leblanc.results.base import texts
 from leblanc.studies.layer import answer_layer, long_wave_notes, long_wave_validity
 from meshes.chamber import Chamber
-from solvers.layer.prescribed import Numerics, Whirl
 from solvers.layer.settle import simulate
+from solvers.layer.state import Numerics, Whirl
 
 _RADIUS, _HEIGHT = 0.15, 0.01
 

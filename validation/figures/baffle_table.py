@@ -12,8 +12,7 @@ import numpy as np
 
 from leblanc.studies.modes import Resolution, ring_sections
 from meshes.baffles import Baffles
-from solvers.sloshing.damping import mode_damping
-from solvers.sloshing.forced import forced_response
+from solvers.sloshing.forced import forced_response, mode_damping
 from solvers.sloshing.modes import sloshing_modes, spectrum
 from solvers.sloshing.system import condense
 

@@ -16,9 +16,8 @@ from leblanc.figures.exciter import exciter_figure
 from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
 from leblanc.studies.exciter import answer_exciter
 from meshes.arrays import Array
-from solvers.rotor.exciter.machine import Dimensionless, Exciter
+from solvers.rotor.exciter.machine import Dimensionless, Exciter, characteristic_speeds
 from solvers.rotor.exciter.motion import RANGES, Start, critical_speeds, printed_critical_speed
-from solvers.rotor.exciter.stuck import characteristic_speeds
 
 COUNT = 196  # as many machines as the source integrated
 _FRAME = Frame(left=0.72, top=0.15, between=0.0, below=0.45)

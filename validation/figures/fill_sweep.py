@@ -8,7 +8,7 @@ import numpy as np
 
 from leblanc.figures.page import Figure, Frame, lay_out, number, style
 from validation.cases.fill_sweep import model_curves
-from validation.cases.scenes import data
+from validation.cases.rigs import data
 
 _FRAME = Frame(left=0.72, top=0.28, between=0.34, below=0.42)
 

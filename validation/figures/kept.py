@@ -79,8 +79,7 @@ def draw(out: Path) -> list[Path]:
     ----------
     out : folder, made if it is missing
     """
-    from validation.benchmarks.keep import kept_results
-    from validation.benchmarks.plots import accuracy_figure, growth_figure
+    from validation.benchmarks.report import accuracy_figure, growth_figure, kept_results
     from validation.trade.figure import save, trade_figure
 
     files = []

@@ -8,10 +8,10 @@ import numpy as np
 
 from fluid.waves import force_ratio
 from leblanc.figures.page import Figure, Frame, lay_out, number, style
-from solvers.layer.prescribed import Numerics, Whirl
 from solvers.layer.settle import settle
+from solvers.layer.state import Numerics, Whirl
 from validation.cases.layer import bore_histories, bore_reference, plane_layer
-from validation.cases.scenes import data
+from validation.cases.rigs import data
 
 _FRAME = Frame(left=0.72, top=0.15, between=0.12, below=0.42)
 _FLOW = {"color": "black", "marker": "s", "linestyle": "none", "markerfacecolor": "white", "zorder": 4}

@@ -8,7 +8,7 @@ import numpy as np
 
 from leblanc.figures.page import Figure, Frame, lay_out, number, style
 from leblanc.units import RPM
-from validation.cases.scenes import data
+from validation.cases.rigs import data
 from validation.figures.runup_lag import steady
 
 _FRAME = Frame(left=0.72, top=0.15, between=0.0, below=0.42)

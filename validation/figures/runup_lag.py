@@ -20,10 +20,10 @@ import numpy as np
 from fluid.friction import Friction, FrictionLaw
 from leblanc.results.runup import turn_mean
 from meshes.arrays import Array, Complex
-from solvers.runup.drive import Ramp
+from solvers.runup.machine import Ramp
 from solvers.runup.runup import RunupNumerics, run_up
 from solvers.synchronous.response import response
-from validation.cases.scenes import data, horizontal_rig, horizontal_rotor
+from validation.cases.rigs import data, horizontal_rig, horizontal_rotor
 
 _RPM = 2.0 * math.pi / 60.0
 RATES = (40.0, 20.0, 10.0, 5.0, 2.5, 1.25)  # rad/s^2
@@ -108,9 +108,9 @@ def lag(rate: float, damping_ratio: float, cells: int = 64, gravity: float = _GR
 
 def fitted_damping() -> float:
     """Damping ratio fitted to the six angles by the steady response."""
-    from validation.cases.horizontal_rig import cases
+    from validation.cases.rigs import horizontal_cases
 
-    found = next(case for case in cases() if case.name == "horizontal_rig/rotor-and-liquid")
+    found = next(case for case in horizontal_cases() if case.name == "horizontal_rig/rotor-and-liquid")
     assert isinstance(found.computed, float)
     return found.computed
 

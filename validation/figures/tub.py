@@ -13,7 +13,7 @@ import numpy as np
 
 from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
 from solvers.rotor.tub import Tub
-from validation.cases.suspended_tub import FARTHEST, amplitude, suspended_tub
+from validation.cases.tub import FARTHEST, amplitude, suspended_tub
 
 _RPM = math.pi / 30.0
 _FRAME = Frame(left=0.72, top=0.46, between=0.0, below=0.42)

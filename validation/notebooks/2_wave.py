@@ -37,7 +37,7 @@
 
 # %%
 from validation.cases import layer
-from validation.cases.scenes import data
+from validation.cases.rigs import data
 from validation.figures.layer import bore_figure, bore_summary, force_figure
 from validation.notebook_page import Table, case_table, picture, verdicts
 

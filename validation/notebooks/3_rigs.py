@@ -43,8 +43,8 @@ import math
 
 from leblanc.figures import amplitude_figure, liquid_figure
 from leblanc.studies.run import run_scene
-from validation.cases import horizontal_rig, vector_model, vertical_rig
-from validation.cases.scenes import data
+from validation.cases import rigs, vector_model
+from validation.cases.rigs import data
 from validation.figures import runup_lag
 from validation.figures.rigs import angle_figure
 from validation.notebook_page import Table, case_table, example, picture, verdicts
@@ -60,7 +60,7 @@ damping_ratio = runup_lag.fitted_damping()
 picture(angle_figure(damping_ratio))
 
 # %%
-horizontal = horizontal_rig.cases()
+horizontal = rigs.horizontal_cases()
 case_table(horizontal)
 
 # %% [markdown]
@@ -91,7 +91,7 @@ picture(amplitude_figure(record))
 picture(liquid_figure(record))
 
 # %%
-vertical = vertical_rig.cases()
+vertical = rigs.vertical_cases()
 case_table(vertical)
 
 # %% [markdown]

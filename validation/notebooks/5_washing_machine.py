@@ -37,8 +37,8 @@
 # %%
 from dataclasses import fields
 
-from validation.cases import errata_tub, tub
-from validation.cases.suspended_tub import Assumed
+from validation.cases import errata, tub
+from validation.cases.tub import Assumed
 from validation.figures.tub import draw, plots
 from validation.notebook_page import Table, case_table, picture, verdicts
 
@@ -87,7 +87,7 @@ cases = tub.cases()
 case_table(cases)
 
 # %%
-equations = errata_tub.cases()
+equations = errata.tub_cases()
 case_table(equations)
 
 # %% [markdown]

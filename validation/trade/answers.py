@@ -9,8 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from leblanc.scene.scene import Exciter, Scene, dry_rotor
-from leblanc.studies.choose import choose, liquid_models
-from leblanc.studies.prepare import across_gravity, axial_gravity
+from leblanc.studies.choose import across_gravity, axial_gravity, choose, liquid_models
 from leblanc.studies.runup import RunupChoice, chosen_run, drive_of, judged, planned
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
@@ -137,7 +136,7 @@ def answer(scene: Scene, case: Case) -> Answer:
 
 
 def _response(scene: Scene, case: Case) -> Answer:
-    from solvers.synchronous.discrete import Fem, LongWave
+    from solvers.synchronous.models import Fem, LongWave
 
     size = case.resolution
     models, held = chosen_models(scene, "statics" if size else case.model)
@@ -176,9 +175,8 @@ def taken_run(scene: Scene, model: str, cells: int, dispersion: bool) -> RunupCh
 
 
 def _exciter(scene: Scene, case: Case) -> Answer:
-    from solvers.rotor.exciter.machine import platform_motion
+    from solvers.rotor.exciter.machine import platform_motion, stuck_speeds
     from solvers.rotor.exciter.motion import integrate
-    from solvers.rotor.exciter.stuck import stuck_speeds
 
     if not isinstance(scene.rotor, Exciter):
         raise InputError("rotor.kind", scene.rotor.kind, "exciter for this")

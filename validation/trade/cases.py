@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from leblanc.scene.scene import Exciter, Runup, Scene
-from leblanc.studies.prepare import across_gravity
+from leblanc.studies.choose import across_gravity
 from leblanc.studies.runup import planned
 from meshes.arrays import Array
-from solvers.runup.chamber import layer_capture
+from solvers.runup.state import layer_capture
 from validation.trade.answers import (
     DISPERSION,
     RESPONSE,

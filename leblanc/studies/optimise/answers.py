@@ -9,7 +9,7 @@ import numpy as np
 
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, jeffcott
 from leblanc.studies.batch import answer_scenes
-from leblanc.studies.prepare import axial_gravity
+from leblanc.studies.choose import axial_gravity
 from meshes.arrays import Array, Flags
 from solvers.synchronous.models import model_named
 from solvers.synchronous.response import machine_responses

@@ -10,9 +10,9 @@ from fluid.fill import Fill
 from leblanc.results.base import Note
 from leblanc.results.optimum import ConstraintValue, WettingVolumes, given_deflection
 from leblanc.scene.scene import Scene
+from leblanc.studies.choose import axial_gravity
 from leblanc.studies.optimise.answers import with_volumes
 from leblanc.studies.optimise.closed_form import optimal_volume_by_search, wetting_volumes
-from leblanc.studies.prepare import axial_gravity
 from solvers.statics.hydrostatics import equilibrium
 
 

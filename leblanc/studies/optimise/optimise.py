@@ -21,6 +21,7 @@ from leblanc.results.optimum import (
 )
 from leblanc.scene.scene import Scene, Speeds, require_clear
 from leblanc.scene.tasks import Optimisation
+from leblanc.studies.choose import axial_gravity
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.at_deflection import WettedWalls, wet_walls
 from leblanc.studies.optimise.closed_form import wetting_volumes
@@ -30,7 +31,6 @@ from leblanc.studies.optimise.front import front_around
 from leblanc.studies.optimise.objectives import RunupPeak
 from leblanc.studies.optimise.problem import Problem, growth_speeds, problem_of
 from leblanc.studies.optimise.search import best_volumes, bounds_of, evaluated_again, on_all_cells
-from leblanc.studies.prepare import axial_gravity
 from leblanc.studies.run import run_scene
 from leblanc.studies.validity import RANGES
 from leblanc.units import RPM

@@ -10,10 +10,10 @@ import numpy as np
 
 from leblanc.scene.scene import JeffcottRotor, Scene, jeffcott
 from leblanc.scene.tasks import Optimisation
+from leblanc.studies.choose import axial_gravity
 from leblanc.studies.optimise.closed_form import wetting_volumes
 from leblanc.studies.optimise.objectives import PeakOver, RunupPeak
 from leblanc.studies.optimise.problem import Problem
-from leblanc.studies.prepare import axial_gravity
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.search import Found, Judgement, SearchPlan, search

@@ -1,25 +1,46 @@
-"""A machine in steady rotation as a picture draws it, its liquid at rest in the drum."""
+"""A machine as a picture draws it: in steady rotation, run up, in a mode of its liquid; tables of balls."""
 
 from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Callable
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from fluid.fill import Fill
-from leblanc.results.drawn import DrawnLiquid, Liquid, MachineMotion, MachineView, Scale
+from leblanc.results.drawn import (
+    DrawnLiquid,
+    Liquid,
+    MachineMotion,
+    MachineView,
+    ModeView,
+    RunupView,
+    Scale,
+    TableView,
+    film_factor,
+    rounded_down,
+)
 from leblanc.results.response import RunResult
-from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, dry_rotor
-from leblanc.studies.choose import choose, liquid_models
-from leblanc.studies.prepare import axial_gravity
+from leblanc.results.runup import RunupFrames, RunupResult
+from leblanc.scene.scene import Exciter, JeffcottRotor, Scene, Speeds, dry_rotor
+from leblanc.studies.choose import across_gravity, axial_gravity, choose, liquid_models
 from leblanc.studies.run import run_scene
+from leblanc.studies.runup import runup_scene
 from leblanc.studies.shapes.bodies import bodies_at_rest, is_cut, wall_is_dry
-from leblanc.studies.shapes.layer import body_at_rest
-from leblanc.studies.shapes.scale import drawn_volume, scale_of
+from leblanc.studies.shapes.layer import body_at_rest, body_of_layer, body_of_pool
+from leblanc.studies.shapes.scale import SHOWN, THIN, drawn_volume, given_scale, inner_room, scale_of
 from meshes.arrays import Complex
+from meshes.chamber_section import surface_is_whole
 from meshes.errors import InputError
+from meshes.liquid_section import LiquidSection
+from meshes.refine.waterline import liquid_outside
+from meshes.rings.quadrilaterals import ring
+from solvers.rotor.exciter.machine import platform_motion, stuck_speeds
 from solvers.rotor.vibration import orbit
+from solvers.sloshing.modes import SloshingModes, sloshing_modes
+from solvers.sloshing.system import condense
 from solvers.statics.hydrostatics import optimal_volume
 from solvers.synchronous.response import response
 
@@ -196,3 +217,204 @@ def _is_dry(fill: Fill, moved: complex, volume: float, speed: float, gravity: fl
     if is_cut(fill):
         return wall_is_dry(fill, volume, moved, speed, gravity)
     return bool(volume < optimal_volume(fill.chamber, abs(moved), speed, gravity))
+
+
+SWING, MOST = 0.35, 100.0  # vibration as drawn over the track's radius, and the largest factor
+
+
+def table_view(scene: Scene, speed: float | None = None) -> TableView:
+    """A table with balls at the moment when balls and unbalance both point along the vibration.
+
+    Parameters
+    ----------
+    scene : of kind "exciter"
+    speed : of the shaft, rad/s; the last of its speeds if None
+
+    Raises
+    ------
+    InputError : another rotor, a speed that is not above 0
+    """
+    rotor = scene.rotor
+    if not isinstance(rotor, Exciter):
+        raise InputError("rotor.kind", rotor.kind, "exciter for this")
+    spin = scene.speeds.stop if speed is None else speed
+    if not (math.isfinite(spin) and spin > 0.0):
+        raise InputError("--speed", spin, "a finite number above 0")
+    machine = rotor.machine()
+    numbers, unit = machine.dimensionless(), machine.natural_frequency
+    stuck = float(stuck_speeds(np.array([spin / unit]), numbers)[0, 0])
+    slow, fast = (abs(part) * machine.length for part in platform_motion(numbers, spin / unit, stuck))
+    largest, track = slow + fast, rotor.balls.track_radius
+    factor = float(f"{rounded_down(min(MOST, SWING * track / largest)):.6g}") if largest > 0.0 else 1.0
+    return TableView(
+        name=scene.name,
+        speed=spin,
+        stuck_speed=stuck * unit,
+        slow=slow,
+        fast=fast,
+        track_radius=track,
+        balls=rotor.balls.count,
+        kind=rotor.balls.name,
+        factor=factor,
+    )
+
+
+VISIBLE = 0.04  # a largest deflection smaller than this over the radius is drawn larger
+
+
+def runup_view(
+    scene: Scene, frames: int, factor: float | None = None, progress: Callable[[float], None] | None = None
+) -> RunupView:
+    """Run a scene up and draw its layers.
+
+    Parameters
+    ----------
+    scene : with a table `runup`
+    frames : how many
+    factor : of the deflection as drawn; chosen if None
+    progress : called with the share of the run-up that is done
+
+    Raises
+    ------
+    InputError : a value out of its range, a run-up whose liquid has no layer to show
+    """
+    result = runup_scene(scene, check=False, progress=progress, frames=frames)
+    kept = result.frames
+    assert kept is not None
+    if factor is None:
+        scale = runup_scale(max((fill.chamber.radius for fill in scene.fills), default=0.1), result, kept)
+    else:
+        scale = given_scale(factor, scene.fills, kept.deflection)
+    bodies = tuple(
+        tuple(_liquid(fill, scale, kept, k, j) for j, fill in enumerate(scene.fills))
+        for k in range(kept.time.size)
+    )
+    return RunupView(result, kept, scene.fills, places_of(scene)[0], scale, bodies)
+
+
+def runup_scale(radius: float, result: RunupResult, frames: RunupFrames) -> Scale:
+    """One factor for deflections and depths, so that a surface round the axis at rest stays so as drawn.
+
+    Parameters
+    ----------
+    radius : of the widest chamber, m
+    result, frames : the run-up and its layers at regular times
+    """
+    largest = float(np.abs(frames.deflection).max())
+    thin = any(c.radius - c.mean_surface_radius < THIN * c.radius for c in result.chambers if c.volume > 0.0)
+    if not thin and largest >= VISIBLE * radius:
+        return Scale()
+    fits = film_factor(result.chambers, frames.depth, frames.deflection)
+    both = max(1.0, min(fits, SHOWN * radius / largest if largest > 0.0 else 1.0))
+    both = float(f"{both:.2g}")
+    return Scale(both, both)
+
+
+def _liquid(fill: Fill, scale: Scale, frames: RunupFrames, k: int, j: int) -> Liquid:
+    """Liquid of a chamber in a frame."""
+    if fill.volume == 0.0:
+        return None
+    moved, depth = complex(scale.deflection * frames.deflection[k, j]), frames.depth[k, j]
+    if np.isnan(depth).any():
+        return body_of_pool(fill.chamber, fill.volume, moved, float(frames.pool[k]))
+    return body_of_layer(fill.chamber, moved, frames.theta, scale.depth * depth)
+
+
+MOST_MODES = 40
+AROUND_MODE, ACROSS = 120, 4  # elements around and across the layer
+LIFT = 0.6  # of the layer's depth, or of the room inside it: displacement as drawn
+
+
+def mode_view(scene: Scene, number: int, speed: float | None = None, chamber: int = 1) -> ModeView:
+    """A mode of the liquid in one chamber of a scene, by finite elements [theory: sloshing, eq. 10-12].
+
+    Parameters
+    ----------
+    scene : the machine
+    number : which mode, from 1 by rising size of the frequency
+    speed : spin, rad/s; the scene's last if None
+    chamber : which one, from 1
+
+    Raises
+    ------
+    InputError : no such chamber or mode, no free surface, a speed that is not above 0
+    """
+    spin, fill = _checked(scene, number, speed, chamber)
+    section = _liquid_in_mode(fill)
+    modes = sloshing_modes(condense(section), spin, number)
+    place = np.full(len(section.points), -1)
+    place[modes.surface_nodes] = np.arange(modes.surface_nodes.size)
+    # Along each side the angle falls from its start to its end.
+    sides = place[section.surface][:, [1, 2, 0]] if section.order == 2 else place[section.surface][:, ::-1]
+    middle = section.points[section.surface[:, :2]].mean(axis=1)
+    order = np.argsort(np.arctan2(middle[:, 1], middle[:, 0]))
+    nodes = sides[order].ravel()
+    points = section.points[modes.surface_nodes[nodes]]
+    # Counted from the first side, so that the seam does not fall within a side.
+    angle = np.unwrap(np.arctan2(points[:, 1], points[:, 0]))
+    walled = fill.chamber.section is not None
+    return ModeView(
+        name=scene.name,
+        lying=scene.rotor.axis == "horizontal",
+        gravity=across_gravity(scene),
+        number=number,
+        frequency=float(modes.frequency[number - 1]),
+        crests=int(modes.crests[number - 1]),
+        angle=angle,
+        displacement=modes.displacement[number - 1][nodes],
+        lift=LIFT * min(fill.depth, inner_room(fill)),
+        fill=fill,
+        speed=spin,
+        converged=bool(modes.converged),
+        section=section if walled else None,
+        section_displacement=_spread(section, modes, number) if walled else None,
+    )
+
+
+def _checked(scene: Scene, number: int, speed: float | None, chamber: int) -> tuple[float, Fill]:
+    """Spin and chamber of a mode, once they are found to have one."""
+    if not 1 <= number <= MOST_MODES:
+        raise InputError("--mode", number, f"a whole number from 1 to {MOST_MODES}")
+    if not 1 <= chamber <= len(scene.fills):
+        count = len(scene.fills)
+        allowed = (
+            f"from 1 to {count}, the chambers of this scene" if count else "left out: there is no chamber"
+        )
+        raise InputError("--chamber", chamber, allowed)
+    spin = scene.speeds.stop if speed is None else speed
+    if not (math.isfinite(spin) and spin > 0.0):
+        raise InputError("--speed", spin, "a finite number above 0")
+    fill = scene.fills[chamber - 1]
+    size, inner = fill.surface_radius, fill.chamber.inner_radius
+    if fill.volume == 0.0 or size <= inner * (1.0 + 1e-9) or size <= 1e-9 * fill.chamber.radius:
+        raise InputError("--chamber", chamber, "one with liquid and a free surface")
+    shape = fill.chamber.section
+    area = fill.volume / fill.chamber.height
+    # A baffle without thickness takes nothing from the circle, but leaves no depth.
+    if shape is not None and not (surface_is_whole(shape, area) and fill.depth > 1e-6 * size):
+        allowed = "one whose free surface meets no wall; `leblanc modes --out` draws the others"
+        raise InputError("--chamber", chamber, allowed)
+    return spin, fill
+
+
+def _liquid_in_mode(fill: Fill) -> LiquidSection:
+    """Mesh of the liquid at rest."""
+    size = fill.surface_radius
+    if fill.chamber.section is None:
+        return ring(fill.chamber.radius, size, AROUND_MODE, ACROSS, baffles=fill.chamber.baffles)
+    side = 4.0 * math.pi * size / AROUND_MODE  # bisection makes sides up to half as long
+    return liquid_outside(fill.chamber.section.mesh, size, order=2, surface_size=side, wall_size=2.0 * side)
+
+
+def _spread(section: LiquidSection, modes: SloshingModes, number: int) -> Complex:
+    """Displacement of all nodes, that of the surface fading towards the walls, where there is none.
+
+    Only for the eye: walls stay where they are and cells do not fold.
+    """
+    surface = modes.surface_nodes
+    wall = np.setdiff1d(section.wall, surface)
+    below, near = cKDTree(section.points[surface]).query(section.points)
+    above, _ = cKDTree(section.points[wall]).query(section.points)
+    share = np.divide(above, above + below, out=np.zeros_like(above), where=above + below > 0.0)
+    share[wall], share[surface] = 0.0, 1.0
+    return np.asarray(share * modes.displacement[number - 1][near])

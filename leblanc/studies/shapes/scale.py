@@ -13,7 +13,7 @@ from meshes.arrays import Array, Complex
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from meshes.liquid_section import free_sides
-from meshes.refine.waterline_cut import area_outside
+from meshes.refine.waterline import area_outside
 from solvers.statics.hydrostatics import optimal_volume
 
 SHOWN = 0.15  # deflection as drawn over the widest chamber's radius, if there is room

@@ -1,26 +1,220 @@
-"""The work of a sweep: a block of samples answered, whatever happens to one of them."""
+"""The work of a sweep: a block of scenes from sampled values, answered whatever happens to one of them.
+
+Only what varies is checked anew. Kept of each sample are outputs of `run` over speed and a few numbers of
+them.
+"""
 
 from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import ValidationError
 
 from leblanc.results.base import versions
-from leblanc.scene.scene import Scene
-from leblanc.scene.schema.load import escaped
-from leblanc.scene.schema.paths import Keys
-from leblanc.studies.sweep.outputs import DONE, FAILED, NOT_CONVERGED, OUTPUTS, blank, values_of
-from leblanc.studies.sweep.scenes import make_scenes, scene_maker
+from leblanc.scene.chambers import Chamber
+from leblanc.scene.scene import Scene, scene_from_table
+from leblanc.scene.schema.load import SceneFaults, escaped
+from leblanc.scene.schema.part import Part, rule_of
+from leblanc.scene.schema.paths import Keys, tables_of, with_values
+from leblanc.scene.schema.rules import Quantity
 from meshes.errors import InputError
 
 if TYPE_CHECKING:
     from leblanc.studies.batch import Answers
+
+
+PENDING, DONE, FAILED, NOT_CONVERGED = range(4)
+STATUS = ("pending", "done", "failed", "not_converged")
+
+NUMBER, FLAG, TEXT = "float64", "int8", "str"
+
+
+@dataclass(frozen=True)
+class Output:
+    """One variable of the store.
+
+    Parameters
+    ----------
+    name : of the variable
+    kind : "float64"; "int8", -1 where there is no answer; "str"
+    over_speed : one value at each speed, not one in all
+    units, long_name, text : as CF asks, and what more there is to say
+    meanings : words for the values of a flag, from -1 on
+    """
+
+    name: str
+    kind: str
+    over_speed: bool
+    units: str
+    long_name: str
+    text: str = ""
+    meanings: tuple[str, ...] = ()
+
+
+_LAG = "from the unbalance, positive with the spin, a lag is negative"
+_MOST = "of the whirl that grows most"
+
+
+def _flag(name: str, long_name: str, text: str) -> Output:
+    return Output(name, FLAG, True, "1", long_name, text, ("absent", "no", "yes"))
+
+
+OVER_SPEED: tuple[Output, ...] = (
+    Output("speed", NUMBER, True, "rad s-1", "spin speed", "of the rotor about its axis"),
+    Output("amplitude", NUMBER, True, "m", "amplitude", "of the branch reported"),
+    Output("amplitude_dry", NUMBER, True, "m", "amplitude", "without liquid"),
+    Output("phase", NUMBER, True, "rad", "phase of the deflection", _LAG),
+    Output("liquid_offset", NUMBER, True, "m", "liquid offset", "rotation axis to centre of mass"),
+    Output("liquid_angle", NUMBER, True, "rad", "angle of the liquid's centre of mass", _LAG),
+    Output("growth", NUMBER, True, "s-1", "growth rate", f"{_MOST}; above 0 unstable"),
+    Output("whirl_speed", NUMBER, True, "rad s-1", "whirl speed", f"{_MOST}, in space"),
+    _flag("dry_patch", "dry patch", "the wall is dry somewhere"),
+    _flag("stable", "the branch reported is stable", "against slow disturbances and whirls"),
+    _flag("in_range", "in range", "the liquid model holds there"),
+    _flag("converged", "converged", "every branch was found"),
+    Output(
+        "error_estimate", NUMBER, True, "1", "estimated error", "relative, of amplitude and liquid the larger"
+    ),
+    Output("model", TEXT, True, "1", "liquid model", "used at this speed"),
+)
+
+SINGLE: tuple[Output, ...] = (
+    Output("peak_amplitude", NUMBER, False, "m", "largest amplitude", "over the speeds"),
+    Output("peak_amplitude_dry", NUMBER, False, "m", "largest amplitude", "over the speeds, without liquid"),
+    Output("last_amplitude", NUMBER, False, "m", "amplitude at the last speed"),
+    Output("last_amplitude_dry", NUMBER, False, "m", "amplitude at the last speed", "without liquid"),
+    Output("peak_growth", NUMBER, False, "s-1", "largest growth rate", "over the speeds; above 0 unstable"),
+)
+
+OUTPUTS = OVER_SPEED + SINGLE
+
+
+def blank(output: Output, samples: int, speeds: int) -> NDArray[Any]:
+    """Values of samples without an answer: nan, -1 or an empty text.
+
+    Parameters
+    ----------
+    output : of which there is none
+    samples, speeds : how many
+    """
+    shape = (samples, speeds) if output.over_speed else (samples,)
+    if output.kind == TEXT:
+        return np.full(shape, "", dtype=object)
+    return np.full(shape, np.nan if output.kind == NUMBER else -1, dtype=output.kind)
+
+
+def values_of(answers: Answers) -> dict[str, NDArray[Any]]:
+    """Outputs by name, from the answers of some scenes.
+
+    Parameters
+    ----------
+    answers : arrays of shape (scenes, speeds)
+    """
+    values = {
+        output.name: np.asarray(getattr(answers, output.name)).astype(
+            object if output.kind == TEXT else output.kind
+        )
+        for output in OVER_SPEED
+    }
+    # fmax takes the other of two where one is not a number; a whole row without numbers gives none.
+    for name in ("amplitude", "amplitude_dry", "growth"):
+        values[f"peak_{name}"] = np.fmax.reduce(values[name], axis=1)
+    for name in ("amplitude", "amplitude_dry"):
+        values[f"last_{name}"] = values[name][:, -1]
+    return values
+
+
+_WORDS_ONLY = ("source", "assumed", "runup")  # no answer of a sweep depends on them
+
+_Tables = Mapping[tuple[str, ...], type[Part]]
+
+Maker = Callable[[Sequence[Any]], Scene]
+
+
+def scene_maker(table: Mapping[str, Any], paths: Sequence[Keys]) -> Maker:
+    """What makes one scene after the other from the same table with other values.
+
+    Each is the scene that the whole table with those values gives, at a fraction of the cost.
+
+    Parameters
+    ----------
+    table : content of a scene file, free of faults
+    paths : keys along the path of each value
+
+    Returns
+    -------
+    Function of the values at those paths. It raises SceneFaults where the whole table would.
+    """
+    base = {key: value for key, value in table.items() if key not in _WORDS_ONLY}
+    scene = scene_from_table(base)
+    base = _in_si(base, (), tables_of(Scene, scene.rotor.kind))
+    rotor_class = type(scene.rotor)
+    touched = {keys[:2] if keys[0] == "chambers" else keys[:1] for keys in paths}
+    chambers = sorted(int(keys[1]) for keys in touched if keys[0] == "chambers")
+    in_parts = all(keys[0] in ("rotor", "chambers") for keys in paths)
+
+    def make(values: Sequence[Any]) -> Scene:
+        changed = with_values(base, zip(paths, values, strict=True))
+        if not in_parts:
+            return scene_from_table(changed)
+        try:
+            parts = list(scene.chambers)
+            for k in chambers:
+                parts[k] = Chamber.model_validate(changed["chambers"][k])
+            rotor = scene.rotor
+            if ("rotor",) in touched:
+                rotor = rotor_class.model_validate(changed["rotor"])
+        except ValidationError:
+            return scene_from_table(changed)  # says what is wrong in words
+        return scene.altered(rotor=rotor, chambers=tuple(parts))
+
+    return make
+
+
+def _in_si(table: Mapping[str, Any], place: tuple[str, ...], tables: _Tables) -> dict[str, Any]:
+    """The table with quantities as plain numbers, which are not parsed again for each sample."""
+    plain = dict(table)
+    for key, value in table.items():
+        below = (*place, key)
+        if isinstance(value, list) and (*below, "*") in tables:
+            plain[key] = [_in_si(one, (*below, "*"), tables) for one in value]
+        elif isinstance(value, dict) and below in tables:
+            plain[key] = _in_si(value, below, tables)
+        elif isinstance(value, str):
+            rule = rule_of(tables[place].model_fields[key])
+            plain[key] = rule(value) if isinstance(rule, Quantity) else value
+    return plain
+
+
+def make_scenes(make: Maker, rows: Iterable[Sequence[Any]]) -> tuple[list[Scene | None], list[str]]:
+    """Scenes of some samples, None for one that breaks a rule, and the reason why.
+
+    Parameters
+    ----------
+    make : from `scene_maker`
+    rows : values of each sample
+    """
+    scenes: list[Scene | None] = []
+    reasons: list[str] = []
+    for row in rows:
+        try:
+            scenes.append(make(row))
+            reasons.append("")
+        except SceneFaults as error:
+            scenes.append(None)
+            reasons.append("; ".join(_without_file(str(fault), fault.file) for fault in error.faults))
+    return scenes, reasons
+
+
+def _without_file(line: str, file: str) -> str:
+    return line.removeprefix(f"{escaped(file)}: ")
+
 
 _LONGEST = 2000  # characters of a reason
 _ADDRESS = re.compile(r"0x[0-9a-fA-F]{6,}")  # of an object in memory, another one each time

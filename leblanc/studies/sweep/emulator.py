@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from leblanc.studies.sweep.outputs import DONE, SINGLE
+from leblanc.studies.sweep.block import DONE, SINGLE
 from leblanc.studies.sweep.store import Store, read_store
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError

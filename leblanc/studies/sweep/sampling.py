@@ -6,8 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from leblanc.studies.sweep.distributions import Choice, Levels
-from leblanc.studies.sweep.study import Sweep, VariedField
+from leblanc.studies.sweep.study import Choice, Levels, Sweep, VariedField
 from meshes.arrays import Array
 
 Rows = Callable[[int, int], Array]

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from leblanc.results.base import one_line, versions
 from leblanc.results.netcdf import NamedArrays, variable
 from leblanc.scene.schema.load import shown
-from leblanc.studies.sweep.outputs import FLAG, NUMBER, OUTPUTS, PENDING, STATUS, TEXT, Output
+from leblanc.studies.sweep.block import FLAG, NUMBER, OUTPUTS, PENDING, STATUS, TEXT, Output
 from leblanc.studies.sweep.study import Sweep, VariedField
 from meshes.errors import InputError
 

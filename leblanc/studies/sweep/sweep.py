@@ -1,25 +1,189 @@
-"""A sweep from start to end: what is missing in the store is answered and written, block by block."""
+"""A sweep from start to end: what is missing in the store is answered and written, block by block.
+
+Blocks are answered in this process, in local ones or on a cluster: the only door to dask.
+"""
 
 from __future__ import annotations
 
+import logging
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from itertools import islice
 from pathlib import Path
 from types import FrameType
+from typing import Any
 
 import numpy as np
 
-from leblanc.scene.schema.load import SceneFault, SceneFaults, shown
-from leblanc.studies.sweep.block import Block, BlockAnswer
-from leblanc.studies.sweep.outputs import PENDING
+from leblanc.scene.schema.load import NotConverged, SceneFault, SceneFaults, shown
+from leblanc.studies.sweep.block import PENDING, Block, BlockAnswer, answer_block, own_versions, reason_of
 from leblanc.studies.sweep.sampling import Rows, sample_rows
 from leblanc.studies.sweep.store import Store, field_values, locked, open_store, write_block
 from leblanc.studies.sweep.study import Sweep
-from leblanc.studies.sweep.workers import answer_blocks, require_scheduler
 from meshes.errors import InputError
+
+_AHEAD = 2  # blocks in flight for each thread: one at work, one waiting
+# Of local workers: memory is given back in large pieces only. With Dask's own choice, 64 kB, a quarter of the
+# time goes into page faults.
+_ENVIRONMENT = {
+    f"distributed.nanny.pre-spawn-environ.MALLOC_{kind}_THRESHOLD_": 2**28 for kind in ("TRIM", "MMAP")
+}
+_PATIENCE = 30.0  # seconds for a cluster to answer and to have a worker
+
+
+def answer_blocks(
+    blocks: Iterable[Block], workers: int = 0, scheduler: str | None = None
+) -> Iterator[BlockAnswer]:
+    """Answers of blocks, in the order in which they are done.
+
+    The blocks are taken one by one, and only a few are ever waiting; the answers do not depend on where they
+    come from.
+
+    Parameters
+    ----------
+    blocks : to be answered
+    workers : local processes; 0 to work in this one
+    scheduler : address of a Dask scheduler, in place of local processes
+
+    Raises
+    ------
+    InputError : no such scheduler, no workers, a worker without this version of the package
+    NotConverged : the cluster was lost, or a block that took several workers with it
+    """
+    if scheduler is None and workers == 0:
+        for block in blocks:
+            yield answer_block(block)
+        return
+    with _client(workers, scheduler) as client:
+        yield from _answers(client, blocks)
+
+
+@contextmanager
+def _client(workers: int, scheduler: str | None) -> Iterator[Any]:
+    """A client of local processes or of a running cluster."""
+    import dask
+    from distributed import Client, LocalCluster
+
+    for name in ("distributed", "distributed.client", "distributed.utils"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)  # what goes wrong is said by `_cluster_faults`
+    if scheduler is not None:
+        with _connected(scheduler) as client:
+            yield client
+        return
+    with _without_interrupts(), dask.config.set(_ENVIRONMENT):
+        cluster = LocalCluster(
+            n_workers=workers,
+            threads_per_worker=1,
+            processes=True,
+            dashboard_address=":0",  # any free port, so that a second sweep finds one as well
+            scheduler_kwargs={"dashboard": False},
+            silence_logs=logging.CRITICAL,
+        )
+    with cluster, Client(cluster) as client:
+        yield client
+
+
+def require_scheduler(address: str) -> None:
+    """Raise unless a cluster with a worker answers.
+
+    Parameters
+    ----------
+    address : of a Dask scheduler
+
+    Raises
+    ------
+    InputError : no such scheduler, no workers
+    """
+    with _client(0, address):
+        pass
+
+
+@contextmanager
+def _connected(address: str) -> Iterator[Any]:
+    """A client of a running cluster that has a worker."""
+    from distributed import Client
+
+    try:
+        client = Client(address, timeout=_PATIENCE)
+    except (OSError, ValueError) as error:
+        allowed = "the address of a Dask scheduler that answers, such as tcp://host:8786"
+        raise InputError("--scheduler", address, allowed) from error
+    with client:
+        try:
+            client.wait_for_workers(1, timeout=_PATIENCE)
+        except TimeoutError as error:
+            raise InputError("--scheduler", address, "a cluster with at least one worker") from error
+        yield client
+
+
+@contextmanager
+def _without_interrupts() -> Iterator[None]:
+    """Processes that start here do not see a Ctrl-C, which goes to all of a terminal; this one ends them."""
+    if threading.current_thread() is not threading.main_thread():
+        yield  # only the main thread may set handlers
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _answers(client: Any, blocks: Iterable[Block]) -> Iterator[BlockAnswer]:
+    """Answers as they are done, with a bounded number of blocks in flight."""
+    from distributed import wait
+
+    waiting = iter(blocks)
+    flying: set[Any] = set()
+    while True:
+        with _cluster_faults():
+            threads = max(1, sum(client.nthreads().values()))  # workers come and go
+            room = max(0, _AHEAD * threads - len(flying))
+            flying |= {client.submit(answer_block, one, pure=False) for one in islice(waiting, room)}
+            if not flying:
+                return
+            done = wait(flying, return_when="FIRST_COMPLETED").done
+            answers = [_checked(future.result()) for future in done]
+        flying -= done
+        yield from answers
+
+
+@contextmanager
+def _cluster_faults() -> Iterator[None]:
+    """What can go wrong with a cluster, in words."""
+    from distributed import CancelledError, KilledWorker
+
+    kept = "finished blocks are kept; run the same command to go on"
+    try:
+        yield
+    except KilledWorker as error:
+        raise NotConverged([f"a block ended {error.allowed_failures + 1} workers; {kept}"]) from error
+    except MemoryError as error:
+        raise NotConverged([f"a block did not fit the memory of its worker; {kept}"]) from error
+    except (CancelledError, OSError) as error:
+        raise NotConverged([f"the cluster was lost; {kept}"]) from error
+    except (ImportError, AttributeError) as error:
+        if isinstance(error, AttributeError) and "Can't get attribute" not in str(error):
+            raise
+        raise _other_version(reason_of(error)) from error  # the task itself is unknown there
+
+
+def _checked(answer: BlockAnswer) -> BlockAnswer:
+    """The answer, if it comes from the same code as this process runs."""
+    own = own_versions()
+    for package, version in answer.versions.items():
+        if own[package] != version:
+            raise _other_version(f"one has {package} {version}")
+    return answer
+
+
+def _other_version(found: str) -> InputError:
+    needed = ", ".join(f"{package} {version}" for package, version in own_versions().items())
+    return InputError("--scheduler", found, f"a cluster whose workers have {needed}")
+
 
 Progress = Callable[[int, int], None]
 

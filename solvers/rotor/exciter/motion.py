@@ -12,8 +12,13 @@ from numpy.typing import ArrayLike
 
 from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative, require_positive
-from solvers.rotor.exciter.machine import Dimensionless, platform_motion
-from solvers.rotor.exciter.stuck import CharacteristicSpeeds, characteristic_speeds, stuck_speeds
+from solvers.rotor.exciter.machine import (
+    CharacteristicSpeeds,
+    Dimensionless,
+    characteristic_speeds,
+    platform_motion,
+    stuck_speeds,
+)
 
 # Coefficients of 1, delta, h, b: numerators and denominators of g1, g2, g3 [YF17, eq. 20].
 _PRINTED = (

@@ -22,11 +22,10 @@ from leblanc.results.base import Result
 from leblanc.results.liquid import Coverage
 from leblanc.results.response import RunResult
 from leblanc.scene.scene import Scene, load_scene
-from leblanc.studies.choose import choose_all
+from leblanc.studies.choose import choose_all, prepare
 from leblanc.studies.compare import compare_models
 from leblanc.studies.exciter import run_exciter
 from leblanc.studies.explain import explain_exciter, explain_scene
-from leblanc.studies.prepare import prepare
 from leblanc.studies.run import run_scene
 from leblanc.studies.volume import answer_volume
 from leblanc.studies.whirl_map import map_scene

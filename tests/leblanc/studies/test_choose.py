@@ -14,9 +14,8 @@ from leblanc.results.base import percent
 from leblanc.results.choice import model_spans
 from leblanc.results.notes import RunCode
 from leblanc.scene.scene import Scene, dry_rotor, jeffcott, load_scene
-from leblanc.studies.choose import choose, choose_all
+from leblanc.studies.choose import axial_gravity, choose, choose_all, prepare
 from leblanc.studies.explain import explain_scene
-from leblanc.studies.prepare import axial_gravity, prepare
 from leblanc.studies.run import run_scene
 from leblanc.studies.runup import runup_outlook, runup_scene
 from meshes.errors import InputError
@@ -79,7 +78,7 @@ def test_a_model_that_is_asked_for_is_taken_and_its_error_told() -> None:
 
 @kills("leblanc.studies.choose:_choice", "linear.worst, ROUNDING) + gravity", "linear.worst, ROUNDING)")
 @kills(
-    "leblanc.studies.prepare:across_gravity",
+    "leblanc.studies.choose:across_gravity",
     'scene.rotor.axis == "horizontal"',
     'scene.rotor.axis == "vertical"',
 )

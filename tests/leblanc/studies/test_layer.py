@@ -16,7 +16,7 @@ from leblanc.cli import main
 from leblanc.results.layer import LayerResult
 from leblanc.studies.layer import answer_layer, steady_film
 from meshes.chamber import Chamber
-from solvers.layer.prescribed import Whirl
+from solvers.layer.state import Whirl
 from tests.mutants import kills
 
 R, A, H, SPIN = 0.15, 0.135, 0.01, 40.0

@@ -17,7 +17,7 @@ from leblanc.studies.layer import answer_layer
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.errors import InputError
-from solvers.layer.prescribed import Numerics
+from solvers.layer.state import Numerics
 from tests.mutants import kills
 
 WALL, SURFACE, HEIGHT, SPIN = 0.15, 0.135, 0.05, 40.0

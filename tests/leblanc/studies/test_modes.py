@@ -19,7 +19,7 @@ from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.files.exchange import write_section
 from meshes.section import Section, disc
-from solvers.sloshing.damping import mode_damping
+from solvers.sloshing.forced import mode_damping
 from solvers.sloshing.system import condense
 from tests.mutants import kills
 from tests.oracles.sloshing import ring_decay, sector_frequencies

@@ -37,7 +37,7 @@ from leblanc.studies.runup import (
 )
 from meshes.chamber import Chamber
 from meshes.errors import InputError
-from solvers.runup.drive import Motor, Ramp
+from solvers.runup.machine import Motor, Ramp
 from solvers.runup.runup import EnergyAudit, RunupHistory
 from tests.mutants import kills
 
@@ -561,7 +561,7 @@ def shoelace(edge: np.ndarray) -> float:
 
 
 @kills(
-    "leblanc.studies.prepare:across_gravity",
+    "leblanc.studies.choose:across_gravity",
     'scene.gravity if scene.rotor.axis == "horizontal"',
     'scene.gravity if scene.rotor.axis == "vertical"',
 )

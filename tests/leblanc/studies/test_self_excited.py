@@ -8,7 +8,7 @@ from fluid.friction import Friction
 from leblanc.results.notes import self_excited as note_of
 from leblanc.results.response import SelfExcited
 from leblanc.scene.scene import dry_rotor, load_scene
-from leblanc.studies.prepare import prepare
+from leblanc.studies.choose import prepare
 from leblanc.studies.run import self_excited
 from solvers.whirl.growth import asynchronous_growth
 from tests.mutants import kills

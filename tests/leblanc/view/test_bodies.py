@@ -18,8 +18,7 @@ from fluid.waves import free_wave_frequencies
 from leblanc.results.drawn import LiquidBodies
 from leblanc.scene.scene import Speeds, scene_from_table
 from leblanc.studies.shapes.bodies import AROUND, bodies_at_rest, sections_of, surfaces, wall_is_dry
-from leblanc.studies.shapes.machine import drawn_liquid, machine_motion
-from leblanc.studies.shapes.modes import mode_view
+from leblanc.studies.shapes.machine import drawn_liquid, machine_motion, mode_view
 from leblanc.studies.shapes.scale import choose_scale, drawn_volume, scale_of
 from leblanc.view.film import shape_of
 from leblanc.view.scene import outline

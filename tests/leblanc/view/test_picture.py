@@ -12,9 +12,7 @@ from fluid.waves import free_wave_frequencies
 from leblanc.results.drawn import LiquidShape, Scale
 from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.studies.run import run_scene
-from leblanc.studies.shapes.exciter import table_view
-from leblanc.studies.shapes.machine import machine_motion
-from leblanc.studies.shapes.modes import mode_view
+from leblanc.studies.shapes.machine import machine_motion, mode_view, table_view
 from leblanc.studies.shapes.scale import scale_of
 from leblanc.view.exciter import table_picture
 from leblanc.view.files import write_picture

@@ -16,7 +16,7 @@ from meshes.files.drawing import read_drawing
 from meshes.files.outline import outline_section
 from meshes.liquid_section import free_sides
 from meshes.quality import assess
-from meshes.refine.waterline_cut import liquid_outside
+from meshes.refine.waterline import liquid_outside
 from meshes.section import Section, section_area
 
 ezdxf = pytest.importorskip("ezdxf")

@@ -11,7 +11,7 @@ from meshes.baffles import Baffles
 from meshes.errors import InputError
 from meshes.quality import cell_areas
 from meshes.refine.bisection import halved, straightened
-from meshes.refine.waterline_cut import liquid_outside
+from meshes.refine.waterline import liquid_outside
 from meshes.rings.quadrilaterals import ring
 from meshes.rings.sectors import compartment
 from meshes.section import Section, annulus, disc

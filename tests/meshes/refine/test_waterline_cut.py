@@ -14,9 +14,9 @@ from meshes.liquid_section import LiquidSection, free_sides
 from meshes.quality import assess, cell_areas, jacobians, vertex_angles
 from meshes.refine.bisection import bisect, edge_numbers, quadratic_triangles, refine
 from meshes.refine.circle_cut import Circle, follow_circle
-from meshes.refine.waterline_cut import area_outside, liquid_outside, surface_radius_of
+from meshes.refine.waterline import area_outside, liquid_outside, surface_radius_of
 from meshes.rings.sectors import sector
-from meshes.rings.slits import open_slits
+from meshes.rings.triangles import open_slits
 from meshes.section import Section, annulus, disc, section_area
 from tests.mutants import kills
 
@@ -65,7 +65,7 @@ def slide_slack(section: Section) -> float:
     return float(6.0 * np.abs(turn).max() * 0.3 * np.max(np.sum((end - start) ** 2, axis=1)))
 
 
-@kills("meshes.refine.waterline_cut:area_outside", "square = radius * radius", "square = radius")
+@kills("meshes.refine.waterline:area_outside", "square = radius * radius", "square = radius")
 def test_area_outside() -> None:
     """A square beyond a circle within it, beyond one that cuts its sides, beyond one about its corner."""
     section = square(1.0)
@@ -79,7 +79,7 @@ def test_area_outside() -> None:
 
 
 @kills(
-    "meshes.refine.waterline_cut:surface_radius_of",
+    "meshes.refine.waterline:surface_radius_of",
     "farthest - depth) - liquid_area",
     "farthest - depth) - 1.01 * liquid_area",
 )
@@ -147,7 +147,7 @@ def test_any_section_can_be_cut(amount: float, seed: int, segments: int, share: 
     assert cell_areas(liquid.points, liquid.cells).sum() == pytest.approx(exact, abs=slack)
 
 
-@kills("meshes.refine.waterline_cut:liquid_outside", "0.5 * (growth - 1.0)", "0.5 * (growth + 1.0)")
+@kills("meshes.refine.waterline:liquid_outside", "0.5 * (growth - 1.0)", "0.5 * (growth + 1.0)")
 def test_sizes() -> None:
     """Sides at surface and wall, and how they grow between."""
     section = disc(0.2, 32, order=2)

@@ -14,8 +14,7 @@ from meshes.errors import InputError
 from meshes.liquid_section import LiquidSection
 from meshes.quality import cell_areas, jacobians
 from meshes.rings.sectors import compartment, sector
-from meshes.rings.slits import open_slits
-from meshes.rings.triangles import graded, ring
+from meshes.rings.triangles import graded, open_slits, ring
 from meshes.section import section_area
 from tests.mutants import kills
 
@@ -155,7 +154,7 @@ def test_layers_at_wall_and_surface() -> None:
     assert 1.2e-3 < rows[1] - rows[0] <= 4e-3 * (1 + 1e-9)
 
 
-@kills("meshes.rings.slits:open_slits", "turned = [1, 0, 2]", "turned = [0, 1, 2]")
+@kills("meshes.rings.triangles:open_slits", "turned = [1, 0, 2]", "turned = [0, 1, 2]")
 def test_slits() -> None:
     """A square of four: opened across, from the middle outwards, and along a cross."""
     x, y = np.meshgrid(np.arange(3.0), np.arange(3.0), indexing="ij")

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from fluid import long_wave as lw
-from solvers.layer.face_flux import DRY
-from solvers.layer.finite_volume import GHOSTS, WORK, rates, solve_ring
+from solvers.layer.finite_volume import DRY, GHOSTS, WORK, rates, solve_ring
 from solvers.layer.records import LOADS, Drive, LayerOutcome, Wall, records
 from solvers.layer.step import advance, scratch
 

@@ -9,8 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from fluid import long_wave as lw
-from solvers.layer import face_flux, finite_volume
-from solvers.layer import loads as layer_loads
+from solvers.layer import finite_volume
+from solvers.layer import finite_volume as face_flux
+from solvers.layer import state as layer_loads
 from solvers.layer import step as forced_layer
 from solvers.layer.records import LOADS, Drive, LayerOutcome, Wall, records
 from tests.mutants import kills
@@ -56,12 +57,12 @@ def smooth(n: int) -> tuple[np.ndarray, np.ndarray]:
     return 0.1 + 0.03 * np.cos(theta) + 0.01 * np.sin(2 * theta), 0.05 + 0.04 * np.sin(theta)
 
 
-@kills("solvers.layer.face_flux:faded_velocity", "2.0 * (q + spin * square)", "2.0 * (q - spin * square)")
-@kills("solvers.layer.face_flux:_half_slope", "0.25 * (back + ahead)", "0.5 * (back + ahead)")
-@kills("solvers.layer.face_flux:side", "head[i] + way * half_head[i]", "head[i]")
-@kills("solvers.layer.face_flux:side", "_momentum(u, log, a, r) + push[i]", "_momentum(u, log, a, r)")
-@kills("solvers.layer.face_flux:side", "= mean - half, mean + half", "= mean - half, mean")
-@kills("solvers.layer.face_flux:hll", "- slow[i] * right[i] + jump", "+ slow[i] * right[i] + jump")
+@kills("solvers.layer.finite_volume:faded_velocity", "2.0 * (q + spin * square)", "2.0 * (q - spin * square)")
+@kills("solvers.layer.finite_volume:_half_slope", "0.25 * (back + ahead)", "0.5 * (back + ahead)")
+@kills("solvers.layer.finite_volume:side", "head[i] + way * half_head[i]", "head[i]")
+@kills("solvers.layer.finite_volume:side", "_momentum(u, log, a, r) + push[i]", "_momentum(u, log, a, r)")
+@kills("solvers.layer.finite_volume:side", "= mean - half, mean + half", "= mean - half, mean")
+@kills("solvers.layer.finite_volume:hll", "- slow[i] * right[i] + jump", "+ slow[i] * right[i] + jump")
 @kills("solvers.layer.finite_volume:_cells", "work[row, n + i]", "work[row, n + i - 1]")
 @kills("solvers.layer.finite_volume:_cells", "work[row, GHOSTS + i]", "work[row, i]")
 @kills("solvers.layer.finite_volume:_faces", "bed[n] = pull_face[0]", "bed[n] = pull_face[n - 1]")
@@ -117,7 +118,9 @@ def test_ring() -> None:
     np.testing.assert_allclose(39.0 * found - side * around @ found, right, atol=1e-13)
 
 
-@kills("solvers.layer.face_flux:beds", "np.minimum(pull_l[i], pull_r[i])", "np.maximum(pull_l[i], pull_r[i])")
+@kills(
+    "solvers.layer.finite_volume:beds", "np.minimum(pull_l[i], pull_r[i])", "np.maximum(pull_l[i], pull_r[i])"
+)
 def test_circle() -> None:
     """A circle about the rotation axis with a dry patch stays."""
     n, amplitude, radius = 40, 0.4, 1.1
@@ -130,17 +133,17 @@ def test_circle() -> None:
     assert np.abs(d_area).max() < 1e-14 and np.abs(d_q).max() < 1e-14
 
 
-@kills("solvers.layer.face_flux:log_of_surface", "16.0 * z * total", "8.0 * z * total")
-@kills("solvers.layer.face_flux:log_of_surface", "+ 1.0 / 13.0", "+ 1.0 / 12.0")
+@kills("solvers.layer.finite_volume:log_of_surface", "16.0 * z * total", "8.0 * z * total")
+@kills("solvers.layer.finite_volume:log_of_surface", "+ 1.0 / 13.0", "+ 1.0 / 12.0")
 def test_logarithm() -> None:
     area = np.array([1e-12, 1e-5, 0.01, 0.1, 0.3, 0.49, 0.4995])
     found = [face_flux.log_of_surface(a, lw.free_surface_radius(a)) for a in area]
     np.testing.assert_allclose(found, lw.layer_log(area), rtol=1e-14)
 
 
-@kills("solvers.layer.face_flux:_half_slope", "min(abs(central), abs(back), abs(ahead))", "abs(central)")
-@kills("solvers.layer.face_flux:side", "u * a - spin * a * a", "u * a + spin * a * a")
-@kills("solvers.layer.face_flux:hll", "(state_r[i] - state_l[i])", "(state_l[i] - state_r[i])")
+@kills("solvers.layer.finite_volume:_half_slope", "min(abs(central), abs(back), abs(ahead))", "abs(central)")
+@kills("solvers.layer.finite_volume:side", "u * a - spin * a * a", "u * a + spin * a * a")
+@kills("solvers.layer.finite_volume:hll", "(state_r[i] - state_l[i])", "(state_l[i] - state_r[i])")
 @kills("solvers.layer.finite_volume:_gather", "- push_r[i])", "- push_l[i])")
 def test_bore() -> None:
     """A bore overshoots nowhere to speak of, and nothing is made or lost."""
@@ -159,9 +162,11 @@ def test_bore() -> None:
     assert abs(area.sum() / before - 1) < 1e-14 and abs((q + SPIN * area).sum() / turning - 1) < 1e-13
 
 
-@kills("solvers.layer.face_flux:_half_slope", "slope if back * ahead > 0.0 else 0.0", "slope")
+@kills("solvers.layer.finite_volume:_half_slope", "slope if back * ahead > 0.0 else 0.0", "slope")
 @kills(
-    "solvers.layer.face_flux:half_slopes", "(ahead * head_1 - velocity_1)", "(ahead * head_1 + velocity_1)"
+    "solvers.layer.finite_volume:half_slopes",
+    "(ahead * head_1 - velocity_1)",
+    "(ahead * head_1 + velocity_1)",
 )
 def test_slopes() -> None:
     """Face values lie between the cells' on both sides; an extremum has none of its own."""
@@ -179,9 +184,9 @@ def test_slopes() -> None:
     np.testing.assert_allclose(head, [0.75, 0.0, 0.0, 0.0, 0.0], atol=1e-14)
 
 
-@kills("solvers.layer.face_flux:half_slopes", "mean - velocity_m[i] / (surface * surface)", "mean")
+@kills("solvers.layer.finite_volume:half_slopes", "mean - velocity_m[i] / (surface * surface)", "mean")
 @kills(
-    "solvers.layer.face_flux:half_slopes",
+    "solvers.layer.finite_volume:half_slopes",
     "scale = 1.0 / (log * spin * spin)",
     "scale = 0.5 / (log * spin * spin)",
 )
@@ -229,8 +234,8 @@ def test_drain() -> None:
     assert area[3] + 3.0 * d_area[3] < 1e-15 and abs(q[3] + 3.0 * d_q[3]) < 1e-3 * q[3]
 
 
-@kills("solvers.layer.face_flux:signals", "1.5 * back_r[i] - 0.5 * ahead_r[i]", "back_r[i]")
-@kills("solvers.layer.face_flux:signals", "1.5 * ahead_l[i] - 0.5 * back_l[i]", "ahead_l[i]")
+@kills("solvers.layer.finite_volume:signals", "1.5 * back_r[i] - 0.5 * ahead_r[i]", "back_r[i]")
+@kills("solvers.layer.finite_volume:signals", "1.5 * ahead_l[i] - 0.5 * back_l[i]", "ahead_l[i]")
 def test_signals() -> None:
     """The front of a layer on a dry bed runs at u + 2 c, the other way at u - 2 c."""
     slow, fast = np.empty(3), np.empty(3)
@@ -288,8 +293,8 @@ def test_friction() -> None:
         np.testing.assert_allclose((q + SPIN * area**2) / area, 0.05 * kept, rtol=1e-10)
 
 
-@kills("solvers.layer.loads:means", "- 2j * whirl_speed * drift", "- 1j * whirl_speed * drift")
-@kills("solvers.layer.loads:means", "+ whirl_speed**2 * moved", "- whirl_speed**2 * moved")
+@kills("solvers.layer.state:means", "- 2j * whirl_speed * drift", "- 1j * whirl_speed * drift")
+@kills("solvers.layer.state:means", "+ whirl_speed**2 * moved", "- whirl_speed**2 * moved")
 @kills(
     "solvers.layer.step:_tally", "moment_y += lever[i] * angles[1, i]", "moment_y += lever[i] * angles[0, i]"
 )
@@ -335,9 +340,9 @@ def test_synchronous() -> None:
     assert abs(sums[0] - np.pi * amplitude) < 1e-12 and abs(sums[5] - np.pi * amplitude) < 1e-12
 
 
-@kills("solvers.layer.loads:offset", "(1.0 + surface + surface * surface) / 3.0", "(1.0 + surface) / 2.0")
-@kills("solvers.layer.loads:offset", "lever @ angles[1])", "lever @ angles[0])")
-@kills("solvers.layer.loads:offset", "-1j * drive.slip * time", "1j * drive.slip * time")
+@kills("solvers.layer.state:offset", "(1.0 + surface + surface * surface) / 3.0", "(1.0 + surface) / 2.0")
+@kills("solvers.layer.state:offset", "lever @ angles[1])", "lever @ angles[0])")
+@kills("solvers.layer.state:offset", "-1j * drive.slip * time", "1j * drive.slip * time")
 def test_offset() -> None:
     """A wet circle about a point is a full disc less one about that point, seen from the deflection."""
     n, amplitude, radius, time = 32, 0.1, 0.8, 0.7

@@ -31,8 +31,8 @@ from fluid.friction import Friction
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from meshes.errors import InputError
-from solvers.layer.prescribed import Numerics, Whirl
 from solvers.layer.settle import simulate
+from solvers.layer.state import Numerics, Whirl
 from solvers.pypde.long_wave import AnnularLongWavePDE, FiniteVolumeSolver
 from solvers.pypde.one_family import circle
 from tests.mutants import kills
@@ -156,11 +156,9 @@ def test_history_is_the_layers(law: str, dispersion: bool) -> None:
     check_history(law, dispersion)
 
 
-@kills(
-    "solvers.pypde.readings:pressure_force", "terms.fill.chamber.radius**3", "terms.fill.chamber.radius**2"
-)
-@kills("solvers.pypde.readings:liquid_offset", "2.0 / 3.0 * a", "1.0 / 3.0 * a")
-@kills("solvers.pypde.readings:_rays", "ring(cells)[0] + 1j", "ring(cells)[0] - 1j")
+@kills("solvers.pypde.terms:pressure_force", "terms.fill.chamber.radius**3", "terms.fill.chamber.radius**2")
+@kills("solvers.pypde.terms:liquid_offset", "2.0 / 3.0 * a", "1.0 / 3.0 * a")
+@kills("solvers.pypde.terms:_rays", "ring(cells)[0] + 1j", "ring(cells)[0] - 1j")
 def test_force_and_offset_are_the_layers() -> None:
     """The mean over a period of the force at each instant is what `simulate` reports; the offset as well."""
     fill, whirl, cells = layer(), Whirl(SPIN, 28.0, 3e-4, ramp=0.5), 48
@@ -204,10 +202,10 @@ def circle_depth(amplitude: float, surface: float, cells: int) -> np.ndarray:
     return np.asarray(np.maximum(R - across + amplitude * np.cos(theta), 0.0))
 
 
-@kills("solvers.pypde.readings:area_at", "- 0.5 * depth", "- depth")
-@kills("solvers.pypde.readings:depth", "return 2.0 * area /", "return area /")
+@kills("solvers.pypde.terms:area_at", "- 0.5 * depth", "- depth")
+@kills("solvers.pypde.terms:depth", "return 2.0 * area /", "return area /")
 @kills(
-    "solvers.pypde.readings:momentum_at",
+    "solvers.pypde.terms:momentum_at",
     "- terms.spin(time) * np.square(area)",
     "+ terms.spin(time) * np.square(area)",
 )
@@ -257,7 +255,7 @@ def test_synchronous_circle_stays(options: dict[str, Any], amplitude: float) -> 
     "rates(a, q, spin, terms.spin_rate",
     "rates(a, q, spin, -terms.spin_rate",
 )
-@kills("solvers.pypde.readings:angular_momentum", "* fill.chamber.radius**2 * area", "* area")
+@kills("solvers.pypde.terms:angular_momentum", "* fill.chamber.radius**2 * area", "* area")
 def test_spin_up_without_friction_leaves_angular_momentum() -> None:
     """Without friction a drum that spins up leaves the liquid's angular momentum in space as it is."""
     eq = AnnularLongWavePDE(layer(), STILL, spin_rate=30.0)

@@ -19,8 +19,8 @@ from pde.solvers.base import ConvergenceError
 from fluid.kdv import KdvCoefficients, wave_frequency
 from meshes.errors import InputError
 from solvers.pypde.one_family import ExponentialSolver, KdvBurgersPDE, circle
+from solvers.waves.modes import WaveTerms, wave_split
 from solvers.waves.stepper import advance_fixed, squared, to_spectrum
-from solvers.waves.terms import WaveTerms, wave_split
 from tests.solvers.waves.test_terms import FAMILIES, PROGRADE, RETROGRADE, field, hump, relative, solved
 
 

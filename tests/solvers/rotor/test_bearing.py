@@ -9,17 +9,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from meshes.errors import InputError
-from solvers.rotor.bearing import cage_speed
+from solvers.rotor.system import cage_speed
 from tests.mutants import kills
 
 
 @kills(
-    "solvers.rotor.bearing:cage_speed",
+    "solvers.rotor.system:cage_speed",
     "1.0 - ball * np.cos(angle) / pitch",
     "1.0 + ball * np.cos(angle) / pitch",
 )
 @kills(
-    "solvers.rotor.bearing:cage_speed",
+    "solvers.rotor.system:cage_speed",
     "1.0 - ball * np.cos(angle) / pitch",
     "1.0 - ball * np.sin(angle) / pitch",
 )

@@ -10,9 +10,8 @@ from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.rotor.exciter import machine as exciter
 from solvers.rotor.exciter import steps as exciter_steps
-from solvers.rotor.exciter.machine import Dimensionless, platform_motion
+from solvers.rotor.exciter.machine import Dimensionless, characteristic_speeds, platform_motion, stuck_speeds
 from solvers.rotor.exciter.motion import Start, critical_speed, critical_speeds, initial_state, integrate
-from solvers.rotor.exciter.stuck import characteristic_speeds, stuck_speeds
 from tests.mutants import kills
 
 MACHINE = Dimensionless(0.01, 0.4, 0.25, 0.03)

@@ -10,14 +10,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from meshes.errors import InputError
-from solvers.rotor.exciter.machine import Dimensionless
-from solvers.rotor.exciter.motion import printed_critical_speed
-from solvers.rotor.exciter.stuck import (
+from solvers.rotor.exciter.machine import (
+    Dimensionless,
     characteristic_speeds,
     lag_number,
     shaft_speed,
     stuck_speeds,
 )
+from solvers.rotor.exciter.motion import printed_critical_speed
 from tests.mutants import kills
 from tests.oracles.exciter import approximate_speeds
 
@@ -31,7 +31,7 @@ def quintic(machine: Dimensionless, n: float, together: float = 1.0) -> list[flo
 
 
 @kills(
-    "solvers.rotor.exciter.stuck:lag_number",
+    "solvers.rotor.exciter.machine:lag_number",
     "return together**2 * machine.damping",
     "return together * machine.drag",
 )
@@ -43,9 +43,9 @@ def test_printed_roots() -> None:
     assert found == pytest.approx(exact, rel=1e-12)  # simple roots: rounding times their condition
 
 
-@kills("solvers.rotor.exciter.stuck:shaft_speed", "np.square(2.0 * h * q)", "np.square(h * q)")
-@kills("solvers.rotor.exciter.stuck:_turning_points", "4.0 * h * h - 2.0", "2.0 * h * h - 2.0")
-@kills("solvers.rotor.exciter.stuck:_turning_points", "polysub(5.0 * bell", "polysub(4.0 * bell")
+@kills("solvers.rotor.exciter.machine:shaft_speed", "np.square(2.0 * h * q)", "np.square(h * q)")
+@kills("solvers.rotor.exciter.machine:_turning_points", "4.0 * h * h - 2.0", "2.0 * h * h - 2.0")
+@kills("solvers.rotor.exciter.machine:_turning_points", "polysub(5.0 * bell", "polysub(4.0 * bell")
 def test_printed_characteristic() -> None:
     """[YF17, section 5.3]: 21.833 and 21.877, five digits."""
     known = characteristic_speeds(MACHINE)
@@ -60,7 +60,7 @@ def test_printed_characteristic() -> None:
     assert stuck_speeds(known.through_resonance, MACHINE)[0] == pytest.approx(1.0, abs=1e-12)
 
 
-@kills("solvers.rotor.exciter.stuck:shaft_speed", "chi * q**5 /", "chi * q**4 /")
+@kills("solvers.rotor.exciter.machine:shaft_speed", "chi * q**5 /", "chi * q**4 /")
 def test_balance() -> None:
     """Torque of the platform against the drag, by quadrature over a turn with the motion of the platform.
 

@@ -14,9 +14,8 @@ from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.runup.drive import Motor, Ramp
 from solvers.runup.linear import couple_linear
-from solvers.runup.machine import Outcome
+from solvers.runup.machine import Motor, Outcome, Ramp
 from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
 from solvers.synchronous.response import response
 from solvers.whirl.growth import asynchronous_growth

@@ -15,9 +15,8 @@ from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.runup.drive import Motor, Ramp
 from solvers.runup.long_wave import couple
-from solvers.runup.machine import Outcome
+from solvers.runup.machine import Motor, Outcome, Ramp
 from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
 from solvers.synchronous.response import response
 from tests.mutants import kills
@@ -349,9 +348,11 @@ def test_reading() -> None:
 
 
 @kills(
-    "solvers.runup.drive:Ramp.corners", "self.start + self.rate * rise", "self.start + 0.9 * self.rate * rise"
+    "solvers.runup.machine:Ramp.corners",
+    "self.start + self.rate * rise",
+    "self.start + 0.9 * self.rate * rise",
 )
-@kills("solvers.runup.drive:Ramp.corners", "self.duration + rise, self.start", "self.duration + rise, top")
+@kills("solvers.runup.machine:Ramp.corners", "self.duration + rise, self.start", "self.duration + rise, top")
 @kills("solvers.runup.runup:_times", "np.diff(corners[1]) / np.diff(corners[0])", "np.diff(corners[1])")
 @kills(
     "solvers.runup.runup:EnergyAudit.remainder",
@@ -360,7 +361,7 @@ def test_reading() -> None:
 )
 @kills("solvers.runup.long_wave:Coupled.switch", "RELEASE * self.capture", "self.capture")
 @kills(
-    "solvers.runup.chamber:layer_capture",
+    "solvers.runup.state:layer_capture",
     "gravity / fill.surface_radius",
     "gravity / fill.chamber.radius * 0.5",
 )

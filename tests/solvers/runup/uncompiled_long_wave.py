@@ -12,8 +12,8 @@ from fluid.friction import Friction
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers.layer import finite_volume
-from solvers.layer.loads import ring
 from solvers.layer.records import records
+from solvers.layer.state import ring
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.runup import kernel as coupled_layer
@@ -393,7 +393,7 @@ def test_gravity() -> None:
     "momentum=spin * np.square(area)",
 )
 @kills(
-    "solvers.runup.chamber:layer_properties",
+    "solvers.runup.state:layer_properties",
     "lid = 2.0 * chamber.radius / chamber.height",
     "lid = chamber.radius / chamber.height",
 )

@@ -13,7 +13,7 @@ from fluid.friction import edge_weight, layer_thickness, plate_drags, stokes_coe
 from meshes.baffles import Baffles
 from meshes.errors import InputError
 from meshes.rings.quadrilaterals import ring
-from solvers.sloshing.damping import baffle_edges, mode_damping, wall_loss
+from solvers.sloshing.forced import baffle_edges, mode_damping, wall_loss
 from solvers.sloshing.modes import sloshing_modes
 from solvers.sloshing.system import condense
 from tests.mutants import kills
@@ -26,9 +26,7 @@ R, A, SPIN, HEIGHT, WATER = 0.15, 0.135, 40.0, 0.05, 1e-6
     "fluid.friction:decay_rate", "first * (k + c) + second * (k - c)", "first * (k - c) + second * (k + c)"
 )
 @kills("fluid.friction:decay_rate", "lost / (k + potential)", "lost / (2.0 * k)")
-@kills(
-    "solvers.sloshing.damping:mode_damping", "modes.spin / modes.frequency", "modes.frequency / modes.spin"
-)
+@kills("solvers.sloshing.forced:mode_damping", "modes.spin / modes.frequency", "modes.frequency / modes.spin")
 def test_ring_by_hand() -> None:
     """Both rates of the ring's slowest modes against the integrals of (r/R)^n - (R/r)^n."""
     system = condense(ring(R, A, 96, 6))
@@ -61,7 +59,7 @@ def test_plate_layer() -> None:
     assert abs(first * abs(alpha) ** 2 + second * abs(beta) ** 2 - loss) < 1e-12 * loss
 
 
-@kills("solvers.sloshing.damping:mode_damping", "rate(once, g, g)", "rate(once, 2.0 * g, g)")
+@kills("solvers.sloshing.forced:mode_damping", "rate(once, g, g)", "rate(once, 2.0 * g, g)")
 def test_thin_layer() -> None:
     """The plain rate of a thin layer is half that of the long waves' friction, to the root of its depth."""
     for depth in (1e-2, 1e-3):
@@ -77,8 +75,8 @@ def test_thin_layer() -> None:
 
 
 @kills("fluid.friction:edge_weight", "1.0 / (1.0 + np.asarray(thickness", "1.0 / (0.0 + np.asarray(thickness")
-@kills("solvers.sloshing.damping:baffle_edges", "before[wall[:, 1]] = ", "before[wall[:, 0]] = ")
-@kills("solvers.sloshing.damping:baffle_edges", "< _BACK * size", "> -_BACK * size")
+@kills("solvers.sloshing.forced:baffle_edges", "before[wall[:, 1]] = ", "before[wall[:, 0]] = ")
+@kills("solvers.sloshing.forced:baffle_edges", "< _BACK * size", "> -_BACK * size")
 def test_edges() -> None:
     """At an edge the square of the slope goes as 1/d: each halving of the cut adds the same, 2 c^2 ln 2."""
     baffles = Baffles(2, 0.139, 0.004, 0.4)

@@ -14,10 +14,9 @@ from meshes.errors import InputError
 from meshes.liquid_section import LiquidSection, liquid_section
 from meshes.rings.quadrilaterals import ring
 from meshes.rings.triangles import ring as triangles
-from solvers.sloshing.assembly import gradients, stiffness, wall_points
 from solvers.sloshing.forced import displacement_field, forced_response, newton_force, pressure_force
 from solvers.sloshing.modes import HARMONICS, sloshing_modes, spectrum
-from solvers.sloshing.system import LiquidSystem, condense, surface_forms
+from solvers.sloshing.system import LiquidSystem, condense, gradients, stiffness, surface_forms, wall_points
 from tests.mutants import kills
 from tests.oracles.sloshing import sector_frequencies, sectors_force
 
@@ -214,12 +213,12 @@ def _points_on(section: LiquidSection, sides: np.ndarray) -> np.ndarray:
     return np.asarray(picked.points @ [1.0, 1j])
 
 
-@kills("solvers.sloshing.assembly:_gradients", "u.grad[0] * v.grad[0] +", "u.grad[0] * v.grad[0] -")
+@kills("solvers.sloshing.system:_gradients", "u.grad[0] * v.grad[0] +", "u.grad[0] * v.grad[0] -")
 @kills(
-    "solvers.sloshing.assembly:wall_points", "grads[:, 0] * unit[:, :, 1] -", "grads[:, 0] * unit[:, :, 1] +"
+    "solvers.sloshing.system:wall_points", "grads[:, 0] * unit[:, :, 1] -", "grads[:, 0] * unit[:, :, 1] +"
 )
 @kills(
-    "solvers.sloshing.assembly:_along",
+    "solvers.sloshing.system:_along",
     "end - start + bend * (1.0 - 2.0 * t)",
     "end - start + bend * (1.0 - t)",
 )

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fluid.moments import Moments
+from fluid.paraboloid import Moments
 from meshes.arrays import Array
 from meshes.section import disc, section_area
 from solvers.statics.free_surface import integrate_surface, optimal_volume_fem, solve_surface

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from fluid.moments import Moments
+from fluid.paraboloid import Moments
 from meshes.arrays import Array
 from meshes.quality import triangle_areas
 from meshes.section import Section, annulus, disc, section_area

@@ -156,7 +156,7 @@ def test_far_deflection() -> None:
     "2.0 * plan_xx",
 )
 @kills("solvers.statics.hydrostatics:Equilibrium.unbalance", "self.volume + 2.0 * np.max", "2.0 * np.max")
-@kills("solvers.statics.integrals:_walls", "(1.0 + ratio + 2.0 * eps)", "(1.0 + ratio + eps)")
+@kills("solvers.statics.hydrostatics:_walls", "(1.0 + ratio + 2.0 * eps)", "(1.0 + ratio + eps)")
 def test_slope() -> None:
     """Slope of the unbalance against a central difference, dry patch and annulus included."""
     for chamber, volume, e, speed in (
@@ -218,7 +218,7 @@ def test_unbalance_never_grows_faster_than_a_full_chamber(
     "(self.radius - self.inner_radius) * self.radius\n        return np",
 )
 @kills(
-    "solvers.statics.integrals:_walls",
+    "solvers.statics.hydrostatics:_walls",
     "np.asarray(chamber.inner_radius) / chamber.radius, 1e-60",
     "np.max(chamber.inner_radius) / chamber.radius, 1e-60",
 )
@@ -349,7 +349,7 @@ def test_bad_input_is_named(arguments: tuple[float, float, float, float], field:
 @kills("solvers.statics.wall:integrate", "xz[rows] += (0.5 * liquid", "xz[rows] += (liquid")
 @kills("solvers.statics.wall:_sine_excess", "series = 4.0 / 6.0 * small**3", "series = 4.0 / 5.0 * small**3")
 @kills(
-    "solvers.statics.integrals:moments",
+    "solvers.statics.hydrostatics:moments",
     "_all_moments, (2, 3, 2, 4, 4, 2, 3)",
     "_all_moments, (2, 2, 2, 4, 4, 2, 3)",
 )

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from solvers.synchronous.branches import find_branches
+from solvers.synchronous.planar import find_branches
 from tests.mutants import kills
 
 
@@ -77,7 +77,7 @@ def test_a_double_solution_is_one() -> None:
     assert found.size in (1, 2)
 
 
-@kills("solvers.synchronous.branches:_one_way", "+ np.square(c) * low", "+ np.square(c) * high * 4.0")
+@kills("solvers.synchronous.planar:_one_way", "+ np.square(c) * low", "+ np.square(c) * high * 4.0")
 def test_one_way() -> None:
     """What the slope allows to skip holds no further solution: the same ones without that knowledge."""
     a, c = np.meshgrid(np.linspace(-3.0, 3.0, 61), np.geomspace(0.05, 1.0, 7))

@@ -19,12 +19,10 @@ from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.vibration import critical_speeds, orbit, unbalance_response
 from solvers.statics.hydrostatics import equilibrium
-from solvers.synchronous.backward import backward_mass
-from solvers.synchronous.balance import harmonic_balance
+from solvers.synchronous.balance import backward_mass, harmonic_balance
 from solvers.synchronous.coupled import one_plane, several_planes
-from solvers.synchronous.critical import critical_speed, wet_critical_speeds
 from solvers.synchronous.models import STATICS, model_named
-from solvers.synchronous.response import Response, response
+from solvers.synchronous.response import Response, critical_speed, response, wet_critical_speeds
 from tests.mutants import kills
 from tests.oracles.rotors import tub, two_plane
 from tests.solvers.synchronous.test_planar import WATER, fills, folded, rig
@@ -115,7 +113,7 @@ def test_added_mass() -> None:
 
 
 @kills(
-    "solvers.synchronous.backward:backward_mass",
+    "solvers.synchronous.balance:backward_mass",
     "        return fill.mass\n",
     "        return fill.full_mass\n",
 )
@@ -179,7 +177,7 @@ def test_linear_layer() -> None:
 
 
 @kills(
-    "solvers.synchronous.backward:backward_mass",
+    "solvers.synchronous.balance:backward_mass",
     "force_ratio(curvature, -1.0)",
     "force_ratio(curvature, 1.0)",
 )
@@ -278,12 +276,12 @@ def test_balance() -> None:
 
 
 @kills(
-    "solvers.synchronous.critical:_added_mass",
+    "solvers.synchronous.response:_added_mass",
     "0.5 * full * np.outer(p, np.conj(p))",
     "full * np.outer(p, np.conj(p))",
 )
 @kills(
-    "solvers.synchronous.critical:_added_mass",
+    "solvers.synchronous.response:_added_mass",
     "0.5 * backward_mass(fill) * np.outer",
     "backward_mass(fill) * np.outer",
 )

@@ -14,11 +14,10 @@ from fluid.liquid import known_liquid
 from meshes.arrays import Array
 from meshes.chamber import Chamber
 from meshes.errors import InputError
-from solvers.layer.prescribed import Numerics, Whirl
 from solvers.layer.settle import settle
+from solvers.layer.state import Numerics, Whirl
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.synchronous.discrete import Fem, LongWave
-from solvers.synchronous.models import STATICS, LiquidModel, Statics, SynchronousAnswer
+from solvers.synchronous.models import STATICS, Fem, LiquidModel, LongWave, Statics, SynchronousAnswer
 from solvers.synchronous.response import response
 from tests.mutants import kills
 
@@ -37,11 +36,11 @@ def ask(
 
 
 @kills(
-    "solvers.synchronous.discrete:_middles",
+    "solvers.synchronous.models:_middles",
     "(np.arange(cells) + 0.5) / cells",
     "(np.arange(cells) + 0.25) / cells",
 )
-@kills("solvers.synchronous.discrete:_circle", "- np.square(e * sine)", "+ np.square(e * sine)")
+@kills("solvers.synchronous.models:_circle", "- np.square(e * sine)", "+ np.square(e * sine)")
 def test_scheme_at_rest() -> None:
     """The finite-volume scheme, started from rest in its own equilibrium and run on, has the same force.
 
@@ -61,27 +60,27 @@ def test_scheme_at_rest() -> None:
 
 
 @kills(
-    "solvers.synchronous.discrete:_circle",
+    "solvers.synchronous.models:_circle",
     "below = level - e * (away - away[0])",
     "below = level - 2.0 * e * (away - away[0])",
 )
 @kills(
-    "solvers.synchronous.discrete:_circle",
+    "solvers.synchronous.models:_circle",
     "seen = 1.0 + e * cosine + chord",
     "seen = 1.0 - e * cosine + chord",
 )
 @kills(
-    "solvers.synchronous.discrete:LongWave._at_rest",
+    "solvers.synchronous.models:LongWave._at_rest",
     "lever = depth * (3.0 - depth * (3.0 - depth)) / 3.0",
     "lever = depth * (2.0 - depth) / 2.0",
 )
 @kills(
-    "solvers.synchronous.discrete:LongWave._at_rest",
+    "solvers.synchronous.models:LongWave._at_rest",
     "moment = fills.volume * deflection + size",
     "moment = size",
 )
 @kills(
-    "solvers.synchronous.discrete:LongWave._at_rest",
+    "solvers.synchronous.models:LongWave._at_rest",
     "np.mean(depth * (2.0 - depth), axis=1) - film",
     "np.mean(2.0 * depth, axis=1) - film",
 )
@@ -123,13 +122,13 @@ def test_cells_converge() -> None:
 
 
 @kills(
-    "solvers.synchronous.discrete:LongWave._at_rest",
+    "solvers.synchronous.models:LongWave._at_rest",
     "share = np.divide(surface, chord,",
     "share = np.divide(chord, surface + 1.0,",
 )
-@kills("solvers.synchronous.discrete:LongWave._at_rest", "np.square(arm - middle[:, None])", "np.square(arm)")
+@kills("solvers.synchronous.models:LongWave._at_rest", "np.square(arm - middle[:, None])", "np.square(arm)")
 @kills(
-    "solvers.synchronous.discrete:LongWave._at_rest",
+    "solvers.synchronous.models:LongWave._at_rest",
     "fills.volume + size * spread, dry",
     "size * spread, dry",
 )
@@ -168,10 +167,10 @@ def test_law_never_falls(cells: int, filled: float, shares: list[float], radius:
     assert np.all(found.slope <= fill.full_mass * (1.0 + 1e-9))
 
 
-@kills("solvers.synchronous.discrete:_surface", "level - (far - near)", "level + (far - near)")
-@kills("solvers.synchronous.discrete:_surface", "axis, plane = (-e, 0.0)", "axis, plane = (e, 0.0)")
+@kills("solvers.synchronous.models:_surface", "level - (far - near)", "level + (far - near)")
+@kills("solvers.synchronous.models:_surface", "axis, plane = (-e, 0.0)", "axis, plane = (e, 0.0)")
 @kills(
-    "solvers.synchronous.discrete:Fem.synchronous",
+    "solvers.synchronous.models:Fem.synchronous",
     "float(steep[k]) * height / radius**2",
     "float(steep[k]) * height / radius",
 )
@@ -200,11 +199,11 @@ def test_elements_converge() -> None:
 
 
 @kills(
-    "solvers.synchronous.discrete:_surface",
+    "solvers.synchronous.models:_surface",
     "slope = float(here.volume) + 2.0 * spread",
     "slope = float(here.volume) + spread",
 )
-@kills("solvers.synchronous.discrete:_surface", "square - arm * arm / plan", "square")
+@kills("solvers.synchronous.models:_surface", "square - arm * arm / plan", "square")
 def test_elements_slope() -> None:
     """The slope by the plan's moments against the exact one, on both kinds of surface.
 
@@ -218,11 +217,11 @@ def test_elements_slope() -> None:
 
 
 @kills(
-    "solvers.synchronous.discrete:LongWave.synchronous",
+    "solvers.synchronous.models:LongWave.synchronous",
     "0.5 * math.pi * np.square(chamber.radius)",
     "math.pi * np.square(chamber.radius)",
 )
-@kills("solvers.synchronous.discrete:LongWave._at_rest", "drop = level + e * away[0]", "drop = level - e")
+@kills("solvers.synchronous.models:LongWave._at_rest", "drop = level + e * away[0]", "drop = level - e")
 def test_range() -> None:
     """Long waves are for layers that are thin, upright, and clear of the axis and of an inner wall."""
     wave = LongWave(32)

@@ -13,14 +13,19 @@ from hypothesis import strategies as st
 from fluid.fill import Fill, Fills
 from fluid.liquid import KNOWN_LIQUIDS
 from leblanc.scene.scene import dry_rotor, load_scene
-from leblanc.studies.prepare import across_gravity, axial_gravity
+from leblanc.studies.choose import across_gravity, axial_gravity
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
-from solvers.runup.error import MOST_LAG, MOST_WAVE, linear_run_error
+from solvers.runup.runup import MOST_LAG, MOST_WAVE, linear_run_error
 from solvers.statics.law_defect import defect_bound, upright_surfaces
-from solvers.synchronous.enclosure import Enclosure, planar_enclosure, planar_gravity_error
-from solvers.synchronous.errors import ROUNDING, law_error
-from solvers.synchronous.estimate import error_estimate
+from solvers.synchronous.errors import (
+    ROUNDING,
+    Enclosure,
+    error_estimate,
+    law_error,
+    planar_enclosure,
+    planar_gravity_error,
+)
 from solvers.synchronous.models import LINEAR, STATICS, Statics
 from solvers.synchronous.pairs import pair_machines
 from solvers.synchronous.response import machine_responses, response
@@ -154,29 +159,27 @@ def enclosures(seed: int, count: int) -> tuple[list[PlanarMachine], Enclosure, n
 
 
 @kills(
-    "solvers.synchronous.enclosure:planar_enclosure",
+    "solvers.synchronous.errors:planar_enclosure",
     "elastic - pairs.added_mass * squared",
     "elastic + pairs.added_mass * squared",
 )
 @kills(
-    "solvers.synchronous.enclosure:planar_enclosure",
+    "solvers.synchronous.errors:planar_enclosure",
     "force + squared * pairs.reach",
     "force - squared * pairs.reach",
 )
 @kills(
-    "solvers.synchronous.enclosure:_root",
+    "solvers.synchronous.errors:_root",
     "stiffness * pull + np.sqrt(under)",
     "np.sqrt(under) - stiffness * pull",
 )
 @kills(
-    "solvers.synchronous.enclosure:_most",
+    "solvers.synchronous.errors:_most",
     "single & above, np.minimum(most, beside)",
     "single, np.minimum(most, linear)",
 )
-@kills("solvers.synchronous.enclosure:_smallest", "np.minimum(linear, softened)), 0.0)", "linear), linear)")
-@kills(
-    "solvers.synchronous.enclosure:planar_enclosure", "np.maximum(np.abs(beyond), frozen)", "np.abs(beyond)"
-)
+@kills("solvers.synchronous.errors:_smallest", "np.minimum(linear, softened)), 0.0)", "linear), linear)")
+@kills("solvers.synchronous.errors:planar_enclosure", "np.maximum(np.abs(beyond), frozen)", "np.abs(beyond)")
 def test_enclosure() -> None:
     """Every branch that the solver finds lies between the bounds, to the 1e-9 of its linear limit."""
     _, found, branches = enclosures(21, 80)
@@ -193,8 +196,8 @@ def test_enclosure() -> None:
     )
 
 
-@kills("solvers.synchronous.enclosure:_relative", "1.0 - low), 0.0)", "low - 1.0), 0.0)")
-@kills("solvers.synchronous.enclosure:Enclosure.error", "full * least - lost", "full * least + lost")
+@kills("solvers.synchronous.errors:_relative", "1.0 - low), 0.0)", "low - 1.0), 0.0)")
+@kills("solvers.synchronous.errors:Enclosure.error", "full * least - lost", "full * least + lost")
 def test_coverage_of_300_random_machines() -> None:
     """Of 300 random machines at least 95 % have no larger error than the estimate.
 
@@ -255,14 +258,14 @@ def test_several_branches_have_no_narrow_bounds() -> None:
 
 
 @kills(
-    "solvers.synchronous.coupled_bounds:_largest", "linear + _carried(spread,", "linear - _carried(spread,"
+    "solvers.synchronous.errors:_largest_coupled", "linear + _carried(spread,", "linear - _carried(spread,"
 )
 @kills(
-    "solvers.synchronous.coupled_bounds:_missing",
+    "solvers.synchronous.errors:_missing",
     "np.square(speed)[:, None] * np.stack(bounds",
     "np.stack(bounds",
 )
-@kills("solvers.synchronous.coupled_bounds:_share", "left = size - change", "left = size + 1e3 * change")
+@kills("solvers.synchronous.errors:_share", "left = size - change", "left = size + 1e3 * change")
 def test_tilting_rotors() -> None:
     """Rotors that tilt: amplitude and liquid of the linear law within their bounds of the exact one."""
     rng = np.random.default_rng(3)
@@ -306,11 +309,11 @@ def test_tilting_and_planar_bounds_agree() -> None:
 @kills("solvers.synchronous.errors:law_error", "(radius / depth) ** _THIN", "(depth / radius) ** _THIN")
 @kills("solvers.synchronous.errors:law_error", "_THIN * np.square(weakness)", "_THIN * weakness")
 @kills(
-    "solvers.synchronous.enclosure:planar_gravity_error",
+    "solvers.synchronous.errors:planar_gravity_error",
     "pull = np.square(pairs.speed) * weighted",
     "pull = weighted",
 )
-@kills("solvers.synchronous.enclosure:planar_gravity_error", "largest + moved", "largest - moved")
+@kills("solvers.synchronous.errors:planar_gravity_error", "largest + moved", "largest - moved")
 def test_gravity() -> None:
     """Gravity: as its square over that of the spin's fourth power, none upright, no number below capture.
 
@@ -344,9 +347,9 @@ def test_gravity_against_long_waves() -> None:
     assert found.ratio(0.0, 1.0) < 10.0
 
 
-@kills("solvers.runup.error:linear_run_error", "crest / fill.depth - 1.0", "crest / fill.depth")
-@kills("solvers.runup.error:linear_run_error", "_WAVE * wave**2", "_WAVE * wave")
-@kills("solvers.runup.error:linear_run_error", "_LAG * lag**2", "_LAG * lag")
+@kills("solvers.runup.runup:linear_run_error", "crest / fill.depth - 1.0", "crest / fill.depth")
+@kills("solvers.runup.runup:linear_run_error", "_WAVE * wave**2", "_WAVE * wave")
+@kills("solvers.runup.runup:linear_run_error", "_LAG * lag**2", "_LAG * lag")
 def test_run_up_estimate() -> None:
     """A run's own word: twice the squares of wave and lag, beyond half a depth there is none."""
     wall = Chamber(0.1, 0.02)

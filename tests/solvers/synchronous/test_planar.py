@@ -18,9 +18,8 @@ from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vector_model import balance_residual, deflection_lag
 from solvers.statics.hydrostatics import equilibrium
-from solvers.synchronous.critical import critical_speed
 from solvers.synchronous.models import Linear, model_named
-from solvers.synchronous.response import Response, response
+from solvers.synchronous.response import Response, critical_speed, response
 from tests.mutants import kills
 
 WATER = Liquid("water", 1000.0, 1e-6)
@@ -141,7 +140,7 @@ def test_vector_model() -> None:
     assert dry.any() and not dry.all()
 
 
-@kills("solvers.synchronous.branches:_one_way", "for slope in (a - rise, a)", "for slope in (a,)")
+@kills("solvers.synchronous.planar:_one_way", "for slope in (a - rise, a)", "for slope in (a,)")
 def test_all_branches() -> None:
     """As many branches as a fine scan of the balance sees."""
     rotor, wet, speed = folded()
@@ -226,7 +225,7 @@ def same(a: Response, b: Response) -> None:
 
 
 @kills(
-    "solvers.synchronous.critical:critical_speed",
+    "solvers.synchronous.response:critical_speed",
     "rotor.stiffness - (rotor.mass + slope) * np.square(speed)",
     "rotor.stiffness - (rotor.mass - slope) * np.square(speed)",
 )

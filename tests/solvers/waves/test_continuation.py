@@ -7,10 +7,19 @@ import pytest
 
 from fluid.kdv import coefficients
 from meshes.errors import InputError
-from solvers.waves.continuation import Branch, Response, _segment, follow, growth, growth_rates, respond
 from solvers.waves.modes import System, WaveProblem, split
 from solvers.waves.newton import SteadyWave, newton
-from solvers.waves.periodic import family_problem, solve
+from solvers.waves.steady import (
+    Branch,
+    Response,
+    _segment,
+    family_problem,
+    follow,
+    growth,
+    growth_rates,
+    respond,
+    solve,
+)
 from tests.mutants import kills
 from tests.solvers.waves.test_periodic import FAMILIES, PROGRADE, RETROGRADE, cnoidal, free_problem
 
@@ -23,7 +32,7 @@ def gentle() -> Response:
     return respond(GENTLE, GENTLE_SPEEDS, stability=True)
 
 
-@kills("solvers.waves.continuation:growth_rates", "np.argsort(-values.real)", "np.argsort(values.real)")
+@kills("solvers.waves.steady:growth_rates", "np.argsort(-values.real)", "np.argsort(values.real)")
 def test_curve_folds() -> None:
     """Three answers next to resonance, on the side of faster waves; the middle one is unstable."""
     answer = gentle()
@@ -72,17 +81,17 @@ def test_segments_follow_the_curve() -> None:
 
 
 @kills(
-    "solvers.waves.periodic:family_problem",
+    "solvers.waves.steady:family_problem",
     "c.steepening, float(forcing(c, acceleration)), decay, diffusion",
     "c.steepening, float(forcing(c, acceleration)), diffusion, decay",
 )
 @kills(
-    "solvers.waves.continuation:growth_rates",
+    "solvers.waves.steady:growth_rates",
     "np.vstack((n * jacobian[m:], -n * jacobian[:m]))",
     "np.vstack((-n * jacobian[m:], n * jacobian[:m]))",
 )
 @kills(
-    "solvers.waves.continuation:growth_rates",
+    "solvers.waves.steady:growth_rates",
     "np.vstack((n * jacobian[m:], -n * jacobian[:m]))",
     "np.vstack((jacobian[m:], -jacobian[:m]))",
 )

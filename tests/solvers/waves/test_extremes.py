@@ -9,7 +9,7 @@ from fluid import kdv
 from fluid.friction import STOKES, damping_rate, stokes_coefficient
 from solvers.waves.modes import System, split
 from solvers.waves.newton import SteadyWave
-from solvers.waves.periodic import family_problem, solve
+from solvers.waves.steady import family_problem, solve
 
 RADIUS, HEIGHT = 0.15, 0.05
 

@@ -7,7 +7,7 @@ import pytest
 
 from solvers.waves.modes import DENSE_MODES, DampingSystem, System, WaveProblem, joined, split
 from solvers.waves.newton import ALONE, _step, factorise, newton, scaled_unknowns
-from solvers.waves.periodic import family_problem, solve
+from solvers.waves.steady import family_problem, solve
 from tests.mutants import kills
 from tests.solvers.waves.test_periodic import PROGRADE, RETROGRADE, free_problem
 

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from solvers.waves.modes import DampingSystem, System, WaveProblem, resized
-from solvers.waves.newton import newton, scaled_unknowns
-from solvers.waves.path import Pace, PathPoint, _predicted, landing, march, segment
-from solvers.waves.periodic import solve
+from solvers.waves.newton import Pace, PathPoint, _predicted, landing, march, newton, scaled_unknowns, segment
+from solvers.waves.steady import solve
 from tests.mutants import kills
 
 PACE = Pace(longest=0.5, shortest=1e-5, tolerance=1e-9, tail=1e-7, most_modes=255, most_steps=200)
@@ -25,8 +24,8 @@ def damped_start(problem: WaveProblem, speed: float) -> tuple[functools.partial,
     return make, np.append(scaled_unknowns(wave), 2.0)
 
 
-@kills("solvers.waves.path:_tangent", "ahead[-1] * by_p", "0.0 * by_p")
-@kills("solvers.waves.path:_correct", "-dot(direction, here - guess)", "1.0 - dot(direction, here - guess)")
+@kills("solvers.waves.newton:_tangent", "ahead[-1] * by_p", "0.0 * by_p")
+@kills("solvers.waves.newton:_correct", "-dot(direction, here - guess)", "1.0 - dot(direction, here - guess)")
 def test_damped_way() -> None:
     """From a strongly damped wave to the one without extra diffusion, which turns back twice on the way."""
     make, first = damped_start(FOLDED, 0.0)
@@ -57,9 +56,9 @@ def resized_modes(y: np.ndarray, modes: int) -> np.ndarray:
     return np.asarray(y[:modes] + 1j * y[modes:])
 
 
-@kills("solvers.waves.path:segment", "3.0 * chord - 2.0 * start - stop", "3.0 * chord - start - stop")
-@kills("solvers.waves.path:segment", "(1.0 - dot(start, stop)) / 12.0", "(1.0 - dot(start, stop)) / 6.0")
-@kills("solvers.waves.path:_predicted", "(1.0 + step / arc)", "(step / arc)")
+@kills("solvers.waves.newton:segment", "3.0 * chord - 2.0 * start - stop", "3.0 * chord - start - stop")
+@kills("solvers.waves.newton:segment", "(1.0 - dot(start, stop)) / 12.0", "(1.0 - dot(start, stop)) / 6.0")
+@kills("solvers.waves.newton:_predicted", "(1.0 + step / arc)", "(step / arc)")
 def test_cubics() -> None:
     """A circle in the plane of mode 1: predicted and interpolated to fourth order of the step."""
 

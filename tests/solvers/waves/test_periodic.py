@@ -14,10 +14,9 @@ from threadpoolctl import ThreadpoolController, threadpool_info
 
 from fluid.kdv import KdvCoefficients, coefficients, wave_frequency
 from meshes.errors import InputError
-from solvers.waves.continuation import growth
 from solvers.waves.modes import System, WaveProblem, joined, one_thread, split
 from solvers.waves.newton import SteadyWave
-from solvers.waves.periodic import _starts, family_problem, solve
+from solvers.waves.steady import _starts, family_problem, growth, solve
 from tests.mutants import kills
 
 PROGRADE = coefficients(0.15, 0.135, 40.0, 1)
@@ -218,9 +217,9 @@ def test_bore_follows_the_whirl() -> None:
             assert error[0] / error[1] == pytest.approx(2.0, abs=0.3)
 
 
-@kills("solvers.waves.periodic:_starts", "front, n = -2.0 * math.asin", "front, n = 2.0 * math.asin")
+@kills("solvers.waves.steady:_starts", "front, n = -2.0 * math.asin", "front, n = 2.0 * math.asin")
 @kills(
-    "solvers.waves.periodic:_starts", "(turn / (n - 0.5) + np.conj(turn)", "(turn / (n - 0.5) - np.conj(turn)"
+    "solvers.waves.steady:_starts", "(turn / (n - 0.5) + np.conj(turn)", "(turn / (n - 0.5) - np.conj(turn)"
 )
 def test_search_begins_at_the_bore() -> None:
     """Fourier coefficients of that wave, rounded off, where steepening rules; by the trapezium rule."""

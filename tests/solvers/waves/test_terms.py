@@ -14,8 +14,8 @@ from fluid.exact import TravellingWave, burgers_sawtooth, cnoidal_wave, solitary
 from fluid.kdv import KdvCoefficients, coefficients
 from fluid.waves import free_wave_frequencies
 from solvers.pypde.one_family import KdvBurgersPDE, circle
+from solvers.waves.modes import WaveTerms, wave_split
 from solvers.waves.stepper import Control, advance_adaptive, advance_fixed, to_spectrum
-from solvers.waves.terms import WaveTerms, wave_split
 from tests.mutants import kills
 
 PROGRADE = coefficients(0.15, 0.135, 40.0, 1)
@@ -69,7 +69,7 @@ def test_solitary_wave_to_the_tolerance(c: KdvCoefficients, method: str) -> None
         assert eq.diagnostics["solver"]["largest_error"] <= tolerance
 
 
-@kills("solvers.waves.terms:wave_split", "0.5j * terms.c.steepening", "1.0j * terms.c.steepening")
+@kills("solvers.waves.modes:wave_split", "0.5j * terms.c.steepening", "1.0j * terms.c.steepening")
 def test_sawtooth() -> None:
     """Viscosity with steepening: a shock that runs round and decays."""
     c = replace(PROGRADE, dispersion=0.0)
@@ -101,8 +101,8 @@ def test_forced_from_rest(c: KdvCoefficients, detuning: float) -> None:
     assert_forced_from_rest(c, detuning)
 
 
-@kills("solvers.waves.terms:wave_split", "0.5j * terms.forcing", "-0.5j * terms.forcing")
-@kills("solvers.waves.terms:wave_split", "np.exp(1j * first_angle)", "np.exp(-1j * first_angle)")
+@kills("solvers.waves.modes:wave_split", "0.5j * terms.forcing", "-0.5j * terms.forcing")
+@kills("solvers.waves.modes:wave_split", "np.exp(1j * first_angle)", "np.exp(-1j * first_angle)")
 def test_push_on_a_layer_at_rest() -> None:
     """A layer at rest rises at -q sin(theta - s t): ahead of the deflection it is drained."""
     grid = circle(32)
@@ -132,9 +132,9 @@ def test_whitham_waves_run_at_their_exact_speed_at_every_mode(c: KdvCoefficients
     assert_linear_waves(c, 40.0)
 
 
-@kills("solvers.waves.terms:wave_split", "- terms.damping,", "+ terms.damping,")
-@kills("solvers.waves.terms:wave_split", "- terms.viscosity *", "+ terms.viscosity *")
-@kills("solvers.waves.terms:wave_split", "terms.viscosity * np.square(n)", "terms.viscosity * n")
+@kills("solvers.waves.modes:wave_split", "- terms.damping,", "+ terms.damping,")
+@kills("solvers.waves.modes:wave_split", "- terms.viscosity *", "+ terms.viscosity *")
+@kills("solvers.waves.modes:wave_split", "terms.viscosity * np.square(n)", "terms.viscosity * n")
 def test_modes_decay() -> None:
     """Mode n falls as e^{-(gamma + nu n^2) t}."""
     c, gamma, nu, stop = LINEAR[0], 0.7, 0.05, 0.9
@@ -189,9 +189,9 @@ def manufactured_gap(c: KdvCoefficients, steps: int) -> float:
     return relative(np.fft.irfft(done.spectrum, points), field_at(stop))
 
 
-@kills("solvers.waves.terms:wave_split", "terms.viscosity * np.square(n)", "terms.viscosity * n")
-@kills("solvers.waves.terms:wave_split", "-0.5j * terms.c.steepening", "-0.4j * terms.c.steepening")
-@kills("solvers.waves.terms:wave_split", "0.5j * terms.forcing", "-0.5j * terms.forcing")
+@kills("solvers.waves.modes:wave_split", "terms.viscosity * np.square(n)", "terms.viscosity * n")
+@kills("solvers.waves.modes:wave_split", "-0.5j * terms.c.steepening", "-0.4j * terms.c.steepening")
+@kills("solvers.waves.modes:wave_split", "0.5j * terms.forcing", "-0.5j * terms.forcing")
 def test_manufactured_field() -> None:
     """Steepening, dispersion, diffusion, decay and forcing together, to fourth order of the step."""
     for c in FAMILIES:
@@ -217,7 +217,7 @@ def turned(turns: int, steps: int = 0, tolerance: float = 1e-6) -> tuple[float, 
 
 
 @kills(
-    "solvers.waves.terms:wave_split",
+    "solvers.waves.modes:wave_split",
     "-0.5j * terms.c.steepening * n",
     "-0.5j * terms.c.steepening * np.maximum(n, 1)",
 )
@@ -258,9 +258,9 @@ def test_mass_and_momentum(c: KdvCoefficients, whitham: bool) -> None:
     assert drift[1] < 1e-8 and drift[0] / drift[1] > 14.0
 
 
-@kills("solvers.waves.terms:wave_split", "-0.5j * terms.c.steepening", "0.5j * terms.c.steepening")
+@kills("solvers.waves.modes:wave_split", "-0.5j * terms.c.steepening", "0.5j * terms.c.steepening")
 @kills(
-    "solvers.waves.terms:wave_split",
+    "solvers.waves.modes:wave_split",
     "wave_frequency(n, terms.c, terms.whitham)",
     "(2.0 * n * terms.c.linear_speed - wave_frequency(n, terms.c, terms.whitham))",
 )
@@ -268,9 +268,9 @@ def test_prograde_cnoidal_wave() -> None:
     assert_cnoidal(PROGRADE)
 
 
-@kills("solvers.waves.terms:wave_split", "-1j * omega", "1j * omega")
+@kills("solvers.waves.modes:wave_split", "-1j * omega", "1j * omega")
 @kills(
-    "solvers.waves.terms:wave_split",
+    "solvers.waves.modes:wave_split",
     "wave_frequency(n, terms.c, terms.whitham)",
     "wave_frequency(n, terms.c, False)",
 )
@@ -279,9 +279,9 @@ def test_linear_waves_of_both_families() -> None:
         assert_linear_waves(c, 40.0)
 
 
-@kills("solvers.waves.terms:wave_split", "0.5j * terms.forcing", "1.0j * terms.forcing")
+@kills("solvers.waves.modes:wave_split", "0.5j * terms.forcing", "1.0j * terms.forcing")
 @kills(
-    "solvers.waves.terms:wave_split",
+    "solvers.waves.modes:wave_split",
     "np.exp(-1j * terms.whirl_speed * t)",
     "np.exp(1j * terms.whirl_speed * t)",
 )

@@ -19,10 +19,10 @@ from fluid.friction import Friction
 from fluid.liquid import Liquid
 from fluid.long_wave import PADE
 from meshes.chamber import Chamber
-from solvers.layer.prescribed import Numerics, Whirl
 from solvers.layer.settle import settle
+from solvers.layer.state import Numerics, Whirl
 from solvers.waves.modes import WaveProblem
-from solvers.waves.periodic import family_problem, solve
+from solvers.waves.steady import family_problem, solve
 from tests.mutants import kills
 
 RADIUS, HEIGHT, SPIN = 0.15, 0.01, 40.0

@@ -25,7 +25,7 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.sloshing.reduced import clear_ring, reduce_liquid, section_layer, section_layers, wall_drag
 from solvers.sloshing.system import LiquidSystem, condense
 from solvers.statics.free_surface import solve_surface
-from solvers.synchronous.backward import backward_mass
+from solvers.synchronous.balance import backward_mass
 from solvers.synchronous.models import ELEMENTS
 from solvers.whirl.growth import asynchronous_growth, system_modes
 from solvers.whirl.sections import circle_layer, drum_matrices, drum_modes, standing_modes
@@ -211,7 +211,7 @@ def lobed() -> Fill:
 
 
 @kills(
-    "solvers.synchronous.backward:backward_mass",
+    "solvers.synchronous.balance:backward_mass",
     "whole = layer.density * layer.liquid.enclosed_area",
     "whole = fill.full_mass * 1.0",
 )

@@ -15,6 +15,7 @@ from fluid.fill import Fill
 from fluid.liquid import known_liquid
 from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.scene.tasks import Optimisation
+from leblanc.studies.choose import prepare
 from leblanc.studies.optimise.answers import FilledMachine
 from leblanc.studies.optimise.closed_form import (
     full_volume,
@@ -27,7 +28,6 @@ from leblanc.studies.optimise.front import not_dominated
 from leblanc.studies.optimise.objectives import AtSpeed, PeakOver
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.optimise.robust import Robust, operating_conditions
-from leblanc.studies.prepare import prepare
 from leblanc.studies.run import run_scene
 from meshes.chamber import Chamber
 from meshes.errors import InputError

@@ -15,9 +15,17 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from leblanc.scene.scene import load_scene
-from leblanc.studies.sweep.distributions import Choice, Distribution, Levels, LogNormal, Normal, Uniform
 from leblanc.studies.sweep.sampling import sample_rows, sampling_note
-from leblanc.studies.sweep.study import Sweep, VariedField
+from leblanc.studies.sweep.study import (
+    Choice,
+    Distribution,
+    Levels,
+    LogNormal,
+    Normal,
+    Sweep,
+    Uniform,
+    VariedField,
+)
 from tests.mutants import kills
 
 EXAMPLE = Path(__file__).parents[4] / "examples" / "horizontal_rig.toml"
@@ -36,16 +44,16 @@ def sweep_of(method: str, points: int, *distributions: Distribution, seed: int =
     return replace(base(), method=method, points=points, seed=seed, fields=fields)
 
 
-@kills("leblanc.studies.sweep.distributions:Uniform.at", "(self.high - self.low) * u", "self.high * u")
+@kills("leblanc.studies.sweep.study:Uniform.at", "(self.high - self.low) * u", "self.high * u")
 @kills(
-    "leblanc.studies.sweep.distributions:Normal.at",
+    "leblanc.studies.sweep.study:Normal.at",
     "self.mean + self.deviation",
     "self.mean - self.deviation",
 )
-@kills("leblanc.studies.sweep.distributions:LogNormal.at", "math.log(self.factor)", "math.log10(self.factor)")
-@kills("leblanc.studies.sweep.distributions:LogNormal.at", "self.median * np.exp(", "np.exp(")
+@kills("leblanc.studies.sweep.study:LogNormal.at", "math.log(self.factor)", "math.log10(self.factor)")
+@kills("leblanc.studies.sweep.study:LogNormal.at", "self.median * np.exp(", "np.exp(")
 @kills(
-    "leblanc.studies.sweep.distributions:Choice.at",
+    "leblanc.studies.sweep.study:Choice.at",
     "np.floor(u * len(self.options))",
     "np.rint(u * len(self.options))",
 )

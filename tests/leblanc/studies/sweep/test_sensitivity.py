@@ -8,14 +8,9 @@ import numpy as np
 import pytest
 
 from leblanc.results.sweep import Sensitivity
-from leblanc.studies.sweep.distributions import Levels, Uniform
 from leblanc.studies.sweep.sampling import sample_rows
-from leblanc.studies.sweep.sensitivity import (
-    given_data,
-    saltelli_indices,
-    sensitivity,
-    variance_shares,
-)
+from leblanc.studies.sweep.study import Levels, Uniform
+from leblanc.studies.sweep.summary import given_data, saltelli_indices, sensitivity, variance_shares
 from meshes.arrays import Array
 from tests.leblanc.studies.sweep.test_sampling import sweep_of
 from tests.mutants import kills
@@ -47,17 +42,17 @@ def within(found: Array, interval: Array | None, expected: Array) -> None:
 
 
 @kills(
-    "leblanc.studies.sweep.sensitivity:saltelli_indices",
+    "leblanc.studies.sweep.summary:saltelli_indices",
     "np.array([first_order(a, one, b) for one in swapped])",
     "np.array([first_order(b, one, a) for one in swapped])",
 )
 @kills(
-    "leblanc.studies.sweep.sensitivity:saltelli_indices",
+    "leblanc.studies.sweep.summary:saltelli_indices",
     "np.array([total_order(a, one, b) for one in swapped])",
     "np.array([total_order(b, one, a) for one in swapped])",
 )
 @kills(
-    "leblanc.studies.sweep.sensitivity:saltelli_indices",
+    "leblanc.studies.sweep.summary:saltelli_indices",
     "swapped = whole[:, 1:-1].T",
     "swapped = whole[:, -2:0:-1].T",
 )
@@ -75,7 +70,7 @@ def test_ishigami_saltelli() -> None:
 
 
 @kills(
-    "leblanc.studies.sweep.sensitivity:given_data",
+    "leblanc.studies.sweep.summary:given_data",
     "output / np.std(output)",
     "np.sort(output) / np.std(output)",
 )
@@ -88,17 +83,17 @@ def test_ishigami_given_data() -> None:
 
 
 @kills(
-    "leblanc.studies.sweep.sensitivity:variance_shares",
+    "leblanc.studies.sweep.summary:variance_shares",
     "/ count) / np.sum(centred**2)",
     ") / np.sum(centred**2)",
 )
 @kills(
-    "leblanc.studies.sweep.sensitivity:variance_shares",
+    "leblanc.studies.sweep.summary:variance_shares",
     "centred = output - output.mean()",
     "centred = output",
 )
 @kills(
-    "leblanc.studies.sweep.sensitivity:variance_shares",
+    "leblanc.studies.sweep.summary:variance_shares",
     "np.unique(column, return_inverse=True)",
     "np.unique(np.sign(column), return_inverse=True)",
 )
@@ -115,7 +110,7 @@ def test_linear_grid() -> None:
 
 
 @kills(
-    "leblanc.studies.sweep.sensitivity:given_data",
+    "leblanc.studies.sweep.summary:given_data",
     "place + rng.random(output.size)",
     "rng.random(output.size)",
 )

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from leblanc.studies.sweep.outputs import PENDING
+from leblanc.studies.sweep.block import PENDING
 from leblanc.studies.sweep.store import STORE, read_store
 from tests.oracles.sweeps import ROOT, STUDY, leblanc, tree, write_study
 

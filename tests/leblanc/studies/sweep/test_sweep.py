@@ -23,9 +23,8 @@ from leblanc.scene.schema.load import read_toml
 from leblanc.scene.schema.paths import keys_of, with_values
 from leblanc.studies.batch import Answers
 from leblanc.studies.run import run_scene
-from leblanc.studies.sweep.outputs import DONE, FAILED, NOT_CONVERGED, PENDING, STATUS
+from leblanc.studies.sweep.block import DONE, FAILED, NOT_CONVERGED, PENDING, STATUS, make_scenes, scene_maker
 from leblanc.studies.sweep.sampling import sample_rows
-from leblanc.studies.sweep.scenes import make_scenes, scene_maker
 from leblanc.studies.sweep.store import STORE, block_size, locked, open_store, read_store
 from leblanc.studies.sweep.summary import statistics, summarise
 from leblanc.studies.sweep.sweep import run_sweep
@@ -46,8 +45,8 @@ def run_all(folder: Path, study: str = STUDY) -> Path:
 # -- scenes --------------------------------------------------------------------------------------------------
 
 
-@kills("leblanc.studies.sweep.scenes:scene_maker", "parts[k] = Chamber", "parts[0] = Chamber")
-@kills("leblanc.studies.sweep.scenes:scene_maker", 'if ("rotor",) in touched:', "if not touched:")
+@kills("leblanc.studies.sweep.block:scene_maker", "parts[k] = Chamber", "parts[0] = Chamber")
+@kills("leblanc.studies.sweep.block:scene_maker", 'if ("rotor",) in touched:', "if not touched:")
 def test_sampled_scenes_are_those_of_the_whole_table() -> None:
     """A scene made by parts is the one that the whole table gives."""
     for name, values in (
@@ -86,11 +85,11 @@ def test_a_sample_fails_where_its_scene_does_and_in_the_same_words(mass: float, 
     "values[name][places] = value[::-1]",
 )
 @kills(
-    "leblanc.studies.sweep.outputs:values_of",
+    "leblanc.studies.sweep.block:values_of",
     "np.fmax.reduce(values[name], axis=1)",
     "np.fmin.reduce(values[name], axis=1)",
 )
-@kills("leblanc.studies.sweep.outputs:values_of", "values[name][:, -1]", "values[name][:, 0]")
+@kills("leblanc.studies.sweep.block:values_of", "values[name][:, -1]", "values[name][:, 0]")
 @kills(
     "leblanc.studies.sweep.sweep:_write",
     "field_values(field, drawn[:, j])",
@@ -462,6 +461,6 @@ def test_the_copy_holds_what_the_store_holds(tmp_path: Path) -> None:
 
 
 def test_every_output_of_a_batch_is_kept() -> None:
-    from leblanc.studies.sweep.outputs import OVER_SPEED
+    from leblanc.studies.sweep.block import OVER_SPEED
 
     assert {field.name for field in fields(Answers)} == {one.name for one in OVER_SPEED}

@@ -1,29 +1,81 @@
-"""Angle of the liquid from the unbalance on the horizontal rig [DR18, Fig. 24].
+"""Two rigs against what was measured on them [DR18, Fig. 24 and section 7.1].
 
-The rig's damping is not given: it is fitted, in three ways of growing freedom, and every point's residual is
-shown. The six angles are multiples of 30 deg, so half of that is what they were read to.
+On the horizontal rig the angle of the liquid from the unbalance is compared. Its damping is not given: it is
+fitted, in three ways of growing freedom, and every point's residual is shown. The six angles are multiples of
+30 deg, so half of that is what they were read to. On the vertical rig it is asked whether the liquid
+compensates below, at and above resonance.
 """
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable
+from importlib import resources
+from typing import Any
 
 import numpy as np
 
+from fluid.fill import Fill
+from fluid.liquid import known_liquid
 from fluid.waves import gravity_displacement
 from meshes.arrays import Array
+from meshes.chamber import Chamber
+from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vector_model import deflection_lag
-from solvers.synchronous.response import response
+from solvers.synchronous.response import critical_speed, response
 from validation.cases.case import Case
-from validation.cases.scenes import data, horizontal_rig, horizontal_rotor
+
+
+def data(name: str) -> dict[str, Any]:
+    """Content of a data file of this package."""
+    text = resources.files("validation").joinpath("data", name).read_text(encoding="utf-8")
+    content: dict[str, Any] = json.loads(text)
+    return content
+
+
+def horizontal_rig() -> tuple[Fill, ...]:
+    """The two chambers of DR18, section 7.2; their height of 20 mm is assumed."""
+    water = known_liquid("water")
+    return tuple(Fill(Chamber(radius, 0.02), water, 10e-6) for radius in (0.065, 0.05))
+
+
+def horizontal_rotor(damping_ratio: float, wet_critical_speed: float) -> Jeffcott:
+    """Rotor of DR18, section 7.2, whose critical speed with liquid is known; 4 kg and 60 mm are assumed.
+
+    Parameters
+    ----------
+    damping_ratio : of the rotor with the liquid's added mass
+    wet_critical_speed : with liquid, rad/s
+    """
+    mass, unbalance = 4.0, 10e-3 * 60e-3
+    total = mass + sum(fill.full_mass for fill in horizontal_rig())
+    stiffness = total * wet_critical_speed**2
+    return Jeffcott(mass, stiffness, 2.0 * damping_ratio * total * wet_critical_speed, unbalance)
+
+
+def vertical_rig() -> tuple[Fill, ...]:
+    """The three chambers of DR18, section 7.1; their height of 40 mm and the aperture are assumed."""
+    water = known_liquid("water")
+    walls = ((0.2, 0.15, 0.45e-3), (0.15, 0.1, 0.30e-3), (0.1, 0.05, 0.25e-3))
+    return tuple(Fill(Chamber(outer, 0.04, inner), water, volume) for outer, inner, volume in walls)
+
+
+def vertical_rotor() -> Jeffcott:
+    """Rotor of DR18, section 7.1, on its suspension of 2 to 2.5 Hz.
+
+    Assumed are 30 kg, 200 mm for the place of the 30 g, and the damping ratio.
+    """
+    mass, frequency = 30.0, 2.0 * math.pi * 2.25
+    return Jeffcott(mass, mass * frequency**2, 2.0 * 0.01 * mass * frequency, unbalance=30e-3 * 0.2)
+
 
 _RPM = 2.0 * math.pi / 60.0
 _READING = 15.0  # deg
 _RESONANCE = 1000.0 * _RPM
 
 
-def cases() -> list[Case]:
+def horizontal_cases() -> list[Case]:
     """The fits, the six points of the best founded one, and what gravity adds."""
     measured = data("dr18_fig24.json")
     speed = np.array(measured["speed_rpm"]) * _RPM
@@ -109,3 +161,30 @@ def _gravity(speed: Array) -> Case:
         verdict="trend",
         note="neither gravity nor the liquid's own unbalance explains the residuals",
     )
+
+
+def vertical_cases() -> list[Case]:
+    """Angle and gain at the three speeds of the photographs."""
+    measured = data("dr18_vertical_rig.json")
+    speed = np.array(measured["speed_rad_s"])
+    answer = response(vertical_rotor(), vertical_rig(), speed)
+    wet = critical_speed(vertical_rotor(), vertical_rig())
+    gain = np.abs(answer.deflection) / np.abs(answer.deflection_dry)
+    found = []
+    for k, one in enumerate(speed):
+        lag = -math.degrees(answer.liquid_angle[k])
+        helps = lag > 90.0 and gain[k] < 1.0
+        found.append(
+            Case(
+                name=f"vertical_rig/{one:g}-rad-s",
+                source="DR18, section 7.1",
+                quantity=f"liquid opposite the unbalance at {one:g} rad/s",
+                printed="it compensates",
+                computed=f"{lag:.0f} deg behind the unbalance, amplitude times {gain[k]:.2f}",
+                difference="the same" if helps else "the liquid adds to the vibration here",
+                verdict="trend" if helps else "differs",
+                note=f"mass, heights, damping and radius of the 30 g are assumed; critical speed with liquid "
+                f"{wet:.1f} rad/s; equilibrium compensates above it only",
+            )
+        )
+    return found
