@@ -6,6 +6,7 @@ Commands parse and print, nothing else. Their modules import what is heavy insid
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from collections.abc import Callable, Sequence
@@ -43,7 +44,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     # A user's own pickle.py in the current folder is not for the processes that are started from here.
     os.environ.setdefault("PYTHONSAFEPATH", "1")
     given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
-    return exit_code(lambda: get_command(app).main(given, prog_name="leblanc", standalone_mode=False))
+    if arguments is None:
+        # By default a fifth of a short command is a search for cyclic garbage, of which imports leave none.
+        gc.set_threshold(50_000)
+    try:
+        return exit_code(lambda: get_command(app).main(given, prog_name="leblanc", standalone_mode=False))
+    finally:
+        if arguments is None:
+            gc.freeze()  # nor is there any to look for as the process ends
 
 
 def exit_code(action: Callable[[], object]) -> int:
