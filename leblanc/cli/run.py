@@ -34,7 +34,7 @@ def run(
 
     result = run_scene(machine)
 
-    from leblanc.figures import write_figures
+    from leblanc.figures.response import write_figures
     from leblanc.report.page import about, command_line
     from leblanc.report.run import write_run_report
     from leblanc.results.netcdf import write_netcdf

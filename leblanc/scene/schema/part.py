@@ -48,7 +48,7 @@ class Part(BaseModel):
     SceneFaults : with everything that is wrong
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
+    model_config = ConfigDict(extra="forbid", frozen=True)
 
     # Pairs of keys of which exactly one must be given.
     ALTERNATIVES: ClassVar[tuple[tuple[str, str], ...]] = ()
