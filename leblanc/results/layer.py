@@ -8,18 +8,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from leblanc.results.base import Note, NoteCode, Result, one_line, texts, versions
-from leblanc.results.netcdf import dataset, variable
+from leblanc.results.netcdf import NamedArrays, variable
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.layer.state import LayerHistory
-
-if TYPE_CHECKING:
-    from leblanc.results.netcdf import Dataset
 
 FEWEST = 3  # angles of a wave
 SLACK = 1e-9  # rounding of a depth, over the radius
@@ -184,7 +181,7 @@ class LayerResult(Result):
             "validity": tuple(map(asdict, self.validity)),
         }
 
-    def to_dataset(self) -> Dataset:
+    def named_arrays(self) -> NamedArrays:
         """The depth over `theta`; everything else in variables without a dimension and in attributes."""
         along = ("theta",)
         columns = {
@@ -198,7 +195,7 @@ class LayerResult(Result):
             "gravity_offset": variable((), self.gravity_offset, "m", "steady offset by gravity, in space"),
         }
         coords = {"theta": variable(along, self.theta, "rad", "angle from the deflection, with the spin")}
-        return dataset(columns, coords, _attributes(self.case, self.converged, self.in_range, self.notes))
+        return NamedArrays(columns, coords, _attributes(self.case, self.converged, self.in_range, self.notes))
 
 
 @dataclass(frozen=True)
@@ -247,7 +244,7 @@ class LayerPeriodsResult(Result):
             "notes": texts(self.notes),
         }
 
-    def to_dataset(self) -> Dataset:
+    def named_arrays(self) -> NamedArrays:
         """Means over whirl periods over `time`, the depth at the end over `theta`."""
         h, over = self.history, ("time",)
         columns = {
@@ -270,7 +267,7 @@ class LayerPeriodsResult(Result):
             "time": variable(over, h.time, "s", "middle of the whirl period"),
             "theta": variable(("theta",), h.theta, "rad", "angle from the deflection, with the spin"),
         }
-        return dataset(columns, coords, _attributes(self.case, self.converged, self.in_range, self.notes))
+        return NamedArrays(columns, coords, _attributes(self.case, self.converged, self.in_range, self.notes))
 
 
 def _attributes(case: LayerCase, converged: bool, in_range: bool, notes: tuple[Note, ...]) -> dict[str, Any]:
