@@ -78,8 +78,8 @@ def _notebooks(target: Path, quick: bool) -> None:
             shutil.copyfile(book, target / book.name)
 
 
-def _older(one: Path, other: Path) -> bool:
-    return not one.is_file() or one.stat().st_mtime < other.stat().st_mtime
+def _older(path: Path, other: Path) -> bool:
+    return not path.is_file() or path.stat().st_mtime < other.stat().st_mtime
 
 
 def sphinx(source: Path, out: Path) -> int:

@@ -141,14 +141,16 @@ def _without_first(book: Any) -> None:
     del book.cells[0]
     for cell in book.cells:
         if cell.cell_type == "code":
-            for one in (cell, *(one for one in cell.outputs if one.output_type == "execute_result")):
-                one.execution_count = one.execution_count and one.execution_count - 1
+            for part in (cell, *(part for part in cell.outputs if part.output_type == "execute_result")):
+                part.execution_count = part.execution_count and part.execution_count - 1
 
 
 def _complaints(book: Any) -> str:
     """What the cells wrote to the standard error."""
-    outputs = (one for cell in book.cells if cell.cell_type == "code" for one in cell.outputs)
-    return "".join(one.text for one in outputs if one.output_type == "stream" and one.name == "stderr")
+    outputs = (output for cell in book.cells if cell.cell_type == "code" for output in cell.outputs)
+    return "".join(
+        output.text for output in outputs if output.output_type == "stream" and output.name == "stderr"
+    )
 
 
 def _write(book: Any, stem: str, out: Path) -> None:

@@ -126,6 +126,14 @@ class LayerResult(Result):
     gravity_offset : steady part of the offset under gravity across the axis, in space, m: up is negative
     captured : centrifugal acceleration at the surface exceeds gravity
     validity : dimensionless numbers the model rests on, each with its range
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> found = lb.layer(radius="150 mm", volume="671 ml", height="50 mm", speed=40.0, whirl_speed=32.0,
+    ...                  whirl_amplitude="0.15 mm")
+    >>> f"{found.force_ratio.real:.4f}", found.in_range
+    ('2.5615', True)
     """
 
     case: LayerCase
@@ -208,6 +216,15 @@ class LayerPeriodsResult(Result):
     history : force, centre of mass and depths period by period, and the depth at the end
     notes : why there is no answer, and where the model is out of its range
     validity : dimensionless numbers the model rests on, each with its range
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> found = lb.layer(radius="150 mm", volume="671 ml", height="50 mm", speed=40.0, whirl_speed=32.0,
+    ...                  whirl_amplitude="0.15 mm", model="long_wave", cells=32,
+    ...                  duration="2 s", ramp="1 s")
+    >>> found.converged, found.history.time.shape == found.history.force_ratio.shape
+    (True, True)
     """
 
     case: LayerCase

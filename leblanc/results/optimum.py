@@ -250,6 +250,13 @@ class OptimumResult(Result):
     response : of the machine with these volumes over the scene's speeds; None where the liquid model of the
         search gives no steady answer, or where it was not asked for; its models are those of the search
     emulator : what the emulator that the search asked says of the answer; None without one
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> best = lb.optimise(lb.example("horizontal_rig"), front=False)
+    >>> best.feasible, sorted(best.constraints), best.volume.shape
+    (True, ['capacity'], (2,))
     """
 
     name: str

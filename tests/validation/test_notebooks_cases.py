@@ -112,7 +112,7 @@ def test_growth_in_time_lies_on_its_lines() -> None:
     "1e3 * (depth - np.array(run[key]))",
     "depth - np.array(run[key])",
 )
-@kills("validation.figures.layer:bore_summary", "np.argmax(np.abs(one))", "np.argmin(np.abs(one))")
+@kills("validation.figures.layer:bore_summary", "np.argmax(np.abs(values))", "np.argmin(np.abs(values))")
 def test_summary() -> None:
     """Signs and units: the model with dispersion is millimetres too high, that with friction turns least."""
     found = bore_summary()

@@ -69,9 +69,9 @@ def table() -> str:
     lines = ["| scene | chambers | objective | seconds | sets of volumes |", "|---|---:|---|---:|---:|"]
     for name in SCENES:
         for objective in OBJECTIVES:
-            one = measured(name, objective)
+            row = measured(name, objective)
             lines.append(
-                f"| {one.scene} | {one.chambers} | {one.objective} | {one.seconds:.2f} | {one.judged} |"
+                f"| {row.scene} | {row.chambers} | {row.objective} | {row.seconds:.2f} | {row.judged} |"
             )
             print(lines[-1], flush=True)
     return "\n".join(lines)

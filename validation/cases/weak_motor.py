@@ -24,8 +24,8 @@ def with_and_without(scene: Scene, check: bool = False) -> tuple[RunupHistory, R
     scene : the machine
     check : estimate the error, with half the cells
     """
-    empty = scene.altered(chambers=tuple(one.holding(0.0) for one in scene.chambers))
-    wet, dry = (runup_scene(one, check=check).history for one in (scene, empty))
+    empty = scene.altered(chambers=tuple(chamber.holding(0.0) for chamber in scene.chambers))
+    wet, dry = (runup_scene(machine, check=check).history for machine in (scene, empty))
     return wet, dry
 
 
@@ -83,8 +83,8 @@ def main(arguments: list[str] | None = None) -> int:
     scene = example("weak_motor")
     wet, dry = with_and_without(scene)
     draw(wet, dry, scene, chosen.out)
-    for name, one in (("with liquid", wet), ("without", dry)):
-        print(f"{name}: {one.speed[-1]:.2f} rad/s, {one.amplitude[-1] * MM:.2f} mm at the end")
+    for name, history in (("with liquid", wet), ("without", dry)):
+        print(f"{name}: {history.speed[-1]:.2f} rad/s, {history.amplitude[-1] * MM:.2f} mm at the end")
     return 0
 
 

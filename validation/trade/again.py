@@ -25,11 +25,14 @@ def cases() -> list[Case]:
         scene = example(name)
         for question in questions(scene):
             found += _errors(name, question)
-    return [*found, *(_default(name, one) for name in names() for one in record(name).comparisons)]
+    return [
+        *found,
+        *(_default(name, comparison) for name in names() for comparison in record(name).comparisons),
+    ]
 
 
 def _errors(name: str, question: Question) -> list[Case]:
-    kept_rows = (row for one in record(name).comparisons for row in one.rows)
+    kept_rows = (row for comparison in record(name).comparisons for row in comparison.rows)
     rows = {row.label: row for row in kept_rows if row.question == question.name}
     cheap = [case for case in question.cases if case.model != "fem" and (case.resolution or 0) <= _CELLS]
     found = []
@@ -50,16 +53,16 @@ def _error(where: str, label: str, name: str, printed: float, error: float) -> C
     return compare(*words, printed, error, tolerance=_TOLERANCE)
 
 
-def _default(name: str, one: Comparison) -> Case:
+def _default(name: str, comparison: Comparison) -> Case:
     """Whether some other model or resolution is as good and cheaper."""
-    beaten = one.dominated_by
+    beaten = comparison.dominated_by
     return Case(
-        f"trade/{name}-{one.question}-default",
+        f"trade/{name}-{comparison.question}-default",
         f"validation/trade/{name}.json",
-        f"models and resolutions that beat the default in error and time on {name}, {one.question}",
+        f"models and resolutions that beat the default in error and time on {name}, {comparison.question}",
         "none",
         ", ".join(beaten) or "none",
-        f"the default's error is {one.default.error:.1e}",
+        f"the default's error is {comparison.default.error:.1e}",
         "differs" if beaten else "agrees",
     )
 
@@ -72,30 +75,30 @@ def record(name: str) -> TradeRecord:
     name : stem of the scene's file
     """
     content = kept(name)
-    comparisons = tuple(_comparison(one, content["rows"]) for one in content["questions"])
+    comparisons = tuple(_comparison(question, content["rows"]) for question in content["questions"])
     words = content["name"], f"kept in validation/trade/{name}.json"
     return TradeRecord(
         *words, tuple(content["assumed"]), content["digest"], content["tolerance"], comparisons
     )
 
 
-def _comparison(one: dict[str, Any], rows: list[dict[str, Any]]) -> Comparison:
+def _comparison(question: dict[str, Any], rows: list[dict[str, Any]]) -> Comparison:
     return Comparison(
-        question=one["question"],
-        about=one["about"],
-        reference=one["reference"],
-        reference_error=_number(one["reference_error"]),
-        order=_number(one["order"]),
-        rows=tuple(_row(row) for row in rows if row["question"] == one["question"]),
-        dominated_by=tuple(one["default_dominated_by"]),
-        overhead=_number(one["default_overhead"]),
+        question=question["question"],
+        about=question["about"],
+        reference=question["reference"],
+        reference_error=_number(question["reference_error"]),
+        order=_number(question["order"]),
+        rows=tuple(_row(row) for row in rows if row["question"] == question["question"]),
+        dominated_by=tuple(question["default_dominated_by"]),
+        overhead=_number(question["default_overhead"]),
     )
 
 
 def _row(values: dict[str, Any]) -> Row:
-    one = {key: value for key, value in values.items() if key != "time_ratio"}
-    numbers = {key: _number(one[key]) for key in ("error", "peak_error")}
-    return Row(**(one | numbers | {"used": tuple(one["used"])}))
+    known = {key: value for key, value in values.items() if key != "time_ratio"}
+    numbers = {key: _number(known[key]) for key in ("error", "peak_error")}
+    return Row(**(known | numbers | {"used": tuple(known["used"])}))
 
 
 def _number(value: float | None) -> float:

@@ -123,7 +123,10 @@ def _result(
     vibration, dry = (float(evaluate.vibration.exact(row)[0]) for row in (volume[None], nothing))
     constraints = {
         "capacity": _capacity(scene, volume),
-        **{one.name: one.at(float(one.value(volume[None])[0])) for one in evaluate.constraints},
+        **{
+            constraint.name: constraint.at(float(constraint.value(volume[None])[0]))
+            for constraint in evaluate.constraints
+        },
     }
     mass = float(volume @ evaluate.density)
     said = found.judged
@@ -159,7 +162,7 @@ def _result(
 def _at_deflection(scene: Scene, aim: Optimisation, found: WettedWalls) -> OptimumResult:
     """The least volumes that leave no wall dry over its whole height at a given deflection."""
     volume = np.array(found.volumes)
-    one = np.ones(1)
+    single = np.ones(1)
     return _of_scene(
         scene,
         in_time=False,
@@ -179,11 +182,11 @@ def _at_deflection(scene: Scene, aim: Optimisation, found: WettedWalls) -> Optim
         evaluations=found.evaluations,
         candidates=Candidates(
             volume=volume[None],
-            objective=found.unbalance * one,
-            excess=-one,
-            vibration=found.unbalance * one,
-            mass=found.mass * one,
-            exact=one > 0.0,
+            objective=found.unbalance * single,
+            excess=-single,
+            vibration=found.unbalance * single,
+            mass=found.mass * single,
+            exact=single > 0.0,
         ),
         notes=found.notes,
     )
