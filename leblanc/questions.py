@@ -16,12 +16,13 @@ from fluid.friction import Friction
 from fluid.liquid import Liquid, known_liquid
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import OBJECTIVES, Optimisation
+from leblanc.studies.layer import as_options
+from leblanc.studies.liquid import wave_model
 from leblanc.studies.modes import Resolution, SectionSource
 from leblanc.units import ACCELERATION, ANGULAR_SPEED, LENGTH, TIME, VOLUME, parse_friction, parse_option
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.errors import InputError, require_not_negative
-from solvers.layer.state import Numerics
 
 Quantity = str | float
 Question = TypeVar("Question")
@@ -90,11 +91,10 @@ def layer_question(
         "speed": parse_option(speed, ANGULAR_SPEED, "--speed"),
         "whirl_speed": parse_option(whirl_speed, ANGULAR_SPEED, "--whirl-speed"),
         "whirl_amplitude": parse_option(whirl_amplitude, LENGTH, "--whirl-amplitude"),
-        "model": model,
-        "friction": friction_of(friction),
         "gravity": parse_option(gravity, ACCELERATION, "--gravity"),
-        "numerics": Numerics((96 if model == "fem" else 256) if cells is None else cells, dispersion),
     }
+    with as_options():
+        whirl["model"] = wave_model(model, friction_of(friction), cells, dispersion)
     length = None if duration is None else parse_option(duration, TIME, "--duration")
     return LayerQuestion(whirl, length, parse_option(ramp, TIME, "--ramp"))
 

@@ -20,9 +20,9 @@ from leblanc.scene.inputs import runup_rows
 from leblanc.scene.scene import JeffcottRotor, Runup, Scene, dry_rotor, jeffcott, require_clear
 from leblanc.studies.choose import across_gravity as across_gravity  # of a run-up, asked for with it
 from leblanc.studies.choose import axial_gravity
-from leblanc.studies.validity import RANGES
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
+from solvers.liquid_model import LONG
 from solvers.runup.machine import Drive, Motor, Ramp
 from solvers.runup.runup import (
     MODELS,
@@ -35,6 +35,7 @@ from solvers.runup.runup import (
     linear_run_error,
     run_up,
 )
+from solvers.synchronous.models import LINEAR
 from solvers.synchronous.response import Response, response
 
 FRAMES = 180  # of a film
@@ -121,7 +122,7 @@ def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tup
     """
     good = np.ones(history.time.shape, dtype=bool)
     notes: list[Note | None] = []
-    deepest, highest = RANGES["long_wave"]["relative_depth"][1], RANGES["linear"]["wave_amplitude"][1]
+    deepest, highest = LONG[1], LINEAR.ranges["wave_amplitude"][1]
     linear = (model or liquid_model(scene)) == "linear"
     for k, fill in enumerate(scene.fills):
         if fill.volume == 0.0 or is_full(fill):

@@ -16,7 +16,8 @@ from fluid.liquid import KNOWN_LIQUIDS
 from meshes.arrays import Array
 from meshes.chamber import Chamber
 from solvers.layer.settle import settle
-from solvers.layer.state import Numerics, Whirl
+from solvers.layer.state import Numerics
+from solvers.liquid_model import Whirl, Whirls
 from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
 from solvers.runup.machine import Ramp
 from solvers.runup.runup import RunupHistory, RunupNumerics, linear_run_error, run_up
@@ -158,11 +159,11 @@ def gravity_sample(seed: int, count: int, weakest: float = 4.0, cells: int = 64)
         found = settle(fill, whirl, friction, Numerics(cells=cells, dispersion=True))
         if not found.converged:
             continue
-        one = Fills.of([fill]), np.array([speed])
-        law = STATICS.synchronous(*one, np.array([whirl.amplitude]), np.zeros(1))
+        fills, spin = Fills.of([fill]), np.array([speed])
+        law = STATICS.answer(fills, Whirls.synchronous(spin, np.array([whirl.amplitude]), np.zeros(1)))
         exact = law.unbalance[0] / (fill.full_mass * whirl.amplitude)
         true = abs(found.force_ratio[-1] - exact)
-        rows.append((true, law_error(*one, np.array([GRAVITY]))[0]))
+        rows.append((true, law_error(fills, spin, np.array([GRAVITY]))[0]))
     return Coverage(*np.array(rows).T)
 
 
