@@ -93,8 +93,9 @@ def layer_question(
         "whirl_amplitude": parse_option(whirl_amplitude, LENGTH, "--whirl-amplitude"),
         "gravity": parse_option(gravity, ACCELERATION, "--gravity"),
     }
+    law = friction_of(friction)
     with as_options():
-        whirl["model"] = wave_model(model, friction_of(friction), cells, dispersion)
+        whirl["model"] = wave_model(model, law, cells, dispersion)
     length = None if duration is None else parse_option(duration, TIME, "--duration")
     return LayerQuestion(whirl, length, parse_option(ramp, TIME, "--ramp"))
 

@@ -9,6 +9,9 @@ from meshes.errors import InputError
 from solvers.layer.settle import LongWave
 from solvers.layer.state import Numerics
 from solvers.liquid_model import LiquidModel, WaveModel
+from solvers.runup.linear import couple_linear
+from solvers.runup.long_wave import couple
+from solvers.runup.machine import RunupModel
 from solvers.sloshing.model import SmallWaves
 from solvers.synchronous.models import LINEAR, STATICS
 from solvers.waves.one_family import OneFamily
@@ -51,6 +54,9 @@ _MAKE: Mapping[str, _Make] = {
 WAVE_MODELS = tuple(_MAKE)
 # Those that answer the unbalance of a rotor: the liquid is at rest in a synchronous whirl.
 SYNCHRONOUS_MODELS = ("statics", "linear", "fem")
+# Those that go through time with a rotor.
+_RUNUP: Mapping[str, RunupModel] = {"long_wave": couple, "linear": couple_linear}
+RUNUP_MODELS = tuple(_RUNUP)
 
 
 def wave_model(
@@ -84,3 +90,15 @@ def synchronous_model(name: str) -> LiquidModel:
     if name not in ("auto", *SYNCHRONOUS_MODELS):
         raise InputError("model.liquid", name, "one of auto, " + ", ".join(SYNCHRONOUS_MODELS))
     return wave_model("statics" if name == "auto" else name)
+
+
+def runup_model(name: str) -> RunupModel:
+    """The liquid model of a run-up.
+
+    Raises
+    ------
+    InputError : no model of that name goes through time
+    """
+    if name not in _RUNUP:
+        raise InputError("model.liquid", name, " or ".join(_RUNUP) + " for a run-up")
+    return _RUNUP[name]

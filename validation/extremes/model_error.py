@@ -19,7 +19,9 @@ from solvers.layer.settle import settle
 from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl, Whirls
 from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
-from solvers.runup.machine import Ramp
+from solvers.runup.linear import couple_linear
+from solvers.runup.long_wave import couple
+from solvers.runup.machine import Ramp, RunupModel
 from solvers.runup.runup import RunupHistory, RunupNumerics, linear_run_error, run_up
 from solvers.synchronous.errors import LinearError, law_error, planar_enclosure
 from solvers.synchronous.models import LINEAR, STATICS
@@ -178,7 +180,7 @@ def run_up_sample(seed: int, count: int, cells: int = 64) -> Coverage:
         rotor, fills, drive, friction, gravity = random_run_up(rng)
 
         def run(
-            model: str,
+            model: RunupModel,
             rotor: Jeffcott = rotor,
             fills: list[Fill] = fills,
             drive: Ramp = drive,
@@ -188,7 +190,7 @@ def run_up_sample(seed: int, count: int, cells: int = 64) -> Coverage:
             numerics = RunupNumerics(cells, 1000, dispersion=True, companion=False)
             return run_up(rotor.system(), fills, drive, friction, gravity, numerics, None, model)
 
-        linear, exact = run("linear"), run("long_wave")
+        linear, exact = run(couple_linear), run(couple)
         if not exact.converged:
             continue
         size = min(linear.time.size, exact.time.size)

@@ -10,6 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from leblanc.scene.scene import Scene, Speeds
+from leblanc.studies.liquid import runup_model
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from meshes.arrays import Array, Flags, Index
 
@@ -82,7 +83,7 @@ class RunupPeak(AlwaysExact):
         plan = planned(scene)
         self.scene, self.drive, self.gravity = scene, drive_of(plan), across_gravity(scene)
         self.numerics = numerics_of(plan, cells, check=False)
-        self.model = liquid_model(scene)
+        self.model = runup_model(liquid_model(scene))
         self._known: dict[bytes, float] = {}
 
     @property
