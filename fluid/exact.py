@@ -1,6 +1,6 @@
-"""Exact waves of the KdV-Burgers equation: solitary and cnoidal waves, and the shocks of its Burgers limit.
+"""Exact waves of the Korteweg-de Vries equation on the drum: solitary and cnoidal waves.
 
-All for eta_t + lambda0 eta_theta + alpha eta eta_theta + delta eta_theta_theta_theta = nu_b eta_theta_theta
+All for eta_t + lambda0 eta_theta + alpha eta eta_theta + delta eta_theta_theta_theta = 0
 [theory: kdv, eq. 1] with coefficients of either sign. The waves are humps (height above 0) where alpha and
 delta have one sign, as in both families of waves in the layer, and troughs where they have two.
 """
@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from fluid.kdv import KdvCoefficients
 from meshes.arrays import Array
-from meshes.errors import InputError, require_positive
+from meshes.errors import InputError
 
 # Up to this K the complement 1 - m is a number.
 _LARGEST_K = 340.0
@@ -137,67 +137,6 @@ def cnoidal_wave(c: KdvCoefficients, height: float, crests: int = 1, mean: float
     level = mean - height * _mean_square_cn(m1, m)
     speed = c.linear_speed + c.steepening * level + 4.0 * c.dispersion * sharpness**2 * (m - m1)
     return TravellingWave(height, sharpness, speed, level, crests, m1)
-
-
-def burgers_shock(
-    c: KdvCoefficients, viscosity: float, drop: float, theta: ArrayLike, time: ArrayLike
-) -> Array:
-    """Travelling shock between two levels, without dispersion [theory: steppers, eq. 16].
-
-    Parameters
-    ----------
-    c : linear speed and steepening; the dispersion does not enter
-    viscosity : nu_b, rad^2/s, above 0
-    drop : level behind minus level ahead, as seen along increasing theta, m^2, of the sign of the steepening
-    theta : rad, shape (...,), on an unbounded line
-    time : s, shape (...,)
-
-    Returns
-    -------
-    eta, m^2, about a mean of zero, of the common shape
-
-    Raises
-    ------
-    InputError : a viscosity that is not positive, a drop of the wrong sign
-    """
-    require_positive("viscosity", viscosity)
-    if not c.steepening * drop > 0.0:
-        raise InputError("drop", drop, "of the sign of the steepening")
-    x = np.asarray(theta, dtype=float) - c.linear_speed * np.asarray(time, dtype=float)
-    return np.asarray(-0.5 * drop * np.tanh(c.steepening * drop * x / (4.0 * viscosity)))
-
-
-def burgers_sawtooth(c: KdvCoefficients, viscosity: float, age: ArrayLike, theta: ArrayLike) -> Array:
-    """Decaying shock that runs round the drum, without dispersion [theory: steppers, eq. 17].
-
-    Parameters
-    ----------
-    c : linear speed and steepening; the dispersion does not enter
-    viscosity : nu_b, rad^2/s, above 0
-    age : time since the shock was infinitely high, s, shape (...,), above 0
-    theta : rad, shape (...,); the shock is at theta = pi + lambda0 times the age
-
-    Returns
-    -------
-    eta, m^2, of mean zero, of the common shape
-
-    Raises
-    ------
-    InputError : a viscosity or an age that is not positive
-    """
-    require_positive("viscosity", viscosity)
-    old = np.asarray(age, dtype=float)
-    if not bool(np.all(np.isfinite(old) & (old > 0.0))):
-        raise InputError("age", age, "finite numbers above 0")
-    x = np.asarray(theta, dtype=float) - c.linear_speed * old
-    x = x - 2.0 * math.pi * np.round(x / (2.0 * math.pi))
-    # Heat from a source in every turn: those within nine standard deviations count.
-    turns = 2 + math.ceil(9.0 * math.sqrt(2.0 * viscosity * float(np.max(old))) / (2.0 * math.pi))
-    away = x[..., None] - 2.0 * math.pi * np.arange(-turns, turns + 1)
-    exponent = -np.square(away) / (4.0 * viscosity * old[..., None])
-    weight = np.exp(exponent - np.max(exponent, axis=-1, keepdims=True))
-    mean_distance = np.sum(away * weight, axis=-1) / np.sum(weight, axis=-1)
-    return np.asarray(mean_distance / (c.steepening * old))
 
 
 def _sharpness_squared(c: KdvCoefficients, height: float) -> float:

@@ -45,29 +45,6 @@ def steepness(speed: ArrayLike, gravity: ArrayLike, radius: ArrayLike, height: A
     return np.where(rise == 0.0, 0.0, ratio)
 
 
-def clear_surface_constant(
-    volume: ArrayLike, speed: ArrayLike, gravity: float, radius: float, height: float
-) -> Array:
-    """Surface constant while the surface cuts floor and lid and is clear of the side wall [DR18, eq. 17].
-
-    C = h/2 - beta (R^2 - V/(pi h)), exact there [theory: statics, eq. 3].
-
-    Parameters
-    ----------
-    volume : V, m^3, shape (...,)
-    speed : spin speed Omega, rad/s, shape (...,)
-    gravity : g, m/s^2, above 0
-    radius, height : of the chamber, m
-
-    Returns
-    -------
-    C, m, shape (...,)
-    """
-    beta = np.square(np.asarray(speed, dtype=float)) / (2.0 * gravity)
-    filled = np.asarray(volume, dtype=float) / (np.pi * height)
-    return np.asarray(0.5 * height - beta * (radius**2 - filled))
-
-
 @dataclass(frozen=True)
 class Moments:
     """Integrals over a liquid body, divided by the density.

@@ -13,32 +13,6 @@ from meshes.chamber import Chamber
 from meshes.errors import InputError, require_not_negative, require_positive
 
 
-def surface_constant_as_printed(chamber: Chamber, volume: float, speed: float, gravity: float) -> float:
-    """C* of a free surface that cuts floor and lid and is clear of the side wall [DR18, eq. 17].
-
-    C* = beta R^2 - beta V/(pi h) - h/2, right as printed; the surface is z = beta r^2 - C*.
-
-    Parameters
-    ----------
-    chamber : without an inner wall
-    volume : of the liquid V, m^3
-    speed : spin speed Omega, rad/s
-    gravity : along the axis g, m/s^2, above 0
-
-    Returns
-    -------
-    C*, m
-
-    Raises
-    ------
-    InputError : a value outside its range, a chamber with an inner wall
-    """
-    beta = _steepness(chamber, speed, gravity)
-    require_not_negative("volume", volume)
-    area = math.pi * chamber.height
-    return beta * chamber.radius**2 - beta * volume / area - 0.5 * chamber.height
-
-
 def dry_radius_as_printed(chamber: Chamber, eccentricity: float) -> float:
     """Radius R - e of the waterline on the floor that touches the near wall, right as printed [DR18, eq. 19].
 

@@ -69,40 +69,6 @@ def free_surface_term(
     return np.asarray(density * gravity * np.pi * integral)
 
 
-def upright_margin(
-    polar_inertia: ArrayLike,
-    transverse_inertia: ArrayLike,
-    mass: ArrayLike,
-    centre_height: ArrayLike,
-    speed: ArrayLike,
-    gravity: float,
-    surface_term: ArrayLike,
-) -> Array:
-    """Second derivative of the energy by a tilt: the upright rotation is stable where it is positive.
-
-    (C0 - A0) Omega^2 - M g x_c3 - a [DR18, eq. 21; theory: statics, eq. 20].
-
-    Parameters
-    ----------
-    polar_inertia, transverse_inertia : C0 and A0 of body and frozen liquid, about the spin axis and about
-        a horizontal axis through the fixed point, kg m^2, shape (...,)
-    mass : M of body and liquid, kg, shape (...,)
-    centre_height : x_c3 of their centre of mass above the fixed point, m, shape (...,)
-    speed : spin speed Omega, rad/s, shape (...,)
-    gravity : along the axis g, m/s^2
-    surface_term : a from `free_surface_term`, N m, shape (...,); 0 for a full chamber
-
-    Returns
-    -------
-    Margin, N m per rad, shape (...,)
-    """
-    polar, transverse, m, height, omega, a = (
-        np.asarray(x, dtype=float)
-        for x in (polar_inertia, transverse_inertia, mass, centre_height, speed, surface_term)
-    )
-    return np.asarray((polar - transverse) * np.square(omega) - m * gravity * height - a)
-
-
 def _waterlines(chamber: Chamber, constant: Array, beta: Array) -> tuple[Array, Array]:
     """Squared radii between which the surface lies inside the chamber; equal where it does nowhere."""
     low, high = chamber.inner_radius**2, chamber.radius**2

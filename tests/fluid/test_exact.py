@@ -12,10 +12,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.polynomial import chebyshev
 
-from fluid.exact import burgers_sawtooth, burgers_shock, cnoidal_wave, solitary_wave
+from fluid.exact import cnoidal_wave, solitary_wave
 from fluid.kdv import KdvCoefficients, coefficients
 from meshes.errors import InputError
 from tests.mutants import kills
+from tests.oracles.exact import burgers_sawtooth, burgers_shock
 
 PROGRADE = coefficients(0.15, 0.135, 40.0, 1)
 RETROGRADE = coefficients(0.15, 0.135, 40.0, -1)
@@ -244,12 +245,6 @@ def test_bad_input_is_named() -> None:
         cnoidal_wave(PLAIN, height_for(PLAIN, 200.0))
     with pytest.raises(InputError, match="crests"):
         cnoidal_wave(PLAIN, 1.0, 0)
-    with pytest.raises(InputError, match="drop"):
-        burgers_shock(PLAIN, 0.1, -1.0, 0.0, 0.0)
-    with pytest.raises(InputError, match="viscosity"):
-        burgers_sawtooth(PLAIN, 0.0, 1.0, 0.0)
-    with pytest.raises(InputError, match="age"):
-        burgers_sawtooth(PLAIN, 0.1, [1.0, 0.0], 0.0)
 
 
 @kills("fluid.exact:_sharpness_squared", "height / (12.0 * c.dispersion)", "height / (6.0 * c.dispersion)")
@@ -260,23 +255,3 @@ def test_bad_input_is_named() -> None:
 def test_cnoidal_waves_of_three_shapes() -> None:
     for sharpness, crests in ((1.0, 1), (2.2, 2), (6.0, 1)):
         assert_travels(PROGRADE, sharpness, crests, 0.2)
-
-
-@kills("fluid.exact:burgers_shock", "-0.5 * drop * np.tanh", "0.5 * drop * np.tanh")
-@kills("fluid.exact:burgers_shock", "/ (4.0 * viscosity))", "/ (2.0 * viscosity))")
-def test_shock_of_plain_coefficients() -> None:
-    assert_shock(PLAIN)
-
-
-@kills(
-    "fluid.exact:burgers_sawtooth",
-    "/ (4.0 * viscosity * old[..., None])",
-    "/ (2.0 * viscosity * old[..., None])",
-)
-@kills(
-    "fluid.exact:burgers_sawtooth",
-    "mean_distance / (c.steepening * old)",
-    "-mean_distance / (c.steepening * old)",
-)
-def test_sawtooth_of_plain_coefficients() -> None:
-    assert_sawtooth(PLAIN, 0.5, 1.0)

@@ -30,12 +30,15 @@ def notebook(folder: Path, name: str, *cells: str) -> Path:
 
 
 def test_a_case_that_is_broken_fails_the_notebook(tmp_path: Path) -> None:
-    """The washing machine without its figures, as it is and with an eccentricity that no table has."""
+    """The washing machine without its figures, as it is and with a drum that no table has."""
     text = (FOLDER / "5_washing_machine.py").read_text(encoding="utf-8")
     cells = [one for one in text.split("\n\n# %%") if "picture(draw(" not in one]
     right, wrong = tmp_path / "right.py", tmp_path / "wrong.py"
     right.write_text("\n\n# %%".join(cells), encoding="utf-8")
-    fault = "\nfrom validation.cases import tub\n\ntub.ECCENTRICITY = 0.02"
+    fault = (
+        "\nfrom dataclasses import replace\n\nfrom validation.cases import tub\n\nright = tub.suspended_tub\n"
+        "tub.suspended_tub = lambda *given, **named: replace(right(*given, **named), drum_mass=20.0)"
+    )
     wrong.write_text("\n\n# %%".join([cells[0], fault, *cells[1:]]), encoding="utf-8")
     passed, failed = run(right, tmp_path / "out"), run(wrong, tmp_path / "out")
     assert passed.returncode == 0, passed.stderr

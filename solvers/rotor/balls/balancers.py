@@ -87,11 +87,6 @@ class BalancedRun:
         first, second = system.at(position) @ self.coordinates.T
         return np.asarray((first + 1j * second) * np.exp(-1j * self.speed * self.time))
 
-    @property
-    def ball_place(self) -> Array:
-        """Angles of the balls in the rotor, from the origin of its unbalance's angle, rad, shape (s, N)."""
-        return np.asarray(self.ball_angle - self.speed * self.time[:, None])
-
 
 def simulate(
     system: RotorSystem,

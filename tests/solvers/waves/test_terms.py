@@ -10,13 +10,14 @@ import numpy as np
 import pytest
 from pde import PDE, CartesianGrid, ScalarField
 
-from fluid.exact import TravellingWave, burgers_sawtooth, cnoidal_wave, solitary_wave
+from fluid.exact import TravellingWave, cnoidal_wave, solitary_wave
 from fluid.kdv import KdvCoefficients, coefficients
 from fluid.waves import free_wave_frequencies
 from solvers.pypde.one_family import KdvBurgersPDE, circle
 from solvers.waves.modes import WaveTerms, wave_split
 from solvers.waves.stepper import Control, advance_adaptive, advance_fixed, to_spectrum
 from tests.mutants import kills
+from tests.oracles.exact import burgers_sawtooth
 
 PROGRADE = coefficients(0.15, 0.135, 40.0, 1)
 RETROGRADE = coefficients(0.15, 0.135, 40.0, -1)
