@@ -281,12 +281,12 @@ def test_pages_of_models_have_their_parts() -> None:
 
 
 def test_ranges_that_the_pages_show_are_those_of_the_code() -> None:
-    from leblanc.studies.validity import RANGES
+    from leblanc.studies.liquid import WAVE_MODELS
 
     shown = set()
     for page in PAGES:
         shown |= set(re.findall(r"```\{model-ranges\} (\w+)", page.read_text(encoding="utf-8")))
-    assert set(RANGES) <= shown
+    assert set(WAVE_MODELS) <= shown
 
 
 class TestConsole:

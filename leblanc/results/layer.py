@@ -20,7 +20,6 @@ from solvers.layer.state import LayerHistory
 
 FEWEST = 3  # angles of a wave
 SLACK = 1e-9  # rounding of a depth, over the radius
-_POINTS = 360
 
 
 class LayerCode(NoteCode):
@@ -411,13 +410,3 @@ def _require_depth(depth: Array, shape: tuple[int, ...], radius: float) -> None:
     low, high = float(np.min(depth)), float(np.max(depth))
     if not (math.isfinite(low) and math.isfinite(high) and -slack <= low and high <= radius + slack):
         raise InputError("depth", (low, high), "finite, 0 or above, and at most the radius")
-
-
-def angles() -> Array:
-    """Angles from the deflection all round, rad."""
-    return np.linspace(-math.pi, math.pi, _POINTS, endpoint=False)
-
-
-def wave_amplitude(depth: Array, mean: float) -> float:
-    """Largest change of depth over the mean depth; nan without a profile."""
-    return float(np.max(np.abs(depth - mean))) / mean if depth.size else math.nan
