@@ -16,6 +16,7 @@ import numpy as np
 
 from fluid.liquid import expansion, liquid_at
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds
+from leblanc.studies.liquid import runup_model
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from meshes.arrays import Array, Flags, Index
 from meshes.errors import InputError
@@ -89,7 +90,7 @@ class RunupPeak(AlwaysExact):
         plan = planned(scene)
         self.scene, self.drive, self.gravity = scene, drive_of(plan), across_gravity(scene)
         self.numerics = numerics_of(plan, cells, check=False)
-        self.model = liquid_model(scene)
+        self.model = runup_model(liquid_model(scene))
         self._known: dict[bytes, float] = {}
 
     @property
@@ -182,7 +183,7 @@ class PeakOver:
     def _watch(self, index: int) -> bool:
         """Look at this speed first from now on, and at those watched last; True if it was not among them."""
         fresh = index not in self._watched
-        self._watched = [*[one for one in self._watched if one != index][-_WATCHED:], index]
+        self._watched = [*[known for known in self._watched if known != index][-_WATCHED:], index]
         return fresh
 
     def _near(self, index: int, places: Sequence[int]) -> set[int]:
@@ -205,16 +206,16 @@ class PeakOver:
     def _make_sure(self, known: Array, volumes: Array, rows: Index, bound: float) -> None:
         """Close in on the highest peaks of some rows."""
         first = [sorted({*self._coarse, *self._around_best(known[row])}) for row in rows.tolist()]
-        owner = np.repeat(rows, [len(one) for one in first])
-        self._fill(known, volumes, owner, np.array([k for one in first for k in one], dtype=np.intp))
+        owner = np.repeat(rows, [len(indices) for indices in first])
+        self._fill(known, volumes, owner, np.array([k for indices in first for k in indices], dtype=np.intp))
         while rows.size:
             rows = rows[_so_far(known[rows]) <= bound]
             wanted = [_around_peaks(known[row]) for row in rows.tolist()]
-            owner = np.repeat(rows, [one.size for one in wanted])
+            owner = np.repeat(rows, [indices.size for indices in wanted])
             if owner.size == 0:
                 return
             self._fill(known, volumes, owner, np.concatenate(wanted))
-            rows = rows[np.array([one.size > 0 for one in wanted])]
+            rows = rows[np.array([indices.size > 0 for indices in wanted])]
 
 
 def _so_far(known: Array) -> Array:
@@ -234,7 +235,7 @@ def _around_peaks(row: Array) -> Index:
         for low, high in ((k - 1, k), (k, k + 1)):
             if low >= 0 and high < at.size and at[high] - at[low] > 1:
                 inner = np.linspace(at[low], at[high], _PARTS + 1)[1:-1].round().astype(int)
-                wanted |= {one for one in inner.tolist() if at[low] < one < at[high]}
+                wanted |= {index for index in inner.tolist() if at[low] < index < at[high]}
     return np.array(sorted(wanted), dtype=np.intp)
 
 

@@ -169,7 +169,9 @@ class Evaluator:
         mass = volumes @ self.density
         if self.by_mass:
             objective, vibration = mass, found["vibration"]
-            limit = next(one.limit for one in self.constraints if one.name == "vibration")
+            limit = next(
+                constraint.limit for constraint in self.constraints if constraint.name == "vibration"
+            )
             sure = vibration <= _BEYOND * limit
         else:
             vibration, sure = self.vibration.least(volumes, self.best)
@@ -294,7 +296,7 @@ def _resonances(scene: Scene) -> tuple[float, ...]:
 
 def _mean(scene: Scene, aim: Optimisation, machine: FilledMachine, problem: Problem, _: object) -> Problem:
     if aim.duty:
-        speeds, weights = np.array([(one.speed, one.weight) for one in aim.duty]).T
+        speeds, weights = np.array([(stage.speed, stage.weight) for stage in aim.duty]).T
         text, notes = f"mean amplitude over a duty cycle of {len(aim.duty)} speeds", problem.notes
     else:
         speeds = scene.speed_array()
@@ -348,7 +350,7 @@ def _robust(scene: Scene, aim: Optimisation, machine: FilledMachine, problem: Pr
     if aim.temperature is not None:
         constraints = (*constraints, room_when_warm(vibration))
     kind = "worst" if aim.quantile == 1.0 else f"{aim.quantile:.4g} quantile of the"
-    ranges = [name for name, one in (("unbalance", unbalance), ("temperature", aim.temperature)) if one]
+    ranges = [name for name, span in (("unbalance", unbalance), ("temperature", aim.temperature)) if span]
     text = (
         f"{kind} amplitude at {problem.working_speed * RPM:.4g} rpm over {len(around)} circumstances of "
         + " and ".join(ranges)

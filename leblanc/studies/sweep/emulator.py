@@ -183,14 +183,14 @@ def _fit(points: Array, standard: Array) -> tuple[Any, bool]:
         warnings.simplefilter("always")
         process.fit(points, standard)
     # A length at the end of its range is an answer: the output does not follow that value.
-    ours = [one for one in said if issubclass(one.category, ConvergenceWarning)]
-    for one in said:
-        if one not in ours:
-            warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
-    return process, all("close to" in str(one.message) for one in ours)
+    ours = [warning for warning in said if issubclass(warning.category, ConvergenceWarning)]
+    for warning in said:
+        if warning not in ours:
+            warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
+    return process, all("close to" in str(warning.message) for warning in ours)
 
 
-EMULATED = tuple(one.name for one in SINGLE)
+EMULATED = tuple(output.name for output in SINGLE)
 
 
 def emulate_store(store: Store | Path, output: str, seed: int = 0) -> Emulator:
