@@ -9,19 +9,20 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from inspect import signature
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from fluid.fill import Fill
 from fluid.friction import Friction
 from fluid.liquid import Liquid, known_liquid
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import OBJECTIVES, Optimisation
-from leblanc.studies.modes import Resolution, SectionSource
 from leblanc.units import ACCELERATION, ANGULAR_SPEED, LENGTH, TIME, VOLUME, parse_friction, parse_option
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.errors import InputError, require_not_negative
-from solvers.layer.state import Numerics
+
+if TYPE_CHECKING:
+    from leblanc.studies.modes import SectionSource
 
 Quantity = str | float
 Question = TypeVar("Question")
@@ -81,6 +82,9 @@ def layer_question(
     ------
     InputError : a value that cannot be read, or is out of its range
     """
+    from leblanc.studies.layer import as_options  # bring the solvers of layers, which no other question needs
+    from leblanc.studies.liquid import wave_model
+
     plates = baffle_plates(baffles, baffle_tip_radius, baffle_wall_gap)
     chamber = Chamber(
         parse_option(radius, LENGTH, "--radius"), parse_option(height, LENGTH, "--height"), baffles=plates
@@ -90,11 +94,11 @@ def layer_question(
         "speed": parse_option(speed, ANGULAR_SPEED, "--speed"),
         "whirl_speed": parse_option(whirl_speed, ANGULAR_SPEED, "--whirl-speed"),
         "whirl_amplitude": parse_option(whirl_amplitude, LENGTH, "--whirl-amplitude"),
-        "model": model,
-        "friction": friction_of(friction),
         "gravity": parse_option(gravity, ACCELERATION, "--gravity"),
-        "numerics": Numerics((96 if model == "fem" else 256) if cells is None else cells, dispersion),
     }
+    law = friction_of(friction)
+    with as_options():
+        whirl["model"] = wave_model(model, law, cells, dispersion)
     length = None if duration is None else parse_option(duration, TIME, "--duration")
     return LayerQuestion(whirl, length, parse_option(ramp, TIME, "--ramp"))
 
@@ -125,6 +129,8 @@ def modes_question(
     ------
     InputError : a value that cannot be read, or is out of its range
     """
+    from leblanc.studies.modes import Resolution  # brings the finite elements, which no other question needs
+
     chamber = Chamber(
         parse_option(radius, LENGTH, "--radius"),
         parse_option(height, LENGTH, "--height"),
@@ -250,6 +256,8 @@ def _source(mesh: str | Path | None, unit: Quantity | None, size: Quantity | Non
             if value is not None:
                 raise InputError(name, value, "left out without --mesh")
         return None
+    from leblanc.studies.modes import SectionSource
+
     return SectionSource(
         Path(mesh),
         None if unit is None else parse_option(unit, LENGTH, "--mesh-unit"),

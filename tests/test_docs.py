@@ -141,9 +141,9 @@ def test_every_picture_has_a_recipe_and_a_place_in_the_gallery() -> None:
 def test_programs_that_draw_are_there() -> None:
     from typer.main import get_command
 
-    from leblanc.cli import app
+    from leblanc.cli import application
 
-    commands = get_command(app).commands  # type: ignore[attr-defined]
+    commands = get_command(application()).commands  # type: ignore[attr-defined]
     for recipe in _module("figures").RECIPES:
         first, *rest = recipe.program
         if first == "leblanc":
@@ -177,10 +177,10 @@ def test_pictures_that_differ_are_told_apart(tmp_path: Path) -> None:
 def test_every_command_is_written_about() -> None:
     from typer.main import get_command
 
-    from leblanc.cli import app
+    from leblanc.cli import application
 
     text = "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
-    commands = get_command(app).commands  # type: ignore[attr-defined]
+    commands = get_command(application()).commands  # type: ignore[attr-defined]
     assert not [name for name in commands if f"leblanc {name}" not in text]
 
 
@@ -281,12 +281,12 @@ def test_pages_of_models_have_their_parts() -> None:
 
 
 def test_ranges_that_the_pages_show_are_those_of_the_code() -> None:
-    from leblanc.studies.validity import RANGES
+    from leblanc.studies.liquid import WAVE_MODELS
 
     shown = set()
     for page in PAGES:
         shown |= set(re.findall(r"```\{model-ranges\} (\w+)", page.read_text(encoding="utf-8")))
-    assert set(RANGES) <= shown
+    assert set(WAVE_MODELS) <= shown
 
 
 class TestConsole:

@@ -29,10 +29,10 @@ def compare(
     folder = out_dir(machine.name, out)
 
     from leblanc.figures.comparison import comparison_figure, save
-    from leblanc.results.netcdf import write_dataset
+    from leblanc.results.netcdf import write_netcdf
     from leblanc.text.explanation import COMPARISON_HEAD, basis, comparison_rows, refusals
 
-    write_dataset(found.to_dataset(), folder / "compare.nc")
+    write_netcdf(found.named_arrays(), folder / "compare.nc")
     files = save(comparison_figure(found), folder, "compare", "Amplitude over speed by liquid model")
     if json:
         print_json(found.to_json())

@@ -50,9 +50,9 @@ def sweep(
 
     result = _run(plan, folder, workers, scheduler, fresh)
     if netcdf:
-        from leblanc.results.netcdf import write_dataset
+        from leblanc.results.netcdf import write_netcdf
 
-        write_dataset(result.to_dataset(), folder / "sweep.nc")
+        write_netcdf(result.named_arrays(), folder / "sweep.nc")
     emulators = None
     if emulate:
         from leblanc.studies.sweep.emulator import emulated_outputs

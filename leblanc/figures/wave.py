@@ -17,6 +17,7 @@ from leblanc.figures.page import (
     WIDTH,
     Figure,
     Frame,
+    fill,
     lay_out,
     number,
     require_film,
@@ -183,7 +184,7 @@ def draw_annulus(axes: Axes, wave: Wave, factor: float) -> None:
     angle, surface = free_surface(wave.radius * MM, wave.theta, wave.depth * MM, factor)
     if np.any(wave.depth > 0.0):
         x, y = outline(wave.radius * MM, angle, surface)
-        axes.fill(x, y, facecolor=LIQUID, edgecolor="none", label="liquid")
+        fill(axes, x, y, facecolor=LIQUID, edgecolor="none", label="liquid")
         free = wet_surface(wave, angle, surface, factor)
         axes.plot(free.real, free.imag, color=SURFACE, linewidth=0.8)
     bar = dry_wall(wave, angle, surface, factor)

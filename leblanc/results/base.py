@@ -9,6 +9,7 @@ from base64 import b64encode
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import cache
 from importlib import import_module, metadata
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
@@ -17,7 +18,7 @@ from meshes.baffles import Baffles
 from meshes.chamber_section import ChamberSection, layer_depth
 
 if TYPE_CHECKING:
-    from leblanc.results.netcdf import Dataset
+    from leblanc.results.netcdf import Dataset, NamedArrays
 
 
 class NoteCode(StrEnum):
@@ -74,13 +75,15 @@ def one_line(text: str) -> str:
 
 def versions(packages: Iterable[str] = ("leblanc", "numpy", "scipy")) -> dict[str, str]:
     """Versions of packages, by default of this one and of the libraries that all numbers come from."""
-    found = {}
-    for package in packages:
-        try:
-            found[package] = metadata.version(package)
-        except metadata.PackageNotFoundError:  # run from a source tree that was never installed
-            found[package] = "not installed"
-    return found
+    return {package: _version(package) for package in packages}
+
+
+@cache
+def _version(package: str) -> str:
+    try:
+        return metadata.version(package)
+    except metadata.PackageNotFoundError:  # run from a source tree that was never installed
+        return "not installed"
 
 
 class OfScene(Protocol):
@@ -158,8 +161,12 @@ class Result(ABC):
         """What the command prints with --json: SI, radians, complex numbers as [re, im]."""
 
     @abstractmethod
+    def named_arrays(self) -> NamedArrays:
+        """Its numbers as arrays with named dimensions, units in their attributes."""
+
     def to_dataset(self) -> Dataset:
-        """An xarray dataset with units in its attributes."""
+        """The same as an xarray dataset."""
+        return self.named_arrays().to_dataset()
 
     def plot(self) -> Any:
         """The main figure, a `matplotlib.figure.Figure`."""

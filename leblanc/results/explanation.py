@@ -13,14 +13,13 @@ from fluid.numbers import LayerNumbers
 from leblanc.results.base import Result, attributes
 from leblanc.results.choice import ModelSpan
 from leblanc.results.exciter import number_or_none
-from leblanc.results.netcdf import dataset, flags
+from leblanc.results.netcdf import NamedArrays, Variable, flags
 from leblanc.results.netcdf import variable as var
 from leblanc.results.response import RestMode, RunResult, peak
 from meshes.arrays import Array
 from meshes.errors import InputError
 
 if TYPE_CHECKING:
-    from leblanc.results.netcdf import Dataset, Variable
     from solvers.rotor.exciter.machine import Dimensionless
 
 
@@ -99,8 +98,8 @@ class Explanation(Result):
         """What `explain` prints for scripts, SI; what is not finite becomes null when it is printed."""
         return {name: value for name, value in asdict(self).items() if name not in _ABOUT}
 
-    def to_dataset(self) -> Dataset:
-        """Dataset with dimensions `chamber`, `end` (first and last speed) and `span` (of one model)."""
+    def named_arrays(self) -> NamedArrays:
+        """Arrays over the dimensions `chamber`, `end` (first and last speed) and `span` (of one model)."""
         rate, span = "rad s-1", ("span",)
         ends = np.array(self.speed_ratio) * self.critical_speed_dry
         captured = math.nan if self.captured_from is None else self.captured_from
@@ -108,7 +107,7 @@ class Explanation(Result):
             field.name: np.array([getattr(span, field.name) for span in self.models])
             for field in fields(ModelSpan)
         }
-        return dataset(
+        return NamedArrays(
             {
                 "critical_speed_dry": var((), self.critical_speed_dry, rate, "critical speed without liquid"),
                 "critical_speed_wet": var((), self.critical_speed_wet, rate, "critical speed with liquid"),
@@ -198,15 +197,15 @@ class ExciterExplanation(Result):
             "critical_speed_printed": number_or_none(self.critical_speed_printed),
         }
 
-    def to_dataset(self) -> Dataset:
-        """Dataset of single numbers."""
+    def named_arrays(self) -> NamedArrays:
+        """Single numbers."""
         rate = "rad s-1"
         numbers = {
             name: var((), value, "1", name.replace("_", " "))
             for name, value in asdict(self.dimensionless).items()
         }
         first, through, last = self.characteristic
-        return dataset(
+        return NamedArrays(
             {
                 "natural_frequency": var((), self.natural_frequency, rate, "natural frequency"),
                 "second_pair": var((), first, rate, "shaft speed", "from here on three stuck speeds"),
@@ -364,8 +363,8 @@ class Comparison(Result):
             "largest_difference": self.largest_difference(answer.model) if answer.answered else None,
         }
 
-    def to_dataset(self) -> Dataset:
-        """Dataset with dimensions `model` and `speed`; nan where a model does not answer."""
+    def named_arrays(self) -> NamedArrays:
+        """Arrays over the dimensions `model` and `speed`; nan where a model does not answer."""
         each, over = ("model",), ("model", "speed")
         answered = np.array([answer.answered for answer in self.answers])
 
@@ -387,7 +386,7 @@ class Comparison(Result):
         amplitude, offset = table(lambda result: result.amplitude), table(lambda result: result.liquid_offset)
         dry, reference = self.amplitude_dry, f"from {self.reference}, over its largest amplitude"
         reasons = np.array([answer.reason for answer in self.answers], dtype=object)
-        return dataset(
+        return NamedArrays(
             {
                 "answered": flags(each, answered, "no yes", "answered", "the model answers this scene"),
                 "reason": var(each, reasons, "1", "reason", "why the model does not answer"),

@@ -8,22 +8,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from leblanc.results.base import Note, NoteCode, Result, one_line, texts, versions
-from leblanc.results.netcdf import dataset, variable
+from leblanc.results.netcdf import NamedArrays, variable
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.layer.state import LayerHistory
 
-if TYPE_CHECKING:
-    from leblanc.results.netcdf import Dataset
-
 FEWEST = 3  # angles of a wave
 SLACK = 1e-9  # rounding of a depth, over the radius
-_POINTS = 360
 
 
 class LayerCode(NoteCode):
@@ -192,7 +188,7 @@ class LayerResult(Result):
             "validity": tuple(map(asdict, self.validity)),
         }
 
-    def to_dataset(self) -> Dataset:
+    def named_arrays(self) -> NamedArrays:
         """The depth over `theta`; everything else in variables without a dimension and in attributes."""
         along = ("theta",)
         columns = {
@@ -206,7 +202,7 @@ class LayerResult(Result):
             "gravity_offset": variable((), self.gravity_offset, "m", "steady offset by gravity, in space"),
         }
         coords = {"theta": variable(along, self.theta, "rad", "angle from the deflection, with the spin")}
-        return dataset(columns, coords, _attributes(self.case, self.converged, self.in_range, self.notes))
+        return NamedArrays(columns, coords, _attributes(self.case, self.converged, self.in_range, self.notes))
 
 
 @dataclass(frozen=True)
@@ -264,7 +260,7 @@ class LayerPeriodsResult(Result):
             "notes": texts(self.notes),
         }
 
-    def to_dataset(self) -> Dataset:
+    def named_arrays(self) -> NamedArrays:
         """Means over whirl periods over `time`, the depth at the end over `theta`."""
         h, over = self.history, ("time",)
         columns = {
@@ -287,7 +283,7 @@ class LayerPeriodsResult(Result):
             "time": variable(over, h.time, "s", "middle of the whirl period"),
             "theta": variable(("theta",), h.theta, "rad", "angle from the deflection, with the spin"),
         }
-        return dataset(columns, coords, _attributes(self.case, self.converged, self.in_range, self.notes))
+        return NamedArrays(columns, coords, _attributes(self.case, self.converged, self.in_range, self.notes))
 
 
 def _attributes(case: LayerCase, converged: bool, in_range: bool, notes: tuple[Note, ...]) -> dict[str, Any]:
@@ -414,13 +410,3 @@ def _require_depth(depth: Array, shape: tuple[int, ...], radius: float) -> None:
     low, high = float(np.min(depth)), float(np.max(depth))
     if not (math.isfinite(low) and math.isfinite(high) and -slack <= low and high <= radius + slack):
         raise InputError("depth", (low, high), "finite, 0 or above, and at most the radius")
-
-
-def angles() -> Array:
-    """Angles from the deflection all round, rad."""
-    return np.linspace(-math.pi, math.pi, _POINTS, endpoint=False)
-
-
-def wave_amplitude(depth: Array, mean: float) -> float:
-    """Largest change of depth over the mean depth; nan without a profile."""
-    return float(np.max(np.abs(depth - mean))) / mean if depth.size else math.nan

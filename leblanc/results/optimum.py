@@ -5,23 +5,19 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass
 from enum import Enum
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from fluid.friction import Friction
 from leblanc.results.base import Note, NoteCode, Result, attributes, texts
 from leblanc.results.choice import ModelSpan
-from leblanc.results.netcdf import dataset, flags, write_dataset
+from leblanc.results.netcdf import NamedArrays, flags
 from leblanc.results.netcdf import variable as var
 from leblanc.results.response import RunResult
 from leblanc.results.sweep import EmulatorError
 from leblanc.units import MM, RPM
 from meshes.arrays import Array, Flags
-
-if TYPE_CHECKING:
-    from leblanc.results.netcdf import Dataset
 
 
 class Feasibility(Enum):
@@ -330,7 +326,7 @@ class OptimumResult(Result):
             }
         )
 
-    def to_dataset(self) -> Dataset:
+    def named_arrays(self) -> NamedArrays:
         """All volumes that were evaluated, over `candidate` and `chamber`, and the front."""
         over, tried = ("candidate",), self.candidates
         excess = "of the constraint exceeded most; 0 or below: none is"
@@ -358,7 +354,7 @@ class OptimumResult(Result):
             "candidate": var(over, tries.astype(np.int32), "1", "candidate"),
             "chamber": var(("chamber",), chambers.astype(np.int32), "1", "chamber"),
         }
-        return dataset(columns, coords, self._attributes())
+        return NamedArrays(columns, coords, self._attributes())
 
     def _attributes(self) -> dict[str, Any]:
         """Scene, what was asked for, versions."""
@@ -370,14 +366,3 @@ class OptimumResult(Result):
             "feasible": "yes" if self.feasible else "no",
         }
         return attributes(self, "optimise", own, self.notes)
-
-
-def write_optimum(result: OptimumResult, path: Path) -> None:
-    """Write all volumes that were evaluated as netCDF 4.
-
-    Parameters
-    ----------
-    result : the optimum
-    path : the file to write or replace
-    """
-    write_dataset(result.to_dataset(), path)

@@ -6,23 +6,19 @@ import json
 import math
 from dataclasses import asdict, dataclass
 from enum import Enum
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fluid.friction import Friction
 from leblanc.results.base import FilledChamber, Note, Result, attributes, one_line, texts
-from leblanc.results.netcdf import dataset, flags, variable, write_dataset
+from leblanc.results.netcdf import NamedArrays, flags, variable
 from leblanc.results.response import phase
 from leblanc.units import friction_words
 from meshes.arrays import Array, Complex, Flags
 from solvers.runup.runup import EnergyAudit, RunupHistory
 from solvers.synchronous.response import Response
-
-if TYPE_CHECKING:
-    from leblanc.results.netcdf import Dataset
 
 Values = NDArray[Any]
 Bands = tuple[tuple[float, float], ...]
@@ -304,7 +300,7 @@ class RunupResult(Result):
         audit = self.energy
         return asdict(audit) | {"remainder": audit.remainder, "closure": audit.closure}
 
-    def to_dataset(self) -> Dataset:
+    def named_arrays(self) -> NamedArrays:
         """The run-up over `time`, `chamber` and `coordinate`.
 
         Complex numbers are pairs `_real`, `_imag`, truth values are bytes with `flag_meanings`. The energy
@@ -312,7 +308,7 @@ class RunupResult(Result):
         """
         columns = _columns(self)
         coords = {name: columns.pop(name) for name in ("time", "chamber")}
-        return dataset(columns, coords, self._attributes())
+        return NamedArrays(columns, coords, self._attributes())
 
     def _attributes(self) -> dict[str, Any]:
         """Scene, numerics, single results and versions."""
@@ -370,17 +366,6 @@ def _columns(result: RunupResult) -> dict[str, Any]:
         columns[f"{name}_real"] = each(values.real, "m", f"{name} {text}, first direction")
         columns[f"{name}_imag"] = each(values.imag, "m", f"{name} {text}, second direction")
     return columns
-
-
-def write_runup(result: RunupResult, path: Path) -> None:
-    """Write a run-up as netCDF 4.
-
-    Parameters
-    ----------
-    result : the run-up
-    path : the file to write or replace
-    """
-    write_dataset(result.to_dataset(), path)
 
 
 def turn_mean(values: Complex, angle: Array) -> Complex:

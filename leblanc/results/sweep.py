@@ -5,17 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.results.base import Result
+from leblanc.results.netcdf import NamedArrays
 from meshes.arrays import Array
-
-if TYPE_CHECKING:
-    from leblanc.results.netcdf import Dataset
-
 
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 
@@ -98,7 +95,7 @@ class SweepResult(Result):
     over_speed : statistics of the others at each speed
     sensitivities : of outputs that are one number a sample; None where the samples do not tell
     digest : fingerprint of the sweep
-    read : reads the store as a dataset, each time it is called
+    read : reads the store, each time it is called
 
     Examples
     --------
@@ -128,7 +125,7 @@ class SweepResult(Result):
     over_speed: Mapping[str, Statistics]
     sensitivities: Mapping[str, Sensitivity | None]
     digest: str
-    read: Callable[[], Dataset] = field(repr=False, compare=False)
+    read: Callable[[], NamedArrays] = field(repr=False, compare=False)
 
     def to_json(self) -> dict[str, Any]:
         """What `sweep` prints for scripts: SI, lists over speed or over the varied fields."""
@@ -150,8 +147,8 @@ class SweepResult(Result):
             "digest": self.digest,
         }
 
-    def to_dataset(self) -> Dataset:
-        """The store as a dataset with dimensions `sample` and `speed`; read whole, at each call."""
+    def named_arrays(self) -> NamedArrays:
+        """The store over the dimensions `sample` and `speed`; read whole, at each call."""
         return self.read()
 
 

@@ -16,7 +16,9 @@ from numpy.typing import NDArray
 
 from leblanc.studies.layer import answer_layer
 from solvers.layer.settle import simulate
-from solvers.layer.state import Numerics, Whirl
+from solvers.layer.state import Numerics
+from solvers.liquid_model import Whirl
+from solvers.synchronous.models import LINEAR, STATICS
 from solvers.waves.steady import respond, solve
 from validation.benchmarks.ours import AMPLITUDE, SPEED
 from validation.benchmarks.problems import SPIN, fill, response_speeds, steady_problem
@@ -103,13 +105,13 @@ def over_speeds(quick: bool = False) -> list[Growth]:
     curves = [best(partial(respond, problem, np.linspace(low, high, n))) for n in counts[1:]]
     return [
         Growth(
-            "statics", "speeds", counts, each(lambda _: answer_layer(layer, SPIN, SPIN, AMPLITUDE, "statics"))
+            "statics", "speeds", counts, each(lambda _: answer_layer(layer, SPIN, SPIN, AMPLITUDE, STATICS))
         ),
         Growth(
             "linear",
             "speeds",
             counts,
-            each(lambda s: answer_layer(layer, SPIN, SPIN + s, AMPLITUDE, "linear")),
+            each(lambda s: answer_layer(layer, SPIN, SPIN + s, AMPLITUDE, LINEAR)),
         ),
         Growth("kdv, whole curve", "speeds", counts[1:], curves),
         Growth(

@@ -19,7 +19,8 @@ from fluid.liquid import Liquid
 from fluid.waves import force_ratio
 from meshes.chamber import Chamber
 from solvers.layer.settle import settle, simulate
-from solvers.layer.state import LayerHistory, Numerics, Whirl
+from solvers.layer.state import LayerHistory, Numerics
+from solvers.liquid_model import Whirl
 from validation.cases.case import Case, Verdict
 from validation.cases.rigs import data
 

@@ -42,7 +42,7 @@
 import math
 
 import leblanc as lb
-from leblanc.figures import amplitude_figure, liquid_figure
+from leblanc.figures.response import amplitude_figure, liquid_figure
 from leblanc.studies.run import run_scene
 from validation.cases import rigs, vector_model
 from validation.cases.rigs import data

@@ -10,8 +10,8 @@ import numpy as np
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, jeffcott
 from leblanc.studies.batch import answer_scenes
 from leblanc.studies.choose import axial_gravity
+from leblanc.studies.liquid import synchronous_model
 from meshes.arrays import Array, Flags
-from solvers.synchronous.models import model_named
 from solvers.synchronous.response import machine_responses
 
 AT_ONCE = 4000  # pairs; more at once would only take memory
@@ -87,7 +87,7 @@ class FilledMachine:
         rotor = jeffcott(self.scene)
         machines = [(rotor, with_volumes(self.scene, row).fills) for row in different]
         gravity = np.full(len(machines), axial_gravity(self.scene))
-        model = model_named(self.scene.model.liquid)
+        model = synchronous_model(self.scene.model.liquid)
         found = machine_responses(machines, owner.reshape(-1), speed, gravity, model)
         return np.abs(found.deflection), found.dry_patch
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from fluid.liquid import expansion, liquid_at
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds
+from leblanc.studies.liquid import runup_model
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from meshes.arrays import Array, Flags, Index
 from meshes.errors import InputError
@@ -89,7 +90,7 @@ class RunupPeak(AlwaysExact):
         plan = planned(scene)
         self.scene, self.drive, self.gravity = scene, drive_of(plan), across_gravity(scene)
         self.numerics = numerics_of(plan, cells, check=False)
-        self.model = liquid_model(scene)
+        self.model = runup_model(liquid_model(scene))
         self._known: dict[bytes, float] = {}
 
     def exact(self, volumes: Array, bound: float = math.inf) -> Array:

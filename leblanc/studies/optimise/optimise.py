@@ -28,6 +28,7 @@ from leblanc.results.optimum import (
 from leblanc.scene.scene import Scene, Speeds, require_clear
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.choose import axial_gravity
+from leblanc.studies.liquid import SYNCHRONOUS_MODELS
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.emulated import EmulatedVibration
 from leblanc.studies.optimise.objectives import RunupPeak
@@ -35,12 +36,11 @@ from leblanc.studies.optimise.problem import Problem, growth, growth_speeds, pro
 from leblanc.studies.optimise.search import best_volumes, bounds_of, evaluated_again, on_all_cells
 from leblanc.studies.optimise.wetting import WettedWalls, wet_walls, wetting_volumes
 from leblanc.studies.run import run_scene
-from leblanc.studies.validity import RANGES
 from leblanc.units import RPM
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
+from solvers.liquid_model import LONG
 from solvers.search import Found
-from solvers.synchronous.models import MODEL_NAMES
 
 _ASKED = "the scene asks for it; "
 
@@ -213,7 +213,7 @@ def _of_scene(scene: Scene, constraints: dict[str, ConstraintValue], **found: ob
 
 def _with_response(result: OptimumResult, scene: Scene, machine: FilledMachine) -> OptimumResult:
     """The machine with the best volumes over the scene's speeds, by the model of the search."""
-    if machine.scene.model.liquid not in MODEL_NAMES:
+    if machine.scene.model.liquid not in SYNCHRONOUS_MODELS:
         return result
     filled = with_volumes(machine.scene, result.volume)
     response = run_scene(filled)
@@ -236,7 +236,7 @@ def _capacity(scene: Scene, volume: Array) -> ConstraintValue:
 
 def _limits(scene: Scene, problem: Problem, volume: Array) -> tuple[Note, ...]:
     """What the models do not hold for."""
-    deepest = RANGES["long_wave"]["relative_depth"][1]
+    deepest = LONG[1]
     if not isinstance(problem.evaluate.vibration, RunupPeak):
         return ()
     return tuple(
@@ -249,7 +249,7 @@ def _limits(scene: Scene, problem: Problem, volume: Array) -> tuple[Note, ...]:
 def _closed_forms(machine: FilledMachine, volume: Array, speed: float) -> tuple[WettingVolumes, ...]:
     """The volumes that wet the walls at the deflection that the answer has at the working speed."""
     scene = machine.scene
-    if machine.planar and scene.model.liquid in MODEL_NAMES:
+    if machine.planar and scene.model.liquid in SYNCHRONOUS_MODELS:
         moved = np.repeat(machine.at(volume[None], np.array([speed])).amplitude, volume.size)
     else:
         answer = run_scene(with_volumes(scene, volume).altered(speeds=Speeds.at(speed)))

@@ -15,20 +15,17 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.results.base import one_line, versions
-from leblanc.results.netcdf import dataset, variable
+from leblanc.results.netcdf import NamedArrays, variable
 from leblanc.scene.schema.load import shown
 from leblanc.studies.sweep.block import FLAG, NUMBER, OUTPUTS, PENDING, STATUS, TEXT, Output
 from leblanc.studies.sweep.study import Sweep, VariedField
 from meshes.errors import InputError
-
-if TYPE_CHECKING:
-    from leblanc.results.netcdf import Dataset
 
 STORE = "sweep.zarr"
 
@@ -303,27 +300,8 @@ def _table(value: object) -> str:
 _SINGLE = ("units", "long_name")
 
 
-def store_dataset(store: Store) -> Dataset:
-    """The whole store as a dataset with units, in memory.
-
-    Parameters
-    ----------
-    store : to be read
-    """
-    found = {}
-    for name in store.arrays:
-        values, said = store.read(name), store.attributes(name)
-        entry = variable(store.dims(name), values, *(str(said.pop(key)) for key in _SINGLE))
-        if "flag_values" in said:
-            said["flag_values"] = np.array(said["flag_values"], dtype=np.int8)
-        entry.attrs.update(said)
-        found[name] = entry
-    speed = found.pop("speed")
-    return dataset(found, coords={"speed": speed}, attrs=store.attributes())
-
-
-def read_dataset(path: Path) -> Dataset:
-    """The same from the folder of a store.
+def read_arrays(path: Path) -> NamedArrays:
+    """The whole store with units, in memory.
 
     Parameters
     ----------
@@ -333,4 +311,13 @@ def read_dataset(path: Path) -> Dataset:
     ------
     InputError : there is no store
     """
-    return store_dataset(read_store(path))
+    store, found = read_store(path), {}
+    for name in store.arrays:
+        values, said = store.read(name), store.attributes(name)
+        one = variable(store.dims(name), values, *(str(said.pop(key)) for key in _SINGLE))
+        if "flag_values" in said:
+            said["flag_values"] = np.array(said["flag_values"], dtype=np.int8)
+        one.attrs.update(said)
+        found[name] = one
+    speed = found.pop("speed")
+    return NamedArrays(found, coords={"speed": speed}, attrs=store.attributes())

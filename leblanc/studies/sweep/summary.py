@@ -13,7 +13,7 @@ import numpy as np
 from leblanc.results.sweep import QUANTILES, Sensitivity, Statistics, SweepResult
 from leblanc.studies.sweep.block import DONE, FAILED, NOT_CONVERGED, SINGLE
 from leblanc.studies.sweep.sampling import sample_rows
-from leblanc.studies.sweep.store import Store, read_dataset
+from leblanc.studies.sweep.store import Store, read_arrays
 from leblanc.studies.sweep.study import Sweep
 from leblanc.studies.sweep.sweep import Progress, run_sweep
 from meshes.arrays import Array
@@ -215,7 +215,7 @@ def summarise(store: Store, sweep: Sweep) -> SweepResult:
         over_speed={name: _over_speed(store, name, speeds) for name in OVER_SPEED},
         sensitivities=shares,
         digest=sweep.digest,
-        read=partial(read_dataset, store.path),
+        read=partial(read_arrays, store.path),
     )
 
 

@@ -55,6 +55,41 @@ def test_help_loads_nothing_heavy() -> None:
     assert check.returncode == 0, check.stderr
 
 
+# Libraries that other commands need, and those that come with them.
+ELSEWHERE = {
+    *("xarray", "pandas", "dask", "distributed", "pint", "zarr", "SALib", "sklearn", "joblib"),
+    *("skfem", "meshio", "pde", "sympy", "pyvista", "vtk", "vtkmodules", "trame", "gmsh", "ezdxf"),
+    *("matplotlib.pyplot", "scipy.optimize", "scipy.stats", "scipy.integrate", "scipy.interpolate"),
+}
+RIG = "examples/horizontal_rig.toml"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "unused"),
+    [
+        (["run", RIG], ["numba", "scipy.linalg", "scipy.sparse"]),
+        (["map", RIG, "--volumes", "5", "--speeds", "11"], ["numba", "scipy.linalg", "scipy.sparse"]),
+        (["optimise", RIG, "--no-front"], ["numba"]),
+        (["explain", RIG], ["numba", "scipy.linalg", "matplotlib", "h5py", "jinja2"]),
+        (["runup", "examples/runup.toml", "--cells", "16", "--samples", "50", "--no-check"], []),
+    ],
+    ids=["run", "map", "optimise", "explain", "runup"],
+)
+def test_a_command_loads_what_it_needs(arguments: list[str], unused: list[str], tmp_path: Path) -> None:
+    """To load libraries is most of a short command; not one of these has anything to say to it."""
+    options = [] if arguments[0] == "explain" else ["--out", str(tmp_path)]
+    code = f"""if True:
+        import sys
+        from leblanc.cli import main
+        assert main({[*arguments, *options]!r}) == 0
+        sys.exit(", ".join({ELSEWHERE | set(unused)!r} & set(sys.modules)) or 0)
+    """
+    check = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert check.returncode == 0, check.stderr
+
+
 def test_version(capsys: Capture) -> None:
     assert main(["--version"]) == 0
     assert capsys.readouterr().out.strip()
@@ -119,12 +154,12 @@ def test_each_failure_has_its_exit_code(
 
 
 def test_a_command_keeps_its_exit_code_within_typer(monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
-    application = typer.Typer()
+    commands = typer.Typer()
 
-    @application.callback()
+    @commands.callback()
     def _all() -> None: ...
 
-    @application.command()
+    @commands.command()
     def fail(how: str) -> None:
         raise {
             "input": InputError("radius", -1.0, "above 0"),
@@ -133,7 +168,7 @@ def test_a_command_keeps_its_exit_code_within_typer(monkeypatch: pytest.MonkeyPa
             "exit": typer.Exit(3),
         }[how]
 
-    monkeypatch.setattr(cli, "app", application)
+    monkeypatch.setattr(cli, "application", lambda _: commands)
     codes = {how: main(["fail", how]) for how in ("input", "stuck", "stop", "exit")}
     assert codes == {"input": 2, "stuck": 3, "stop": 130, "exit": 3}
     assert "Traceback" not in capsys.readouterr().err
@@ -150,7 +185,6 @@ def test_a_command_of_another_package(monkeypatch: pytest.MonkeyPatch, capsys: C
         EntryPoint("broken", "no_such_package.command:broken", "leblanc.commands"),
     ]
     monkeypatch.setattr(cli, "entry_points", lambda **_: entries)
-    monkeypatch.setattr(cli, "app", cli._application())
     assert main(["--help"]) == 0
     assert "measure" in capsys.readouterr().out
     assert main(["broken", "anything", "--at-all"]) == 2
