@@ -26,7 +26,7 @@ _BREAK = re.compile(r"(?<=[/_])(?=\w)")  # where a path or a name may go on in t
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of words and numbers.
+    """Rows of texts and numbers.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def drawn(draw: Callable[[Path], Path]) -> Picture:
 
 
 def _lines(text: str) -> str:
-    """A cell's words in HTML, their line breaks kept, with places where long names may break."""
+    """A cell's text in HTML, their line breaks kept, with places where long names may break."""
     return _BREAK.sub("<wbr>", escape(text)).replace("\n", "<br>")
 
 

@@ -42,7 +42,7 @@ CUTS = {
 def surface_figure(result: VolumeResult) -> Figure:
     """Section through the rotation axis and the geometric one: walls, and the surface of the liquid.
 
-    The surface is that of the volume asked for, or of the optimal one, which just touches the wall where
+    The surface is that of the given volume, or of the optimal one, which just touches the wall where
     it is nearest to the rotation axis.
 
     Parameters

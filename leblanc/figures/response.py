@@ -337,7 +337,7 @@ def campbell_figure(result: RunResult) -> Figure:
 
 
 def draw_campbell(axes: Axes, result: RunResult) -> None:
-    """Natural frequencies over speed, forward and backward told apart, and where the spin meets them.
+    """Natural frequencies over speed, forward and backward distinguished, and where the spin meets them.
 
     Parameters
     ----------

@@ -486,7 +486,7 @@ def film(left: Axes, right: Axes, wave: Wave, history: WaveFrames) -> Show:
 
 
 def _annulus(axes: Axes, wave: Wave, history: WaveFrames, factor: float, dry: bool) -> Show:
-    """Draw what stands still of the annulus, and return what moves the rest."""
+    """Draw what is fixed of the annulus, and return what moves the rest."""
     radius, largest = wave.radius * MM, float(np.abs(history.deflection).max())
     walls(axes, wave)
     turning(axes, wave, "spin", 1.0, 135.0)
@@ -514,7 +514,7 @@ def _annulus(axes: Axes, wave: Wave, history: WaveFrames, factor: float, dry: bo
 
 
 def _profile(axes: Axes, wave: Wave, history: WaveFrames, dry: bool) -> Show:
-    """Draw what stands still of the depth around the wall, and return what moves the rest."""
+    """Draw what is fixed of the depth around the wall, and return what moves the rest."""
     across = {"transform": axes.get_xaxis_transform()}
     (curve,) = axes.plot([], [], color=SURFACE, linewidth=1.2, label="depth of the layer")
     axes.axhline(wave.mean_depth * MM, **MEAN_LINE)
@@ -535,7 +535,7 @@ def _profile(axes: Axes, wave: Wave, history: WaveFrames, dry: bool) -> Show:
 
 
 def _digits(time: Array) -> int:
-    """Decimals that tell one frame from the next."""
+    """Decimals that distinguish one frame from the next."""
     step = float(np.min(np.diff(time))) if time.size > 1 else 1e-2
     return min(max(0, 1 - math.floor(math.log10(step))), 9)
 

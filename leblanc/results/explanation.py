@@ -151,7 +151,7 @@ def _layer_variables(layers: tuple[LayerExplanation | None, ...]) -> dict[str, V
 
 @dataclass(frozen=True)
 class ExciterExplanation(Result):
-    """Numbers that decide how a vibrating table with balls behaves, without any integration in time.
+    """Numbers that determine how a vibrating table with balls behaves, without any integration in time.
 
     Parameters
     ----------
@@ -257,7 +257,7 @@ class Comparison(Result):
     Parameters
     ----------
     name, source, assumed, digest : of the scene as it was given
-    answers : one for each model, in the order asked for
+    answers : one for each model, in the order given
 
     Raises
     ------
@@ -286,7 +286,7 @@ class Comparison(Result):
 
     @property
     def models(self) -> tuple[str, ...]:
-        """Names of the models, in the order asked for."""
+        """Names of the models, in the order given."""
         return tuple(answer.model for answer in self.answers)
 
     @property

@@ -191,7 +191,7 @@ def wall(chamber: int, speed: float, volume: float, enough: float, deflection: f
 
 
 def mesh(chamber: int, finding: str) -> Note:
-    """What is poor in the mesh of a chamber's section.
+    """Faults of the mesh of a chamber's section.
 
     Parameters
     ----------
@@ -298,7 +298,7 @@ def self_excited_on_the_way(bands: tuple[tuple[float, float], ...], friction: Fr
 
 
 def out_of_range(code: RunupCode, chamber: int, holds: Flags, limit: float = math.nan) -> Note | None:
-    """At what share of the samples the layer of a chamber is no fair picture of its liquid; None if nowhere.
+    """At what share of the samples the layer of a chamber does not describe its liquid; None if nowhere.
 
     Parameters
     ----------

@@ -102,12 +102,12 @@ class RunupResult(Result):
     cells, dispersion : of each layer; whether its waves have the dispersion of the finite depth
     history : of rotor and liquid
     turning : index of the last time before the speed falls again; the last one of all if it never does
-    in_range : the layer is a fair picture of the liquid at that time, shape (k,)
+    in_range : the layer describes the liquid at that time, shape (k,)
     steady : synchronous response at the speeds passed, of a Jeffcott rotor; None for others
     bands : of speed in which some whirl grows by itself, rad/s, an end of the range counting as an edge
     chambers, planes : one for each chamber; its position along the axis, m
     notes : limits of validity and findings
-    frames : the layers at regular times; None if they were not asked for
+    frames : the layers at regular times; None if they were not kept
 
     Examples
     --------
@@ -369,7 +369,7 @@ def _columns(result: RunupResult) -> dict[str, Any]:
 
 
 def turn_mean(values: Complex, angle: Array) -> Complex:
-    """Mean over the turns of the rotor around each time: what stands still in space drops out of it.
+    """Mean over the turns of the rotor around each time: what is fixed in space drops out of it.
 
     The mean is taken over one turn, or over as many whole turns as hold eight samples.
 

@@ -25,9 +25,9 @@ class WhirlMap(Result):
     name, source, assumed, digest : of the scene
     speed : spin speed Omega, rad/s, shape (n,)
     volume : liquid in all chambers together, m^3, shape (v,)
-    growth : of the whirl that grows most, 1/s, 0 if rounding cannot tell, nan if not found, shape (v, n)
+    growth : of the whirl that grows most, 1/s, 0 if it is below rounding, nan if not found, shape (v, n)
     whirl_speed : of that whirl in the standing frame, rad/s, positive with the spin, shape (v, n)
-    in_range : the plane layer is a fair picture of the liquid there, shape (v, n)
+    in_range : the plane layer describes the liquid there, shape (v, n)
     edges : for each volume the bands of speed in which a whirl grows, rad/s; an end that is the first or last
         speed is where the range ends
     friction, damping : of the liquid, of the support, in words

@@ -102,7 +102,7 @@ def choose(scene: Scene) -> Choice:
 
     Raises
     ------
-    InputError : the scene asks for a model that does not answer the synchronous response, or is an exciter
+    InputError : the scene names a model that does not answer the synchronous response, or is an exciter
     """
     return choose_all([prepare(scene)])[0]
 
@@ -191,7 +191,7 @@ def _other_errors(machine: Prepared) -> tuple[LinearError, Array]:
 
 
 def _choice(machine: Prepared, linear: LinearError, gravity: Array) -> Choice:
-    """The cheapest model that the errors allow, or the one asked for."""
+    """The cheapest model that the errors allow, or the one that the scene names."""
     scene, speed = machine.scene, machine.speed
     liquid, tolerance = scene.model.liquid, scene.model.tolerance
     # What gravity does to all models alike does not speak for the dearer one. Where a wall may run dry the

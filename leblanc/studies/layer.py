@@ -126,7 +126,7 @@ def wave_notes(wave: LiquidWave) -> tuple[Note, ...]:
 
 
 def _case(fill: Fill, whirl: Whirl, model: str) -> LayerCase:
-    """What was asked for, for whoever shows the answer."""
+    """The whirl and the chamber, for texts and figures."""
     return LayerCase(
         model=model,
         radius=fill.chamber.radius,
@@ -180,7 +180,7 @@ def layer_film(
     """A layer in the drum frame for a film; the parameters are `layer_history`'s.
 
     Long waves start from rest and run for six whirl periods unless a duration is given; waves of the other
-    models stand still in the frame of the deflection and run round the drum for two.
+    models are steady in the frame of the deflection and run round the drum for two.
 
     Returns
     -------
@@ -209,7 +209,7 @@ def _film_from_rest(fill: Fill, whirl: Whirl, model: LongWave, duration: float) 
 
 
 def steady_film(answer: LayerResult, whirl: Whirl, duration: float) -> WaveFrames:
-    """Pictures of a wave that stands still in the frame of the deflection, as it runs round the drum.
+    """Pictures of a wave that is steady in the frame of the deflection, as it runs round the drum.
 
     Parameters
     ----------

@@ -167,7 +167,7 @@ def run_scene(scene: Scene) -> RunResult:
 
     Raises
     ------
-    InputError : the scene asks for a liquid model that does not answer this, or its rotor is an exciter
+    InputError : the scene names a liquid model that does not answer this, or its rotor is an exciter
 
     Examples
     --------
@@ -278,7 +278,7 @@ def _walls(machine: Prepared, answer: Response, motion: Motion | None) -> list[N
 
 
 def _meshes(scene: Scene) -> list[Note]:
-    """What is poor in the meshes of chambers with a section of their own."""
+    """Faults of the meshes of chambers with a section of their own."""
     found: list[Note] = []
     for k, fill in enumerate(scene.fills):
         if fill.chamber.section is None or not fill.uneven:

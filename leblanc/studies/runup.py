@@ -73,7 +73,7 @@ def runup_frames(history: RunupHistory) -> RunupFrames | None:
 
     Returns
     -------
-    In the drum frame; None where no snapshots were asked for
+    In the drum frame; None where no snapshots were kept
     """
     kept = history.snapshots
     if kept is None:
@@ -92,11 +92,11 @@ def runup_frames(history: RunupHistory) -> RunupFrames | None:
 
 
 def liquid_model(scene: Scene) -> str:
-    """Most exact liquid model that a scene's run-up may take: the one it asks for, or long waves.
+    """Most exact liquid model that a scene's run-up may take: the one that it names, or long waves.
 
     Raises
     ------
-    InputError : the scene asks for a model that does not go through time
+    InputError : the scene names a model that does not go through time
     """
     liquid = scene.model.liquid
     if liquid not in ("auto", *RUNUP_MODELS):
@@ -105,7 +105,7 @@ def liquid_model(scene: Scene) -> str:
 
 
 def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tuple[Flags, tuple[Note, ...]]:
-    """Where the layer is a fair picture of the liquid, and why it is none elsewhere.
+    """Where the layer describes the liquid, and why it does not elsewhere.
 
     A layer must turn fast enough itself, whatever the drum does, must not be deep beside its radius
     [theory: long_wave, eq. 4], and must leave the inner wall clear.
@@ -114,7 +114,7 @@ def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tup
     ----------
     scene : the machine
     history : its run-up, k times
-    model : of its layers; what the scene asks for, or long waves, if None
+    model : of its layers; if None the one that the scene names, or long waves
 
     Returns
     -------
@@ -200,7 +200,7 @@ def chosen_run(
 
     Raises
     ------
-    InputError : the scene asks for a model that does not go through time
+    InputError : the scene names a model that does not go through time
     """
     model, tolerance = liquid_model(scene), scene.model.tolerance
     system, friction = dry_rotor(scene).system(), scene.model.friction
@@ -354,11 +354,11 @@ def _notes(scene: Scene, taken: RunupChoice, steady: Response | None, bands: Ban
 
 
 def planned(scene: Scene) -> Runup:
-    """The run-up that a scene asks for.
+    """The run-up of a scene.
 
     Raises
     ------
-    InputError : it asks for none
+    InputError : it has none
     """
     if scene.runup is None:
         allowed = (
@@ -382,7 +382,7 @@ def drive_of(plan: Runup) -> Drive:
 def numerics_of(
     plan: Runup, cells: int | None = None, samples: int | None = None, check: bool = True
 ) -> RunupNumerics:
-    """Resolution of a run-up, of the scene where nothing else is asked for."""
+    """Resolution of a run-up; the scene's where nothing else is given."""
     return RunupNumerics(
         cells=plan.cells if cells is None else cells,
         samples=plan.samples if samples is None else samples,

@@ -28,7 +28,7 @@ def answer_volume(
     eccentricity : deflection e, m
     speed : spin speed Omega, rad/s
     gravity : along the axis, m/s^2
-    volume : of liquid whose surface is asked for as well, m^3
+    volume : of liquid whose surface is computed as well, m^3
 
     Raises
     ------

@@ -29,7 +29,7 @@ REFUSED = "does not answer"
 
 
 def machine_rows(answer: Explanation) -> Rows:
-    """The rotor as a whole: label and words."""
+    """The rotor as a whole; label and text."""
     dry, wet = answer.critical_speed_dry * RPM, answer.critical_speed_wet * RPM
     first, last = answer.speed_ratio
     rows = [
@@ -44,7 +44,7 @@ def machine_rows(answer: Explanation) -> Rows:
 
 
 def mode_rows(modes: tuple[RestMode, ...]) -> Rows:
-    """Natural frequencies at rest: frequency and words."""
+    """Natural frequencies at rest; frequency and text."""
     return [
         (
             f"{mode.frequency * RPM / _HZ:.4g} Hz",
@@ -55,7 +55,7 @@ def mode_rows(modes: tuple[RestMode, ...]) -> Rows:
 
 
 def layer_rows(layer: LayerExplanation | None) -> Rows:
-    """One chamber: label and words."""
+    """One chamber; label and text."""
     if layer is None:
         return [("fill", "empty")]
     n = layer.numbers
@@ -91,7 +91,7 @@ def span_heading(span: ModelSpan) -> str:
 
 
 def exciter_rows(answer: ExciterExplanation) -> Rows:
-    """A vibrating table with balls: label and words."""
+    """A vibrating table with balls; label and text."""
     numbers, (begin, _, end) = answer.dimensionless, answer.characteristic
     first, last = answer.speed_ratio
     share = "share of the balls in the moving mass over their rolling inertia"

@@ -197,7 +197,7 @@ def machine(result: RunResult) -> str:
 
 
 def remarks(result: RunResult) -> list[str]:
-    """What the numbers themselves ask a reader to bear in mind, besides the notes.
+    """Remarks that follow from the numbers themselves, besides the notes.
 
     Parameters
     ----------

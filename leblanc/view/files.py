@@ -115,7 +115,7 @@ def write_html(plot: Plotter, picture: Picture, path: Path) -> None:
 
     Parameters
     ----------
-    plot, picture : what to write; its words stand in the text of the page
+    plot, picture : what to write; its texts stand on the page
     path : an .html; its folder is made if it is missing
 
     Raises
@@ -151,7 +151,7 @@ def _key(picture: Picture) -> str:
 
 
 def _in_perspective(plot: Plotter) -> None:
-    """The view of the page's viewer, which knows no other projection, as near as the picture's own."""
+    """The view of the page's viewer, which has no other projection, as near as the picture's own."""
     camera = plot.camera
     plot.disable_parallel_projection()
     focus, position = np.array(camera.focal_point), np.array(camera.position)

@@ -188,7 +188,7 @@ def require_film(path: Path) -> str:
 
 
 def _write_gif(shown: Sequence[Pixels], path: Path) -> None:
-    """All frames in the colours of the middle one, so that what stands still is stored once."""
+    """All frames in the colours of the middle one, so that what is fixed is stored once."""
     from PIL import Image
 
     spread = Image.Quantize.MAXCOVERAGE  # small things keep their colour

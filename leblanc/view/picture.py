@@ -156,7 +156,7 @@ def fill(plot: Plotter, picture: Picture) -> None:
 
 
 def _write(prop: Any) -> None:
-    """Colour and font of some words."""
+    """Colour and font of a text."""
     prop.color = INK
     spec = find_spec("matplotlib")
     path = Path(spec.origin).parent / "mpl-data" / "fonts" / "ttf" / FONT if spec and spec.origin else None
@@ -233,7 +233,7 @@ def _words(plot: Plotter, picture: Picture, size: int, pyvista: Any) -> None:
 
 
 def point_camera(plot: Plotter, picture: Picture, view: str) -> None:
-    """Point the camera so that the whole picture lies between its words.
+    """Point the camera so that the whole picture lies between its texts.
 
     Parameters
     ----------

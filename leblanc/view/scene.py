@@ -138,7 +138,7 @@ def baffles(stage: Stage, lines: Complex, k: int, centre: complex, floor: float,
 
     Parameters
     ----------
-    stage : what stands still
+    stage : what is fixed
     lines : as from `plates_of`
     k : number of the chamber, from 0
     centre : of the chamber as drawn, m
@@ -154,7 +154,7 @@ def section_walls(
 
     Parameters
     ----------
-    stage : what stands still
+    stage : what is fixed
     section : of the chamber
     k : number of the chamber, from 0
     centre : of the chamber as drawn, m
@@ -205,7 +205,7 @@ def compose(stage: Stage, instant: Instant) -> Picture:
 
     Parameters
     ----------
-    stage, instant : what stands still and what does not
+    stage, instant : what is fixed and what moves
     """
     factor = stage.scale.deflection
     pieces: list[Piece] = []
@@ -354,7 +354,7 @@ def _shore(surface: Indices, wall: Indices) -> Indices:
 
 
 def stage_of(motion: MachineMotion, scale: Scale) -> Stage:
-    """What stands still in pictures of a machine.
+    """What is fixed in pictures of a machine.
 
     Parameters
     ----------

@@ -246,7 +246,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         found.append(cold_start(command, chosen.repeats))
         print(f"\n{text(found[-1])}", flush=True)
     if chosen.json is not None:
-        rows = ",\n".join(json.dumps(_plain(one)) for one in found)
+        rows = ",\n".join(json.dumps(_plain(start)) for start in found)
         text_of_all = f'{{"imports": {json.dumps(doors)}, "commands": [\n{rows}\n]}}\n'
         chosen.json.write_text(text_of_all, encoding="utf-8")
     return 0

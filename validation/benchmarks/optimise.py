@@ -23,7 +23,7 @@ class Cost:
 
     Parameters
     ----------
-    scene, chambers, objective : what was asked
+    scene, chambers, objective : of the optimisation
     seconds : of processor time
     judged : sets of volumes
     """

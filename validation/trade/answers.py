@@ -40,7 +40,7 @@ class Case:
 
     @property
     def selectable(self) -> bool:
-        """A scene can ask for it: its response takes no grid, its run-up takes any."""
+        """A scene can name it: its response takes no grid, its run-up takes any."""
         return self.resolution is None or self.question == RUNUP
 
     @property

@@ -69,7 +69,7 @@ def recommendation(comparison: Comparison, tolerance: float) -> str:
     Parameters
     ----------
     one : the comparison
-    tolerance : relative error that is asked for
+    tolerance : relative error that is allowed
     """
     advised, default = comparison.recommended, comparison.default
     if advised is None:

@@ -37,7 +37,7 @@ class TradeRecord:
     Parameters
     ----------
     name, source, assumed, digest : of the scene
-    tolerance : relative error that it asks for
+    tolerance : relative error that it allows
     comparisons : one for each question
     """
 
@@ -59,7 +59,7 @@ def trade_scene(
     scene : the machine
     quick : short ladders
     repeats : how often what is short is timed
-    progress : is told what runs and the share that is done
+    progress : is called with what runs and the share that is done
     """
     require_clear(scene, "a comparison of models, most of which know circular walls alone")
     tell = progress or (lambda _, __: None)
@@ -97,7 +97,7 @@ def measure(question: Question, repeats: int, progress: Progress) -> dict[Case, 
     ----------
     question : with its cases
     repeats : of each case that is not long
-    progress : is told what runs and the share that is done
+    progress : is called with what runs and the share that is done
     """
     runs: dict[Case, Run] = {}
     for k, case in enumerate(question.cases):

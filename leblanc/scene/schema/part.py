@@ -1,4 +1,4 @@
-"""A table of a scene as a frozen model, and its faults in plain words."""
+"""A table of a scene as a frozen model, and the messages of its faults."""
 
 from __future__ import annotations
 

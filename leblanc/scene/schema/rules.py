@@ -45,7 +45,7 @@ class Quantity:
 
     @property
     def allowed(self) -> str:
-        """The rule in words."""
+        """What is allowed, as a text."""
         zero = "0, or " if self.or_zero and self.low > 0.0 else ""
         unit = f" {self.dimension.unit}" if self.dimension.unit else ""
         return f"{self.dimension.allowed}, {zero}from {self.low:g} to {self.high:g}{unit}"
@@ -66,7 +66,7 @@ class Several:
 
     @property
     def allowed(self) -> str:
-        """The rule in words."""
+        """What is allowed, as a text."""
         return f"{self.each.allowed}; or a list of three, along x, y, z"
 
     def __call__(self, value: object) -> float | tuple[float, ...]:
@@ -87,7 +87,7 @@ class Whole:
 
     @property
     def allowed(self) -> str:
-        """The rule in words."""
+        """What is allowed, as a text."""
         return f"a whole number from {self.low} to {self.high}"
 
     def __call__(self, value: object) -> int:
@@ -105,7 +105,7 @@ class OneOf:
 
     @property
     def allowed(self) -> str:
-        """The rule in words."""
+        """What is allowed, as a text."""
         return "one of: " + ", ".join(self.names)
 
     def __call__(self, value: object) -> str:
@@ -124,7 +124,7 @@ class Text:
 
     @property
     def allowed(self) -> str:
-        """The rule in words."""
+        """What is allowed, as a text."""
         empty = "" if self.may_be_empty else ", not empty"
         return f"a text in quotes of at most {self.longest} printable characters{empty}"
 
@@ -161,7 +161,7 @@ class Entries:
 
     @property
     def allowed(self) -> str:
-        """The rule in words."""
+        """What is allowed, as a text."""
         size = f"{self.low}" if self.low == self.high else f"{self.low} to {self.high}"
         return f"a list of {size} {self.what}"
 
@@ -180,7 +180,7 @@ class Span:
 
     @property
     def allowed(self) -> str:
-        """The rule in words."""
+        """What is allowed, as a text."""
         return f"a list of two, the second at least the first, each {self.each.allowed}"
 
     def __call__(self, value: object) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""Answers of a scene's machine with other volumes of liquid; no pair of volumes and speed is asked twice."""
+"""Responses of a machine with other volumes of liquid; no pair of volumes and speed is solved twice."""
 
 from __future__ import annotations
 

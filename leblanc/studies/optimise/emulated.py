@@ -1,4 +1,4 @@
-"""A vibration over the volumes as an emulator of a sweep gives it, for searches that ask very often."""
+"""A vibration over the volumes by an emulator of a sweep, for searches with very many evaluations."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def emulated_vibration(store: Path, scene: Scene, task: Optimisation, seed: int 
     Parameters
     ----------
     store : of a sweep of this very scene, in which volumes vary and nothing else
-    scene, task : the machine and what is asked for
+    scene, task : the machine and what its liquid is chosen for
     seed : see `leblanc.studies.sweep.emulator.emulate`
 
     Raises
@@ -91,7 +91,7 @@ def emulated_vibration(store: Path, scene: Scene, task: Optimisation, seed: int 
 
 
 def _output(scene: Scene, task: Optimisation) -> str:
-    """Output of a sweep that is the vibration asked for."""
+    """Output of a sweep that is the vibration of the objective."""
     if task.objective == "working_speed" and task.working_speed in (None, scene.speeds.stop):
         return "last_amplitude"
     if task.objective == "peak" and (task.steady or scene.runup is None):

@@ -219,7 +219,7 @@ def _so_far(known: Array) -> Array:
 
 
 def _around_peaks(row: Array) -> Index:
-    """Indices to ask for next: in the gaps on both sides of the highest peaks known."""
+    """Indices to compute next: in the gaps on both sides of the highest peaks known."""
     at = np.flatnonzero(~np.isnan(row))
     value = row[at]
     before, behind = np.concatenate(([-np.inf], value[:-1])), np.concatenate((value[1:], [-np.inf]))

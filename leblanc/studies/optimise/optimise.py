@@ -223,7 +223,7 @@ def _with_response(result: OptimumResult, scene: Scene, machine: FilledMachine) 
 
 
 def _of_search(span: ModelSpan) -> ModelSpan:
-    """The scene leaves the model to the search, which asks for one."""
+    """The scene leaves the model to the search, which names one."""
     return replace(span, reason=span.reason.removeprefix(_ASKED))
 
 

@@ -229,7 +229,7 @@ def problem_of(
 
     Parameters
     ----------
-    scene, task : the machine and what is asked for
+    scene, task : the machine and what its liquid is chosen for
     machine : the same with any volumes
     solve : gives the best volumes for another problem, on the way to this one
 
@@ -253,7 +253,7 @@ def problem_of(
 def _constraints(
     scene: Scene, task: Optimisation, machine: FilledMachine, speed: float
 ) -> tuple[Constraint, ...]:
-    """What was asked to be kept to."""
+    """The constraints of the task."""
     found = [] if task.dry_patch else [dry_wall(machine, speed)]
     if task.stability_margin is not None:
         found.append(stability(scene, growth_speeds(scene, task), task.stability_margin))

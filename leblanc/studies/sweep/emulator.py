@@ -204,7 +204,7 @@ def emulate_store(store: Store | Path, output: str, seed: int = 0) -> Emulator:
 
     Raises
     ------
-    InputError : no such store or output, a field of words, too few samples
+    InputError : no such store or output, a field of texts, too few samples
 
     Examples
     --------
@@ -226,7 +226,7 @@ def emulate_store(store: Store | Path, output: str, seed: int = 0) -> Emulator:
 
 
 def emulated_outputs(store: Store, seed: int = 0) -> dict[str, Emulator | str]:
-    """An emulator of every output that is one number a sample, or in words why there is none.
+    """An emulator of every output that is one number a sample, or the reason why there is none.
 
     Parameters
     ----------

@@ -280,7 +280,7 @@ def _to_disk(path: Path) -> None:
 
 
 def field_values(field: VariedField, drawn: NDArray[np.float64]) -> NDArray[Any]:
-    """Sampled values of a field as the store holds them: SI numbers, or words.
+    """Sampled values of a field as the store holds them: SI numbers, or texts.
 
     Parameters
     ----------
@@ -314,10 +314,10 @@ def read_arrays(path: Path) -> NamedArrays:
     store, found = read_store(path), {}
     for name in store.arrays:
         values, said = store.read(name), store.attributes(name)
-        one = variable(store.dims(name), values, *(str(said.pop(key)) for key in _SINGLE))
+        entry = variable(store.dims(name), values, *(str(said.pop(key)) for key in _SINGLE))
         if "flag_values" in said:
             said["flag_values"] = np.array(said["flag_values"], dtype=np.int8)
-        one.attrs.update(said)
-        found[name] = one
+        entry.attrs.update(said)
+        found[name] = entry
     speed = found.pop("speed")
     return NamedArrays(found, coords={"speed": speed}, attrs=store.attributes())

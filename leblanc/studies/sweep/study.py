@@ -300,7 +300,7 @@ class VariedField:
 
     @property
     def categorical(self) -> bool:
-        """The values are words, and samples hold their numbers."""
+        """The values are texts, and samples hold their indices."""
         return isinstance(self.distribution, Choice) and self.distribution.categorical
 
     def value(self, drawn: float) -> Any:

@@ -198,7 +198,7 @@ def run_sweep(
 ) -> Store:
     """Answer every sample that the store does not hold yet.
 
-    It may be ended at any moment, however rudely; the same call goes on from the finished blocks, and the
+    It may be ended at any moment, in any way; the same call continues from the finished blocks, and the
     store comes out the same, byte for byte, whatever the workers.
 
     Parameters
