@@ -13,7 +13,7 @@ from solvers.layer import finite_volume
 from solvers.layer import finite_volume as face_flux
 from solvers.layer import state as layer_loads
 from solvers.layer import step as forced_layer
-from solvers.layer.records import LOADS, Drive, LayerOutcome, Wall, records
+from solvers.layer.records import LOADS, Drive, Outcome, Wall, records
 from tests.mutants import kills
 
 SPIN, PULL, TURNED = 1.0, 0.1, 0.4
@@ -262,7 +262,7 @@ def run(
     outcome, steps = forced_layer.advance(
         *(area, q, 0.0, length, whole, wall, angles(n), courant, 10**6, spare, sums)
     )
-    assert outcome == LayerOutcome.DONE and steps > 0
+    assert outcome == Outcome.DONE and steps > 0
     last = layer_loads.offset(area, whole, angles(n), length)
     return layer_loads.means(sums[0], length, 2 * np.pi * area.mean(), drive[3], (first, last))
 

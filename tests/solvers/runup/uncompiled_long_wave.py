@@ -12,14 +12,13 @@ from fluid.friction import Friction
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers.layer import finite_volume
-from solvers.layer.records import records
+from solvers.layer.records import Outcome, records
 from solvers.layer.state import ring
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.runup import kernel as coupled_layer
 from solvers.runup import kernel as coupled_parts
 from solvers.runup.long_wave import Coupled, couple
-from solvers.runup.machine import Outcome
 from solvers.runup.state import GAINS, LAYER, MEASURES
 from tests.mutants import kills
 
