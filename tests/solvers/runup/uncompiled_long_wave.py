@@ -371,7 +371,7 @@ def test_motor() -> None:
     assert found.sums.motor == pytest.approx(work, rel=1e-4)
 
 
-@kills("solvers.runup.long_wave:couple", "np.array([-gravity, 0.0])", "np.array([gravity, 0.0])")
+@kills("solvers.runup.state:at_rest", "np.array([-gravity, 0.0])", "np.array([gravity, 0.0])")
 def test_gravity() -> None:
     """The rotor held, liquid let go is pulled against the first direction by its flow's inertia."""
     rotor = Jeffcott(3.0, 1e15, 0.0, 0.0)
