@@ -44,6 +44,12 @@ class Fill:
     Raises
     ------
     InputError : a volume outside that range
+
+    Examples
+    --------
+    >>> fill = Fill(Chamber(radius=0.2, height=0.05), Liquid("water", 998.2, 1.004e-6), volume=0.5e-3)
+    >>> round(fill.mass, 6), round(fill.depth, 6)
+    (0.4991, 0.008123)
     """
 
     chamber: Chamber

@@ -9,20 +9,20 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from inspect import signature
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from fluid.fill import Fill
 from fluid.friction import Friction
 from fluid.liquid import Liquid, known_liquid
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import OBJECTIVES, Optimisation
-from leblanc.studies.layer import as_options
-from leblanc.studies.liquid import wave_model
-from leblanc.studies.modes import Resolution, SectionSource
 from leblanc.units import ACCELERATION, ANGULAR_SPEED, LENGTH, TIME, VOLUME, parse_friction, parse_option
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.errors import InputError, require_not_negative
+
+if TYPE_CHECKING:
+    from leblanc.studies.modes import SectionSource
 
 Quantity = str | float
 Question = TypeVar("Question")
@@ -82,6 +82,9 @@ def layer_question(
     ------
     InputError : a value that cannot be read, or is out of its range
     """
+    from leblanc.studies.layer import as_options  # bring the solvers of layers, which no other question needs
+    from leblanc.studies.liquid import wave_model
+
     plates = baffle_plates(baffles, baffle_tip_radius, baffle_wall_gap)
     chamber = Chamber(
         parse_option(radius, LENGTH, "--radius"), parse_option(height, LENGTH, "--height"), baffles=plates
@@ -126,6 +129,8 @@ def modes_question(
     ------
     InputError : a value that cannot be read, or is out of its range
     """
+    from leblanc.studies.modes import Resolution  # brings the finite elements, which no other question needs
+
     chamber = Chamber(
         parse_option(radius, LENGTH, "--radius"),
         parse_option(height, LENGTH, "--height"),
@@ -251,6 +256,8 @@ def _source(mesh: str | Path | None, unit: Quantity | None, size: Quantity | Non
             if value is not None:
                 raise InputError(name, value, "left out without --mesh")
         return None
+    from leblanc.studies.modes import SectionSource
+
     return SectionSource(
         Path(mesh),
         None if unit is None else parse_option(unit, LENGTH, "--mesh-unit"),

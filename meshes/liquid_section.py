@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from meshes.arrays import Array, Indices
 from meshes.errors import InputError, require_positive
@@ -197,5 +196,5 @@ def _outermost(points: Array, body_of_node: Indices, wall: Indices, piece: Indic
 
 def _components(first: Indices, other: Indices, nodes: int) -> Indices:
     """Number of the component of each node under pairs that belong together."""
-    links = coo_array((np.ones(first.size), (first, other)), shape=(nodes, nodes))
-    return np.asarray(connected_components(links, directed=False)[1], dtype=np.int64)
+    links = scipy.sparse.coo_array((np.ones(first.size), (first, other)), shape=(nodes, nodes))
+    return np.asarray(scipy.sparse.csgraph.connected_components(links, directed=False)[1], dtype=np.int64)

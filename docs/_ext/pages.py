@@ -67,9 +67,9 @@ def _commands() -> dict[str, Any]:
     """The commands themselves, by name."""
     import typer.main
 
-    from leblanc.cli import app
+    from leblanc.cli import application
 
-    commands: dict[str, Any] = vars(typer.main.get_command(app))["commands"]
+    commands: dict[str, Any] = vars(typer.main.get_command(application()))["commands"]
     return commands
 
 

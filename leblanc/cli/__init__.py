@@ -6,6 +6,7 @@ Commands parse and print, nothing else. Their modules import what is heavy insid
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from collections.abc import Callable, Sequence
@@ -17,7 +18,7 @@ from typer.main import get_command
 
 from leblanc.cli import compare, explain, layer, map, modes, new, optimise, run, runup, sweep, view, volume
 from leblanc.cli.output import say
-from leblanc.scene.schema.load import NotConverged, SceneFaults, escaped
+from leblanc.scene.schema.load import NotConverged, SceneError, escaped
 from meshes.errors import InputError
 
 DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED, INTERRUPTED = 0, 1, 2, 3, 130
@@ -43,7 +44,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     # A user's own pickle.py in the current folder is not for the processes that are started from here.
     os.environ.setdefault("PYTHONSAFEPATH", "1")
     given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
-    return exit_code(lambda: get_command(app).main(given, prog_name="leblanc", standalone_mode=False))
+    if arguments is None:
+        # By default a fifth of a short command is a search for cyclic garbage, of which imports leave none.
+        gc.set_threshold(50_000)
+    try:
+        commands = get_command(application(given[0]))
+        return exit_code(lambda: commands.main(given, prog_name="leblanc", standalone_mode=False))
+    finally:
+        if arguments is None:
+            gc.freeze()  # nor is there any to look for as the process ends
 
 
 def exit_code(action: Callable[[], object]) -> int:
@@ -51,7 +60,7 @@ def exit_code(action: Callable[[], object]) -> int:
     try:
         code = action()
         sys.stdout.flush()
-    except (SceneFaults, NotConverged) as error:
+    except (SceneError, NotConverged) as error:
         say(str(error))
         return NOT_CONVERGED if isinstance(error, NotConverged) else WRONG_INPUT
     except InputError as error:
@@ -98,13 +107,18 @@ def _version(wanted: bool) -> None:
         raise typer.Exit
 
 
-def _application() -> typer.Typer:
-    """All commands: those of this package and those that installed packages announce."""
-    application = typer.Typer(
+def application(wanted: str = "") -> typer.Typer:
+    """All commands: those of this package and those that installed packages announce.
+
+    Parameters
+    ----------
+    wanted : if it names a command of this package, that one alone, since each takes time to get ready
+    """
+    found = typer.Typer(
         name="leblanc", add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False
     )
 
-    @application.callback()
+    @found.callback()
     def leblanc(
         version: Annotated[
             bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
@@ -112,12 +126,13 @@ def _application() -> typer.Typer:
     ) -> None:
         """Passive liquid balancers: from the free surface to the machine."""
 
-    for module in COMMANDS:
-        name = module.__name__.rpartition(".")[2]
-        application.command(name)(getattr(module, name))
-    for entry in sorted(entry_points(group="leblanc.commands")):
-        _announced(application, entry)
-    return application
+    own = {module.__name__.rpartition(".")[2]: module for module in COMMANDS}
+    for name in [wanted] if wanted in own else own:
+        found.command(name)(getattr(own[name], name))
+    if wanted not in own:
+        for entry in sorted(entry_points(group="leblanc.commands")):
+            _announced(found, entry)
+    return found
 
 
 def _announced(application: typer.Typer, entry: EntryPoint) -> None:
@@ -131,6 +146,3 @@ def _announced(application: typer.Typer, entry: EntryPoint) -> None:
         @application.command(entry.name, help="Not available.", context_settings=anything)
         def unavailable() -> None:
             raise InputError("command", entry.name, f"one that is installed; {reason}")
-
-
-app = _application()

@@ -29,10 +29,10 @@ def compare(
     folder = out_dir(machine.name, out)
 
     from leblanc.figures.comparison import comparison_figure, save
-    from leblanc.results.netcdf import write_dataset
+    from leblanc.results.netcdf import write_netcdf
     from leblanc.text.explanation import HEAD, basis, reasons, rows
 
-    write_dataset(found.to_dataset(), folder / "compare.nc")
+    write_netcdf(found.named_arrays(), folder / "compare.nc")
     files = save(comparison_figure(found), folder, "compare", "Amplitude over speed by liquid model")
     if json:
         print_json(found.to_json())
@@ -41,7 +41,7 @@ def compare(
         print("\n".join([basis(found), *reasons(found)]))
         print(f"See {files.png}; the data are in {folder / 'compare.nc'}")
 
-    lost = [name for name, one in found.results.items() if not one.converged.all()]
+    lost = [name for name, result in found.results.items() if not result.converged.all()]
     if lost:
         from leblanc.scene.schema.load import NotConverged
 

@@ -115,7 +115,8 @@ def _tell(shown: dict[str, Any]) -> None:
 
 def _draw(result: LayerResult, folder: Path) -> None:
     """The wave as it stands in the frame of the deflection."""
-    from leblanc.figures import save, wave_figure
+    from leblanc.figures.page import save
+    from leblanc.figures.wave import wave_figure
 
     files = save(wave_figure(result.wave()), folder, "wave", "Wave on the annulus")
     say(f"wrote {files.png}")
@@ -125,7 +126,7 @@ def _film(question: LayerQuestion, path: Path) -> None:
     """The wave in the drum frame: long_wave from rest, six whirl periods unless told; others two, steady."""
     from rich.progress import Progress
 
-    from leblanc.figures import animate
+    from leblanc.figures.wave import animate
     from leblanc.studies.layer import layer_film
 
     wave, film = layer_film(**question.whirl, duration=question.duration, ramp=question.ramp)

@@ -50,10 +50,10 @@ def map(
     from leblanc.figures.whirl_map import map_figure, save
     from leblanc.report.page import about, command_line
     from leblanc.report.run import write_map_report
-    from leblanc.results.netcdf import write_dataset
+    from leblanc.results.netcdf import write_netcdf
     from leblanc.studies.whirl_map import SPEEDS, VOLUMES
 
-    write_dataset(found.to_dataset(), folder / "map.nc")
+    write_netcdf(found.named_arrays(), folder / "map.nc")
     files = save(map_figure(found), folder, "map", "Self-excited whirl over speed and volume")
     command = command_line(
         "map",

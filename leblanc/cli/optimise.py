@@ -58,9 +58,9 @@ def optimise(
     from leblanc.figures.optimise import write_figures
     from leblanc.report.optimise import write_optimise_report
     from leblanc.report.page import about, command_line
-    from leblanc.results.optimum import write_optimum
+    from leblanc.results.netcdf import write_netcdf
 
-    write_optimum(result, folder / "optimum.nc")
+    write_netcdf(result.named_arrays(), folder / "optimum.nc")
     files = write_figures(result, folder)
     command = command_line(
         "optimise",

@@ -34,13 +34,13 @@ def run(
 
     result = run_scene(machine)
 
-    from leblanc.figures import write_figures
+    from leblanc.figures.response import write_figures
     from leblanc.report.page import about, command_line
     from leblanc.report.run import write_run_report
-    from leblanc.results.netcdf import write_dataset
+    from leblanc.results.netcdf import write_netcdf
     from leblanc.text.run import comparisons
 
-    write_dataset(result.to_dataset(), folder / "response.nc")
+    write_netcdf(result.named_arrays(), folder / "response.nc")
     figures = write_figures(result, folder)
     what = about(machine, command_line("run", scene), "response.nc", unused=("runup", "optimise"))
     write_run_report(result, what, figures, folder / "summary.html")

@@ -52,9 +52,9 @@ def runup(
     from leblanc.figures.runup import write_figures
     from leblanc.report.page import about, command_line
     from leblanc.report.runup import write_runup_report
-    from leblanc.results.runup import write_runup
+    from leblanc.results.netcdf import write_netcdf
 
-    write_runup(result, folder / "runup.nc")
+    write_netcdf(result.named_arrays(), folder / "runup.nc")
     figures = write_figures(result, folder)
     options = ("--cells", cells, None), ("--samples", samples, None), ("--no-check", no_check, False)
     command = command_line("runup", scene, *options)

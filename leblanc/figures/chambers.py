@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.page import MOST_LINES, RIGHT, WIDTH, Figure, Frame, caption, lay_out, style
+from leblanc.figures.page import MOST_LINES, RIGHT, WIDTH, Figure, Frame, caption, fill, lay_out, style
 from leblanc.results.base import FilledChamber
 from leblanc.results.drawn import chord, rounded_down
 from leblanc.results.response import RunResult, peak, phase
@@ -128,7 +128,7 @@ def wall_line(section: ChamberSection) -> list[Array]:
     """
     sides = free_sides(section.mesh.triangles)
     ordered = sides[:, [0, 2, 1]] if sides.shape[1] == 3 else sides
-    return [section.mesh.points[one] for one in ordered]
+    return [section.mesh.points[corners] for corners in ordered]
 
 
 def bodies(chamber: FilledChamber, centre: complex, depth: float) -> list[Array]:
@@ -195,10 +195,10 @@ def _wall(chamber: FilledChamber, angle: Array) -> Array:
 def _outermost(start: Complex, stop: Complex, angle: Array) -> Array:
     """Distance along each ray of the outermost of many straight sides, given by their ends x + i y, m."""
     turn = np.exp(-1j * angle)[:, None]
-    one, other = start * turn, stop * turn
-    meets = (one.imag * other.imag <= 0.0) & (one.imag != other.imag)
-    share = np.divide(one.imag, one.imag - other.imag, where=meets, out=np.zeros(meets.shape))
-    away = np.where(meets, one.real + share * (other.real - one.real), 0.0)
+    low, other = start * turn, stop * turn
+    meets = (low.imag * other.imag <= 0.0) & (low.imag != other.imag)
+    share = np.divide(low.imag, low.imag - other.imag, where=meets, out=np.zeros(meets.shape))
+    away = np.where(meets, low.real + share * (other.real - low.real), 0.0)
     return np.asarray(away.max(axis=1))
 
 
@@ -372,7 +372,7 @@ def draw_chambers(
         if depth > 0.0:
             x = np.concatenate([outer * np.cos(angle), (inner * np.cos(angle))[::-1]]) * MM
             y = np.concatenate([outer * np.sin(angle), (inner * np.sin(angle))[::-1]]) * MM
-            axes.fill(x, y, facecolor=LIQUID, edgecolor="none", label="liquid")
+            fill(axes, x, y, facecolor=LIQUID, edgecolor="none", label="liquid")
             surface = np.where(inner < outer * (1.0 - 1e-9), inner, np.nan) * MM
             axes.plot(surface * np.cos(angle), surface * np.sin(angle), color="#0072B2", linewidth=0.7)
         for radius in (chamber.radius, chamber.inner_radius):
@@ -397,7 +397,7 @@ def draw_chambers(
         names = ", ".join(f"{chamber.radius * MM:.4g}" for chamber in chambers)
         planes = {chamber.plane for drawing in views.drawings for chamber in drawing}
         place = f", at {chambers[0].plane * MM:.4g}".replace("-", MINUS) if len(planes) > 1 else ""
-        axes.set_title(f"radius {names}{place} mm", fontsize=7, color="0.3", pad=3.0)
+        axes.set_title(f"radius {names}{place} mm", fontsize=7, color="0.3", pad=3.0, y=1.0)
     axes.axis("off")
 
 
@@ -407,7 +407,7 @@ def _draw_uneven(
     """Walls, baffles and each body of liquid of a chamber that is no clear ring."""
     if depth > 0.0:
         for points in bodies(chamber, centre / MM, depth):
-            axes.fill(*(points.T * MM), facecolor=LIQUID, edgecolor="none", label="liquid")
+            fill(axes, *(points.T * MM), facecolor=LIQUID, edgecolor="none", label="liquid")
             wall, surface = np.split(points * MM, 2)
             wet = np.hypot(*(wall[::-1] - surface).T) > 1e-9 * chamber.radius * MM
             axes.plot(*np.where(wet[:, None], surface, np.nan).T, color="#0072B2", linewidth=0.7)

@@ -17,6 +17,7 @@ from leblanc.figures.page import (
     WIDTH,
     Figure,
     Frame,
+    fill,
     lay_out,
     number,
     require_film,
@@ -172,7 +173,7 @@ def draw_annulus(axes: Axes, record: Wave, factor: float) -> None:
     angle, surface = free_surface(record.radius * MM, record.theta, record.depth * MM, factor)
     if np.any(record.depth > 0.0):
         x, y = outline(record.radius * MM, angle, surface)
-        axes.fill(x, y, facecolor=LIQUID, edgecolor="none", label="liquid")
+        fill(axes, x, y, facecolor=LIQUID, edgecolor="none", label="liquid")
         free = wet_surface(record, angle, surface, factor)
         axes.plot(free.real, free.imag, color=SURFACE, linewidth=0.8)
     bar = dry_wall(record, angle, surface, factor)

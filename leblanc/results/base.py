@@ -17,7 +17,7 @@ from meshes.baffles import Baffles
 from meshes.chamber_section import ChamberSection, layer_depth
 
 if TYPE_CHECKING:
-    from leblanc.results.netcdf import Dataset
+    from leblanc.results.netcdf import Dataset, NamedArrays
 
 
 class NoteCode(StrEnum):
@@ -158,8 +158,12 @@ class Result(ABC):
         """What the command prints with --json: SI, radians, complex numbers as [re, im]."""
 
     @abstractmethod
+    def named_arrays(self) -> NamedArrays:
+        """Its numbers as arrays with named dimensions, units in their attributes."""
+
     def to_dataset(self) -> Dataset:
-        """An xarray dataset with units in its attributes."""
+        """The same as an xarray dataset."""
+        return self.named_arrays().to_dataset()
 
     def plot(self) -> Any:
         """The main figure, a `matplotlib.figure.Figure`."""

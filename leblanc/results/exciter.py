@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from leblanc.results.base import Result, attributes
-from leblanc.results.netcdf import dataset, flags
+from leblanc.results.netcdf import NamedArrays, flags
 from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Flags
 
 if TYPE_CHECKING:
-    from leblanc.results.netcdf import Dataset
     from solvers.rotor.exciter.machine import Dimensionless, Exciter
     from solvers.rotor.exciter.motion import Start
 
@@ -63,6 +62,13 @@ class ExciterResult(Result):
     printed_critical : by the source's regression, rad/s; nan outside its ranges
     checks : time integrations
     source, digest : of the scene
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> result = lb.run(lb.example("vibratory_table").replace({"speeds.count": 2}))
+    >>> result.stuck.shape
+    (2, 3)
     """
 
     figure: ClassVar[str] = "leblanc.figures.exciter:exciter_figure"
@@ -136,8 +142,8 @@ class ExciterResult(Result):
             ],
         }
 
-    def to_dataset(self) -> Dataset:
-        """Dataset with dimensions `speed`, `pair` (of stuck speeds) and `check` (time integrations)."""
+    def named_arrays(self) -> NamedArrays:
+        """Arrays over the dimensions `speed`, `pair` (of stuck speeds) and `check` (time integrations)."""
         over, rate = ("speed",), "rad s-1"
         first, through, last = self.characteristic
         checks = {
@@ -145,7 +151,7 @@ class ExciterResult(Result):
             for name in ("speed", "stuck_speed", "slow", "fast", "holds")
         }
         slow, fast = "with the balls, slowest stuck speed", "with the shaft"
-        return dataset(
+        return NamedArrays(
             {
                 "stuck_speed": var(("speed", "pair"), self.stuck, rate, "stuck speed of the balls"),
                 "amplitude": var(over, self.amplitude, "m", "amplitude", "of the platform, both vibrations"),

@@ -13,14 +13,13 @@ from fluid.numbers import LayerNumbers
 from leblanc.results.base import Result, attributes
 from leblanc.results.choice import ModelSpan
 from leblanc.results.exciter import number_or_none
-from leblanc.results.netcdf import dataset, flags
+from leblanc.results.netcdf import NamedArrays, Variable, flags
 from leblanc.results.netcdf import variable as var
 from leblanc.results.response import RestMode, RunResult, peak
 from meshes.arrays import Array
 from meshes.errors import InputError
 
 if TYPE_CHECKING:
-    from leblanc.results.netcdf import Dataset, Variable
     from solvers.rotor.exciter.machine import Dimensionless
 
 
@@ -68,6 +67,13 @@ class Explanation(Result):
     modes : of the dry rotor at rest; none for a planar rotor, whose only one is the critical speed
     runup : which liquid model the run-up will take, in words; empty without one
     source, assumed, digest : of the scene
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> explanation = lb.explain(lb.example("horizontal_rig"))
+    >>> sorted({span.model for span in explanation.models})
+    ['linear']
     """
 
     figure: ClassVar[str] = "leblanc.figures.explanation:model_figure"
@@ -92,16 +98,16 @@ class Explanation(Result):
         """What `explain` prints for scripts, SI; what is not finite becomes null when it is printed."""
         return {name: value for name, value in asdict(self).items() if name not in _ABOUT}
 
-    def to_dataset(self) -> Dataset:
-        """Dataset with dimensions `chamber`, `end` (first and last speed) and `span` (of one model)."""
+    def named_arrays(self) -> NamedArrays:
+        """Arrays over the dimensions `chamber`, `end` (first and last speed) and `span` (of one model)."""
         rate, span = "rad s-1", ("span",)
         ends = np.array(self.speed_ratio) * self.critical_speed_dry
         captured = math.nan if self.captured_from is None else self.captured_from
         spans = {
-            field.name: np.array([getattr(one, field.name) for one in self.models])
+            field.name: np.array([getattr(span, field.name) for span in self.models])
             for field in fields(ModelSpan)
         }
-        return dataset(
+        return NamedArrays(
             {
                 "critical_speed_dry": var((), self.critical_speed_dry, rate, "critical speed without liquid"),
                 "critical_speed_wet": var((), self.critical_speed_wet, rate, "critical speed with liquid"),
@@ -157,6 +163,13 @@ class ExciterExplanation(Result):
         passes the resonance, rad/s; nan if there is one at every speed
     critical_speed_printed : by the source's regression, rad/s; nan outside its ranges
     source, assumed, digest : of the scene
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> explanation = lb.explain(lb.example("vibratory_table"))
+    >>> [f"{speed:.4g} rad/s" for speed in explanation.characteristic]
+    ['70.8 rad/s', '1540 rad/s', '1542 rad/s']
     """
 
     figure: ClassVar[str] = "leblanc.figures.explanation:stuck_range_figure"
@@ -184,15 +197,15 @@ class ExciterExplanation(Result):
             "critical_speed_printed": number_or_none(self.critical_speed_printed),
         }
 
-    def to_dataset(self) -> Dataset:
-        """Dataset of single numbers."""
+    def named_arrays(self) -> NamedArrays:
+        """Single numbers."""
         rate = "rad s-1"
         numbers = {
             name: var((), value, "1", name.replace("_", " "))
             for name, value in asdict(self.dimensionless).items()
         }
         first, through, last = self.characteristic
-        return dataset(
+        return NamedArrays(
             {
                 "natural_frequency": var((), self.natural_frequency, rate, "natural frequency"),
                 "second_pair": var((), first, rate, "shaft speed", "from here on three stuck speeds"),
@@ -249,6 +262,13 @@ class Comparison(Result):
     Raises
     ------
     InputError : no model answers
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> comparison = lb.compare(lb.example("horizontal_rig"), models=["statics", "linear", "fem"])
+    >>> [answer.model for answer in comparison.answers if answer.answered]
+    ['statics', 'linear', 'fem']
     """
 
     figure: ClassVar[str] = "leblanc.figures.comparison:comparison_figure"
@@ -261,18 +281,18 @@ class Comparison(Result):
     answers: tuple[ModelAnswer, ...]
 
     def __post_init__(self) -> None:
-        if not any(one.answered for one in self.answers):
+        if not any(answer.answered for answer in self.answers):
             raise InputError("answers", ", ".join(self.models), "at least one model that answers")
 
     @property
     def models(self) -> tuple[str, ...]:
         """Names of the models, in the order asked for."""
-        return tuple(one.model for one in self.answers)
+        return tuple(answer.model for answer in self.answers)
 
     @property
     def results(self) -> dict[str, RunResult]:
         """The answers that there are, by the name of their model."""
-        return {one.model: one.result for one in self.answers if one.result is not None}
+        return {answer.model: answer.result for answer in self.answers if answer.result is not None}
 
     @property
     def reference(self) -> str:
@@ -322,7 +342,7 @@ class Comparison(Result):
     def to_json(self) -> dict[str, Any]:
         """What `compare` prints for scripts, SI; values of a model that does not answer are None (null)."""
         return {
-            "models": [self._entry(one) for one in self.answers],
+            "models": [self._entry(answer) for answer in self.answers],
             "reference": self.reference,
             "speed": self.speed,
             "amplitude_dry": self.amplitude_dry,
@@ -330,37 +350,43 @@ class Comparison(Result):
             "digest": self.digest,
         }
 
-    def _entry(self, one: ModelAnswer) -> dict[str, Any]:
-        found = one.result
+    def _entry(self, answer: ModelAnswer) -> dict[str, Any]:
+        found = answer.result
         return {
-            "model": one.model,
-            "answered": one.answered,
-            "reason": one.reason,
-            "cpu_time": one.cpu_time,
+            "model": answer.model,
+            "answered": answer.answered,
+            "reason": answer.reason,
+            "cpu_time": answer.cpu_time,
             "amplitude": None if found is None else found.amplitude,
             "liquid_offset": None if found is None else found.liquid_offset,
-            "peak_amplitude": one.peak_amplitude,
-            "largest_difference": self.largest_difference(one.model) if one.answered else None,
+            "peak_amplitude": answer.peak_amplitude,
+            "largest_difference": self.largest_difference(answer.model) if answer.answered else None,
         }
 
-    def to_dataset(self) -> Dataset:
-        """Dataset with dimensions `model` and `speed`; nan where a model does not answer."""
+    def named_arrays(self) -> NamedArrays:
+        """Arrays over the dimensions `model` and `speed`; nan where a model does not answer."""
         each, over = ("model",), ("model", "speed")
-        answered = np.array([one.answered for one in self.answers])
+        answered = np.array([answer.answered for answer in self.answers])
 
         def table(take: Callable[[RunResult], Array]) -> Array:
             nothing = np.full(self.speed.shape, np.nan)
-            return np.stack([nothing if one.result is None else take(one.result) for one in self.answers])
+            return np.stack(
+                [nothing if answer.result is None else take(answer.result) for answer in self.answers]
+            )
 
         def numbers(values: list[float | None]) -> Array:
             return np.array(values, dtype=np.float64)
 
-        largest = [self.largest_difference(one.model) if one.answered else None for one in self.answers]
-        peaks, times = ([getattr(one, key) for one in self.answers] for key in ("peak_amplitude", "cpu_time"))
-        amplitude, offset = table(lambda one: one.amplitude), table(lambda one: one.liquid_offset)
+        largest = [
+            self.largest_difference(answer.model) if answer.answered else None for answer in self.answers
+        ]
+        peaks, times = (
+            [getattr(answer, key) for answer in self.answers] for key in ("peak_amplitude", "cpu_time")
+        )
+        amplitude, offset = table(lambda result: result.amplitude), table(lambda result: result.liquid_offset)
         dry, reference = self.amplitude_dry, f"from {self.reference}, over its largest amplitude"
-        words = np.array([one.reason for one in self.answers], dtype=object)
-        return dataset(
+        words = np.array([answer.reason for answer in self.answers], dtype=object)
+        return NamedArrays(
             {
                 "answered": flags(each, answered, "no yes", "answered", "the model answers this scene"),
                 "reason": var(each, words, "1", "reason", "why the model does not answer"),

@@ -8,18 +8,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from leblanc.results.base import Note, NoteCode, Result, one_line, texts, versions
-from leblanc.results.netcdf import dataset, variable
+from leblanc.results.netcdf import NamedArrays, variable
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.layer.state import LayerHistory
-
-if TYPE_CHECKING:
-    from leblanc.results.netcdf import Dataset
 
 FEWEST = 3  # angles of a wave
 SLACK = 1e-9  # rounding of a depth, over the radius
@@ -128,6 +125,14 @@ class LayerResult(Result):
     gravity_offset : steady part of the offset under gravity across the axis, in space, m: up is negative
     captured : centrifugal acceleration at the surface exceeds gravity
     validity : dimensionless numbers the model rests on, each with its range
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> found = lb.layer(radius="150 mm", volume="671 ml", height="50 mm", speed=40.0, whirl_speed=32.0,
+    ...                  whirl_amplitude="0.15 mm")
+    >>> f"{found.force_ratio.real:.4f}", found.in_range
+    ('2.5615', True)
     """
 
     case: LayerCase
@@ -183,7 +188,7 @@ class LayerResult(Result):
             "validity": tuple(map(asdict, self.validity)),
         }
 
-    def to_dataset(self) -> Dataset:
+    def named_arrays(self) -> NamedArrays:
         """The depth over `theta`; everything else in variables without a dimension and in attributes."""
         along = ("theta",)
         columns = {
@@ -197,7 +202,7 @@ class LayerResult(Result):
             "gravity_offset": variable((), self.gravity_offset, "m", "steady offset by gravity, in space"),
         }
         coords = {"theta": variable(along, self.theta, "rad", "angle from the deflection, with the spin")}
-        return dataset(columns, coords, _attributes(self.case, self.converged, self.in_range, self.notes))
+        return NamedArrays(columns, coords, _attributes(self.case, self.converged, self.in_range, self.notes))
 
 
 @dataclass(frozen=True)
@@ -210,6 +215,15 @@ class LayerPeriodsResult(Result):
     history : force, centre of mass and depths period by period, and the depth at the end
     notes : why there is no answer, and where the model is out of its range
     validity : dimensionless numbers the model rests on, each with its range
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> found = lb.layer(radius="150 mm", volume="671 ml", height="50 mm", speed=40.0, whirl_speed=32.0,
+    ...                  whirl_amplitude="0.15 mm", model="long_wave", cells=32,
+    ...                  duration="2 s", ramp="1 s")
+    >>> found.converged, found.history.time.shape == found.history.force_ratio.shape
+    (True, True)
     """
 
     case: LayerCase
@@ -246,7 +260,7 @@ class LayerPeriodsResult(Result):
             "notes": texts(self.notes),
         }
 
-    def to_dataset(self) -> Dataset:
+    def named_arrays(self) -> NamedArrays:
         """Means over whirl periods over `time`, the depth at the end over `theta`."""
         h, over = self.history, ("time",)
         columns = {
@@ -269,7 +283,7 @@ class LayerPeriodsResult(Result):
             "time": variable(over, h.time, "s", "middle of the whirl period"),
             "theta": variable(("theta",), h.theta, "rad", "angle from the deflection, with the spin"),
         }
-        return dataset(columns, coords, _attributes(self.case, self.converged, self.in_range, self.notes))
+        return NamedArrays(columns, coords, _attributes(self.case, self.converged, self.in_range, self.notes))
 
 
 def _attributes(case: LayerCase, converged: bool, in_range: bool, notes: tuple[Note, ...]) -> dict[str, Any]:

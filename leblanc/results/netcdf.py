@@ -1,21 +1,104 @@
-"""Datasets with units and their files, whole or not there: the only door to xarray."""
+"""Arrays with names, dimensions and units: in memory, as an xarray dataset, as a netCDF file.
+
+To import xarray, with pandas and dask, takes longer than most answers, so results are kept and written
+without it. This is the only door to xarray, and to h5netcdf, which writes the files.
+"""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from meshes.errors import InputError
+
 if TYPE_CHECKING:
     import xarray as xr
 
-    Variable = xr.Variable
     Dataset = xr.Dataset
+
+
+@dataclass(frozen=True)
+class Variable:
+    """An array with names for its dimensions and with what a reader needs to use it.
+
+    Parameters
+    ----------
+    dims : a name for each dimension
+    values : real numbers or texts
+    attrs : units, long name and what else there is to say
+
+    Raises
+    ------
+    InputError : another number of names, values that netCDF does not know
+    """
+
+    dims: tuple[str, ...]
+    values: NDArray[Any]
+    attrs: dict[str, Any]
+
+    def __post_init__(self) -> None:
+        if self.values.ndim != len(self.dims):
+            raise InputError("dims", ", ".join(self.dims), f"{self.values.ndim} names")
+        if self.values.dtype.kind not in "iufUO":
+            raise InputError("values", str(self.values.dtype), "real numbers or texts")
+
+
+@dataclass(frozen=True)
+class NamedArrays:
+    """Variables over their coordinates.
+
+    Parameters
+    ----------
+    variables, coords : by name
+    attrs : of the whole
+
+    Raises
+    ------
+    InputError : variables differ in the length of a dimension
+    """
+
+    variables: Mapping[str, Variable]
+    coords: Mapping[str, Variable]
+    attrs: Mapping[str, Any]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "attrs", {"Conventions": "CF-1.11", **self.attrs})
+        sizes = self.sizes
+        for name, one in self.arrays.items():
+            for dim, length in zip(one.dims, one.values.shape, strict=True):
+                if length != sizes[dim]:
+                    raise InputError(name, f"{length} along {dim}", f"{sizes[dim]}, as another variable has")
+
+    @property
+    def arrays(self) -> dict[str, Variable]:
+        """Coordinates and variables by name."""
+        return {**self.coords, **self.variables}
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """Lengths of the dimensions."""
+        return {
+            dim: length
+            for one in self.arrays.values()
+            for dim, length in zip(one.dims, one.values.shape, strict=True)
+        }
+
+    def to_dataset(self) -> Dataset:
+        """The same as an xarray dataset."""
+        import xarray as xr
+
+        variables, coords = (
+            {name: xr.Variable(one.dims, one.values, one.attrs) for name, one in part.items()}
+            for part in (self.variables, self.coords)
+        )
+        return xr.Dataset(variables, coords=coords, attrs=self.attrs)
 
 
 @contextmanager
@@ -45,10 +128,8 @@ def variable(dims: tuple[str, ...], values: Any, units: str, long_name: str, tex
     units, long_name : as CF asks
     text : description, if there is more to say
     """
-    import xarray as xr
-
     said = {"description": text} if text else {}
-    return xr.Variable(dims, values, {"units": units, "long_name": long_name} | said)
+    return Variable(dims, np.asarray(values), {"units": units, "long_name": long_name} | said)
 
 
 def flags(dims: tuple[str, ...], values: NDArray[Any], meanings: str, name: str, text: str = "") -> Variable:
@@ -66,28 +147,40 @@ def flags(dims: tuple[str, ...], values: NDArray[Any], meanings: str, name: str,
     return found
 
 
-def dataset(
-    variables: Mapping[str, Variable], coords: Mapping[str, Variable], attrs: Mapping[str, Any]
-) -> Dataset:
-    """Dataset of variables over their coordinates.
+def write_netcdf(found: NamedArrays, path: Path) -> None:
+    """Write named arrays as netCDF 4, the file that xarray would write of their dataset.
 
     Parameters
     ----------
-    variables, coords : by name
-    attrs : of the whole
-    """
-    import xarray as xr
-
-    return xr.Dataset(dict(variables), coords=dict(coords), attrs={"Conventions": "CF-1.11"} | dict(attrs))
-
-
-def write_dataset(found: Dataset, path: Path) -> None:
-    """Write a dataset as netCDF 4.
-
-    Parameters
-    ----------
-    found : from `dataset`
+    found : what to write
     path : the file to write or replace; an interrupted run leaves the old one whole
     """
-    with replacing(path) as temporary:
-        found.to_netcdf(temporary, engine="h5netcdf")
+    import h5netcdf
+    import h5py
+
+    held = _held_by(found)
+    with replacing(path) as temporary, h5netcdf.File(temporary, "w") as file:
+        file.attrs.update(found.attrs | held.pop("", {}))
+        file.dimensions = found.sizes
+        for name, one in found.arrays.items():
+            texts, missing = one.values.dtype.kind in "UO", one.values.dtype.kind == "f"
+            stored = file.create_variable(
+                name,
+                one.dims,
+                h5py.string_dtype() if texts else one.values.dtype,
+                data=one.values.astype(object) if texts else one.values,
+                fillvalue=np.nan if missing else None,
+            )
+            stored.attrs.update(one.attrs | held.get(name, {}))
+
+
+def _held_by(found: NamedArrays) -> dict[str, dict[str, str]]:
+    """Attributes that name the coordinates which are no dimensions: of the whole under ""."""
+    others = {name: set(one.dims) for name, one in sorted(found.coords.items()) if name not in found.sizes}
+    held = {}
+    for name, one in found.arrays.items():
+        names = [other for other, dims in others.items() if dims <= set(one.dims)]
+        if names and name not in others and name not in one.dims:
+            held[name] = " ".join(names)
+    left = [other for other in others if not any(other in names.split() for names in held.values())]
+    return {name: {"coordinates": names} for name, names in ({"": " ".join(left)} | held).items() if names}

@@ -5,22 +5,19 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass
 from enum import Enum
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from fluid.friction import Friction
 from leblanc.results.base import Note, NoteCode, Result, attributes, texts
 from leblanc.results.choice import ModelSpan
-from leblanc.results.netcdf import dataset, flags, write_dataset
+from leblanc.results.netcdf import NamedArrays, flags
 from leblanc.results.netcdf import variable as var
 from leblanc.results.response import RunResult
+from leblanc.results.sweep import EmulatorError
 from leblanc.units import MM, RPM
 from meshes.arrays import Array, Flags
-
-if TYPE_CHECKING:
-    from leblanc.results.netcdf import Dataset
 
 
 class Feasibility(Enum):
@@ -196,25 +193,6 @@ class Candidates:
 
 
 @dataclass(frozen=True)
-class EmulatorError:
-    """Error of an emulator on samples that it was not shown [theory: emulator, eq. 4].
-
-    Parameters
-    ----------
-    root_mean_square, largest : relative to the output for positive outputs, otherwise to its spread
-    spread : standard deviation of the output in the same measure, what knowing nothing leaves
-    within_two : share of the samples within two of the standard deviations that the emulator itself claims
-    samples : that were predicted
-    """
-
-    root_mean_square: float
-    largest: float
-    spread: float
-    within_two: float
-    samples: int
-
-
-@dataclass(frozen=True)
 class EmulatedAnswer:
     """What an emulator says of the best volumes.
 
@@ -272,6 +250,13 @@ class OptimumResult(Result):
     response : of the machine with these volumes over the scene's speeds; None where the liquid model of the
         search gives no steady answer, or where it was not asked for; its models are those of the search
     emulator : what the emulator that the search asked says of the answer; None without one
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> best = lb.optimise(lb.example("horizontal_rig"), front=False)
+    >>> best.feasible, sorted(best.constraints), best.volume.shape
+    (True, ['capacity'], (2,))
     """
 
     name: str
@@ -341,7 +326,7 @@ class OptimumResult(Result):
             }
         )
 
-    def to_dataset(self) -> Dataset:
+    def named_arrays(self) -> NamedArrays:
         """All volumes that were evaluated, over `candidate` and `chamber`, and the front."""
         over, tried = ("candidate",), self.candidates
         excess = "of the constraint exceeded most; 0 or below: none is"
@@ -369,7 +354,7 @@ class OptimumResult(Result):
             "candidate": var(over, tries.astype(np.int32), "1", "candidate"),
             "chamber": var(("chamber",), chambers.astype(np.int32), "1", "chamber"),
         }
-        return dataset(columns, coords, self._attributes())
+        return NamedArrays(columns, coords, self._attributes())
 
     def _attributes(self) -> dict[str, Any]:
         """Scene, what was asked for, versions."""
@@ -381,14 +366,3 @@ class OptimumResult(Result):
             "feasible": "yes" if self.feasible else "no",
         }
         return attributes(self, "optimise", own, self.notes)
-
-
-def write_optimum(result: OptimumResult, path: Path) -> None:
-    """Write all volumes that were evaluated as netCDF 4.
-
-    Parameters
-    ----------
-    result : the optimum
-    path : the file to write or replace
-    """
-    write_dataset(result.to_dataset(), path)

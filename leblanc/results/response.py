@@ -5,22 +5,19 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, fields
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.results.base import FilledChamber, Note, Result, attributes, one_line, texts
 from leblanc.results.choice import ModelSpan
-from leblanc.results.netcdf import dataset, flags
+from leblanc.results.netcdf import NamedArrays, Variable, flags
 from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.rotor.campbell import Campbell
 from solvers.synchronous.response import Response
-
-if TYPE_CHECKING:
-    from leblanc.results.netcdf import Dataset, Variable
 
 
 @dataclass(frozen=True)
@@ -157,6 +154,13 @@ class RunResult(Result):
     Raises
     ------
     InputError : no speed at all, an axis of another name, arrays of the response that do not fit together
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> result = lb.run(lb.example("horizontal_rig"))
+    >>> result.models_used, result.to_dataset()["amplitude"].attrs["units"]
+    (('linear',), 'm')
     """
 
     figure: ClassVar[str] = "leblanc.figures.response:amplitude_figure"
@@ -314,8 +318,8 @@ class RunResult(Result):
             **_whirl_json(self.whirl),
         }
 
-    def to_dataset(self) -> Dataset:
-        """Dataset with dimensions `speed` and `branch`; units, names and descriptions in the attributes.
+    def named_arrays(self) -> NamedArrays:
+        """Arrays over the dimensions `speed` and `branch`; units, names and descriptions in the attributes.
 
         netCDF has no complex numbers and no truth values: deflections are pairs `_real`, `_imag`, truth
         values are bytes with `flag_meanings`. There is no time stamp, so one result gives one file, byte for
@@ -327,7 +331,7 @@ class RunResult(Result):
             "model": ", ".join(self.models_used),
             "axis": self.axis,
         }
-        return dataset(
+        return NamedArrays(
             _variables(self),
             coords={
                 "speed": var(("speed",), self.speed, "rad s-1", "spin speed", "of the rotor about its axis"),

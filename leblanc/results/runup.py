@@ -5,24 +5,20 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import asdict, dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fluid.friction import Friction
 from leblanc.results.base import FilledChamber, Note, Result, attributes, one_line, texts
-from leblanc.results.netcdf import dataset, flags, variable, write_dataset
+from leblanc.results.netcdf import NamedArrays, flags, variable
 from leblanc.results.response import phase
 from leblanc.units import friction_words
 from meshes.arrays import Array, Complex, Flags
 from solvers.layer.records import Outcome
 from solvers.runup.runup import EnergyAudit, RunupHistory
 from solvers.synchronous.response import Response
-
-if TYPE_CHECKING:
-    from leblanc.results.netcdf import Dataset
 
 Values = NDArray[Any]
 Bands = tuple[tuple[float, float], ...]
@@ -91,6 +87,14 @@ class RunupResult(Result):
     chambers, planes : one for each chamber; its position along the axis, m
     notes : limits of validity and findings
     frames : the layers at regular times; None if they were not asked for
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> short = lb.example("runup").replace({"runup.duration": "1 s", "runup.cells": 16})
+    >>> result = lb.run_up(short, samples=50, check=False)
+    >>> result.model, result.converged, result.amplitude.shape
+    ('long_wave', True, (50,))
     """
 
     name: str
@@ -275,7 +279,7 @@ class RunupResult(Result):
         audit = self.energy
         return asdict(audit) | {"remainder": audit.remainder, "closure": audit.closure}
 
-    def to_dataset(self) -> Dataset:
+    def named_arrays(self) -> NamedArrays:
         """The run-up over `time`, `chamber` and `coordinate`.
 
         Complex numbers are pairs `_real`, `_imag`, truth values are bytes with `flag_meanings`. The energy
@@ -283,7 +287,7 @@ class RunupResult(Result):
         """
         columns = _columns(self)
         coords = {name: columns.pop(name) for name in ("time", "chamber")}
-        return dataset(columns, coords, self._attributes())
+        return NamedArrays(columns, coords, self._attributes())
 
     def _attributes(self) -> dict[str, Any]:
         """Scene, numerics, single results and versions."""
@@ -341,17 +345,6 @@ def _columns(result: RunupResult) -> dict[str, Any]:
         columns[f"{name}_real"] = each(values.real, "m", f"{name} {text}, first direction")
         columns[f"{name}_imag"] = each(values.imag, "m", f"{name} {text}, second direction")
     return columns
-
-
-def write_runup(result: RunupResult, path: Path) -> None:
-    """Write a run-up as netCDF 4.
-
-    Parameters
-    ----------
-    result : the run-up
-    path : the file to write or replace
-    """
-    write_dataset(result.to_dataset(), path)
 
 
 def turn_mean(values: Complex, angle: Array) -> Complex:

@@ -5,17 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.results.base import Result
+from leblanc.results.netcdf import NamedArrays
 from meshes.arrays import Array
-
-if TYPE_CHECKING:
-    from leblanc.results.netcdf import Dataset
-
 
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 
@@ -59,6 +56,25 @@ class Sensitivity:
 
 
 @dataclass(frozen=True)
+class EmulatorError:
+    """Error of an emulator on samples that it was not shown [theory: emulator, eq. 4].
+
+    Parameters
+    ----------
+    root_mean_square, largest : relative to the output for positive outputs, otherwise to its spread
+    spread : standard deviation of the output in the same measure, what knowing nothing leaves
+    within_two : share of the samples within two of the standard deviations that the emulator itself claims
+    samples : that were predicted
+    """
+
+    root_mean_square: float
+    largest: float
+    spread: float
+    within_two: float
+    samples: int
+
+
+@dataclass(frozen=True)
 class SweepResult(Result):
     """What a sweep found.
 
@@ -79,7 +95,13 @@ class SweepResult(Result):
     over_speed : statistics of the others at each speed
     sensitivities : of outputs that are one number a sample; None where the samples do not tell
     digest : fingerprint of the sweep
-    read : reads the store as a dataset, each time it is called
+    read : reads the store, each time it is called
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> found = lb.sweep("study.toml", workers=0)  # doctest: +SKIP
+    >>> found.done, found.to_dataset()["last_amplitude"]  # doctest: +SKIP
     """
 
     figure: ClassVar[str] = "leblanc.figures.sweep:sweep_figure"
@@ -103,7 +125,7 @@ class SweepResult(Result):
     over_speed: Mapping[str, Statistics]
     sensitivities: Mapping[str, Sensitivity | None]
     digest: str
-    read: Callable[[], Dataset] = field(repr=False, compare=False)
+    read: Callable[[], NamedArrays] = field(repr=False, compare=False)
 
     def to_json(self) -> dict[str, Any]:
         """What `sweep` prints for scripts: SI, lists over speed or over the varied fields."""
@@ -118,23 +140,23 @@ class SweepResult(Result):
             "failed": self.failed,
             "not_converged": self.not_converged,
             "reasons": [{"reason": reason, "samples": count} for reason, count in self.reasons],
-            "outputs": {name: _statistics_json(one, single=True) for name, one in self.single.items()},
+            "outputs": {name: _statistics_json(values, single=True) for name, values in self.single.items()},
             "over_speed": {"speed": self.speed}
-            | {name: _statistics_json(one, single=False) for name, one in self.over_speed.items()},
+            | {name: _statistics_json(values, single=False) for name, values in self.over_speed.items()},
             "sensitivity": self.sensitivities,
             "digest": self.digest,
         }
 
-    def to_dataset(self) -> Dataset:
-        """The store as a dataset with dimensions `sample` and `speed`; read whole, at each call."""
+    def named_arrays(self) -> NamedArrays:
+        """The store over the dimensions `sample` and `speed`; read whole, at each call."""
         return self.read()
 
 
-def _statistics_json(one: Statistics, single: bool) -> dict[str, Any]:
+def _statistics_json(values: Statistics, single: bool) -> dict[str, Any]:
     parts = {
-        "samples": one.count,
-        "mean": one.mean,
-        "deviation": one.deviation,
-        **{f"quantile_{share:g}": one.quantiles[:, k] for k, share in enumerate(QUANTILES)},
+        "samples": values.count,
+        "mean": values.mean,
+        "deviation": values.deviation,
+        **{f"quantile_{share:g}": values.quantiles[:, k] for k, share in enumerate(QUANTILES)},
     }
     return {name: value[0] if single else value for name, value in parts.items()}

@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from leblanc.results.base import Note, Result, attributes, texts
-from leblanc.results.netcdf import dataset, flags
+from leblanc.results.netcdf import NamedArrays, flags
 from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Flags
 
 if TYPE_CHECKING:
-    from leblanc.results.netcdf import Dataset
     from solvers.whirl.edges import Bands
 
 
@@ -34,6 +33,13 @@ class WhirlMap(Result):
     friction, damping : of the liquid, of the support, in words
     scene_volume, scene_edges : of the scene as it stands, m^3 and as in `edges`
     notes : limits of validity and findings
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> whirl = lb.map_whirl(lb.example("horizontal_rig"), volumes=3, speeds=5)
+    >>> whirl.volume.shape, whirl.speed.shape, whirl.growth.shape
+    ((3,), (5,), (3, 5))
     """
 
     figure: ClassVar[str] = "leblanc.figures.whirl_map:map_figure"
@@ -61,8 +67,8 @@ class WhirlMap(Result):
         names += ["scene_volume", "scene_edges", "name", "digest", "assumed"]
         return {name: getattr(self, name) for name in names} | {"notes": texts(self.notes)}
 
-    def to_dataset(self) -> Dataset:
-        """Dataset with dimensions `volume`, `speed` and `band`.
+    def named_arrays(self) -> NamedArrays:
+        """Arrays over the dimensions `volume`, `speed` and `band`.
 
         Truth values are bytes with `flag_meanings`; volumes with fewer bands than others have nan in
         `edge_low` and `edge_high`.
@@ -74,7 +80,7 @@ class WhirlMap(Result):
         mode = "of the whirl that grows most"
         held = flags(over, self.in_range, "no yes", "in range", "the plane layer holds there")
         edge = "of a band in which a whirl grows; the ends of the range of speeds count as edges"
-        return dataset(
+        return NamedArrays(
             {
                 "growth": var(over, self.growth, "s-1", "growth rate", f"{mode}; above 0 unstable"),
                 "whirl_speed": var(over, self.whirl_speed, "rad s-1", "whirl speed", f"{mode}, in space"),

@@ -124,7 +124,9 @@ def choose_all(machines: Sequence[Prepared]) -> list[Choice]:
         _check_walls(scene)
     planar = [machine for machine in machines if isinstance(machine.rotor, Jeffcott)]
     found = iter(_planar_errors(planar) if planar else ())
-    errors = [next(found) if isinstance(one.rotor, Jeffcott) else _other_errors(one) for one in machines]
+    errors = [
+        next(found) if isinstance(machine.rotor, Jeffcott) else _other_errors(machine) for machine in machines
+    ]
     return [_choice(machine, *pair) for machine, pair in zip(machines, errors, strict=True)]
 
 

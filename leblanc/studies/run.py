@@ -117,7 +117,7 @@ def _directed(
     system: RotorSystem, speed: NDArray[np.float64], shape: Complex
 ) -> tuple[tuple[float, float], ...]:
     sense = whirl_direction(system, shape)
-    return tuple((float(one), float(way)) for one, way in zip(speed, sense, strict=True))
+    return tuple((float(critical), float(way)) for critical, way in zip(speed, sense, strict=True))
 
 
 def main_critical_speeds(

@@ -419,5 +419,7 @@ def _passed(speed: Array, count: int) -> Array:
 
 
 def _chamber(fill: Fill) -> FilledChamber:
-    one, name = fill.chamber, fill.liquid.name
-    return FilledChamber(one.radius, one.inner_radius, one.height, fill.volume, name, fill.surface_radius)
+    chamber, name = fill.chamber, fill.liquid.name
+    return FilledChamber(
+        chamber.radius, chamber.inner_radius, chamber.height, fill.volume, name, fill.surface_radius
+    )

@@ -9,8 +9,8 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.linalg import cholesky, solve_triangular
 
 from fluid.fill import Fill
 from fluid.friction import Friction, FrictionLaw, layer_thickness
@@ -95,21 +95,21 @@ def reduce_liquid(system: LiquidSystem) -> ReducedLiquid:
     ----------
     system : the condensed liquid
     """
-    root = cholesky(system.inertia, lower=True)
+    root = scipy.linalg.cholesky(system.inertia, lower=True)
 
     def scaled(matrix: Array) -> Array:
-        half = solve_triangular(root, matrix, lower=True)
-        return np.asarray(solve_triangular(root, half.T, lower=True).T)
+        half = scipy.linalg.solve_triangular(root, matrix, lower=True)
+        return np.asarray(scipy.linalg.solve_triangular(root, half.T, lower=True).T)
 
     gyration, surface = scaled(system.gyration), scaled(system.surface)
-    drive = solve_triangular(root, system.moment.T, lower=True)
+    drive = scipy.linalg.solve_triangular(root, system.moment.T, lower=True)
     answers = [drive, np.linalg.solve(surface, drive)]
     unit = np.eye(len(drive))
     for s in KEPT:
         answer = np.linalg.solve(-s * s * unit + 2j * s * gyration + surface, drive)
         answers += [answer.real, answer.imag]
     basis = spanned(np.hstack(answers))
-    motions = solve_triangular(root.T, basis, lower=False)
+    motions = scipy.linalg.solve_triangular(root.T, basis, lower=False)
     turn, spread = (basis.T @ matrix @ basis for matrix in (gyration, surface))
     return ReducedLiquid(
         inertia=np.eye(basis.shape[1]),

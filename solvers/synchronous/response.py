@@ -189,7 +189,7 @@ def response(
     >>> rotor = Jeffcott(mass=4.0, stiffness=4.4e4, damping=84.0, unbalance=6e-4)
     >>> answer = response(rotor, [], [105.0, 200.0])
     >>> print(np.round(1e3 * np.abs(answer.deflection), 4))
-    [0.75   0.2042]
+    [0.75   0.2048]
     """
     spin = np.array(speed, dtype=float).reshape(-1)
     place = position if position is not None else (fills[0].chamber.plane if fills else 0.0)

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.linalg import block_diag
 
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError
@@ -66,15 +66,17 @@ def drum_matrices(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array)
     pull = -np.hstack([np.zeros((2, 0)), *(layer.density * layer.liquid.moment for layer in layers)])
 
     def parts(name: str) -> Array:
-        return np.asarray(block_diag(*(layer.density * getattr(layer.liquid, name) for layer in layers)))
+        return np.asarray(
+            scipy.linalg.block_diag(*(layer.density * getattr(layer.liquid, name) for layer in layers))
+        )
 
     inertia, gyration, surface = parts("inertia"), parts("gyration"), parts("surface")
-    rate = block_diag(*(layer.density * layer.rate * layer.liquid.inertia for layer in layers))
-    laminar = block_diag(np.zeros((2, 2)), *(layer.density * layer.laminar for layer in layers))
+    rate = scipy.linalg.block_diag(*(layer.density * layer.rate * layer.liquid.inertia for layer in layers))
+    laminar = scipy.linalg.block_diag(np.zeros((2, 2)), *(layer.density * layer.laminar for layer in layers))
     spin = speed[:, None, None]
     mass = np.block([[heavy * np.eye(2), pull], [pull.T, inertia]])
     twist = np.block([[heavy * _TURN, _TURN @ pull], [pull.T @ _TURN, gyration]])
-    steady = block_diag(rotor.damping * np.eye(2), rate)
+    steady = scipy.linalg.block_diag(rotor.damping * np.eye(2), rate)
     spread = np.block([[-heavy * np.eye(2), -pull], [-pull.T, surface]])
     support = np.zeros_like(mass)
     support[:2, :2] = rotor.stiffness * np.eye(2)
@@ -170,7 +172,7 @@ def most_growing(search: MostGrowing, speed: Array) -> SystemModes:
 def _circles(layers: Sequence[SectionLayer]) -> Array:
     """Displacement of the axis and of each layer's centre, in pairs across the axis."""
     shifts = [layer.liquid.moment / layer.liquid.liquid_area for layer in layers]
-    return np.asarray(block_diag(np.eye(2), *shifts))
+    return np.asarray(scipy.linalg.block_diag(np.eye(2), *shifts))
 
 
 def _sizes(circles: Array, shape: Complex) -> tuple[Array, Array]:

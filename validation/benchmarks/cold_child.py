@@ -1,8 +1,8 @@
 """`python -m validation.benchmarks.cold_child FILE COMMAND ...`: one command of `leblanc`, watched.
 
 A timer interrupts the command every few milliseconds of its processor time and notes which library is at
-work, whether that is an import, and which call of the command function it belongs to. What was noted and the
-modules that the command ended with go to FILE as JSON.
+work, whether that is an import or done for the physics, and which call of the command function it belongs to.
+What was noted and the modules that the command ended with go to FILE as JSON.
 """
 
 from __future__ import annotations
@@ -22,6 +22,9 @@ _ROOT = Path(__file__).resolve().parents[2]
 # The package of the command line that lies beside this one.
 FRONT = next((name for name in ("leblanc", "study") if (_ROOT / name / "cli").is_dir()), "leblanc")
 OURS = frozenset({"meshes", "fluid", "solvers", FRONT, "validation"})
+# What these have done is physics, whoever does it; numba's getting ready of a kernel is not.
+PHYSICS = frozenset({"meshes", "fluid", "solvers"})
+_GETTING_READY = "_compile_for_args"
 # Processor time between two notes, s; kernels round it up to their own tick.
 _EVERY = 1e-3
 _PLACES = tuple(
@@ -55,9 +58,10 @@ def place(frame: FrameType | None, command: str) -> tuple[str, str, str]:
 
     Returns
     -------
-    Call of the command function that is under way, "import" or "work", library
+    Call of the command function that is under way, "import", "physics" or "work", library
     """
     at_work, imported, importing, call, inner = None, None, False, START, None
+    physics, getting_ready = False, False
     while frame is not None:
         code = frame.f_code
         if code.co_filename == "<frozen importlib._bootstrap>":
@@ -65,14 +69,17 @@ def place(frame: FrameType | None, command: str) -> tuple[str, str, str]:
                 top = str(frame.f_locals.get("name", "")).partition(".")[0]
                 imported = None if top in sys.stdlib_module_names else top
             importing = True
-        elif at_work is None:
-            at_work = library(code.co_filename)
+        else:
+            owner = library(code.co_filename)
+            at_work = at_work or owner
+            getting_ready |= code.co_name == _GETTING_READY
+            physics |= owner in PHYSICS
         if code.co_name == command and Path(code.co_filename).parent.name == "cli":
             call = _name(inner, command)
         inner, frame = frame, frame.f_back
     if importing:
         return call, "import", imported or STANDARD
-    return call, "work", at_work or STANDARD
+    return call, "physics" if physics and not getting_ready else "work", at_work or STANDARD
 
 
 def _name(inner: FrameType | None, command: str) -> str:

@@ -2,11 +2,12 @@
 
     python -m validation.benchmarks.cold_start                          # the usual commands on shipped scenes
     python -m validation.benchmarks.cold_start run examples/tub.toml    # any command
+    python -m validation.benchmarks.cold_start --json validation/benchmarks/cold_start.json  # as kept
 
-All times are processor time, user and system, of a process of its own with its threads, the least of several
-runs: other work on the machine hardly matters. The libraries' part is a process that imports all modules of
-libraries that the command ended with, in the same order, and nothing of ours. Compiled kernels come from
-numba's cache: an untimed run comes first. POSIX only.
+All times are processor time, user and system, of a process of its own with its threads: medians of runs in
+turn with those of what they are compared with, so that other work on the machine acts on both alike. The
+libraries' part is a process that imports all modules of libraries that the command ended with, in the same
+order, and nothing of ours. Compiled kernels come from numba's cache: an untimed run comes first. POSIX only.
 """
 
 from __future__ import annotations
@@ -14,16 +15,19 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import statistics
 import subprocess
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from validation.benchmarks.cold_child import FRONT, OURS
 
+KEPT = Path(__file__).with_suffix(".json")
 ROOT = Path(__file__).resolve().parents[2]
 RIG, RUNUP = "examples/horizontal_rig.toml", "examples/runup.toml"
 COMMANDS = (
@@ -51,7 +55,7 @@ class ColdStart:
     total : of the command
     libraries : of importing the modules of libraries that it ends with, Python's own start included
     modules : how many modules of each library that is
-    notes : call of the command function, "import" or "work", library: share of the command's time
+    notes : call of the command function, "import", "physics" or "work", library: share of the command's time
     """
 
     arguments: tuple[str, ...]
@@ -60,12 +64,22 @@ class ColdStart:
     modules: dict[str, int]
     notes: dict[tuple[str, str, str], float]
 
+    @property
+    def ratio(self) -> float:
+        """Time of the command over that of its libraries."""
+        return self.total / self.libraries
+
+    @property
+    def physics(self) -> float:
+        """Time of the command that goes into its answer."""
+        return sum(seconds for _, seconds in self.shares(2, where=[(1, "physics")]))
+
     def shares(self, *fields: int, where: Sequence[tuple[int, str]] = ()) -> list[tuple[str, float]]:
         """Times summed over all other fields of the notes, s, the longest first.
 
         Parameters
         ----------
-        fields : of the notes that stay apart: 0 call, 1 import or work, 2 library
+        fields : of the notes that stay apart: 0 call, 1 import, physics or work, 2 library
         where : fields and the values that they must have
         """
         found: dict[str, float] = {}
@@ -103,9 +117,19 @@ def processor_time(command: Sequence[str], given: str = "") -> float:
     return usage.ru_utime + usage.ru_stime
 
 
-def least(command: Sequence[str], repeats: int, given: str = "") -> float:
-    """Least processor time of several runs, s; see `processor_time`."""
-    return min(processor_time(command, given) for _ in range(repeats))
+def medians(programs: Mapping[str, tuple[Sequence[str], str]], repeats: int) -> dict[str, float]:
+    """Median processor time of each of some programs, s; they run in turn.
+
+    Parameters
+    ----------
+    programs : by name, as `processor_time` takes them
+    repeats : of each
+    """
+    found: dict[str, list[float]] = {name: [] for name in programs}
+    for _ in range(repeats):
+        for name, (command, given) in programs.items():
+            found[name].append(processor_time(command, given))
+    return {name: statistics.median(times) for name, times in found.items()}
 
 
 def _settings() -> dict[str, str]:
@@ -146,12 +170,15 @@ def cold_start(arguments: Sequence[str], repeats: int = 5) -> ColdStart:
             processor_time(watched)
             found = json.loads(file.read_text(encoding="utf-8"))
             notes.update({(call, kind, name): count for call, kind, name, count in found["notes"]})
-        total = least([sys.executable, "-c", _ENTRY, *whole], repeats)
-    modules = third_party(found["modules"])
-    libraries = least([sys.executable, "-c", _IMPORT_ALL], repeats, "\n".join(modules))
+        modules = third_party(found["modules"])
+        programs = {
+            "total": ([sys.executable, "-c", _ENTRY, *whole], ""),
+            "libraries": ([sys.executable, "-c", _IMPORT_ALL], "\n".join(modules)),
+        }
+        times = medians(programs, repeats)
     counts = Counter(name.partition(".")[0] for name in modules)
     shares = {key: count / notes.total() for key, count in notes.items()}
-    return ColdStart(tuple(arguments), total, libraries, dict(counts.most_common()), shares)
+    return ColdStart(tuple(arguments), **times, modules=dict(counts.most_common()), notes=shares)
 
 
 def text(found: ColdStart) -> str:
@@ -164,10 +191,10 @@ def text(found: ColdStart) -> str:
     lines = [
         f"leblanc {' '.join(found.arguments)}",
         f"  {found.total:.2f} s in all; importing its libraries alone {found.libraries:.2f} s; "
-        f"ratio {found.total / found.libraries:.2f}",
+        f"ratio {found.ratio:.2f}, without the physics {(found.total - found.physics) / found.libraries:.2f}",
         "  modules: " + ", ".join(f"{name} {count}" for name, count in found.modules.items()),
     ]
-    for kind in ("import", "work"):
+    for kind in ("import", "physics", "work"):
         rows = found.shares(2, where=[(1, kind)])
         lines.append(f"  {kind} {sum(seconds for _, seconds in rows):.2f} s: {_listed(rows)}")
     for call, seconds in found.shares(0):
@@ -189,7 +216,7 @@ def front_doors(repeats: int) -> dict[str, float]:
     """
     programs = {"python": "pass", "import numpy": "import numpy", f"import {FRONT}": f"import {FRONT}"}
     programs[f"import {FRONT}.cli"] = f"import {FRONT}.cli"
-    return {name: least([sys.executable, "-c", code], repeats) for name, code in programs.items()}
+    return medians({name: ([sys.executable, "-c", code], "") for name, code in programs.items()}, repeats)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -219,10 +246,28 @@ def main(arguments: Sequence[str] | None = None) -> int:
         found.append(cold_start(command, chosen.repeats))
         print(f"\n{text(found[-1])}", flush=True)
     if chosen.json is not None:
-        rows = [asdict(one) | {"notes": [[*key, share] for key, share in one.notes.items()]} for one in found]
-        kept = json.dumps({"imports": doors, "commands": rows}, indent=1)
-        chosen.json.write_text(kept + "\n", encoding="utf-8")
+        rows = ",\n".join(json.dumps(_plain(one)) for one in found)
+        text_of_all = f'{{"imports": {json.dumps(doors)}, "commands": [\n{rows}\n]}}\n'
+        chosen.json.write_text(text_of_all, encoding="utf-8")
     return 0
+
+
+def _plain(found: ColdStart) -> dict[str, Any]:
+    """A measurement as it is kept, shares by kind and library."""
+    notes: Counter[tuple[str, str]] = Counter()
+    for (_, kind, name), share in found.notes.items():
+        notes[kind, name] += share
+    kept = [[*key, round(share, 4)] for key, share in notes.most_common() if share >= 5e-4]
+    return asdict(found) | {"notes": kept}
+
+
+def kept() -> list[ColdStart]:
+    """The measurements that are kept with the package, in the order of the commands."""
+    rows = json.loads(KEPT.read_text(encoding="utf-8"))["commands"]
+    for row in rows:
+        row["arguments"] = tuple(row["arguments"])
+        row["notes"] = {("", kind, name): share for kind, name, share in row["notes"]}
+    return [ColdStart(**row) for row in rows]
 
 
 if __name__ == "__main__":

@@ -93,9 +93,9 @@ def over_speeds(quick: bool = False) -> list[Growth]:
     counts = [1, 10, 30] if quick else [1, 3, 10, 30, 100, 300, 1000]
     layer, low, high = fill(), response_speeds()[0], response_speeds()[-1]
 
-    def each(one: Callable[[float], object]) -> list[float]:
+    def each(work: Callable[[float], object]) -> list[float]:
         rows = [np.linspace(low, high, n) if n > 1 else np.array([low]) for n in counts]
-        return [best(partial(_all, one, row)) for row in rows]
+        return [best(partial(_all, work, row)) for row in rows]
 
     def periods(slip: float) -> object:
         whirl = Whirl(SPIN, SPIN + slip, AMPLITUDE)
@@ -120,9 +120,9 @@ def over_speeds(quick: bool = False) -> list[Growth]:
     ]
 
 
-def _all(one: Callable[[float], object], row: NDArray[np.float64]) -> None:
+def _all(work: Callable[[float], object], row: NDArray[np.float64]) -> None:
     for speed in row:
-        one(float(speed))
+        work(float(speed))
 
 
 def right_hand_side(cells: int) -> float:
@@ -178,7 +178,7 @@ def first_calls() -> dict[str, float]:
         for _ in range(2):
             command = [sys.executable, "-c", _FIRST]
             done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-            rows.append([float(one) for one in done.stdout.split()])
+            rows.append([float(seconds) for seconds in done.stdout.split()])
     cold, warm = rows
     return {
         "imports": warm[0],

@@ -131,7 +131,7 @@ def linear_sample(seed: int, count: int) -> LinearSample:
     )
     pairs = pair_machines(machines, everyone, speed, gravity, LINEAR)
     error = planar_enclosure(pairs).error()
-    sizes = [np.abs(one.deflection) for one in (linear, exact)]
+    sizes = [np.abs(response.deflection) for response in (linear, exact)]
     return LinearSample(
         linear=linear,
         exact=exact,
@@ -241,11 +241,11 @@ def main() -> None:
         f"{'estimate':20}{'n':>6}{'covered':>9}{'infinite':>10}{'ratio':>8}"
         f"{'true <1%':>10}{'taken':>8}{'refused':>9}"
     )
-    for name, one in samples.items():
-        good, taken = one.within(0.01)
+    for name, sample in samples.items():
+        good, taken = sample.within(0.01)
         print(
-            f"{name:20}{one.true.size:6d}{one.covered:9.3f}{one.unbounded:10.3f}{one.ratio():8.3g}"
-            f"{good:10.3f}{taken:8.3f}{one.refused(0.01):9.3f}"
+            f"{name:20}{sample.true.size:6d}{sample.covered:9.3f}{sample.unbounded:10.3f}{sample.ratio():8.3g}"
+            f"{good:10.3f}{taken:8.3f}{sample.refused(0.01):9.3f}"
         )
 
 

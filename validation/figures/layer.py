@@ -133,7 +133,7 @@ def bore_summary() -> dict[str, tuple[float, float, float]]:
             1e3 * (depth - np.array(run[key]))
             for key, depth in (("depth_max", history.depth_max), ("depth_min", history.depth_min))
         ]
-        crest, trough = (float(one[np.argmax(np.abs(one))]) for one in off)
+        crest, trough = (float(values[np.argmax(np.abs(values))]) for values in off)
         found[_LOOKS[name][0]] = crest, trough, float(history.mean_rotation[-1])
         last = float(np.interp(history.time[-1], *flow))
     return {"computed flow": (0.0, 0.0, last)} | found

@@ -64,7 +64,7 @@ class FilledMachine:
         speed : rad/s, shape (m,)
         """
         rows = np.ascontiguousarray(volumes)
-        keys = [(row.tobytes(), one) for row, one in zip(rows, speed.tolist(), strict=True)]
+        keys = [(row.tobytes(), spin) for row, spin in zip(rows, speed.tolist(), strict=True)]
         fresh: dict[tuple[bytes, float], int] = {}
         for k, key in enumerate(keys):
             if key not in self._known:
@@ -75,8 +75,8 @@ class FilledMachine:
             which = np.array([k for _, k in part], dtype=np.intp)
             amplitude, dry = (self._planar if self.planar else self._one_by_one)(rows[which], speed[which])
             amplitude = np.where(np.isnan(amplitude), math.inf, amplitude)
-            for (key, _), one, dried in zip(part, amplitude.tolist(), dry.tolist(), strict=True):
-                self._known[key] = one, float(dried)
+            for (key, _), size, dried in zip(part, amplitude.tolist(), dry.tolist(), strict=True):
+                self._known[key] = size, float(dried)
         found = np.array([self._known[key] for key in keys]).reshape(-1, 2)
         return FillAnswers(found[:, 0], found[:, 1])
 
@@ -99,7 +99,7 @@ class FilledMachine:
     def _one_by_one(self, volumes: Array, speed: Array) -> tuple[Array, Flags]:
         """The same of rotors that tilt."""
         pairs = zip(volumes, speed.tolist(), strict=True)
-        scenes = [with_volumes(self.scene, row).altered(speeds=Speeds.at(one)) for row, one in pairs]
+        scenes = [with_volumes(self.scene, row).altered(speeds=Speeds.at(spin)) for row, spin in pairs]
         found = answer_scenes(scenes)
         return found.amplitude[:, 0], found.dry_patch[:, 0]
 

@@ -15,20 +15,17 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.results.base import one_line, versions
-from leblanc.results.netcdf import dataset, variable
+from leblanc.results.netcdf import NamedArrays, variable
 from leblanc.scene.schema.load import shown
 from leblanc.studies.sweep.block import FLAG, NUMBER, OUTPUTS, PENDING, STATUS, TEXT, Output
 from leblanc.studies.sweep.study import Sweep, VariedField
 from meshes.errors import InputError
-
-if TYPE_CHECKING:
-    from leblanc.results.netcdf import Dataset
 
 STORE = "sweep.zarr"
 
@@ -189,9 +186,9 @@ def _create(path: Path, sweep: Sweep) -> None:
             attributes=attributes,
         )
 
-    for one in OUTPUTS:
-        fill = {NUMBER: np.nan, FLAG: -1, TEXT: ""}[one.kind]
-        array(one.name, one.kind, one.over_speed, fill, _output_attributes(one))
+    for output in OUTPUTS:
+        fill = {NUMBER: np.nan, FLAG: -1, TEXT: ""}[output.kind]
+        array(output.name, output.kind, output.over_speed, fill, _output_attributes(output))
     for field in sweep.fields:
         kind, empty = (TEXT, "") if field.words else (NUMBER, np.nan)
         said = {"units": field.unit, "long_name": field.path, "description": "varied field of the scene"}
@@ -201,14 +198,14 @@ def _create(path: Path, sweep: Sweep) -> None:
     array("reason", TEXT, False, "", {"units": "1", "long_name": "why the sample is not done"})
 
 
-def _output_attributes(one: Output) -> dict[str, Any]:
-    said: dict[str, Any] = {"units": one.units, "long_name": one.long_name}
-    if one.text:
-        said["description"] = one.text
-    if one.meanings:
+def _output_attributes(output: Output) -> dict[str, Any]:
+    said: dict[str, Any] = {"units": output.units, "long_name": output.long_name}
+    if output.text:
+        said["description"] = output.text
+    if output.meanings:
         said |= {
-            "flag_values": list(range(-1, len(one.meanings) - 1)),
-            "flag_meanings": " ".join(one.meanings),
+            "flag_values": list(range(-1, len(output.meanings) - 1)),
+            "flag_meanings": " ".join(output.meanings),
         }
     return said
 
@@ -225,7 +222,7 @@ def _attributes(sweep: Sweep) -> dict[str, Any]:
         "method": sweep.method,
         "points": sweep.points,
         "seed": str(sweep.seed),
-        "vary": "\n".join(f"{one.path}: {one.distribution}" for one in sweep.fields),
+        "vary": "\n".join(f"{field.path}: {field.distribution}" for field in sweep.fields),
         "history": "written by leblanc sweep",
         **{f"version_{package}": version for package, version in _versions().items()},
     }
@@ -290,10 +287,10 @@ def field_values(field: VariedField, drawn: NDArray[np.float64]) -> NDArray[Any]
     field : the varied field
     drawn : sampled numbers, shape (n,)
     """
-    values = [field.value(one) for one in drawn]
+    values = [field.value(level) for level in drawn]
     if not field.words:
         return np.array(values, dtype=np.float64)
-    return np.array([one if isinstance(one, str) else _table(one) for one in values], dtype=object)
+    return np.array([value if isinstance(value, str) else _table(value) for value in values], dtype=object)
 
 
 def _table(value: object) -> str:
@@ -303,27 +300,8 @@ def _table(value: object) -> str:
 _SINGLE = ("units", "long_name")
 
 
-def store_dataset(store: Store) -> Dataset:
-    """The whole store as a dataset with units, in memory.
-
-    Parameters
-    ----------
-    store : to be read
-    """
-    found = {}
-    for name in store.arrays:
-        values, said = store.read(name), store.attributes(name)
-        one = variable(store.dims(name), values, *(str(said.pop(key)) for key in _SINGLE))
-        if "flag_values" in said:
-            said["flag_values"] = np.array(said["flag_values"], dtype=np.int8)
-        one.attrs.update(said)
-        found[name] = one
-    speed = found.pop("speed")
-    return dataset(found, coords={"speed": speed}, attrs=store.attributes())
-
-
-def read_dataset(path: Path) -> Dataset:
-    """The same from the folder of a store.
+def read_arrays(path: Path) -> NamedArrays:
+    """The whole store with units, in memory.
 
     Parameters
     ----------
@@ -333,4 +311,13 @@ def read_dataset(path: Path) -> Dataset:
     ------
     InputError : there is no store
     """
-    return store_dataset(read_store(path))
+    store, found = read_store(path), {}
+    for name in store.arrays:
+        values, said = store.read(name), store.attributes(name)
+        one = variable(store.dims(name), values, *(str(said.pop(key)) for key in _SINGLE))
+        if "flag_values" in said:
+            said["flag_values"] = np.array(said["flag_values"], dtype=np.int8)
+        one.attrs.update(said)
+        found[name] = one
+    speed = found.pop("speed")
+    return NamedArrays(found, coords={"speed": speed}, attrs=store.attributes())

@@ -15,7 +15,7 @@ import typer
 from leblanc import cli
 from leblanc.cli import exit_code, main
 from leblanc.scene.scene import load_scene
-from leblanc.scene.schema.load import NotConverged, SceneFault, SceneFaults
+from leblanc.scene.schema.load import NotConverged, SceneError, SceneFault
 from meshes.errors import InputError
 
 Capture = pytest.CaptureFixture[str]
@@ -81,7 +81,7 @@ def test_a_wrong_command_line_is_one_clear_line(arguments: list[str], said: str,
 
 # -- what a command may raise --------------------------------------------------------------------------------
 
-SCENE_FAULTS = SceneFaults(
+SCENE_FAULTS = SceneError(
     [SceneFault("s.toml", "rotor.mass", "-1", "above 0"), SceneFault("s.toml", "name", None, "given")]
 )
 
@@ -119,12 +119,12 @@ def test_each_failure_has_its_exit_code(
 
 
 def test_a_command_keeps_its_exit_code_within_typer(monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
-    application = typer.Typer()
+    commands = typer.Typer()
 
-    @application.callback()
+    @commands.callback()
     def _all() -> None: ...
 
-    @application.command()
+    @commands.command()
     def fail(how: str) -> None:
         raise {
             "input": InputError("radius", -1.0, "above 0"),
@@ -133,7 +133,7 @@ def test_a_command_keeps_its_exit_code_within_typer(monkeypatch: pytest.MonkeyPa
             "exit": typer.Exit(3),
         }[how]
 
-    monkeypatch.setattr(cli, "app", application)
+    monkeypatch.setattr(cli, "application", lambda _: commands)
     codes = {how: main(["fail", how]) for how in ("input", "stuck", "stop", "exit")}
     assert codes == {"input": 2, "stuck": 3, "stop": 130, "exit": 3}
     assert "Traceback" not in capsys.readouterr().err
@@ -150,7 +150,6 @@ def test_a_command_of_another_package(monkeypatch: pytest.MonkeyPatch, capsys: C
         EntryPoint("broken", "no_such_package.command:broken", "leblanc.commands"),
     ]
     monkeypatch.setattr(cli, "entry_points", lambda **_: entries)
-    monkeypatch.setattr(cli, "app", cli._application())
     assert main(["--help"]) == 0
     assert "measure" in capsys.readouterr().out
     assert main(["broken", "anything", "--at-all"]) == 2

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from leblanc.figures import write_figures
+from leblanc.figures.response import write_figures
 from leblanc.report.page import about
 from leblanc.report.run import write_run_report
 from leblanc.scene.scene import load_scene

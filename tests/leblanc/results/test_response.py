@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from leblanc.results.netcdf import replacing, write_dataset
+from leblanc.results.netcdf import replacing, write_netcdf
 from leblanc.results.response import RunResult
 from meshes.errors import InputError
 from tests.oracles.records import folded, record_of, response_of, rig
@@ -35,7 +35,7 @@ def record(request) -> RunResult:
 
 def test_file_holds_what_was_written(record: RunResult, tmp_path: Path):
     path = tmp_path / "run.nc"
-    write_dataset(record.to_dataset(), path)
+    write_netcdf(record.named_arrays(), path)
     r = record.response
     with xr.open_dataset(path) as data:
         assert set(data.dims) == {"speed", "branch"}
@@ -85,13 +85,13 @@ def test_attributes_name_scene_and_versions():
 def test_same_record_same_bytes(tmp_path: Path):
     files = [tmp_path / "a.nc", tmp_path / "b" / "c.nc"]
     for file in files:
-        write_dataset(folded().to_dataset(), file)
+        write_netcdf(folded().named_arrays(), file)
     assert files[0].read_bytes() == files[1].read_bytes()
 
 
 def test_texts_that_a_file_cannot_carry(tmp_path: Path):
     record = replace(rig(3), name="Schleuder \x00 \N{SNOWMAN}\n2", source="", assumed=(), notes=())
-    write_dataset(record.to_dataset(), tmp_path / "run.nc")
+    write_netcdf(record.named_arrays(), tmp_path / "run.nc")
     with xr.open_dataset(tmp_path / "run.nc") as data:
         assert data.attrs["title"] == "Schleuder \N{SNOWMAN} 2"
         assert data.attrs["assumed"] == "nothing"

@@ -12,8 +12,8 @@ import pytest
 import xarray as xr
 
 from leblanc.cli import main
-from leblanc.figures import amplitude_figure, campbell_figure, chamber_figure
-from leblanc.figures.chambers import side_by_side
+from leblanc.figures.chambers import chamber_figure, side_by_side
+from leblanc.figures.response import amplitude_figure, campbell_figure
 from leblanc.report.run import comparisons, facts
 from leblanc.scene.scene import Scene, dry_rotor, load_scene, scene_from_table
 from leblanc.studies.explain import explain_scene

@@ -20,8 +20,9 @@ from leblanc.cli.runup import runup
 from leblanc.figures import films as film_figures
 from leblanc.figures import runup as figures
 from leblanc.results.drawn import film_factor, half_angle
+from leblanc.results.netcdf import write_netcdf
 from leblanc.results.notes import RunupCode
-from leblanc.results.runup import RunupFrames, RunupResult, turn_mean, write_runup
+from leblanc.results.runup import RunupFrames, RunupResult, turn_mean
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.schema.load import NotConverged
 from leblanc.studies.runup import (
@@ -425,7 +426,7 @@ def test_json_is_one_object_of_lists(capsys: pytest.CaptureFixture[str], record:
 def test_the_data_file_holds_the_run(tmp_path: Path, record: RunupResult) -> None:
     import h5py
 
-    write_runup(record, tmp_path / "runup.nc")
+    write_netcdf(record.named_arrays(), tmp_path / "runup.nc")
     h = record.history
     with h5py.File(tmp_path / "runup.nc") as file:
         for name, values in (

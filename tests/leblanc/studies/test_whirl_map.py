@@ -18,7 +18,7 @@ from fluid.whirl import covering_speed
 from leblanc.cli import main
 from leblanc.cli.map import map as map_command
 from leblanc.figures.whirl_map import map_figure, signed_distance
-from leblanc.results.netcdf import write_dataset
+from leblanc.results.netcdf import write_netcdf
 from leblanc.results.notes import MapCode
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import Scene, dry_rotor, load_scene
@@ -130,7 +130,7 @@ def test_other_rotors() -> None:
 
 def test_file(tmp_path: Path) -> None:
     record = small("horizontal_rig")
-    write_dataset(record.to_dataset(), tmp_path / "map.nc")
+    write_netcdf(record.named_arrays(), tmp_path / "map.nc")
     with h5netcdf.File(tmp_path / "map.nc", "r") as file:
         np.testing.assert_array_equal(file["growth"][...], record.growth)
         np.testing.assert_array_equal(file["in_range"][...], record.in_range)

@@ -17,17 +17,15 @@ from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.choose import prepare
 from leblanc.studies.optimise.answers import FilledMachine
-from leblanc.studies.optimise.closed_form import (
+from leblanc.studies.optimise.objectives import AtSpeed, PeakOver, Robust, operating_conditions
+from leblanc.studies.optimise.optimise import not_dominated, optimise_scene
+from leblanc.studies.optimise.problem import growth, stability
+from leblanc.studies.optimise.wetting import (
     full_volume,
     largest_unbalance_by_search,
     optimal_volume_by_search,
     wetting_volumes,
 )
-from leblanc.studies.optimise.constraints import growth, stability
-from leblanc.studies.optimise.front import not_dominated
-from leblanc.studies.optimise.objectives import AtSpeed, PeakOver
-from leblanc.studies.optimise.optimise import optimise_scene
-from leblanc.studies.optimise.robust import Robust, operating_conditions
 from leblanc.studies.run import run_scene
 from meshes.chamber import Chamber
 from meshes.errors import InputError
@@ -48,7 +46,7 @@ CHAMBERS = (
 
 
 @kills(
-    "leblanc.studies.optimise.closed_form:optimal_volume_by_search",
+    "leblanc.studies.optimise.wetting:optimal_volume_by_search",
     "np.divide(-state.nearest_depth",
     "np.divide(1.0 - state.nearest_depth",
 )
@@ -63,7 +61,7 @@ def test_optimal_volume() -> None:
 
 
 @kills(
-    "leblanc.studies.optimise.closed_form:largest_unbalance_by_search",
+    "leblanc.studies.optimise.wetting:largest_unbalance_by_search",
     "Judgement(-state.unbalance()[0] / most",
     "Judgement(state.unbalance()[0] / most",
 )
@@ -85,20 +83,18 @@ def test_largest_unbalance() -> None:
             assert found.point[0] == pytest.approx(form.full_volume, rel=1e-4)
 
 
-@kills("leblanc.studies.optimise.closed_form:full_volume", "ring + 0.5 * fall", "ring + fall")
+@kills("leblanc.studies.optimise.wetting:full_volume", "ring + 0.5 * fall", "ring + fall")
 @kills(
-    "leblanc.studies.optimise.closed_form:full_volume",
+    "leblanc.studies.optimise.wetting:full_volume",
     "deflection * (chamber.radius + near)",
     "deflection * chamber.radius",
 )
 @kills(
-    "leblanc.studies.optimise.closed_form:full_volume",
+    "leblanc.studies.optimise.wetting:full_volume",
     "2.0 * gravity * chamber.height / speed**2",
     "gravity * chamber.height / speed**2",
 )
-@kills(
-    "leblanc.studies.optimise.closed_form:wetting_volumes", "of_touching / of_most", "of_most / of_touching"
-)
+@kills("leblanc.studies.optimise.wetting:wetting_volumes", "of_touching / of_most", "of_most / of_touching")
 def test_full_volume() -> None:
     """With it the unbalance is that of a full chamber; with a tenth less it is not; with more it stays."""
     for chamber, deflection, speed in CHAMBERS:
@@ -172,11 +168,11 @@ def test_mean_of_several() -> None:
 
 
 @kills(
-    "leblanc.studies.optimise.constraints:Constraint.excess",
+    "leblanc.studies.optimise.problem:Constraint.excess",
     "(value - self.limit) / self.scale",
     "(self.limit - value) / self.scale",
 )
-@kills("leblanc.studies.optimise.constraints:stability", '"1/s", -margin, scale', '"1/s", margin, scale')
+@kills("leblanc.studies.optimise.problem:stability", '"1/s", -margin, scale', '"1/s", margin, scale')
 def test_excess() -> None:
     """A decay of 0.7 1/s meets a margin of 0.5, one of 0.3 does not."""
     one = stability(rig(), np.array([100.0, 200.0]), 0.5)
@@ -208,13 +204,15 @@ def test_peak() -> None:
 
 
 @kills(
-    "leblanc.studies.optimise.robust:_in_condition",
+    "leblanc.studies.optimise.objectives:_in_condition",
     "liquid=liquid_at(chamber.liquid, condition.temperature), volume",
     "liquid=chamber.liquid, volume",
 )
-@kills("leblanc.studies.optimise.robust:Robust.exact", "self.quantile, axis=0", "1.0 - self.quantile, axis=0")
 @kills(
-    "leblanc.studies.optimise.robust:operating_conditions",
+    "leblanc.studies.optimise.objectives:Robust.exact", "self.quantile, axis=0", "1.0 - self.quantile, axis=0"
+)
+@kills(
+    "leblanc.studies.optimise.objectives:operating_conditions",
     "low + (high - low) * share[:, 0]",
     "low + (high + low) * share[:, 0]",
 )
@@ -245,7 +243,7 @@ def test_robust() -> None:
 
 
 @kills(
-    "leblanc.studies.optimise.constraints:growth",
+    "leblanc.studies.optimise.problem:growth",
     "growth_map(rotor, rows, speed, friction)[0].max(axis=1)",
     "growth_map(rotor, rows, speed, friction)[0].min(axis=1)",
 )
@@ -261,7 +259,7 @@ def test_growth() -> None:
 
 
 @kills(
-    "leblanc.studies.optimise.front:not_dominated",
+    "leblanc.studies.optimise.optimise:not_dominated",
     "~np.all(values[later] >= values[k], axis=1)",
     "~np.any(values[later] >= values[k], axis=1)",
 )
