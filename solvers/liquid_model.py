@@ -113,7 +113,7 @@ class Whirls:
         """Those at some indices, shape (m,)."""
         return Whirls(*(getattr(self, name)[which] for name in self.__dataclass_fields__))
 
-    def one(self, k: int) -> Whirl:
+    def whirl(self, k: int) -> Whirl:
         """A single one of them."""
         spin, speed, size, gravity = self.spin[k], self.speed[k], abs(self.deflection[k]), self.gravity[k]
         return Whirl(float(spin), float(speed), float(size), gravity=float(gravity))
@@ -345,7 +345,7 @@ class WaveModel(LiquidModel, Protocol):
             parts = [self.answer(fills.at(rows), whirls.at(rows)) for rows in apart]
             return LiquidAnswer.joined(parts).at(np.argsort(np.concatenate(apart)))
         return LiquidAnswer.joined(
-            [self.wave(fills.fill(k), whirls.one(k)).answer for k in range(len(fills))]
+            [self.wave(fills.fill(k), whirls.whirl(k)).answer for k in range(len(fills))]
         )
 
 
