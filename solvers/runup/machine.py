@@ -1,8 +1,8 @@
 """What turns the rotor in a run-up, and what a run-up asks of a liquid model.
 
-The speed over time is given, or follows from a motor with its torque curve. A liquid model is a rotor with
-its liquid at one moment, which can go on in time; it is made by a function with the arguments of
-`solvers.runup.long_wave.couple`, and `run_up` drives any.
+The speed over time is given, or follows from a motor with its torque curve. A liquid model is a function
+that makes a rotor with its liquid at one moment; `solvers.runup.runup.run_up` drives any such machine
+through time.
 """
 
 from __future__ import annotations

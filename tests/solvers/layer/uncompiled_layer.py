@@ -375,7 +375,8 @@ def test_drive() -> None:
         grown = part - np.sin(2 * np.pi * part) / (2 * np.pi)
         force = 0.01 * whirl**2 * grown * np.exp(1j * slip * time) - 1j * weight * np.exp(-1j * SPIN * time)
         cell, face, ring = np.empty(5), np.empty(5), angles(5)
-        x, y = forced_layer._whirl(time, Drive(0.01, slip, ramp, whirl, weight, SPIN), ring, cell, face)
+        x, y = forced_layer._whirl(time, Drive(0.01, slip, ramp, whirl, weight, SPIN))
+        forced_layer.pull(x, y, ring, cell, face)
         assert abs(complex(x, y) - force) < 1e-15
         np.testing.assert_allclose(cell, (force * np.exp(-1j * middles(5))).real, atol=1e-15)
         np.testing.assert_allclose(face, (force * np.exp(-1j * (middles(5) - np.pi / 5))).real, atol=1e-15)
