@@ -47,6 +47,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if arguments is None:
         # By default a fifth of a short command is a search for cyclic garbage, of which imports leave none.
         gc.set_threshold(50_000)
+        # Nor has a command any use of plugins of pydantic, for which it looks in every installed package.
+        os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     try:
         commands = get_command(application(given[0]))
         return exit_code(lambda: commands.main(given, prog_name="leblanc", standalone_mode=False))

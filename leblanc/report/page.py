@@ -21,7 +21,7 @@ from leblanc.text.run import described, error_words, speeds_words
 
 # What the numbers, the files and the figures come from.
 PACKAGES = (
-    "leblanc", "numpy", "scipy", "numba", "py-pde", "scikit-fem", "h5netcdf", "matplotlib",
+    "leblanc", "numpy", "scipy", "numba", "py-pde", "scikit-fem", "h5py", "matplotlib",
 )  # fmt: skip
 AUTHORS = "The leblanc developers"
 TITLE = "leblanc: passive liquid balancers and rotors partly filled with liquid"

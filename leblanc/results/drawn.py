@@ -5,17 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from leblanc.results.base import FilledChamber
-from leblanc.results.response import RunResult
-from leblanc.results.runup import RunupFrames, RunupResult
 from meshes.arrays import Array, Complex, Indices
 from meshes.bodies.body import Body, body_integrals
 from meshes.liquid_section import LiquidSection
+
+if TYPE_CHECKING:
+    from leblanc.results.response import RunResult
+    from leblanc.results.runup import RunupFrames, RunupResult
 
 
 @dataclass(frozen=True)

@@ -16,10 +16,10 @@ from leblanc.results.choice import Choice
 from leblanc.results.response import SelfExcited, peak
 from leblanc.units import ML, MM, RPM, friction_words
 from meshes.arrays import Array, Flags
-from solvers.runup.runup import RunupHistory
-from solvers.synchronous.response import Response
 
 if TYPE_CHECKING:
+    from solvers.runup.runup import RunupHistory
+    from solvers.synchronous.response import Response
     from solvers.whirl.edges import Bands
 
 

@@ -96,31 +96,6 @@ def optimal_volume_by_search(
     return search(judge, low, high, np.array([fill.liquid.density]), plan=plan or SearchPlan(edge=1e-11))
 
 
-def largest_unbalance_by_search(
-    fill: Fill, deflection: float, speed: float, gravity: float, plan: SearchPlan | None = None
-) -> Found:
-    """The least volume with the largest unbalance of the liquid at a deflection, found by the search.
-
-    Parameters
-    ----------
-    fill, deflection, speed, gravity, plan : as for `optimal_volume_by_search`
-
-    Returns
-    -------
-    Found; its only coordinate is the volume, m^3
-    """
-    chamber = fill.chamber
-    most = math.pi * chamber.radius**2 * chamber.height * deflection
-
-    def judge(volumes: Array) -> Judgement:
-        state = equilibrium(chamber, volumes[:, 0], deflection, speed, gravity)
-        return Judgement(-state.unbalance()[0] / most, np.full(volumes.shape[0], -1.0))
-
-    low, high = np.zeros(1), np.array([chamber.capacity])
-    tight = plan or SearchPlan(hair=1e-13, edge=1e-11)
-    return search(judge, low, high, np.array([fill.liquid.density]), plan=tight)
-
-
 @dataclass(frozen=True)
 class WettedWalls:
     """The least volumes that wet the walls at a deflection; one for each chamber.

@@ -55,6 +55,41 @@ def test_help_loads_nothing_heavy() -> None:
     assert check.returncode == 0, check.stderr
 
 
+# Libraries that other commands need, and those that come with them.
+ELSEWHERE = {
+    *("xarray", "pandas", "dask", "distributed", "pint", "zarr", "SALib", "sklearn", "joblib"),
+    *("skfem", "meshio", "pde", "sympy", "pyvista", "vtk", "vtkmodules", "trame", "gmsh", "ezdxf"),
+    *("matplotlib.pyplot", "scipy.optimize", "scipy.stats", "scipy.integrate", "scipy.interpolate"),
+}
+RIG = "examples/horizontal_rig.toml"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "unused"),
+    [
+        (["run", RIG], ["numba", "scipy.linalg", "scipy.sparse"]),
+        (["map", RIG, "--volumes", "5", "--speeds", "11"], ["numba", "scipy.linalg", "scipy.sparse"]),
+        (["optimise", RIG, "--no-front"], ["numba"]),
+        (["explain", RIG], ["numba", "scipy.linalg", "matplotlib", "h5py", "jinja2"]),
+        (["runup", "examples/runup.toml", "--cells", "16", "--samples", "50", "--no-check"], []),
+    ],
+    ids=["run", "map", "optimise", "explain", "runup"],
+)
+def test_a_command_loads_what_it_needs(arguments: list[str], unused: list[str], tmp_path: Path) -> None:
+    """To load libraries is most of a short command; not one of these has anything to say to it."""
+    options = [] if arguments[0] == "explain" else ["--out", str(tmp_path)]
+    code = f"""if True:
+        import sys
+        from leblanc.cli import main
+        assert main({[*arguments, *options]!r}) == 0
+        sys.exit(", ".join({ELSEWHERE | set(unused)!r} & set(sys.modules)) or 0)
+    """
+    check = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert check.returncode == 0, check.stderr
+
+
 def test_version(capsys: Capture) -> None:
     assert main(["--version"]) == 0
     assert capsys.readouterr().out.strip()

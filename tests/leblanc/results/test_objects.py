@@ -30,6 +30,7 @@ from leblanc.studies.run import run_scene
 from leblanc.studies.volume import answer_volume
 from leblanc.studies.whirl_map import map_scene
 from meshes.chamber import Chamber
+from tests.oracles.data_files import assert_read_back
 
 CHAMBER = Chamber(0.065, 0.02)
 ROOT = Path(__file__).parents[3]
@@ -73,13 +74,16 @@ class Cells(HTMLParser):
 
 
 @pytest.mark.parametrize("name", RESULTS)
-def test_every_result_has_every_way_out(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_every_result_has_every_way_out(
+    name: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
     result: Result = RESULTS[name]()
     print_json(result.to_json())
     assert json.loads(capsys.readouterr().out)
     data = result.to_dataset()
     assert all(variable.attrs["units"] and variable.attrs["long_name"] for variable in data.values())
     assert data.attrs["version_numpy"] == np.__version__
+    assert_read_back(result.named_arrays(), tmp_path)
     figure = result.plot()
     assert isinstance(figure, Figure) and figure.axes
     assert figure.caption.shown and len(figure.alt) > 20

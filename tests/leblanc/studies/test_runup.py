@@ -41,6 +41,7 @@ from solvers.layer.records import Outcome
 from solvers.runup.machine import Motor, Ramp
 from solvers.runup.runup import EnergyAudit, RunupHistory
 from tests.mutants import kills
+from tests.oracles.data_files import assert_read_back
 
 RPM = math.pi / 30.0
 WATER = known_liquid("water")
@@ -427,6 +428,7 @@ def test_the_data_file_holds_the_run(tmp_path: Path, record: RunupResult) -> Non
     import h5py
 
     write_netcdf(record.named_arrays(), tmp_path / "runup.nc")
+    assert_read_back(record.named_arrays(), tmp_path)
     h = record.history
     with h5py.File(tmp_path / "runup.nc") as file:
         for name, values in (

@@ -16,6 +16,7 @@ from leblanc.results.sweep import QUANTILES, SweepResult
 from leblanc.studies.run import run_scene
 from leblanc.studies.sweep.store import STORE
 from leblanc.studies.sweep.summary import sweep_result
+from tests.oracles.data_files import assert_read_back
 from tests.oracles.records import RPM
 from tests.oracles.sweeps import SCENE, study_in, write_study
 
@@ -75,7 +76,8 @@ def test_json_is_that_of_the_command(tmp_path: Path, capsys: pytest.CaptureFixtu
         np.testing.assert_array_equal(copy[name].values, values.values)
 
 
-def test_the_dataset_is_the_store_and_goes_with_the_result(found: SweepResult) -> None:
+def test_the_dataset_is_the_store_and_goes_with_the_result(found: SweepResult, tmp_path: Path) -> None:
+    assert_read_back(found.named_arrays(), tmp_path)
     again = pickle.loads(pickle.dumps(found)).to_dataset()
     store = xr.open_zarr(found.store, consolidated=False).load()
     assert found.store.name == STORE and dict(again.sizes) == {"sample": 101, "speed": 2}

@@ -22,13 +22,14 @@ from leblanc.studies.optimise.optimise import not_dominated, optimise_scene
 from leblanc.studies.optimise.problem import growth, stability
 from leblanc.studies.optimise.wetting import (
     full_volume,
-    largest_unbalance_by_search,
     optimal_volume_by_search,
     wetting_volumes,
 )
 from leblanc.studies.run import run_scene
+from meshes.arrays import Array
 from meshes.chamber import Chamber
 from meshes.errors import InputError
+from solvers.search import Judgement, SearchPlan, search
 from solvers.statics.hydrostatics import equilibrium
 from tests.mutants import kills
 from tests.oracles.optimise import amplitudes, brute_force, random_aim, random_scene
@@ -60,11 +61,19 @@ def test_optimal_volume() -> None:
             assert found.point[0] == pytest.approx(form.optimal_volume, rel=1e-9)
 
 
-@kills(
-    "leblanc.studies.optimise.wetting:largest_unbalance_by_search",
-    "Judgement(-state.unbalance()[0] / most",
-    "Judgement(state.unbalance()[0] / most",
-)
+def largest_unbalance(chamber: Chamber, deflection: float, speed: float, gravity: float) -> float:
+    """The least volume with the largest unbalance of the liquid at a deflection, found by the search, m^3."""
+    most = math.pi * chamber.radius**2 * chamber.height * deflection
+
+    def judge(volumes: Array) -> Judgement:
+        state = equilibrium(chamber, volumes[:, 0], deflection, speed, gravity)
+        return Judgement(-state.unbalance()[0] / most, np.full(volumes.shape[0], -1.0))
+
+    low, high = np.zeros(1), np.array([chamber.capacity])
+    plan = SearchPlan(hair=1e-13, edge=1e-11)
+    return float(search(judge, low, high, np.array([WATER.density]), plan=plan).point[0])
+
+
 def test_largest_unbalance() -> None:
     """On a horizontal axis the largest unbalance has the same least volume; along an upright one eq. 1 has.
 
@@ -72,15 +81,14 @@ def test_largest_unbalance() -> None:
     1e-13**(2/3) = 2e-9 or 1e-13**0.4 = 6e-6 of the volume, times a number of order one to ten.
     """
     for chamber, deflection, speed in CHAMBERS:
-        fill = Fill(chamber, WATER, 0.0)
         flat = wetting_volumes(chamber, deflection, speed, 0.0)
-        found = largest_unbalance_by_search(fill, deflection, speed, 0.0)
-        assert found.point[0] == pytest.approx(flat.optimal_volume, rel=1e-6)
+        found = largest_unbalance(chamber, deflection, speed, 0.0)
+        assert found == pytest.approx(flat.optimal_volume, rel=1e-6)
         assert flat.full_volume == pytest.approx(flat.optimal_volume, rel=1e-9)
         form = wetting_volumes(chamber, deflection, speed, 9.81)
         if math.isfinite(form.full_volume):
-            found = largest_unbalance_by_search(fill, deflection, speed, 9.81)
-            assert found.point[0] == pytest.approx(form.full_volume, rel=1e-4)
+            found = largest_unbalance(chamber, deflection, speed, 9.81)
+            assert found == pytest.approx(form.full_volume, rel=1e-4)
 
 
 @kills("leblanc.studies.optimise.wetting:full_volume", "ring + 0.5 * fall", "ring + fall")
