@@ -71,11 +71,11 @@ def test_each_as_if_alone() -> None:
 @kills("solvers.synchronous.pairs:Pairs.pull", "moment - fills.mass * e", "moment")
 @kills(
     "solvers.synchronous.pairs:Pairs.liquid",
-    "(law.unbalance.real, law.slope))",
-    "(law.slope, law.unbalance.real))",
+    "(law.real_unbalance(), law.slope))",
+    "(law.slope, law.real_unbalance()))",
 )
 @kills("solvers.synchronous.pairs:Pairs.pull", "moment = fills.added_mass * e", "moment = fills.mass * e")
-@kills("solvers.synchronous.pairs:Pairs.pull", "whirls).unbalance.real", "whirls).slope")
+@kills("solvers.synchronous.pairs:Pairs.pull", "whirls).real_unbalance()", "whirls).slope")
 def test_sums() -> None:
     """The pull and the liquid's state of a machine are sums over its chambers, each asked by itself."""
     pairs = pair_machines(machines(), OWNER, SPEED, GRAVITY, STATICS)
