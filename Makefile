@@ -53,7 +53,7 @@ $(BIN)/.installed-docs: pyproject.toml | $(BIN)/python
 
 # The comparisons with measurements, prints and other codes, executed: a notebook whose claims fail stops the make.
 notebooks: $(BIN)/.installed-notebooks
-	$(BIN)/python -m validation.run_notebooks --out out/notebooks
+	$(BIN)/leblanc notebooks
 
 clean:
 	rm -rf $(VENV) .venv-ross out .pytest_cache .mypy_cache .ruff_cache .import_linter_cache

@@ -69,11 +69,8 @@ def _notebooks(target: Path, quick: bool) -> None:
     texts = sorted(NOTEBOOKS.glob("[0-9]*.py"))
     stale = [text for text in texts if _older(executed / f"{text.stem}.ipynb", text)]
     if stale and not quick:
-        subprocess.run(
-            [sys.executable, "-m", "validation.run_notebooks", *map(str, stale), "--out", str(executed)],
-            cwd=ROOT,
-            check=True,
-        )
+        command = [sys.executable, "-m", "leblanc", "notebooks", *(text.stem for text in stale)]
+        subprocess.run([*command, "--out", str(executed)], cwd=ROOT, check=True)
     target.mkdir(parents=True, exist_ok=True)
     for text in texts:
         book = executed / f"{text.stem}.ipynb"
@@ -81,8 +78,8 @@ def _notebooks(target: Path, quick: bool) -> None:
             shutil.copyfile(book, target / book.name)
 
 
-def _older(one: Path, other: Path) -> bool:
-    return not one.is_file() or one.stat().st_mtime < other.stat().st_mtime
+def _older(path: Path, other: Path) -> bool:
+    return not path.is_file() or path.stat().st_mtime < other.stat().st_mtime
 
 
 def sphinx(source: Path, out: Path) -> int:

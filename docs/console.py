@@ -118,20 +118,20 @@ def agree(shown: Sequence[str], printed: Sequence[str], words: bool) -> bool:
 
 def _same(shown: str, printed: str, words: bool) -> bool:
     """One line: the words between the numbers, and the numbers."""
-    one, other = (" ".join(line.split()) for line in (shown, printed))
-    texts = [" ".join(_NUMBER.sub("#", line).split()) for line in (one, other)]
+    first, other = (" ".join(line.split()) for line in (shown, printed))
+    texts = [" ".join(_NUMBER.sub("#", line).split()) for line in (first, other)]
     if texts[0] != texts[1]:
         return False
-    pairs = zip(_NUMBER.findall(one), _NUMBER.findall(other), strict=True)
+    pairs = zip(_NUMBER.findall(first), _NUMBER.findall(other), strict=True)
     return words or all(_close(*pair) for pair in pairs)
 
 
-def _close(one: str, other: str) -> bool:
-    if one == other:
+def _close(shown: str, other: str) -> bool:
+    if shown == other:
         return True
-    first, second = (float(text.replace("\N{MINUS SIGN}", "-")) for text in (one, other))
+    first, second = (float(text.replace("\N{MINUS SIGN}", "-")) for text in (shown, other))
     # A unit in the last place shown, or the tolerance.
-    mantissa, _, power = one.partition("e")
+    mantissa, _, power = shown.partition("e")
     unit = 1.01 * 10.0 ** (int(power or 0) - len(mantissa.partition(".")[2]))
     return abs(first - second) <= max(_RELATIVE * abs(second), unit)
 
@@ -205,7 +205,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         found = pool.map(lambda page: check(page, chosen.write), chosen.pages)
         wrong = [
-            f"{page}:\n{one}" for page, several in zip(chosen.pages, found, strict=True) for one in several
+            f"{page}:\n{difference}"
+            for page, several in zip(chosen.pages, found, strict=True)
+            for difference in several
         ]
     print(*wrong, sep="\n\n")
     return 1 if wrong else 0

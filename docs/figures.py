@@ -65,7 +65,7 @@ class Recipe:
         """The command as a reader types it."""
         first, *rest = self.program
         start = first if first == "leblanc" else f"python {first if first.endswith('.py') else f'-m {first}'}"
-        return " ".join([start, *(f'"{one}"' if " " in one else one for one in rest), "--out", "DIR"])
+        return " ".join([start, *(f'"{word}"' if " " in word else word for word in rest), "--out", "DIR"])
 
 
 def _example(command: str, scene: str, *rest: str, **drawn: str) -> Recipe:
@@ -182,7 +182,7 @@ def draw(recipe: Recipe, out: Path) -> float:
     return time.perf_counter() - begin
 
 
-def difference(one: Path, other: Path) -> float:
+def difference(path: Path, other: Path) -> float:
     """Share of the points in which two pictures differ to the eye; 1 if they differ in size.
 
     Parameters
@@ -192,7 +192,7 @@ def difference(one: Path, other: Path) -> float:
     import numpy as np
     from matplotlib.image import imread
 
-    first, second = imread(one), imread(other)
+    first, second = imread(path), imread(other)
     if first.shape != second.shape:
         return 1.0
     return float((np.abs(first - second).max(axis=-1) > _DEPTH).mean())
@@ -249,14 +249,14 @@ def draw_all(recipes: Iterable[Recipe], out: Path, check: bool) -> int:
     -------
     Exit code, 1 if a committed picture has changed
     """
-    wanted = [one for one in recipes if not (check and one.minutes)]
-    able = [one for one in wanted if not one.needs or importlib.util.find_spec(one.needs)]
+    wanted = [recipe for recipe in recipes if not (check and recipe.minutes)]
+    able = [recipe for recipe in wanted if not recipe.needs or importlib.util.find_spec(recipe.needs)]
     for recipe in wanted:
         if recipe not in able:
             print(f"{recipe.shown()}: left out, {recipe.needs} is not installed", flush=True)
     wrong: list[str] = []
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        for recipe, seconds in zip(able, pool.map(lambda one: draw(one, out), able), strict=True):
+        for recipe, seconds in zip(able, pool.map(lambda recipe: draw(recipe, out), able), strict=True):
             print(f"{recipe.shown()}: {seconds:.1f} s", flush=True)
             wrong += changed(recipe, out) if check else []
     if wrong:

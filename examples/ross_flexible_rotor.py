@@ -269,12 +269,14 @@ def main() -> None:
         f"reduced: {model.mass:.3f} kg, {model.natural_frequency:.2f} rad/s, ratio {model.damping_ratio:.4f}"
     )
     near = np.abs(SPEEDS / model.natural_frequency - 1.0) < 0.3
-    for name, one, own in (("dry", found.dry, found.own_dry), ("wet", found.wet, found.own_wet)):
-        peak, gap = np.abs(one).max(), np.abs(one - own)[near].max()
+    for name, deflection, own in (("dry", found.dry, found.own_dry), ("wet", found.wet, found.own_wet)):
+        peak, gap = np.abs(deflection).max(), np.abs(deflection - own)[near].max()
         print(
             f"{name}: peaks {1e3 * peak:.4f} and {1e3 * np.abs(own).max():.4f} mm, apart by {gap / peak:.2%}"
         )
-        print(f"{name}: at {SPEEDS[-1]:g} rad/s {1e3 * abs(one[-1]):.5f} and {1e3 * abs(own[-1]):.5f} mm")
+        print(
+            f"{name}: at {SPEEDS[-1]:g} rad/s {1e3 * abs(deflection[-1]):.5f} and {1e3 * abs(own[-1]):.5f} mm"
+        )
     for name, growth in (("ROSS", found.modes.fastest()), ("reduced", found.own_growth)):
         low, high = edges(growth)
         print(f"{name}: grows from {low:.1f} to {high:.1f} rad/s, at most {growth.max():.3f} 1/s")

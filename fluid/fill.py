@@ -44,6 +44,12 @@ class Fill:
     Raises
     ------
     InputError : a volume outside that range
+
+    Examples
+    --------
+    >>> fill = Fill(Chamber(radius=0.2, height=0.05), Liquid("water", 998.2, 1.004e-6), volume=0.5e-3)
+    >>> round(fill.mass, 6), round(fill.depth, 6)
+    (0.4991, 0.008123)
     """
 
     chamber: Chamber
@@ -133,6 +139,8 @@ class Fills:
     volume : V, m^3, shape (n,)
     added_mass : in a small whirl with the spin, kg, shape (n,); 0 without liquid
     depth : of the layer, m, shape (n,); in a section of another shape the least
+    origin : the fills they were taken from
+    which : index of each among those, shape (n,)
     """
 
     chamber: Chambers
@@ -140,6 +148,8 @@ class Fills:
     volume: Array
     added_mass: Array
     depth: Array
+    origin: tuple[Fill, ...]
+    which: NDArray[np.intp]
 
     @classmethod
     def of(cls, fills: Sequence[Fill]) -> Fills:
@@ -150,6 +160,8 @@ class Fills:
             np.array([fill.volume for fill in fills]),
             np.array([fill.added_mass if fill.volume > 0.0 else 0.0 for fill in fills]),
             np.array([fill.depth for fill in fills]),
+            tuple(fills),
+            np.arange(len(fills)),
         )
 
     @classmethod
@@ -161,6 +173,7 @@ class Fills:
     def joined(cls, parts: Sequence[Fills]) -> Fills:
         """Some arrays one behind the other."""
         walls = [part.chamber for part in parts]
+        first = np.cumsum([0, *(len(part.origin) for part in parts)])
         return cls(
             Chambers(
                 np.concatenate([wall.radius for wall in walls]),
@@ -171,12 +184,28 @@ class Fills:
             np.concatenate([part.volume for part in parts]),
             np.concatenate([part.added_mass for part in parts]),
             np.concatenate([part.depth for part in parts]),
+            tuple(fill for part in parts for fill in part.origin),
+            np.concatenate([part.which + k for part, k in zip(parts, first[:-1], strict=True)]),
         )
 
     def at(self, which: NDArray[np.intp]) -> Fills:
         """Those at some indices, in their order, shape (m,)."""
-        arrays = (self.density, self.volume, self.added_mass, self.depth)
-        return Fills(self.chamber.at(which), *(array[which] for array in arrays))
+        return Fills(
+            self.chamber.at(which),
+            self.density[which],
+            self.volume[which],
+            self.added_mass[which],
+            self.depth[which],
+            self.origin,
+            self.which[which],
+        )
+
+    def fill(self, k: int) -> Fill:
+        """A single one of them, as it was given."""
+        return self.origin[int(self.which[k])]
+
+    def __len__(self) -> int:
+        return self.which.size
 
     @property
     def mass(self) -> Array:

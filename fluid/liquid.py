@@ -26,6 +26,11 @@ class Liquid:
     Raises
     ------
     InputError : a density that is not positive, a negative viscosity
+
+    Examples
+    --------
+    >>> Liquid("water", density=998.2, viscosity=1.004e-6) == known_liquid("water")
+    True
     """
 
     name: str

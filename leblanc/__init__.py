@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from leblanc.scene.examples import example
     from leblanc.scene.rotors import Exciter, JeffcottRotor, TubRotor, TwoPlaneRotor
     from leblanc.scene.scene import Scene, load_scene
-    from leblanc.scene.schema.load import SceneFaults as SceneError
+    from leblanc.scene.schema.load import SceneError
     from meshes.chamber import Chamber
     from meshes.errors import InputError
 
@@ -65,7 +65,7 @@ _HOMES = {
     "JeffcottRotor": ("leblanc.scene.rotors", "JeffcottRotor"),
     "Liquid": ("fluid.liquid", "Liquid"),
     "Scene": ("leblanc.scene.scene", "Scene"),
-    "SceneError": ("leblanc.scene.schema.load", "SceneFaults"),
+    "SceneError": ("leblanc.scene.schema.load", "SceneError"),
     "TubRotor": ("leblanc.scene.rotors", "TubRotor"),
     "TwoPlaneRotor": ("leblanc.scene.rotors", "TwoPlaneRotor"),
     "example": ("leblanc.scene.examples", "example"),

@@ -20,7 +20,6 @@ from leblanc.units import ACCELERATION, ANGULAR_SPEED, LENGTH, TIME, VOLUME, par
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.errors import InputError, require_not_negative
-from solvers.layer.state import Numerics
 
 if TYPE_CHECKING:
     from leblanc.studies.modes import SectionSource
@@ -83,6 +82,9 @@ def layer_question(
     ------
     InputError : a value that cannot be read, or is out of its range
     """
+    from leblanc.studies.layer import as_options  # bring the solvers of layers, which no other question needs
+    from leblanc.studies.liquid import wave_model
+
     plates = baffle_plates(baffles, baffle_tip_radius, baffle_wall_gap)
     chamber = Chamber(
         parse_option(radius, LENGTH, "--radius"), parse_option(height, LENGTH, "--height"), baffles=plates
@@ -92,11 +94,11 @@ def layer_question(
         "speed": parse_option(speed, ANGULAR_SPEED, "--speed"),
         "whirl_speed": parse_option(whirl_speed, ANGULAR_SPEED, "--whirl-speed"),
         "whirl_amplitude": parse_option(whirl_amplitude, LENGTH, "--whirl-amplitude"),
-        "model": model,
-        "friction": friction_of(friction),
         "gravity": parse_option(gravity, ACCELERATION, "--gravity"),
-        "numerics": Numerics((96 if model == "fem" else 256) if cells is None else cells, dispersion),
     }
+    law = friction_of(friction)
+    with as_options():
+        whirl["model"] = wave_model(model, law, cells, dispersion)
     length = None if duration is None else parse_option(duration, TIME, "--duration")
     return LayerQuestion(whirl, length, parse_option(ramp, TIME, "--ramp"))
 

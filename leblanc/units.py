@@ -265,9 +265,9 @@ def _base(unit: str) -> tuple[float | None, Any]:
     """Factor to SI base units, None for a scale that is not a factor, and those units, angles among them."""
     registry = _registry()
     parsed = registry.parse_units(_HERTZ.sub(r"(\1turn/s)", unit).replace("%", "percent"))
-    one, two = (registry.Quantity(size, parsed).to_base_units() for size in (1.0, 2.0))
-    is_factor = math.isclose(two.magnitude, 2.0 * one.magnitude, rel_tol=1e-12)
-    return one.magnitude if is_factor else None, one.units
+    single, two = (registry.Quantity(size, parsed).to_base_units() for size in (1.0, 2.0))
+    is_factor = math.isclose(two.magnitude, 2.0 * single.magnitude, rel_tol=1e-12)
+    return single.magnitude if is_factor else None, single.units
 
 
 @functools.cache

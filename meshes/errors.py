@@ -13,6 +13,13 @@ class InputError(ValueError):
     field : name of the argument, as the user knows it
     value : what was given
     allowed : the permitted range, in words
+
+    Examples
+    --------
+    >>> require_positive("radius", -0.1)
+    Traceback (most recent call last):
+        ...
+    meshes.errors.InputError: radius = -0.1: must be a finite number above 0
     """
 
     def __init__(self, field: str, value: object, allowed: str) -> None:

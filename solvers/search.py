@@ -107,7 +107,6 @@ class Found:
     objective, excess : its value; 0 or below if the point is allowed
     points : all that were judged, shape (m, n)
     judged : what was said of them
-    grid : how many of them, the first, are the grid's
     """
 
     point: Array
@@ -115,7 +114,6 @@ class Found:
     excess: float
     points: Array
     judged: Judgement
-    grid: int
 
     @property
     def feasible(self) -> bool:
@@ -164,12 +162,10 @@ def search(
     point, gap = _descend(ask, points[kept], low, high, cost, levels, plan)
     if low.size > 1:
         point = _follow(ask, point, low, high, cost, gap, plan)
-    point = _least_cost(ask, point, low, cost, plan)
-    for group in alike:
-        point[list(group)] = np.sort(point[list(group)])[::-1]
+    point = _ordered(_least_cost(ask, point, low, cost, plan)[None], alike)[0]
     last = ask(point[None])
     every, judged = ask.all()
-    return Found(point, float(last.objective[0]), float(last.excess[0]), every, judged, points.shape[0])
+    return Found(point, float(last.objective[0]), float(last.excess[0]), every, judged)
 
 
 class _Log:
@@ -397,10 +393,15 @@ def _grid(levels: list[Array], expected: Array, alike: Sequence[Sequence[int]], 
         points = np.array(list(itertools.product(*levels)))
     else:
         points = _lines(levels, expected)
-    points = np.concatenate((points, expected))
+    return np.unique(_ordered(np.concatenate((points, expected)), alike), axis=0)
+
+
+def _ordered(points: Array, alike: Sequence[Sequence[int]]) -> Array:
+    """Points whose exchangeable coordinates fall, shape (m, n)."""
+    points = points.copy()
     for group in alike:
         points[:, list(group)] = np.sort(points[:, list(group)], axis=1)[:, ::-1]
-    return np.unique(points, axis=0)
+    return points
 
 
 def _lines(levels: list[Array], expected: Array) -> Array:

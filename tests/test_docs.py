@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import ast
+import doctest
 import importlib
+import inspect
 import math
 import re
 import sys
@@ -86,6 +89,44 @@ def test_contents_name_only_pages_that_exist() -> None:
     assert not lost
 
 
+def _defined() -> dict[str, set[str]]:
+    """Names that each module of the packages defines or hands on at its top level, by its dotted name."""
+    found: dict[str, set[str]] = {}
+    for package in ("meshes", "fluid", "solvers", "leblanc", "validation"):
+        for path in (ROOT / package).rglob("*.py"):
+            parts = path.relative_to(ROOT).with_suffix("").parts
+            names: set[str] = set()
+            for node in ast.parse(path.read_text(encoding="utf-8")).body:
+                if isinstance(node, ast.FunctionDef | ast.ClassDef):
+                    names.add(node.name)
+                elif isinstance(node, ast.Assign):
+                    names |= {target.id for target in node.targets if isinstance(target, ast.Name)}
+            found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = names
+    return found
+
+
+def test_what_the_architecture_page_names_exists() -> None:
+    """Modules, rooms, files, functions, classes; in the table of rooms also what is in the room of a row."""
+    defined = _defined()
+    anywhere = {name for names in defined.values() for name in names if not name.startswith("_")}
+
+    def exists(name: str, room: str) -> bool:
+        dotted, inside = name.replace("/", "."), f"{room}.{name}".replace("/", ".")
+        if dotted in defined or inside in defined or (ROOT / room / name).is_dir():
+            return True
+        module, _, last = dotted.rpartition(".")
+        return last in (defined.get(module, set()) if module else anywhere)
+
+    lost, looked_up = [], 0
+    for line in (DOCS / "architecture.md").read_text(encoding="utf-8").splitlines():
+        names = [name for name in re.findall(r"`([A-Za-z_][\w./]*)`", line) if not name.startswith("__")]
+        room = names[0] if names and line.startswith("| `") else ""
+        looked_up += len(names)
+        lost += [name for name in names if not exists(name, room)]
+    assert not lost
+    assert looked_up > 100
+
+
 def test_every_picture_has_a_recipe_and_a_place_in_the_gallery() -> None:
     figures = _module("figures")
     drawn = [name for recipe in figures.RECIPES for name in recipe.pictures]
@@ -157,6 +198,45 @@ def test_every_public_module_is_in_the_reference(tmp_path: Path) -> None:
     assert all(f"api/{name}" in (DOCS / "api.md").read_text(encoding="utf-8") for name in pages.PACKAGES)
 
 
+def test_public_names_and_results_are_described_once_with_an_example(tmp_path: Path) -> None:
+    import leblanc
+
+    pages = _module("api_pages", "docs/_ext")
+    written = {page.stem: page.read_text(encoding="utf-8") for page in pages.write(tmp_path)}
+    described = re.findall(
+        r"^\.\. auto(?:function|class):: (\S+)$", "\n".join(written.values()), re.MULTILINE
+    )
+    assert len(described) == len(set(described))
+    results = [member.full for member in pages.results()]
+    assert len(results) > 10
+    public = {f"leblanc.{name}" for name in leblanc.__all__} | set(results)
+    assert public == set(
+        re.findall(r"^\.\. auto(?:function|class):: (\S+)$", written["public"], re.MULTILINE)
+    )
+    for name in public - {results[0]}:  # the class that results inherit from has none of its own
+        module, _, last = name.rpartition(".")
+        assert "\nExamples\n---" in inspect.cleandoc(
+            getattr(importlib.import_module(module), last).__doc__
+        ), name
+
+
+def _modules_with_examples() -> list[str]:
+    """Modules with a docstring that shows a call and what comes back."""
+    return sorted(
+        ".".join(path.relative_to(ROOT).with_suffix("").parts)
+        for package in ("meshes", "fluid", "solvers", "leblanc", "validation")
+        for path in (ROOT / package).rglob("*.py")
+        if re.search(r"^ *>>> ", path.read_text(encoding="utf-8"), re.MULTILINE)
+    )
+
+
+@pytest.mark.parametrize("module", _modules_with_examples())
+def test_examples_of_the_docstrings(module: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    failed, tried = doctest.testmod(importlib.import_module(module))
+    assert tried > 0 and failed == 0
+
+
 def test_the_page_of_keys_is_up_to_date() -> None:
     """`python docs/_ext/scene_keys.py` writes it."""
     keys = _module("scene_keys", "docs/_ext")
@@ -201,12 +281,12 @@ def test_pages_of_models_have_their_parts() -> None:
 
 
 def test_ranges_that_the_pages_show_are_those_of_the_code() -> None:
-    from leblanc.studies.validity import RANGES
+    from leblanc.studies.liquid import WAVE_MODELS
 
     shown = set()
     for page in PAGES:
         shown |= set(re.findall(r"```\{model-ranges\} (\w+)", page.read_text(encoding="utf-8")))
-    assert set(RANGES) <= shown
+    assert set(WAVE_MODELS) <= shown
 
 
 class TestConsole:

@@ -28,14 +28,14 @@ def validate(
 
     found = all_cases(case)
     if json:
-        print_json({"cases": [one.record() for one in found]})
+        print_json({"cases": [result.record() for result in found]})
         return
-    for one in found:
-        print(f"{one.name}  [{one.source}]  {one.verdict.upper()}")
-        print(f"    {one.quantity}")
-        print(f"    printed {_shown(one.printed)} | computed {_shown(one.computed)}")
-        print(f"    difference {_shown(one.difference)}" + (f"; {one.note}" if one.note else ""))
-    counts = {verdict: sum(one.verdict == verdict for one in found) for verdict in _VERDICTS}
+    for result in found:
+        print(f"{result.name}  [{result.source}]  {result.verdict.upper()}")
+        print(f"    {result.quantity}")
+        print(f"    printed {_shown(result.printed)} | computed {_shown(result.computed)}")
+        print(f"    difference {_shown(result.difference)}" + (f"; {result.note}" if result.note else ""))
+    counts = {verdict: sum(result.verdict == verdict for result in found) for verdict in _VERDICTS}
     print(", ".join(f"{count} {verdict}" for verdict, count in counts.items() if count))
 
 
@@ -54,7 +54,7 @@ def all_cases(group: str | None = None) -> list[Case]:
     if group is not None and group not in GROUPS:
         raise InputError("case", group, "one of " + ", ".join(GROUPS))
     chosen = GROUPS if group is None else (group,)
-    return [one for name in chosen for one in _group(name)()]
+    return [case for name in chosen for case in _group(name)()]
 
 
 def _group(name: str) -> Callable[[], list[Case]]:

@@ -15,7 +15,6 @@ from validation.cases.case import Case, Value, Verdict
 
 if TYPE_CHECKING:
     from leblanc.figures.page import Figure
-    from leblanc.scene.scene import Scene
 
 _DPI, _WIDE = 160, 110  # dots of a file and of the screen to an inch
 _PLAIN = 10.0  # relative differences below are told in per cent, larger ones as factors
@@ -46,11 +45,11 @@ class Table:
 
     def _repr_html_(self) -> str:
         """As Jupyter and Sphinx ask for it; line breaks in a cell are kept."""
-        first, *others = (escape(one) for one in self.header)
+        first, *others = (escape(cell) for cell in self.header)
         # The first column says what a row is about, mostly in the most words.
         head = f'<th {_LEFT[:-1]}; width: 42%">{first}</th>'
-        head += "".join(f"<th {_LEFT}>{one}</th>" for one in others)
-        rows = ["".join(f"<td {_LEFT}>{_lines(one)}</td>" for one in row) for row in self.rows]
+        head += "".join(f"<th {_LEFT}>{cell}</th>" for cell in others)
+        rows = ["".join(f"<td {_LEFT}>{_lines(cell)}</td>" for cell in row) for row in self.rows]
         body = "".join(f'<tr style="break-inside: avoid">{row}</tr>' for row in rows)
         foot = f"<p>{escape(self.foot)}</p>" if self.foot else ""
         inside = f"<thead><tr>{head}</tr></thead><tbody>{body}</tbody>"
@@ -86,11 +85,11 @@ def case_table(cases: Sequence[Case]) -> Table:
     cases : in the order of the table
     """
     rows = []
-    for one in cases:
-        what = f"{one.quantity}\n[{one.source}; case {one.name.partition('/')[2]}]"
-        what += f"\n{one.note}" if one.note else ""
-        shown = (_shown(one.printed), _shown(one.computed), _difference(one.difference))
-        rows.append((what, *shown, one.verdict))
+    for case in cases:
+        what = f"{case.quantity}\n[{case.source}; case {case.name.partition('/')[2]}]"
+        what += f"\n{case.note}" if case.note else ""
+        shown = (_shown(case.printed), _shown(case.computed), _difference(case.difference))
+        rows.append((what, *shown, case.verdict))
     found = verdicts(cases)
     counts = (
         f"{len(names)} {_PLURAL[verdict] if len(names) > 1 else verdict}" for verdict, names in found.items()
@@ -107,7 +106,7 @@ def verdicts(cases: Sequence[Case]) -> dict[str, set[str]]:
     cases : of one group
     """
     found = {
-        verdict: {one.name.partition("/")[2] for one in cases if one.verdict == verdict}
+        verdict: {case.name.partition("/")[2] for case in cases if case.verdict == verdict}
         for verdict in get_args(Verdict)
     }
     return {verdict: names for verdict, names in found.items() if names}
@@ -142,18 +141,6 @@ def drawn(draw: Callable[[Path], Path]) -> Picture:
         return picture(draw(Path(folder)))
 
 
-def example(name: str) -> Scene:
-    """A scene of the folder `examples` beside this package.
-
-    Parameters
-    ----------
-    name : stem of the file
-    """
-    from leblanc.scene.scene import load_scene
-
-    return load_scene(Path(__file__).parents[1] / "examples" / f"{name}.toml")
-
-
 def _lines(words: str) -> str:
     """A cell's words in HTML, their line breaks kept, with places where long names may break."""
     return _BREAK.sub("<wbr>", escape(words)).replace("\n", "<br>")
@@ -183,5 +170,5 @@ def from_markdown(lines: Sequence[str]) -> Table:
     ----------
     lines : header, rule and rows
     """
-    cells = [tuple(one.strip() for one in line.strip().strip("|").split("|")) for line in lines]
+    cells = [tuple(cell.strip() for cell in line.strip().strip("|").split("|")) for line in lines]
     return Table(cells[0], tuple(cells[2:]))

@@ -1,21 +1,24 @@
-"""Execute the notebooks: `python -m validation.run_notebooks --out out/notebooks`, exit code 1 if one fails.
+"""`leblanc notebooks`: the notebooks that come with the package, executed; exit code 1 if one fails.
 
-Each runs in a kernel of its own in which warnings and floating-point faults are errors; what is printed to
-the standard error fails it as well. Executed notebooks and HTML pages go to the folder; the text is kept.
+Each runs in an empty folder, in a kernel of its own in which warnings and floating-point faults are errors;
+what is printed to the standard error fails it as well.
 """
 
 from __future__ import annotations
 
-import argparse
 import os
 import sys
 import time
-from collections.abc import Sequence
+from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from tempfile import TemporaryDirectory
+from typing import Annotated, Any
+
+import typer
 
 FOLDER = Path(__file__).parent / "notebooks"
 _SECONDS = 600  # of one cell
+_NEEDED = ("jupytext", "nbclient", "ipykernel", "nbconvert")
 # On paper nothing scrolls.
 _PRINT = "<style>pre { white-space: pre-wrap !important; overflow-wrap: anywhere; }</style></head>"
 # Run first in each kernel and not kept: the reader's own kernel is left as it is.
@@ -28,14 +31,69 @@ numpy.seterr(divide="raise", over="raise", invalid="raise")
 """
 
 
-def texts(folder: Path = FOLDER) -> list[Path]:
-    """The notebooks in their order.
+def notebooks(
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="NAME", help="Names of notebooks, or files in their form [default: all]."),
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Folder for the files.")] = Path("out/notebooks"),
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
+) -> int:
+    """Execute the validation notebooks. With outputs as .ipynb and HTML; exit code 1 if one fails."""
+    from leblanc.cli.output import out_dir, print_json, say
 
-    Parameters
-    ----------
-    folder : where they are
+    chosen = [_text(name) for name in names] if names else texts()
+    require_jupyter()
+    folder = out_dir("notebooks", out)
+    found: list[dict[str, Any]] = []
+    for path in chosen:
+        start = time.perf_counter()
+        wrong = execute(path, folder)
+        found.append({"name": path.stem, "passed": not wrong, "seconds": time.perf_counter() - start})
+        if not json:
+            print(f"{path.stem}: {'FAILED' if wrong else 'passed'}, {found[-1]['seconds']:.1f} s", flush=True)
+        if wrong:
+            say(wrong)
+    if json:
+        print_json({"notebooks": found})
+    else:
+        print(f"Pages and executed notebooks are in {folder}")
+    return 0 if all(one["passed"] for one in found) else 1
+
+
+def texts() -> list[Path]:
+    """Files of the notebooks, Python in which comments are the text, in their order."""
+    return sorted(FOLDER.glob("[0-9]*.py"))
+
+
+def _text(name: str) -> Path:
+    """File of a notebook by its name, or that file.
+
+    Raises
+    ------
+    InputError : neither
     """
-    return sorted(folder.glob("[0-9]*.py"))
+    from meshes.errors import InputError
+
+    known = {path.stem: path for path in texts()}
+    path = known.get(name, Path(name))
+    if not path.is_file():
+        raise InputError("notebook", name, f"a file, or one of: {', '.join(known)}")
+    return path
+
+
+def require_jupyter() -> None:
+    """The libraries that execute notebooks are installed.
+
+    Raises
+    ------
+    InputError : one of them is not
+    """
+    from meshes.errors import InputError
+
+    for name in _NEEDED:
+        if find_spec(name) is None:
+            raise InputError("notebooks", f"no {name}", "run with the extra: pip install leblanc[notebooks]")
 
 
 def execute(path: Path, out: Path) -> str:
@@ -57,18 +115,25 @@ def execute(path: Path, out: Path) -> str:
 
     book: Any = jupytext.read(path, fmt="py:percent")
     book.cells.insert(0, new_code_cell(_STRICT))
-    resources = {"metadata": {"path": str(path.parent)}}
     # Of the kernel's own log the errors alone.
     options = {"kernel_name": "python3", "extra_arguments": ["--log-level=ERROR"]}
-    client = NotebookClient(book, timeout=_SECONDS, resources=resources, **options)
     wrong = ""
-    try:
-        client.execute()
-    except (CellExecutionError, CellTimeoutError, DeadKernelError) as error:
-        wrong = str(error)
+    with TemporaryDirectory() as folder:
+        client = NotebookClient(book, timeout=_SECONDS, **options)
+        try:
+            client.execute(cwd=folder, env=_settings())
+        except (CellExecutionError, CellTimeoutError, DeadKernelError) as error:
+            wrong = str(error)
     _without_first(book)
     _write(book, path.stem, out)
     return wrong or _complaints(book)
+
+
+def _settings() -> dict[str, str]:
+    """Environment of a kernel: small matrices on one thread, modules from where this process takes them."""
+    threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+    path = os.pathsep.join(str(Path(entry).absolute()) for entry in sys.path)
+    return os.environ | threads | {"PYTHONPATH": path}
 
 
 def _without_first(book: Any) -> None:
@@ -76,14 +141,16 @@ def _without_first(book: Any) -> None:
     del book.cells[0]
     for cell in book.cells:
         if cell.cell_type == "code":
-            for one in (cell, *(one for one in cell.outputs if one.output_type == "execute_result")):
-                one.execution_count = one.execution_count and one.execution_count - 1
+            for part in (cell, *(part for part in cell.outputs if part.output_type == "execute_result")):
+                part.execution_count = part.execution_count and part.execution_count - 1
 
 
 def _complaints(book: Any) -> str:
     """What the cells wrote to the standard error."""
-    outputs = (one for cell in book.cells if cell.cell_type == "code" for one in cell.outputs)
-    return "".join(one.text for one in outputs if one.output_type == "stream" and one.name == "stderr")
+    outputs = (output for cell in book.cells if cell.cell_type == "code" for output in cell.outputs)
+    return "".join(
+        output.text for output in outputs if output.output_type == "stream" and output.name == "stderr"
+    )
 
 
 def _write(book: Any, stem: str, out: Path) -> None:
@@ -95,37 +162,3 @@ def _write(book: Any, stem: str, out: Path) -> None:
     page, _ = HTMLExporter().from_notebook_node(book, {"metadata": {"name": stem}})
     page = page.replace("</head>", _PRINT, 1)
     (out / f"{stem}.html").write_text(page, encoding="utf-8")
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Execute all notebooks or some.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-
-    Returns
-    -------
-    Exit code, 1 if a notebook failed
-    """
-    parser = argparse.ArgumentParser(prog="python -m validation.run_notebooks", description=__doc__)
-    parser.add_argument("notebooks", type=Path, nargs="*", help="texts of notebooks [default: all]")
-    parser.add_argument("--out", type=Path, default=Path("out/notebooks"), help="folder of what is written")
-    chosen = parser.parse_args(arguments)
-    for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ[variable] = "1"
-    failed, begin = 0, time.perf_counter()
-    for path in chosen.notebooks or texts():
-        start = time.perf_counter()
-        wrong = execute(path, chosen.out)
-        took = f"{time.perf_counter() - start:.1f} s"
-        print(f"{path.stem}: {'FAILED' if wrong else 'passed'}, {took}", flush=True)
-        if wrong:
-            failed += 1
-            print(wrong, file=sys.stderr, flush=True)
-    print(f"all: {time.perf_counter() - begin:.1f} s")
-    return 1 if failed else 0
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

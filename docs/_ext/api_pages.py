@@ -1,11 +1,15 @@
-"""Pages of the API reference: one for each package, a section for each public module."""
+"""Pages of the API reference: the public names of `leblanc` by their use, then each package by module.
+
+An object is described once. What `import leblanc` offers stands on the page of public names; on the page of
+its package its line leads there.
+"""
 
 from __future__ import annotations
 
 import ast
 import importlib.util
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,6 +17,29 @@ PACKAGES = ("meshes", "fluid", "solvers", "leblanc", "validation")
 # Programs, and notebooks in text form, which are pages of their own.
 _LEFT_OUT = {"__main__", "notebooks"}
 _DIRECTIVE: dict[type, str] = {ast.FunctionDef: "autofunction", ast.ClassDef: "autoclass"}
+# The page of public names: its sections, their introductions, and the names of `leblanc` in them.
+PUBLIC = "public"
+SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
+    (
+        "Machines",
+        "A scene is a machine with its liquid; what it may say stands on the :doc:`page of keys </scene>`.",
+        (
+            *("load_scene", "example", "Scene"),
+            *("JeffcottRotor", "TwoPlaneRotor", "TubRotor", "Exciter", "Chamber", "Fill", "Liquid"),
+        ),
+    ),
+    (
+        "Calls",
+        "Each does what the command of its name does, and returns a result.",
+        (
+            *("run", "run_up", "map_whirl", "optimise", "sweep", "compare", "explain"),
+            *("layer", "modes", "volume"),
+        ),
+    ),
+    ("Errors", "What is wrong with the input, in full.", ("InputError", "SceneError")),
+)
+RESULTS = "leblanc.results"
+_RESULT = "Result"  # class that all results inherit from
 _CITED = re.compile(r"\s*\[[^\]]*(?:theory|\d\d)[^\]]*\]")
 
 
@@ -25,11 +52,15 @@ class Member:
     name : in its module
     directive : what autodoc calls it
     summary : first line of its docstring, without citations
+    full : dotted name under which it is described; below `leblanc` itself if it is one of its public names
+    bases : names of the classes that it inherits from, as they are written
     """
 
     name: str
     directive: str
     summary: str
+    full: str
+    bases: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -60,22 +91,57 @@ def source_root() -> Path:
 
 def modules(root: Path) -> Iterator[Module]:
     """Public modules below a folder, package by package."""
+    public = public_homes()
     for package in PACKAGES:
         for path in sorted((root / package).rglob("*.py")):
             parts = path.relative_to(root).with_suffix("").parts
             if _LEFT_OUT & set(parts) or any(p.startswith("_") and p != "__init__" for p in parts):
                 continue
+            own = parts[-1] == "__init__"
+            name = ".".join(parts[:-1] if own else parts)
             tree = ast.parse(path.read_text(encoding="utf-8"))
             members = tuple(
-                Member(node.name, _DIRECTIVE[type(node)], summary(node))
+                Member(
+                    node.name,
+                    _DIRECTIVE[type(node)],
+                    summary(node),
+                    public.get((name, node.name), f"{name}.{node.name}"),
+                    tuple(map(ast.unparse, node.bases)) if isinstance(node, ast.ClassDef) else (),
+                )
                 for node in tree.body
                 if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_")
             )
-            own = parts[-1] == "__init__"
             if own and not members:
                 continue
-            name = ".".join(parts[:-1] if own else parts)
             yield Module(name, ".".join(parts[:-1]), summary(tree), members)
+
+
+def public_homes() -> dict[tuple[str, str], str]:
+    """Public name, as in "leblanc.run", of each module and name in it that `leblanc` hands on."""
+    import leblanc
+
+    homes = {}
+    for name in leblanc.__all__:
+        found = getattr(leblanc, name)
+        homes[found.__module__, found.__qualname__] = f"leblanc.{name}"
+    return homes
+
+
+def results(found: Iterable[Module] | None = None) -> list[Member]:
+    """The classes of results, the one that they inherit from first.
+
+    Parameters
+    ----------
+    found : all modules; read anew if None
+    """
+    classes = [
+        member
+        for module in (modules(source_root()) if found is None else found)
+        if module.package == RESULTS
+        for member in module.members
+        if _RESULT in (member.name, *member.bases)
+    ]
+    return sorted(classes, key=lambda member: (member.name != _RESULT, member.name))
 
 
 def summary(node: ast.Module | ast.FunctionDef | ast.ClassDef) -> str:
@@ -83,7 +149,8 @@ def summary(node: ast.Module | ast.FunctionDef | ast.ClassDef) -> str:
     line = (ast.get_docstring(node) or "").partition("\n")[0]
     parts = re.split(r"(`[^`]+`)", _CITED.sub("", line))
     plain = [
-        re.sub(r"([\\*|_])", r"\\\1", one) if k % 2 == 0 else f"\\ `{one}`\\ " for k, one in enumerate(parts)
+        re.sub(r"([\\*|_])", r"\\\1", part) if k % 2 == 0 else f"\\ `{part}`\\ "
+        for k, part in enumerate(parts)
     ]
     return "".join(plain)
 
@@ -93,7 +160,7 @@ def public_names() -> dict[str, str]:
     found: dict[str, list[str]] = {}
     for module in modules(source_root()):
         for member in module.members:
-            found.setdefault(member.name, []).append(f"{module.name}.{member.name}")
+            found.setdefault(member.name, []).append(member.full)
     return {short: full[0] for short, full in found.items() if len(full) == 1}
 
 
@@ -106,32 +173,66 @@ def write(folder: Path) -> list[Path]:
 
     Returns
     -------
-    The pages, in the order of the layers
+    The pages: public names first, then in the order of the layers
     """
     folder.mkdir(parents=True, exist_ok=True)
     by_package: dict[str, list[Module]] = {}
-    for module in modules(source_root()):
+    found = list(modules(source_root()))
+    answers = results(found)
+    for module in found:
         by_package.setdefault(module.package, []).append(module)
-    pages = []
+    pages = [folder / f"{PUBLIC}.rst"]
+    pages[0].write_text(_public_page(found, answers), encoding="utf-8")
     for package, members in by_package.items():
         page = folder / f"{package}.rst"
-        page.write_text(_page(package, members), encoding="utf-8")
+        page.write_text(_page(package, members, answers), encoding="utf-8")
         pages.append(page)
     return pages
 
 
-def _page(package: str, members: list[Module]) -> str:
+def _public_page(found: list[Module], answers: list[Member]) -> str:
+    """The public names of `leblanc` and its results, each with its docstring."""
+    members = {member.full: member for module in found for member in module.members}
+    title = "Public names"
+    lines = [title, "=" * len(title), "", "After ``import leblanc as lb``, each is ``lb.NAME``.", ""]
+    for section, introduction, names in SECTIONS:
+        lines += _section(section, introduction, [members[f"leblanc.{name}"] for name in names])
+    text = "What calls return. All inherit from :py:obj:`Result <leblanc.results.base.Result>`."
+    return "\n".join(lines + _section("Results", text, answers))
+
+
+def _section(title: str, introduction: str, members: list[Member]) -> list[str]:
+    """A heading, a table of members, then their docstrings."""
+    lines = [title, "-" * len(title), "", introduction, "", *_table(_rows(members))]
+    for member in members:
+        lines += _described(member)
+    return lines
+
+
+def _page(package: str, members: list[Module], answers: list[Member]) -> str:
+    elsewhere = {member.full for member in answers}
     lines = [package, "=" * len(package), ""]
-    lines += _table([(f":py:mod:`{one.name}`", one.summary) for one in members])
+    lines += _table([(f":py:mod:`{module.name}`", module.summary) for module in members])
     for module in members:
         lines += ["", module.name, "-" * len(module.name), "", f".. automodule:: {module.name}", ""]
-        lines += _table([(f":py:obj:`{one.name}`", one.summary) for one in module.members])
-        for one in module.members:
-            lines += [f".. {one.directive}:: {module.name}.{one.name}"]
-            # matplotlib gives each of its classes a method `set` with a docstring that is its own.
-            members = ["   :members:", "   :exclude-members: set", ""]
-            lines += members if one.directive == "autoclass" else [""]
+        lines += _table(_rows(module.members))
+        for member in module.members:
+            if member.full == f"{module.name}.{member.name}" and member.full not in elsewhere:
+                lines += _described(member)
     return "\n".join(lines)
+
+
+def _described(member: Member) -> list[str]:
+    """The directive for the docstring of a member."""
+    lines = [f".. {member.directive}:: {member.full}"]
+    # matplotlib gives each of its classes a method `set` with a docstring that is its own.
+    members = ["   :members:", "   :exclude-members: set", ""]
+    return lines + (members if member.directive == "autoclass" else [""])
+
+
+def _rows(members: Iterable[Member]) -> list[tuple[str, str]]:
+    """Names that lead to their docstrings, and what they are."""
+    return [(f":py:obj:`{member.name} <{member.full}>`", member.summary) for member in members]
 
 
 def _table(rows: list[tuple[str, str]]) -> list[str]:

@@ -87,8 +87,8 @@ def written_types(thing: Any) -> dict[str, str]:
     thing = getattr(thing, "py_func", thing)
     ranks = reversed(thing.__mro__) if isinstance(thing, type) else (thing,)
     found: dict[str, str] = {}
-    for one in ranks:
-        given = vars(one).get("__annotations__", {}) if isinstance(one, type) else one.__annotations__
+    for owner in ranks:
+        given = vars(owner).get("__annotations__", {}) if isinstance(owner, type) else owner.__annotations__
         found |= {name: _written(value) for name, value in given.items()}
     return found
 
@@ -139,7 +139,7 @@ def _entries(body: str, types: dict[str, str], names: dict[str, str], known: set
             terms = [term.strip() for term in found["names"].split(",")]
             kinds = dict.fromkeys(types[term] for term in terms if term in types)
             term = ", ".join(f"**{_escaped(term)}**" for term in terms)
-            kind = " or ".join(_type(one, names) for one in kinds)
+            kind = " or ".join(_type(text, names) for text in kinds)
             out += [
                 "",
                 term + (f" \N{EN DASH} {kind}" if kind else ""),
@@ -164,7 +164,7 @@ def _type(text: str, names: dict[str, str]) -> str:
             out.append(f"{left}``{part.strip()}``{right}")
         else:
             out.append(part)
-    return "\\ ".join(one for one in out if one)
+    return "\\ ".join(part for part in out if part)
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

@@ -75,15 +75,16 @@ def _commands() -> dict[str, Any]:
 
 
 class Ranges(SphinxDirective):
-    """The numbers that bound a model, as `leblanc.studies.validity` has them."""
+    """The numbers that bound a model, as the model itself has them."""
 
     required_arguments = 1
 
     def run(self) -> list[nodes.Node]:
         """A table, or a sentence where there is no bound."""
-        from leblanc.studies.validity import MEANING, RANGES
+        from leblanc.studies.liquid import wave_model
+        from leblanc.studies.validity import MEANING
 
-        bounds = RANGES.get(self.arguments[0], {})
+        bounds = wave_model(self.arguments[0]).ranges
         if not bounds:
             return [nodes.paragraph("", "No number bounds this model.")]
         rows = [(name, MEANING[name], _interval(*bounds[name])) for name in bounds]

@@ -108,8 +108,8 @@ def _row(name: str, field: FieldInfo) -> tuple[str, str, str, str, str]:
 def _unit(field: FieldInfo) -> str:
     """SI unit of a value, or of each entry of a list."""
     rule = rule_of(field)
-    for one in (rule, getattr(rule, "each", None), entry_rule(field.annotation)):
-        quantity = getattr(one, "each", one)
+    for candidate in (rule, getattr(rule, "each", None), entry_rule(field.annotation)):
+        quantity = getattr(candidate, "each", candidate)
         if isinstance(quantity, Quantity):
             return quantity.dimension.unit
     return ""
@@ -163,7 +163,7 @@ def _default(field: FieldInfo) -> str:
     if isinstance(value, Friction):
         return f"`{value.law}`"
     if isinstance(value, tuple):
-        return ", ".join(f"{one:g}" for one in value) or "none"
+        return ", ".join(f"{number:g}" for number in value) or "none"
     if isinstance(value, str):
         return f"`{value}`" if value else "empty"
     return f"{value:g}"

@@ -9,10 +9,9 @@ import numpy as np
 
 from fluid.fill import Fill, Fills
 from fluid.liquid import known_liquid
-from meshes.arrays import Array
 from meshes.chamber import Chamber
+from solvers.liquid_model import LiquidAnswer, LiquidModel, Whirls
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.synchronous.models import LiquidModel, SynchronousAnswer
 from solvers.synchronous.response import Response, response
 
 
@@ -21,9 +20,9 @@ class Frozen(LiquidModel):
 
     name = "frozen"
 
-    def synchronous(self, fills: Fills, speed: Array, deflection: Array, gravity: Array) -> SynchronousAnswer:
-        """See `solvers.synchronous.models.LiquidModel`."""
-        return SynchronousAnswer.everywhere(unbalance=fills.mass * deflection, slope=fills.mass)
+    def answer(self, fills: Fills, whirls: Whirls) -> LiquidAnswer:
+        """See `solvers.liquid_model.LiquidModel`."""
+        return LiquidAnswer.at_rest(fills, whirls, fills.mass * whirls.amplitude, fills.mass)
 
 
 def answers() -> tuple[Response, Response]:

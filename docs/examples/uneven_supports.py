@@ -40,17 +40,17 @@ class UnevenSupports:
 
     def system(self) -> RotorSystem:
         """See `solvers.rotor.system.Rotor`."""
-        one = np.eye(2)
+        identity = np.eye(2)
         return RotorSystem(
             coordinates=("x", "y"),
-            mass=self.mass * one,
-            damping=self.damping * one,
-            gyroscopic=0.0 * one,
+            mass=self.mass * identity,
+            damping=self.damping * identity,
+            gyroscopic=0.0 * identity,
             stiffness=np.diag([self.sideways, self.upwards]),
             # The spin turns the first direction into the second, a quarter of a turn later.
             unbalance=np.array([self.unbalance, -1j * self.unbalance]),
-            centre=one,
-            lean=0.0 * one,
+            centre=identity,
+            lean=0.0 * identity,
         )
 
 

@@ -18,7 +18,7 @@ from typer.main import get_command
 
 from leblanc.cli import compare, explain, layer, map, modes, new, optimise, run, runup, sweep, view, volume
 from leblanc.cli.output import say
-from leblanc.scene.schema.load import NotConverged, SceneFaults, escaped
+from leblanc.scene.schema.load import NotConverged, SceneError, escaped
 from meshes.errors import InputError
 
 DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED, INTERRUPTED = 0, 1, 2, 3, 130
@@ -62,7 +62,7 @@ def exit_code(action: Callable[[], object]) -> int:
     try:
         code = action()
         sys.stdout.flush()
-    except (SceneFaults, NotConverged) as error:
+    except (SceneError, NotConverged) as error:
         say(str(error))
         return NOT_CONVERGED if isinstance(error, NotConverged) else WRONG_INPUT
     except InputError as error:

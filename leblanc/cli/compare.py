@@ -41,7 +41,7 @@ def compare(
         print("\n".join([basis(found), *reasons(found)]))
         print(f"See {files.png}; the data are in {folder / 'compare.nc'}")
 
-    lost = [name for name, one in found.results.items() if not one.converged.all()]
+    lost = [name for name, result in found.results.items() if not result.converged.all()]
     if lost:
         from leblanc.scene.schema.load import NotConverged
 

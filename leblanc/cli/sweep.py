@@ -74,8 +74,10 @@ def _emulator_json(emulators: dict[str, Emulator | str] | None) -> dict[str, Any
         return {}
     return {
         "emulators": {
-            name: {"reason": one} if isinstance(one, str) else {"settled": one.settled, "error": one.error}
-            for name, one in emulators.items()
+            name: {"reason": emulator}
+            if isinstance(emulator, str)
+            else {"settled": emulator.settled, "error": emulator.error}
+            for name, emulator in emulators.items()
         }
     }
 
@@ -83,12 +85,12 @@ def _emulator_json(emulators: dict[str, Emulator | str] | None) -> dict[str, Any
 def _emulator_lines(emulators: dict[str, Emulator | str] | None) -> list[str]:
     """The same in words."""
     lines = []
-    for name, one in (emulators or {}).items():
+    for name, emulator in (emulators or {}).items():
         label = f"emulator of {name.replace('_', ' ')}"
-        if isinstance(one, str):
-            lines.append(f"{label}: none; {one}")
+        if isinstance(emulator, str):
+            lines.append(f"{label}: none; {emulator}")
             continue
-        error, of = one.error, "" if one.positive else " of the spread"
+        error, of = emulator.error, "" if emulator.positive else " of the spread"
         lines.append(
             f"{label}: off by {error.root_mean_square:.2g}{of} on unseen samples (root mean square; "
             f"largest {error.largest:.2g}, by the mean alone {error.spread:.2g}), "
@@ -114,12 +116,12 @@ def _run(plan: Sweep, folder: Path, workers: int | None, scheduler: str | None, 
 
 def _finish(found: SweepResult) -> None:
     """Say on stderr how it went; with no sample done at all that is a failure."""
-    from leblanc.scene.schema.load import NotConverged, SceneFault, SceneFaults
+    from leblanc.scene.schema.load import NotConverged, SceneError, SceneFault
 
     for reason, count in found.reasons[:_SHOWN]:
         say(f"{found.name}: {count} of {found.samples} samples: {reason}")
     if found.not_converged == found.samples:
         raise NotConverged([f"{found.name}: no sample converged at every speed"])
     if found.failed == found.samples:
-        raise SceneFaults([SceneFault(found.name, "vary", None, "such that some sample is a scene")])
+        raise SceneError([SceneFault(found.name, "vary", None, "such that some sample is a scene")])
     say(f"{found.name}: {found.done} of {found.samples} samples done")

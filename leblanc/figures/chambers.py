@@ -128,7 +128,7 @@ def wall_line(section: ChamberSection) -> list[Array]:
     """
     sides = free_sides(section.mesh.triangles)
     ordered = sides[:, [0, 2, 1]] if sides.shape[1] == 3 else sides
-    return [section.mesh.points[one] for one in ordered]
+    return [section.mesh.points[corners] for corners in ordered]
 
 
 def bodies(chamber: FilledChamber, centre: complex, depth: float) -> list[Array]:
@@ -195,10 +195,10 @@ def _wall(chamber: FilledChamber, angle: Array) -> Array:
 def _outermost(start: Complex, stop: Complex, angle: Array) -> Array:
     """Distance along each ray of the outermost of many straight sides, given by their ends x + i y, m."""
     turn = np.exp(-1j * angle)[:, None]
-    one, other = start * turn, stop * turn
-    meets = (one.imag * other.imag <= 0.0) & (one.imag != other.imag)
-    share = np.divide(one.imag, one.imag - other.imag, where=meets, out=np.zeros(meets.shape))
-    away = np.where(meets, one.real + share * (other.real - one.real), 0.0)
+    low, other = start * turn, stop * turn
+    meets = (low.imag * other.imag <= 0.0) & (low.imag != other.imag)
+    share = np.divide(low.imag, low.imag - other.imag, where=meets, out=np.zeros(meets.shape))
+    away = np.where(meets, low.real + share * (other.real - low.real), 0.0)
     return np.asarray(away.max(axis=1))
 
 

@@ -37,7 +37,7 @@ def comparison_figure(found: Comparison) -> Figure:
     """Amplitude of each model over speed; below, where there are several, their differences."""
     order = np.argsort(found.speed, kind="stable")
     names = list(found.results)
-    finite = [np.where(np.isfinite(one), one, np.nan)[order] * MM for one in _amplitudes(found)]
+    finite = [np.where(np.isfinite(size), size, np.nan)[order] * MM for size in _amplitudes(found)]
     apart = [100.0 * found.difference(name)[order] for name in names]
     drawn = thin(np.column_stack([*finite, *apart]), COLUMNS)
     rpm = found.speed[order][drawn] * RPM
@@ -65,7 +65,7 @@ def comparison_figure(found: Comparison) -> Figure:
 
 def _amplitudes(found: Comparison) -> list[Array]:
     """Of every model that answers, and without liquid, m."""
-    return [*(one.amplitude for one in found.results.values()), found.amplitude_dry]
+    return [*(result.amplitude for result in found.results.values()), found.amplitude_dry]
 
 
 def _draw_amplitude(axes: Axes, rpm: Array, names: list[str], lines: list[Array]) -> None:
@@ -95,7 +95,7 @@ def _background(axes: Axes, found: Comparison) -> None:
     margin = 0.0 if rpm[0] < rpm[-1] else max(0.05 * float(rpm[0]), 1.0)
     limits = float(rpm[0]) - margin, float(rpm[-1]) + margin
     axes.set_xlim(*limits)
-    outside = ~np.any([one.in_range[order] for one in found.results.values()], axis=0)
+    outside = ~np.any([result.in_range[order] for result in found.results.values()], axis=0)
     for k, (left, right) in enumerate(spans(rpm, outside, limits)):
         label = "_" if k else f"every {OUT_OF_RANGE}"
         axes.axvspan(left, right, color=SHADE, linewidth=0, zorder=0, label=label)
@@ -109,7 +109,7 @@ def _caption(found: Comparison) -> Caption:
         if len(found.results) > 1
         else ""
     )
-    silent = [one.model for one in found.answers if not one.answered]
+    silent = [answer.model for answer in found.answers if not answer.answered]
     missing = f" Models that do not answer it: {', '.join(silent)}." if silent else ""
     return Caption(
         f"Amplitude of the deflection by each liquid model.{below}",

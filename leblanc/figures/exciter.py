@@ -103,16 +103,18 @@ def _draw_vibration(axes: Any, result: ExciterResult) -> None:
 
 def _draw_checks(axes: Any, result: ExciterResult, quantity: str, unit: float) -> None:
     """Marks of the time integrations in which the balls stay."""
-    mine = [one for one in result.checks if one.holds and math.isfinite(getattr(one, quantity))]
-    mine = [one for one in mine if getattr(one, quantity) > 0.0]
+    mine = [check for check in result.checks if check.holds and math.isfinite(getattr(check, quantity))]
+    mine = [check for check in mine if getattr(check, quantity) > 0.0]
     if mine:
-        values = [getattr(one, quantity) * unit for one in mine]
-        axes.plot([one.speed * RPM for one in mine], values, label="time integration, balls stay", **_HELD)
+        values = [getattr(check, quantity) * unit for check in mine]
+        axes.plot(
+            [check.speed * RPM for check in mine], values, label="time integration, balls stay", **_HELD
+        )
 
 
 def _draw_lost(axes: Any, result: ExciterResult) -> None:
     """Crosses on the slowest branch where the balls leave it or do not come to it."""
-    lost = [one.speed for one in result.checks if not one.holds]
+    lost = [check.speed for check in result.checks if not check.holds]
     if lost:
         places = np.interp(lost, result.speed, result.stuck[:, 0])
         axes.plot(np.array(lost) * RPM, places * RPM, label="time integration, balls leave", **_LOST)

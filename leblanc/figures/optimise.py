@@ -156,7 +156,7 @@ def _draw_section(axes: Axes, result: OptimumResult, k: int) -> None:
         axes.set_xscale("symlog", linthresh=least, linscale=0.3)
         axes.set_xlim(-0.15 * least, 1.15 * result.chambers[k].capacity * ML)
         ticks = [0.0, *10.0 ** np.arange(math.ceil(math.log10(least)), 12)]
-        axes.set_xticks([one for one in ticks if one <= axes.get_xlim()[1]])
+        axes.set_xticks([tick for tick in ticks if tick <= axes.get_xlim()[1]])
     axes.minorticks_off()
     axes.xaxis.set_major_formatter(number)
     axes.yaxis.set_major_formatter(number)
@@ -243,7 +243,7 @@ def _symlog(axes: Axes, scale: str, least: float, capacity: float) -> None:
     getattr(axes, f"set_{scale}scale")("symlog", linthresh=least, linscale=0.3)
     getattr(axes, f"set_{scale}lim")(0.0, capacity)
     ticks = [0.0, *10.0 ** np.arange(math.ceil(math.log10(least)), 12)]
-    getattr(axes, f"set_{scale}ticks")([one for one in ticks if one <= capacity])
+    getattr(axes, f"set_{scale}ticks")([tick for tick in ticks if tick <= capacity])
     axes.minorticks_off()
     getattr(axes, f"{scale}axis").set_major_formatter(number)
 
@@ -287,7 +287,7 @@ def _draw_front(axes: Axes, result: OptimumResult) -> None:
         axes.set_xscale("symlog", linthresh=least, linscale=0.3)
         axes.set_xlim(-0.5 * least, 1.3 * float(wet.max()))
         ticks = [0.0, *10.0 ** np.arange(math.ceil(math.log10(least)), 12)]
-        axes.set_xticks([one for one in ticks if one <= 1.3 * wet.max()])
+        axes.set_xticks([tick for tick in ticks if tick <= 1.3 * wet.max()])
         axes.minorticks_off()
     axes.xaxis.set_major_formatter(number)
     axes.yaxis.set_major_formatter(number)

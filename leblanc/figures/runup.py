@@ -132,8 +132,8 @@ def steady_lines(rpm: Array, branches: Any, calm: Flags) -> tuple[Line, Line]:
     bounded = np.where(np.isfinite(branches), branches, complex(math.nan, math.nan))
     chain, size = link(bounded), np.abs(bounded) * MM
     stable, unstable = [], []
-    for one in range(int(chain.max(initial=-1)) + 1):
-        point, column = np.nonzero(chain == one)
+    for branch in range(int(chain.max(initial=-1)) + 1):
+        point, column = np.nonzero(chain == branch)
         x, y, good = rpm[point], size[point, column], calm[point, column]
         stable.append((x, np.where(good, y, np.nan)))
         unstable.append((x, np.where(widened(~good), y, np.nan)))

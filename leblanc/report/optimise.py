@@ -87,10 +87,17 @@ def facts(result: OptimumResult) -> list[tuple[str, str]]:
 def constraints(result: OptimumResult) -> Table:
     """What the volumes must keep to."""
     rows = []
-    for name, one in result.constraints.items():
-        verdict = Cell("kept" if one.satisfied else "exceeded", warning=not one.satisfied)
-        what = f"{name.replace('_', ' ')}: {one.meaning}"
-        rows.append((what, shown(one.value, one.unit), shown(one.limit, one.unit), verdict))
+    for name, constraint in result.constraints.items():
+        verdict = Cell("kept" if constraint.satisfied else "exceeded", warning=not constraint.satisfied)
+        what = f"{name.replace('_', ' ')}: {constraint.meaning}"
+        rows.append(
+            (
+                what,
+                shown(constraint.value, constraint.unit),
+                shown(constraint.limit, constraint.unit),
+                verdict,
+            )
+        )
     return table("", ("Constraint", "value", "at most", "verdict"), rows)
 
 
@@ -105,7 +112,7 @@ def front(result: OptimumResult) -> Table:
     rows = [
         (
             f"{number(float(edge.mass[k]) * 1e3)}{' (chosen)' if k in chosen else ''}",
-            ", ".join(number(one * ML) for one in edge.volume[k].tolist()),
+            ", ".join(number(volume * ML) for volume in edge.volume[k].tolist()),
             number(float(edge.vibration[k]) * MM),
             number(float(edge.stability_margin[k])),
         )
@@ -117,7 +124,9 @@ def front(result: OptimumResult) -> Table:
 
 def checks(result: OptimumResult) -> Table:
     """Where the answer is not what it seems: the volumes by themselves, and the machine with them."""
-    exceeded = [name.replace("_", " ") for name, one in result.constraints.items() if not one.satisfied]
+    exceeded = [
+        name.replace("_", " ") for name, constraint in result.constraints.items() if not constraint.satisfied
+    ]
     growing = result.growth > 0.0
     lost = math.isnan(result.growth)
     rows: list[Sequence[str | Cell]] = [

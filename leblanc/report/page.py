@@ -68,9 +68,9 @@ def about(
     inputs = scene_inputs(scene, aim, unused)
     paths = [cell.path for cell in inputs.cells if cell.assumed]
     elsewhere = tuple(
-        one
-        for one in scene.assumed
-        if not any(own == one or own.startswith(f"{one}.") or one.startswith(f"{own}.") for own in paths)
+        path
+        for path in scene.assumed
+        if not any(own == path or own.startswith(f"{path}.") or path.startswith(f"{own}.") for own in paths)
     )
     return About(scene.name, scene.source, scene.digest, inputs, elsewhere, command, data)
 

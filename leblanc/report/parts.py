@@ -66,7 +66,7 @@ def table(
     ----------
     title, head, rows, words : as for `Table`; a text becomes a cell
     """
-    cells = tuple(tuple(one if isinstance(one, Cell) else Cell(one) for one in row) for row in rows)
+    cells = tuple(tuple(cell if isinstance(cell, Cell) else Cell(cell) for cell in row) for row in rows)
     return Table(title, tuple(head), cells, words)
 
 
@@ -132,7 +132,7 @@ class Inputs:
     def cells(self) -> list[Cell]:
         """All values."""
         single = [cell for entry in (*self.entries, *self.unused) for cell in entry.cells]
-        return single + [cell for one in self.tables for row in one.rows for cell in row]
+        return single + [cell for part in self.tables for row in part.rows for cell in row]
 
     @property
     def assumed(self) -> bool:
@@ -151,9 +151,11 @@ def scene_inputs(scene: Scene, optimise: Optimisation | None = None, unused: tup
     """
     found = inputs_of(scene, optimise)
     entries = [Entry(row.label, tuple(map(_cell, row.values))) for row in found.rows]
-    tables = [Table("", one.head, tuple(tuple(map(_cell, row)) for row in one.rows)) for one in found.tables]
-    aside = [one for one in entries if one.cells[0].path.partition(".")[0] in unused]
-    return Inputs(tuple(one for one in entries if one not in aside), tuple(tables), tuple(aside))
+    tables = [
+        Table("", part.head, tuple(tuple(map(_cell, row)) for row in part.rows)) for part in found.tables
+    ]
+    aside = [entry for entry in entries if entry.cells[0].path.partition(".")[0] in unused]
+    return Inputs(tuple(entry for entry in entries if entry not in aside), tuple(tables), tuple(aside))
 
 
 def _cell(value: Value) -> Cell:

@@ -48,7 +48,7 @@ def write_run_report(result: RunResult, what: About, figures: Sequence[FigureFil
     figures : in the order of the page
     path : the file to write or replace
     """
-    shown = [one for one in figures if len(figures) > SHOWN or one.name != "phase"]
+    shown = [figure for figure in figures if len(figures) > SHOWN or figure.name != "phase"]
     elsewhere = OF_MODELS if result.models else ()
     parts = {
         "title": "Response to the unbalance over speed",
@@ -57,11 +57,11 @@ def write_run_report(result: RunResult, what: About, figures: Sequence[FigureFil
         "comparisons": table(
             "",
             ("", "with liquid", "without", "ratio"),
-            [(one.label, one.wet, one.dry, one.ratio) for one in comparisons(result)],
+            [(row.label, row.wet, row.dry, row.ratio) for row in comparisons(result)],
         ),
         "facts": table("", (), facts(result)),
         "checks": response_checks(result),
-        "pictures": [picture(one) for one in shown],
+        "pictures": [picture(files) for files in shown],
         "why": why(result.models) if result.models else _used(result),
         "models": models(result.models_used),
         "remarks": [*notes(result.notes, elsewhere), *remarks(result)],
@@ -84,18 +84,18 @@ def exciter_numbers(result: ExciterResult) -> Table:
 def integrations(result: ExciterResult) -> Table:
     """Time integrations beside the formulas."""
     rows: list[Sequence[str | Cell]] = []
-    for one in result.checks:
-        stay = Cell("stay" if one.holds else "leave", warning=not one.converged)
-        stuck = number(one.stuck_speed * RPM) if one.holds else ""
-        both = [number(x * MM) if one.holds and math.isfinite(x) else "" for x in (one.slow, one.fast)]
-        rows.append((number(one.speed * RPM), stay, stuck, *both))
+    for check in result.checks:
+        stay = Cell("stay" if check.holds else "leave", warning=not check.converged)
+        stuck = number(check.stuck_speed * RPM) if check.holds else ""
+        both = [number(x * MM) if check.holds and math.isfinite(x) else "" for x in (check.slow, check.fast)]
+        rows.append((number(check.speed * RPM), stay, stuck, *both))
     head = ("Shaft (rpm)", "balls", "at (rpm)", "platform with them (mm)", "with the shaft (mm)")
     return table("Integrated in time", head, rows)
 
 
 def exciter_checks(result: ExciterResult) -> Table:
     """Where the answer is not what it seems."""
-    lost = [one.speed for one in result.checks if not one.converged]
+    lost = [check.speed for check in result.checks if not check.converged]
     words = ", ".join(f"{number(speed * RPM)} rpm" for speed in lost) or "none"
     beyond = ~result.dual_frequency
     outside = not math.isfinite(result.printed_critical)

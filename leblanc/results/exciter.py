@@ -62,6 +62,13 @@ class ExciterResult(Result):
     printed_critical : by the source's regression, rad/s; nan outside its ranges
     checks : time integrations
     source, digest : of the scene
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> result = lb.run(lb.example("vibratory_table").replace({"speeds.count": 2}))
+    >>> result.stuck.shape
+    (2, 3)
     """
 
     figure: ClassVar[str] = "leblanc.figures.exciter:exciter_figure"

@@ -67,6 +67,13 @@ class Explanation(Result):
     modes : of the dry rotor at rest; none for a planar rotor, whose only one is the critical speed
     runup : which liquid model the run-up will take, in words; empty without one
     source, assumed, digest : of the scene
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> explanation = lb.explain(lb.example("horizontal_rig"))
+    >>> sorted({span.model for span in explanation.models})
+    ['linear']
     """
 
     figure: ClassVar[str] = "leblanc.figures.explanation:model_figure"
@@ -97,7 +104,7 @@ class Explanation(Result):
         ends = np.array(self.speed_ratio) * self.critical_speed_dry
         captured = math.nan if self.captured_from is None else self.captured_from
         spans = {
-            field.name: np.array([getattr(one, field.name) for one in self.models])
+            field.name: np.array([getattr(span, field.name) for span in self.models])
             for field in fields(ModelSpan)
         }
         return NamedArrays(
@@ -156,6 +163,13 @@ class ExciterExplanation(Result):
         passes the resonance, rad/s; nan if there is one at every speed
     critical_speed_printed : by the source's regression, rad/s; nan outside its ranges
     source, assumed, digest : of the scene
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> explanation = lb.explain(lb.example("vibratory_table"))
+    >>> [f"{speed:.4g} rad/s" for speed in explanation.characteristic]
+    ['70.8 rad/s', '1540 rad/s', '1542 rad/s']
     """
 
     figure: ClassVar[str] = "leblanc.figures.explanation:stuck_range_figure"
@@ -248,6 +262,13 @@ class Comparison(Result):
     Raises
     ------
     InputError : no model answers
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> comparison = lb.compare(lb.example("horizontal_rig"), models=["statics", "linear", "fem"])
+    >>> [answer.model for answer in comparison.answers if answer.answered]
+    ['statics', 'linear', 'fem']
     """
 
     figure: ClassVar[str] = "leblanc.figures.comparison:comparison_figure"
@@ -260,18 +281,18 @@ class Comparison(Result):
     answers: tuple[ModelAnswer, ...]
 
     def __post_init__(self) -> None:
-        if not any(one.answered for one in self.answers):
+        if not any(answer.answered for answer in self.answers):
             raise InputError("answers", ", ".join(self.models), "at least one model that answers")
 
     @property
     def models(self) -> tuple[str, ...]:
         """Names of the models, in the order asked for."""
-        return tuple(one.model for one in self.answers)
+        return tuple(answer.model for answer in self.answers)
 
     @property
     def results(self) -> dict[str, RunResult]:
         """The answers that there are, by the name of their model."""
-        return {one.model: one.result for one in self.answers if one.result is not None}
+        return {answer.model: answer.result for answer in self.answers if answer.result is not None}
 
     @property
     def reference(self) -> str:
@@ -321,7 +342,7 @@ class Comparison(Result):
     def to_json(self) -> dict[str, Any]:
         """What `compare` prints for scripts, SI; values of a model that does not answer are None (null)."""
         return {
-            "models": [self._entry(one) for one in self.answers],
+            "models": [self._entry(answer) for answer in self.answers],
             "reference": self.reference,
             "speed": self.speed,
             "amplitude_dry": self.amplitude_dry,
@@ -329,36 +350,42 @@ class Comparison(Result):
             "digest": self.digest,
         }
 
-    def _entry(self, one: ModelAnswer) -> dict[str, Any]:
-        found = one.result
+    def _entry(self, answer: ModelAnswer) -> dict[str, Any]:
+        found = answer.result
         return {
-            "model": one.model,
-            "answered": one.answered,
-            "reason": one.reason,
-            "cpu_time": one.cpu_time,
+            "model": answer.model,
+            "answered": answer.answered,
+            "reason": answer.reason,
+            "cpu_time": answer.cpu_time,
             "amplitude": None if found is None else found.amplitude,
             "liquid_offset": None if found is None else found.liquid_offset,
-            "peak_amplitude": one.peak_amplitude,
-            "largest_difference": self.largest_difference(one.model) if one.answered else None,
+            "peak_amplitude": answer.peak_amplitude,
+            "largest_difference": self.largest_difference(answer.model) if answer.answered else None,
         }
 
     def named_arrays(self) -> NamedArrays:
         """Arrays over the dimensions `model` and `speed`; nan where a model does not answer."""
         each, over = ("model",), ("model", "speed")
-        answered = np.array([one.answered for one in self.answers])
+        answered = np.array([answer.answered for answer in self.answers])
 
         def table(take: Callable[[RunResult], Array]) -> Array:
             nothing = np.full(self.speed.shape, np.nan)
-            return np.stack([nothing if one.result is None else take(one.result) for one in self.answers])
+            return np.stack(
+                [nothing if answer.result is None else take(answer.result) for answer in self.answers]
+            )
 
         def numbers(values: list[float | None]) -> Array:
             return np.array(values, dtype=np.float64)
 
-        largest = [self.largest_difference(one.model) if one.answered else None for one in self.answers]
-        peaks, times = ([getattr(one, key) for one in self.answers] for key in ("peak_amplitude", "cpu_time"))
-        amplitude, offset = table(lambda one: one.amplitude), table(lambda one: one.liquid_offset)
+        largest = [
+            self.largest_difference(answer.model) if answer.answered else None for answer in self.answers
+        ]
+        peaks, times = (
+            [getattr(answer, key) for answer in self.answers] for key in ("peak_amplitude", "cpu_time")
+        )
+        amplitude, offset = table(lambda result: result.amplitude), table(lambda result: result.liquid_offset)
         dry, reference = self.amplitude_dry, f"from {self.reference}, over its largest amplitude"
-        words = np.array([one.reason for one in self.answers], dtype=object)
+        words = np.array([answer.reason for answer in self.answers], dtype=object)
         return NamedArrays(
             {
                 "answered": flags(each, answered, "no yes", "answered", "the model answers this scene"),

@@ -20,7 +20,6 @@ from solvers.layer.state import LayerHistory
 
 FEWEST = 3  # angles of a wave
 SLACK = 1e-9  # rounding of a depth, over the radius
-_POINTS = 360
 
 
 class LayerCode(NoteCode):
@@ -126,6 +125,14 @@ class LayerResult(Result):
     gravity_offset : steady part of the offset under gravity across the axis, in space, m: up is negative
     captured : centrifugal acceleration at the surface exceeds gravity
     validity : dimensionless numbers the model rests on, each with its range
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> found = lb.layer(radius="150 mm", volume="671 ml", height="50 mm", speed=40.0, whirl_speed=32.0,
+    ...                  whirl_amplitude="0.15 mm")
+    >>> f"{found.force_ratio.real:.4f}", found.in_range
+    ('2.5615', True)
     """
 
     case: LayerCase
@@ -208,6 +215,15 @@ class LayerPeriodsResult(Result):
     history : force, centre of mass and depths period by period, and the depth at the end
     notes : why there is no answer, and where the model is out of its range
     validity : dimensionless numbers the model rests on, each with its range
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> found = lb.layer(radius="150 mm", volume="671 ml", height="50 mm", speed=40.0, whirl_speed=32.0,
+    ...                  whirl_amplitude="0.15 mm", model="long_wave", cells=32,
+    ...                  duration="2 s", ramp="1 s")
+    >>> found.converged, found.history.time.shape == found.history.force_ratio.shape
+    (True, True)
     """
 
     case: LayerCase
@@ -394,13 +410,3 @@ def _require_depth(depth: Array, shape: tuple[int, ...], radius: float) -> None:
     low, high = float(np.min(depth)), float(np.max(depth))
     if not (math.isfinite(low) and math.isfinite(high) and -slack <= low and high <= radius + slack):
         raise InputError("depth", (low, high), "finite, 0 or above, and at most the radius")
-
-
-def angles() -> Array:
-    """Angles from the deflection all round, rad."""
-    return np.linspace(-math.pi, math.pi, _POINTS, endpoint=False)
-
-
-def wave_amplitude(depth: Array, mean: float) -> float:
-    """Largest change of depth over the mean depth; nan without a profile."""
-    return float(np.max(np.abs(depth - mean))) / mean if depth.size else math.nan

@@ -72,6 +72,13 @@ class VolumeResult(Result):
     corrected_eq18 : with its moment corrected, m^3; None where the formula has no value
     volume : that was asked for, m^3; None without one
     surface : of that volume
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> best = lb.volume(radius=0.2, height=0.05, eccentricity="1 mm", speed=90.0)
+    >>> f"{1e6 * best.optimal_volume:.4f} ml, {best.fem_error < 1e-3}"
+    '54.4396 ml, True'
     """
 
     figure: ClassVar[str] = "leblanc.figures.liquid:surface_figure"
@@ -224,6 +231,13 @@ class ModesResult(Result):
     section : the liquid at rest
     shapes : of the modes
     phase : of each mode at the instant of its strongest flow, rad, shape (k,)
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> found = lb.modes(radius=0.15, volume="671 ml", height=0.05, speed=40.0, count=2, segments=32)
+    >>> bool(abs(found.frequency / found.exact - 1.0).max() < 1e-3)
+    True
     """
 
     title: str

@@ -15,6 +15,7 @@ from leblanc.results.choice import ModelSpan
 from leblanc.results.netcdf import NamedArrays, flags
 from leblanc.results.netcdf import variable as var
 from leblanc.results.response import RunResult
+from leblanc.results.sweep import EmulatorError
 from leblanc.units import MM, RPM
 from meshes.arrays import Array, Flags
 
@@ -192,25 +193,6 @@ class Candidates:
 
 
 @dataclass(frozen=True)
-class EmulatorError:
-    """Error of an emulator on samples that it was not shown [theory: emulator, eq. 4].
-
-    Parameters
-    ----------
-    root_mean_square, largest : relative to the output for positive outputs, otherwise to its spread
-    spread : standard deviation of the output in the same measure, what knowing nothing leaves
-    within_two : share of the samples within two of the standard deviations that the emulator itself claims
-    samples : that were predicted
-    """
-
-    root_mean_square: float
-    largest: float
-    spread: float
-    within_two: float
-    samples: int
-
-
-@dataclass(frozen=True)
 class EmulatedAnswer:
     """What an emulator says of the best volumes.
 
@@ -268,6 +250,13 @@ class OptimumResult(Result):
     response : of the machine with these volumes over the scene's speeds; None where the liquid model of the
         search gives no steady answer, or where it was not asked for; its models are those of the search
     emulator : what the emulator that the search asked says of the answer; None without one
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> best = lb.optimise(lb.example("horizontal_rig"), front=False)
+    >>> best.feasible, sorted(best.constraints), best.volume.shape
+    (True, ['capacity'], (2,))
     """
 
     name: str

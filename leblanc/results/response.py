@@ -154,6 +154,13 @@ class RunResult(Result):
     Raises
     ------
     InputError : no speed at all, an axis of another name, arrays of the response that do not fit together
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> result = lb.run(lb.example("horizontal_rig"))
+    >>> result.models_used, result.to_dataset()["amplitude"].attrs["units"]
+    (('linear',), 'm')
     """
 
     figure: ClassVar[str] = "leblanc.figures.response:amplitude_figure"

@@ -108,6 +108,14 @@ class RunupResult(Result):
     chambers, planes : one for each chamber; its position along the axis, m
     notes : limits of validity and findings
     frames : the layers at regular times; None if they were not asked for
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> short = lb.example("runup").replace({"runup.duration": "1 s", "runup.cells": 16})
+    >>> result = lb.run_up(short, samples=50, check=False)
+    >>> result.model, result.converged, result.amplitude.shape
+    ('long_wave', True, (50,))
     """
 
     name: str

@@ -56,6 +56,25 @@ class Sensitivity:
 
 
 @dataclass(frozen=True)
+class EmulatorError:
+    """Error of an emulator on samples that it was not shown [theory: emulator, eq. 4].
+
+    Parameters
+    ----------
+    root_mean_square, largest : relative to the output for positive outputs, otherwise to its spread
+    spread : standard deviation of the output in the same measure, what knowing nothing leaves
+    within_two : share of the samples within two of the standard deviations that the emulator itself claims
+    samples : that were predicted
+    """
+
+    root_mean_square: float
+    largest: float
+    spread: float
+    within_two: float
+    samples: int
+
+
+@dataclass(frozen=True)
 class SweepResult(Result):
     """What a sweep found.
 
@@ -77,6 +96,12 @@ class SweepResult(Result):
     sensitivities : of outputs that are one number a sample; None where the samples do not tell
     digest : fingerprint of the sweep
     read : reads the store, each time it is called
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> found = lb.sweep("study.toml", workers=0)  # doctest: +SKIP
+    >>> found.done, found.to_dataset()["last_amplitude"]  # doctest: +SKIP
     """
 
     figure: ClassVar[str] = "leblanc.figures.sweep:sweep_figure"
@@ -115,9 +140,9 @@ class SweepResult(Result):
             "failed": self.failed,
             "not_converged": self.not_converged,
             "reasons": [{"reason": reason, "samples": count} for reason, count in self.reasons],
-            "outputs": {name: _statistics_json(one, single=True) for name, one in self.single.items()},
+            "outputs": {name: _statistics_json(values, single=True) for name, values in self.single.items()},
             "over_speed": {"speed": self.speed}
-            | {name: _statistics_json(one, single=False) for name, one in self.over_speed.items()},
+            | {name: _statistics_json(values, single=False) for name, values in self.over_speed.items()},
             "sensitivity": self.sensitivities,
             "digest": self.digest,
         }
@@ -127,11 +152,11 @@ class SweepResult(Result):
         return self.read()
 
 
-def _statistics_json(one: Statistics, single: bool) -> dict[str, Any]:
+def _statistics_json(values: Statistics, single: bool) -> dict[str, Any]:
     parts = {
-        "samples": one.count,
-        "mean": one.mean,
-        "deviation": one.deviation,
-        **{f"quantile_{share:g}": one.quantiles[:, k] for k, share in enumerate(QUANTILES)},
+        "samples": values.count,
+        "mean": values.mean,
+        "deviation": values.deviation,
+        **{f"quantile_{share:g}": values.quantiles[:, k] for k, share in enumerate(QUANTILES)},
     }
     return {name: value[0] if single else value for name, value in parts.items()}

@@ -33,6 +33,13 @@ class WhirlMap(Result):
     friction, damping : of the liquid, of the support, in words
     scene_volume, scene_edges : of the scene as it stands, m^3 and as in `edges`
     notes : limits of validity and findings
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> whirl = lb.map_whirl(lb.example("horizontal_rig"), volumes=3, speeds=5)
+    >>> whirl.volume.shape, whirl.speed.shape, whirl.growth.shape
+    ((3,), (5,), (3, 5))
     """
 
     figure: ClassVar[str] = "leblanc.figures.whirl_map:map_figure"

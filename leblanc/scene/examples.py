@@ -57,7 +57,7 @@ def example(name: str) -> Scene:
     Raises
     ------
     InputError : there is none of that name
-    SceneFaults : it is a study
+    SceneError : it is a study
 
     Examples
     --------

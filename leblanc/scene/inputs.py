@@ -59,13 +59,15 @@ def inputs_of(scene: Scene, optimise: Optimisation | None = None) -> SceneInputs
         *_study(scene),
         *(() if scene.runup is None else _runup(scene.runup)),
     ]
-    marked = [Row(one.label, tuple(value.marked(scene.assumed) for value in one.values)) for one in rows]
+    marked = [
+        Row(entry.label, tuple(value.marked(scene.assumed) for value in entry.values)) for entry in rows
+    ]
     wanted = scene.optimise if optimise is None else optimise
     if wanted is not None:
         marked += _optimise(wanted, scene)
     tables = [
-        RowTable(one.head, tuple(tuple(v.marked(scene.assumed) for v in line) for line in one.rows))
-        for one in (*scene.rotor.tables(), *_chambers(scene))
+        RowTable(table.head, tuple(tuple(v.marked(scene.assumed) for v in line) for line in table.rows))
+        for table in (*scene.rotor.tables(), *_chambers(scene))
     ]
     return SceneInputs(tuple(marked), tuple(tables))
 
@@ -81,12 +83,12 @@ def input_rows(
     roots : tables and keys of the scene, or parts of them, in their order
     """
     found = inputs_of(scene)
-    single = [*found.rows, *(one for table in found.tables for one in table.single())]
+    single = [*found.rows, *(entry for table in found.tables for entry in table.single())]
     return tuple(
-        (one.label, escaped(" ".join(value.text for value in one.values)).replace(MINUS, "-"), one.path)
+        (entry.label, escaped(" ".join(value.text for value in entry.values)).replace(MINUS, "-"), entry.path)
         for root in roots
-        for one in single
-        if one.path == root or one.path.startswith(f"{root}.")
+        for entry in single
+        if entry.path == root or entry.path.startswith(f"{root}.")
     )
 
 
@@ -114,8 +116,8 @@ def _chambers(scene: Scene) -> Iterator[RowTable]:
     sections = [(k, fill.chamber.section) for k, fill in enumerate(scene.fills)]
     for titles, lines in (
         (tuple(head), rows),
-        (_BAFFLES, [_baffle(one, k) for k, one in baffles if one is not None]),
-        (_SECTIONS, [_section(one, k) for k, one in sections if one is not None]),
+        (_BAFFLES, [_baffle(plates, k) for k, plates in baffles if plates is not None]),
+        (_SECTIONS, [_section(section, k) for k, section in sections if section is not None]),
     ):
         if lines:
             yield RowTable(titles, tuple(lines))
@@ -253,8 +255,10 @@ def _optimise(wanted: Optimisation, scene: Scene) -> list[Row]:
     """What is wanted; a value that is not the scene's own is not marked."""
     own = [] if scene.optimise is None else optimise_rows(scene.optimise)
     return [
-        Row(one.label, tuple(value.marked(scene.assumed) for value in one.values)) if one in own else one
-        for one in optimise_rows(wanted)
+        Row(entry.label, tuple(value.marked(scene.assumed) for value in entry.values))
+        if entry in own
+        else entry
+        for entry in optimise_rows(wanted)
     ]
 
 

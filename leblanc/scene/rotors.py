@@ -59,7 +59,17 @@ def _kind(rotor: AnyRotor) -> Row:
 
 
 class JeffcottRotor(Part):
-    """A rotor on an isotropic support, moving in one plane."""
+    """A rotor on an isotropic support, moving in one plane.
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> rotor = lb.JeffcottRotor(
+    ...     mass="4 kg", critical_speed="1000 rpm", damping_ratio=0.1, unbalance=6e-4, axis="horizontal"
+    ... )
+    >>> f"{rotor.machine().stiffness:.0f} N/m"
+    '43865 N/m'
+    """
 
     ALTERNATIVES: ClassVar = (("critical_speed", "stiffness"), ("damping_ratio", "damping"))
 
@@ -138,7 +148,24 @@ class PlaneUnbalance(Part):
 
 
 class TwoPlaneRotor(Part):
-    """A rigid rotor in supports along its axis."""
+    """A rigid rotor in supports along its axis.
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> rotor = lb.TwoPlaneRotor(
+    ...     mass="20 kg",
+    ...     transverse_inertia=0.4,
+    ...     polar_inertia=0.1,
+    ...     supports=[
+    ...         {"position": "-0.2 m", "stiffness": 1e6, "damping": 100.0},
+    ...         {"position": "0.2 m", "stiffness": 1e6, "damping": 100.0},
+    ...     ],
+    ...     axis="horizontal",
+    ... )
+    >>> rotor.machine().system().coordinates
+    ('x', 'y', 'alpha', 'beta')
+    """
 
     kind: Literal["two_plane"] = Field("two_plane", description="the kind of rotor")
     mass: Mass = Field(description=f"{_WITHOUT}")
@@ -174,10 +201,11 @@ class TwoPlaneRotor(Part):
             transverse_inertia=self.transverse_inertia,
             polar_inertia=self.polar_inertia,
             supports=tuple(
-                two_plane.Support(one.position, one.stiffness, one.damping) for one in self.supports
+                two_plane.Support(support.position, support.stiffness, support.damping)
+                for support in self.supports
             ),
             unbalances=tuple(
-                two_plane.PlaneUnbalance(one.position, one.size, one.angle) for one in self.unbalances
+                two_plane.PlaneUnbalance(part.position, part.size, part.angle) for part in self.unbalances
             ),
         )
 
@@ -200,20 +228,20 @@ class TwoPlaneRotor(Part):
         supports = tuple(
             (
                 Value(f"{k + 1}"),
-                Value(number(one.position * MM), (f"rotor.supports.{k}.position",)),
-                Value(number(one.stiffness), (f"rotor.supports.{k}.stiffness",)),
-                Value(number(one.damping), (f"rotor.supports.{k}.damping",)),
+                Value(number(support.position * MM), (f"rotor.supports.{k}.position",)),
+                Value(number(support.stiffness), (f"rotor.supports.{k}.stiffness",)),
+                Value(number(support.damping), (f"rotor.supports.{k}.damping",)),
             )
-            for k, one in enumerate(self.supports)
+            for k, support in enumerate(self.supports)
         )
         unbalances = tuple(
             (
                 Value(f"{k + 1}"),
-                Value(number(one.position * MM), (f"rotor.unbalances.{k}.position",)),
-                Value(number(one.size * 1e6), (f"rotor.unbalances.{k}.size",)),
-                Value(degrees(one.angle), (f"rotor.unbalances.{k}.angle",)),
+                Value(number(part.position * MM), (f"rotor.unbalances.{k}.position",)),
+                Value(number(part.size * 1e6), (f"rotor.unbalances.{k}.size",)),
+                Value(degrees(part.angle), (f"rotor.unbalances.{k}.angle",)),
             )
-            for k, one in enumerate(self.unbalances)
+            for k, part in enumerate(self.unbalances)
         )
         found = [RowTable(("Support", "at (mm)", "stiffness (N/m)", "damping (N s/m)"), supports)]
         if unbalances:
@@ -243,11 +271,11 @@ class _Mounted(Part):
         if not {"direction", key} <= values.keys():
             return
         if isinstance(values[key], tuple) == (along is not None):
-            several, one = (
+            several, single = (
                 "a list of three, along x, y, z, where no direction is given",
                 "a single value, along the direction that is given",
             )
-            yield Conflict((key,), several if along is None else one)
+            yield Conflict((key,), several if along is None else single)
 
     def mount(self) -> Mount:
         """As the solvers take it."""
@@ -299,7 +327,15 @@ class Damper(_Mounted):
 
 
 class TubRotor(Part):
-    """A suspended tub with its drum, which spins about y."""
+    """A suspended tub with its drum, which spins about y.
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> rotor = lb.example("tub").rotor
+    >>> len(rotor.springs), rotor.machine().system().coordinates
+    (6, ('x', 'y', 'z', 'alpha', 'beta', 'gamma'))
+    """
 
     kind: Literal["tub"] = Field("tub", description="the kind of rotor")
     tub_mass: Mass = Field(description="of the tub and all that does not spin")
@@ -335,8 +371,8 @@ class TubRotor(Part):
             drum_position=self.drum_position,
             unbalance=self.unbalance,
             unbalance_position=self.unbalance_position,
-            springs=tuple(one.mount() for one in self.springs),
-            dampers=tuple(one.mount() for one in self.dampers),
+            springs=tuple(spring.mount() for spring in self.springs),
+            dampers=tuple(damper.mount() for damper in self.dampers),
         )
 
     def machine(self) -> Tub:
@@ -368,7 +404,8 @@ class TubRotor(Part):
         found = []
         for name, unit, parts in mounts:
             lines = tuple(
-                (Value(f"{k + 1}"), *one.values(f"rotor.{name.lower()}s.{k}")) for k, one in enumerate(parts)
+                (Value(f"{k + 1}"), *part.values(f"rotor.{name.lower()}s.{k}"))
+                for k, part in enumerate(parts)
             )
             if lines:
                 head = (name, "at x, y, z (mm)", f"{parts[0].COEFFICIENT} ({unit})", "direction")
@@ -399,7 +436,15 @@ class Balls(Part):
 
 
 class Exciter(Part):
-    """A platform that vibrates along one line, shaken by an unbalance and by balls in a rotating track."""
+    """A platform that vibrates along one line, shaken by an unbalance and by balls in a rotating track.
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> rotor = lb.example("vibratory_table").rotor
+    >>> rotor.balls.count, rotor.balls.name
+    (2, 'ball')
+    """
 
     kind: Literal["exciter"] = Field("exciter", description="the kind of rotor")
     platform_mass: Mass = Field(description="of all that vibrates without the balls")

@@ -21,7 +21,7 @@ from leblanc.scene.rotors import Exciter as Exciter  # what a scene's rotor may 
 from leblanc.scene.rotors import JeffcottRotor as JeffcottRotor
 from leblanc.scene.rotors import TubRotor as TubRotor
 from leblanc.scene.rotors import TwoPlaneRotor as TwoPlaneRotor
-from leblanc.scene.schema.load import SceneFault, SceneFaults, meant, read_scene, shown
+from leblanc.scene.schema.load import SceneError, SceneFault, meant, read_scene, shown
 from leblanc.scene.schema.part import Conflict, Part, faults_of
 from leblanc.scene.schema.paths import keys_of, require_field, with_values
 from leblanc.scene.schema.rules import Entries, Refused, Speed, Text, entries, one_of, quantity, whole
@@ -185,7 +185,7 @@ class Scene(Part):
     @cached_property
     def fills(self) -> tuple[Fill, ...]:
         """The chambers with their liquids, as the solvers take them."""
-        return tuple(one.fill() for one in self.chambers)
+        return tuple(chamber.fill() for chamber in self.chambers)
 
     def speed_array(self) -> NDArray[np.float64]:
         """Spin speeds, rad/s, shape (count,)."""
@@ -202,7 +202,7 @@ class Scene(Part):
 
         Raises
         ------
-        SceneFaults : a path that leads nowhere, values that are not allowed; all of them
+        SceneError : a path that leads nowhere, values that are not allowed; all of them
 
         Examples
         --------
@@ -217,7 +217,7 @@ class Scene(Part):
             except Refused as refused:
                 faults.append(SceneFault("scene", path, shown(value), refused.allowed))
         if faults:
-            raise SceneFaults(faults)
+            raise SceneError(faults)
         table = with_values(table, [(keys_of(path), new) for path, new in changes.items()])
         if "assumed" not in changes and self.assumed:  # a mark goes with what it stood at
             table["assumed"] = [path for path in self.assumed if _holds(table, path)]
@@ -276,7 +276,13 @@ def load_scene(path: str | PathLike[str]) -> Scene:
 
     Raises
     ------
-    SceneFaults : with everything that is wrong, not just the first
+    SceneError : with everything that is wrong, not just the first
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> lb.load_scene("examples/horizontal_rig.toml").speeds.count
+    201
     """
     return scene_from_table(read_scene(path), str(path))
 
@@ -291,15 +297,15 @@ def scene_from_table(table: Mapping[str, Any], file: str = "scene") -> Scene:
 
     Raises
     ------
-    SceneFaults : with everything that is wrong
+    SceneError : with everything that is wrong
     """
     if "vary" in table and "rotor" not in table:
         text = "a scene; this is a study of many scenes, which `leblanc sweep` answers"
-        raise SceneFaults([SceneFault(file, "", None, text)])
+        raise SceneError([SceneFault(file, "", None, text)])
     try:
         return Scene.model_validate(table)
     except ValidationError as error:
-        raise SceneFaults(faults_of(error, file, Scene)) from error
+        raise SceneError(faults_of(error, file, Scene)) from error
 
 
 def jeffcott(scene: Scene) -> Jeffcott:
@@ -404,7 +410,7 @@ def optimise_content(wanted: Optimisation) -> dict[str, Any]:
     ----------
     wanted : of a scene
     """
-    duty = [(one.speed, one.weight) for one in wanted.duty]
+    duty = [(stage.speed, stage.weight) for stage in wanted.duty]
     return wanted.model_dump(exclude={"duty"}) | {"duty": duty}
 
 

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from leblanc.results.response import phase
 from leblanc.scene.scene import JeffcottRotor, Scene
 from leblanc.studies.choose import choose_all, prepare
+from leblanc.studies.liquid import synchronous_model
 from leblanc.studies.run import run_scene
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
-from solvers.synchronous.models import model_named
 from solvers.synchronous.response import machine_responses
 from solvers.whirl.growth import machines_growth
 
@@ -113,14 +113,14 @@ def _planar(scenes: Sequence[Scene]) -> Answers:
     }
     for name in np.unique(model).tolist():
         rows = np.flatnonzero(model == name)
-        one = machine_responses(machines, owner[rows], speed[rows], gravity, model_named(name))
+        answer = machine_responses(machines, owner[rows], speed[rows], gravity, synchronous_model(name))
         values = {
-            "amplitude": np.abs(one.deflection),
-            "amplitude_dry": np.abs(one.deflection_dry),
-            "phase": phase(one.deflection),
+            "amplitude": np.abs(answer.deflection),
+            "amplitude_dry": np.abs(answer.deflection_dry),
+            "phase": phase(answer.deflection),
         }
         copied = ("liquid_offset", "liquid_angle", "dry_patch", "stable", "in_range", "converged")
-        for key, value in (values | {key: getattr(one, key) for key in copied}).items():
+        for key, value in (values | {key: getattr(answer, key) for key in copied}).items():
             found.setdefault(key, np.empty(speed.shape, value.dtype))[rows] = value
     found["stable"] = found["stable"] & ~(growth > 0.0)
     found["in_range"] = found["in_range"] & np.stack([choice.in_range for choice in choices]).ravel()

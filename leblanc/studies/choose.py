@@ -15,12 +15,13 @@ from fluid.waves import capture_speed
 from fluid.whirl import covering_speed
 from leblanc.results.choice import Choice
 from leblanc.scene.scene import Scene, dry_rotor
+from leblanc.studies.liquid import SYNCHRONOUS_MODELS, synchronous_model
 from meshes.arrays import Array
 from meshes.chamber_section import rest_offset, surface_is_whole
 from meshes.errors import InputError
+from solvers.liquid_model import ROUNDING, LiquidModel
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.synchronous.errors import ROUNDING, LinearError, error_estimate, machine_errors
-from solvers.synchronous.models import MODEL_NAMES, LiquidModel, model_named
+from solvers.synchronous.errors import LinearError, error_estimate, machine_errors
 
 if TYPE_CHECKING:
     from solvers.rotor.system import RotorSystem
@@ -115,15 +116,17 @@ def choose_all(machines: Sequence[Prepared]) -> list[Choice]:
     """
     for machine in machines:
         scene = machine.scene
-        if scene.model.liquid not in ("auto", *MODEL_NAMES):
-            allowed = ", ".join(("auto", *MODEL_NAMES))
+        if scene.model.liquid not in ("auto", *SYNCHRONOUS_MODELS):
+            allowed = ", ".join(("auto", *SYNCHRONOUS_MODELS))
             raise InputError(
                 "model.liquid", scene.model.liquid, f"one of {allowed} for the response to an unbalance"
             )
         _check_walls(scene)
     planar = [machine for machine in machines if isinstance(machine.rotor, Jeffcott)]
     found = iter(_planar_errors(planar) if planar else ())
-    errors = [next(found) if isinstance(one.rotor, Jeffcott) else _other_errors(one) for one in machines]
+    errors = [
+        next(found) if isinstance(machine.rotor, Jeffcott) else _other_errors(machine) for machine in machines
+    ]
     return [_choice(machine, *pair) for machine, pair in zip(machines, errors, strict=True)]
 
 
@@ -158,7 +161,7 @@ def is_cut(scene: Scene) -> bool:
 
 def liquid_models(choice: Choice) -> list[LiquidModel]:
     """The liquid model taken at each speed, as an object."""
-    return [model_named(name) for name in choice.models.tolist()]
+    return [synchronous_model(name) for name in choice.models.tolist()]
 
 
 def _planar_errors(machines: Sequence[Prepared]) -> list[tuple[LinearError, Array]]:

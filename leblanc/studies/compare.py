@@ -76,7 +76,7 @@ def _answer(scene: Scene, name: str) -> ModelAnswer:
 def _none(models: Sequence[str], refusals: Sequence[InputError]) -> InputError:
     """The fault where no model answers: the scene's own where all say the same of it, else the choice."""
     first = refusals[0]
-    if all((one.field, str(one)) == (first.field, str(first)) for one in refusals) and (
+    if all((refusal.field, str(refusal)) == (first.field, str(first)) for refusal in refusals) and (
         first.field != "model.liquid"
     ):
         return first

@@ -17,13 +17,13 @@ from leblanc.scene.rows import baffle_words
 from leblanc.scene.scene import Scene
 from leblanc.studies.choose import Prepared, choose_all, prepare
 from leblanc.studies.exciter import printed_critical
+from leblanc.studies.liquid import synchronous_model
 from leblanc.studies.run import main_critical_speeds, rest_modes
 from meshes.errors import InputError
 from solvers.rotor.exciter.machine import characteristic_speeds
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import critical_speeds, modes, orbit, unbalance_response
 from solvers.statics.hydrostatics import optimal_volume
-from solvers.synchronous.models import model_named
 from solvers.synchronous.response import critical_speed, wet_critical_speeds
 
 
@@ -146,9 +146,9 @@ def _bare(machine: Prepared, model: str) -> _Bare:
     moved = [float(np.abs(orbit(system, answer, fill.chamber.plane).forward[0])) for fill in fills]
     deflection = tuple(size if np.isfinite(size) else 0.0 for size in moved)
     if isinstance(rotor, Jeffcott):
-        wet = critical_speed(rotor, fills, gravity, model_named(model))
+        wet = critical_speed(rotor, fills, gravity, synchronous_model(model))
         return _Bare(rotor.mass, rotor.natural_frequency, wet, rotor.damping_ratio, deflection)
-    liquid = wet_critical_speeds(system, fills, gravity, model_named(model))[0]
+    liquid = wet_critical_speeds(system, fills, gravity, synchronous_model(model))[0]
     speeds = critical_speeds(system)[0], liquid
     position = fills[0].chamber.plane if fills else 0.0
     dry, wet = main_critical_speeds(system, fills, position, *speeds)

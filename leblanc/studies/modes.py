@@ -171,7 +171,7 @@ def section_of_file(
     liquid = liquid_outside(section, a, order=2, surface_size=size, wall_size=2.0 * size)
     sections = [liquid, halved(liquid)]
     if fineness.order == 1:
-        sections = [straightened(one) for one in sections]
+        sections = [straightened(section) for section in sections]
     return sections, notes, f"Section of {source.path.name}"
 
 

@@ -15,6 +15,7 @@ from leblanc.results.response import Motion, RestMode, RunResult, SelfExcited
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
 from leblanc.studies.choose import Prepared, choose_all, liquid_models, prepare
+from leblanc.studies.liquid import synchronous_model
 from leblanc.studies.whirl_map import small_whirl_friction
 from meshes.arrays import Complex
 from meshes.chamber_section import liquid_of
@@ -29,7 +30,7 @@ from solvers.rotor.vibration import (
     whirl_direction,
 )
 from solvers.statics.hydrostatics import optimal_volume
-from solvers.synchronous.models import LINEAR, model_named
+from solvers.synchronous.models import LINEAR
 from solvers.synchronous.response import Response, critical_speed, response, wet_critical_speeds
 from solvers.whirl.edges import unstable_bands
 from solvers.whirl.growth import asynchronous_growth
@@ -79,7 +80,7 @@ def motion_response(machine: Prepared, choice: Choice) -> tuple[Response, Motion
     scene, system, gravity = machine.scene, machine.system, machine.axial_gravity
     found = response(machine.rotor, scene.fills, machine.speed, gravity, liquid_models(choice))
     dry, dry_shape = critical_speeds(system)
-    wet, wet_shape = wet_critical_speeds(system, scene.fills, gravity, model_named(choice.model))
+    wet, wet_shape = wet_critical_speeds(system, scene.fills, gravity, synchronous_model(choice.model))
     motion = Motion(
         position=found.position,
         backward=found.backward,
@@ -116,7 +117,7 @@ def _directed(
     system: RotorSystem, speed: NDArray[np.float64], shape: Complex
 ) -> tuple[tuple[float, float], ...]:
     sense = whirl_direction(system, shape)
-    return tuple((float(one), float(way)) for one, way in zip(speed, sense, strict=True))
+    return tuple((float(critical), float(way)) for critical, way in zip(speed, sense, strict=True))
 
 
 def main_critical_speeds(
@@ -182,7 +183,7 @@ def run_scene(scene: Scene) -> RunResult:
         gravity, rotor = machine.axial_gravity, machine.rotor
         answer = response(rotor, scene.fills, machine.speed, gravity, liquid_models(choice))
         dry = rotor.natural_frequency
-        wet = critical_speed(rotor, scene.fills, gravity, model_named(choice.model))
+        wet = critical_speed(rotor, scene.fills, gravity, synchronous_model(choice.model))
     else:
         answer, motion, (dry, wet) = motion_response(machine, choice)
     whirl = self_excited(machine)

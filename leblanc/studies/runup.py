@@ -20,12 +20,12 @@ from leblanc.scene.inputs import runup_rows
 from leblanc.scene.scene import JeffcottRotor, Runup, Scene, dry_rotor, jeffcott, require_clear
 from leblanc.studies.choose import across_gravity as across_gravity  # of a run-up, asked for with it
 from leblanc.studies.choose import axial_gravity
-from leblanc.studies.validity import RANGES
+from leblanc.studies.liquid import RUNUP_MODELS, runup_model
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
+from solvers.liquid_model import LONG
 from solvers.runup.machine import Drive, Motor, Ramp
 from solvers.runup.runup import (
-    MODELS,
     MOST_LAG,
     MOST_WAVE,
     LinearRunError,
@@ -35,6 +35,7 @@ from solvers.runup.runup import (
     linear_run_error,
     run_up,
 )
+from solvers.synchronous.models import LINEAR
 from solvers.synchronous.response import Response, response
 
 FRAMES = 180  # of a film
@@ -98,8 +99,8 @@ def liquid_model(scene: Scene) -> str:
     InputError : the scene asks for a model that does not go through time
     """
     asked = scene.model.liquid
-    if asked not in ("auto", *MODELS):
-        raise InputError("model.liquid", asked, "auto, " + " or ".join(MODELS) + " for a run-up")
+    if asked not in ("auto", *RUNUP_MODELS):
+        raise InputError("model.liquid", asked, "auto, " + " or ".join(RUNUP_MODELS) + " for a run-up")
     return "long_wave" if asked == "auto" else asked
 
 
@@ -121,7 +122,7 @@ def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tup
     """
     good = np.ones(history.time.shape, dtype=bool)
     notes: list[Note | None] = []
-    deepest, highest = RANGES["long_wave"]["relative_depth"][1], RANGES["linear"]["wave_amplitude"][1]
+    deepest, highest = LONG[1], LINEAR.ranges["wave_amplitude"][1]
     linear = (model or liquid_model(scene)) == "linear"
     for k, fill in enumerate(scene.fills):
         if fill.volume == 0.0 or is_full(fill):
@@ -205,7 +206,8 @@ def chosen_run(
     system, friction = dry_rotor(scene).system(), scene.model.friction
 
     def run(name: str, resolved: RunupNumerics, report: Progress) -> RunupHistory:
-        return run_up(system, scene.fills, drive, friction, gravity, resolved, report, name, snapshots)
+        model = runup_model(name)
+        return run_up(system, scene.fills, drive, friction, gravity, resolved, report, model, snapshots)
 
     if scene.model.liquid == "long_wave":
         history = run(model, numerics, progress)
@@ -234,7 +236,7 @@ def runup_outlook(scene: Scene) -> str:
     asked, tolerance = scene.model.liquid, scene.model.tolerance
     if scene.runup is None:
         return ""
-    if asked not in ("auto", *MODELS):
+    if asked not in ("auto", *RUNUP_MODELS):
         return f"none: {asked} does not go through time; ask for auto, long_wave or linear"
     if asked != "auto":
         return f"{asked}, as the scene asks"
@@ -417,5 +419,7 @@ def _passed(speed: Array, count: int) -> Array:
 
 
 def _chamber(fill: Fill) -> FilledChamber:
-    one, name = fill.chamber, fill.liquid.name
-    return FilledChamber(one.radius, one.inner_radius, one.height, fill.volume, name, fill.surface_radius)
+    chamber, name = fill.chamber, fill.liquid.name
+    return FilledChamber(
+        chamber.radius, chamber.inner_radius, chamber.height, fill.volume, name, fill.surface_radius
+    )

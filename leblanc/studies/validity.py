@@ -2,14 +2,8 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
-from dataclasses import asdict
-
-from fluid.fill import Fill
-from fluid.numbers import whirl_numbers
 from leblanc.results.layer import Number
-from solvers.layer.state import Whirl
+from solvers.liquid_model import LiquidWave
 
 MEANING = {
     "relative_depth": "mean depth over radius",
@@ -24,61 +18,14 @@ MEANING = {
     "other_family": "response of the family left out over that of the one taken",
 }
 
-Range = tuple[float, float]
 
-_CAPTURED: Range = (1.0, math.inf)
-# The flow between the wall layers is free of vorticity only while they are thin.
-_THIN_LAYERS: Range = (0.0, 0.2)
-_LONG: Range = (0.0, 0.3)
-
-RANGES: Mapping[str, Mapping[str, Range]] = {
-    # The liquid is at rest: any depth, any amplitude, dry walls.
-    "statics": {},
-    # Next to a synchronous whirl the linear surface is the exact one while it is wet.
-    "linear": {"wave_amplitude": (0.0, 0.3), "centrifuge": _CAPTURED, "wall_layer": _THIN_LAYERS},
-    "long_wave": {
-        "relative_depth": _LONG,
-        "centrifuge": _CAPTURED,
-        "wall_layer": _THIN_LAYERS,
-        "force_gap": (0.0, 0.1),
-    },
-    "kdv": {
-        "relative_depth": _LONG,
-        "wave_amplitude": (0.0, 0.3),
-        "other_family": (0.0, 0.2),
-        "wall_layer": _THIN_LAYERS,
-    },
-}
-
-
-def judge(
-    model: str,
-    fill: Fill,
-    whirl: Whirl,
-    found: Mapping[str, float],
-    ranges: Mapping[str, Range] | None = None,
-) -> tuple[Number, ...]:
-    """Numbers of a whirl and of what the model found, against the model's range.
-
-    Parameters
-    ----------
-    model : name in `RANGES`
-    fill, whirl : what was asked
-    found : further numbers, by names in `MEANING`
-    ranges : in place of `RANGES` for some of them
-
-    Returns
-    -------
-    One Number each, in the order of `MEANING`
-    """
-    given = whirl_numbers(fill, whirl.spin, whirl.speed, whirl.amplitude, whirl.gravity)
-    values = asdict(given) | dict(found)
-    limits = dict(RANGES[model]) | dict(ranges or {})
+def judge(wave: LiquidWave) -> tuple[Number, ...]:
+    """Numbers that a model's answer rests on, against the model's ranges, in the order of `MEANING`."""
     numbers = []
     for name, meaning in MEANING.items():
-        if name not in values:
+        if name not in wave.numbers:
             continue
-        value, bounds = values[name], limits.get(name)
+        value, bounds = wave.numbers[name], wave.ranges.get(name)
         least, most = bounds or (None, None)
         inside = bounds is None or bounds[0] <= value <= bounds[1]
         numbers.append(Number(name, meaning, value, least, most, inside))

@@ -16,10 +16,10 @@ from leblanc.results.base import Note
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import Scene
 from leblanc.studies.choose import Prepared, prepare
-from leblanc.studies.validity import RANGES
 from leblanc.units import friction_words
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
+from solvers.liquid_model import THIN_LAYERS
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.whirl.edges import Bands, unstable_bands
 from solvers.whirl.growth import growth_map
@@ -27,7 +27,7 @@ from solvers.whirl.growth import growth_map
 VOLUMES, SPEEDS = 101, 201
 FEWEST, MOST = 2, 4000  # volumes or speeds of a map
 _AT_ONCE = 20  # volumes between reports of progress
-_THIN = RANGES["linear"]["wall_layer"][1]
+_THIN = THIN_LAYERS[1]
 
 
 def map_scene(

@@ -135,19 +135,19 @@ def rows(found: Comparison) -> list[tuple[str, ...]]:
     ----------
     found : the comparison
     """
-    return [_row(found, one) for one in found.answers]
+    return [_row(found, answer) for answer in found.answers]
 
 
-def _row(found: Comparison, one: ModelAnswer) -> tuple[str, ...]:
-    if one.result is None or one.cpu_time is None:
-        return one.model, REFUSED, "", "", ""
-    at, amplitude = peak(one.result.amplitude), one.peak_amplitude
+def _row(found: Comparison, answer: ModelAnswer) -> tuple[str, ...]:
+    if answer.result is None or answer.cpu_time is None:
+        return answer.model, REFUSED, "", "", ""
+    at, amplitude = peak(answer.result.amplitude), answer.peak_amplitude
     return (
-        one.model,
+        answer.model,
         NOT_FOUND if amplitude is None else number(amplitude * MM),
-        "" if at is None else number(float(one.result.speed[at]) * RPM),
-        "reference" if one.model == found.reference else difference(found, one.model),
-        f"{one.cpu_time:.2g}",
+        "" if at is None else number(float(answer.result.speed[at]) * RPM),
+        "reference" if answer.model == found.reference else difference(found, answer.model),
+        f"{answer.cpu_time:.2g}",
     )
 
 
@@ -172,7 +172,7 @@ def reasons(found: Comparison) -> list[str]:
     ----------
     found : the comparison
     """
-    return [f"{one.model}: {one_line(one.reason)}" for one in found.answers if not one.answered]
+    return [f"{answer.model}: {one_line(answer.reason)}" for answer in found.answers if not answer.answered]
 
 
 def basis(found: Comparison) -> str:
@@ -195,24 +195,27 @@ def summary(found: Comparison) -> list[tuple[str, str]]:
     ----------
     found : the comparison
     """
-    return [("Scene", one_line(found.name)), *((one.model, _told(found, one)) for one in found.answers)]
+    return [
+        ("Scene", one_line(found.name)),
+        *((answer.model, _told(found, answer)) for answer in found.answers),
+    ]
 
 
-def _told(found: Comparison, one: ModelAnswer) -> str:
-    if one.result is None or one.cpu_time is None:
-        return f"{REFUSED}: {one_line(one.reason)}"
-    words = [f"{_size(one)} at most"]
-    if one.model == found.reference:
+def _told(found: Comparison, answer: ModelAnswer) -> str:
+    if answer.result is None or answer.cpu_time is None:
+        return f"{REFUSED}: {one_line(answer.reason)}"
+    words = [f"{_size(answer)} at most"]
+    if answer.model == found.reference:
         words.append("the reference")
     else:
-        size = difference(found, one.model)
+        size = difference(found, answer.model)
         words.append(f"difference {size}{' %' if size[0].isdigit() else ''}")
-    return ", ".join([*words, f"{one.cpu_time:.2g} s of processor time"])
+    return ", ".join([*words, f"{answer.cpu_time:.2g} s of processor time"])
 
 
-def _size(one: ModelAnswer) -> str:
+def _size(answer: ModelAnswer) -> str:
     """Largest amplitude with its unit."""
-    return NOT_FOUND if one.peak_amplitude is None else f"{number(one.peak_amplitude * MM)} mm"
+    return NOT_FOUND if answer.peak_amplitude is None else f"{number(answer.peak_amplitude * MM)} mm"
 
 
 def alt(found: Comparison) -> str:
@@ -222,6 +225,6 @@ def alt(found: Comparison) -> str:
     ----------
     found : the comparison
     """
-    told = [f"{one.model} {_size(one)}" for one in found.answers if one.answered]
+    told = [f"{answer.model} {_size(answer)}" for answer in found.answers if answer.answered]
     below = "; below, their differences" if len(told) > 1 else ""
     return f"Curves of the amplitude over speed by each liquid model{below}; largest: {', '.join(told)}."

@@ -78,11 +78,11 @@ def _baseline(result: OptimumResult) -> str:
 def _constraints(result: OptimumResult) -> list[str]:
     """One line each."""
     lines = []
-    for name, one in result.constraints.items():
-        mark = "kept" if one.satisfied else "EXCEEDED"
+    for name, constraint in result.constraints.items():
+        mark = "kept" if constraint.satisfied else "EXCEEDED"
         lines.append(
-            f"Constraint {name}: {one.meaning} {shown(one.value, one.unit)}, "
-            f"at most {shown(one.limit, one.unit)}: {mark}"
+            f"Constraint {name}: {constraint.meaning} {shown(constraint.value, constraint.unit)}, "
+            f"at most {shown(constraint.limit, constraint.unit)}: {mark}"
         )
     return lines
 
@@ -90,16 +90,16 @@ def _constraints(result: OptimumResult) -> list[str]:
 def _closed_forms(result: OptimumResult) -> list[str]:
     """The volumes that wet the wall of each chamber."""
     lines = []
-    for k, one in enumerate(result.closed_form):
+    for k, form in enumerate(result.closed_form):
         full = (
             "its wall is never wet up to the lid"
-            if math.isinf(one.full_volume)
-            else f"{one.full_volume * ML:.5g} ml wet it up to the lid, and more adds nothing"
+            if math.isinf(form.full_volume)
+            else f"{form.full_volume * ML:.5g} ml wet it up to the lid, and more adds nothing"
         )
         lines.append(
-            f"Closed form, chamber {k + 1}, {one.deflection * MM:.4g} mm at {one.speed * RPM:.4g} rpm: "
-            f"{one.optimal_volume * ML:.5g} ml just cover the wall ({one.unbalance_share:.1%} of the largest "
-            f"unbalance); {full}"
+            f"Closed form, chamber {k + 1}, {form.deflection * MM:.4g} mm at {form.speed * RPM:.4g} rpm: "
+            f"{form.optimal_volume * ML:.5g} ml just cover the wall ({form.unbalance_share:.1%} of the "
+            f"largest unbalance); {full}"
         )
     return lines
 

@@ -18,9 +18,9 @@ def lines(result: SweepResult) -> list[str]:
     result : the sweep
     """
     found = [f"{'':24}{'mean':>12}{'deviation':>12}{'5 %':>12}{'50 %':>12}{'95 %':>12}  unit"]
-    for name, one in result.single.items():
+    for name, values in result.single.items():
         unit = result.units[name].replace("s-1", "1/s")
-        numbers = [one.mean[0], one.deviation[0], *one.quantiles[0, [0, 2, 4]]]
+        numbers = [values.mean[0], values.deviation[0], *values.quantiles[0, [0, 2, 4]]]
         found.append(f"{name.replace('_', ' '):24}" + "".join(f"{x:12.4g}" for x in numbers) + f"  {unit}")
     return [*found, *_shares(result), f"The data are in {result.store}"]
 
@@ -29,16 +29,16 @@ def _shares(result: SweepResult) -> list[str]:
     """Shares of the variance, a line for each field."""
     found = []
     for name in _SHARED:
-        one = result.sensitivities[name]
-        if one is None or (name == "peak_amplitude" and result.speeds == 1):
+        indices = result.sensitivities[name]
+        if indices is None or (name == "peak_amplitude" and result.speeds == 1):
             continue
-        found.append(f"share of the variance of {name.replace('_', ' ')} ({one.method}):")
+        found.append(f"share of the variance of {name.replace('_', ' ')} ({indices.method}):")
         for j, field in enumerate(result.fields):
-            line = f"  {field:30} first {one.first[j]:7.3f}"
-            if one.first_interval is not None:
-                line += f" +- {one.first_interval[j]:.3f}"
-            if one.total is not None and one.total_interval is not None:
-                line += f"   total {one.total[j]:7.3f} +- {one.total_interval[j]:.3f}"
+            line = f"  {field:30} first {indices.first[j]:7.3f}"
+            if indices.first_interval is not None:
+                line += f" +- {indices.first_interval[j]:.3f}"
+            if indices.total is not None and indices.total_interval is not None:
+                line += f"   total {indices.total[j]:7.3f} +- {indices.total_interval[j]:.3f}"
             found.append(line)
     return found
 

@@ -42,7 +42,7 @@ def table_picture(table: TableView) -> Picture:
         *names,
         name,
     ]
-    frame = np.concatenate([one.points for one in (*pieces, *swing, bar)])
+    frame = np.concatenate([piece.points for piece in (*pieces, *swing, bar)])
     return Picture(
         (*pieces, *swing, bar),
         tuple(labels),
@@ -117,7 +117,7 @@ def _swing(track: float, size: float) -> tuple[list[Piece], list[Label]]:
     x = HALF * track
     ends = [np.array([[x, y, middle], [x, y, middle + sign * size]]) * MM for sign in (1.0, -1.0)]
     name = Label("vibration", (x * MM, y * MM, (middle + size + 0.15 * track) * MM))
-    return [Piece("vibration", one, line(2), "spin") for one in ends], [name]
+    return [Piece("vibration", end, line(2), "spin") for end in ends], [name]
 
 
 def _bar(track: float) -> tuple[Piece, Label]:

@@ -161,8 +161,8 @@ def write_film(film: Film, path: Path, drawn: Callable[[int, int], None] | None 
     elif kind == ".mp4":
         _write_mp4(shown, path)
     else:
-        for k, one in enumerate(shown, start=1):
-            write_png(one, path / f"frame_{k:04d}.png")
+        for k, image in enumerate(shown, start=1):
+            write_png(image, path / f"frame_{k:04d}.png")
     return film.count
 
 
@@ -193,7 +193,7 @@ def _write_gif(shown: Sequence[Pixels], path: Path) -> None:
     palette = Image.fromarray(shown[len(shown) // 2]).quantize(
         COLOURS, method=spread, dither=Image.Dither.NONE
     )
-    frames = [Image.fromarray(one).quantize(palette=palette, dither=Image.Dither.NONE) for one in shown]
+    frames = [Image.fromarray(image).quantize(palette=palette, dither=Image.Dither.NONE) for image in shown]
     with replacing(path) as part:
         frames[0].save(
             part,
@@ -214,7 +214,7 @@ def _write_mp4(shown: Sequence[Pixels], path: Path) -> None:
         whole = Path(folder) / "film.mp4"
         command = ["ffmpeg", "-y", "-loglevel", "error", *raw, *coded, str(whole)]
         done = subprocess.run(
-            command, input=b"".join(one.tobytes() for one in shown), capture_output=True, check=False
+            command, input=b"".join(image.tobytes() for image in shown), capture_output=True, check=False
         )
         if done.returncode != 0:
             said = done.stderr.decode(errors="replace").strip().splitlines()

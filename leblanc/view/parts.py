@@ -67,7 +67,7 @@ class Picture:
 
     def piece(self, name: str) -> Piece:
         """The piece of that name."""
-        return next(one for one in self.pieces if one.name == name)
+        return next(piece for piece in self.pieces if piece.name == name)
 
 
 @dataclass(frozen=True)

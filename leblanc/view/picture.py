@@ -147,11 +147,11 @@ def fill(plot: Plotter, picture: Picture) -> None:
         _add(plot, piece, pyvista)
     size = round(LETTER * plot.window_size[1])
     for label in picture.labels:
-        one = pyvista.Label(label.text, position=label.place, size=size)
-        _write(one.prop)
-        one.prop.justification_horizontal = one.prop.justification_vertical = "center"
-        one.prop.background_color, one.prop.background_opacity = "white", 0.6
-        plot.add_actor(one, reset_camera=False, render=False)
+        drawn = pyvista.Label(label.text, position=label.place, size=size)
+        _write(drawn.prop)
+        drawn.prop.justification_horizontal = drawn.prop.justification_vertical = "center"
+        drawn.prop.background_color, drawn.prop.background_opacity = "white", 0.6
+        plot.add_actor(drawn, reset_camera=False, render=False)
     _words(plot, picture, size, pyvista)
 
 

@@ -87,7 +87,7 @@ def outline(section: Section) -> Outline:
     out[:, 0], out[:, -1] = mean[sides[:, 0]], mean[sides[:, 1]]
     first = double & (np.arange(len(sides)) == _first(start, end, _SAME * float(np.abs(plane).max())))
     walls, outwards, plates = (
-        np.asarray(one, dtype=complex) for one in (points[~double], out[~double], points[first])
+        np.asarray(values, dtype=complex) for values in (points[~double], out[~double], points[first])
     )
     return Outline(walls, outwards, plates)
 
@@ -141,7 +141,7 @@ def baffles(stage: Stage, lines: Complex, k: int, centre: complex, floor: float,
     centre : of the chamber as drawn, m
     floor, lid : places along the axis, m
     """
-    return [_ruled(stage, f"baffle {k + 1}", "metal", centre + one[None], floor, lid) for one in lines]
+    return [_ruled(stage, f"baffle {k + 1}", "metal", centre + plate[None], floor, lid) for plate in lines]
 
 
 def section_walls(
@@ -188,8 +188,10 @@ def straight(triangles: Indices) -> Indices:
 def _ruled(stage: Stage, name: str, look: str, lines: Complex, floor: float, lid: float) -> Piece:
     """Upright faces on lines across the axis, shape (n, k)."""
     low = np.arange(lines.size).reshape(lines.shape)
-    one, other = low[:, :-1].ravel(), low[:, 1:].ravel()
-    cells: Indices = np.stack([one, other, other + lines.size, one + lines.size], axis=-1).astype(np.int64)
+    start, other = low[:, :-1].ravel(), low[:, 1:].ravel()
+    cells: Indices = np.stack([start, other, other + lines.size, start + lines.size], axis=-1).astype(
+        np.int64
+    )
     plane = lines.ravel()
     points = np.concatenate([placed(stage, plane, floor), placed(stage, plane, lid)])
     return Piece(name, points, cells, look)
@@ -237,10 +239,10 @@ def compose(stage: Stage, instant: Instant) -> Picture:
 
 def _between(stage: Stage, name: str, look: str, *edges: tuple[Complex, float]) -> Piece:
     """Ruled surface between two curves, each at its height."""
-    (one, low), (other, high) = edges
-    points = np.concatenate([placed(stage, one, low), placed(stage, other, high)])
-    first = np.arange(one.size - 1)
-    cells = np.stack([first, first + 1, first + 1 + one.size, first + one.size], axis=-1)
+    (lower, low), (other, high) = edges
+    points = np.concatenate([placed(stage, lower, low), placed(stage, other, high)])
+    first = np.arange(lower.size - 1)
+    cells = np.stack([first, first + 1, first + 1 + lower.size, first + lower.size], axis=-1)
     return Piece(name, points, cells.astype(np.int64), look)
 
 
@@ -296,8 +298,8 @@ def _liquid(stage: Stage, body: LiquidShape, k: int, floor: float) -> list[Piece
 def _solid(name: str, points: Array, cells: Indices, look: str) -> Piece:
     """A piece without the faces that have no area, as where the wall is dry."""
     corners = points[cells]
-    one, other = corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]
-    area = np.linalg.norm(np.cross(one, other), axis=1)
+    diagonal, other = corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]
+    area = np.linalg.norm(np.cross(diagonal, other), axis=1)
     kept = area > 1e-12 * max(float(area.max(initial=0.0)), 1e-300)
     return Piece(name, points, cells[kept], look)
 
@@ -326,8 +328,8 @@ def _bodies(stage: Stage, liquid: LiquidBodies, plates: Complex, k: int, floor: 
         pieces.append(Piece(f"surface {k + 1}", points, surface, "surface"))
         bare = ~_on_plates(body.points[wall].mean(axis=1), plates)
         pieces += [
-            Piece(f"liquid {k + 1}", points, wall[bare & (part == one)], "liquid")
-            for one in range(len(WALL_PARTS))
+            Piece(f"liquid {k + 1}", points, wall[bare & (part == kind)], "liquid")
+            for kind in range(len(WALL_PARTS))
         ]
         pieces.append(Piece(f"waterline {k + 1}", points, _shore(surface, wall), "waterline"))
     return pieces
@@ -347,8 +349,8 @@ def _on_plates(points: Array, plates: Complex) -> NDArray[np.bool_]:
 def _shore(surface: Indices, wall: Indices) -> Indices:
     """Edges that faces of the free surface share with faces on walls."""
     edges = [np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1) for faces in (surface, wall)]
-    number = max(int(one.max(initial=0)) for one in edges) + 1
-    open_, closed = (one[:, 0] * number + one[:, 1] for one in edges)
+    number = max(int(edge.max(initial=0)) for edge in edges) + 1
+    open_, closed = (edge[:, 0] * number + edge[:, 1] for edge in edges)
     return np.asarray(edges[0][np.isin(open_, closed)], dtype=np.int64)
 
 
@@ -422,11 +424,11 @@ def describe_state(motion: MachineMotion, index: int, dry: Sequence[bool]) -> li
     if not np.isfinite(found).all():
         return ["no bounded deflection found: the axis is drawn at rest"]
     lines = []
-    several = len({round(abs(one), 12) for one in found}) > 1
-    for k, one in enumerate(found):
+    several = len({round(abs(deflection), 12) for deflection in found}) > 1
+    for k, deflection in enumerate(found):
         if k == 0 or several:
             name = f"chamber {k + 1}: deflection" if several else "deflection"
-            lines.append(f"{name} {place_in_words(complex(one), zero_of(motion.response))}")
+            lines.append(f"{name} {place_in_words(complex(deflection), zero_of(motion.response))}")
     if not motion.fills:
         return [*lines, "no liquid"]
     which = [str(k + 1) for k, here in enumerate(dry) if here]
@@ -476,7 +478,7 @@ def describe_drawing(motion: MachineMotion, index: int, liquid: DrawnLiquid) -> 
     if scale.depth > 1.0 and open_:
         words.append("Distances of the baffles from the wall grow with the depth.")
     if names := dict.fromkeys(
-        one.chamber.section.name for one in motion.fills if one.chamber.section is not None
+        fill.chamber.section.name for fill in motion.fills if fill.chamber.section is not None
     ):
         words.append(f"Section from {', '.join(names)}.")
     if motion.moved:

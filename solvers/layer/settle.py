@@ -1,12 +1,15 @@
 """A liquid layer under a prescribed circular whirl, by the nonlinear long-wave model in time.
 
-The state is `solvers.layer.finite_volume`'s; here are units, starting states, whirl periods and when to stop.
+`LongWave` is the liquid model. The state is `solvers.layer.finite_volume`'s; here are units, starting states,
+whirl periods and when to stop.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -19,10 +22,22 @@ from solvers.layer.state import (
     LayerHistory,
     MovingLayer,
     Numerics,
-    Whirl,
     depth,
     settle_statics,
     start,
+)
+from solvers.liquid_model import (
+    CAPTURED,
+    LONG,
+    THIN_LAYERS,
+    LiquidWave,
+    Range,
+    WaveModel,
+    Whirl,
+    kept_limits,
+    numbers_of,
+    wave_amplitude,
+    whirl_answer,
 )
 
 _PERIODS = 400
@@ -157,6 +172,74 @@ def film(
         depth=np.array(layers),
         deflection=np.asarray(whirl.amplitude * grown * np.exp(1j * whirl.slip * moments), dtype=complex),
     )
+
+
+@dataclass(frozen=True)
+class LongWave(WaveModel):
+    """Nonlinear long waves, held under the whirl until they settle [theory: long_wave, eq. 4].
+
+    Parameters
+    ----------
+    friction : on the wall
+    numerics : resolution
+    """
+
+    friction: Friction = NO_FRICTION
+    numerics: Numerics = field(default_factory=Numerics)
+
+    name = "long_wave"
+    ranges: ClassVar[Mapping[str, Range]] = {
+        "relative_depth": LONG, "centrifuge": CAPTURED, "wall_layer": THIN_LAYERS, "force_gap": (0.0, 0.1),
+    }  # fmt: skip
+
+    def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
+        """See `WaveModel`; the error is the gap between the force by momentum and that by pressure.
+
+        Raises
+        ------
+        InputError : no liquid, no free surface
+        """
+        return self.wave_at_end(fill, whirl, settle(fill, whirl, self.friction, self.numerics))
+
+    def wave_at_end(self, fill: Fill, whirl: Whirl, history: LayerHistory) -> LiquidWave:
+        """The wave as a history leaves it, with the last means as its answer.
+
+        Parameters
+        ----------
+        fill, whirl : chamber and liquid, and its whirl
+        history : from `settle` or `simulate`
+        """
+        chamber, answered = fill.chamber, history.force_ratio.size > 0
+        none = complex(math.nan, math.nan)
+        force, offset = (history.force_ratio[-1], history.offset[-1]) if answered else (none, none)
+        gap, found = math.nan, {}
+        if answered:
+            gap = float(abs(force - history.pressure_ratio[-1])) / max(1.0, float(abs(force)))
+            extremes = np.concatenate([history.depth_max, history.depth_min])
+            found = {"force_gap": gap, "wave_amplitude": wave_amplitude(extremes, fill.depth)}
+        numbers = numbers_of(fill, whirl, found)
+        deepest = float(history.depth.max(initial=0.0))
+        limits = {"inner_wall": deepest <= chamber.radius - chamber.inner_radius}
+        answer = whirl_answer(
+            fill,
+            whirl,
+            force_ratio=complex(force),
+            offset=complex(offset),
+            limits=kept_limits(numbers, self.ranges) | limits,
+            dry_patch=float(history.depth.min(initial=math.inf)) <= 0.0,
+            converged=history.converged,
+            error=gap,
+        )
+        return LiquidWave(
+            answer=answer,
+            theta=history.theta,
+            depth=history.depth,
+            numbers=numbers,
+            ranges=self.ranges,
+            mass_error=history.mass_error,
+            mean_rotation=float(history.mean_rotation[-1]) if answered else math.nan,
+            reason=history.reason,
+        )
 
 
 def _history(layer: MovingLayer, rows: list[Complex]) -> LayerHistory:

@@ -15,8 +15,9 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.friction import QUADRATIC, Friction
 from meshes.arrays import Array, Complex
-from meshes.errors import InputError, require_not_negative, require_positive
+from meshes.errors import InputError
 from solvers.layer.records import LOADS, Drive, LayerOutcome, Record, Wall, records
+from solvers.liquid_model import Whirl
 
 
 @lru_cache(maxsize=16)
@@ -68,44 +69,6 @@ def means(
     inertia = mass * (push + whirl_speed**2 * moved - 2j * whirl_speed * drift)
     rest = sums.turning / length, sums.depth_min / length, sums.depth_max / length
     return np.array([inertia, moved, *rest, pressure], dtype=np.complex128)
-
-
-@dataclass(frozen=True)
-class Whirl:
-    """A circular whirl of the drum's axis.
-
-    Parameters
-    ----------
-    spin : Omega, rad/s, > 0
-    speed : omega_w in space, rad/s
-    amplitude : m
-    ramp : time over which the amplitude grows from nothing, s
-    gravity : across the axis, m/s^2
-    """
-
-    spin: float
-    speed: float
-    amplitude: float
-    ramp: float = 0.0
-    gravity: float = 0.0
-
-    def __post_init__(self) -> None:
-        require_positive("speed", self.spin)
-        require_not_negative("whirl_amplitude", self.amplitude)
-        require_not_negative("ramp", self.ramp)
-        require_not_negative("gravity", self.gravity)
-        if not math.isfinite(self.speed) or self.speed == 0.0:
-            raise InputError("whirl_speed", self.speed, "a finite number other than 0")
-
-    @property
-    def slip(self) -> float:
-        """Whirl speed seen from the drum, s = omega_w - Omega, rad/s."""
-        return self.speed - self.spin
-
-    @property
-    def period(self) -> float:
-        """Time of one whirl seen from the drum, or of one turn of a synchronous one, s."""
-        return 2.0 * math.pi / (abs(self.slip) or self.spin)
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ from fluid.friction import NO_FRICTION, Friction
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.layer.records import LayerOutcome
-from solvers.layer.state import Whirl
+from solvers.liquid_model import Whirl
 from solvers.pypde import terms
 from solvers.pypde import terms as layer
 from solvers.pypde.terms import LongWaveTerms

@@ -22,8 +22,9 @@ from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative
 from solvers.layer.finite_volume import DRY, FULL, GHOSTS, THIN, WORK, rates
 from solvers.layer.records import LOADS, Drive, LayerOutcome, Wall, records
-from solvers.layer.state import Whirl, ring
+from solvers.layer.state import ring
 from solvers.layer.step import advance, scratch
+from solvers.liquid_model import Whirl
 
 _STEPS = 20_000_000  # from one time to the next
 

@@ -40,8 +40,8 @@ def cage_speed(
 
     Examples
     --------
-    >>> float(cage_speed(1000.0, 28.5e-3, 6.75e-3))
-    381.57894736842104
+    >>> round(float(cage_speed(1000.0, 28.5e-3, 6.75e-3)), 6)
+    381.578947
     """
     shaft, pitch, ball, angle = (
         np.asarray(x, dtype=float) for x in (shaft_speed, pitch_diameter, ball_diameter, contact_angle)

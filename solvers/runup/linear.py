@@ -12,55 +12,38 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.friction import Friction, FrictionLaw, damping_rate
 from meshes.arrays import Array
-from meshes.errors import require_not_negative
 from solvers.layer.records import records
 from solvers.layer.state import ring
 from solvers.rotor.system import RotorSystem
 from solvers.runup.machine import Outcome, Reading
-from solvers.runup.state import RELEASE, SHAFT, SUMS, layer_capture, layer_properties, mean_area, pool_offset
+from solvers.runup.state import RELEASE, SUMS, CoupledRotor, at_rest, layer_properties, mean_area
 
 if TYPE_CHECKING:
     from solvers.runup.linear_kernel import LinearMachine
 
 
 @dataclass
-class LinearCoupled:
+class LinearCoupled(CoupledRotor):
     """A rotor with linear layers at one moment, a `solvers.runup.machine.RunupMachine`.
 
     Parameters
     ----------
-    system, fills : what it is made from
-    capture : speed above which each liquid rides with the drum as a layer, rad/s, shape (l,)
-    pool : offset of liquid that is no layer, along the first direction, m, shape (l,)
     cells : the rotor turns in a step by a cell times the Courant number
     machine : matrices, state and scratch of the steps
     """
 
-    system: RotorSystem
-    fills: tuple[Fill, ...]
-    capture: Array
-    pool: Array
     cells: int
     machine: LinearMachine
 
     @property
-    def time(self) -> float:
-        """Time, s."""
-        return float(self.machine.shaft[0].time)
-
-    @property
-    def spin(self) -> float:
-        """Spin speed, rad/s."""
-        return float(self.machine.shaft[0].spin)
-
-    @property
-    def masses(self) -> Array:
-        """Mass of the liquid in each chamber, kg, shape (l,)."""
-        return np.array([fill.mass for fill in self.fills])
+    def shaft(self) -> np.record:
+        """See `CoupledRotor`."""
+        found: np.record = self.machine.shaft[0]
+        return found
 
     @property
     def sums(self) -> np.record:
-        """Record SUMS of `solvers.runup.state`."""
+        """See `CoupledRotor`."""
         found: np.record = self.machine.sums[0]
         return found
 
@@ -73,13 +56,13 @@ class LinearCoupled:
     def drive(self, curve: Array, inertia: float) -> None:
         """Set a motor's torque curve and moment of inertia; an empty curve leaves the spin to its ramp."""
         self.machine = self.machine._replace(curve=curve)
-        self.machine.shaft[0].inertia = inertia
+        self.shaft.inertia = inertia
 
     def advance(self, stop: float, rate: float, courant: float, most: int) -> Outcome:
         """Advance to a time while the spin changes at a rate, in at most so many steps."""
         from solvers.runup.linear_kernel import advance_linear
 
-        self.machine.shaft[0].rate = rate
+        self.shaft.rate = rate
         return Outcome(advance_linear(self.machine, stop, courant * (2.0 * math.pi / self.cells), most))
 
     def mass_error(self) -> float:
@@ -134,7 +117,7 @@ class LinearCoupled:
         return Reading(
             time=self.time,
             speed=self.spin,
-            angle=float(m.shaft[0].angle),
+            angle=float(self.shaft.angle),
             coordinates=q,
             deflection=np.array([complex(*(plane @ q)) for plane in planes]),
             offset=np.where(active, offset, self.pool),
@@ -147,7 +130,7 @@ class LinearCoupled:
     def depth(self) -> Array:
         """Depth of the layers at as many angles as cells, m, nan where the liquid is none, shape (l, c)."""
         m = self.machine
-        offset = self._offset() * np.exp(-1j * m.shaft[0].angle)
+        offset = self._offset() * np.exp(-1j * self.shaft.angle)
         depth = np.array([fill.depth for fill in self.fills])[:, None]
         wave = np.real(offset[:, None] * np.exp(-1j * self.theta))
         rise = (m.layers.curvature - 1.0)[:, None] * wave
@@ -179,33 +162,30 @@ def couple_linear(
     """
     from solvers.runup.linear_kernel import LINEAR_LAYER, LinearMachine
 
-    require_not_negative("gravity", gravity)
+    rest = at_rest(system, fills, spin, gravity)
     n, count = len(system.coordinates), len(fills)
-    capture = np.array([layer_capture(fill, gravity) for fill in fills])
     size = n + 2 * count
-    layers, shaft = records(LINEAR_LAYER, count), records(SHAFT)
+    layers = records(LINEAR_LAYER, count)
     for j, fill in enumerate(fills):
         layers[j] = _layer(fill, friction)
-    shaft[0].spin = spin
     machine = LinearMachine(
         matrices=np.stack([system.mass, system.damping, system.gyroscopic, system.stiffness]).astype(float),
         unbalance=system.unbalance.astype(complex),
-        planes=np.array([system.at(fill.chamber.plane) for fill in fills]).reshape(count, 2, n),
+        planes=rest.planes,
         layers=layers,
-        active=(capture < spin).astype(float),
-        gravity=np.array([-gravity, 0.0]),
+        active=(rest.capture < spin).astype(float),
+        gravity=rest.gravity,
         curve=np.zeros((2, 0)),
         place=np.zeros(size),
         rate=np.zeros(size),
-        shaft=shaft,
+        shaft=rest.shaft,
         carried=np.full(count, spin),
         sums=records(SUMS),
         left=np.zeros((size, size)),
         change=np.zeros(size),
         swing=np.zeros(n),
     )
-    pool = np.array([pool_offset(fill) if gravity > 0.0 else 0.0 for fill in fills])
-    return LinearCoupled(system, tuple(fills), capture, pool, cells, machine)
+    return LinearCoupled(system, tuple(fills), rest.capture, rest.pool, cells, machine)
 
 
 def _layer(fill: Fill, friction: Friction) -> tuple[float, ...]:

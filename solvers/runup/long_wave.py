@@ -11,7 +11,6 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.friction import Friction
 from meshes.arrays import Array, Flags
-from meshes.errors import require_not_negative
 from solvers.layer.records import Record, records
 from solvers.layer.state import ring
 from solvers.rotor.system import RotorSystem
@@ -22,15 +21,15 @@ from solvers.runup.state import (
     MEASURES,
     PACE,
     RELEASE,
-    SHAFT,
     SUMS,
+    CoupledRotor,
     Machine,
     Room,
     State,
-    layer_capture,
+    at_rest,
     layer_properties,
     mean_area,
-    pool_offset,
+    planes_of,
 )
 
 # A layer that gravity has thrown down is caught again at a speed higher by this factor.
@@ -38,25 +37,18 @@ _AGAIN = 1.2
 
 
 @dataclass
-class Coupled:
+class Coupled(CoupledRotor):
     """A rotor with long-wave layers at one moment, a `solvers.runup.machine.RunupMachine`.
 
     Parameters
     ----------
-    system, fills : what it is made from
     layers : properties of each chamber's layer, records LAYER, shape (l,)
-    capture : speed above which each rides with the drum as a layer, rad/s, inf for a solid mass, shape (l,)
-    pool : offset of the centre of mass of liquid that is no layer, along the first direction, m, shape (l,)
     area, momentum : of all layers, shape (l, c)
     active : which of them are layers now, shape (l,)
     machine, state, room : of those
     """
 
-    system: RotorSystem
-    fills: tuple[Fill, ...]
     layers: Record
-    capture: Array
-    pool: Array
     area: Array
     momentum: Array
     active: Flags
@@ -65,23 +57,14 @@ class Coupled:
     room: Room
 
     @property
-    def time(self) -> float:
-        """Time, s."""
-        return float(self.state.shaft[0].time)
-
-    @property
-    def spin(self) -> float:
-        """Spin speed, rad/s."""
-        return float(self.state.shaft[0].spin)
-
-    @property
-    def masses(self) -> Array:
-        """Mass of the liquid in each chamber, kg, shape (l,)."""
-        return np.array(self.layers.mass)
+    def shaft(self) -> np.record:
+        """See `CoupledRotor`."""
+        found: np.record = self.state.shaft[0]
+        return found
 
     @property
     def sums(self) -> np.record:
-        """Record SUMS of `solvers.runup.state`."""
+        """See `CoupledRotor`."""
         found: np.record = self.state.sums[0]
         return found
 
@@ -93,13 +76,13 @@ class Coupled:
     def drive(self, curve: Array, inertia: float) -> None:
         """Set a motor's torque curve and moment of inertia; an empty curve leaves the spin to its ramp."""
         self.machine = self.machine._replace(curve=curve)
-        self.state.shaft[0].inertia = inertia
+        self.shaft.inertia = inertia
 
     def advance(self, stop: float, rate: float, courant: float, most: int) -> Outcome:
         """Advance to a time while the spin changes at a rate, in at most so many steps."""
         from solvers.runup.kernel import advance
 
-        self.state.shaft[0].rate = rate
+        self.shaft.rate = rate
         outcome = Outcome(advance(self.machine, self.state, self.room, stop, courant, most))
         self.area[self.active], self.momentum[self.active] = self.state.area, self.state.momentum
         return outcome
@@ -118,7 +101,7 @@ class Coupled:
         """Properties, plane, measures and relative momentum of each layer."""
         from solvers.runup.kernel import measure, relative_momentum
 
-        shaft = self.state.shaft[0]
+        shaft = self.shaft
         cosine, sine = math.cos(shaft.angle), math.sin(shaft.angle)
         found = []
         for j in range(self.machine.layers.size):
@@ -182,7 +165,7 @@ class Coupled:
     def _assemble(self) -> None:
         """Make machine, state and room anew for the active layers, the other liquid being masses."""
         old, active = self.state, self.active
-        planes, mass = self._planes(), self.system.mass.copy()
+        planes, mass = planes_of(self.system, self.fills), self.system.mass.copy()
         for weight, plane, moving in zip(self.layers.mass, planes, active, strict=True):
             if not moving:
                 mass += weight * plane.T @ plane
@@ -199,16 +182,11 @@ class Coupled:
         )
         self.room = _room(old.place.size, count, cells)
 
-    def _planes(self) -> Array:
-        """Displacement of each chamber's axis for unit coordinates, shape (l, 2, n)."""
-        planes = np.array([self.system.at(fill.chamber.plane) for fill in self.fills])
-        return planes.reshape(len(self.fills), 2, len(self.system.coordinates))
-
     def read(self) -> Reading:
         """The moment as the history keeps it."""
-        x, angle = self.state.place.copy(), float(self.state.shaft[0].angle)
+        x, angle = self.state.place.copy(), float(self.shaft.angle)
         turn = complex(math.cos(angle), math.sin(angle))
-        planes = list(self._planes()) or [self.system.centre]
+        planes = list(planes_of(self.system, self.fills)) or [self.system.centre]
         surface = np.sqrt(np.maximum(1.0 - 2.0 * self.area, 0.0))
         lever = (1.0 - surface) * (1.0 + surface + np.square(surface)) / 3.0
         whole = np.maximum(self.area.sum(axis=1), 1e-300)
@@ -258,37 +236,34 @@ def couple(
     ------
     InputError : a negative gravity
     """
-    require_not_negative("gravity", gravity)
+    rest = at_rest(system, fills, spin, gravity)
     n, count = len(system.coordinates), len(fills)
     layers = records(LAYER, count)
     for j, fill in enumerate(fills):
         layers[j] = layer_properties(fill, friction, dispersion)
-    capture = np.array([layer_capture(fill, gravity) for fill in fills])
     area = np.repeat(np.array([mean_area(fill) for fill in fills]).reshape(-1, 1), cells, axis=1)
-    shaft = records(SHAFT)
-    shaft[0].spin = spin
     found = Coupled(
         system=system,
         fills=tuple(fills),
         layers=layers,
-        capture=capture,
-        pool=np.array([pool_offset(fill) if gravity > 0.0 else 0.0 for fill in fills]),
+        capture=rest.capture,
+        pool=rest.pool,
         area=area,
         momentum=-spin * np.square(area),
-        active=capture < spin,
+        active=rest.capture < spin,
         machine=Machine(
             matrices=np.zeros((4, n, n)),
             unbalance=system.unbalance.astype(complex),
             planes=np.zeros((0, 2, n)),
             layers=layers[:0],
-            gravity=np.array([-gravity, 0.0]),
+            gravity=rest.gravity,
             angles=ring(cells),
             curve=np.zeros((2, 0)),
         ),
         state=State(
             place=np.zeros(n),
             rate=np.zeros(n),
-            shaft=shaft,
+            shaft=rest.shaft,
             area=area[:0],
             momentum=area[:0],
             push=np.zeros((0, 2, 2)),

@@ -6,9 +6,8 @@ How far linear layers are from long waves is estimated from the linear run alone
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
-from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,7 +18,6 @@ from fluid.whirl import is_full
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.rotor.system import RotorSystem
-from solvers.runup.linear import couple_linear
 from solvers.runup.long_wave import couple
 from solvers.runup.machine import (
     Drive,
@@ -33,8 +31,6 @@ from solvers.runup.machine import (
 )
 
 _MOST = 200_000_000  # steps between two samples
-# The liquid models by the names that users give them.
-MODELS: Mapping[str, RunupModel] = MappingProxyType({"long_wave": couple, "linear": couple_linear})
 
 
 @dataclass(frozen=True)
@@ -177,7 +173,7 @@ def run_up(
     gravity: float = 0.0,
     numerics: RunupNumerics | None = None,
     progress: Callable[[float], None] | None = None,
-    model: str = "long_wave",
+    model: RunupModel = couple,
     snapshots: ArrayLike = (),
 ) -> RunupHistory:
     """Run a rotor with liquid layers through its speeds; at first liquid and rotor are at rest in the drum.
@@ -192,7 +188,8 @@ def run_up(
         at the bottom and moves with the drum as a mass
     numerics : resolution
     progress : called with the share of the time that is done
-    model : of the liquid: "long_wave", or "linear" for small waves at a hundredth of the cost
+    model : of the liquid through time: long waves, or `solvers.runup.linear.couple_linear` for small waves
+        at a hundredth of the cost
     snapshots : times at which the layers are kept cell by cell, s, each at the recorded time next to it; they
         change nothing in the run, so that a film needs no second one
 
@@ -215,12 +212,10 @@ def run_up(
         deflection = history.deflection[kept.sample] * seen  # in the drum's frame, (f, l)
     """
     numerics = numerics or RunupNumerics()
-    if model not in MODELS:
-        raise InputError("model", model, "one of " + ", ".join(MODELS))
     start = drive.corners()[1, 0]
 
     def machine(cells: int) -> RunupMachine:
-        return MODELS[model](system, fills, start, friction, gravity, cells, numerics.dispersion)
+        return model(system, fills, start, friction, gravity, cells, numerics.dispersion)
 
     share = 0.8 if numerics.companion else 1.0
     wanted = np.asarray(snapshots, dtype=float)

@@ -6,6 +6,9 @@ Numbers that change one by one stand in records, see `solvers.layer.records`.
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +18,9 @@ from fluid.fill import Fill
 from fluid.friction import Friction, FrictionLaw
 from fluid.waves import free_wave_frequencies
 from meshes.arrays import Array
-from solvers.layer.records import Record, floats
+from meshes.errors import require_not_negative
+from solvers.layer.records import Record, floats, records
+from solvers.rotor.system import RotorSystem
 
 # A layer is let go at this share of the spin speed that captures it, lest it be caught and let go in turns.
 RELEASE = 0.98
@@ -88,6 +93,96 @@ def pool_offset(fill: Fill) -> float:
     share = fill.volume / (fill.chamber.height * radius**2)
     half = brentq(lambda a: a - math.sin(a) * math.cos(a) - share, 0.0, math.pi)
     return -radius * 2.0 * math.sin(half) ** 3 / (3.0 * share)
+
+
+class Rest(NamedTuple):
+    """A rotor without deflection and its liquid at rest in the drum; n coordinates, l chambers.
+
+    Parameters
+    ----------
+    capture : speed above which each liquid rides with the drum as a layer, rad/s, inf for a solid mass, (l,)
+    pool : offset of the centre of mass of liquid that is no layer, along the first direction, m, shape (l,)
+    planes : displacement of each chamber's axis for unit coordinates, shape (l, 2, n)
+    shaft : record SHAFT at the spin, shape (1,)
+    gravity : acceleration across the axis, shape (2,)
+    """
+
+    capture: Array
+    pool: Array
+    planes: Array
+    shaft: Record
+    gravity: Array
+
+
+def at_rest(system: RotorSystem, fills: Sequence[Fill], spin: float, gravity: float) -> Rest:
+    """How every run-up begins.
+
+    Parameters
+    ----------
+    system, fills, gravity : as for `solvers.runup.runup.run_up`
+    spin : at the beginning, rad/s
+
+    Raises
+    ------
+    InputError : a negative gravity
+    """
+    require_not_negative("gravity", gravity)
+    shaft = records(SHAFT)
+    shaft[0].spin = spin
+    return Rest(
+        capture=np.array([layer_capture(fill, gravity) for fill in fills]),
+        pool=np.array([pool_offset(fill) if gravity > 0.0 else 0.0 for fill in fills]),
+        planes=planes_of(system, fills),
+        shaft=shaft,
+        gravity=np.array([-gravity, 0.0]),
+    )
+
+
+def planes_of(system: RotorSystem, fills: Sequence[Fill]) -> Array:
+    """Displacement of each chamber's axis for unit coordinates, shape (l, 2, n)."""
+    planes = np.array([system.at(fill.chamber.plane) for fill in fills], dtype=float)
+    return planes.reshape(len(fills), 2, len(system.coordinates))
+
+
+@dataclass
+class CoupledRotor(ABC):
+    """What every rotor with layers has, long waves or linear; see `solvers.runup.machine.RunupMachine`.
+
+    Parameters
+    ----------
+    system, fills : what it is made from
+    capture, pool : as of `Rest`, shape (l,)
+    """
+
+    system: RotorSystem
+    fills: tuple[Fill, ...]
+    capture: Array
+    pool: Array
+
+    @property
+    @abstractmethod
+    def shaft(self) -> np.record:
+        """Record SHAFT of the moment."""
+
+    @property
+    @abstractmethod
+    def sums(self) -> np.record:
+        """Record SUMS: works, heats and counts so far."""
+
+    @property
+    def time(self) -> float:
+        """Time, s."""
+        return float(self.shaft.time)
+
+    @property
+    def spin(self) -> float:
+        """Spin speed, rad/s."""
+        return float(self.shaft.spin)
+
+    @property
+    def masses(self) -> Array:
+        """Mass of the liquid in each chamber, kg, shape (l,)."""
+        return np.array([fill.mass for fill in self.fills])
 
 
 # What `solvers.runup.state.LayerProperties` says of a layer.

@@ -257,8 +257,8 @@ def optimal_volume(
     Examples
     --------
     >>> from meshes.chamber import Chamber
-    >>> print(f"{optimal_volume(Chamber(0.2, 0.05), 0.001, 90.0) * 1e6:.8f} ml")
-    54.43957239 ml
+    >>> print(f"{optimal_volume(Chamber(0.2, 0.05), 0.001, 90.0) * 1e6:.6f} ml")
+    54.439572 ml
     """
     e, spin, g = same_shape(eccentricity, speed, gravity)
     _check("eccentricity", e)

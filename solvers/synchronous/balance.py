@@ -16,10 +16,10 @@ from fluid.fill import Fill, Fills
 from fluid.friction import NO_FRICTION
 from fluid.waves import force_ratio
 from meshes.arrays import Array, Complex, Flags, Index
+from solvers.liquid_model import LiquidModel, Whirls
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.vibration import dynamic_stiffness, solve_each
 from solvers.sloshing.reduced import section_layer
-from solvers.synchronous.models import LiquidModel
 
 
 def backward_mass(fill: Fill) -> float:
@@ -118,8 +118,9 @@ class Balance:
             rows = np.flatnonzero(bent[:, j])
             if rows.size:
                 same, gravity = Fills.same(fill, rows.size), np.full(rows.size, self.gravity)
-                law = self.model.synchronous(same, self.speed[which[rows]], deflection[rows, j], gravity)
-                unbalance[rows, j], slope[rows, j] = law.unbalance, law.slope
+                whirls = Whirls.synchronous(self.speed[which[rows]], deflection[rows, j], gravity)
+                law = self.model.answer(same, whirls)
+                unbalance[rows, j], slope[rows, j] = law.unbalance.real, law.slope
                 for flag, found in zip(flags, (law.dry_patch, law.in_range, law.converged), strict=True):
                     flag[rows, j] = found
         return Liquid(unbalance, slope, *flags)

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from fluid.fill import Fill, Fills
 from meshes.arrays import Array, Complex, Flags, Index
+from solvers.liquid_model import ROUNDING
 from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
 from solvers.rotor.system import Rotor, RotorSystem
 from solvers.rotor.vibration import solve_each
@@ -24,8 +25,6 @@ from solvers.synchronous.balance import Balance, directions_at, harmonic_balance
 from solvers.synchronous.models import LINEAR
 from solvers.synchronous.pairs import Pairs, pair_machines
 
-# What is left between an exact answer and the same from another order of sums.
-ROUNDING = 1e-12
 # Found from long-wave layers held at a speed: most have less, the median a third of it.
 _SIZE = 0.15
 _THIN = 1.25

@@ -1,105 +1,119 @@
-"""Liquid models as objects: the liquid's unbalance under a deflection that is fixed in the drum.
+"""Liquid models of the synchronous response: the exact equilibrium, linear theory, the equilibrium on grids.
 
-Two of them stand on a grid, long-wave cells round the wall and finite elements. Both converge to the exact
-equilibrium, the cells where it is a cylinder of liquid. Their unbalance less the liquid's mass times the
-deflection never falls as that grows, which the search for branches rests on.
+`Statics` and `Linear` also answer a prescribed whirl with its wave. The two on grids, long-wave cells round
+the wall and finite elements, converge to the exact equilibrium, the cells where it is a cylinder of liquid.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Protocol
+from typing import ClassVar
 
 import numpy as np
 
-from fluid.fill import Fills
+from fluid import waves
+from fluid.fill import Fill, Fills
 from fluid.paraboloid import CYLINDER_STEEPNESS, steepness
-from meshes.arrays import Array, Flags, Index
+from meshes.arrays import Array, Index
 from meshes.errors import InputError
 from meshes.section import Section, annulus
+from solvers.liquid_model import (
+    CAPTURED,
+    LONG,
+    ROUNDING,
+    THIN_LAYERS,
+    LiquidAnswer,
+    LiquidModel,
+    LiquidWave,
+    Range,
+    WaveModel,
+    Whirl,
+    Whirls,
+    added_mass_answer,
+    angles,
+    kept_limits,
+    numbers_of,
+    wave_amplitude,
+    whirl_answer,
+)
 from solvers.roots import bracketed_root
 from solvers.statics.hydrostatics import equilibrium, volume_under
+from solvers.statics.law_defect import defect_bound, upright_surfaces
 
 # The end of the straight line is taken so much too low, relatively, that the law is the line up to it.
 _MARGIN = 1e-9
 
 
 @dataclass(frozen=True)
-class SynchronousAnswer:
-    """The liquid of chambers under synchronous whirl; all shapes (n,).
-
-    Parameters
-    ----------
-    unbalance : first moment of the liquid about the rotation axis, along the deflection, kg m
-    slope : its derivative with respect to the deflection at fixed volume, kg
-    dry_patch : the wall is dry over its whole height somewhere
-    in_range : the model holds there
-    converged : the surface holds the volume asked for
-    """
-
-    unbalance: Array
-    slope: Array
-    dry_patch: Flags
-    in_range: Flags
-    converged: Flags
-
-    @classmethod
-    def everywhere(cls, unbalance: Array, slope: Array) -> SynchronousAnswer:
-        """Answer of a law that holds at every deflection and leaves the wall wet."""
-        yes = np.ones(unbalance.shape, dtype=bool)
-        return cls(unbalance, slope, ~yes, yes, yes)
-
-
-class LiquidModel(Protocol):
-    """Model of the liquid in chambers that whirl with their spin.
-
-    Solvers take it as an object. A class that inherits from it needs a name and `synchronous`; the branches
-    are found only if its unbalance less the liquid's mass times the deflection never falls as that grows.
-    """
-
-    @property
-    def name(self) -> str:
-        """By which results tell it, with its resolution if it has one."""
-        ...
-
-    def synchronous(self, fills: Fills, speed: Array, deflection: Array, gravity: Array) -> SynchronousAnswer:
-        """Answer of fills at spin speeds and deflections, all shape (n,).
-
-        Parameters
-        ----------
-        fills : one for each state, none of them empty
-        speed : spin speed Omega, rad/s
-        deflection : size of the chamber's deflection e, m, 0 or above
-        gravity : along the axis, m/s^2
-        """
-        ...
-
-    def linear_limit(self, fills: Fills, speed: Array, gravity: Array) -> Array:
-        """Deflection up to which the unbalance is exactly the full mass times the deflection, m, (n,).
-
-        0, as here, is right for every model; a larger one saves time.
-        """
-        return np.zeros(speed.shape)
-
-
-@dataclass(frozen=True)
-class Statics(LiquidModel):
-    """Exact equilibrium of the liquid at any amplitude [theory: statics]."""
+class Statics(WaveModel):
+    """Exact equilibrium of the liquid at any amplitude, under a synchronous whirl [theory: statics]."""
 
     name = "statics"
+    # The liquid is at rest: any depth, any amplitude, dry walls.
+    ranges: ClassVar[Mapping[str, Range]] = {}
 
-    def synchronous(self, fills: Fills, speed: Array, deflection: Array, gravity: Array) -> SynchronousAnswer:
-        """See `LiquidModel`; holds at every deflection."""
-        state = equilibrium(fills.chamber, fills.volume, deflection, speed, gravity)
+    def answer(self, fills: Fills, whirls: Whirls) -> LiquidAnswer:
+        """See `LiquidModel`; another whirl is answered as if it were synchronous, which is out of range."""
+        state = equilibrium(fills.chamber, fills.volume, whirls.amplitude, whirls.spin, whirls.axial_gravity)
         moment, slope = state.unbalance()
-        return SynchronousAnswer(
+        return LiquidAnswer.at_rest(
+            fills,
+            whirls,
             unbalance=fills.density * moment,
             slope=fills.density * slope,
             dry_patch=state.dry_patch,
-            in_range=np.ones(speed.shape, dtype=bool),
             converged=state.converged,
+            error=ROUNDING,
+        )
+
+    def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
+        """See `WaveModel`; no friction acts on liquid that is at rest in the drum.
+
+        Raises
+        ------
+        InputError : another whirl than the synchronous one, gravity across the axis
+        """
+        amplitude = whirl.amplitude
+        if whirl.slip != 0.0:
+            allowed = f"the spin speed ({whirl.spin:g} rad/s) for the static model"
+            raise InputError("whirl_speed", whirl.speed, allowed)
+        if whirl.gravity != 0.0:
+            allowed = "0 for the static model: across the axis it turns in the drum"
+            raise InputError("gravity", whirl.gravity, allowed)
+        chamber = fill.chamber
+        state = equilibrium(chamber, fill.volume, amplitude, whirl.spin, gravity=0.0)
+        moment = float(state.unbalance()[0])
+        full = math.pi * chamber.radius**2 * chamber.height
+        # Without a whirl the ratio is that of a vanishing one, which no depth of liquid runs dry.
+        ratio = moment / (full * amplitude) if amplitude else 1.0
+        theta = angles()
+        # The surface is a circle about the rotation axis, at -A from the drum's axis.
+        floor = float(state.wetted_height / state.steepness)
+        squared = chamber.radius**2 * ((1.0 + amplitude / chamber.radius) ** 2 - floor)
+        across = np.maximum(squared - np.square(amplitude * np.sin(theta)), 0.0)
+        surface = np.maximum(np.sqrt(across) - amplitude * np.cos(theta), chamber.inner_radius)
+        depth = np.clip(chamber.radius - surface, 0.0, chamber.radius)
+        answer = whirl_answer(
+            fill,
+            whirl,
+            force_ratio=complex(ratio),
+            offset=complex(moment / fill.volume - amplitude),
+            limits={"synchronous": True},
+            dry_patch=bool(state.dry_patch),
+            converged=bool(state.converged),
+            small=True,
+            error=ROUNDING,
+        )
+        return LiquidWave(
+            answer=answer,
+            theta=theta,
+            depth=depth,
+            numbers=numbers_of(fill, whirl, {"wave_amplitude": wave_amplitude(depth, fill.depth)}),
+            ranges=self.ranges,
+            mass_error=abs(float(state.volume) / fill.volume - 1.0),
         )
 
     def linear_limit(self, fills: Fills, speed: Array, gravity: Array) -> Array:
@@ -145,20 +159,65 @@ def _touching(fills: Fills, steep: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Linear(LiquidModel):
-    """The layer's added mass, exact for small synchronous deflections [theory: waves, eq. 8]."""
+class Linear(WaveModel):
+    """Exact linear theory of a clear ring without friction [theory: waves, eq. 5].
+
+    A synchronous whirl finds an added mass, exact until the surface touches an end of the wall.
+    """
 
     name = "linear"
+    ranges: ClassVar[Mapping[str, Range]] = {
+        "wave_amplitude": (0.0, 0.3), "centrifuge": CAPTURED, "wall_layer": THIN_LAYERS,
+    }  # fmt: skip
 
-    def synchronous(self, fills: Fills, speed: Array, deflection: Array, gravity: Array) -> SynchronousAnswer:
-        """See `LiquidModel`; holds while the deflection is below the mean depth of the layer."""
-        dry = deflection >= fills.depth
-        return SynchronousAnswer(
-            unbalance=fills.added_mass * deflection,
-            slope=fills.added_mass,
-            dry_patch=dry & (deflection > 0.0),
-            in_range=~dry,
-            converged=np.ones(deflection.shape, dtype=bool),
+    def at_rest(self, fills: Fills, whirls: Whirls) -> LiquidAnswer:
+        """See `WaveModel`; the error is a bound in closed form [theory: model_error, eq. 7]."""
+        size = whirls.amplitude
+        line = fills.added_mass * size
+        missing = defect_bound(upright_surfaces(fills, whirls.spin, whirls.axial_gravity), size)
+        error = np.divide(missing, line, out=np.zeros_like(line), where=line > 0.0) + ROUNDING
+        return added_mass_answer(fills, whirls, error)
+
+    def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
+        """See `WaveModel`.
+
+        Raises
+        ------
+        InputError : no free surface
+        """
+        chamber, surface, amplitude = fill.chamber, fill.surface_radius, whirl.amplitude
+        if fill.depth >= chamber.radius * (1.0 - 1e-9) or surface <= chamber.inner_radius:
+            allowed = "less than what fills the chamber, for a free surface"
+            raise InputError("volume", fill.volume, allowed)
+        kappa, ratio = (chamber.radius / surface) ** 2, whirl.speed / whirl.spin
+        force = float(waves.force_ratio(kappa, ratio))
+        offset = float(waves.offset_ratio(kappa, ratio)) * amplitude
+        displacement = float(waves.displacement_ratio(kappa, ratio)) * amplitude
+        converged = math.isfinite(force) and math.isfinite(displacement)
+        # A synchronous whirl's linear surface is the exact circle to the square of its offset, while wet.
+        ranges = dict(self.ranges) | ({} if whirl.slip else {"wave_amplitude": (0.0, 1.0)})
+        numbers = numbers_of(fill, whirl, {"wave_amplitude": abs(displacement) / fill.depth})
+        inner_wall = surface - abs(displacement) >= chamber.inner_radius
+        theta = angles()
+        drawn = surface + displacement * np.cos(theta) if converged else np.full(theta.shape, surface)
+        answer = whirl_answer(
+            fill,
+            whirl,
+            force_ratio=complex(force),
+            offset=complex(offset),
+            limits=kept_limits(numbers, ranges) | {"inner_wall": inner_wall},
+            dry_patch=abs(displacement) > fill.depth,
+            converged=converged,
+            small=True,
+        )
+        return LiquidWave(
+            answer=answer,
+            theta=theta,
+            depth=np.clip(chamber.radius - drawn, 0.0, chamber.radius),
+            numbers=numbers,
+            ranges=ranges,
+            mass_error=0.5 * displacement**2 / (chamber.radius**2 - surface**2) if converged else math.nan,
+            reason="" if converged else "the whirl meets a free wave, the linear force is unbounded",
         )
 
     def linear_limit(self, fills: Fills, speed: Array, gravity: Array) -> Array:
@@ -166,40 +225,14 @@ class Linear(LiquidModel):
         return np.full(speed.shape, np.inf)
 
 
-@dataclass(frozen=True)
-class Elements(Linear):
-    """The same with baffles, whose waves are found by finite elements [theory: sections, eq. 8].
-
-    The deflection stays below the mean depth: in no compartment does the surface come nearer to the wall.
-    """
-
-    name = "fem"
-
-
-STATICS, LINEAR, ELEMENTS = Statics(), Linear(), Elements()
-MODEL_NAMES = tuple(model.name for model in (STATICS, LINEAR, ELEMENTS))
-
-
-def model_named(name: str) -> LiquidModel:
-    """The model that a scene names; `auto` is the cheapest that is exact for synchronous whirl.
-
-    Raises
-    ------
-    InputError : no model of that name answers a synchronous whirl
-    """
-    known = {model.name: model for model in (STATICS, LINEAR, ELEMENTS)} | {"auto": STATICS}
-    if name not in known:
-        raise InputError("model.liquid", name, "one of auto, " + ", ".join(MODEL_NAMES))
-    return known[name]
-
+STATICS, LINEAR = Statics(), Linear()
 
 _CELLS_AT_ONCE = 1 << 17  # of all states together, so that they stay in the processor's cache
-_DEEPEST = 0.3  # mean depth over the radius up to which waves on the layer are long
 _SHIFT = 1e-4  # relative change of a level across which the plan of the surface is measured
 
 
 @dataclass(frozen=True)
-class LongWave(LiquidModel):
+class CellsAtRest(LiquidModel):
     """The plane layer at rest on finite-volume cells, as the long-wave scheme holds it in synchronous whirl.
 
     In every cell the surface is that of one circle about the rotation axis [theory: long_wave, eq. 6]; cells
@@ -227,22 +260,29 @@ class LongWave(LiquidModel):
         """Model and resolution."""
         return f"long_wave {self.cells}"
 
-    def synchronous(self, fills: Fills, speed: Array, deflection: Array, gravity: Array) -> SynchronousAnswer:
+    def answer(self, fills: Fills, whirls: Whirls) -> LiquidAnswer:
         """See `LiquidModel`; in range while the layer is long, upright, and clear of axis and inner wall."""
+        speed, deflection = whirls.spin, whirls.amplitude
         at_once = max(1, _CELLS_AT_ONCE // self.cells)
         parts = [np.arange(k, min(k + at_once, speed.size)) for k in range(0, speed.size, at_once)]
         found = [self._at_rest(fills.at(part), deflection[part]) for part in parts]
         moment, slope, dry, most, met = np.concatenate([np.zeros((5, 0)), *found], axis=1)
         chamber = fills.chamber
-        steep = steepness(speed, gravity, chamber.radius, chamber.height)
+        steep = steepness(speed, whirls.axial_gravity, chamber.radius, chamber.height)
         covered = fills.volume * steep >= 0.5 * math.pi * np.square(chamber.radius) * chamber.height
         clear = most < chamber.radius - chamber.inner_radius
-        return SynchronousAnswer(
+        return LiquidAnswer.at_rest(
+            fills,
+            whirls,
             unbalance=fills.density * moment,
             slope=fills.density * slope,
             dry_patch=(dry > 0.0) & (deflection > 0.0),
-            in_range=covered & clear & (fills.depth <= _DEEPEST * chamber.radius),
             converged=met > 0.0,
+            limits={
+                "upright": covered,
+                "inner_wall": clear,
+                "relative_depth": fills.depth <= LONG[1] * chamber.radius,
+            },
         )
 
     def _at_rest(self, fills: Fills, deflection: Array) -> Array:
@@ -304,7 +344,7 @@ def _circle(e: Array, level: Array, cells: int) -> tuple[Array, Array]:
 
 
 @dataclass(frozen=True)
-class Fem(LiquidModel):
+class ElementsAtRest(LiquidModel):
     """The exact free surface integrated over a finite-element mesh of the section [theory: statics, eq. 1].
 
     The section has the area of its mesh, a little less than the circle's.
@@ -331,10 +371,10 @@ class Fem(LiquidModel):
         """Model and resolution."""
         return f"fem {self.segments} order {self.order}"
 
-    def synchronous(self, fills: Fills, speed: Array, deflection: Array, gravity: Array) -> SynchronousAnswer:
+    def answer(self, fills: Fills, whirls: Whirls) -> LiquidAnswer:
         """See `LiquidModel`; holds at every deflection."""
-        chamber = fills.chamber
-        steep = steepness(speed, gravity, chamber.radius, chamber.height)
+        chamber, speed, deflection = fills.chamber, whirls.spin, whirls.amplitude
+        steep = steepness(speed, whirls.axial_gravity, chamber.radius, chamber.height)
         count = speed.size
         moment, slope, nearest = np.zeros(count), np.zeros(count), np.zeros(count)
         met = np.zeros(count, dtype=bool)
@@ -344,11 +384,12 @@ class Fem(LiquidModel):
             beta = float(steep[k]) * height / radius**2 if steep[k] < CYLINDER_STEEPNESS else math.inf
             found = _surface(section, height, beta, float(fills.volume[k]), float(deflection[k]), radius)
             moment[k], slope[k], nearest[k], met[k] = found
-        return SynchronousAnswer(
+        return LiquidAnswer.at_rest(
+            fills,
+            whirls,
             unbalance=fills.density * moment,
             slope=fills.density * slope,
             dry_patch=(nearest <= 0.0) & (deflection > 0.0),
-            in_range=np.ones(count, dtype=bool),
             converged=met,
         )
 

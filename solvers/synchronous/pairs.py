@@ -9,8 +9,8 @@ import numpy as np
 
 from fluid.fill import Fills
 from meshes.arrays import Array, Complex, Flags, Index
+from solvers.liquid_model import LiquidModel, Whirls
 from solvers.rotor.jeffcott import PlanarMachine
-from solvers.synchronous.models import LiquidModel
 
 
 @dataclass(frozen=True)
@@ -95,11 +95,13 @@ class Pairs:
             return LiquidState(np.zeros(size), np.zeros(size), dry, in_range, converged)
         rows, fills, _ = found
         own = which[rows]
-        law = self.model.synchronous(fills, self.speed[own], deflection[rows], self.gravity[own])
+        law = self.model.answer(
+            fills, Whirls.synchronous(self.speed[own], deflection[rows], self.gravity[own])
+        )
         np.logical_or.at(dry, rows, law.dry_patch)
         np.logical_and.at(in_range, rows, law.in_range)
         np.logical_and.at(converged, rows, law.converged)
-        unbalance, slope = (_summed(rows, x, size) for x in (law.unbalance, law.slope))
+        unbalance, slope = (_summed(rows, x, size) for x in (law.unbalance.real, law.slope))
         return LiquidState(unbalance, slope, dry, in_range, converged)
 
     def pull(self, deflection: Array, which: Index) -> Array:
@@ -116,8 +118,8 @@ class Pairs:
         bent = np.flatnonzero(e > limit)
         if bent.size:
             k = which[rows[bent]]
-            law = self.model.synchronous(fills.at(bent), self.speed[k], e[bent], self.gravity[k])
-            moment[bent] = law.unbalance
+            whirls = Whirls.synchronous(self.speed[k], e[bent], self.gravity[k])
+            moment[bent] = self.model.answer(fills.at(bent), whirls).unbalance.real
         total = _summed(rows, np.maximum(moment - fills.mass * e, 0.0), deflection.size)
         return np.asarray(np.square(self.speed[which]) * total)
 

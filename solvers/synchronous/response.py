@@ -18,13 +18,14 @@ from numpy.typing import ArrayLike, NDArray
 from fluid.fill import Fill, Fills
 from meshes.arrays import Array, Complex, Flags, Index
 from meshes.errors import InputError
+from solvers.liquid_model import LiquidModel, Whirls
 from solvers.roots import bracketed_root
 from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
 from solvers.rotor.system import Rotor, RotorSystem
 from solvers.rotor.vibration import critical_speeds, orbit, unbalance_response
 from solvers.synchronous.balance import Balance, Liquid, backward_mass, directions, harmonic_balance
 from solvers.synchronous.coupled import solutions
-from solvers.synchronous.models import STATICS, LiquidModel
+from solvers.synchronous.models import STATICS
 from solvers.synchronous.pairs import Pairs, pair_machines
 from solvers.synchronous.planar import all_deflections, divide, is_stable, liquid_offset, with_phase
 
@@ -94,8 +95,8 @@ def _added_mass(
     for fill, p in zip(wet, directions(system, wet), strict=True):
         full = fill.added_mass
         if speed is not None:
-            law = model.synchronous(Fills.of([fill]), np.array([speed]), np.zeros(1), np.array([gravity]))
-            full = float(law.slope[0])
+            whirl = Whirls.synchronous(np.array([speed]), np.zeros(1), np.array([gravity]))
+            full = float(model.answer(Fills.of([fill]), whirl).slope[0])
         total += 0.5 * full * np.outer(p, np.conj(p)) + 0.5 * backward_mass(fill) * np.outer(np.conj(p), p)
     return total
 
@@ -188,7 +189,7 @@ def response(
     >>> rotor = Jeffcott(mass=4.0, stiffness=4.4e4, damping=84.0, unbalance=6e-4)
     >>> answer = response(rotor, [], [105.0, 200.0])
     >>> print(np.round(1e3 * np.abs(answer.deflection), 4))
-    [0.75   0.2042]
+    [0.75   0.2048]
     """
     spin = np.array(speed, dtype=float).reshape(-1)
     place = position if position is not None else (fills[0].chamber.plane if fills else 0.0)

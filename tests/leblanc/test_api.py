@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import doctest
 import json
 import subprocess
 import sys
@@ -13,7 +12,6 @@ import numpy as np
 import pytest
 
 import leblanc as lb
-from leblanc import api
 from leblanc.cli import main
 
 ROOT = Path(__file__).parents[2]
@@ -174,8 +172,3 @@ def test_a_scene_of_fills_is_the_scene_of_its_table() -> None:
     )
     assert [chamber.fill() for chamber in built.chambers] == list(shipped.fills)
     np.testing.assert_array_equal(lb.run(built).amplitude, lb.run(shipped).amplitude)
-
-
-def test_examples_of_the_docstrings() -> None:
-    failed, tried = doctest.testmod(api)
-    assert failed == 0 and tried >= 16

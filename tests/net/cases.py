@@ -16,7 +16,7 @@ WHOLE = ("two_plane_rig", "vertical_rig", "centrifuge", "runup")  # run-ups held
 DOCS = ("closed_baffles", "lobes", "smallest_scene")
 COMMANDS = (
     *("new", "explain", "run", "compare", "volume", "layer", "modes", "map", "runup", "optimise", "sweep"),
-    *("trade", "view", "validate"),
+    *("trade", "view", "validate", "notebooks"),
 )
 
 
@@ -283,6 +283,7 @@ def _wrong() -> Iterator[Case]:
         "view-together": f"view {rig} --browser --window",
         "new-there": "new docs/examples/smallest_scene.toml",
         "validate-group": "validate nothing",
+        "notebooks-name": "notebooks nothing",
         "command": "nonsense",
         "option": f"run {rig} --speed 3",
         "out": f"run {smallest} --out docs/examples/smallest_scene.toml",

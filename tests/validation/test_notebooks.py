@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import json
 import re
 import sys
 from dataclasses import dataclass
@@ -10,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from leblanc.cli import exit_code
+from validation import run_notebooks
 from validation.run_notebooks import texts
 
 ROOT = Path(__file__).parents[2]
@@ -129,3 +132,27 @@ def test_jupytext_reads_the_same_cells(path: Path) -> None:
     book = read(path)
     assert [one.source for one in cells if one.cell_type == "markdown"] == book.words
     assert len([one for one in cells if one.cell_type == "code"]) == len(book.code)
+
+
+def test_without_the_extra_its_name_is_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(run_notebooks, "find_spec", lambda name: None)
+    assert exit_code(lambda: run_notebooks.notebooks(["1_paraboloid"], tmp_path)) == 2
+    assert "leblanc[notebooks]" in capsys.readouterr().err
+    assert exit_code(lambda: run_notebooks.notebooks(["9_nothing"], tmp_path)) == 2
+    assert "8_accuracy_and_cost" in capsys.readouterr().err
+
+
+def test_what_the_command_tells_programs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """All are executed though one fails, and that one makes the exit code."""
+    monkeypatch.setattr(run_notebooks, "require_jupyter", lambda: None)
+    monkeypatch.setattr(run_notebooks, "execute", lambda path, out: "a claim" if "wave" in path.stem else "")
+    assert exit_code(lambda: run_notebooks.notebooks(None, tmp_path, json=True)) == 1
+    printed = capsys.readouterr()
+    told = json.loads(printed.out)["notebooks"]
+    assert [one["name"] for one in told] == [path.stem for path in NOTEBOOKS]
+    assert [one["name"] for one in told if not one["passed"]] == ["2_wave"] and printed.err == "a claim\n"
+    assert exit_code(lambda: run_notebooks.notebooks(["3_rigs"], tmp_path)) == 0

@@ -9,6 +9,7 @@ from unittest import mock
 import numpy as np
 import pytest
 
+from leblanc.scene.examples import example
 from leblanc.scene.scene import jeffcott
 from leblanc.studies.choose import axial_gravity
 from solvers.statics.hydrostatics import equilibrium
@@ -23,7 +24,7 @@ from validation.figures import rigs as rig_figures
 from validation.figures import volume as volume_figures
 from validation.figures import whirl as whirl_figures
 from validation.figures.layer import bore_summary
-from validation.notebook_page import case_table, example, from_markdown, picture, verdicts
+from validation.notebook_page import case_table, from_markdown, picture, verdicts
 from validation.trade import again, kept, names
 from validation.trade.answers import Case as TradeCase
 from validation.trade.cases import Question, response_question
@@ -111,7 +112,7 @@ def test_growth_in_time_lies_on_its_lines() -> None:
     "1e3 * (depth - np.array(run[key]))",
     "depth - np.array(run[key])",
 )
-@kills("validation.figures.layer:bore_summary", "np.argmax(np.abs(one))", "np.argmin(np.abs(one))")
+@kills("validation.figures.layer:bore_summary", "np.argmax(np.abs(values))", "np.argmin(np.abs(values))")
 def test_summary() -> None:
     """Signs and units: the model with dispersion is millimetres too high, that with friction turns least."""
     found = bore_summary()

@@ -19,7 +19,7 @@ pytestmark = pytest.mark.notebook
 
 
 def run(path: Path, out: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "validation.run_notebooks", str(path), "--out", str(out)]
+    command = [sys.executable, "-m", "leblanc", "notebooks", str(path), "--out", str(out)]
     return subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=False)
 
 

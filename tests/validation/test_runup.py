@@ -75,8 +75,8 @@ def test_steady_end() -> None:
 
 @kills(
     "validation.figures.runup_lag:orders",
-    "/ math.log(one.rate / other.rate)",
-    "/ math.log(other.rate / one.rate)",
+    "/ math.log(point.rate / other.rate)",
+    "/ math.log(other.rate / point.rate)",
 )
 def test_orders() -> None:
     """Errors in proportion to a power of the rate give that power."""

@@ -57,12 +57,12 @@ def row(error: float, time: float, spread: float = 0.1, **more: object) -> Row:
     return Row(**(given | more))  # type: ignore[arg-type]
 
 
-@kills("validation.trade.judge:dominates", "one.error <= other.error + own", "one.error <= other.error - own")
-@kills("validation.trade.judge:dominates", "one.time + noise < other.time", "one.time - noise < other.time")
+@kills("validation.trade.judge:dominates", "row.error <= other.error + own", "row.error <= other.error - own")
+@kills("validation.trade.judge:dominates", "row.time + noise < other.time", "row.time - noise < other.time")
 @kills(
     "validation.trade.judge:_noise",
-    "one.spread * one.time, other.spread * other.time,",
-    "one.spread * one.time, 0.0 * other.time,",
+    "row.spread * row.time, other.spread * other.time,",
+    "row.spread * row.time, 0.0 * other.time,",
 )
 @kills("validation.trade.judge:_noise", "_REPRODUCED * min(", "0.0 * min(")
 def test_dominates() -> None:

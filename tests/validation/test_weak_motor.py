@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from leblanc.scene.scene import load_scene
-from validation.cases.weak_motor import SCENE, with_and_without
+from leblanc.scene.examples import example
+from validation.cases.weak_motor import with_and_without
 
 
 def test_liquid_takes_a_weak_motor_through_the_resonance() -> None:
-    scene = load_scene(SCENE)
+    scene = example("weak_motor")
     assert scene.runup is not None
     wet, dry = with_and_without(scene.altered(runup=scene.runup.altered(cells=32, samples=600)))
     # It hangs where the vibration eats what the motor has: below the resonance at 25 rad/s.

@@ -16,7 +16,9 @@ from numpy.typing import NDArray
 
 from leblanc.studies.layer import answer_layer
 from solvers.layer.settle import simulate
-from solvers.layer.state import Numerics, Whirl
+from solvers.layer.state import Numerics
+from solvers.liquid_model import Whirl
+from solvers.synchronous.models import LINEAR, STATICS
 from solvers.waves.steady import respond, solve
 from validation.benchmarks.ours import AMPLITUDE, SPEED
 from validation.benchmarks.problems import SPIN, fill, response_speeds, steady_problem
@@ -91,9 +93,9 @@ def over_speeds(quick: bool = False) -> list[Growth]:
     counts = [1, 10, 30] if quick else [1, 3, 10, 30, 100, 300, 1000]
     layer, low, high = fill(), response_speeds()[0], response_speeds()[-1]
 
-    def each(one: Callable[[float], object]) -> list[float]:
+    def each(work: Callable[[float], object]) -> list[float]:
         rows = [np.linspace(low, high, n) if n > 1 else np.array([low]) for n in counts]
-        return [best(partial(_all, one, row)) for row in rows]
+        return [best(partial(_all, work, row)) for row in rows]
 
     def periods(slip: float) -> object:
         whirl = Whirl(SPIN, SPIN + slip, AMPLITUDE)
@@ -103,13 +105,13 @@ def over_speeds(quick: bool = False) -> list[Growth]:
     curves = [best(partial(respond, problem, np.linspace(low, high, n))) for n in counts[1:]]
     return [
         Growth(
-            "statics", "speeds", counts, each(lambda _: answer_layer(layer, SPIN, SPIN, AMPLITUDE, "statics"))
+            "statics", "speeds", counts, each(lambda _: answer_layer(layer, SPIN, SPIN, AMPLITUDE, STATICS))
         ),
         Growth(
             "linear",
             "speeds",
             counts,
-            each(lambda s: answer_layer(layer, SPIN, SPIN + s, AMPLITUDE, "linear")),
+            each(lambda s: answer_layer(layer, SPIN, SPIN + s, AMPLITUDE, LINEAR)),
         ),
         Growth("kdv, whole curve", "speeds", counts[1:], curves),
         Growth(
@@ -118,9 +120,9 @@ def over_speeds(quick: bool = False) -> list[Growth]:
     ]
 
 
-def _all(one: Callable[[float], object], row: NDArray[np.float64]) -> None:
+def _all(work: Callable[[float], object], row: NDArray[np.float64]) -> None:
     for speed in row:
-        one(float(speed))
+        work(float(speed))
 
 
 def right_hand_side(cells: int) -> float:
@@ -176,7 +178,7 @@ def first_calls() -> dict[str, float]:
         for _ in range(2):
             command = [sys.executable, "-c", _FIRST]
             done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-            rows.append([float(one) for one in done.stdout.split()])
+            rows.append([float(seconds) for seconds in done.stdout.split()])
     cold, warm = rows
     return {
         "imports": warm[0],

@@ -71,7 +71,7 @@ def maps(repeats: int = 3) -> list[Sample]:
     fills = [replace(_FILL, volume=part * _CHAMBER.capacity) for part in np.linspace(0.001, 0.9, _MAP)]
 
     def ours(friction: Friction) -> Callable[[], Callable[[], Go]]:
-        return lambda: lambda: lambda: growth_map(_ROTOR, [[one] for one in fills], speed, friction)[0]
+        return lambda: lambda: lambda: growth_map(_ROTOR, [[fill] for fill in fills], speed, friction)[0]
 
     def eigenvalues() -> Callable[[], Go]:
         return lambda: lambda: _by_eigenvalues(fills, speed, 3.0)
@@ -81,13 +81,13 @@ def maps(repeats: int = 3) -> list[Sample]:
         Contestant(_OURS, "linear friction", ours(Friction(FrictionLaw.LINEAR, 3.0)), size=_MAP),
         Contestant("numpy", "eigenvalues of 160 000 matrices", eigenvalues, size=_MAP),
     ]
-    found = measure(rows, lambda one: _gap(one, exact), repeats)
+    found = measure(rows, lambda answer: _gap(answer, exact), repeats)
     others = [
         Contestant(_OURS, "no friction", ours(NO_FRICTION), size=_MAP),
         Contestant(_OURS, "laminar friction", ours(Friction(FrictionLaw.STOKES)), size=_MAP),
     ]
     # These have no equals among the linear eigenvalue problems.
-    return [*found, *measure(others, lambda one: 0.0 if np.isfinite(one).all() else math.nan, repeats)]
+    return [*found, *measure(others, lambda answer: 0.0 if np.isfinite(answer).all() else math.nan, repeats)]
 
 
 def _by_eigenvalues(fills: list[Fill], speed: Array, rate: float) -> Array:
@@ -140,8 +140,9 @@ def table(samples: list[Sample]) -> str:
     """Rows of a table in Markdown."""
     lines = ["| code | setting | seconds | error | first call, s |", "|---|---|---:|---:|---:|"]
     lines += [
-        f"| {one.code} | {one.setting} | {one.seconds:.3g} | {one.error:.1e} | {one.first:.2g} |"
-        for one in samples
+        f"| {sample.code} | {sample.setting} | {sample.seconds:.3g} | {sample.error:.1e} "
+        f"| {sample.first:.2g} |"
+        for sample in samples
     ]
     return "\n".join(lines)
 

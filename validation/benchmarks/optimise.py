@@ -7,13 +7,12 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from pathlib import Path
 
-from leblanc.scene.scene import Scene, load_scene
+from leblanc.scene.examples import example
+from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import DutyPoint, Optimisation
 from leblanc.studies.optimise.optimise import optimise_scene
 
-_EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 SCENES = ("runup", "centrifuge", "washing_machine", "horizontal_rig", "vertical_rig")
 OBJECTIVES = ("working_speed", "peak", "mean", "least_mass")
 
@@ -38,7 +37,7 @@ class Cost:
 
 def measured(name: str, objective: str) -> Cost:
     """Cost of one search; the mean is over four speeds, the peak is the steady one."""
-    scene = load_scene(_EXAMPLES / f"{name}.toml")
+    scene = example(name)
     aim = Optimisation(
         objective=objective, steady=True, duty=_duty(scene), vibration_limit=_limit(scene, objective)
     )
@@ -70,9 +69,9 @@ def table() -> str:
     lines = ["| scene | chambers | objective | seconds | sets of volumes |", "|---|---:|---|---:|---:|"]
     for name in SCENES:
         for objective in OBJECTIVES:
-            one = measured(name, objective)
+            row = measured(name, objective)
             lines.append(
-                f"| {one.scene} | {one.chambers} | {one.objective} | {one.seconds:.2f} | {one.judged} |"
+                f"| {row.scene} | {row.chambers} | {row.objective} | {row.seconds:.2f} | {row.judged} |"
             )
             print(lines[-1], flush=True)
     return "\n".join(lines)

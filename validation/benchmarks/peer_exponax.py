@@ -168,12 +168,12 @@ def _with_complex_coefficients(stepper: Any) -> Any:
         spectral.build_derivative_operator(1, stepper.domain_extent, stepper.num_points)
     )
     z = np.asarray(symbol) * stepper.dt
-    half, (one, two, three) = phi_functions(0.5 * z)[0], phi_functions(z)
+    half, (first, two, three) = phi_functions(0.5 * z)[0], phi_functions(z)
     weights = (
         0.5 * half,
         0.5 * half,
         0.5 * half,
-        one - 3.0 * two + 4.0 * three,
+        first - 3.0 * two + 4.0 * three,
         two - 2.0 * three,
         4.0 * three - two,
     )

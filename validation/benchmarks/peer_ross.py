@@ -184,9 +184,12 @@ def main() -> None:
     one_core()
     with threadpool_limits(1):
         samples = compare()
-    for one in samples:
-        milliseconds = 1e3 * one.seconds
-        print(f"{one.code:8} {one.setting:42} {milliseconds:9.2f} ms  error {one.error:.1e} {one.note}")
+    for sample in samples:
+        milliseconds = 1e3 * sample.seconds
+        print(
+            f"{sample.code:8} {sample.setting:42} {milliseconds:9.2f} ms  "
+            f"error {sample.error:.1e} {sample.note}"
+        )
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ from fluid.kdv import KdvCoefficients
 from fluid.liquid import Liquid
 from meshes.arrays import Array, Complex
 from meshes.chamber import Chamber
-from solvers.layer.state import Whirl
+from solvers.liquid_model import Whirl
 from solvers.waves.modes import WaveProblem, WaveTerms, wave_split
 from solvers.waves.steady import family_problem, solve
 from solvers.waves.stepper import Advance, Control, Split, advance_adaptive

@@ -55,18 +55,18 @@ def kept_results(folder: Path | None = None) -> Results:
     place = resources.files("validation.benchmarks") if folder is None else folder
     found: dict[str, Any] = json.loads(place.joinpath(_FILE).read_text(encoding="utf-8"))
     sections = []
-    for one in found["sections"]:
-        samples = tuple(Sample(**_with_nan(row)) for row in one["samples"])
-        sections.append(Section(**(one | {"samples": samples, "missing": tuple(one["missing"])})))
-    grown = {name: [Growth(**one) for one in found[name]] for name in ("over_cells", "over_speeds")}
+    for section in found["sections"]:
+        samples = tuple(Sample(**_with_nan(row)) for row in section["samples"])
+        sections.append(Section(**(section | {"samples": samples, "missing": tuple(section["missing"])})))
+    grown = {name: [Growth(**row) for row in found[name]] for name in ("over_cells", "over_speeds")}
     return Results(**(found | {"sections": sections} | grown))
 
 
 def _without_nan(value: Any) -> Any:
     if isinstance(value, dict):
-        return {key: _without_nan(one) for key, one in value.items()}
+        return {key: _without_nan(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple):
-        return [_without_nan(one) for one in value]
+        return [_without_nan(entry) for entry in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
@@ -120,14 +120,14 @@ def _row(sample: Sample) -> str:
 def duration(seconds: float) -> str:
     """A time with three digits and its unit."""
     units = (("s", 1.0), ("ms", 1e-3), ("us", 1e-6))
-    unit, scale = next((one for one in units if seconds >= one[1]), units[-1])
+    unit, scale = next((candidate for candidate in units if seconds >= candidate[1]), units[-1])
     return f"{seconds / scale:.3g} {unit}"
 
 
 def cheapest(samples: Iterable[Sample], code: str, target: float) -> Sample | None:
     """The fastest sample of a code with an error of the target or less; None if there is none."""
-    good = [one for one in samples if one.code == code and one.error <= target]
-    return min(good, key=lambda one: one.seconds, default=None)
+    good = [sample for sample in samples if sample.code == code and sample.error <= target]
+    return min(good, key=lambda sample: sample.seconds, default=None)
 
 
 def _comparison(section: Section, ours: str) -> str:
@@ -135,7 +135,7 @@ def _comparison(section: Section, ours: str) -> str:
     if reference is None:
         return f"Within {section.target:g} there is no answer of {ours}.\n"
     text = [f"Cheapest within {section.target:g}: {ours} {duration(reference.seconds)} ({reference.setting})"]
-    for code in dict.fromkeys(one.code for one in section.samples):
+    for code in dict.fromkeys(sample.code for sample in section.samples):
         other = cheapest(section.samples, code, section.target)
         if code == ours:
             continue
@@ -150,9 +150,9 @@ def _comparison(section: Section, ours: str) -> str:
 def front(samples: Iterable[Sample]) -> list[Sample]:
     """Samples that no other one beats in both time and error, the fastest first."""
     kept: list[Sample] = []
-    for one in sorted((s for s in samples if s.error > 0.0), key=lambda s: (s.seconds, s.error)):
-        if not kept or one.error < kept[-1].error:
-            kept.append(one)
+    for sample in sorted((s for s in samples if s.error > 0.0), key=lambda s: (s.seconds, s.error)):
+        if not kept or sample.error < kept[-1].error:
+            kept.append(sample)
     return kept
 
 
@@ -172,26 +172,29 @@ def at_equal_error(ours: Iterable[Sample], other: Iterable[Sample]) -> list[tupl
     mine = front(ours)[::-1]
     if len(mine) < 2:
         return []
-    errors, times = np.log([one.error for one in mine]), np.log([one.seconds for one in mine])
-    within = [one for one in front(other) if mine[0].error <= one.error <= mine[-1].error]
+    errors, times = np.log([sample.error for sample in mine]), np.log([sample.seconds for sample in mine])
+    within = [sample for sample in front(other) if mine[0].error <= sample.error <= mine[-1].error]
     return [
-        (one.error, one.seconds / math.exp(np.interp(math.log(one.error), errors, times))) for one in within
+        (sample.error, sample.seconds / math.exp(np.interp(math.log(sample.error), errors, times)))
+        for sample in within
     ]
 
 
 def growth_markdown(growths: Sequence[Growth]) -> str:
     """Table of costs over one number."""
-    counts = sorted({n for one in growths for n in one.counts})
+    counts = sorted({n for curve in growths for n in curve.counts})
     head = (
         f"| {growths[0].over} | "
-        + " | ".join(one.name for one in growths)
+        + " | ".join(curve.name for curve in growths)
         + " |\n|---:"
         + "|---:" * len(growths)
         + "|\n"
     )
     rows = []
     for n in counts:
-        cells = [duration(one.seconds[one.counts.index(n)]) if n in one.counts else "" for one in growths]
+        cells = [
+            duration(curve.seconds[curve.counts.index(n)]) if n in curve.counts else "" for curve in growths
+        ]
         rows.append(f"| {n} | " + " | ".join(cells) + " |")
     return head + "\n".join(rows) + "\n"
 
@@ -213,13 +216,13 @@ def accuracy_figure(section: Section, directory: Path) -> Path:
     with style():
         figure = Figure()
         axes = figure.add_axes((0, 0, 1, 1))
-        for k, code in enumerate(dict.fromkeys(one.code for one in section.samples)):
-            mine = [one for one in section.samples if one.code == code and one.error > 0.0]
+        for k, code in enumerate(dict.fromkeys(sample.code for sample in section.samples)):
+            mine = [sample for sample in section.samples if sample.code == code and sample.error > 0.0]
             best = front(mine)
             look: dict[str, Any] = {"color": f"C{k}", "marker": _MARKS[k % len(_MARKS)]}
-            times, errors = ([getattr(one, name) for one in mine] for name in ("seconds", "error"))
+            times, errors = ([getattr(sample, name) for sample in mine] for name in ("seconds", "error"))
             axes.plot(times, errors, linestyle="none", markerfacecolor="white", **look)
-            times, errors = ([getattr(one, name) for one in best] for name in ("seconds", "error"))
+            times, errors = ([getattr(sample, name) for sample in best] for name in ("seconds", "error"))
             line: dict[str, Any] = {"linestyle": _LINES[k % len(_LINES)], "linewidth": 1.1, "label": code}
             axes.plot(times, errors, **line, **look)
         _logarithmic(axes)
@@ -261,17 +264,17 @@ def growth_figure(growths: Sequence[Growth], name: str, directory: Path) -> Path
     with style():
         figure = Figure()
         axes = figure.add_axes((0, 0, 1, 1))
-        for k, one in enumerate(growths):
+        for k, curve in enumerate(growths):
             look: dict[str, Any] = {
                 "color": f"C{k}",
                 "marker": _MARKS[k % len(_MARKS)],
                 "linestyle": _LINES[k % len(_LINES)],
             }
-            axes.plot(one.counts, one.seconds, linewidth=1.1, label=one.name, **look)
+            axes.plot(curve.counts, curve.seconds, linewidth=1.1, label=curve.name, **look)
         _logarithmic(axes)
-        counts = sorted({n for one in growths for n in one.counts})
+        counts = sorted({n for curve in growths for n in curve.counts})
         axes.set_xticks(counts, [str(n) for n in counts])
-        over = " or ".join(dict.fromkeys(one.over for one in growths))
+        over = " or ".join(dict.fromkeys(curve.over for curve in growths))
         axes.set_xlabel(f"Number of {over} (\N{EN DASH})")
         axes.set_ylabel("Time (s)")
         text = f"Growth of the cost with the number of {over}. One core, best of several repeats."
@@ -397,7 +400,7 @@ def _layers(
 
     samples = tuple(measure(runs, error, repeats, _tell))
     left = iter(forces)
-    by_force = tuple(one if one.note else replace(one, error=next(left)) for one in samples)
+    by_force = tuple(sample if sample.note else replace(sample, error=next(left)) for sample in samples)
     title = f"Long waves over {periods} whirl periods at resonance"
     sections, remarks = [], []
     for name, found, target in (("profile", samples, 1e-2), ("force", by_force, 2e-3)):
@@ -411,7 +414,7 @@ def _layers(
 def _of(
     here: list[ModuleType], problem: str, runs: Callable[[ModuleType], list[Contestant]]
 ) -> list[Contestant]:
-    return [one for module in here if hasattr(module, problem) for one in runs(module)]
+    return [program for module in here if hasattr(module, problem) for program in runs(module)]
 
 
 def _named(missing: list[ModuleType], problem: str) -> tuple[str, ...]:
@@ -424,10 +427,10 @@ def _tell(text: str) -> None:
 
 def _equal_error(samples: tuple[Sample, ...], name: str) -> list[str]:
     """Ratios of the long-wave runs where both codes have the same error."""
-    mine = [one for one in samples if one.code == ours.CODE]
+    mine = [sample for sample in samples if sample.code == ours.CODE]
     found = []
     for kernel in ("Fortran", "Python"):
-        theirs = [one for one in samples if one.setting.startswith(kernel)]
+        theirs = [sample for sample in samples if sample.setting.startswith(kernel)]
         ratios = ", ".join(f"{ratio:.2g} at {error:.1e}" for error, ratio in at_equal_error(mine, theirs))
         if ratios:
             found.append(f"Long waves, PyClaw's time ({kernel} kernel) over ours at equal {name}: {ratios}.")
@@ -454,21 +457,24 @@ def write(results: Results, directory: Path, held: str) -> None:
     for section in results.sections:
         picture = accuracy_figure(section, directory)
         text += [markdown(section, ours.CODE), f"![{section.title}]({picture.name})", ""]
-    text += ["## Single figures", "", *(f"* {one}" for one in [*_figures(results), *results.remarks]), ""]
+    text += ["## Single figures", "", *(f"* {line}" for line in [*_figures(results), *results.remarks]), ""]
     for name, rows in (("benchmark_cells", results.over_cells), ("benchmark_speeds", results.over_speeds)):
         picture = growth_figure(rows, name, directory)
-        title = "Growth with the number of " + " and ".join(dict.fromkeys(one.over for one in rows))
+        title = "Growth with the number of " + " and ".join(dict.fromkeys(row.over for row in rows))
         text += [f"## {title}", "", growth_markdown(rows), f"![{title}]({picture.name})", ""]
     (directory / "benchmarks.md").write_text("\n".join(text), encoding="utf-8")
 
 
 def _figures(results: Results) -> list[str]:
     """What has a target."""
-    newton = [one for one in results.sections[0].samples if one.setting == "Newton, 128 points"]
-    rates = next(one for one in results.over_cells if one.name.endswith("right-hand side"))
+    newton = [sample for sample in results.sections[0].samples if sample.setting == "Newton, 128 points"]
+    rates = next(curve for curve in results.over_cells if curve.name.endswith("right-hand side"))
     speed = max(n / t / 1e6 for n, t in zip(rates.counts, rates.seconds, strict=True))
     done = "" if results.curve_complete else ", not complete"
-    found = [f"Steady wave on 128 points: {duration(one.seconds)}, error {one.error:.1e}." for one in newton]
+    found = [
+        f"Steady wave on 128 points: {duration(sample.seconds)}, error {sample.error:.1e}."
+        for sample in newton
+    ]
     found.append(f"Response at 201 whirl speeds: {duration(results.curve)}{done}.")
     found.append(f"Right-hand side of the long waves: up to {speed:.3g} million cells a second.")
     first = ", ".join(f"{name} {duration(t)}" for name, t in results.first.items())

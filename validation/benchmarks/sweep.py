@@ -14,11 +14,11 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+from leblanc.scene.examples import example_path
 from leblanc.scene.schema.load import read_toml
 from leblanc.studies.sweep.study import Sweep, load_sweep
 from leblanc.studies.sweep.sweep import run_sweep
 
-_EXAMPLES = Path(__file__).parents[2] / "examples"
 _STUDY = """
 scene = "scene.toml"
 method = "sobol"
@@ -61,7 +61,7 @@ def one_speed_study(folder: Path, samples: int) -> Sweep:
     """
     import json
 
-    table = read_toml(_EXAMPLES / "horizontal_rig.toml")
+    table = read_toml(example_path("horizontal_rig"))
     table["speeds"] = {"start": "1500 rpm", "stop": "1500 rpm", "count": 1}
     table["model"]["liquid"] = "statics"
     lines = [f"{key} = {json.dumps(table[key])}" for key in ("name", "source")]
@@ -95,7 +95,7 @@ def cost(samples: int, workers: int) -> Cost:
 def _processor() -> float:
     """Seconds of processor time of this process and of those it waited for."""
     used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
-    return sum(one.ru_utime + one.ru_stime for one in used)
+    return sum(usage.ru_utime + usage.ru_stime for usage in used)
 
 
 class _Watch:
@@ -132,7 +132,7 @@ def _children(process: int) -> list[int]:
     found = []
     for listed in Path(f"/proc/{process}/task").glob("*/children"):
         try:
-            found += [int(one) for one in listed.read_text(encoding="ascii").split()]
+            found += [int(child) for child in listed.read_text(encoding="ascii").split()]
         except OSError:  # a thread that has ended
             continue
     return found
@@ -148,10 +148,10 @@ def main(samples: int) -> None:
     print("| samples | workers | s | processor s | us a sample | largest process, MB | first process, MB |")
     print("|---|---|---|---|---|---|---|")
     for count, workers in ((samples // 10, 0), (samples, 0), (samples, 1), (samples, 2)):
-        one = cost(count, workers)
-        any_, own = (size / 1e6 for size in one.memory)
-        each = one.processor / count * 1e6
-        print(f"| {count} | {workers} | {one.seconds:.1f} | {one.processor:.1f} | {each:.0f} "
+        found = cost(count, workers)
+        any_, own = (size / 1e6 for size in found.memory)
+        each = found.processor / count * 1e6
+        print(f"| {count} | {workers} | {found.seconds:.1f} | {found.processor:.1f} | {each:.0f} "
               f"| {any_:.0f} | {own:.0f} |", flush=True)  # fmt: skip
 
 

@@ -107,12 +107,12 @@ def measure(
     """
     builds: list[Callable[[], Go] | None] = []
     rows: list[tuple[float, float, float, str]] = []
-    for one in contestants:
-        progress(f"{one.code}: {one.setting}")
+    for contestant in contestants:
+        progress(f"{contestant.code}: {contestant.setting}")
         begin = time.perf_counter()
         seconds, wrong, note, build = float("nan"), float("nan"), "", None
         try:
-            build = one.prepare()
+            build = contestant.prepare()
             seconds, answer = _timed(build())
             wrong = error(answer)
             note = "" if np.isfinite(wrong) else "diverged"
@@ -129,16 +129,16 @@ def measure(
                 mine.append(_timed(build())[0])
     return [
         Sample(
-            one.code,
-            one.setting,
-            one.size,
+            contestant.code,
+            contestant.setting,
+            contestant.size,
             min(mine, default=float("nan")),
             wrong,
             first,
             len(mine),
             note,
         )
-        for one, mine, (_, wrong, first, note) in zip(contestants, times, rows, strict=True)
+        for contestant, mine, (_, wrong, first, note) in zip(contestants, times, rows, strict=True)
     ]
 
 

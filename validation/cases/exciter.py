@@ -120,7 +120,7 @@ def _critical() -> list[Case]:
             source=source,
             quantity=quantity,
             printed=7.0,
-            computed=", ".join(f"{name} {one.holds:.2f}" for name, one in found.items()),
+            computed=", ".join(f"{name} {check.holds:.2f}" for name, check in found.items()),
             difference="by the start",
             verdict="trend",
             note="the motion is stable far beyond the speed up to which it is reached",

@@ -6,16 +6,14 @@ machine has with a full chamber's mass added to it: both follow without a search
 
 from __future__ import annotations
 
-from pathlib import Path
-
-from leblanc.scene.scene import Scene, jeffcott, load_scene
+from leblanc.scene.examples import example
+from leblanc.scene.scene import Scene, jeffcott
 from leblanc.studies.choose import axial_gravity
-from leblanc.studies.optimise.closed_form import wetting_volumes
 from leblanc.studies.optimise.optimise import optimise_scene
+from leblanc.studies.optimise.wetting import wetting_volumes
 from leblanc.units import MM
 from validation.cases.case import Case, compare
 
-_EXAMPLES = Path(__file__).parents[2] / "examples"
 _ML = 1e6
 # Values within 1e-6 count as equal, and the least volume of these is the answer. What is missing costs its
 # 5/2 power of the unbalance along an upright axis, its 3/2 power on a horizontal one: 0.4 % and 0.01 % of the
@@ -27,7 +25,7 @@ def cases() -> list[Case]:
     """An upright and a horizontal machine with one chamber: best volume and its amplitude."""
     found = []
     for name, tolerance in (("runup", _UPRIGHT), ("washing_machine", _HORIZONTAL)):
-        scene = load_scene(_EXAMPLES / f"{name}.toml")
+        scene = example(name)
         answer = optimise_scene(scene.altered(optimise=None), "working_speed", front=False)
         deflection, volume = closed_forms(scene)
         at = f"{scene.name}, at the working speed"

@@ -104,14 +104,14 @@ def _words(volume: Array, value: Array) -> str:
 def _order(added: Array, measured: dict[str, list[float]], volume: Array, curves: tuple[Array, ...]) -> Case:
     """Which objective wants more liquid."""
     seen = [added[int(np.argmin(measured[name]))] for name in ("resonance_peak", "peak", "cruise_mean")]
-    own = [volume[int(np.argmin(one * (1.0 + 1e-9 * np.arange(one.size))))] for one in curves]
+    own = [volume[int(np.argmin(curve * (1.0 + 1e-9 * np.arange(curve.size))))] for curve in curves]
     same = bool(own[0] >= own[1] >= own[2]) and len(set(own)) > 1
     return Case(
         name=f"{_GROUP}/order",
         source=_SOURCE,
         quantity="best volumes for resonance peak, peak of the run, and cruise, ml",
-        printed=", ".join(f"{one:g}" for one in seen),
-        computed=", ".join(f"{one:g}" for one in own),
+        printed=", ".join(f"{best:g}" for best in seen),
+        computed=", ".join(f"{best:g}" for best in own),
         difference=("the same order" + (", two of them alike" if len(set(own)) < 3 else ""))
         if same
         else "another order",

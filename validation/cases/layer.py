@@ -19,7 +19,8 @@ from fluid.liquid import Liquid
 from fluid.waves import force_ratio
 from meshes.chamber import Chamber
 from solvers.layer.settle import settle, simulate
-from solvers.layer.state import LayerHistory, Numerics, Whirl
+from solvers.layer.state import LayerHistory, Numerics
+from solvers.liquid_model import Whirl
 from validation.cases.case import Case, Verdict
 from validation.cases.rigs import data
 
@@ -117,7 +118,7 @@ def _force_case(run: str, variant: str, off: NDArray[np.float64]) -> Case:
         quantity="force of the bore, nine whirl periods, deviation over the reference's modulus",
         printed=0.0,
         computed=float(np.max(off[:6])),
-        difference=", ".join(f"{100 * one:.0f}" for one in off) + " %",
+        difference=", ".join(f"{100 * error:.0f}" for error in off) + " %",
         verdict=verdict,
         note="agrees within 10 % in three periods and 35 % in the next three; computed is the largest of six",
     )
@@ -135,7 +136,7 @@ def _rotation_case(run: dict[str, Any], time: NDArray[np.float64], rotation: NDA
         quantity="mean rotation of the liquid against the drum, deviation at each of the reference's times",
         printed=0.0,
         computed=float(off.max()),
-        difference=", ".join(f"{100 * one:.0f}" for one in off) + " %",
+        difference=", ".join(f"{100 * error:.0f}" for error in off) + " %",
         verdict="agrees" if bool(np.all(off <= _ROTATION)) else "differs",
         note="agrees within 25 %; with dispersion and laminar wall friction",
     )

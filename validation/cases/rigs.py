@@ -115,7 +115,7 @@ def _liquid_angle(speed: Array, damping_ratio: float, resonance: float) -> Array
 
 def _summary(name: str, what: str, parameters: Array, residual: Array) -> Case:
     spread = float(np.sqrt(np.mean(residual**2)))
-    listed = ", ".join(f"{one:+.1f}" for one in residual)
+    listed = ", ".join(f"{error:+.1f}" for error in residual)
     return Case(
         name=f"horizontal_rig/{name}",
         source="DR18, Fig. 24",
@@ -131,16 +131,16 @@ def _summary(name: str, what: str, parameters: Array, residual: Array) -> Case:
 def _points(rpm: list[float], angle: Array, residual: Array) -> list[Case]:
     return [
         Case(
-            name=f"horizontal_rig/{one:.0f}-rpm",
+            name=f"horizontal_rig/{at:.0f}-rpm",
             source="DR18, Fig. 24",
-            quantity=f"angle of the liquid behind the unbalance at {one:.0f} rpm, deg",
+            quantity=f"angle of the liquid behind the unbalance at {at:.0f} rpm, deg",
             printed=float(given),
             computed=float(given + off),
             difference=f"{-off:+.1f} deg",
             verdict="agrees" if abs(off) <= _READING else "differs",
             note="with the fitted damping ratio; agrees within half the step of the readings, 15 deg",
         )
-        for one, given, off in zip(rpm, angle, residual, strict=True)
+        for at, given, off in zip(rpm, angle, residual, strict=True)
     ]
 
 
@@ -171,14 +171,14 @@ def vertical_cases() -> list[Case]:
     wet = critical_speed(vertical_rotor(), vertical_rig())
     gain = np.abs(answer.deflection) / np.abs(answer.deflection_dry)
     found = []
-    for k, one in enumerate(speed):
+    for k, spin in enumerate(speed):
         lag = -math.degrees(answer.liquid_angle[k])
         helps = lag > 90.0 and gain[k] < 1.0
         found.append(
             Case(
-                name=f"vertical_rig/{one:g}-rad-s",
+                name=f"vertical_rig/{spin:g}-rad-s",
                 source="DR18, section 7.1",
-                quantity=f"liquid opposite the unbalance at {one:g} rad/s",
+                quantity=f"liquid opposite the unbalance at {spin:g} rad/s",
                 printed="it compensates",
                 computed=f"{lag:.0f} deg behind the unbalance, amplitude times {gain[k]:.2f}",
                 difference="the same" if helps else "the liquid adds to the vibration here",

@@ -126,7 +126,7 @@ def band(volumes: Sequence[float], friction: float) -> tuple[Array, Array]:
     rows = [[Fill(CHAMBER, known_liquid("water"), volume)] for volume in volumes]
     speed = np.linspace(RAMP.start, RAMP.stop, 191)
     bands = unstable_bands(ROTOR, rows, speed, Friction(FrictionLaw.LINEAR, friction))
-    ends = [(one[0][0], one[-1][1]) if one else (math.nan, math.nan) for one in bands]
+    ends = [(row[0][0], row[-1][1]) if row else (math.nan, math.nan) for row in bands]
     low, high = np.array(ends).T
     return low, high
 

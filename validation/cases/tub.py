@@ -180,8 +180,8 @@ def _measured() -> Case:
 def _frequencies() -> Case:
     found = modes(suspended_tub().system())
     listed = ", ".join(
-        f"{one / (2.0 * math.pi):.2f} ({ratio:.2f})"
-        for one, ratio in zip(found.frequency[0], found.damping_ratio[0], strict=True)
+        f"{frequency / (2.0 * math.pi):.2f} ({ratio:.2f})"
+        for frequency, ratio in zip(found.frequency[0], found.damping_ratio[0], strict=True)
     )
     return Case(
         name="tub/natural-frequencies",
@@ -210,7 +210,7 @@ def _with_distance() -> list[Case]:
                 source="DG21, section 5 and Fig. 5",
                 quantity=f"largest {words}, {unit}, for y_D = 0 to 90 mm in steps of 15 mm",
                 printed="grows with y_D",
-                computed=", ".join(f"{one:.3g}" for one in size),
+                computed=", ".join(f"{value:.3g}" for value in size),
                 difference="the same" if rises else "does not grow throughout",
                 verdict="trend" if rises else "differs",
                 note=_ASSUMED + "; angles beyond 100 mrad are more than linear theory can say",
@@ -231,7 +231,7 @@ def _springs() -> list[Case]:
             "DG21, below Fig. 7",
             "(C_x^2 + C_y^2 + C_z^2)/C^2 at 75 deg, turned by 30 deg",
             printed,
-            sum(one**2 for one in way),
+            sum(cosine**2 for cosine in way),
             tolerance=1e-9,
             otherwise="erratum",
             note="C_y = C sin(phi) fits C_x and C_z; printed is C cos(chi) sin(phi)",
@@ -252,14 +252,14 @@ def _springs() -> list[Case]:
 def _rigidity_centre() -> Case:
     """Largest turn about x with the laundry in the middle, as the springs move along the axis."""
     shifts = np.array([0.0, 0.01, 0.02, 0.03])
-    size = [1e3 * float(amplitude(suspended_tub(shift=one), _SPEEDS, "alpha").max()) for one in shifts]
+    size = [1e3 * float(amplitude(suspended_tub(shift=shift), _SPEEDS, "alpha").max()) for shift in shifts]
     rises = bool(np.all(np.diff(size) > 0.0))
     return Case(
         name="tub/rigidity-centre",
         source="DG21, section 5; DR18, section 2",
         quantity="largest turn about x, mrad, for l_c = 0, 10, 20, 30 mm and y_D = 0",
         printed="least where the rigidity centre is at the centre of gravity",
-        computed=", ".join(f"{one:.3g}" for one in size),
+        computed=", ".join(f"{value:.3g}" for value in size),
         difference="the same" if rises else "it is not least there",
         verdict="trend" if rises else "differs",
         note=_ASSUMED + "; the source does not say along which axis l_c lies: here along the spin axis",

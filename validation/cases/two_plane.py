@@ -43,7 +43,7 @@ class Balanced:
 
 def cases() -> list[Case]:
     """The conditions beside their potential, then each kind of balancer in time."""
-    return [_hessian(), _special(), *(one for group in DEMONSTRATIONS for one in group())]
+    return [_hessian(), _special(), *(case for group in DEMONSTRATIONS for case in group())]
 
 
 def balls_in_time(rotor: TwoPlane, speed: float, duration: float = 60.0) -> Balanced:

@@ -1,4 +1,4 @@
-"""A motor that hangs at the resonance without liquid and gets through with it: `examples/weak_motor.toml`.
+"""A motor that hangs at the resonance without liquid and gets through with it: the example `weak_motor`.
 
 `python -m validation.cases.weak_motor --out docs/images` draws the figure of docs/runup.md.
 """
@@ -9,12 +9,11 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from leblanc.scene.scene import Scene, load_scene
+from leblanc.scene.examples import example
+from leblanc.scene.scene import Scene
 from leblanc.studies.runup import runup_scene
 from leblanc.units import MM, RPM
 from solvers.runup.runup import RunupHistory
-
-SCENE = Path(__file__).parents[2] / "examples" / "weak_motor.toml"
 
 
 def with_and_without(scene: Scene, check: bool = False) -> tuple[RunupHistory, RunupHistory]:
@@ -25,8 +24,8 @@ def with_and_without(scene: Scene, check: bool = False) -> tuple[RunupHistory, R
     scene : the machine
     check : estimate the error, with half the cells
     """
-    empty = scene.altered(chambers=tuple(one.holding(0.0) for one in scene.chambers))
-    wet, dry = (runup_scene(one, check=check).history for one in (scene, empty))
+    empty = scene.altered(chambers=tuple(chamber.holding(0.0) for chamber in scene.chambers))
+    wet, dry = (runup_scene(machine, check=check).history for machine in (scene, empty))
     return wet, dry
 
 
@@ -81,11 +80,11 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m validation.cases.weak_motor", description=__doc__)
     parser.add_argument("--out", type=Path, required=True, help="folder of the figure")
     chosen = parser.parse_args(arguments)
-    scene = load_scene(SCENE)
+    scene = example("weak_motor")
     wet, dry = with_and_without(scene)
     draw(wet, dry, scene, chosen.out)
-    for name, one in (("with liquid", wet), ("without", dry)):
-        print(f"{name}: {one.speed[-1]:.2f} rad/s, {one.amplitude[-1] * MM:.2f} mm at the end")
+    for name, history in (("with liquid", wet), ("without", dry)):
+        print(f"{name}: {history.speed[-1]:.2f} rad/s, {history.amplitude[-1] * MM:.2f} mm at the end")
     return 0
 
 

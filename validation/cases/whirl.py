@@ -58,7 +58,7 @@ def _in_time() -> list[Case]:
     """
     found = []
     free, damped_points = (1.15, 1.3, 1.45), (1.0, 1.7)
-    points = [(one, 0.0, 0.0) for one in free] + [(one, 0.02, 30.0) for one in damped_points]
+    points = [(at, 0.0, 0.0) for at in free] + [(at, 0.02, 30.0) for at in damped_points]
     for ratio, zeta, rate in points:
         rotor, fill = layered_rotor(0.1, 0.1, zeta)
         law = Friction(FrictionLaw.LINEAR, rate) if rate else NO_FRICTION

@@ -16,9 +16,12 @@ from fluid.liquid import KNOWN_LIQUIDS
 from meshes.arrays import Array
 from meshes.chamber import Chamber
 from solvers.layer.settle import settle
-from solvers.layer.state import Numerics, Whirl
+from solvers.layer.state import Numerics
+from solvers.liquid_model import Whirl, Whirls
 from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
-from solvers.runup.machine import Ramp
+from solvers.runup.linear import couple_linear
+from solvers.runup.long_wave import couple
+from solvers.runup.machine import Ramp, RunupModel
 from solvers.runup.runup import RunupHistory, RunupNumerics, linear_run_error, run_up
 from solvers.synchronous.errors import LinearError, law_error, planar_enclosure
 from solvers.synchronous.models import LINEAR, STATICS
@@ -128,7 +131,7 @@ def linear_sample(seed: int, count: int) -> LinearSample:
     )
     pairs = pair_machines(machines, everyone, speed, gravity, LINEAR)
     error = planar_enclosure(pairs).error()
-    sizes = [np.abs(one.deflection) for one in (linear, exact)]
+    sizes = [np.abs(response.deflection) for response in (linear, exact)]
     return LinearSample(
         linear=linear,
         exact=exact,
@@ -158,11 +161,11 @@ def gravity_sample(seed: int, count: int, weakest: float = 4.0, cells: int = 64)
         found = settle(fill, whirl, friction, Numerics(cells=cells, dispersion=True))
         if not found.converged:
             continue
-        one = Fills.of([fill]), np.array([speed])
-        law = STATICS.synchronous(*one, np.array([whirl.amplitude]), np.zeros(1))
+        fills, spin = Fills.of([fill]), np.array([speed])
+        law = STATICS.answer(fills, Whirls.synchronous(spin, np.array([whirl.amplitude]), np.zeros(1)))
         exact = law.unbalance[0] / (fill.full_mass * whirl.amplitude)
         true = abs(found.force_ratio[-1] - exact)
-        rows.append((true, law_error(*one, np.array([GRAVITY]))[0]))
+        rows.append((true, law_error(fills, spin, np.array([GRAVITY]))[0]))
     return Coverage(*np.array(rows).T)
 
 
@@ -177,7 +180,7 @@ def run_up_sample(seed: int, count: int, cells: int = 64) -> Coverage:
         rotor, fills, drive, friction, gravity = random_run_up(rng)
 
         def run(
-            model: str,
+            model: RunupModel,
             rotor: Jeffcott = rotor,
             fills: list[Fill] = fills,
             drive: Ramp = drive,
@@ -187,7 +190,7 @@ def run_up_sample(seed: int, count: int, cells: int = 64) -> Coverage:
             numerics = RunupNumerics(cells, 1000, dispersion=True, companion=False)
             return run_up(rotor.system(), fills, drive, friction, gravity, numerics, None, model)
 
-        linear, exact = run("linear"), run("long_wave")
+        linear, exact = run(couple_linear), run(couple)
         if not exact.converged:
             continue
         size = min(linear.time.size, exact.time.size)
@@ -238,11 +241,11 @@ def main() -> None:
         f"{'estimate':20}{'n':>6}{'covered':>9}{'infinite':>10}{'ratio':>8}"
         f"{'true <1%':>10}{'taken':>8}{'refused':>9}"
     )
-    for name, one in samples.items():
-        good, taken = one.within(0.01)
+    for name, sample in samples.items():
+        good, taken = sample.within(0.01)
         print(
-            f"{name:20}{one.true.size:6d}{one.covered:9.3f}{one.unbounded:10.3f}{one.ratio():8.3g}"
-            f"{good:10.3f}{taken:8.3f}{one.refused(0.01):9.3f}"
+            f"{name:20}{sample.true.size:6d}{sample.covered:9.3f}{sample.unbounded:10.3f}{sample.ratio():8.3g}"
+            f"{good:10.3f}{taken:8.3f}{sample.refused(0.01):9.3f}"
         )
 
 

@@ -15,10 +15,12 @@ from fluid.fill import Fill
 from fluid.friction import Friction, FrictionLaw
 from fluid.liquid import Liquid
 from leblanc.results.base import texts
-from leblanc.studies.layer import answer_layer, long_wave_notes, long_wave_validity
+from leblanc.studies.layer import answer_layer, wave_notes
 from meshes.chamber import Chamber
-from solvers.layer.settle import simulate
-from solvers.layer.state import Numerics, Whirl
+from solvers.layer.settle import LongWave, simulate
+from solvers.layer.state import Numerics
+from solvers.liquid_model import Whirl
+from solvers.waves.one_family import OneFamily
 
 _RADIUS, _HEIGHT = 0.15, 0.01
 
@@ -109,10 +111,10 @@ def outcome(case: Extreme) -> Outcome:
     volume = math.pi * (_RADIUS - surface) * (_RADIUS + surface) * _HEIGHT
     fill = Fill(Chamber(_RADIUS, _HEIGHT), Liquid("test", 1000.0, case.viscosity), volume)
     amplitude, speed = case.amplitude * case.depth * _RADIUS, case.ratio * case.spin
-    numerics = Numerics(case.points, case.dispersion)
     friction = Friction(FrictionLaw.STOKES if case.viscosity else FrictionLaw.NONE)
     if case.model == "kdv":
-        answer = answer_layer(fill, case.spin, speed, amplitude, "kdv", friction, numerics=numerics)
+        family = OneFamily(friction, case.points, case.dispersion)
+        answer = answer_layer(fill, case.spin, speed, amplitude, family)
         return Outcome(
             converged=answer.converged,
             in_range=answer.in_range,
@@ -125,10 +127,10 @@ def outcome(case: Extreme) -> Outcome:
             says="; ".join(texts(answer.notes)),
         )
     whirl = Whirl(case.spin, speed, amplitude, ramp=20.0 / case.spin)
+    numerics = Numerics(case.points, case.dispersion)
     history = simulate(fill, whirl, case.periods * whirl.period, friction, numerics)
-    validity = long_wave_validity(fill, whirl, history)
     numbers = (history.force_ratio, history.offset, history.mean_rotation, history.depth)
-    notes = long_wave_notes(fill, history, validity)
+    notes = wave_notes(LongWave(friction, numerics).wave_at_end(fill, whirl, history))
     return Outcome(
         converged=history.converged,
         in_range=not notes,

@@ -60,7 +60,7 @@ def baffle_row(
     tip = 0.0 if share + wall_gap >= 1.0 else RADIUS - (share + wall_gap) * depth
     baffles = Baffles(count, tip, wall_gap * depth) if count else None
     fine = fineness or Resolution(48, 4)
-    coarse, system = (condense(one) for one in ring_sections(RADIUS, SURFACE, baffles, fine))
+    coarse, system = (condense(section) for section in ring_sections(RADIUS, SURFACE, baffles, fine))
     known = spectrum(system)
     modes = sloshing_modes(system, SPIN, max(8, 2 * count + 2), known)
     # The slowest waves either way that move the centre of mass; between closed baffles all of them stand.
@@ -122,6 +122,6 @@ def _change(value: float, clear: float) -> str:
 if __name__ == "__main__":
     for gap, shares in ((0.0, SHARES), (0.25, (0.25, 0.5, 0.75))):
         rows = baffle_rows(COUNTS, shares, gap)
-        worst = max(one.error for one in rows)
+        worst = max(row.error for row in rows)
         print(f"Gap at the wall {100.0 * gap:.0f} % of the depth; errors below {worst:.1g}")
         print("\n".join(markdown(rows)), end="\n\n")

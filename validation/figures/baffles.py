@@ -146,9 +146,9 @@ def rows(lines: Sequence[Line]) -> list[str]:
         "| baffles | of the depth | largest growth, undamped | bands, undamped | bands, damped |",
         "|---|---|---|---|---|",
     ]
-    for one in lines:
-        free, damped = (_words(bands) for bands in (one.bands, one.damped))
-        out.append(f"| {one.count} | {one.depth:.0%} | {one.growth:.4f} | {free} | {damped} |")
+    for line in lines:
+        free, damped = (_words(bands) for bands in (line.bands, line.damped))
+        out.append(f"| {line.count} | {line.depth:.0%} | {line.growth:.4f} | {free} | {damped} |")
     return out
 
 

@@ -32,21 +32,21 @@ def kept_trade(name: str) -> TradeRecord:
 
     found = kept(name)
     comparisons = []
-    for one in found["questions"]:
-        mine = [_numbers(row) for row in found["rows"] if row["question"] == one["question"]]
+    for question in found["questions"]:
+        mine = [_numbers(row) for row in found["rows"] if row["question"] == question["question"]]
         for row in mine:
             del row["time_ratio"]
             row |= {"used": tuple(row["used"]), "resolution": _whole(row["resolution"])}
         comparisons.append(
             Comparison(
-                question=one["question"],
-                about=one["about"],
-                reference=one["reference"],
-                reference_error=_number(one["reference_error"]),
-                order=_number(one["order"]),
+                question=question["question"],
+                about=question["about"],
+                reference=question["reference"],
+                reference_error=_number(question["reference_error"]),
+                order=_number(question["order"]),
                 rows=tuple(Row(**row) for row in mine),
-                dominated_by=tuple(one["default_dominated_by"]),
-                overhead=_number(one["default_overhead"]),
+                dominated_by=tuple(question["default_dominated_by"]),
+                overhead=_number(question["default_overhead"]),
             )
         )
     return TradeRecord(

@@ -9,7 +9,8 @@ import numpy as np
 from fluid.waves import force_ratio
 from leblanc.figures.page import Figure, Frame, lay_out, number, style
 from solvers.layer.settle import settle
-from solvers.layer.state import Numerics, Whirl
+from solvers.layer.state import Numerics
+from solvers.liquid_model import Whirl
 from validation.cases.layer import bore_histories, bore_reference, plane_layer
 from validation.cases.rigs import data
 
@@ -132,7 +133,7 @@ def bore_summary() -> dict[str, tuple[float, float, float]]:
             1e3 * (depth - np.array(run[key]))
             for key, depth in (("depth_max", history.depth_max), ("depth_min", history.depth_min))
         ]
-        crest, trough = (float(one[np.argmax(np.abs(one))]) for one in off)
+        crest, trough = (float(values[np.argmax(np.abs(values))]) for values in off)
         found[_LOOKS[name][0]] = crest, trough, float(history.mean_rotation[-1])
         last = float(np.interp(history.time[-1], *flow))
     return {"computed flow": (0.0, 0.0, last)} | found

@@ -118,7 +118,8 @@ def fitted_damping() -> float:
 def orders(lags: Sequence[Lag]) -> list[float]:
     """Exponents of the error over the rate, from each to the next."""
     return [
-        math.log(one.error / other.error) / math.log(one.rate / other.rate) for one, other in pairwise(lags)
+        math.log(point.error / other.error) / math.log(point.rate / other.rate)
+        for point, other in pairwise(lags)
     ]
 
 
@@ -129,19 +130,19 @@ def table(lags: Sequence[Lag], damping_ratio: float) -> str:
         "| rate, rad/s^2 | error to 1100 rpm | exponent | of the angle, deg | error beyond | energy left |",
         "|---|---|---|---|---|---|",
     ]
-    for one, order in zip(lags, [math.nan, *orders(lags)], strict=True):
+    for point, order in zip(lags, [math.nan, *orders(lags)], strict=True):
         exponent = "" if math.isnan(order) else f"{order:.2f}"
         lines.append(
-            f"| {one.rate:g} | {one.error:.2%} | {exponent} | {math.degrees(one.angle_error):.1f} "
-            f"| {one.beyond:.2%} | {one.closure:.0e} |"
+            f"| {point.rate:g} | {point.error:.2%} | {exponent} | {math.degrees(point.angle_error):.1f} "
+            f"| {point.beyond:.2%} | {point.closure:.0e} |"
         )
     head = " | ".join(f"{rpm:.0f} rpm" for rpm in measured["speed_rpm"])
     lines += ["", f"| liquid behind the unbalance, deg | {head} |", "|---|" + "---|" * 6]
     lines.append("| measured [DR18, Fig. 24] | " + " | ".join(map(str, measured["angle_deg"])) + " |")
     _, exact = steady(np.array(measured["speed_rpm"]) * _RPM, damping_ratio)
-    rows = [("steady response", exact)] + [(f"{one.rate:g} rad/s^2", one.angles) for one in lags[::-1]]
+    rows = [("steady response", exact)] + [(f"{point.rate:g} rad/s^2", point.angles) for point in lags[::-1]]
     for name, angles in rows:
-        lines.append(f"| {name} | " + " | ".join(f"{one:.1f}" for one in np.degrees(angles)) + " |")
+        lines.append(f"| {name} | " + " | ".join(f"{angle:.1f}" for angle in np.degrees(angles)) + " |")
     return "\n".join(lines)
 
 
@@ -187,14 +188,14 @@ def _draw_angles(axes: Any, lags: Sequence[Lag], damping_ratio: float) -> None:
     axes.plot(
         speed / _RPM, np.degrees(steady(speed, damping_ratio)[1]), color="black", label="steady response"
     )
-    for one, color, dashes in zip(lags, _COLORS, _DASHES, strict=False):
-        kept = (one.speed >= LOOKED[0]) & (one.speed <= BEYOND[1])
-        rpm, degrees = one.speed[kept] / _RPM, np.degrees(one.angle[kept])
+    for point, color, dashes in zip(lags, _COLORS, _DASHES, strict=False):
+        kept = (point.speed >= LOOKED[0]) & (point.speed <= BEYOND[1])
+        rpm, degrees = point.speed[kept] / _RPM, np.degrees(point.angle[kept])
         look: dict[str, Any] = {"color": color, "linestyle": dashes, "linewidth": 1.1}
         axes.plot(
             *gapped(rpm, degrees, np.abs(np.diff(degrees)) > 180.0),
             **look,
-            label=f"{one.rate:g} rad/s\N{SUPERSCRIPT TWO}",
+            label=f"{point.rate:g} rad/s\N{SUPERSCRIPT TWO}",
         )
     mark = {"color": "black", "markersize": 5.0, "markerfacecolor": "white", "zorder": 5}
     error = {"elinewidth": 0.8, "capsize": 2.0, "linestyle": "none", "label": "measured, read to 30 deg"}
@@ -207,10 +208,10 @@ def _draw_angles(axes: Any, lags: Sequence[Lag], damping_ratio: float) -> None:
 
 def _draw_errors(axes: Any, lags: Sequence[Lag]) -> None:
     """Error over rate with a line of slope one through the slowest."""
-    rates, errors = np.array([one.rate for one in lags]), np.array([one.error for one in lags])
+    rates, errors = np.array([point.rate for point in lags]), np.array([point.error for point in lags])
     axes.loglog(rates, 100.0 * errors, "o-", color="#0072B2", label="error through the resonance")
     look: dict[str, Any] = {"color": "#D55E00", "marker": "s", "linestyle": (0, (3.5, 1.5))}
-    beyond = 100.0 * np.array([one.beyond for one in lags])
+    beyond = 100.0 * np.array([point.beyond for point in lags])
     axes.loglog(rates, beyond, markerfacecolor="white", linewidth=1.1, label="error beyond it", **look)
     guide = {"color": "0.4", "linewidth": 1.0, "linestyle": (0, (6, 2))}
     axes.loglog(rates, 100.0 * errors[-1] * rates / rates[-1], **guide, label="in proportion to the rate")

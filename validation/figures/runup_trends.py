@@ -32,26 +32,26 @@ def comparison() -> str:
         "|---|---|---|---|---|---|---|---|---|---|",
     ]
     for volume, rate, peak, speed, end in GIVEN:
-        one = run(volume, rate, check=volume > 0.0)
-        error = "" if math.isnan(one.error) else f"{one.error:.1%}"
+        found = run(volume, rate, check=volume > 0.0)
+        error = "" if math.isnan(found.error) else f"{found.error:.1%}"
         lines.append(
-            f"| {volume * LITRE:g} l | {rate:g} | {peak} | {one.peak * MM:.2f} | {speed} "
-            f"| {one.peak_speed:.2f} | {end} | {one.last * MM:.3f} | {error} | {one.closure:.0e} |"
+            f"| {volume * LITRE:g} l | {rate:g} | {peak} | {found.peak * MM:.2f} | {speed} "
+            f"| {found.peak_speed:.2f} | {end} | {found.last * MM:.3f} | {error} | {found.closure:.0e} |"
         )
     return "\n".join(lines)
 
 
 def table(points: Sequence[Point]) -> str:
     """Peak and end over volume and friction, as a table in Markdown."""
-    rates = list(dict.fromkeys(one.friction for one in points))
+    rates = list(dict.fromkeys(point.friction for point in points))
     head = " | ".join(f"k = {rate:g}" for rate in rates)
     lines = [f"| water, l | {head} |", "|---|" + "---|" * len(rates)]
-    for volume in dict.fromkeys(one.volume for one in points):
-        row = [one for one in points if one.volume == volume]
+    for volume in dict.fromkeys(point.volume for point in points):
+        row = [point for point in points if point.volume == volume]
         cells = " | ".join(
-            f"{one.peak * MM:.2f} at {one.peak_speed:.1f}; {one.end * MM:.2f}"
-            + ("" if one.converged else " (stopped)")
-            for one in row
+            f"{found.peak * MM:.2f} at {found.peak_speed:.1f}; {found.end * MM:.2f}"
+            + ("" if found.converged else " (stopped)")
+            for found in row
         )
         lines.append(f"| {volume * LITRE:.3g} | {cells} |")
     return "\n".join(lines)
@@ -68,7 +68,7 @@ def draw(points: Sequence[Point], dry: Point, directory: Path) -> Path:
     """
     from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
 
-    volumes = list(dict.fromkeys(one.volume for one in points))
+    volumes = list(dict.fromkeys(point.volume for point in points))
     litres = np.array(volumes) * LITRE
     with style():
         figure = Figure()
@@ -112,16 +112,16 @@ _CAPTION = (
 def _lines(panels: Sequence[Any], points: Sequence[Point]) -> None:
     """One line for each friction in each panel."""
     for (color, mark, dashes), rate in zip(
-        _LOOKS, dict.fromkeys(one.friction for one in points), strict=False
+        _LOOKS, dict.fromkeys(point.friction for point in points), strict=False
     ):
-        mine = [one for one in points if one.friction == rate and one.converged]
-        x = np.array([one.volume for one in mine]) * LITRE
+        mine = [point for point in points if point.friction == rate and point.converged]
+        x = np.array([point.volume for point in mine]) * LITRE
         look: dict[str, Any] = {"color": color, "marker": mark, "linestyle": dashes, "linewidth": 1.2}
         look |= {"markersize": 3.5, "markerfacecolor": "white", "label": f"k = {rate:g} 1/s"}
         for axes, values in (
-            (panels[0], [one.peak * MM for one in mine]),
-            (panels[1], [one.peak_speed * RPM for one in mine]),
-            (panels[2], [one.end * MM for one in mine]),
+            (panels[0], [point.peak * MM for point in mine]),
+            (panels[1], [point.peak_speed * RPM for point in mine]),
+            (panels[2], [point.end * MM for point in mine]),
         ):
             axes.plot(x, values, **look)
 

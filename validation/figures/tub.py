@@ -55,7 +55,7 @@ def plots() -> tuple[Plot, ...]:
     up, along = "Amplitude of z (mm)", "Amplitude of y (mm)"
 
     def shifted(y: float) -> list[tuple[str, Tub]]:
-        return [(f"l_c = {1e3 * one:.0f} mm", suspended_tub(y, one)) for one in shifts]
+        return [(f"l_c = {1e3 * shift:.0f} mm", suspended_tub(y, shift)) for shift in shifts]
 
     springs = [
         (f"springs at {t:.0f}\N{DEGREE SIGN}", suspended_tub(FARTHEST, 0.0, math.radians(t))) for t in turns

@@ -38,7 +38,7 @@ def volume_figure() -> Figure:
             axes.plot(fine * MM, exact, **look, label=f"exact, {speed:g} rad/s")
             answers = [answer_volume(CHAMBER, e, speed, GRAVITY) for e in few]
             points = {"linestyle": "none", "color": _COLORS[k], "markerfacecolor": "white"}
-            found = [one.optimal_volume_fem * _ML for one in answers]
+            found = [answer.optimal_volume_fem * _ML for answer in answers]
             label = f"elements, {speed:g} rad/s"
             axes.plot(np.array(few) * MM, found, marker=_MARKS[k], **points, label=label)
             _as_printed(axes, speed, k, fine)
@@ -70,9 +70,9 @@ def _as_printed(axes: Any, speed: float, k: int, deflection: Any) -> None:
     """The printed formula and its correction, which still takes a disc for the lens."""
     answers = [answer_volume(CHAMBER, float(e), speed, GRAVITY) for e in deflection[::10]]
     some = deflection[::10] * MM
-    printed = [np.nan if one.printed_eq18 is None else one.printed_eq18 * _ML for one in answers]
+    printed = [np.nan if answer.printed_eq18 is None else answer.printed_eq18 * _ML for answer in answers]
     # At slow spin the disc that stands for the lens leaves a negative volume.
-    given = [-1.0 if one.corrected_eq18 is None else one.corrected_eq18 * _ML for one in answers]
+    given = [-1.0 if answer.corrected_eq18 is None else answer.corrected_eq18 * _ML for answer in answers]
     corrected = np.where(np.array(given) > 0.0, given, np.nan)
     dots: dict[str, Any] = {"color": _COLORS[k], "linestyle": (0, (1, 2)), "linewidth": 1.0}
     axes.plot(some, printed, marker="x", **dots, label=f"eq. 18 as printed, {speed:g} rad/s")

@@ -41,13 +41,14 @@
 # %%
 import math
 
+import leblanc as lb
 from leblanc.figures.response import amplitude_figure, liquid_figure
 from leblanc.studies.run import run_scene
 from validation.cases import rigs, vector_model
 from validation.cases.rigs import data
 from validation.figures import runup_lag
 from validation.figures.rigs import angle_figure
-from validation.notebook_page import Table, case_table, example, picture, verdicts
+from validation.notebook_page import Table, case_table, picture, verdicts
 
 # %% [markdown]
 # ## The horizontal rig
@@ -84,7 +85,7 @@ Table(("Liquid behind the unbalance, deg", *(f"{speed} rpm" for speed in measure
 # With and without water, over all speeds, and where the liquid stands.
 
 # %%
-record = run_scene(example("vertical_rig"))
+record = run_scene(lb.example("vertical_rig"))
 picture(amplitude_figure(record))
 
 # %%

@@ -36,11 +36,12 @@
 #   linear one, or that of a laminar layer on the wall.
 
 # %%
+import leblanc as lb
 from leblanc.figures.whirl_map import map_figure
 from leblanc.studies.whirl_map import map_scene
 from validation.cases import whirl
 from validation.figures.whirl import growth_figure, in_time
-from validation.notebook_page import case_table, example, picture, verdicts
+from validation.notebook_page import case_table, picture, verdicts
 
 # %%
 cases = whirl.cases()
@@ -66,7 +67,7 @@ case_table(cases)
 # grows.
 
 # %%
-picture(map_figure(map_scene(example("horizontal_rig"), volumes=61, speeds=151)))
+picture(map_figure(map_scene(lb.example("horizontal_rig"), volumes=61, speeds=151)))
 
 # %% [markdown]
 # ## What does not agree

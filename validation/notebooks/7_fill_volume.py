@@ -34,16 +34,16 @@
 #   known. The machine that is computed in its place is **assumed in every value**; acceleration and
 #   amplitude are not the same quantity either. Only which volume is best for which objective, and the shape
 #   of the curves, can be compared.
-# * The other two machines are made up, `examples/runup.toml`, or partly so,
-#   `examples/washing_machine.toml`.
+# * The other two machines are made up, `runup`, or partly so, `washing_machine`, both of the examples.
 
 # %%
+import leblanc as lb
 from leblanc.figures.optimise import objective_figure
 from leblanc.studies.optimise.optimise import optimise_scene
 from validation.cases import fill_optimum, fill_sweep
 from validation.cases import runup as runup_given
 from validation.figures.fill_sweep import sweep_figure
-from validation.notebook_page import case_table, example, picture, verdicts
+from validation.notebook_page import case_table, picture, verdicts
 
 # %% [markdown]
 # ## The search
@@ -51,7 +51,7 @@ from validation.notebook_page import case_table, example, picture, verdicts
 # The amplitude at the working speed falls until the wall is wet, and stays.
 
 # %%
-scene = example("runup")
+scene = lb.example("runup")
 picture(objective_figure(optimise_scene(scene, "working_speed", front=False)))
 
 # %%

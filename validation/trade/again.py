@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
-from leblanc.scene.scene import load_scene
+from leblanc.scene.examples import example
 from validation.cases.case import Case, compare
 from validation.trade import kept, names
 from validation.trade.cases import Question, questions
 from validation.trade.judge import Comparison, Row
 from validation.trade.trade import TradeRecord, error_table
 
-_EXAMPLES = Path(__file__).parents[2] / "examples"
 # Errors are made again on two scenes, up to so many cells.
 _SCENES, _CELLS = ("centrifuge", "runup"), 32
 # Another order of sums changes an answer by some 1e-13; below that an error is rounding.
@@ -24,14 +22,17 @@ def cases() -> list[Case]:
     """The kept error beside the one found now, and for each scene whether the default is beaten."""
     found = []
     for name in _SCENES:
-        scene = load_scene(_EXAMPLES / f"{name}.toml")
+        scene = example(name)
         for question in questions(scene):
             found += _errors(name, question)
-    return [*found, *(_default(name, one) for name in names() for one in record(name).comparisons)]
+    return [
+        *found,
+        *(_default(name, comparison) for name in names() for comparison in record(name).comparisons),
+    ]
 
 
 def _errors(name: str, question: Question) -> list[Case]:
-    kept_rows = (row for one in record(name).comparisons for row in one.rows)
+    kept_rows = (row for comparison in record(name).comparisons for row in comparison.rows)
     rows = {row.label: row for row in kept_rows if row.question == question.name}
     cheap = [case for case in question.cases if case.model != "fem" and (case.resolution or 0) <= _CELLS]
     found = []
@@ -52,16 +53,16 @@ def _error(where: str, label: str, name: str, printed: float, error: float) -> C
     return compare(*words, printed, error, tolerance=_TOLERANCE)
 
 
-def _default(name: str, one: Comparison) -> Case:
+def _default(name: str, comparison: Comparison) -> Case:
     """Whether some other model or resolution is as good and cheaper."""
-    beaten = one.dominated_by
+    beaten = comparison.dominated_by
     return Case(
-        f"trade/{name}-{one.question}-default",
+        f"trade/{name}-{comparison.question}-default",
         f"validation/trade/{name}.json",
-        f"models and resolutions that beat the default in error and time on {name}, {one.question}",
+        f"models and resolutions that beat the default in error and time on {name}, {comparison.question}",
         "none",
         ", ".join(beaten) or "none",
-        f"the default's error is {one.default.error:.1e}",
+        f"the default's error is {comparison.default.error:.1e}",
         "differs" if beaten else "agrees",
     )
 
@@ -74,30 +75,30 @@ def record(name: str) -> TradeRecord:
     name : stem of the scene's file
     """
     content = kept(name)
-    comparisons = tuple(_comparison(one, content["rows"]) for one in content["questions"])
+    comparisons = tuple(_comparison(question, content["rows"]) for question in content["questions"])
     words = content["name"], f"kept in validation/trade/{name}.json"
     return TradeRecord(
         *words, tuple(content["assumed"]), content["digest"], content["tolerance"], comparisons
     )
 
 
-def _comparison(one: dict[str, Any], rows: list[dict[str, Any]]) -> Comparison:
+def _comparison(question: dict[str, Any], rows: list[dict[str, Any]]) -> Comparison:
     return Comparison(
-        question=one["question"],
-        about=one["about"],
-        reference=one["reference"],
-        reference_error=_number(one["reference_error"]),
-        order=_number(one["order"]),
-        rows=tuple(_row(row) for row in rows if row["question"] == one["question"]),
-        dominated_by=tuple(one["default_dominated_by"]),
-        overhead=_number(one["default_overhead"]),
+        question=question["question"],
+        about=question["about"],
+        reference=question["reference"],
+        reference_error=_number(question["reference_error"]),
+        order=_number(question["order"]),
+        rows=tuple(_row(row) for row in rows if row["question"] == question["question"]),
+        dominated_by=tuple(question["default_dominated_by"]),
+        overhead=_number(question["default_overhead"]),
     )
 
 
 def _row(values: dict[str, Any]) -> Row:
-    one = {key: value for key, value in values.items() if key != "time_ratio"}
-    numbers = {key: _number(one[key]) for key in ("error", "peak_error")}
-    return Row(**(one | numbers | {"used": tuple(one["used"])}))
+    known = {key: value for key, value in values.items() if key != "time_ratio"}
+    numbers = {key: _number(known[key]) for key in ("error", "peak_error")}
+    return Row(**(known | numbers | {"used": tuple(known["used"])}))
 
 
 def _number(value: float | None) -> float:

@@ -13,8 +13,8 @@ from leblanc.studies.choose import across_gravity, axial_gravity, choose, liquid
 from leblanc.studies.runup import RunupChoice, chosen_run, drive_of, judged, planned
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
+from solvers.liquid_model import LiquidModel
 from solvers.runup.runup import RunupNumerics
-from solvers.synchronous.models import LiquidModel
 
 RESPONSE, RUNUP = "response", "runup"
 DISPERSION = "dispersion"
@@ -136,14 +136,15 @@ def answer(scene: Scene, case: Case) -> Answer:
 
 
 def _response(scene: Scene, case: Case) -> Answer:
-    from solvers.synchronous.models import Fem, LongWave
+    from solvers.synchronous.models import CellsAtRest, ElementsAtRest
 
     size = case.resolution
     models, held = chosen_models(scene, "statics" if size else case.model)
     if size is None:
         amplitude, _, good, used = steady(scene, models)
     else:
-        model: LiquidModel = LongWave(size) if case.model == "long_wave" else Fem(size, int(case.variant[-1]))
+        cells = case.model == "long_wave"
+        model = CellsAtRest(size) if cells else ElementsAtRest(size, int(case.variant[-1]))
         amplitude, _, good, _ = steady(scene, model)
         used = (case.model,)
     good = good & held

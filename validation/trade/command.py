@@ -51,4 +51,5 @@ def trade(
     else:
         print("\n".join(trade_lines(record)))
         print(f"Look at {files.png}; the numbers are in {folder / 'trade.json'}")
-    say(f"{record.name}: {sum(len(one.rows) for one in record.comparisons)} models and resolutions done")
+    count = sum(len(comparison.rows) for comparison in record.comparisons)
+    say(f"{record.name}: {count} models and resolutions done")

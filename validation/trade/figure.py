@@ -63,64 +63,64 @@ def trade_figure(record: TradeRecord) -> Figure:
     with style():
         figure = Figure()
         panels = []
-        for k, one in enumerate(record.comparisons):
-            axes = figure.add_axes((0, 0, 1, 1), label=one.question)
-            _draw(axes, one, record.tolerance)
-            axes.set_title(TITLES[one.question], loc="left")
+        for k, comparison in enumerate(record.comparisons):
+            axes = figure.add_axes((0, 0, 1, 1), label=comparison.question)
+            _draw(axes, comparison, record.tolerance)
+            axes.set_title(TITLES[comparison.question], loc="left")
             axes.set_ylabel("Relative error (\N{EN DASH})")
             if k == len(record.comparisons) - 1:
                 axes.set_xlabel("CPU time (s)")
             panels.append(axes)
         lay_out(figure, [[axes] for axes in panels], [PANEL] * len(panels), FRAME, _caption(record), LINES)
-        for axes, one in zip(panels, record.comparisons, strict=True):
-            _label(figure, axes, one)
+        for axes, comparison in zip(panels, record.comparisons, strict=True):
+            _label(figure, axes, comparison)
     return figure
 
 
-def _known(one: Comparison) -> list[Row]:
-    return [row for row in one.rows if math.isfinite(row.error)]
+def _known(comparison: Comparison) -> list[Row]:
+    return [row for row in comparison.rows if math.isfinite(row.error)]
 
 
-def _floor(one: Comparison) -> float:
+def _floor(comparison: Comparison) -> float:
     """Level at which errors are drawn that the best answer's own hides."""
-    return max(one.reference_error if math.isfinite(one.reference_error) else 0.0, _FLOOR)
+    return max(comparison.reference_error if math.isfinite(comparison.reference_error) else 0.0, _FLOOR)
 
 
-def _height(row: Row, one: Comparison) -> float:
-    return max(row.error, _floor(one))
+def _height(row: Row, comparison: Comparison) -> float:
+    return max(row.error, _floor(comparison))
 
 
 def _kind(row: Row) -> str:
     return f"{row.model}, {row.variant}" if row.variant else row.model
 
 
-def _draw(axes: Axes, one: Comparison, tolerance: float) -> None:
+def _draw(axes: Axes, comparison: Comparison, tolerance: float) -> None:
     """Ladders, front, marks and the region below the best answer's own error."""
-    rows, floor = _known(one), _floor(one)
+    rows, floor = _known(comparison), _floor(comparison)
     axes.set_xscale("log")
     axes.set_yscale("log")
     for kind in dict.fromkeys(_kind(row) for row in rows):
-        _ladder(axes, kind, [row for row in rows if _kind(row) == kind], one)
+        _ladder(axes, kind, [row for row in rows if _kind(row) == kind], comparison)
     front = sorted((row for row in rows if row.on_front), key=lambda row: row.time)
     if front:
         # Rows within each other's spread of time are on the front side by side: the line takes the lower.
         x = [row.time for row in front]
-        y = np.minimum.accumulate([_height(row, one) for row in front])
+        y = np.minimum.accumulate([_height(row, comparison) for row in front])
         axes.plot(
             *([*x, 20.0 * max(row.time for row in rows)], [*y, y[-1]]),
             drawstyle="steps-post", color=FRONT, linewidth=3.5, alpha=0.5, zorder=1, label="front",
         )  # fmt: skip
-    times, heights = [row.time for row in rows], [_height(row, one) for row in rows]
+    times, heights = [row.time for row in rows], [_height(row, comparison) for row in rows]
     axes.set_xlim(0.4 * min(times), 4.0 * max(row.time * (1.0 + row.spread) for row in rows))
     low, high = 0.08 * min(*heights, tolerance), 8.0 * max(*heights, tolerance)
     axes.set_ylim(low, high)
     axes.axhspan(low, floor, color=BELOW, zorder=0, label="below the best answer's own error")
     axes.axhline(tolerance, color="0.3", linewidth=0.9, linestyle=":", zorder=1, label="tolerance")
     marks = {"linestyle": "none", "markerfacecolor": "none", "markeredgecolor": "black", "zorder": 4}
-    named = ((one.default, "o", 11.0, "default"), (one.recommended, "D", 13.0, "recommended"))
+    named = ((comparison.default, "o", 11.0, "default"), (comparison.recommended, "D", 13.0, "recommended"))
     for row, shape, size, word in named:
         if row is not None and math.isfinite(row.error):
-            axes.plot(row.time, _height(row, one), shape, markersize=size, **marks)
+            axes.plot(row.time, _height(row, comparison), shape, markersize=size, **marks)
             axes.plot([], [], shape, markersize=6.0, label=word, **marks)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(_power)
@@ -132,10 +132,10 @@ def _power(value: float, _at: float) -> str:
     return "10" + str(round(math.log10(value))).translate(_RAISED)
 
 
-def _ladder(axes: Axes, kind: str, rows: Sequence[Row], one: Comparison) -> None:
+def _ladder(axes: Axes, kind: str, rows: Sequence[Row], comparison: Comparison) -> None:
     """Points of one kind, hollow where the model is out of its own range, with their spread in time."""
     colour, marker, line = LOOKS[kind]
-    x, y = np.array([row.time for row in rows]), np.array([_height(row, one) for row in rows])
+    x, y = np.array([row.time for row in rows]), np.array([_height(row, comparison) for row in rows])
     name = kind.replace("_", " ").replace("fem", "finite elements")
     axes.plot(x, y, linestyle=line, color=colour, linewidth=0.9, zorder=2)
     axes.plot([], [], marker, linestyle=line, color=colour, linewidth=0.9, label=name)
@@ -148,11 +148,11 @@ def _ladder(axes: Axes, kind: str, rows: Sequence[Row], one: Comparison) -> None
         axes.plot([], [], "o", label="hollow: out of its range", **hollow)
 
 
-def _label(figure: Figure, axes: Axes, one: Comparison) -> None:
+def _label(figure: Figure, axes: Axes, comparison: Comparison) -> None:
     """Resolutions beside the points, where they cover least."""
     inch = figure.dpi / 72.0
-    rows = _known(one)
-    points = [axes.transData.transform((row.time, _height(row, one))) / inch for row in rows]
+    rows = _known(comparison)
+    points = [axes.transData.transform((row.time, _height(row, comparison))) / inch for row in rows]
     wide = [8.0 if row.recommended else 6.5 if row.default else 3.5 for row in rows]
     taken = [_Box(x - r, y - r, x + r, y + r) for (x, y), r in zip(points, wide, strict=True)]
     for row, (x, y) in zip(rows, points, strict=True):
@@ -166,7 +166,7 @@ def _label(figure: Figure, axes: Axes, one: Comparison) -> None:
         )
         taken.append(_Box(best.left - 1.5, best.bottom, best.right + 1.5, best.top))
         axes.annotate(
-            text, (row.time, _height(row, one)), xytext=(best.left - x, best.bottom - y + 1.0),
+            text, (row.time, _height(row, comparison)), xytext=(best.left - x, best.bottom - y + 1.0),
             textcoords="offset points", fontsize=LABEL, color=LOOKS[_kind(row)][0], zorder=5,
         )  # fmt: skip
 
@@ -191,7 +191,8 @@ def _caption(record: TradeRecord) -> str:
     """What is shown, the scene, what the errors are of, the best answers."""
     assumed = ", ".join(map(one_line, record.assumed)) or "nothing"
     asked = " ".join(
-        f"{one.about[0].upper()}{one.about[1:]}; best answer: {one.reference}." for one in record.comparisons
+        f"{comparison.about[0].upper()}{comparison.about[1:]}; best answer: {comparison.reference}."
+        for comparison in record.comparisons
     )
     return (
         "Error and least CPU time of every model, bars: spread of the times; numbers: cells or edges round a "

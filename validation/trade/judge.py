@@ -247,7 +247,7 @@ def reference_error(question: Question, ladder: Sequence[Answer]) -> tuple[float
     return max(fine / (2.0**order - 1.0), _ROUNDING), order
 
 
-def dominates(one: Row, other: Row, own: float) -> bool:
+def dominates(row: Row, other: Row, own: float) -> bool:
     """Whether a row is at least as accurate as another and cheaper by more than the times spread.
 
     Errors closer than the reference's own one count as equal, and so do times within 3 % of each other.
@@ -257,15 +257,15 @@ def dominates(one: Row, other: Row, own: float) -> bool:
     one, other : rows of one question
     own : error of the reference
     """
-    if not (math.isfinite(one.error) and math.isfinite(other.error)):
-        return math.isfinite(one.error) and not math.isfinite(other.error)
-    noise = _noise(one, other)
-    return one.error <= other.error + own and one.time + noise < other.time
+    if not (math.isfinite(row.error) and math.isfinite(other.error)):
+        return math.isfinite(row.error) and not math.isfinite(other.error)
+    noise = _noise(row, other)
+    return row.error <= other.error + own and row.time + noise < other.time
 
 
-def _noise(one: Row, other: Row) -> float:
+def _noise(row: Row, other: Row) -> float:
     """Difference of two times that is no difference, s."""
-    return max(one.spread * one.time, other.spread * other.time, _REPRODUCED * min(one.time, other.time))
+    return max(row.spread * row.time, other.spread * other.time, _REPRODUCED * min(row.time, other.time))
 
 
 def recommend(rows: Sequence[Row], own: float, tolerance: float) -> int:

@@ -26,7 +26,7 @@ def trade_json(record: TradeRecord) -> dict[str, Any]:
     ----------
     record : what was found
     """
-    rows = [_row(row, one) for one in record.comparisons for row in one.rows]
+    rows = [_row(row, comparison) for comparison in record.comparisons for row in comparison.rows]
     return {
         "name": record.name,
         "digest": record.digest,
@@ -34,36 +34,36 @@ def trade_json(record: TradeRecord) -> dict[str, Any]:
         "tolerance": record.tolerance,
         "remark": REMARK,
         "versions": versions(),
-        "questions": [_question(one, record.tolerance) for one in record.comparisons],
+        "questions": [_question(comparison, record.tolerance) for comparison in record.comparisons],
         "rows": rows,
     }
 
 
-def _question(one: Comparison, tolerance: float) -> dict[str, Any]:
-    advised = one.recommended
+def _question(comparison: Comparison, tolerance: float) -> dict[str, Any]:
+    advised = comparison.recommended
     return {
-        "question": one.question,
-        "about": one.about,
-        "reference": one.reference,
-        "reference_error": _number(one.reference_error),
-        "order": _number(one.order),
-        "default_dominated_by": list(one.dominated_by),
-        "default_overhead": _number(one.overhead),
+        "question": comparison.question,
+        "about": comparison.about,
+        "reference": comparison.reference,
+        "reference_error": _number(comparison.reference_error),
+        "order": _number(comparison.order),
+        "default_dominated_by": list(comparison.dominated_by),
+        "default_overhead": _number(comparison.overhead),
         "recommended": None if advised is None else advised.label,
-        "recommendation": recommendation(one, tolerance),
+        "recommendation": recommendation(comparison, tolerance),
     }
 
 
-def _row(row: Row, one: Comparison) -> dict[str, Any]:
+def _row(row: Row, comparison: Comparison) -> dict[str, Any]:
     values = {key: _number(x) if isinstance(x, float) else x for key, x in asdict(row).items()}
-    return values | {"used": list(row.used), "time_ratio": _number(row.time / one.default.time)}
+    return values | {"used": list(row.used), "time_ratio": _number(row.time / comparison.default.time)}
 
 
 def _number(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
-def recommendation(one: Comparison, tolerance: float) -> str:
+def recommendation(comparison: Comparison, tolerance: float) -> str:
     """What to take for a tolerance, and why, in words.
 
     Parameters
@@ -71,13 +71,13 @@ def recommendation(one: Comparison, tolerance: float) -> str:
     one : the comparison
     tolerance : relative error that is asked for
     """
-    advised, default = one.recommended, one.default
+    advised, default = comparison.recommended, comparison.default
     if advised is None:
-        return f"{one.question}: nothing has answered"
+        return f"{comparison.question}: nothing has answered"
     what = f"take {advised.label}"
     if advised.default:
         what = f"keep the default, {advised.label} (here {', '.join(advised.used)})"
-    wrong = f"its error is {error_words(advised, one)}"
+    wrong = f"its error is {error_words(advised, comparison)}"
     if advised.error > tolerance:
         why = f"nothing is within {_share(tolerance)}; {wrong}, the least"
     else:
@@ -86,12 +86,12 @@ def recommendation(one: Comparison, tolerance: float) -> str:
     if not advised.default:
         ratio = default.time / advised.time
         pace = f"takes {ratio:.3g} times as long"
-        beside = f"; the default's error is {error_words(default, one)} and it {pace}"
+        beside = f"; the default's error is {error_words(default, comparison)} and it {pace}"
     warning = "" if advised.in_range else "; it says of itself that it is out of its range"
-    return f"{one.question}: {what}: {why}{beside}{warning}"
+    return f"{comparison.question}: {what}: {why}{beside}{warning}"
 
 
-def error_words(row: Row, one: Comparison) -> str:
+def error_words(row: Row, comparison: Comparison) -> str:
     """An error as a share, or that it cannot be told from the best answer's own.
 
     Parameters
@@ -101,7 +101,11 @@ def error_words(row: Row, one: Comparison) -> str:
     """
     if not math.isfinite(row.error):
         return "unknown"
-    return _share(row.error) if row.resolved else f"below the best answer's own {_share(one.reference_error)}"
+    return (
+        _share(row.error)
+        if row.resolved
+        else f"below the best answer's own {_share(comparison.reference_error)}"
+    )
 
 
 def _share(value: float) -> str:
@@ -116,17 +120,21 @@ def trade_lines(record: TradeRecord) -> list[str]:
     record : what was found
     """
     lines = [one_line(record.name)]
-    for one in record.comparisons:
-        own = f"best: {one.reference}"
-        if one.reference_error > 1e-11:
-            own += f", whose own error is some {_share(one.reference_error)}"
-            own += f" (order {one.order:.2g})" if math.isfinite(one.order) else " (it does not converge)"
-        lines += ["", f"{one.question}: {one.about}; {own}"]
+    for comparison in record.comparisons:
+        own = f"best: {comparison.reference}"
+        if comparison.reference_error > 1e-11:
+            own += f", whose own error is some {_share(comparison.reference_error)}"
+            own += (
+                f" (order {comparison.order:.2g})"
+                if math.isfinite(comparison.order)
+                else " (it does not converge)"
+            )
+        lines += ["", f"{comparison.question}: {comparison.about}; {own}"]
         lines.append(f"{'model':27}{'error':>10}{'peak error':>12}{'CPU, ms':>11}{'spread':>8}{'MB':>8}")
-        lines += [_line(row) for row in one.rows]
-        lines.append(recommendation(one, record.tolerance))
-        if one.dominated_by:
-            lines.append(f"the default is beaten in both by: {'; '.join(one.dominated_by)}")
+        lines += [_line(row) for row in comparison.rows]
+        lines.append(recommendation(comparison, record.tolerance))
+        if comparison.dominated_by:
+            lines.append(f"the default is beaten in both by: {'; '.join(comparison.dominated_by)}")
     return lines
 
 

@@ -39,12 +39,21 @@ class SceneFault:
         return f"{where}{given}: must be {escaped(self.allowed)}"
 
 
-class SceneFaults(ValueError):  # noqa: N818 - the faults of one scene, all of them
+class SceneError(ValueError):
     """All that is wrong with one scene.
 
     Parameters
     ----------
     faults : each with its file, field, value and what is allowed; at least one
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> try:
+    ...     lb.example("horizontal_rig").replace({"rotor.mas": 1.0})
+    ... except lb.SceneError as error:
+    ...     print([fault.field for fault in error.faults])
+    ['rotor.mas']
     """
 
     def __init__(self, faults: Sequence[SceneFault]) -> None:
@@ -136,11 +145,11 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
 
     Raises
     ------
-    SceneFaults : no such file, not readable, not UTF-8, not TOML
+    SceneError : no such file, not readable, not UTF-8, not TOML
     """
 
-    def fault(allowed: str) -> SceneFaults:
-        return SceneFaults([SceneFault(str(path), "", None, allowed)])
+    def fault(allowed: str) -> SceneError:
+        return SceneError([SceneFault(str(path), "", None, allowed)])
 
     try:
         with Path(path).open("rb") as stream:
@@ -184,11 +193,11 @@ def read_scene(path: str | PathLike[str]) -> dict[str, Any]:
 
     Raises
     ------
-    SceneFaults : as `read_toml`
+    SceneError : as `read_toml`
     """
     table = read_toml(path)
     chambers = table.get("chambers")
-    for one in chambers if isinstance(chambers, list) else ():
-        if isinstance(one, dict) and isinstance(one.get("section"), str) and one["section"]:
-            one["section"] = str(Path(path).parent / one["section"])
+    for chamber in chambers if isinstance(chambers, list) else ():
+        if isinstance(chamber, dict) and isinstance(chamber.get("section"), str) and chamber["section"]:
+            chamber["section"] = str(Path(path).parent / chamber["section"])
     return table

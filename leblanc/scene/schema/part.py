@@ -17,7 +17,7 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
-from leblanc.scene.schema.load import SceneFault, SceneFaults, field_path, meant, shown
+from leblanc.scene.schema.load import SceneError, SceneFault, field_path, meant, shown
 from leblanc.scene.schema.rules import OneOf, Refused
 from meshes.errors import InputError
 
@@ -45,7 +45,7 @@ class Part(BaseModel):
 
     Raises
     ------
-    SceneFaults : with everything that is wrong
+    SceneError : with everything that is wrong
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -57,7 +57,7 @@ class Part(BaseModel):
         try:
             super().__init__(**values)
         except ValidationError as error:
-            raise SceneFaults(faults_of(error, type(self).__name__, type(self))) from None
+            raise SceneError(faults_of(error, type(self).__name__, type(self))) from None
 
     # Tables within tables are made by the validator, which collects the faults of all.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
@@ -104,14 +104,14 @@ class Part(BaseModel):
         values : checked, in SI units; those without a fault of their own
         given : what the file says
         """
-        for one, other in cls.ALTERNATIVES:
-            if (one in given) != (other in given):
+        for first, other in cls.ALTERNATIVES:
+            if (first in given) != (other in given):
                 continue
-            text = f"exactly one of {one} and {other}"
-            if one in given:
+            text = f"exactly one of {first} and {other}"
+            if first in given:
                 yield Conflict((other,), f"given alone: {text}")
             else:
-                yield Conflict((one,), f"given: {text}")
+                yield Conflict((first,), f"given: {text}")
 
     @model_validator(mode="wrap")
     @classmethod
@@ -125,7 +125,9 @@ class Part(BaseModel):
                 raise _with_conflicts(cls, error, given) from None
             raise
         if made is not given and (found := list(cls.conflicts(made.__dict__, given))):
-            raise ValidationError.from_exception_data(cls.__name__, [_line(one, given) for one in found])
+            raise ValidationError.from_exception_data(
+                cls.__name__, [_line(conflict, given) for conflict in found]
+            )
         return made
 
 
@@ -145,7 +147,7 @@ def _with_conflicts(cls: type[Part], error: ValidationError, given: Mapping[str,
         for name, field in cls.model_fields.items()
         if name not in wrong
     }
-    lines += [_line(one, given) for one in cls.conflicts(values, given)]
+    lines += [_line(conflict, given) for conflict in cls.conflicts(values, given)]
     order = {name: k for k, name in enumerate(cls.model_fields)}
     lines.sort(key=lambda line: order.get(str(line["loc"][0]), len(order)) if line.get("loc") else -1)
     return ValidationError.from_exception_data(cls.__name__, lines)
@@ -185,7 +187,7 @@ def rule_of(field: FieldInfo) -> Any:
     ----------
     field : of a part
     """
-    return next((one.func for one in field.metadata if hasattr(one, "func")), None)
+    return next((rule.func for rule in field.metadata if hasattr(rule, "func")), None)
 
 
 def parts_of(field: FieldInfo) -> dict[str, type[Part]]:

@@ -34,7 +34,7 @@ def tables_of(root: type[Part], kind: str) -> dict[tuple[str, ...], type[Part]]:
         part = parts.get(kind) or parts.get("")
         if part is not None:
             place = (name, "*") if is_list_of_parts(field) else (name,)
-            found |= {(*place, *below): one for below, one in tables_of(part, kind).items()}
+            found |= {(*place, *below): table for below, table in tables_of(part, kind).items()}
     return found
 
 
@@ -63,7 +63,7 @@ def rule_at(root: type[Part], table: Mapping[str, Any], path: str) -> Any:
     keys = keys_of(path)
     pattern = tuple("*" if isinstance(key, int) else key for key in keys)
     if keys[0] not in _ROOTS or pattern in _FIXED:
-        fixed = ", ".join(".".join(one) for one in _FIXED)
+        fixed = ", ".join(".".join(fixed_keys) for fixed_keys in _FIXED)
         raise Refused(f"the path of a field under {', '.join(_ROOTS)}, other than {fixed}")
     field, depth = require_field(root, table, path)
     rule = _rule_of(field, keys[depth + 1 :], field_path(keys[: depth + 1]))
@@ -117,7 +117,7 @@ def _must_stand(table: Mapping[str, Any], keys: Keys, tables: Mapping[tuple[str,
         if not stands:
             raise Refused(f"the path of a field; the scene has no {place}")
         found = found[key]
-        pattern = tuple("*" if isinstance(one, int) else one for one in keys[: n + 1])
+        pattern = tuple("*" if isinstance(key, int) else key for key in keys[: n + 1])
         if pattern in tables and not isinstance(found, Mapping):
             raise Refused(f"the path of a field; {place} is no table in the scene")
 
@@ -149,12 +149,12 @@ def entry_rule(annotation: Any) -> Any:
     annotation : of the field
     """
     if get_origin(annotation) is not tuple:
-        inside = [found for one in get_args(annotation) if (found := entry_rule(one)) is not None]
+        inside = [found for option in get_args(annotation) if (found := entry_rule(option)) is not None]
         return inside[0] if inside else None
     entry = get_args(annotation)[0]
     if get_origin(entry) is not Annotated:
         return None
-    return next((one.func for one in get_args(entry)[1:] if hasattr(one, "func")), None)
+    return next((rule.func for rule in get_args(entry)[1:] if hasattr(rule, "func")), None)
 
 
 def _must_be_alone(table: Mapping[str, Any], keys: Keys, part: type[Part]) -> None:

@@ -10,8 +10,8 @@ import numpy as np
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, jeffcott
 from leblanc.studies.batch import answer_scenes
 from leblanc.studies.choose import axial_gravity
+from leblanc.studies.liquid import synchronous_model
 from meshes.arrays import Array, Flags
-from solvers.synchronous.models import model_named
 from solvers.synchronous.response import machine_responses
 
 AT_ONCE = 4000  # pairs; more at once would only take memory
@@ -64,7 +64,7 @@ class FilledMachine:
         speed : rad/s, shape (m,)
         """
         rows = np.ascontiguousarray(volumes)
-        keys = [(row.tobytes(), one) for row, one in zip(rows, speed.tolist(), strict=True)]
+        keys = [(row.tobytes(), spin) for row, spin in zip(rows, speed.tolist(), strict=True)]
         fresh: dict[tuple[bytes, float], int] = {}
         for k, key in enumerate(keys):
             if key not in self._known:
@@ -75,8 +75,8 @@ class FilledMachine:
             which = np.array([k for _, k in part], dtype=np.intp)
             amplitude, dry = (self._planar if self.planar else self._one_by_one)(rows[which], speed[which])
             amplitude = np.where(np.isnan(amplitude), math.inf, amplitude)
-            for (key, _), one, dried in zip(part, amplitude.tolist(), dry.tolist(), strict=True):
-                self._known[key] = one, float(dried)
+            for (key, _), size, dried in zip(part, amplitude.tolist(), dry.tolist(), strict=True):
+                self._known[key] = size, float(dried)
         found = np.array([self._known[key] for key in keys]).reshape(-1, 2)
         return FillAnswers(found[:, 0], found[:, 1])
 
@@ -92,14 +92,14 @@ class FilledMachine:
         rotor = jeffcott(self.scene)
         machines = [(rotor, with_volumes(self.scene, row).fills) for row in different]
         gravity = np.full(len(machines), axial_gravity(self.scene))
-        model = model_named(self.scene.model.liquid)
+        model = synchronous_model(self.scene.model.liquid)
         found = machine_responses(machines, owner.reshape(-1), speed, gravity, model)
         return np.abs(found.deflection), found.dry_patch
 
     def _one_by_one(self, volumes: Array, speed: Array) -> tuple[Array, Flags]:
         """The same of rotors that tilt."""
         pairs = zip(volumes, speed.tolist(), strict=True)
-        scenes = [with_volumes(self.scene, row).altered(speeds=Speeds.at(one)) for row, one in pairs]
+        scenes = [with_volumes(self.scene, row).altered(speeds=Speeds.at(spin)) for row, spin in pairs]
         found = answer_scenes(scenes)
         return found.amplitude[:, 0], found.dry_patch[:, 0]
 

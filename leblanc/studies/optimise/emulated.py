@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.optimum import EmulatedAnswer, EmulatorError
+from leblanc.results.optimum import EmulatedAnswer
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.sweep.emulator import Emulator, emulate_store, varied_fields
@@ -44,8 +43,7 @@ class EmulatedVibration:
     def answer(self, volume: Array) -> EmulatedAnswer:
         """What it says of one set of volumes, shape (c,)."""
         value, deviation = self.emulator.predict(volume[None, self.chambers])
-        error = EmulatorError(**asdict(self.emulator.error))
-        return EmulatedAnswer(float(value[0]), float(deviation[0]), error)
+        return EmulatedAnswer(float(value[0]), float(deviation[0]), self.emulator.error)
 
     def inside(self, low: Array, high: Array, own: Array) -> tuple[Array, Array]:
         """Bounds of the volumes cut to what the emulator knows; other chambers keep their own volume.

@@ -1,4 +1,8 @@
-"""The best volumes of a scene's chambers for an objective the user names [theory: optimum]."""
+"""The best volumes of a scene's chambers for an objective the user names [theory: optimum].
+
+Beside them stand the closed forms and the front: a sweep from no liquid to the fullest, and what the search
+met by the way.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fluid.whirl import is_full
 from leblanc.results import optimum
@@ -17,27 +22,25 @@ from leblanc.results.optimum import (
     ConstraintValue,
     Feasibility,
     OptimumResult,
+    ParetoFront,
     WettingVolumes,
 )
 from leblanc.scene.scene import Scene, Speeds, require_clear
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.choose import axial_gravity
+from leblanc.studies.liquid import SYNCHRONOUS_MODELS
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
-from leblanc.studies.optimise.at_deflection import WettedWalls, wet_walls
-from leblanc.studies.optimise.closed_form import wetting_volumes
-from leblanc.studies.optimise.constraints import growth
 from leblanc.studies.optimise.emulated import EmulatedVibration
-from leblanc.studies.optimise.front import front_around
 from leblanc.studies.optimise.objectives import RunupPeak
-from leblanc.studies.optimise.problem import Problem, growth_speeds, problem_of
+from leblanc.studies.optimise.problem import Problem, growth, growth_speeds, problem_of, working_speed
 from leblanc.studies.optimise.search import best_volumes, bounds_of, evaluated_again, on_all_cells
+from leblanc.studies.optimise.wetting import WettedWalls, wet_walls, wetting_volumes
 from leblanc.studies.run import run_scene
-from leblanc.studies.validity import RANGES
 from leblanc.units import RPM
-from meshes.arrays import Array
+from meshes.arrays import Array, Flags
 from meshes.errors import InputError
+from solvers.liquid_model import LONG
 from solvers.search import Found
-from solvers.synchronous.models import MODEL_NAMES
 
 _ASKED = "the scene asks for it; "
 
@@ -87,31 +90,28 @@ def optimise_scene(
     low, high = bounds_of(scene, wish)
     machine = FilledMachine(scene)
     if wish.deflection is not None:
-        result = _at_deflection(scene, wish, wet_walls(scene, wish.deflection, _working_speed(scene, wish)))
+        result = _at_deflection(scene, wish, wet_walls(scene, wish.deflection, working_speed(scene, wish)))
         return _with_response(result, scene, machine) if response else result
 
     def solve(problem: Problem) -> Found:
         return best_volumes(scene, problem, low, high, progress)
 
     problem = problem_of(scene, wish, machine, solve)
-    if emulator is None:
-        chosen, exact = on_all_cells(scene, problem, solve(problem))
-        result = _result(scene, wish, exact, machine, chosen)
-    else:
+    exact, quick = on_all_cells(scene, problem), problem
+    if emulator is not None:
         low, high = emulator.inside(low, high, np.array([fill.volume for fill in scene.fills]))
         quick = replace(problem, evaluate=replace(problem.evaluate, vibration=emulator), costly=False)
-        chosen = evaluated_again(problem, best_volumes(scene, quick, low, high, progress))
+    chosen = best_volumes(scene, quick, low, high, progress)
+    if quick is not exact:
+        chosen = evaluated_again(exact, chosen)
+    result = _result(scene, wish, exact, machine, chosen)
+    if emulator is not None:
         answer = emulator.answer(chosen.point)
-        result = _result(scene, wish, problem, machine, chosen)
         result = replace(result, emulator=answer, notes=(optimum.emulated(answer), *result.notes))
     if front:
         edge, sweep = front_around(scene, problem, chosen, result.vibration, growth_speeds(scene, wish))
         result = replace(result, front=edge, sweep=sweep)
     return _with_response(result, scene, machine) if response else result
-
-
-def _working_speed(scene: Scene, aim: Optimisation) -> float:
-    return scene.speeds.stop if aim.working_speed is None else aim.working_speed
 
 
 def _result(
@@ -123,7 +123,10 @@ def _result(
     vibration, dry = (float(evaluate.vibration.exact(row)[0]) for row in (volume[None], nothing))
     constraints = {
         "capacity": _capacity(scene, volume),
-        **{one.name: one.at(float(one.value(volume[None])[0])) for one in evaluate.constraints},
+        **{
+            constraint.name: constraint.at(float(constraint.value(volume[None])[0]))
+            for constraint in evaluate.constraints
+        },
     }
     mass = float(volume @ evaluate.density)
     said = found.judged
@@ -159,7 +162,7 @@ def _result(
 def _at_deflection(scene: Scene, aim: Optimisation, found: WettedWalls) -> OptimumResult:
     """The least volumes that leave no wall dry over its whole height at a given deflection."""
     volume = np.array(found.volumes)
-    one = np.ones(1)
+    single = np.ones(1)
     return _of_scene(
         scene,
         in_time=False,
@@ -179,11 +182,11 @@ def _at_deflection(scene: Scene, aim: Optimisation, found: WettedWalls) -> Optim
         evaluations=found.evaluations,
         candidates=Candidates(
             volume=volume[None],
-            objective=found.unbalance * one,
-            excess=-one,
-            vibration=found.unbalance * one,
-            mass=found.mass * one,
-            exact=one > 0.0,
+            objective=found.unbalance * single,
+            excess=-single,
+            vibration=found.unbalance * single,
+            mass=found.mass * single,
+            exact=single > 0.0,
         ),
         notes=found.notes,
     )
@@ -210,7 +213,7 @@ def _of_scene(scene: Scene, constraints: dict[str, ConstraintValue], **found: ob
 
 def _with_response(result: OptimumResult, scene: Scene, machine: FilledMachine) -> OptimumResult:
     """The machine with the best volumes over the scene's speeds, by the model of the search."""
-    if machine.scene.model.liquid not in MODEL_NAMES:
+    if machine.scene.model.liquid not in SYNCHRONOUS_MODELS:
         return result
     filled = with_volumes(machine.scene, result.volume)
     response = run_scene(filled)
@@ -233,7 +236,7 @@ def _capacity(scene: Scene, volume: Array) -> ConstraintValue:
 
 def _limits(scene: Scene, problem: Problem, volume: Array) -> tuple[Note, ...]:
     """What the models do not hold for."""
-    deepest = RANGES["long_wave"]["relative_depth"][1]
+    deepest = LONG[1]
     if not isinstance(problem.evaluate.vibration, RunupPeak):
         return ()
     return tuple(
@@ -246,7 +249,7 @@ def _limits(scene: Scene, problem: Problem, volume: Array) -> tuple[Note, ...]:
 def _closed_forms(machine: FilledMachine, volume: Array, speed: float) -> tuple[WettingVolumes, ...]:
     """The volumes that wet the walls at the deflection that the answer has at the working speed."""
     scene = machine.scene
-    if machine.planar and scene.model.liquid in MODEL_NAMES:
+    if machine.planar and scene.model.liquid in SYNCHRONOUS_MODELS:
         moved = np.repeat(machine.at(volume[None], np.array([speed])).amplitude, volume.size)
     else:
         answer = run_scene(with_volumes(scene, volume).altered(speeds=Speeds.at(speed)))
@@ -259,4 +262,87 @@ def _closed_forms(machine: FilledMachine, volume: Array, speed: float) -> tuple[
     return tuple(
         wetting_volumes(fill.chamber, deflection, speed, gravity)
         for fill, deflection in zip(scene.fills, moved.tolist(), strict=True)
+    )
+
+
+def not_dominated(values: Array) -> Flags:
+    """Points that no other beats: none is as good in every value and better in one.
+
+    Parameters
+    ----------
+    values : to be small, shape (m, k)
+
+    Returns
+    -------
+    shape (m,); of points that are equal in everything the first alone
+    """
+    kept: Flags = np.asarray(np.isfinite(values).all(axis=1))
+    order = np.lexsort(values.T[::-1])
+    # In this order no point is beaten by a later one.
+    for place, k in enumerate(order.tolist()):
+        if kept[k]:
+            later = order[place + 1 :]
+            kept[later] &= ~np.all(values[later] >= values[k], axis=1)
+    return kept
+
+
+def front_of(volume: Array, vibration: Array, mass: Array, margin: Array) -> ParetoFront:
+    """The points that are not dominated, by rising mass.
+
+    Parameters
+    ----------
+    volume, vibration, mass, margin : as in `ParetoFront`
+    """
+    kept = np.flatnonzero(not_dominated(np.stack((vibration, mass, -margin), axis=1)))
+    kept = kept[np.lexsort((vibration[kept], mass[kept]))]
+    return ParetoFront(volume[kept], vibration[kept], mass[kept], margin[kept])
+
+
+_SWEEP, _SPARING = 40, 12  # volumes of the dedicated sweep; where an answer costs much
+_MOST_IN_FRONT = 60  # of the points evaluated by the way
+
+
+def front_around(
+    scene: Scene, problem: Problem, found: Found, vibration: float, speeds: Array
+) -> tuple[ParetoFront, ParetoFront]:
+    """What must be given up for what.
+
+    Parameters
+    ----------
+    scene, problem : the machine and what its volumes are evaluated by
+    found : by the search
+    vibration : of the best volumes, m
+    speeds : at which small whirls are looked at, rad/s
+
+    Returns
+    -------
+    the front, and all of the sweep from no liquid to the fullest chamber, shares as in the best volumes
+    """
+    evaluate, known = problem.evaluate, found.judged.details
+    count = _SPARING if problem.costly else _SWEEP
+    high = np.array([fill.chamber.capacity for fill in scene.fills])
+    share = np.concatenate(([0.0], np.geomspace(1e-3, 1.0, count)))
+    along = found.point if found.point.max() > 0.0 else high
+    room = float(np.min(high[along > 0.0] / along[along > 0.0]))
+    rows = [np.minimum(share[:, None] * room * along, high), found.point[None]]
+    swept = np.unique(np.concatenate(rows), axis=0)
+    exact = np.flatnonzero((known["sure"] == 1.0) & np.isfinite(known["vibration"]))
+    by_the_way = exact[_thin(known["vibration"][exact], known["mass"][exact])]
+    volume = np.concatenate((swept, found.points[by_the_way]))
+    size = np.concatenate((evaluate.vibration.exact(swept), known["vibration"][by_the_way]))
+    size[np.all(volume == found.point, axis=1)] = vibration
+    margin, mass = -growth(scene, volume, speeds), volume @ evaluate.density
+    part = slice(0, swept.shape[0])
+    whole = ParetoFront(volume[part], size[part], mass[part], margin[part])
+    return front_of(volume, size, mass, margin), whole
+
+
+def _thin(vibration: Array, mass: Array) -> NDArray[np.intp]:
+    """Of the points that are not beaten in vibration and mass a few, evenly chosen."""
+    kept = np.flatnonzero(not_dominated(np.stack((vibration, mass), axis=1)))
+    kept = kept[np.argsort(mass[kept], kind="stable")]
+    return (
+        kept[np.unique(np.linspace(0, max(kept.size - 1, 0), _MOST_IN_FRONT).astype(int))]
+        if kept.size
+        else kept
     )

@@ -1,38 +1,140 @@
-"""The problem of an optimisation: objective and constraints at sets of volumes [theory: optimum]."""
+"""The problem of an optimisation: objective and constraints at sets of volumes [theory: optimum, eq. 5]."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from fluid.fill import Fill
 from leblanc.results import optimum
 from leblanc.results.base import Note
-from leblanc.scene.scene import JeffcottRotor, Scene, Speeds
+from leblanc.results.optimum import ConstraintValue
+from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, dry_rotor
 from leblanc.scene.tasks import OBJECTIVES, Optimisation
-from leblanc.studies.optimise.answers import FilledMachine
-from leblanc.studies.optimise.constraints import (
-    BEYOND,
-    Constraint,
-    clearance,
-    dry_wall,
-    limited,
-    room_when_warm,
-    stability,
+from leblanc.studies.optimise.answers import FilledMachine, with_volumes
+from leblanc.studies.optimise.objectives import (
+    AtSpeed,
+    PeakOver,
+    Robust,
+    RunupPeak,
+    Vibration,
+    operating_conditions,
 )
-from leblanc.studies.optimise.objectives import AtSpeed, PeakOver, RunupPeak, Vibration
-from leblanc.studies.optimise.robust import Robust, operating_conditions
 from leblanc.units import MM, RPM
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.search import Found, Judgement
+from solvers.whirl.growth import growth_map
 
-COARSE_CELLS = 64  # of a run-up while the search goes on
-GROWTH_SPEEDS = 65  # at which the growth of small whirls is looked at
+_BEYOND = 1.3  # of a limit, up to which a vibration above it must be known exactly
+_COARSE_CELLS = 64  # of a run-up while the search goes on
+_GROWTH_SPEEDS = 65  # at which the growth of small whirls is looked at
 _SLACK = 1.01  # default limit of the vibration over the least that is possible
 _DOUBLE = (0.5, 2.0)  # default range of unbalances over the scene's
+
+
+class Constraint:
+    """A value that must not be above its limit.
+
+    Parameters
+    ----------
+    name, meaning, unit : for reports
+    limit : in the unit
+    scale : what an excess is measured by, above 0
+    value : of volumes, shape (m, c), and of the limit beyond which a lower estimate will do; shape (m,)
+    """
+
+    def __init__(
+        self,
+        name: str,
+        meaning: str,
+        unit: str,
+        limit: float,
+        scale: float,
+        value: Callable[[Array, float], Array],
+    ) -> None:
+        self.name, self.meaning, self.unit = name, meaning, unit
+        self.limit, self.scale, self._value = limit, scale, value
+
+    def value(self, volumes: Array) -> Array:
+        """Value with volumes, shape (m, c); infinite where it was not found, shape (m,)."""
+        found = self._value(volumes, self.limit)
+        return np.where(np.isnan(found), math.inf, found)
+
+    def excess(self, value: Array) -> Array:
+        """By how much a value is above its limit, over the scale; 0 or below if it is not."""
+        return np.asarray((value - self.limit) / self.scale)
+
+    def at(self, value: float) -> ConstraintValue:
+        """The constraint where it has a value."""
+        return ConstraintValue(self.limit, value, value <= self.limit, self.unit, self.meaning)
+
+
+def dry_wall(machine: FilledMachine, speed: float) -> Constraint:
+    """No wall dry over its whole height at a speed, rad/s."""
+
+    def value(volumes: Array, _: float) -> Array:
+        return machine.at(volumes, np.full(volumes.shape[0], speed)).dry_patch
+
+    text = "wall dry somewhere at the working speed (1) or nowhere (0)"
+    return Constraint("dry_patch", text, "1", 0.0, 1.0, value)
+
+
+def limited(name: str, meaning: str, vibration: Vibration, limit: float) -> Constraint:
+    """A vibration up to a limit, m."""
+
+    def value(volumes: Array, most: float) -> Array:
+        return vibration.exact(volumes, _BEYOND * most)
+
+    return Constraint(name, meaning, "m", limit, limit, value)
+
+
+def clearance(over: PeakOver, limit: float) -> Constraint:
+    """Amplitude at all operating speeds up to the room that there is, m."""
+    return limited("clearance", "largest amplitude at the operating speeds", over, limit)
+
+
+def growth(scene: Scene, volumes: Array, speed: Array) -> Array:
+    """Growth of the small whirl that grows most at any of some speeds [theory: optimum, eq. 5].
+
+    Parameters
+    ----------
+    scene : the machine
+    volumes : m^3, shape (m, c)
+    speed : rad/s, shape (n,)
+
+    Returns
+    -------
+    1/s, below 0 where every whirl dies out, nan where the whirls were not found, shape (m,)
+    """
+    rows: list[Sequence[Fill]] = [with_volumes(scene, row).fills for row in volumes]
+    rotor, friction = dry_rotor(scene), scene.model.friction
+    return np.asarray(growth_map(rotor, rows, speed, friction)[0].max(axis=1))
+
+
+def stability(scene: Scene, speed: Array, margin: float) -> Constraint:
+    """Every small whirl dies out at the operating speeds, rad/s, at least at the rate of a margin, 1/s."""
+
+    def value(volumes: Array, _: float) -> Array:
+        return growth(scene, volumes, speed)
+
+    # A growth of a thousandth of the spin speed is a good measure where no margin is asked for.
+    scale = max(margin, 1e-3 * float(speed.max()))
+    text = "largest growth of a small whirl at the operating speeds"
+    return Constraint("stability", text, "1/s", -margin, scale, value)
+
+
+def room_when_warm(robust: Robust) -> Constraint:
+    """The liquid fits its chamber at every temperature."""
+
+    def value(volumes: Array, _: float) -> Array:
+        return robust.fullest(volumes)
+
+    text = "share of a chamber that its liquid takes when warmest"
+    return Constraint("room_when_warm", text, "1", 1.0, 1.0, value)
 
 
 @dataclass
@@ -67,8 +169,10 @@ class Evaluator:
         mass = volumes @ self.density
         if self.by_mass:
             objective, vibration = mass, found["vibration"]
-            limit = next(one.limit for one in self.constraints if one.name == "vibration")
-            sure = vibration <= BEYOND * limit
+            limit = next(
+                constraint.limit for constraint in self.constraints if constraint.name == "vibration"
+            )
+            sure = vibration <= _BEYOND * limit
         else:
             vibration, sure = self.vibration.least(volumes, self.best)
             objective = vibration
@@ -99,6 +203,11 @@ class Problem:
     notes: tuple[Note, ...] = ()
 
 
+def working_speed(scene: Scene, aim: Optimisation) -> float:
+    """Speed at which the machine works: the one given, or the scene's last, rad/s."""
+    return scene.speeds.stop if aim.working_speed is None else aim.working_speed
+
+
 def operating_speeds(scene: Scene, aim: Optimisation) -> Speeds:
     """Speeds at which the machine is used: the scene's, or evenly over the range given."""
     if aim.operating is None:
@@ -110,7 +219,7 @@ def operating_speeds(scene: Scene, aim: Optimisation) -> Speeds:
 def growth_speeds(scene: Scene, aim: Optimisation) -> Array:
     """Operating speeds at which small whirls are looked at, rad/s."""
     speeds = operating_speeds(scene, aim)
-    return np.linspace(speeds.start, speeds.stop, min(speeds.count, GROWTH_SPEEDS))
+    return np.linspace(speeds.start, speeds.stop, min(speeds.count, _GROWTH_SPEEDS))
 
 
 def problem_of(
@@ -130,7 +239,7 @@ def problem_of(
     """
     if aim.objective not in OBJECTIVES:
         raise InputError("--objective", aim.objective, "one of " + ", ".join(OBJECTIVES))
-    speed = scene.speeds.stop if aim.working_speed is None else aim.working_speed
+    speed = working_speed(scene, aim)
     planar = isinstance(scene.rotor, JeffcottRotor)
     density = np.array([fill.liquid.density for fill in scene.fills])
     at_work = AtSpeed(machine, np.array([speed]), np.ones(1))
@@ -164,7 +273,7 @@ def _working_speed(
 
 def _peak(scene: Scene, aim: Optimisation, machine: FilledMachine, problem: Problem, _: object) -> Problem:
     if scene.runup is not None and not aim.steady:
-        few = min(COARSE_CELLS, scene.runup.cells)
+        few = min(_COARSE_CELLS, scene.runup.cells)
         text = "largest amplitude of the run-up in time"
         evaluate = replace(problem.evaluate, vibration=RunupPeak(scene, few))
         fewer = optimum.few_cells(few, scene.runup.cells)
@@ -187,7 +296,7 @@ def _resonances(scene: Scene) -> tuple[float, ...]:
 
 def _mean(scene: Scene, aim: Optimisation, machine: FilledMachine, problem: Problem, _: object) -> Problem:
     if aim.duty:
-        speeds, weights = np.array([(one.speed, one.weight) for one in aim.duty]).T
+        speeds, weights = np.array([(stage.speed, stage.weight) for stage in aim.duty]).T
         text, notes = f"mean amplitude over a duty cycle of {len(aim.duty)} speeds", problem.notes
     else:
         speeds = scene.speed_array()
@@ -241,7 +350,7 @@ def _robust(scene: Scene, aim: Optimisation, machine: FilledMachine, problem: Pr
     if aim.temperature is not None:
         constraints = (*constraints, room_when_warm(vibration))
     kind = "worst" if aim.quantile == 1.0 else f"{aim.quantile:.4g} quantile of the"
-    ranges = [name for name, one in (("unbalance", unbalance), ("temperature", aim.temperature)) if one]
+    ranges = [name for name, span in (("unbalance", unbalance), ("temperature", aim.temperature)) if span]
     text = (
         f"{kind} amplitude at {problem.working_speed * RPM:.4g} rpm over {len(around)} circumstances of "
         + " and ".join(ranges)

@@ -11,9 +11,9 @@ import numpy as np
 from leblanc.scene.scene import JeffcottRotor, Scene, jeffcott
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.choose import axial_gravity
-from leblanc.studies.optimise.closed_form import wetting_volumes
 from leblanc.studies.optimise.objectives import PeakOver, RunupPeak
 from leblanc.studies.optimise.problem import Problem
+from leblanc.studies.optimise.wetting import wetting_volumes
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.search import Found, Judgement, SearchPlan, search
@@ -115,15 +115,12 @@ def _alike(scene: Scene, low: Array, high: Array) -> list[list[int]]:
     return [group for group in groups.values() if len(group) > 1]
 
 
-def on_all_cells(scene: Scene, problem: Problem, found: Found) -> tuple[Found, Problem]:
-    """The best run-ups on few cells run again on all of the scene's, and the best of these."""
+def on_all_cells(scene: Scene, problem: Problem) -> Problem:
+    """The problem with run-ups on all of the scene's cells; itself if it has no others."""
     coarse = problem.evaluate.vibration
-    if not isinstance(coarse, RunupPeak) or problem.evaluate.by_mass or scene.runup is None:
-        return found, problem
-    if coarse.numerics.cells >= scene.runup.cells:
-        return found, problem
-    fine = replace(problem, evaluate=replace(problem.evaluate, vibration=RunupPeak(scene), best=math.inf))
-    return evaluated_again(fine, found), fine
+    if scene.runup is None or not isinstance(coarse, RunupPeak) or coarse.numerics.cells >= scene.runup.cells:
+        return problem
+    return replace(problem, evaluate=replace(problem.evaluate, vibration=RunupPeak(scene), best=math.inf))
 
 
 def evaluated_again(fine: Problem, found: Found) -> Found:

@@ -119,7 +119,7 @@ def places_of(scene: Scene) -> tuple[tuple[float, ...], bool]:
     """
     chambers = [fill.chamber for fill in scene.fills]
     if not isinstance(scene.rotor, JeffcottRotor):
-        return tuple(one.plane for one in chambers), False
+        return tuple(chamber.plane for chamber in chambers), False
     stacks: list[list[int]] = []
     for k in sorted(range(len(chambers)), key=lambda k: -chambers[k].radius):
         for stack in stacks:
@@ -134,7 +134,7 @@ def places_of(scene: Scene) -> tuple[tuple[float, ...], bool]:
         middle = behind - 0.5 * height
         for k in stack:
             places[k] = middle
-        behind -= height + GAP * max(one.radius for one in chambers)
+        behind -= height + GAP * max(chamber.radius for chamber in chambers)
     shift = 0.5 * (max(places) + min(places)) if places else 0.0
     return tuple(place - shift for place in places), len(stacks) > 1
 
@@ -206,8 +206,8 @@ def dry_walls(motion: MachineMotion, index: int, scale: Scale | None = None) -> 
     moved = factors.deflection * motion.deflection[index]
     speed = float(motion.speed[index])
     return tuple(
-        _is_dry(fill, complex(one), drawn_volume(fill, factors.depth), speed, motion.gravity)
-        for fill, one in zip(motion.fills, moved, strict=False)
+        _is_dry(fill, complex(deflection), drawn_volume(fill, factors.depth), speed, motion.gravity)
+        for fill, deflection in zip(motion.fills, moved, strict=False)
     )
 
 

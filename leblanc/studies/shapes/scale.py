@@ -171,7 +171,7 @@ def _wettings(
         if fill.volume == 0.0 or not moves.any():
             continue
         edge, here = (
-            wet_deflection(fill, one, speed, gravity)[moves] / size[moves, k] for one in (1.0, depth)
+            wet_deflection(fill, share, speed, gravity)[moves] / size[moves, k] for share in (1.0, depth)
         )
         wet = wet and bool(np.all(edge >= 1.0))
         most = min(most, CLEAR * float(here.min()))

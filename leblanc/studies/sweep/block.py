@@ -19,7 +19,7 @@ from pydantic import ValidationError
 from leblanc.results.base import versions
 from leblanc.scene.chambers import Chamber
 from leblanc.scene.scene import Scene, scene_from_table
-from leblanc.scene.schema.load import SceneFaults, escaped
+from leblanc.scene.schema.load import SceneError, escaped
 from leblanc.scene.schema.part import Part, rule_of
 from leblanc.scene.schema.paths import Keys, tables_of, with_values
 from leblanc.scene.schema.rules import Quantity
@@ -149,7 +149,7 @@ def scene_maker(table: Mapping[str, Any], paths: Sequence[Keys]) -> Maker:
 
     Returns
     -------
-    Function of the values at those paths. It raises SceneFaults where the whole table would.
+    Function of the values at those paths. It raises SceneError where the whole table would.
     """
     base = {key: value for key, value in table.items() if key not in _WORDS_ONLY}
     scene = scene_from_table(base)
@@ -183,7 +183,7 @@ def _in_si(table: Mapping[str, Any], place: tuple[str, ...], tables: _Tables) ->
     for key, value in table.items():
         below = (*place, key)
         if isinstance(value, list) and (*below, "*") in tables:
-            plain[key] = [_in_si(one, (*below, "*"), tables) for one in value]
+            plain[key] = [_in_si(entry, (*below, "*"), tables) for entry in value]
         elif isinstance(value, dict) and below in tables:
             plain[key] = _in_si(value, below, tables)
         elif isinstance(value, str):
@@ -206,7 +206,7 @@ def make_scenes(make: Maker, rows: Iterable[Sequence[Any]]) -> tuple[list[Scene 
         try:
             scenes.append(make(row))
             reasons.append("")
-        except SceneFaults as error:
+        except SceneError as error:
             scenes.append(None)
             reasons.append("; ".join(_without_file(str(fault), fault.file) for fault in error.faults))
     return scenes, reasons
@@ -276,7 +276,7 @@ def answer_block(block: Block) -> BlockAnswer:
         kept = [k for k, scene in enumerate(scenes) if scene is not None]
         pieces = _answer([scene for scene in scenes if scene is not None])
     speeds = int(block.table["speeds"]["count"])
-    values = {one.name: blank(one, len(scenes), speeds) for one in OUTPUTS}
+    values = {output.name: blank(output, len(scenes), speeds) for output in OUTPUTS}
     status = np.full(len(scenes), FAILED, dtype=np.int8)
     done = 0
     for count, found in pieces:

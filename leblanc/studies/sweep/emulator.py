@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from leblanc.results.sweep import EmulatorError
 from leblanc.studies.sweep.block import DONE, SINGLE
 from leblanc.studies.sweep.store import Store, read_store
 from meshes.arrays import Array, Flags
@@ -28,25 +29,6 @@ _SMOOTHNESS = 2.5  # of the Matern kernel: twice differentiable
 _NOISE = 1e-10, 1e-2  # share of the variance
 _REACH = 1e-2, 1e3  # correlation lengths over the range of a value
 _WIDE = 30.0  # ratio of the ends of a range from which the logarithm of the value is taken
-
-
-@dataclass(frozen=True)
-class CrossValidation:
-    """Error of processes on the samples that each was not shown [theory: emulator, eq. 4].
-
-    Parameters
-    ----------
-    root_mean_square, largest : relative to the output for positive outputs, otherwise to its spread
-    spread : standard deviation of the output in the same measure, what knowing nothing leaves
-    within_two : share of the samples within two of the standard deviations that the process itself claims
-    samples : that were predicted
-    """
-
-    root_mean_square: float
-    largest: float
-    spread: float
-    within_two: float
-    samples: int
 
 
 @dataclass(frozen=True)
@@ -74,7 +56,7 @@ class Emulator:
     scale: float
     process: Any
     settled: bool
-    error: CrossValidation
+    error: EmulatorError
 
     def predict(self, values: ArrayLike) -> tuple[Array, Array]:
         """Output and its standard deviation.
@@ -155,7 +137,7 @@ def emulate(fields: Sequence[str], values: Array, output: Array, seed: int = 0) 
     missed, claimed, all_settled = _on_unseen(points, standard)
     # A difference of logarithms is the relative error; without them it is over the spread.
     size = scale if positive else 1.0
-    error = CrossValidation(
+    error = EmulatorError(
         root_mean_square=float(size * np.sqrt(np.mean(np.square(missed)))),
         largest=float(size * np.abs(missed).max()),
         spread=size,
@@ -201,14 +183,14 @@ def _fit(points: Array, standard: Array) -> tuple[Any, bool]:
         warnings.simplefilter("always")
         process.fit(points, standard)
     # A length at the end of its range is an answer: the output does not follow that value.
-    ours = [one for one in said if issubclass(one.category, ConvergenceWarning)]
-    for one in said:
-        if one not in ours:
-            warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
-    return process, all("close to" in str(one.message) for one in ours)
+    ours = [warning for warning in said if issubclass(warning.category, ConvergenceWarning)]
+    for warning in said:
+        if warning not in ours:
+            warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
+    return process, all("close to" in str(warning.message) for warning in ours)
 
 
-EMULATED = tuple(one.name for one in SINGLE)
+EMULATED = tuple(output.name for output in SINGLE)
 
 
 def emulate_store(store: Store | Path, output: str, seed: int = 0) -> Emulator:

@@ -32,7 +32,7 @@ def sample_rows(sweep: Sweep) -> Rows:
 
     def rows(start: int, stop: int) -> Array:
         shares = unit(start, stop)
-        columns = [_drawn(one, shares[:, j]) for j, one in enumerate(sweep.fields)]
+        columns = [_drawn(field, shares[:, j]) for j, field in enumerate(sweep.fields)]
         return np.stack(columns, axis=1)
 
     return rows
@@ -46,10 +46,10 @@ def _drawn(field: VariedField, shares: Array) -> Array:
 def grid_rows(sweep: Sweep, start: int, stop: int) -> Array:
     """Rows of the full product of all levels, the last field running fastest [theory: sampling, eq. 5]."""
     levels = []
-    for one in sweep.fields:
-        assert isinstance(one.distribution, Choice | Levels)
-        levels.append(one.distribution.levels())
-    places = np.unravel_index(np.arange(start, stop), tuple(one.size for one in levels))
+    for field in sweep.fields:
+        assert isinstance(field.distribution, Choice | Levels)
+        levels.append(field.distribution.levels())
+    places = np.unravel_index(np.arange(start, stop), tuple(level.size for level in levels))
     values = [level[place] for level, place in zip(levels, places, strict=True)]
     return np.stack(values, axis=1)
 

@@ -186,9 +186,9 @@ def _create(path: Path, sweep: Sweep) -> None:
             attributes=attributes,
         )
 
-    for one in OUTPUTS:
-        fill = {NUMBER: np.nan, FLAG: -1, TEXT: ""}[one.kind]
-        array(one.name, one.kind, one.over_speed, fill, _output_attributes(one))
+    for output in OUTPUTS:
+        fill = {NUMBER: np.nan, FLAG: -1, TEXT: ""}[output.kind]
+        array(output.name, output.kind, output.over_speed, fill, _output_attributes(output))
     for field in sweep.fields:
         kind, empty = (TEXT, "") if field.words else (NUMBER, np.nan)
         said = {"units": field.unit, "long_name": field.path, "description": "varied field of the scene"}
@@ -198,14 +198,14 @@ def _create(path: Path, sweep: Sweep) -> None:
     array("reason", TEXT, False, "", {"units": "1", "long_name": "why the sample is not done"})
 
 
-def _output_attributes(one: Output) -> dict[str, Any]:
-    said: dict[str, Any] = {"units": one.units, "long_name": one.long_name}
-    if one.text:
-        said["description"] = one.text
-    if one.meanings:
+def _output_attributes(output: Output) -> dict[str, Any]:
+    said: dict[str, Any] = {"units": output.units, "long_name": output.long_name}
+    if output.text:
+        said["description"] = output.text
+    if output.meanings:
         said |= {
-            "flag_values": list(range(-1, len(one.meanings) - 1)),
-            "flag_meanings": " ".join(one.meanings),
+            "flag_values": list(range(-1, len(output.meanings) - 1)),
+            "flag_meanings": " ".join(output.meanings),
         }
     return said
 
@@ -222,7 +222,7 @@ def _attributes(sweep: Sweep) -> dict[str, Any]:
         "method": sweep.method,
         "points": sweep.points,
         "seed": str(sweep.seed),
-        "vary": "\n".join(f"{one.path}: {one.distribution}" for one in sweep.fields),
+        "vary": "\n".join(f"{field.path}: {field.distribution}" for field in sweep.fields),
         "history": "written by leblanc sweep",
         **{f"version_{package}": version for package, version in _versions().items()},
     }
@@ -287,10 +287,10 @@ def field_values(field: VariedField, drawn: NDArray[np.float64]) -> NDArray[Any]
     field : the varied field
     drawn : sampled numbers, shape (n,)
     """
-    values = [field.value(one) for one in drawn]
+    values = [field.value(level) for level in drawn]
     if not field.words:
         return np.array(values, dtype=np.float64)
-    return np.array([one if isinstance(one, str) else _table(one) for one in values], dtype=object)
+    return np.array([value if isinstance(value, str) else _table(value) for value in values], dtype=object)
 
 
 def _table(value: object) -> str:

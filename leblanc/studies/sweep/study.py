@@ -16,7 +16,7 @@ from pydantic import Field, PlainValidator, ValidationError
 
 from leblanc import units
 from leblanc.scene.scene import Exciter, Scene, scene_from_table
-from leblanc.scene.schema.load import SceneFault, SceneFaults, field_path, read_scene, read_toml, shown
+from leblanc.scene.schema.load import SceneError, SceneFault, field_path, read_scene, read_toml, shown
 from leblanc.scene.schema.part import Conflict, Part, allowed_at, faults_of
 from leblanc.scene.schema.paths import Keys, keys_of, rule_at
 from leblanc.scene.schema.rules import Entries, Quantity, Refused, Text, Whole, one_of, whole
@@ -79,7 +79,7 @@ class Choice:
     @property
     def words(self) -> bool:
         """Some option is no number."""
-        return not all(isinstance(one, float | int) for one in self.options)
+        return not all(isinstance(option, float | int) for option in self.options)
 
     def at(self, u: Array) -> Array:
         """Number of the option at the share u [theory: sampling, eq. 4]."""
@@ -264,15 +264,15 @@ def check_study(table: Mapping[str, Any], file: str) -> Study:
 
     Raises
     ------
-    SceneFaults : with all that is wrong
+    SceneError : with all that is wrong
     """
     if "rotor" in table and "vary" not in table:
         text = "a study with the keys scene, method and [vary]; this is a scene, which `leblanc run` answers"
-        raise SceneFaults([SceneFault(file, "", None, text)])
+        raise SceneError([SceneFault(file, "", None, text)])
     try:
         return Study.model_validate(table)
     except ValidationError as error:
-        raise SceneFaults(faults_of(error, file, Study)) from error
+        raise SceneError(faults_of(error, file, Study)) from error
 
 
 _MOST_PERMUTED = 50_000_000  # numbers of a Latin hypercube, which is made as a whole
@@ -349,7 +349,8 @@ class Sweep:
             "points": self.points,
             "seed": self.seed,
             "fields": [
-                [one.path, type(one.distribution).__name__, asdict(one.distribution)] for one in self.fields
+                [field.path, type(field.distribution).__name__, asdict(field.distribution)]
+                for field in self.fields
             ],
         }
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
@@ -369,7 +370,7 @@ def load_sweep(path: str | PathLike[str]) -> Sweep:
 
     Raises
     ------
-    SceneFaults : with all that is wrong
+    SceneError : with all that is wrong
     """
     file = str(path)
     table = check_study(read_toml(path), file)
@@ -378,11 +379,11 @@ def load_sweep(path: str | PathLike[str]) -> Sweep:
     scene = scene_from_table(scene_table, str(scene_path))
     if isinstance(scene.rotor, Exciter):
         allowed = "a scene whose rotor answers at its speeds: jeffcott, two_plane or tub"
-        raise SceneFaults([SceneFault(file, "scene", shown(table.scene), allowed)])
+        raise SceneError([SceneFault(file, "scene", shown(table.scene), allowed)])
     fields = _fields(table.vary, scene_table, table.method, file)
     points = table.samples
     if points is None:
-        points = math.prod(_levels(one.distribution) for one in fields)
+        points = math.prod(_levels(field.distribution) for field in fields)
     sweep = Sweep(
         name=Path(path).stem,
         scene_path=table.scene,
@@ -427,13 +428,13 @@ def _fields(
         fields.append(VariedField(path, unit or "1", distribution))
     faults = faults or _nested(vary, file)
     if faults:
-        raise SceneFaults(faults)
+        raise SceneError(faults)
     return tuple(fields)
 
 
 def _kind(given: object, method: str) -> str:
     """Which distribution a field has."""
-    names = [one for one in KINDS if (one in ("linspace", "choice")) or method != "grid"]
+    names = [kind for kind in KINDS if (kind in ("linspace", "choice")) or method != "grid"]
     if method != "grid":
         names.remove("linspace")
     if not isinstance(given, Mapping) or len(given) != 1 or next(iter(given)) not in names:
@@ -461,4 +462,4 @@ def _check_size(sweep: Sweep, file: str) -> None:
     elif sweep.method == "latin_hypercube" and sweep.points * len(sweep.fields) > _MOST_PERMUTED:
         allowed = f"at most {_MOST_PERMUTED // len(sweep.fields)} with {len(sweep.fields)} varied fields"
     if allowed:
-        raise SceneFaults([SceneFault(file, field, str(sweep.samples), allowed)])
+        raise SceneError([SceneFault(file, field, str(sweep.samples), allowed)])

@@ -138,7 +138,7 @@ def saltelli_indices(members: Array, seed: int) -> Sensitivity | None:
         drawn.append(
             np.array(
                 [
-                    [index(a[again], one[again], b[again]) for one in swapped]
+                    [index(a[again], values[again], b[again]) for values in swapped]
                     for index in (first_order, total_order)
                 ]
             )
@@ -151,8 +151,8 @@ def saltelli_indices(members: Array, seed: int) -> Sensitivity | None:
     return Sensitivity(
         "Sobol indices",
         a.size,
-        np.array([first_order(a, one, b) for one in swapped]),
-        np.array([total_order(a, one, b) for one in swapped]),
+        np.array([first_order(a, values, b) for values in swapped]),
+        np.array([total_order(a, values, b) for values in swapped]),
         half[0],
         half[1],
     )
@@ -188,21 +188,21 @@ def summarise(store: Store, sweep: Sweep) -> SweepResult:
     """
     counts = np.bincount(store.read("status"), minlength=4)
     fields = sample_rows(sweep)(0, store.samples)
-    words = [one.words for one in sweep.fields]
+    words = [field.words for field in sweep.fields]
     single, shares = {}, {}
-    for one in SINGLE:
-        values = store.read(one.name)
-        single[one.name] = statistics(values[:, None])
-        shares[one.name] = sensitivity(sweep.method, fields, words, values, sweep.seed)
+    for output in SINGLE:
+        values = store.read(output.name)
+        single[output.name] = statistics(values[:, None])
+        shares[output.name] = sensitivity(sweep.method, fields, words, values, sweep.seed)
     speeds = sweep.scene.speeds.count
-    own_speeds = any(one.path.startswith("speeds.") for one in sweep.fields)
+    own_speeds = any(field.path.startswith("speeds.") for field in sweep.fields)
     return SweepResult(
         name=sweep.name,
         scene=sweep.scene.name,
         store=store.path,
         method=sweep.method,
         seed=sweep.seed,
-        fields=tuple(one.path for one in sweep.fields),
+        fields=tuple(field.path for field in sweep.fields),
         speeds=speeds,
         samples=store.samples,
         done=int(counts[DONE]),
@@ -211,7 +211,7 @@ def summarise(store: Store, sweep: Sweep) -> SweepResult:
         reasons=_grouped(store),
         speed=None if own_speeds else sweep.scene.speed_array(),
         single=single,
-        units={one.name: one.units for one in SINGLE},
+        units={output.name: output.units for output in SINGLE},
         over_speed={name: _over_speed(store, name, speeds) for name in OVER_SPEED},
         sensitivities=shares,
         digest=sweep.digest,

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.scene.schema.load import NotConverged, SceneFault, SceneFaults, shown
+from leblanc.scene.schema.load import NotConverged, SceneError, SceneFault, shown
 from leblanc.studies.sweep.block import PENDING, Block, BlockAnswer, answer_block, own_versions, reason_of
 from leblanc.studies.sweep.sampling import Rows, sample_rows
 from leblanc.studies.sweep.store import Store, field_values, locked, open_store, write_block
@@ -142,7 +142,7 @@ def _answers(client: Any, blocks: Iterable[Block]) -> Iterator[BlockAnswer]:
         with _cluster_faults():
             threads = max(1, sum(client.nthreads().values()))  # workers come and go
             room = max(0, _AHEAD * threads - len(flying))
-            flying |= {client.submit(answer_block, one, pure=False) for one in islice(waiting, room)}
+            flying |= {client.submit(answer_block, block, pure=False) for block in islice(waiting, room)}
             if not flying:
                 return
             done = wait(flying, return_when="FIRST_COMPLETED").done
@@ -217,7 +217,7 @@ def run_sweep(
     Raises
     ------
     InputError : another process works on the store, it belongs to another sweep, the cluster does not fit
-    SceneFaults : the scene asks for what no sample can answer
+    SceneError : the scene asks for what no sample can answer
     NotConverged : the cluster was lost
     """
     if fresh and scheduler is not None:
@@ -292,12 +292,12 @@ def _probe(sweep: Sweep) -> None:
     """Answer the scene itself: what no sample can answer is one fault then, not as many as samples."""
     from leblanc.studies.batch import answer_scenes
 
-    if any(one.path == "model.liquid" for one in sweep.fields):
+    if any(field.path == "model.liquid" for field in sweep.fields):
         return
     try:
         answer_scenes([sweep.scene])
     except InputError as error:
-        raise SceneFaults(
+        raise SceneError(
             [SceneFault(sweep.scene_path, error.field, shown(error.value), error.allowed)]
         ) from error
 
@@ -305,7 +305,7 @@ def _probe(sweep: Sweep) -> None:
 def _block(sweep: Sweep, store: Store, rows: Rows, number: int) -> Block:
     drawn = rows(*store.bounds(number))
     values = tuple(
-        tuple(field.value(one) for field, one in zip(sweep.fields, row, strict=True)) for row in drawn
+        tuple(field.value(value) for field, value in zip(sweep.fields, row, strict=True)) for row in drawn
     )
     return Block(number, sweep.table, tuple(field.keys for field in sweep.fields), values)
 

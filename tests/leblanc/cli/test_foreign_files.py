@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[3]
-NAMES = ("study", "fluid", "meshes", "solvers", "validation", "leblanc", "pickle", "tokenize")
+NAMES = ("study", "fluid", "meshes", "solvers", "validation", "leblanc", "numpy", "pickle", "tokenize")
 
 
 @pytest.fixture
@@ -27,6 +27,8 @@ def folder(tmp_path: Path) -> Path:
         'scene = "horizontal_rig.toml"\nmethod = "random"\nsamples = 8\nseed = 1\n'
         '[vary]\n"rotor.mass" = { uniform = [3.0, 5.0] }\n'
     )
+    imported = "".join(f"import {name}\n" for name in NAMES if name != "study")
+    (work / "own.py").write_text(f"# %%\n{imported}")
     return work
 
 
@@ -54,10 +56,15 @@ def leblanc(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
         ("run", "horizontal_rig.toml"),
         ("sweep", "sweep.toml", "--workers", "2"),
         ("trade", "vibratory_table.toml", "--quick", "--repeats", "2"),
+        ("validate", "vector_model"),
+        pytest.param(("notebooks", "own.py"), marks=pytest.mark.notebook),
     ],
     ids=lambda arguments: arguments[0],
 )
 def test_modules_of_the_current_folder_are_not_taken(folder: Path, arguments: tuple[str, ...]) -> None:
+    if arguments[0] == "notebooks":
+        for name in ("jupytext", "nbclient", "nbconvert", "ipykernel"):
+            pytest.importorskip(name)
     done = leblanc(folder, *arguments)
     assert done.returncode == 0, done.stderr
     assert "was taken" not in done.stdout + done.stderr

@@ -16,7 +16,7 @@ from leblanc.cli import main
 from leblanc.figures.optimise import write_figures
 from leblanc.results.optimum import OptimumResult
 from leblanc.scene.scene import load_scene, scene_from_table
-from leblanc.scene.schema.load import SceneFaults
+from leblanc.scene.schema.load import SceneError
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.text.optimum import describe_optimum
@@ -83,7 +83,7 @@ def test_a_scene_without_the_table_keeps_its_digest() -> None:
     ],
 )
 def test_faults_are_named(given: dict[str, object], field: str, said: str) -> None:
-    with pytest.raises(SceneFaults) as caught:
+    with pytest.raises(SceneError) as caught:
         scene_from_table(table(**given))
     (fault,) = caught.value.faults
     assert fault.field == field

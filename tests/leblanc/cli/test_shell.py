@@ -15,7 +15,7 @@ import typer
 from leblanc import cli
 from leblanc.cli import exit_code, main
 from leblanc.scene.scene import load_scene
-from leblanc.scene.schema.load import NotConverged, SceneFault, SceneFaults
+from leblanc.scene.schema.load import NotConverged, SceneError, SceneFault
 from meshes.errors import InputError
 
 Capture = pytest.CaptureFixture[str]
@@ -116,7 +116,7 @@ def test_a_wrong_command_line_is_one_clear_line(arguments: list[str], said: str,
 
 # -- what a command may raise --------------------------------------------------------------------------------
 
-SCENE_FAULTS = SceneFaults(
+SCENE_FAULTS = SceneError(
     [SceneFault("s.toml", "rotor.mass", "-1", "above 0"), SceneFault("s.toml", "name", None, "given")]
 )
 

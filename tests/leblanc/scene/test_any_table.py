@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from leblanc.scene.scene import Exciter, Scene, scene_from_table
-from leblanc.scene.schema.load import SceneFaults
+from leblanc.scene.schema.load import SceneError
 from leblanc.scene.schema.part import parts_of
 from leblanc.scene.schema.paths import tables_of
 from tests.leblanc.scene.test_scene import TEXT
@@ -64,7 +64,7 @@ CONTENTS = st.recursive(
 @settings(max_examples=200)
 @given(st.dictionaries(KEYS, CONTENTS, max_size=6))
 def test_any_table_is_a_scene_or_a_list_of_faults(table: dict[str, Any]) -> None:
-    with pytest.raises(SceneFaults) as caught:
+    with pytest.raises(SceneError) as caught:
         scene_from_table(table)
     for fault in caught.value.faults:
         assert str(fault).startswith("scene: ")
@@ -86,7 +86,7 @@ def test_any_value_in_a_good_scene_is_taken_or_named(path: tuple[str, str], valu
     table[path[0]][path[1]] = value
     try:
         scene = scene_from_table(table)
-    except SceneFaults as error:
+    except SceneError as error:
         assert all(fault.field.startswith(path[0]) for fault in error.faults)
         return
     assert not isinstance(scene.rotor, Exciter)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from leblanc.scene.scene import Scene, jeffcott, load_scene, scene_from_table
-from leblanc.scene.schema.load import SceneFaults, read_toml
+from leblanc.scene.schema.load import SceneError, read_toml
 from leblanc.studies.batch import answer_scenes
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.run import run_scene
@@ -63,7 +63,7 @@ def test_the_keys_of_baffles_reach_the_chamber() -> None:
     ],
 )
 def test_wrong_baffles_are_named(baffles: dict[str, Any], told: str) -> None:
-    with pytest.raises(SceneFaults, match=r".") as caught:
+    with pytest.raises(SceneError, match=r".") as caught:
         scene(baffles)
     assert told in str(caught.value).replace('"9 kg"', "'9 kg'")
 
@@ -220,7 +220,7 @@ liquid = "water"
     ],
 )
 def test_wrong_sections_are_named(tmp_path: Path, change: dict[str, Any], told: str) -> None:
-    with pytest.raises(SceneFaults, match=r".") as caught:
+    with pytest.raises(SceneError, match=r".") as caught:
         scene_from_table(drawn(tmp_path, **change))
     assert told in str(caught.value)
 
@@ -242,7 +242,7 @@ def test_a_section_from_a_drawing(tmp_path: Path) -> None:
 
 
 def test_a_chamber_has_a_wall() -> None:
-    with pytest.raises(SceneFaults, match=r"chambers\.0\.radius: must be given: .* or section"):
+    with pytest.raises(SceneError, match=r"chambers\.0\.radius: must be given: .* or section"):
         scene_from_table(BASE | {"chambers": [{"height": 0.02, "volume": 1e-5, "liquid": "water"}]})
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from leblanc.scene.scene import load_scene
-from leblanc.scene.schema.load import MAX_BYTES, SceneFaults
+from leblanc.scene.schema.load import MAX_BYTES, SceneError
 from tests.leblanc.scene.test_faulty_scenes import CHAMBER, GOOD, shell
 
 FILES = {
@@ -79,7 +79,7 @@ def test_a_file_that_may_not_be_read(
 
 
 def test_a_path_that_cannot_be() -> None:
-    with pytest.raises(SceneFaults, match="null"):
+    with pytest.raises(SceneError, match="null"):
         load_scene("scene\0.toml")
 
 

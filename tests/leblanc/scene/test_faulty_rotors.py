@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from leblanc.scene.scene import load_scene
-from leblanc.scene.schema.load import SceneFaults
+from leblanc.scene.schema.load import SceneError
 from tests.leblanc.scene.test_faulty_scenes import Case, case, check, shell
 from tests.leblanc.scene.test_rotors import EXCITER, HEAD, MOTOR, TUB, TWO_PLANE
 
@@ -116,7 +116,7 @@ def test_a_wrong_value_is_named(
     path = tmp_path / "scene.toml"
     assert text.count(one.right) >= 1
     path.write_text(HEAD + text.replace(one.right, one.wrong, 1), encoding="utf-8")
-    with pytest.raises(SceneFaults) as caught:
+    with pytest.raises(SceneError) as caught:
         load_scene(path)
     check(str(caught.value), path, one.field, one.said)
     assert one.field in [fault.field for fault in caught.value.faults]

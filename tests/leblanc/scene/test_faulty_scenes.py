@@ -9,7 +9,7 @@ import pytest
 
 from leblanc.cli import exit_code, main
 from leblanc.scene.scene import load_scene
-from leblanc.scene.schema.load import SceneFaults
+from leblanc.scene.schema.load import SceneError
 
 # A command that reads a scene; without one, the shell around what all such commands do first.
 COMMAND: str | None = "run"
@@ -213,7 +213,7 @@ def test_a_wrong_value_is_named(case: Case, tmp_path: Path, capsys: pytest.Captu
     path = tmp_path / "scene.toml"
     assert GOOD.count(case.right) >= 1
     path.write_text(GOOD.replace(case.right, case.wrong, 1), encoding="utf-8")
-    with pytest.raises(SceneFaults) as caught:
+    with pytest.raises(SceneError) as caught:
         load_scene(path)
     check(str(caught.value), path, case.field, case.said)
     assert case.field in [fault.field for fault in caught.value.faults]

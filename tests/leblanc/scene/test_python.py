@@ -15,14 +15,14 @@ from leblanc.scene.chambers import Chamber
 from leblanc.scene.examples import example, example_names
 from leblanc.scene.rotors import JeffcottRotor, Spring
 from leblanc.scene.scene import Scene, Speeds, scene_from_table
-from leblanc.scene.schema.load import SceneFaults
+from leblanc.scene.schema.load import SceneError
 from tests.leblanc.scene.test_rotors import EXCITER, HEAD, MOTOR, TUB, TWO_PLANE
 from tests.leblanc.scene.test_scene import TEXT, read
 
 SCENES = [name for name in example_names() if not name.startswith("studies/")]
 
 
-def fields(caught: pytest.ExceptionInfo[SceneFaults]) -> list[str]:
+def fields(caught: pytest.ExceptionInfo[SceneError]) -> list[str]:
     return [fault.field for fault in caught.value.faults]
 
 
@@ -60,10 +60,10 @@ def test_a_scene_of_parts_is_that_of_the_file() -> None:
 
 
 def test_parts_are_refused_in_the_same_words() -> None:
-    with pytest.raises(SceneFaults, match=r"^Chamber: radius = \"-1 m\": must be a length") as caught:
+    with pytest.raises(SceneError, match=r"^Chamber: radius = \"-1 m\": must be a length") as caught:
         Chamber(radius="-1 m", height=0.1, liquid="water", volum=3)
     assert fields(caught) == ["radius", "volume", "volum"]
-    with pytest.raises(SceneFaults) as caught:
+    with pytest.raises(SceneError) as caught:
         Scene(name="x", rotor={"kind": "jeffcott"}, speeds={"start": 2, "stop": 1, "count": 0})
     assert fields(caught) == [
         "rotor.mass",
@@ -75,7 +75,7 @@ def test_parts_are_refused_in_the_same_words() -> None:
         "speeds.stop",
         "speeds.count",
     ]
-    with pytest.raises(SceneFaults, match=r"stiffness = 1.0: must be a list of three"):
+    with pytest.raises(SceneError, match=r"stiffness = 1.0: must be a list of three"):
         Spring(position=(0.0, 0.0, 0.0), stiffness=1.0)
 
 
@@ -87,7 +87,7 @@ def test_what_is_assumed_stands_in_the_parts() -> None:
         "speeds": Speeds(start=1, stop=2, count=2),
     }
     assert Scene(**good, assumed=("rotor.stiffness", "chambers.0")).fills[0].liquid.name == "tea"
-    with pytest.raises(SceneFaults) as caught:
+    with pytest.raises(SceneError) as caught:
         Scene(**good, assumed=["rotor.critical_speed", "chambers.0.plane"])
     assert fields(caught) == ["assumed.0", "assumed.1"]
 
@@ -168,7 +168,7 @@ def test_one_speed_moves_as_a_whole() -> None:
     ],
 )
 def test_faulty_values_are_named(changes: dict[str, Any], said: list[tuple[str, str]]) -> None:
-    with pytest.raises(SceneFaults) as caught:
+    with pytest.raises(SceneError) as caught:
         read().replace(changes)
     for field, words in said:
         assert any(fault.field == field and words in str(fault) for fault in caught.value.faults), field
@@ -211,11 +211,11 @@ def test_an_altered_part_forgets_what_it_worked_out() -> None:
 )
 def test_a_near_miss_is_named(right: str, wrong: str, meant: str) -> None:
     assert TEXT.count(right) == 1
-    with pytest.raises(SceneFaults, match=rf"; did you mean {meant}\?"):
+    with pytest.raises(SceneError, match=rf"; did you mean {meant}\?"):
         read(TEXT.replace(right, wrong))
 
 
 def test_what_is_near_to_nothing_is_not_guessed() -> None:
-    with pytest.raises(SceneFaults) as caught:
+    with pytest.raises(SceneError) as caught:
         read(TEXT.replace('liquid = "water"', 'liquid = "beer"'))
     assert "did you mean" not in str(caught.value)

@@ -74,13 +74,13 @@ def mixed() -> list[Scene]:
 @kills("leblanc.studies.batch:_planar", "~(growth > 0.0)", "(growth == growth)")
 @kills(
     "leblanc.studies.batch:_planar",
-    '"amplitude_dry": np.abs(one.deflection_dry)',
-    '"amplitude_dry": np.abs(one.deflection)',
+    '"amplitude_dry": np.abs(answer.deflection_dry)',
+    '"amplitude_dry": np.abs(answer.deflection)',
 )
 @kills(
     "leblanc.studies.batch:_planar",
-    '"phase": phase(one.deflection),\n        }',
-    '"phase": -phase(one.deflection),\n        }',
+    '"phase": phase(answer.deflection),\n        }',
+    '"phase": -phase(answer.deflection),\n        }',
 )
 @kills("leblanc.studies.batch:answer_scenes", "for part in parts])[order]", "for part in parts])")
 def test_each_is_what_run_gives() -> None:

@@ -16,10 +16,11 @@ from leblanc.results.notes import RunCode
 from leblanc.scene.scene import Scene, dry_rotor, jeffcott, load_scene
 from leblanc.studies.choose import axial_gravity, choose, choose_all, prepare
 from leblanc.studies.explain import explain_scene
+from leblanc.studies.liquid import synchronous_model
 from leblanc.studies.run import run_scene
 from leblanc.studies.runup import runup_outlook, runup_scene
 from meshes.errors import InputError
-from solvers.synchronous.models import LINEAR, model_named
+from solvers.synchronous.models import LINEAR
 from solvers.synchronous.response import response
 from tests.leblanc.studies.test_explain import scene as small_scene
 from tests.leblanc.studies.test_runup import scene as upright_scene
@@ -120,9 +121,9 @@ def test_mixed_models() -> None:
     rotor, fills, speed = jeffcott(machine), machine.fills, machine.speed_array()
     gravity = axial_gravity(machine)
     models = np.where(np.arange(speed.size) % 3 == 0, "linear", "statics")
-    mixed = response(rotor, fills, speed, gravity, [model_named(name) for name in models.tolist()])
+    mixed = response(rotor, fills, speed, gravity, [synchronous_model(name) for name in models.tolist()])
     for name in ("linear", "statics"):
-        whole, rows = response(rotor, fills, speed, gravity, model_named(name)), models == name
+        whole, rows = response(rotor, fills, speed, gravity, synchronous_model(name)), models == name
         np.testing.assert_allclose(mixed.deflection[rows], whole.deflection[rows], rtol=1e-12)
         np.testing.assert_array_equal(mixed.stable[rows], whole.stable[rows])
         count = np.isfinite(mixed.branch_deflection[rows]).sum(axis=1)
@@ -135,7 +136,7 @@ def test_mixed_models_of_a_tilting_rotor() -> None:
     machine = load_scene("examples/two_plane_rig.toml")
     rotor, speed = dry_rotor(machine), machine.speed_array()[::40]
     models = np.where(np.arange(speed.size) % 2 == 0, "linear", "statics")
-    mixed = response(rotor, machine.fills, speed, 0.0, [model_named(name) for name in models.tolist()])
+    mixed = response(rotor, machine.fills, speed, 0.0, [synchronous_model(name) for name in models.tolist()])
     linear = response(rotor, machine.fills, speed, 0.0, LINEAR)
     assert mixed.model.tolist() == models.tolist() and mixed.position == linear.position
     np.testing.assert_allclose(mixed.coordinates[::2], linear.coordinates[::2], rtol=1e-12)

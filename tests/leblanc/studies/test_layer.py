@@ -15,8 +15,11 @@ from fluid.liquid import known_liquid
 from leblanc.cli import main
 from leblanc.results.layer import LayerResult
 from leblanc.studies.layer import answer_layer, steady_film
+from leblanc.studies.liquid import wave_model
 from meshes.chamber import Chamber
-from solvers.layer.state import Whirl
+from solvers.liquid_model import Whirl
+from solvers.synchronous.models import LINEAR, STATICS
+from solvers.waves.one_family import OneFamily
 from tests.mutants import kills
 
 R, A, H, SPIN = 0.15, 0.135, 0.01, 40.0
@@ -32,17 +35,19 @@ def _first_moment(answer: LayerResult) -> float:
 
 
 @kills(
-    "leblanc.studies.layer:_statics", "moment / fill.volume - amplitude", "moment / fill.volume + amplitude"
+    "solvers.synchronous.models:Statics.wave",
+    "moment / fill.volume - amplitude",
+    "moment / fill.volume + amplitude",
 )
 @kills(
-    "leblanc.studies.layer:_statics",
+    "solvers.synchronous.models:Statics.wave",
     "- amplitude * np.cos(theta), chamber",
     "+ amplitude * np.cos(theta), chamber",
 )
 def test_statics() -> None:
     """Synchronous whirl: force of a full drum while the wall is wet; the drawn layer has the offset."""
     for amplitude in (0.001, 0.01):
-        answer = answer_layer(FILL, SPIN, SPIN, amplitude, "statics")
+        answer = answer_layer(FILL, SPIN, SPIN, amplitude, STATICS)
         assert answer.force_ratio == pytest.approx(1.0, rel=1e-12)
         assert _first_moment(answer) == pytest.approx(answer.offset.real, rel=1e-9)
         # Liquid's momentum: its force is its mass times the acceleration of its centre of mass.
@@ -51,24 +56,28 @@ def test_statics() -> None:
 
 
 def test_statics_with_a_dry_patch() -> None:
-    answer = answer_layer(FILL, SPIN, SPIN, 0.04, "statics")
+    answer = answer_layer(FILL, SPIN, SPIN, 0.04, STATICS)
     assert answer.force_ratio.real < 0.99 and answer.notes
     assert answer.depth.min() == 0.0
     # The outline has corners where the surface meets the wall: the rectangle rule is of first order there.
     assert _first_moment(answer) == pytest.approx(answer.offset.real, rel=1e-3)
 
 
-@kills("leblanc.studies.layer:_linear", "surface + displacement * np.cos", "surface - displacement * np.cos")
 @kills(
-    "leblanc.studies.layer:_linear",
-    "ratio = (chamber.radius / surface) ** 2, whirl.speed / speed",
-    "ratio = (chamber.radius / surface) ** 2, speed / whirl.speed",
+    "solvers.synchronous.models:Linear.wave",
+    "surface + displacement * np.cos",
+    "surface - displacement * np.cos",
+)
+@kills(
+    "solvers.synchronous.models:Linear.wave",
+    "ratio = (chamber.radius / surface) ** 2, whirl.speed / whirl.spin",
+    "ratio = (chamber.radius / surface) ** 2, whirl.spin / whirl.speed",
 )
 def test_linear() -> None:
     """Asynchronous whirl: momentum of the liquid, and the surface that carries its centre of mass."""
     for whirl in (-10.0, 20.0, 34.0, 46.0, 52.0):
         amplitude = 1e-5
-        answer = answer_layer(FILL, SPIN, whirl, amplitude, "linear")
+        answer = answer_layer(FILL, SPIN, whirl, amplitude, LINEAR)
         ratio = R**2 / (R**2 - A**2)
         assert amplitude + answer.offset == pytest.approx(ratio * answer.force_ratio * amplitude, rel=1e-9)
         # To first order in the displacement, whose square the mass error shows.
@@ -80,8 +89,8 @@ def test_linear() -> None:
 
 def test_linear_tends_to_statics() -> None:
     small = 1e-4
-    linear = answer_layer(FILL, SPIN, SPIN, small, "linear")
-    exact = answer_layer(FILL, SPIN, SPIN, small, "statics")
+    linear = answer_layer(FILL, SPIN, SPIN, small, LINEAR)
+    exact = answer_layer(FILL, SPIN, SPIN, small, STATICS)
     assert linear.offset == pytest.approx(exact.offset, rel=1e-9)
     np.testing.assert_allclose(linear.depth, exact.depth, atol=3.0 * small**2 / R)
 
@@ -113,7 +122,7 @@ def test_json(capsys: pytest.CaptureFixture[str]) -> None:
 )
 def test_without_a_whirl_nothing_moves(model: str, whirl: float, force: float) -> None:
     """The limit of the force ratio where theory has one, no force elsewhere; the layer stays as it is."""
-    answer = answer_layer(FILL, SPIN, whirl, 0.0, model)
+    answer = answer_layer(FILL, SPIN, whirl, 0.0, wave_model(model))
     assert answer.converged and answer.force_ratio == pytest.approx(force, abs=1e-12)
     # Rounding, of which a layer in time keeps some.
     assert abs(answer.offset) < 1e-14 and np.ptp(answer.depth) < 1e-12 * (R - A)
@@ -159,9 +168,9 @@ def test_bad_input(capsys: pytest.CaptureFixture[str], change: dict[str, str], n
 
 
 def test_gravity_lifts_the_liquid() -> None:
-    answer = answer_layer(FILL, SPIN, SPIN, 1e-4, "linear", gravity=9.81)
+    answer = answer_layer(FILL, SPIN, SPIN, 1e-4, LINEAR, gravity=9.81)
     assert answer.captured and answer.gravity_offset == pytest.approx(-9.81 / (2 * (R / A) ** 2 * SPIN**2))
-    slow = answer_layer(FILL, 8.0, 8.0, 1e-4, "linear", gravity=9.81)
+    slow = answer_layer(FILL, 8.0, 8.0, 1e-4, LINEAR, gravity=9.81)
     assert not slow.captured and not slow.in_range
 
 
@@ -177,7 +186,7 @@ def test_long_wave_synchronous(capsys: pytest.CaptureFixture[str]) -> None:
     assert answer["force_ratio"] == pytest.approx([1.0, 0.0], abs=1e-12)
     assert answer["mass_error"] < 1e-12 and answer["converged"] and answer["in_range"]
     assert len(answer["theta"]) == len(answer["depth"]) == 128
-    exact = answer_layer(FILL, SPIN, SPIN, 7.5e-4, "statics")
+    exact = answer_layer(FILL, SPIN, SPIN, 7.5e-4, STATICS)
     assert answer["offset"][0] == pytest.approx(exact.offset.real, rel=1e-9)
 
 
@@ -238,7 +247,7 @@ def test_wave_figure_and_film(capsys: pytest.CaptureFixture[str], tmp_path: Path
 
 def test_steady_film_runs_with_the_whirl() -> None:
     whirl = Whirl(SPIN, 30.6, 1e-4)
-    answer = answer_layer(FILL, SPIN, 30.6, 1e-4, "kdv", Friction("linear", 1.0))
+    answer = answer_layer(FILL, SPIN, 30.6, 1e-4, OneFamily(Friction("linear", 1.0)))
     film = steady_film(answer, whirl, 2.0 * whirl.period)
     crest = film.theta[film.depth.argmax(axis=1)]
     behind = np.angle(np.exp(1j * crest) / film.deflection)

@@ -9,15 +9,16 @@ import numpy as np
 import pytest
 
 from fluid.fill import Fill, compartment_share
-from fluid.friction import Friction
 from fluid.liquid import known_liquid
 from leblanc.cli import main
+from leblanc.questions import layer_question
 from leblanc.results.layer import LayerResult
 from leblanc.studies.layer import answer_layer
+from leblanc.studies.liquid import wave_model
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.errors import InputError
-from solvers.layer.state import Numerics
+from solvers.sloshing.model import SmallWaves
 from tests.mutants import kills
 
 WALL, SURFACE, HEIGHT, SPIN = 0.15, 0.135, 0.05, 40.0
@@ -30,13 +31,19 @@ def fill(baffles: Baffles | None = None) -> Fill:
 
 
 def answer(whirl: float, model: str, baffles: Baffles | None = None) -> LayerResult:
-    return answer_layer(fill(baffles), SPIN, whirl, 1e-4, model)
+    return answer_layer(fill(baffles), SPIN, whirl, 1e-4, wave_model(model))
 
 
 @kills(
-    "leblanc.studies.layer:fem_answer", "whirl.speed**2 * whirl.amplitude", "whirl.spin**2 * whirl.amplitude"
+    "solvers.sloshing.model:SmallWaves.wave",
+    "whirl.speed**2 * whirl.amplitude",
+    "whirl.spin**2 * whirl.amplitude",
 )
-@kills("leblanc.studies.layer:fem_answer", "chamber.radius - inner - drawn", "chamber.radius - inner + drawn")
+@kills(
+    "solvers.sloshing.model:SmallWaves.wave",
+    "chamber.radius - inner - drawn",
+    "chamber.radius - inner + drawn",
+)
 def test_a_clear_ring_is_linear_theory() -> None:
     """On both sides of both waves, which lie at 57.8 and 30.6 rad/s."""
     for whirl in (-30.0, 10.0, 27.0, 33.0, 45.0, 55.0, 65.0, 120.0):
@@ -49,16 +56,18 @@ def test_a_clear_ring_is_linear_theory() -> None:
         np.testing.assert_allclose(found.depth, exact.depth, rtol=0.0, atol=4e-4 * height)
 
 
-@kills("leblanc.studies.layer:fem_answer", "(pull * system.enclosed_area)", "(pull * system.liquid_area)")
+@kills(
+    "solvers.sloshing.model:SmallWaves.wave", "(pull * system.enclosed_area)", "(pull * system.liquid_area)"
+)
 def test_compartments_at_synchronous_whirl() -> None:
     for count in (3, 4, 6):
         left = 1.0 - (SURFACE / WALL) ** 2 * compartment_share(count)
         assert answer(SPIN, "fem", Baffles(count)).force_ratio == pytest.approx(left, rel=1e-6)
 
 
-@kills("leblanc.studies.layer:fem_answer", "moment = -(system", "moment = (system")
-@kills("leblanc.studies.layer:fem_answer", "/ system.liquid_area\n", "/ system.enclosed_area\n")
-@kills("leblanc.studies.layer:fem_answer", "0.5 * (total @ FORWARD)", "0.0 * (total @ FORWARD)")
+@kills("solvers.sloshing.model:SmallWaves.wave", "moment = -(system", "moment = (system")
+@kills("solvers.sloshing.model:SmallWaves.wave", "/ system.liquid_area\n", "/ system.enclosed_area\n")
+@kills("solvers.sloshing.model:SmallWaves.wave", "0.5 * (total @ FORWARD)", "0.0 * (total @ FORWARD)")
 def test_force_and_offset_obey_newton() -> None:
     """Force and motion of the centre of mass are one statement: G A = A_l (1 + d/w)."""
     shares = {1: 0.1, 3: 1e-7}
@@ -73,7 +82,7 @@ def test_force_and_offset_obey_newton() -> None:
 
 
 def test_without_an_amplitude_the_limit() -> None:
-    still = answer_layer(fill(), SPIN, 33.0, 0.0, "fem")
+    still = answer_layer(fill(), SPIN, 33.0, 0.0, SmallWaves())
     assert still.force_ratio == pytest.approx(answer(33.0, "fem").force_ratio, rel=1e-12)
     assert still.offset == 0.0
     np.testing.assert_allclose(still.depth, WALL - SURFACE, rtol=1e-12)
@@ -82,14 +91,18 @@ def test_without_an_amplitude_the_limit() -> None:
 @pytest.mark.parametrize(
     ("change", "field"),
     [
-        ({"friction": Friction("stokes", 0.0)}, "--friction"),
+        ({"friction": "stokes"}, "--friction"),
         ({"gravity": 9.81}, "--gravity"),
-        ({"numerics": Numerics(5000)}, "--cells"),
+        ({"cells": 5000}, "--cells"),
     ],
 )
 def test_what_elements_do_not_take(change: dict[str, object], field: str) -> None:
     with pytest.raises(InputError, match=field):
-        answer_layer(fill(), SPIN, 33.0, 1e-4, "fem", **change)  # type: ignore[arg-type]
+        asked = layer_question(
+            radius=WALL, volume=VOLUME, height=HEIGHT, speed=SPIN, whirl_speed=33.0, whirl_amplitude=1e-4,
+            model="fem", **change,  # type: ignore[arg-type]
+        )  # fmt: skip
+        answer_layer(**asked.whirl)
 
 
 def test_baffles_are_for_elements() -> None:

@@ -13,8 +13,10 @@ from fluid.liquid import known_liquid
 from leblanc.cli import main
 from leblanc.results.layer import LayerResult
 from leblanc.studies.layer import answer_layer
+from leblanc.studies.liquid import wave_model
 from leblanc.studies.validity import MEANING
 from meshes.chamber import Chamber
+from solvers.synchronous.models import LINEAR
 
 R, H, SPIN = 0.15, 0.01, 40.0
 SHARED = {"relative_depth", "deflection", "detuning", "froude", "centrifuge", "reynolds", "wall_layer"}
@@ -33,7 +35,7 @@ def outside(answer: LayerResult) -> set[str]:
 def test_numbers_are_told_and_inside(model: str) -> None:
     whirl = SPIN if model == "statics" else 30.0
     friction = Friction("linear", 1.0) if model in ("long_wave", "kdv") else NO_FRICTION
-    answer = answer_layer(layer(0.1), SPIN, whirl, 5e-5, model, friction)
+    answer = answer_layer(layer(0.1), SPIN, whirl, 5e-5, wave_model(model, friction))
     assert {number.name for number in answer.validity} >= SHARED | {"wave_amplitude"}
     assert answer.in_range and not outside(answer) and not answer.notes
     assert all(number.meaning == MEANING[number.name] for number in answer.validity)
@@ -51,20 +53,20 @@ def test_numbers_are_told_and_inside(model: str) -> None:
 )
 def test_outside_is_said(model: str, depth: float, whirl: float, amplitude: float, out: str) -> None:
     friction = Friction("linear", 1.0) if model != "linear" else NO_FRICTION
-    answer = answer_layer(layer(depth), SPIN, whirl, amplitude, model, friction)
+    answer = answer_layer(layer(depth), SPIN, whirl, amplitude, wave_model(model, friction))
     assert out in outside(answer) and not answer.in_range
     assert any(MEANING[out] in note.text for note in answer.notes)
 
 
 def test_gravity_that_lets_the_layer_fall_is_out_of_range() -> None:
-    answer = answer_layer(layer(0.1), 5.0, 4.0, 1e-5, "linear", gravity=9.81)
+    answer = answer_layer(layer(0.1), 5.0, 4.0, 1e-5, LINEAR, gravity=9.81)
     assert outside(answer) == {"centrifuge"} and not answer.captured
 
 
 def test_synchronous_linear_waves_hold_up_to_the_dry_wall() -> None:
     fill = layer(0.1)
-    assert answer_layer(fill, SPIN, SPIN, 0.9 * fill.depth, "linear").in_range
-    assert outside(answer_layer(fill, SPIN, SPIN, 1.1 * fill.depth, "linear")) == {"wave_amplitude"}
+    assert answer_layer(fill, SPIN, SPIN, 0.9 * fill.depth, LINEAR).in_range
+    assert outside(answer_layer(fill, SPIN, SPIN, 1.1 * fill.depth, LINEAR)) == {"wave_amplitude"}
 
 
 def test_json_of_a_history(capsys: pytest.CaptureFixture[str]) -> None:

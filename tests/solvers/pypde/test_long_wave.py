@@ -32,7 +32,8 @@ from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.layer.settle import simulate
-from solvers.layer.state import Numerics, Whirl
+from solvers.layer.state import Numerics
+from solvers.liquid_model import Whirl
 from solvers.pypde.long_wave import AnnularLongWavePDE, FiniteVolumeSolver
 from solvers.pypde.one_family import circle
 from tests.mutants import kills

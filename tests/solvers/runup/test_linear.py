@@ -11,11 +11,13 @@ import pytest
 from fluid.fill import Fill
 from fluid.friction import Friction
 from fluid.liquid import Liquid
+from leblanc.studies.liquid import runup_model
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.linear import couple_linear
-from solvers.runup.machine import Motor, Outcome, Ramp
+from solvers.runup.long_wave import couple
+from solvers.runup.machine import Motor, Outcome, Ramp, RunupModel
 from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
 from solvers.synchronous.response import response
 from solvers.whirl.growth import asynchronous_growth
@@ -30,8 +32,8 @@ RAMP = Ramp(5.0, 60.0, 10.0, 6.0)
 ALONE = RunupNumerics(cells=128, samples=600, companion=False)
 
 
-def run(model: str, friction: Friction, **changes: object) -> RunupHistory:
-    numerics = replace(ALONE, **{"dispersion": model == "long_wave", **changes})  # type: ignore[arg-type]
+def run(model: RunupModel, friction: Friction, **changes: object) -> RunupHistory:
+    numerics = replace(ALONE, **{"dispersion": model is couple, **changes})  # type: ignore[arg-type]
     return run_up(ROTOR.system(), [FILL], RAMP, friction, 0.0, numerics, model=model)
 
 
@@ -50,7 +52,7 @@ def test_small_waves_are_those_of_the_long_wave_model(friction: Friction, apart:
     Where the liquid lags by a third of the speed the models differ: the long waves keep the vorticity of the
     drum's rotation, the linear layer has that of its own [theory: coupling, eq. 11].
     """
-    linear, waves = run("linear", friction), run("long_wave", friction)
+    linear, waves = run(couple_linear, friction), run(couple, friction)
     gap = np.abs(linear.amplitude - waves.amplitude).max() / waves.amplitude.max()
     assert gap < apart
     np.testing.assert_allclose(linear.mean_rotation, waves.mean_rotation, atol=0.02 * 60.0)
@@ -89,7 +91,7 @@ def test_hold_comes_to_the_steady_response() -> None:
     """Held at a speed, the synchronous response with the mass of a full drum."""
     drive = Ramp(59.9, 60.0, 1.0, 6.0)
     for law in (Friction("linear", 8.0), Friction("linear", 30.0)):
-        history = run_up(ROTOR.system(), [FILL], drive, law, 0.0, ALONE, model="linear")
+        history = run_up(ROTOR.system(), [FILL], drive, law, 0.0, ALONE, model=couple_linear)
         found = history.deflection[-1, 0] * np.exp(-1j * history.angle[-1])
         steady = response(ROTOR, [FILL], [60.0], gravity=0.0)
         # The trapezium: (0.8 * 2 pi/128)^2/12.
@@ -119,7 +121,7 @@ def test_motor() -> None:
     """A motor spins rotor and liquid: their angular momentum is the integral of its torque."""
     rotor = replace(ROTOR, unbalance=0.0)
     drive = Motor(10.0, 0.5, (0.0, 100.0), (5.0, 5.0), 2.0)
-    history = run_up(rotor.system(), [FILL], drive, Friction("linear", 2.0), 0.0, ALONE, model="linear")
+    history = run_up(rotor.system(), [FILL], drive, Friction("linear", 2.0), 0.0, ALONE, model=couple_linear)
     area = 5e-4 / (2.0 * math.pi * 0.04 * 0.25**2)
     inertia = 1000.0 * 0.04 * 2.0 * math.pi * 0.25**4 * area * (1.0 - area)
     own = history.speed + history.mean_rotation[:, 0]
@@ -133,7 +135,7 @@ def test_motor() -> None:
 def test_capture() -> None:
     """Caught at sqrt(g/a) and let go below; momentum and energy are kept account of."""
     drive = Ramp(3.0, 20.0, 4.0, 5.0, back=True)
-    history = run_up(ROTOR.system(), [FILL], drive, Friction("linear", 3.0), 9.81, ALONE, model="linear")
+    history = run_up(ROTOR.system(), [FILL], drive, Friction("linear", 3.0), 9.81, ALONE, model=couple_linear)
     caught, speed = history.captured[:, 0], math.sqrt(9.81 / FILL.surface_radius)
     assert history.converged
     assert history.speed[caught & (history.time < 5.0)].min() == pytest.approx(speed, rel=0.02)
@@ -177,23 +179,26 @@ def test_depths() -> None:
 
 def test_stiff_empty_full_and_many() -> None:
     stiff = replace(ROTOR, stiffness=1e15, damping=0.0)
-    history = run_up(stiff.system(), [FILL], RAMP, Friction("linear", 1.0), 0.0, ALONE, model="linear")
+    history = run_up(stiff.system(), [FILL], RAMP, Friction("linear", 1.0), 0.0, ALONE, model=couple_linear)
     assert history.converged and history.amplitude.max() < 3.0 * 1e-3 * 60.0**2 / 1e15
-    dry = run_up(ROTOR.system(), [], RAMP, numerics=ALONE, model="linear")
+    dry = run_up(ROTOR.system(), [], RAMP, numerics=ALONE, model=couple_linear)
     waves = run_up(ROTOR.system(), [], RAMP, numerics=ALONE)
     np.testing.assert_allclose(dry.deflection, waves.deflection, atol=1e-3 * dry.amplitude.max())
-    empty = run_up(ROTOR.system(), [replace(FILL, volume=0.0)], RAMP, numerics=ALONE, model="linear")
+    empty = run_up(ROTOR.system(), [replace(FILL, volume=0.0)], RAMP, numerics=ALONE, model=couple_linear)
     np.testing.assert_allclose(empty.deflection, dry.deflection, atol=1e-12)
     full = replace(FILL, volume=FILL.chamber.capacity)
-    solid = run_up(ROTOR.system(), [full], RAMP, numerics=ALONE, model="linear")
-    heavy = run_up(replace(ROTOR, mass=MASS + full.mass).system(), [], RAMP, numerics=ALONE, model="linear")
+    solid = run_up(ROTOR.system(), [full], RAMP, numerics=ALONE, model=couple_linear)
+    heavy = run_up(
+        replace(ROTOR, mass=MASS + full.mass).system(), [], RAMP, numerics=ALONE, model=couple_linear
+    )
     np.testing.assert_allclose(solid.deflection, heavy.deflection, atol=1e-12)
     flat = Fill(Chamber(0.25, 0.0025), WATER, 5e-4 / 16.0)
-    many = run_up(ROTOR.system(), [flat] * 16, RAMP, Friction("linear", 2.0), 0.0, ALONE, model="linear")
-    one = run("linear", Friction("linear", 2.0))
+    many = run_up(ROTOR.system(), [flat] * 16, RAMP, Friction("linear", 2.0), 0.0, ALONE, model=couple_linear)
+    one = run(couple_linear, Friction("linear", 2.0))
     np.testing.assert_allclose(many.deflection[:, 0], one.deflection[:, 0], atol=1e-10 * one.amplitude.max())
 
 
 def test_unknown_model_is_refused() -> None:
     with pytest.raises(InputError, match="model"):
-        run_up(ROTOR.system(), [FILL], RAMP, model="kdv")
+        runup_model("kdv")
+    assert runup_model("linear") is couple_linear and runup_model("long_wave") is couple

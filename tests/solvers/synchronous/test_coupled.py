@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from fluid.fill import Fill
 from fluid.liquid import Liquid
 from fluid.waves import offset_ratio
+from leblanc.studies.liquid import synchronous_model
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
@@ -21,7 +22,7 @@ from solvers.rotor.vibration import critical_speeds, orbit, unbalance_response
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.balance import backward_mass, harmonic_balance
 from solvers.synchronous.coupled import one_plane, several_planes
-from solvers.synchronous.models import STATICS, model_named
+from solvers.synchronous.models import STATICS
 from solvers.synchronous.response import Response, critical_speed, response, wet_critical_speeds
 from tests.mutants import kills
 from tests.oracles.rotors import tub, two_plane
@@ -371,4 +372,4 @@ def test_extremes(name: str, gravity: float) -> None:
 @pytest.mark.parametrize(("speed", "model"), [([0.0], "auto"), ([math.nan], "auto"), ([1.0], "kdv")])
 def test_bad_input(speed: list[float], model: str) -> None:
     with pytest.raises(InputError):
-        response(two_plane(), [], speed, model=model_named(model))
+        response(two_plane(), [], speed, model=synchronous_model(model))

@@ -15,9 +15,10 @@ from meshes.arrays import Array
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.layer.settle import settle
-from solvers.layer.state import Numerics, Whirl
+from solvers.layer.state import Numerics
+from solvers.liquid_model import LiquidAnswer, LiquidModel, Whirl, Whirls
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.synchronous.models import STATICS, Fem, LiquidModel, LongWave, Statics, SynchronousAnswer
+from solvers.synchronous.models import STATICS, CellsAtRest, ElementsAtRest, Statics
 from solvers.synchronous.response import response
 from tests.mutants import kills
 
@@ -29,10 +30,10 @@ RING = Fill(Chamber(0.2, 0.04, 0.15), WATER, 0.6 * Chamber(0.2, 0.04, 0.15).capa
 
 def ask(
     model: LiquidModel, fill: Fill, deflection: Array, speed: float = 40.0, gravity: float = 0.0
-) -> SynchronousAnswer:
+) -> LiquidAnswer:
     count = deflection.size
-    every = np.full(count, speed), deflection, np.full(count, gravity)
-    return model.synchronous(Fills.of([fill] * count), *every)
+    whirls = Whirls.synchronous(np.full(count, speed), deflection, np.full(count, gravity))
+    return model.answer(Fills.of([fill] * count), whirls)
 
 
 @kills(
@@ -51,7 +52,7 @@ def test_scheme_at_rest() -> None:
         for share in (0.5, 0.99, 1.3, 3.0):
             e = share * LAYER.depth
             held = settle(LAYER, Whirl(spin=40.0, speed=40.0, amplitude=e), numerics=Numerics(cells=cells))
-            mine = ask(LongWave(cells), LAYER, np.array([e]))
+            mine = ask(CellsAtRest(cells), LAYER, np.array([e]))
             assert mine.converged.all() and mine.dry_patch.tolist() == [share > 1.0]
             assert mine.unbalance[0] / (LAYER.full_mass * e) == pytest.approx(
                 held.force_ratio[-1].real, rel=1e-12
@@ -70,17 +71,17 @@ def test_scheme_at_rest() -> None:
     "seen = 1.0 - e * cosine + chord",
 )
 @kills(
-    "solvers.synchronous.models:LongWave._at_rest",
+    "solvers.synchronous.models:CellsAtRest._at_rest",
     "lever = depth * (3.0 - depth * (3.0 - depth)) / 3.0",
     "lever = depth * (2.0 - depth) / 2.0",
 )
 @kills(
-    "solvers.synchronous.models:LongWave._at_rest",
+    "solvers.synchronous.models:CellsAtRest._at_rest",
     "moment = fills.volume * deflection + size",
     "moment = size",
 )
 @kills(
-    "solvers.synchronous.models:LongWave._at_rest",
+    "solvers.synchronous.models:CellsAtRest._at_rest",
     "np.mean(depth * (2.0 - depth), axis=1) - film",
     "np.mean(2.0 * depth, axis=1) - film",
 )
@@ -92,14 +93,14 @@ def test_wet_wall() -> None:
     """
     for fill in (LAYER, THIN, RING):
         e = fill.depth * np.array([1e-6, 1e-3, 0.3, 0.9])
-        found = ask(LongWave(32), fill, e)
+        found = ask(CellsAtRest(32), fill, e)
         # A sum of levers of both signs: rounding is relative to their size.
         rounding = 1e-15 * fill.mass * fill.chamber.radius
         np.testing.assert_allclose(found.unbalance, fill.full_mass * e, rtol=2e-13, atol=rounding)
         np.testing.assert_allclose(found.slope, fill.full_mass, rtol=2e-12)
         assert not found.dry_patch.any() and found.converged.all()
     # At no deflection the liquid is even and its slope the same.
-    still = ask(LongWave(32), LAYER, np.zeros(1))
+    still = ask(CellsAtRest(32), LAYER, np.zeros(1))
     assert still.unbalance[0] == pytest.approx(0.0, abs=1e-17)
     assert still.slope[0] == pytest.approx(LAYER.full_mass, rel=1e-13)
 
@@ -113,22 +114,24 @@ def test_cells_converge() -> None:
     e = LAYER.depth * np.linspace(1.05, 6.0, 60)
     exact = ask(Statics(), LAYER, e)
     grids = (32, 64, 128, 256, 512)
-    off = [ask(LongWave(n), LAYER, e).unbalance / exact.unbalance - 1.0 for n in grids]
+    off = [ask(CellsAtRest(n), LAYER, e).unbalance / exact.unbalance - 1.0 for n in grids]
     rms = np.sqrt(np.mean(np.square(off), axis=1))
     np.testing.assert_allclose(np.log2(rms[:-1] / rms[1:]), 2.0, atol=0.15)
     # The plan of the surface jumps at the kink: first order for the slope, one cell in N of its change.
-    steep = [np.abs(ask(LongWave(n), LAYER, e).slope / exact.slope - 1.0).max() for n in grids]
+    steep = [np.abs(ask(CellsAtRest(n), LAYER, e).slope / exact.slope - 1.0).max() for n in grids]
     assert all(worst <= 4.0 / n for worst, n in zip(steep, grids, strict=True))
 
 
 @kills(
-    "solvers.synchronous.models:LongWave._at_rest",
+    "solvers.synchronous.models:CellsAtRest._at_rest",
     "share = np.divide(surface, chord,",
     "share = np.divide(chord, surface + 1.0,",
 )
-@kills("solvers.synchronous.models:LongWave._at_rest", "np.square(arm - middle[:, None])", "np.square(arm)")
 @kills(
-    "solvers.synchronous.models:LongWave._at_rest",
+    "solvers.synchronous.models:CellsAtRest._at_rest", "np.square(arm - middle[:, None])", "np.square(arm)"
+)
+@kills(
+    "solvers.synchronous.models:CellsAtRest._at_rest",
     "fills.volume + size * spread, dry",
     "size * spread, dry",
 )
@@ -140,7 +143,7 @@ def test_slope() -> None:
     """
     for share in (0.4, 1.7, 4.0):
         e, step = share * LAYER.depth, 1e-4 * LAYER.depth
-        found = ask(LongWave(24), LAYER, np.array([e - step, e, e + step]))
+        found = ask(CellsAtRest(24), LAYER, np.array([e - step, e, e + step]))
         slope = (found.unbalance[2] - found.unbalance[0]) / (2.0 * step)
         assert found.slope[1] == pytest.approx(slope, rel=1e-6)
 
@@ -157,7 +160,7 @@ def test_law_never_falls(cells: int, filled: float, shares: list[float], radius:
     chamber = Chamber(radius, 0.04)
     fill = Fill(chamber, WATER, filled * chamber.capacity)
     e = radius * np.sort(shares)
-    found = ask(LongWave(cells), fill, e)
+    found = ask(CellsAtRest(cells), fill, e)
     assert found.converged.all()
     own = found.unbalance - fill.mass * e
     # Roots are found to four units of rounding of the greatest depth, sums of unity to as much.
@@ -170,7 +173,7 @@ def test_law_never_falls(cells: int, filled: float, shares: list[float], radius:
 @kills("solvers.synchronous.models:_surface", "level - (far - near)", "level + (far - near)")
 @kills("solvers.synchronous.models:_surface", "axis, plane = (-e, 0.0)", "axis, plane = (e, 0.0)")
 @kills(
-    "solvers.synchronous.models:Fem.synchronous",
+    "solvers.synchronous.models:ElementsAtRest.answer",
     "float(steep[k]) * height / radius**2",
     "float(steep[k]) * height / radius",
 )
@@ -185,14 +188,14 @@ def test_elements_converge() -> None:
         exact = ask(Statics(), LAYER, e, speed, gravity)
         for order, expected in ((1, 2.0), (2, 4.0)):
             grids = (32, 64)
-            found = [ask(Fem(n, order), LAYER, e, speed, gravity) for n in grids]
+            found = [ask(ElementsAtRest(n, order), LAYER, e, speed, gravity) for n in grids]
             off = [one.unbalance / exact.unbalance - 1.0 for one in found]
             assert np.all(off[1] < 0.0)
             np.testing.assert_allclose(np.log2(off[0] / off[1]), expected, atol=0.3)
             assert all(one.converged.all() for one in found)
             np.testing.assert_array_equal(found[1].dry_patch, exact.dry_patch)
     corner = 2.0 * math.pi / 32
-    wet = ask(Fem(32), LAYER, np.array([0.3 * LAYER.depth]))
+    wet = ask(ElementsAtRest(32), LAYER, np.array([0.3 * LAYER.depth]))
     assert wet.unbalance[0] / (LAYER.full_mass * 0.3 * LAYER.depth) == pytest.approx(
         math.sin(corner) / corner, 1e-9
     )
@@ -212,19 +215,19 @@ def test_elements_slope() -> None:
     """
     for speed, gravity in ((40.0, 0.0), (20.0, 9.81)):
         e = LAYER.depth * np.array([0.3, 1.4, 5.0])
-        exact, found = (ask(model, LAYER, e, speed, gravity) for model in (Statics(), Fem(32, 2)))
+        exact, found = (ask(model, LAYER, e, speed, gravity) for model in (Statics(), ElementsAtRest(32, 2)))
         np.testing.assert_allclose(found.slope, exact.slope, rtol=6e-4)
 
 
 @kills(
-    "solvers.synchronous.models:LongWave.synchronous",
+    "solvers.synchronous.models:CellsAtRest.answer",
     "0.5 * math.pi * np.square(chamber.radius)",
     "math.pi * np.square(chamber.radius)",
 )
-@kills("solvers.synchronous.models:LongWave._at_rest", "drop = level + e * away[0]", "drop = level - e")
+@kills("solvers.synchronous.models:CellsAtRest._at_rest", "drop = level + e * away[0]", "drop = level - e")
 def test_range() -> None:
     """Long waves are for layers that are thin, upright, and clear of the axis and of an inner wall."""
-    wave = LongWave(32)
+    wave = CellsAtRest(32)
     small = np.array([1e-4])
     assert ask(wave, LAYER, small).in_range.all()
     deep = Fill(LAYER.chamber, WATER, 0.52 * LAYER.chamber.capacity)  # h0 = 0.307 R
@@ -247,7 +250,7 @@ def test_response() -> None:
     rotor = Jeffcott(mass=20.0, stiffness=2.0e4, damping=60.0, unbalance=0.05)
     speed = np.array([15.0, 25.0, 31.0, 40.0, 80.0])
     exact = response(rotor, [LAYER], speed, 0.0, STATICS)
-    mine = response(rotor, [LAYER], speed, 0.0, LongWave(256))
+    mine = response(rotor, [LAYER], speed, 0.0, CellsAtRest(256))
     assert mine.model.tolist() == ["long_wave 256"] * 5
     assert exact.dry_patch.any() and not exact.dry_patch.all()
     off = np.abs(mine.deflection / exact.deflection - 1.0)
@@ -259,24 +262,25 @@ def test_response() -> None:
 
 def test_models_are_values() -> None:
     """Equal models count as one where each speed has its own; names tell resolutions apart."""
-    assert LongWave(64) == LongWave(64) and len({LongWave(64), LongWave(64), LongWave(32), STATICS}) == 3
-    assert LongWave(64).name == "long_wave 64" and Fem(16, 2).name == "fem 16 order 2"
+    assert (
+        CellsAtRest(64) == CellsAtRest(64)
+        and len({CellsAtRest(64), CellsAtRest(64), CellsAtRest(32), STATICS}) == 3
+    )
+    assert CellsAtRest(64).name == "long_wave 64" and ElementsAtRest(16, 2).name == "fem 16 order 2"
 
 
 def test_no_states() -> None:
-    for model in (LongWave(16), Fem(16)):
+    for model in (CellsAtRest(16), ElementsAtRest(16)):
         nothing = np.zeros(0)
-        assert (
-            model.synchronous(Fills.of([LAYER]).at(np.zeros(0, dtype=np.intp)), *[nothing] * 3).slope.size
-            == 0
-        )
+        fills = Fills.of([LAYER]).at(np.zeros(0, dtype=np.intp))
+        assert model.answer(fills, Whirls.synchronous(nothing, nothing, nothing)).slope.size == 0
         assert model.linear_limit(Fills.of([LAYER]), np.ones(1), np.zeros(1)).tolist() == [0.0]
 
 
 def test_too_coarse() -> None:
     with pytest.raises(InputError, match="cells"):
-        LongWave(7)
+        CellsAtRest(7)
     with pytest.raises(InputError, match="segments"):
-        Fem(7)
+        ElementsAtRest(7)
     with pytest.raises(InputError, match="order"):
-        Fem(16, 3)
+        ElementsAtRest(16, 3)

@@ -9,10 +9,11 @@ import numpy as np
 from fluid.fill import Fill, Fills
 from fluid.friction import Friction
 from fluid.liquid import Liquid
+from leblanc.studies.liquid import synchronous_model
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
 from solvers.statics.hydrostatics import equilibrium
-from solvers.synchronous.models import STATICS, model_named
+from solvers.synchronous.models import STATICS
 from solvers.synchronous.pairs import pair_machines
 from solvers.synchronous.response import machine_responses, response
 from solvers.whirl.growth import asynchronous_growth, machines_growth
@@ -41,7 +42,7 @@ def machines() -> list[PlanarMachine]:
 @kills("solvers.synchronous.pairs:pair_machines", "place = index[owner]", "place = index[owner[::-1]]")
 def test_each_as_if_alone() -> None:
     """The response of many machines is that of each by itself, for every model."""
-    for model in map(model_named, ("statics", "linear")):
+    for model in map(synchronous_model, ("statics", "linear")):
         many = machine_responses(machines(), OWNER, SPEED, GRAVITY, model)
         branches = np.isfinite(many.branch_deflection).sum(axis=1)
         for k, (rotor, fills) in enumerate(machines()):

@@ -13,12 +13,13 @@ from scipy.interpolate import CubicSpline
 
 from fluid.fill import Fill
 from fluid.liquid import Liquid
+from leblanc.studies.liquid import synchronous_model
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vector_model import balance_residual, deflection_lag
 from solvers.statics.hydrostatics import equilibrium
-from solvers.synchronous.models import Linear, model_named
+from solvers.synchronous.models import Linear
 from solvers.synchronous.response import Response, critical_speed, response
 from tests.mutants import kills
 
@@ -304,4 +305,4 @@ def test_linear_model_says_where_it_ends() -> None:
 @pytest.mark.parametrize(("speed", "model"), [([0.0], "auto"), ([math.nan], "auto"), ([1.0], "long_wave")])
 def test_bad_input(speed: list[float], model: str) -> None:
     with pytest.raises(InputError):
-        response(rig(), [], speed, model=model_named(model))
+        response(rig(), [], speed, model=synchronous_model(model))

@@ -21,12 +21,13 @@ from meshes.chamber_section import chamber_section
 from meshes.errors import InputError
 from meshes.rings.triangles import ring
 from meshes.section import Section, disc
+from solvers.liquid_model import Whirls
 from solvers.rotor.jeffcott import Jeffcott
+from solvers.sloshing.model import SmallWaves
 from solvers.sloshing.reduced import clear_ring, reduce_liquid, section_layer, section_layers, wall_drag
 from solvers.sloshing.system import LiquidSystem, condense
 from solvers.statics.free_surface import solve_surface
 from solvers.synchronous.balance import backward_mass
-from solvers.synchronous.models import ELEMENTS
 from solvers.whirl.growth import asynchronous_growth, system_modes
 from solvers.whirl.sections import circle_layer, drum_matrices, drum_modes, standing_modes
 from tests.mutants import kills
@@ -250,7 +251,8 @@ def test_a_section_is_dry_first_where_it_is_thinnest() -> None:
     # The nearest wall is 0.97 R away.
     assert fill.depth == pytest.approx(0.97 * WALL - fill.surface_radius, rel=1e-4)
     e = fill.depth * np.array([0.99, 1.01])
-    answer = ELEMENTS.synchronous(Fills.same(fill, 2), np.full(2, 40.0), e, np.zeros(2))
+    whirls = Whirls.synchronous(np.full(2, 40.0), e, np.zeros(2))
+    answer = SmallWaves().answer(Fills.same(fill, 2), whirls)
     assert answer.in_range.tolist() == [True, False]
     assert answer.dry_patch.tolist() == [False, True]
 

@@ -74,8 +74,8 @@ def test_distributions() -> None:
 
 @kills(
     "leblanc.studies.sweep.sampling:grid_rows",
-    "np.unravel_index(np.arange(start, stop), tuple(one.size for one in levels))",
-    'np.unravel_index(np.arange(start, stop), tuple(one.size for one in levels), order="F")',
+    "np.unravel_index(np.arange(start, stop), tuple(level.size for level in levels))",
+    'np.unravel_index(np.arange(start, stop), tuple(level.size for level in levels), order="F")',
 )
 def test_grid() -> None:
     """A grid is the product of its levels, the last field fastest."""

@@ -43,13 +43,13 @@ def within(found: Array, interval: Array | None, expected: Array) -> None:
 
 @kills(
     "leblanc.studies.sweep.summary:saltelli_indices",
-    "np.array([first_order(a, one, b) for one in swapped])",
-    "np.array([first_order(b, one, a) for one in swapped])",
+    "np.array([first_order(a, values, b) for values in swapped])",
+    "np.array([first_order(b, values, a) for values in swapped])",
 )
 @kills(
     "leblanc.studies.sweep.summary:saltelli_indices",
-    "np.array([total_order(a, one, b) for one in swapped])",
-    "np.array([total_order(b, one, a) for one in swapped])",
+    "np.array([total_order(a, values, b) for values in swapped])",
+    "np.array([total_order(b, values, a) for values in swapped])",
 )
 @kills(
     "leblanc.studies.sweep.summary:saltelli_indices",

@@ -10,7 +10,7 @@ import pytest
 
 from leblanc.cli import main
 from leblanc.scene.scene import Scene, scene_from_table
-from leblanc.scene.schema.load import SceneFaults
+from leblanc.scene.schema.load import SceneError
 from leblanc.scene.schema.paths import keys_of, rule_at, with_values
 from leblanc.studies.sweep.study import load_sweep
 from tests.oracles.sweeps import SCENE, STUDY, study_in, write_study
@@ -140,7 +140,7 @@ GRID = GRID.replace('"12 kg"]', '"12 kg", 4]').replace('"250 ml"]', '"250 ml", 5
 def test_a_faulty_grid_is_refused(wrong: str, said: str, tmp_path: Path) -> None:
     study = GRID.replace('linspace = ["3 kg", "12 kg", 4]', wrong)
     assert study != GRID
-    with pytest.raises(SceneFaults, match=said):
+    with pytest.raises(SceneError, match=said):
         study_in(tmp_path, study)
 
 
@@ -156,19 +156,19 @@ def test_a_latin_hypercube_that_would_not_fit_the_memory_is_refused(tmp_path: Pa
     lines = "".join(f'"chambers.{k}.{name}" = {{ uniform = [1e-6, 2e-6] }}\n' for k in (0, 1) for name in
                     ("radius", "height", "inner_radius", "plane"))  # fmt: skip
     study = STUDY.replace('"sobol"', '"latin_hypercube"').replace("samples = 256", "samples = 9_000_000")
-    with pytest.raises(SceneFaults, match="at most 4545454 with 11 varied fields"):
+    with pytest.raises(SceneError, match="at most 4545454 with 11 varied fields"):
         study_in(tmp_path, study + lines)
 
 
 def test_an_exciter_is_refused(tmp_path: Path) -> None:
     scene = (EXAMPLES / "vibratory_table.toml").read_text(encoding="utf-8")
-    with pytest.raises(SceneFaults, match="scene whose rotor answers at its speeds"):
+    with pytest.raises(SceneError, match="scene whose rotor answers at its speeds"):
         study_in(tmp_path, STUDY, scene)
 
 
 def test_all_faults_are_named_at_once(tmp_path: Path) -> None:
     study = STUDY.replace("uniform", "unform")
-    with pytest.raises(SceneFaults) as caught:
+    with pytest.raises(SceneError) as caught:
         study_in(tmp_path, study)
     assert len(caught.value.faults) == 2
 
@@ -176,7 +176,7 @@ def test_all_faults_are_named_at_once(tmp_path: Path) -> None:
 def test_a_scene_is_no_study(tmp_path: Path) -> None:
     path = tmp_path / "rig.toml"
     path.write_text(SCENE, encoding="utf-8")
-    with pytest.raises(SceneFaults, match="this is a scene, which `leblanc run` answers") as caught:
+    with pytest.raises(SceneError, match="this is a scene, which `leblanc run` answers") as caught:
         load_sweep(path)
     assert len(caught.value.faults) == 1
 

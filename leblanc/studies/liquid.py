@@ -1,0 +1,104 @@
+"""Liquid models by the names that scenes and commands give them; here alone a name becomes an object."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from fluid.friction import NO_FRICTION, Friction, FrictionLaw
+from meshes.errors import InputError
+from solvers.layer.settle import LongWave
+from solvers.layer.state import Numerics
+from solvers.liquid_model import LiquidModel, WaveModel
+from solvers.runup.linear import couple_linear
+from solvers.runup.long_wave import couple
+from solvers.runup.machine import RunupModel
+from solvers.sloshing.model import SmallWaves
+from solvers.synchronous.models import LINEAR, STATICS
+from solvers.waves.one_family import OneFamily
+
+_Make = Callable[[Friction, int | None, bool], WaveModel]
+_POINTS = 256  # round the wall, unless another number is asked for
+
+
+def _linear(friction: Friction, cells: int | None, dispersion: bool) -> WaveModel:
+    _require_none(friction, "the linear theory, which is inviscid")
+    return LINEAR
+
+
+def _long_wave(friction: Friction, cells: int | None, dispersion: bool) -> WaveModel:
+    return LongWave(friction, Numerics(_POINTS if cells is None else cells, dispersion))
+
+
+def _kdv(friction: Friction, cells: int | None, dispersion: bool) -> WaveModel:
+    return OneFamily(friction, _POINTS if cells is None else cells, dispersion)
+
+
+def _fem(friction: Friction, cells: int | None, dispersion: bool) -> WaveModel:
+    _require_none(friction, "finite elements, which are inviscid")
+    return SmallWaves() if cells is None else SmallWaves(cells)
+
+
+def _require_none(friction: Friction, theory: str) -> None:
+    """Refuse friction that a theory does not know."""
+    if friction.law is not FrictionLaw.NONE:
+        raise InputError("friction", friction.law, f"none for {theory}")
+
+
+_MAKE: Mapping[str, _Make] = {
+    "statics": lambda *_: STATICS,
+    "linear": _linear,
+    "long_wave": _long_wave,
+    "kdv": _kdv,
+    "fem": _fem,
+}
+WAVE_MODELS = tuple(_MAKE)
+# Those that answer the unbalance of a rotor: the liquid is at rest in a synchronous whirl.
+SYNCHRONOUS_MODELS = ("statics", "linear", "fem")
+# Those that go through time with a rotor.
+_RUNUP: Mapping[str, RunupModel] = {"long_wave": couple, "linear": couple_linear}
+RUNUP_MODELS = tuple(_RUNUP)
+
+
+def wave_model(
+    name: str, friction: Friction = NO_FRICTION, cells: int | None = None, dispersion: bool = False
+) -> WaveModel:
+    """The liquid model that `layer` names, for a prescribed whirl.
+
+    Parameters
+    ----------
+    name : one of `WAVE_MODELS`
+    friction : on the wall; statics feel none, as the liquid is at rest in the drum
+    cells : round the wall, or points of one family; as many as serves most cases if None
+    dispersion : of the finite depth, for long waves; the exact one for one family; the others have it anyway
+
+    Raises
+    ------
+    InputError : no such name, friction that the model does not know, a resolution that it does not take
+    """
+    if name not in _MAKE:
+        raise InputError("model", name, "one of " + ", ".join(_MAKE))
+    return _MAKE[name](friction, cells, dispersion)
+
+
+def synchronous_model(name: str) -> LiquidModel:
+    """The liquid model that a scene names; `auto` is the cheapest that is exact for synchronous whirl.
+
+    Raises
+    ------
+    InputError : no model of that name answers a synchronous whirl
+    """
+    if name not in ("auto", *SYNCHRONOUS_MODELS):
+        raise InputError("model.liquid", name, "one of auto, " + ", ".join(SYNCHRONOUS_MODELS))
+    return wave_model("statics" if name == "auto" else name)
+
+
+def runup_model(name: str) -> RunupModel:
+    """The liquid model of a run-up.
+
+    Raises
+    ------
+    InputError : no model of that name goes through time
+    """
+    if name not in _RUNUP:
+        raise InputError("model.liquid", name, " or ".join(_RUNUP) + " for a run-up")
+    return _RUNUP[name]

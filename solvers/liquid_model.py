@@ -1,0 +1,414 @@
+"""What a liquid model is: asked with whirls, it answers with force, centre of mass, range and error.
+
+Every solver that needs the liquid takes such an object and asks it in the same way. `answer` takes many
+whirls at once. A model that also knows the wave of one whirl has `wave`, and its `answer` follows from that.
+
+Complex numbers of an answer are seen along the deflection: the real part lies along it, the imaginary part
+90 deg ahead of it in the sense of the spin.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, fields
+from typing import ClassVar, Protocol
+
+import numpy as np
+
+from fluid.fill import Fill, Fills
+from fluid.numbers import whirl_numbers
+from meshes.arrays import Array, Complex, Flags, Index
+from meshes.errors import InputError, require_not_negative, require_positive
+
+# What is left between an exact answer and the same from another order of sums.
+ROUNDING = 1e-12
+
+Range = tuple[float, float]
+# Ranges that models share. The flow between the wall layers is free of vorticity only while they are thin.
+CAPTURED: Range = (1.0, math.inf)
+THIN_LAYERS: Range = (0.0, 0.2)
+LONG: Range = (0.0, 0.3)
+
+
+@dataclass(frozen=True)
+class Whirl:
+    """A circular whirl of the drum's axis.
+
+    Parameters
+    ----------
+    spin : Omega, rad/s, > 0
+    speed : omega_w in space, rad/s
+    amplitude : m
+    ramp : time over which the amplitude grows from nothing, s
+    gravity : across the axis, m/s^2
+    """
+
+    spin: float
+    speed: float
+    amplitude: float
+    ramp: float = 0.0
+    gravity: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_positive("speed", self.spin)
+        require_not_negative("whirl_amplitude", self.amplitude)
+        require_not_negative("ramp", self.ramp)
+        require_not_negative("gravity", self.gravity)
+        if not math.isfinite(self.speed) or self.speed == 0.0:
+            raise InputError("whirl_speed", self.speed, "a finite number other than 0")
+
+    @property
+    def slip(self) -> float:
+        """Whirl speed seen from the drum, s = omega_w - Omega, rad/s."""
+        return self.speed - self.spin
+
+    @property
+    def period(self) -> float:
+        """Time of one whirl seen from the drum, or of one turn of a synchronous one, s."""
+        return 2.0 * math.pi / (abs(self.slip) or self.spin)
+
+
+@dataclass(frozen=True)
+class Whirls:
+    """n circular whirls, one for each of the fills that are asked about; all shapes (n,).
+
+    Parameters
+    ----------
+    spin : Omega, rad/s, above 0
+    speed : omega in space, rad/s, other than 0
+    deflection : of the chamber's axis, m, complex or real; 0 asks for the limit of a small one
+    axial_gravity : along the axis, m/s^2
+    gravity : across the axis, m/s^2
+    """
+
+    spin: Array
+    speed: Array
+    deflection: Array | Complex
+    axial_gravity: Array
+    gravity: Array
+
+    @classmethod
+    def synchronous(cls, spin: Array, deflection: Array | Complex, axial_gravity: Array) -> Whirls:
+        """Whirls with the spin, without gravity across the axis."""
+        return cls(spin, spin, deflection, axial_gravity, np.zeros(spin.shape))
+
+    @classmethod
+    def of(cls, whirl: Whirl) -> Whirls:
+        """One whirl as arrays, without gravity along the axis."""
+        values = (whirl.spin, whirl.speed, whirl.amplitude, 0.0, whirl.gravity)
+        return cls(*(np.array([value]) for value in values))
+
+    @property
+    def slip(self) -> Array:
+        """Whirl speeds seen from the drum, s = omega - Omega, rad/s."""
+        return self.speed - self.spin
+
+    @property
+    def amplitude(self) -> Array:
+        """Sizes of the deflections, m."""
+        return np.asarray(np.abs(self.deflection))
+
+    def at(self, which: Index) -> Whirls:
+        """Those at some indices, shape (m,)."""
+        return Whirls(*(getattr(self, name)[which] for name in self.__dataclass_fields__))
+
+    def one(self, k: int) -> Whirl:
+        """A single one of them."""
+        spin, speed, size, gravity = self.spin[k], self.speed[k], abs(self.deflection[k]), self.gravity[k]
+        return Whirl(float(spin), float(speed), float(size), gravity=float(gravity))
+
+
+@dataclass(frozen=True)
+class LiquidAnswer:
+    """The liquid's answer to n whirls; all shapes (n,), complex numbers along the deflection.
+
+    Parameters
+    ----------
+    unbalance : U, the force over the whirl speed squared, kg m: where the liquid stands still in the whirl's
+        frame its first moment about the rotation axis
+    slope : derivative of |U| with respect to the deflection at fixed volume, kg; nan where it is not known
+    offset : liquid's centre of mass from the chamber's axis, m
+    dry_patch : the wall is dry over its whole height somewhere
+    converged : the answer was found
+    limits : by its name each limit of the model, and where it is kept
+    error : estimated relative error of U; nan where the model has no estimate
+    """
+
+    unbalance: Complex
+    slope: Array
+    offset: Complex
+    dry_patch: Flags
+    converged: Flags
+    limits: Mapping[str, Flags]
+    error: Array
+
+    @classmethod
+    def at_rest(
+        cls,
+        fills: Fills,
+        whirls: Whirls,
+        unbalance: Array,
+        slope: Array,
+        dry_patch: Flags | None = None,
+        converged: Flags | None = None,
+        limits: Mapping[str, Flags] | None = None,
+        error: Array | float = math.nan,
+    ) -> LiquidAnswer:
+        """Answer of liquid at rest in the drum, which only a synchronous whirl leaves it in.
+
+        Parameters
+        ----------
+        fills, whirls : what was asked
+        unbalance, slope, error : as of the class; the unbalance is real
+        dry_patch, converged, limits : None where the wall is wet, every answer is found, no other limit holds
+        """
+        yes = np.ones(unbalance.shape, dtype=bool)
+        mass = fills.mass
+        centre = np.divide(unbalance, mass, out=np.zeros_like(unbalance), where=mass > 0.0)
+        still = (whirls.slip == 0.0) & (whirls.gravity == 0.0)
+        return cls(
+            unbalance=unbalance.astype(complex),
+            slope=slope,
+            offset=(centre - whirls.amplitude).astype(complex),
+            dry_patch=~yes if dry_patch is None else dry_patch,
+            converged=yes if converged is None else converged,
+            limits={"synchronous": still, **(limits or {})},
+            error=np.broadcast_to(error, unbalance.shape),
+        )
+
+    @classmethod
+    def joined(cls, parts: Sequence[LiquidAnswer]) -> LiquidAnswer:
+        """Answers one behind the other; a limit that a part does not have is kept there."""
+        found = {
+            item.name: np.concatenate([getattr(part, item.name) for part in parts])
+            for item in fields(cls)
+            if item.name != "limits"
+        }
+        limits = {
+            name: np.concatenate([part.limits.get(name, np.ones_like(part.converged)) for part in parts])
+            for name in dict.fromkeys(name for part in parts for name in part.limits)
+        }
+        return cls(**found, limits=limits)
+
+    def at(self, which: Index) -> LiquidAnswer:
+        """Those at some indices, shape (m,)."""
+        found = {item.name: getattr(self, item.name)[which] for item in fields(self) if item.name != "limits"}
+        return LiquidAnswer(**found, limits={name: kept[which] for name, kept in self.limits.items()})
+
+    @property
+    def in_range(self) -> Flags:
+        """Every limit of the model is kept."""
+        kept = np.ones(self.converged.shape, dtype=bool)
+        for limit in self.limits.values():
+            kept &= limit
+        return kept
+
+    def force(self, whirls: Whirls) -> Complex:
+        """Force on the chamber in the standing frame at the instant of the deflections, N.
+
+        Parameters
+        ----------
+        whirls : that were asked about
+        """
+        towards = np.exp(1j * np.angle(whirls.deflection))
+        return np.asarray(np.square(whirls.speed) * self.unbalance * towards)
+
+
+class LiquidModel(Protocol):
+    """Model of the liquid in chambers that spin and whirl.
+
+    Solvers take it as an object. A class that inherits from it needs a name and `answer`.
+
+    The synchronous response finds every branch only of a model that is at rest in a synchronous whirl: its
+    unbalance is then real, and less the liquid's mass times the deflection it never falls as that grows.
+    """
+
+    @property
+    def name(self) -> str:
+        """By which results tell it, with its resolution if it has one."""
+        ...
+
+    def answer(self, fills: Fills, whirls: Whirls) -> LiquidAnswer:
+        """Answers of n fills to n whirls.
+
+        Parameters
+        ----------
+        fills : one for each whirl, none of them empty
+        whirls : of their axes; out of its range the model answers all the same, and says so
+        """
+        ...
+
+    def linear_limit(self, fills: Fills, speed: Array, gravity: Array) -> Array:
+        """Deflection up to which the unbalance is exactly the full mass times the deflection, m, shape (n,).
+
+        0, as here, is right for every model; a larger one saves time.
+
+        Parameters
+        ----------
+        fills : shape (n,)
+        speed : spin speed Omega, rad/s, shape (n,)
+        gravity : along the axis, m/s^2, shape (n,)
+        """
+        return np.zeros(speed.shape)
+
+
+def added_mass_answer(fills: Fills, whirls: Whirls, error: Array | float = math.nan) -> LiquidAnswer:
+    """Answer of small synchronous whirls, to which a layer adds a mass [theory: waves, eq. 8].
+
+    It holds while the deflection is below the mean depth, or the least where a section is no circle.
+
+    Parameters
+    ----------
+    fills, whirls : what is asked
+    error : estimated relative error of the unbalance
+    """
+    size = whirls.amplitude
+    wet = size < fills.depth
+    return LiquidAnswer.at_rest(
+        fills,
+        whirls,
+        unbalance=fills.added_mass * size,
+        slope=fills.added_mass,
+        dry_patch=~wet & (size > 0.0),
+        limits={"wave_amplitude": wet},
+        error=error,
+    )
+
+
+@dataclass(frozen=True)
+class LiquidWave:
+    """Answer to one whirl with the wave that makes it.
+
+    Parameters
+    ----------
+    answer : of the whirl, shape (1,)
+    theta, depth : angle from the deflection, rad, ascending, and depth of the layer there, m, shape (k,)
+    numbers : dimensionless numbers of the whirl and of the wave, by name
+    ranges : those that bound the model here, by name
+    mass_error : of the surface drawn, relative
+    mean_rotation : of the liquid relative to the drum, rad/s
+    counter : size of the answer that goes round against the whirl over that with it
+    reason : why there is no answer, or empty
+    """
+
+    answer: LiquidAnswer
+    theta: Array
+    depth: Array
+    numbers: Mapping[str, float]
+    ranges: Mapping[str, Range]
+    mass_error: float
+    mean_rotation: float = 0.0
+    counter: float = 0.0
+    reason: str = ""
+
+
+class WaveModel(LiquidModel, Protocol):
+    """Liquid model that knows the wave of a prescribed whirl; a class needs a name, `ranges` and `wave`."""
+
+    # Chambers with baffles in the liquid, or a section of their own, are served as well.
+    takes_baffles: ClassVar[bool] = False
+
+    @property
+    def ranges(self) -> Mapping[str, Range]:
+        """Dimensionless numbers that bound the model, each with its range."""
+        ...
+
+    def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
+        """Answer of one chamber, in the plane, with the wave.
+
+        Parameters
+        ----------
+        fill : chamber and liquid
+        whirl : of its axis; its ramp does not matter to an answer that stands
+
+        Raises
+        ------
+        InputError : what the model's equations do not have, as friction, gravity or no free surface may be
+        """
+        ...
+
+    def at_rest(self, fills: Fills, whirls: Whirls) -> LiquidAnswer | None:
+        """Answers of synchronous whirls without gravity across the axis, where they are known in closed form.
+
+        Parameters are those of `answer`; None, as here, sends them to `wave` like any others.
+        """
+        return None
+
+    def answer(self, fills: Fills, whirls: Whirls) -> LiquidAnswer:
+        """See `LiquidModel`: in closed form where the liquid is at rest in the drum, else whirl by whirl."""
+        still = (whirls.slip == 0.0) & (whirls.gravity == 0.0)
+        if still.all() and (known := self.at_rest(fills, whirls)) is not None:
+            return known
+        if still.any() and not still.all():
+            apart = np.flatnonzero(still), np.flatnonzero(~still)
+            parts = [self.answer(fills.at(rows), whirls.at(rows)) for rows in apart]
+            return LiquidAnswer.joined(parts).at(np.argsort(np.concatenate(apart)))
+        return LiquidAnswer.joined(
+            [self.wave(fills.fill(k), whirls.one(k)).answer for k in range(len(fills))]
+        )
+
+
+def whirl_answer(
+    fill: Fill,
+    whirl: Whirl,
+    force_ratio: complex,
+    offset: complex,
+    limits: Mapping[str, bool],
+    dry_patch: bool = False,
+    converged: bool = True,
+    small: bool = False,
+    error: float = math.nan,
+) -> LiquidAnswer:
+    """Answer to one whirl from the ratio that wave theories give.
+
+    Parameters
+    ----------
+    fill, whirl : what was asked
+    force_ratio : force over that of a full drum, m_f omega^2 w; without a deflection the limit of a small one
+    offset : of the liquid's centre of mass from the chamber's axis, m
+    limits, dry_patch, converged, error : as of `LiquidAnswer`
+    small : the theory is linear, the force goes with the deflection
+    """
+    # The parts one by one: a product of complex numbers makes nan of an infinite one.
+    full = fill.full_mass
+    moved = full * whirl.amplitude
+    unbalance = complex(moved * force_ratio.real, moved * force_ratio.imag)
+    if whirl.amplitude == 0.0 and not math.isnan(force_ratio.real):
+        unbalance = 0j
+    return LiquidAnswer(
+        unbalance=np.array([unbalance]),
+        slope=np.array([full * force_ratio.real if small else math.nan]),
+        offset=np.array([complex(offset)]),
+        dry_patch=np.array([dry_patch]),
+        converged=np.array([converged]),
+        limits={name: np.array([kept]) for name, kept in limits.items()},
+        error=np.array([error]),
+    )
+
+
+def numbers_of(fill: Fill, whirl: Whirl, found: Mapping[str, float]) -> dict[str, float]:
+    """Dimensionless numbers of a whirl, and those that a model found.
+
+    Parameters
+    ----------
+    fill, whirl : what was asked
+    found : further ones, by name
+    """
+    given = whirl_numbers(fill, whirl.spin, whirl.speed, whirl.amplitude, whirl.gravity)
+    return asdict(given) | dict(found)
+
+
+def kept_limits(numbers: Mapping[str, float], ranges: Mapping[str, Range]) -> dict[str, bool]:
+    """By name each range that bounds a number, and whether the number is within."""
+    return {name: low <= numbers[name] <= high for name, (low, high) in ranges.items() if name in numbers}
+
+
+def wave_amplitude(depth: Array, mean: float) -> float:
+    """Largest change of the depth over the mean depth; nan without a profile."""
+    return float(np.max(np.abs(depth - mean))) / mean if depth.size else math.nan
+
+
+def angles() -> Array:
+    """Angles from the deflection all round at which waves in closed form are drawn, rad."""
+    return np.linspace(-math.pi, math.pi, 360, endpoint=False)

@@ -1,0 +1,112 @@
+"""The wheel alone: what it holds, and the steps of the README from it, away from the sources."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.net.cases import missing
+from validation.run_notebooks import texts
+
+ROOT = Path(__file__).parent.parent
+PACKAGES = ("meshes", "fluid", "solvers", "leblanc", "validation")
+_BLOCK = re.compile(r"^ *```(?P<kind>\w*)\n(?P<body>.*?)^ *```$", re.MULTILINE | re.DOTALL)
+_COMMAND = "import sys\nfrom leblanc.cli import main\n\nif __name__ == '__main__':\n    sys.exit(main())\n"
+
+Run = Callable[[str], subprocess.CompletedProcess[str]]
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The wheel as its build makes it."""
+    builders = pytest.importorskip("hatchling.builders.wheel")
+    folder = tmp_path_factory.mktemp("dist")
+    built = builders.WheelBuilder(str(ROOT)).build(directory=str(folder), versions=["standard"])
+    return Path(next(built))
+
+
+@pytest.fixture(scope="module")
+def run(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """Run a line of a shell in an empty folder, with the wheel's packages and not those of the sources."""
+    unpacked, bin_, work = (tmp_path_factory.mktemp(name) for name in ("wheel", "bin", "work"))
+    with zipfile.ZipFile(wheel) as content:
+        content.extractall(unpacked)
+    script = bin_ / "leblanc"
+    script.write_text(f"#!{sys.executable}\n{_COMMAND}", encoding="utf-8")
+    script.chmod(0o755)
+    path = os.pathsep.join([str(bin_), str(Path(sys.executable).parent), os.environ["PATH"]])
+    environment = os.environ | {"PATH": path, "PYTHONPATH": str(unpacked)}
+
+    def done(line: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            line, shell=True, cwd=work, env=environment, capture_output=True, text=True, check=False
+        )
+
+    return done
+
+
+def files(folder: Path) -> set[str]:
+    """What the sources of a folder are, without what Python and numba compiled."""
+    found = (path for path in folder.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
+    return {path.relative_to(folder).as_posix() for path in found}
+
+
+def test_holds_the_packages_and_the_examples_and_nothing_else(wheel: Path) -> None:
+    """Modules, templates, data of the validation, notebooks; the examples inside `leblanc`."""
+    with zipfile.ZipFile(wheel) as content:
+        held = {name for name in content.namelist() if ".dist-info/" not in name}
+    wanted = {f"{package}/{name}" for package in PACKAGES for name in files(ROOT / package)}
+    assert held == wanted | {f"leblanc/examples/{name}" for name in files(ROOT / "examples")}
+    assert {f"validation/notebooks/{path.name}" for path in texts()} <= held
+    assert {"validation/data/openfoam_layer.json", "leblanc/examples/studies/fill_grid.toml"} <= held
+
+
+def test_its_commands_run_away_from_the_sources(run: Run) -> None:
+    where = run("python -P -c 'import leblanc, validation; print(leblanc.__file__, validation.__file__)'")
+    assert where.returncode == 0 and str(ROOT) not in where.stdout
+    for line in ("leblanc new --list", "leblanc validate errata", "leblanc trade --help"):
+        done = run(line)
+        assert done.returncode == 0 and done.stdout, done.stderr
+    done = run("leblanc new --example studies/fill_grid && leblanc new --example horizontal_rig")
+    assert done.returncode == 0, done.stderr
+    done = run("leblanc run horizontal_rig.toml && leblanc notebooks nothing")
+    assert done.returncode == 2 and "1_paraboloid" in done.stderr
+
+
+def steps() -> list[str]:
+    """Commands of the README in their order, without its two of make; the block of Python as one of them."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    found = []
+    for block in _BLOCK.finditer(text):
+        body = block["body"].replace("\\\n", " ")
+        if block["kind"] == "python":
+            found.append(f"python - <<'END'\n{body}END")
+        else:
+            found += [line.strip() for line in body.splitlines() if not line.startswith("make ")]
+    return found
+
+
+def test_the_readme_has_steps_for_each_command() -> None:
+    named = {line.split()[1] for line in steps() if line.startswith("leblanc ")}
+    assert named >= {"new", "run", "explain", "volume", "layer", "map", "runup", "optimise", "sweep", "view"}
+    assert named >= {"modes", "trade", "validate", "notebooks"}
+
+
+@pytest.mark.slow
+@pytest.mark.notebook
+def test_steps_of_the_readme(run: Run) -> None:
+    """Word for word, but for what is installed: that is here already."""
+    for name in ("jupytext", "nbclient", "nbconvert", "ipykernel"):
+        pytest.importorskip(name)
+    for line in steps():
+        if line.startswith("pip install") or (line.startswith("leblanc view") and missing("screen")):
+            continue
+        done = run(line)
+        assert done.returncode == 0, f"{line}\n{done.stderr}"
