@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 from docutils import nodes
@@ -129,6 +130,27 @@ def _time(seconds: float) -> str:
     return f"{1e3 * seconds:.3g} ms" if seconds < 1.0 else f"{seconds:.3g} s"
 
 
+class ColdStarts(SphinxDirective):
+    """Where the time of commands goes from a cold start, as measured and kept."""
+
+    def run(self) -> list[nodes.Node]:
+        """A table with one row for each command."""
+        from validation.benchmarks.cold_start import kept
+
+        found = kept()
+        head = ("command", "CPU time", "its libraries alone", "ratio", "without physics", *found[0].parts())
+        rows = [
+            (
+                " ".join(("leblanc", *(Path(word).name for word in start.arguments))),
+                *(f"{seconds:.2f} s" for seconds in (start.total, start.libraries)),
+                *(f"{ratio:.2f}" for ratio in (start.ratio, (start.total - start.physics) / start.libraries)),
+                *(f"{seconds:.2f} s" for seconds in start.parts().values()),
+            )
+            for start in found
+        ]
+        return [table(head, rows, code=(0,))]
+
+
 def table(head: Sequence[str], rows: Sequence[Sequence[str]], code: Sequence[int] = ()) -> nodes.table:
     """A table of text.
 
@@ -159,4 +181,5 @@ def setup(app: Sphinx) -> dict[str, Any]:
     app.add_directive("all-commands", Commands)
     app.add_directive("model-ranges", Ranges)
     app.add_directive("kept-errors", KeptErrors)
+    app.add_directive("cold-starts", ColdStarts)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -3,3 +3,24 @@
 Figures are drawn on the object interface: to import pyplot costs more than to draw them all. `page` is the
 only door to matplotlib; a figure carries its caption, its alternative text and its size.
 """
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+# Names handed on, and their modules, each loaded when its name is first used.
+_HOMES = {
+    **dict.fromkeys(("FigureFiles", "save", "style"), "page"),
+    **dict.fromkeys(
+        ("amplitude_figure", "campbell_figure", "liquid_figure", "phase_figure", "write_figures"), "response"
+    ),
+    **dict.fromkeys(("animate", "history_figure", "wave_figure"), "wave"),
+    "chamber_figure": "chambers",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)

@@ -47,6 +47,15 @@ def test_work_belongs_to_the_innermost_library_and_to_a_call_of_the_command() ->
     assert cold_child.place(chain(command, write), "map")[0] == cold_child.START
 
 
+def test_physics_is_what_is_done_for_the_solvers() -> None:
+    command, solver = (f"{OURS}/cli/run.py", "run"), (f"{cold_start.ROOT}/solvers/search.py", "search")
+    other, ready = (f"{SITE}/numpy/linalg.py", "solve"), (f"{SITE}/numba/dispatcher.py", "_compile_for_args")
+    assert cold_child.place(chain(command, solver), "run") == ("search", "physics", "solvers")
+    assert cold_child.place(chain(command, solver, other), "run") == ("search", "physics", "numpy")
+    # To get a kernel ready is no answer.
+    assert cold_child.place(chain(command, solver, ready), "run") == ("search", "work", "numba")
+
+
 def test_an_import_belongs_to_what_is_imported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "cold_inner.py").write_text("import cold_outer\ncold_outer.note()\n", encoding="utf-8")
     (tmp_path / "cold_outer.py").write_text("def note():\n    pass\n", encoding="utf-8")
@@ -68,6 +77,16 @@ def test_shares_make_up_the_whole() -> None:
     assert found.shares(1, 2, where=[(0, "load")]) == [("import pint", 1.0), ("work pint", 1.0)]
     words = cold_start.text(found)
     assert "4.00 s in all" in words and "ratio 2.00" in words and "2.00 s load: import pint 1.00" in words
+
+
+def test_parts_make_up_the_whole_of_what_is_kept() -> None:
+    found = {one.arguments[0]: one for one in cold_start.kept()}
+    assert found.keys() >= {"run", "map", "optimise", "explain", "runup"}
+    for one in found.values():
+        # Shares below 5e-4 are not kept; there are fewer than a hundred of them.
+        assert 0.95 * one.total < sum(one.parts().values()) <= 1.001 * one.total
+        assert one.parts()["physics"] == pytest.approx(one.physics)
+        assert not {"pandas", "xarray", "dask", "pint"} & one.modules.keys()
 
 
 def test_only_libraries_are_imported_alone() -> None:

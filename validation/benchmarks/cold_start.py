@@ -34,6 +34,7 @@ COMMANDS = (
     *(("--help",), ("explain", RIG), ("run", RIG), ("map", RIG), ("optimise", RIG)),
     ("runup", RUNUP),
 )
+_PICTURES, _FILES = {"matplotlib", "PIL", "contourpy", "numpy"}, {"h5py", "h5netcdf"}  # beside the physics
 _ENTRY = f"import sys; from {FRONT}.cli import main; sys.exit(main())"
 _IMPORT_ALL = """
 import importlib, sys
@@ -73,6 +74,19 @@ class ColdStart:
     def physics(self) -> float:
         """Time of the command that goes into its answer."""
         return sum(seconds for _, seconds in self.shares(2, where=[(1, "physics")]))
+
+    def parts(self) -> dict[str, float]:
+        """What the time goes into, s: the answer, imports, pictures and the data file among what is left."""
+        found = dict.fromkeys(("libraries", "own modules", "physics", "pictures", "data file", "rest"), 0.0)
+        for (_, kind, name), share in self.notes.items():
+            if kind == "import":
+                part = "own modules" if name in OURS else "libraries"
+            elif kind == "physics":
+                part = "physics"
+            else:
+                part = "pictures" if name in _PICTURES else "data file" if name in _FILES else "rest"
+            found[part] += share * self.total
+        return found
 
     def shares(self, *fields: int, where: Sequence[tuple[int, str]] = ()) -> list[tuple[str, float]]:
         """Times summed over all other fields of the notes, s, the longest first.
@@ -247,22 +261,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"\n{text(found[-1])}", flush=True)
     if chosen.json is not None:
         rows = ",\n".join(json.dumps(_plain(start)) for start in found)
-        text_of_all = f'{{"imports": {json.dumps(doors)}, "commands": [\n{rows}\n]}}\n'
-        chosen.json.write_text(text_of_all, encoding="utf-8")
+        whole = f'{{"imports": {json.dumps(doors)}, "commands": [\n{rows}\n]}}\n'
+        chosen.json.write_text(whole, encoding="utf-8")
     return 0
 
 
 def _plain(found: ColdStart) -> dict[str, Any]:
     """A measurement as it is kept, shares by kind and library."""
-    notes: Counter[tuple[str, str]] = Counter()
+    notes: dict[tuple[str, str], float] = {}
     for (_, kind, name), share in found.notes.items():
-        notes[kind, name] += share
-    kept = [[*key, round(share, 4)] for key, share in notes.most_common() if share >= 5e-4]
-    return asdict(found) | {"notes": kept}
+        notes[kind, name] = notes.get((kind, name), 0.0) + share
+    rows = sorted(notes.items(), key=lambda row: -row[1])
+    return asdict(found) | {"notes": [[*key, round(share, 4)] for key, share in rows if share >= 5e-4]}
 
 
 def kept() -> list[ColdStart]:
-    """The measurements that are kept with the package, in the order of the commands."""
+    """The measurements that are kept with the package, without calls, in the order of the commands."""
     rows = json.loads(KEPT.read_text(encoding="utf-8"))["commands"]
     for row in rows:
         row["arguments"] = tuple(row["arguments"])
