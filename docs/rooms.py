@@ -507,13 +507,13 @@ def _draw_against(axes: Any, placed: Plan, heights: Sequence[float]) -> None:
 def _draw_key(axes: Any, total: float, against: bool) -> None:
     """What the lines mean."""
     y, x = total - 0.5 * FOOT, 18.0
-    words = {"fontsize": SMALL, "va": "center", "color": "0.2"}
-    axes.text(x, y, "Arrows lead to what is imported, in the colour of its package. Imports:", **words)
+    style = {"fontsize": SMALL, "va": "center", "color": "0.2"}
+    axes.text(x, y, "Arrows lead to what is imported, in the colour of its package. Imports:", **style)
     x += 398.0
     for count in (1, 10, 100):
         axes.plot([x, x + 30], [y, y], color="0.45", lw=0.72 * _breadth(count), solid_capstyle="butt")
-        axes.text(x + 36, y, str(count), **words)
+        axes.text(x + 36, y, str(count), **style)
         x += 74.0
     if against:
         axes.plot([x, x + 30], [y, y], color=AGAINST, lw=1.3, ls=(0, (4, 2)))
-        axes.text(x + 36, y, "against the order, in a circle", **words)
+        axes.text(x + 36, y, "against the order, in a circle", **style)

@@ -50,7 +50,7 @@ def run(scene: SceneOrPath) -> RunResult | ExciterResult:
     Raises
     ------
     SceneError : with everything that is wrong with the file
-    InputError : the scene asks for a liquid model that does not answer this
+    InputError : the scene names a liquid model that does not answer this
 
     Examples
     --------
@@ -211,9 +211,9 @@ def optimise(
     from leblanc.studies.optimise.optimise import optimise_scene
 
     with _keywords():
-        aim = optimisation_of(machine, objective, deflection, limit, steady, seed)
-        asked = None if emulator is None else emulated_vibration(Path(emulator), machine, aim)
-        return optimise_scene(machine, aim=aim, front=front, progress=progress, emulator=asked)
+        task = optimisation_of(machine, objective, deflection, limit, steady, seed)
+        surrogate = None if emulator is None else emulated_vibration(Path(emulator), machine, task)
+        return optimise_scene(machine, task=task, front=front, progress=progress, emulator=surrogate)
 
 
 def compare(scene: SceneOrPath, models: Sequence[str]) -> Comparison:
@@ -250,7 +250,7 @@ def sweep(
     fresh: bool = False,
     progress: Callable[[int, int], None] | None = None,
 ) -> SweepResult:
-    """Answers of many scenes that differ in a few values; the same call goes on after a stop.
+    """Answers of many scenes that differ in a few values; after a stop the same call continues.
 
     Parameters
     ----------
@@ -411,7 +411,7 @@ def volume(
     radius, inner_radius, height : of the chamber, m
     eccentricity : distance of the rotation axis from the chamber's, m
     speed : of the spin, rad/s
-    volume : of liquid whose free surface is asked for as well, m^3
+    volume : of liquid whose free surface is computed as well, m^3
     gravity : along the axis, m/s^2
 
     Raises

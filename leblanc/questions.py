@@ -170,15 +170,15 @@ def volume_question(
         parse_option(height, LENGTH, "--height"),
         parse_option(inner_radius, LENGTH, "--inner-radius"),
     )
-    asked = {
+    conditions = {
         "eccentricity": parse_option(eccentricity, LENGTH, "--eccentricity"),
         "speed": parse_option(speed, ANGULAR_SPEED, "--speed"),
         "gravity": parse_option(gravity, ACCELERATION, "--gravity"),
     }
-    for name, value in asked.items():
+    for name, value in conditions.items():
         require_not_negative(f"--{name}", value)
-    held = None if volume is None else parse_option(volume, VOLUME, "--volume")
-    return {"chamber": chamber, **asked, "volume": held}
+    amount = None if volume is None else parse_option(volume, VOLUME, "--volume")
+    return {"chamber": chamber, **conditions, "volume": amount}
 
 
 def optimisation_of(
@@ -197,20 +197,20 @@ def optimisation_of(
     ------
     InputError : no such objective, a value out of its range
     """
-    aim = scene.optimise or Optimisation()
+    task = scene.optimise or Optimisation()
     if objective is not None:
         if objective not in OBJECTIVES:
             raise InputError("--objective", objective, "one of " + ", ".join(OBJECTIVES))
-        aim = aim.altered(objective=objective)
+        task = task.altered(objective=objective)
     if deflection is not None:
-        aim = aim.altered(deflection=_length(deflection, "--deflection"))
+        task = task.altered(deflection=_length(deflection, "--deflection"))
     if limit is not None:
-        aim = aim.altered(vibration_limit=_length(limit, "--limit"))
+        task = task.altered(vibration_limit=_length(limit, "--limit"))
     if seed is not None:
         if seed < 0:
             raise InputError("--seed", seed, "a whole number, 0 or above")
-        aim = aim.altered(seed=seed)
-    return aim.altered(steady=aim.steady or steady)
+        task = task.altered(seed=seed)
+    return task.altered(steady=task.steady or steady)
 
 
 def _length(given: Quantity, option: str) -> float:

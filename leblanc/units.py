@@ -52,7 +52,8 @@ RPM = 60.0 / (2.0 * math.pi)  # revolutions per minute in one rad/s
 MM = 1e3  # millimetres in one metre
 ML = 1e6  # millilitres in one cubic metre
 LITRE = 1e3  # litres in one cubic metre
-NOT_FOUND, MINUS = "not found", "\N{MINUS SIGN}"  # as printed
+NOT_FOUND = "not found"  # as printed
+MINUS, DEGREE, TIMES = "\N{MINUS SIGN}", "\N{DEGREE SIGN}", "\N{MULTIPLICATION SIGN}"
 
 NUMBER = Dimension("pure number", "", "0.1")
 LENGTH = Dimension("length", "m", "65 mm")

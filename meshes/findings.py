@@ -1,4 +1,4 @@
-"""What is poor in a mesh, where, and what to change: findings that a user can read."""
+"""Faults of a mesh, where, and what to change: findings that a user can read."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ _WAVE_ERROR, _ACROSS = 0.01, 3
 
 @dataclass(frozen=True)
 class Finding:
-    """Something poor in a mesh.
+    """A fault of a mesh.
 
     Parameters
     ----------
-    what : what is poor, with its figure
+    what : the fault, with its figure
     where : the worst place, m; two or three coordinates
     change : what makes it better
     """
@@ -47,7 +47,7 @@ class Finding:
 
 
 def mesh_findings(mesh: Section | LiquidSection | Body) -> tuple[Finding, ...]:
-    """What is poor in the cells of a mesh, the worst place of each kind; nothing if all is well.
+    """Faults of the cells of a mesh, the worst place of each kind; none if there is no fault.
 
     Parameters
     ----------

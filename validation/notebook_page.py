@@ -26,7 +26,7 @@ _BREAK = re.compile(r"(?<=[/_])(?=\w)")  # where a path or a name may go on in t
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of words and numbers.
+    """Rows of texts and numbers.
 
     Parameters
     ----------
@@ -141,9 +141,9 @@ def drawn(draw: Callable[[Path], Path]) -> Picture:
         return picture(draw(Path(folder)))
 
 
-def _lines(words: str) -> str:
-    """A cell's words in HTML, their line breaks kept, with places where long names may break."""
-    return _BREAK.sub("<wbr>", escape(words)).replace("\n", "<br>")
+def _lines(text: str) -> str:
+    """A cell's text in HTML, their line breaks kept, with places where long names may break."""
+    return _BREAK.sub("<wbr>", escape(text)).replace("\n", "<br>")
 
 
 def _shown(value: Value) -> str:

@@ -58,7 +58,7 @@ def notebooks(
         print_json({"notebooks": found})
     else:
         print(f"Pages and executed notebooks are in {folder}")
-    return 0 if all(one["passed"] for one in found) else 1
+    return 0 if all(book["passed"] for book in found) else 1
 
 
 def texts() -> list[Path]:

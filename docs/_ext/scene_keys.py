@@ -138,7 +138,7 @@ def _bounds(rule: Any) -> str:
     if isinstance(rule, Whole):
         return f"{rule.low} to {rule.high}, whole"
     if isinstance(rule, OneOf):
-        return ", ".join(f"`{word}`" for word in rule.words)
+        return ", ".join(f"`{word}`" for word in rule.names)
     if isinstance(rule, Flag):
         return "`true`, `false`"
     if isinstance(rule, Span):

@@ -39,7 +39,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     Returns
     -------
-    exit code: 0 done, 1 nobody reads the output, 2 wrong input, 3 a solver did not converge, 130 interrupted
+    exit code: 0 done, 1 the reader of the output is gone, 2 wrong input, 3 a solver did not converge,
+    130 interrupted
     """
     # A user's own pickle.py in the current folder is not for the processes that are started from here.
     os.environ.setdefault("PYTHONSAFEPATH", "1")

@@ -30,15 +30,15 @@ def compare(
 
     from leblanc.figures.comparison import comparison_figure, save
     from leblanc.results.netcdf import write_netcdf
-    from leblanc.text.explanation import HEAD, basis, reasons, rows
+    from leblanc.text.explanation import COMPARISON_HEAD, basis, comparison_rows, refusals
 
     write_netcdf(found.named_arrays(), folder / "compare.nc")
     files = save(comparison_figure(found), folder, "compare", "Amplitude over speed by liquid model")
     if json:
         print_json(found.to_json())
     else:
-        print_table(rows(found), HEAD, right=True)
-        print("\n".join([basis(found), *reasons(found)]))
+        print_table(comparison_rows(found), COMPARISON_HEAD, right=True)
+        print("\n".join([basis(found), *refusals(found)]))
         print(f"See {files.png}; the data are in {folder / 'compare.nc'}")
 
     lost = [name for name, result in found.results.items() if not result.converged.all()]

@@ -123,7 +123,7 @@ def _draw(result: LayerResult, folder: Path) -> None:
 
 
 def _film(question: LayerQuestion, path: Path) -> None:
-    """The wave in the drum frame: long_wave from rest, six whirl periods unless told; others two, steady."""
+    """The wave in the drum frame: long_wave from rest, by default six whirl periods; others two, steady."""
     from rich.progress import Progress
 
     from leblanc.figures.wave import animate

@@ -51,9 +51,9 @@ def optimise(
     from leblanc.scene.scene import load_scene
 
     machine = load_scene(scene)
-    aim = optimisation_of(machine, objective, deflection, limit, steady, seed)
+    task = optimisation_of(machine, objective, deflection, limit, steady, seed)
     folder = out_dir(machine.name, out)
-    result = _run(machine, aim, not no_front, emulator)
+    result = _run(machine, task, not no_front, emulator)
 
     from leblanc.figures.optimise import write_figures
     from leblanc.report.optimise import write_optimise_report
@@ -73,8 +73,8 @@ def optimise(
         ("--emulator", emulator, None),
         ("--no-front", no_front, False),
     )
-    in_time = aim.objective == "peak" and not aim.steady
-    what = about(machine, command, "optimum.nc", aim, () if in_time else ("runup",))
+    in_time = task.objective == "peak" and not task.steady
+    what = about(machine, command, "optimum.nc", task, () if in_time else ("runup",))
     write_optimise_report(result, what, files, folder / "optimise.html")
     if json:
         print_json(result.to_json())
@@ -86,21 +86,21 @@ def optimise(
     say(f"{result.name}: {result.evaluations} sets of volumes judged")
 
 
-def _run(machine: Scene, aim: Optimisation, front: bool, store: Path | None) -> OptimumResult:
+def _run(machine: Scene, task: Optimisation, front: bool, store: Path | None) -> OptimumResult:
     """The search itself, with a count on a terminal."""
     from rich.progress import Progress, SpinnerColumn, TextColumn
 
     from leblanc.studies.optimise.emulated import emulated_vibration
     from leblanc.studies.optimise.optimise import optimise_scene
 
-    emulator = None if store is None else emulated_vibration(store, machine, aim)
+    emulator = None if store is None else emulated_vibration(store, machine, task)
     columns = SpinnerColumn(), TextColumn("{task.completed} sets of volumes judged")
     with Progress(*columns, transient=True, disable=not sys.stderr.isatty()) as bar:
-        task = bar.add_task("judging", total=None)
+        counter = bar.add_task("judging", total=None)
         return optimise_scene(
             machine,
-            aim=aim,
+            task=task,
             front=front,
-            progress=lambda count: bar.update(task, completed=count),
+            progress=lambda count: bar.update(counter, completed=count),
             emulator=emulator,
         )

@@ -1,4 +1,4 @@
-"""What commands print and write: JSON on stdout, words on stderr, files that are whole or not there."""
+"""What commands print and write: JSON on stdout, messages on stderr, files that are whole or not there."""
 
 from __future__ import annotations
 

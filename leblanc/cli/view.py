@@ -154,7 +154,7 @@ def _files(
     factor: float | None,
     out: Path | None,
 ) -> dict[str, Path | None]:
-    """Write what was asked for; without a choice a picture in the folder."""
+    """Write what the options name; without any a picture in the folder."""
     from leblanc.view.files import write_picture
 
     made: dict[str, Path | None] = {"screenshot": None, "animation": None}

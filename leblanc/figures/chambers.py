@@ -14,7 +14,7 @@ from leblanc.results.base import FilledChamber
 from leblanc.results.drawn import chord, rounded_down
 from leblanc.results.response import RunResult, peak, phase
 from leblanc.text.run import alts
-from leblanc.units import MM, RPM
+from leblanc.units import DEGREE, MINUS, MM, RPM, TIMES
 from meshes.arrays import Array, Complex
 from meshes.baffles import Baffles
 from meshes.chamber_section import ChamberSection
@@ -22,6 +22,16 @@ from meshes.liquid_section import free_sides
 
 RAYS = 361  # one degree apart, closed
 BISECTIONS = 60  # from the radius down to rounding
+
+UNEVEN_RAYS = 721
+
+Axes = Any  # matplotlib's, which no module that only draws imports
+
+WALL, LIQUID, CENTRE, UNBALANCE = "0.15", "#56B4E9", "#D55E00", "0.15"
+MOST_DRAWINGS = 3  # side by side
+FRAME = Frame(left=0.15, top=0.26, between=0.6, below=0.36)
+HEADING_ROW = 0.14  # inches
+NOTED_LINES = 10  # of a caption with notes
 
 
 @dataclass(frozen=True)
@@ -109,9 +119,6 @@ def side_by_side(chambers: tuple[FilledChamber, ...]) -> list[tuple[FilledChambe
         else:
             drawings.append([chamber])
     return [tuple(drawing) for drawing in drawings]
-
-
-UNEVEN_RAYS = 721
 
 
 def is_uneven(chamber: FilledChamber) -> bool:
@@ -209,16 +216,6 @@ def _surface(level: float, centre: complex, angle: Array) -> Array:
     return np.asarray(np.maximum(toward.real + np.sqrt(np.maximum(square, 0.0)), 0.0))
 
 
-Axes = Any  # matplotlib's, which no module that only draws imports
-
-WALL, LIQUID, CENTRE, UNBALANCE = "0.15", "#56B4E9", "#D55E00", "0.15"
-MOST_DRAWINGS = 3  # side by side
-TIMES, MINUS = "\N{MULTIPLICATION SIGN}", "\N{MINUS SIGN}"
-FRAME = Frame(left=0.15, top=0.26, between=0.6, below=0.36)
-HEADING_ROW = 0.14  # inches
-NOTED_LINES = 10  # of a caption with notes
-
-
 @dataclass(frozen=True)
 class Views:
     """What the figure of the chambers shows.
@@ -265,10 +262,10 @@ def chamber_figure(result: RunResult) -> Figure:
         rows = [drawn[i : i + columns] for i in range(0, len(drawn), columns)]
         sides = [min(2.7, (WIDTH - FRAME.left - RIGHT) / columns)] * len(rows)
         part = "" if result.motion is None else " Drawn is the part of the motion that turns with the spin."
-        words = caption(result, f"Chamber seen along the axis. {describe_scale(views)}{part}")
+        text = caption(result, f"Chamber seen along the axis. {describe_scale(views)}{part}")
         more = HEADING_ROW * more_heading_rows(result, views)
         frame = replace(FRAME, top=FRAME.top + more, between=FRAME.between + more)
-        lay_out(figure, rows, sides, frame, words, MOST_LINES if result.motion is None else NOTED_LINES)
+        lay_out(figure, rows, sides, frame, text, MOST_LINES if result.motion is None else NOTED_LINES)
     return figure
 
 
@@ -329,13 +326,13 @@ def describe_state(result: RunResult, index: int) -> str:
     w, offset = r.deflection[index], r.liquid_offset[index]
     if w == 0.0:
         return "no deflection"
-    place = f"{abs(w) * MM:.3g} mm at {_degrees(float(phase(w)))}\N{DEGREE SIGN}"
+    place = f"{abs(w) * MM:.3g} mm at {_degrees(float(phase(w)))}{DEGREE}"
     text = f"deflection {place}"
     if result.motion is not None:
         several = len({chamber.plane for chamber in result.chambers}) > 1
         text = f"{'first chamber' if several else 'deflection'} {place}"
     if offset > 0.0:
-        text += f"\nliquid {offset * MM:.3g} mm at {_degrees(float(r.liquid_angle[index]))}\N{DEGREE SIGN}"
+        text += f"\nliquid {offset * MM:.3g} mm at {_degrees(float(r.liquid_angle[index]))}{DEGREE}"
     return text
 
 

@@ -12,7 +12,7 @@ from leblanc.figures.page import save as save  # a figure is drawn and written t
 from leblanc.figures.response import DRY, OUT_OF_RANGE, SHADE, value_axis
 from leblanc.results.base import one_line
 from leblanc.results.explanation import Comparison
-from leblanc.text.explanation import alt
+from leblanc.text.explanation import comparison_alt
 from leblanc.units import MM, RPM
 from meshes.arrays import Array
 
@@ -43,7 +43,7 @@ def comparison_figure(found: Comparison) -> Figure:
     rpm = found.speed[order][drawn] * RPM
     with style():
         figure = Figure()
-        figure.alt = alt(found)
+        figure.alt = comparison_alt(found)
         labels = ("amplitude", "difference")[: len(names)]
         rows = [figure.add_axes((0, 0, 1, 1), label=label) for label in labels]
         _draw_amplitude(rows[0], rpm, names, [line[drawn] for line in finite])

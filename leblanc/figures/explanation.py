@@ -54,8 +54,8 @@ def model_figure(answer: Explanation) -> Figure:
         axes.set_ylabel("Estimated relative error")
         axes.xaxis.set_major_formatter(number)
         add_rate_axis(axes)
-        told = "; ".join(f"{speeds_words(span)} rpm {span.model}" for span in answer.models)
-        figure.alt = f"Bars of the estimated error over speed, one for each range of a liquid model: {told}."
+        spans = "; ".join(f"{speeds_words(span)} rpm {span.model}" for span in answer.models)
+        figure.alt = f"Bars of the estimated error over speed, one for each range of a liquid model: {spans}."
         assumed = ", ".join(map(one_line, answer.assumed)) or "nothing"
         origin = f"Scene: {one_line(answer.name)}. Assumed: {assumed}."
         largest = max(answer.models, key=lambda span: span.error if math.isfinite(span.error) else -1.0)

@@ -115,7 +115,7 @@ def drawings(chambers: tuple[FilledChamber, ...], planes: tuple[float, ...]) -> 
 def _draw_group(
     axes: Axes, result: RunupResult, frames: RunupFrames, group: list[int], factor: float
 ) -> Show:
-    """Draw what stands still of some chambers, and return what moves the rest."""
+    """Draw what is fixed of some chambers, and return what moves the rest."""
     widest, largest = result.chambers[group[0]].radius * MM, max(c.radius for c in result.chambers) * MM
     circle = np.exp(1j * np.linspace(0.0, 2.0 * math.pi, 361))
     axes.plot([0.0], [0.0], "+", color="black", markersize=9, markeredgewidth=1.2, label="axis at rest")

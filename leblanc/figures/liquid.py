@@ -23,11 +23,26 @@ VOLUME_FRAME = Frame(left=0.72, top=0.2, between=0.12, below=0.42)
 WALL, LIQUID = "0.15", "#56B4E9"
 POINTS = 400  # of the surface
 
+Axes = Any  # matplotlib's, which no module that only draws imports
+
+MODES_FRAME = Frame(left=0.25, top=0.42, between=0.5, below=0.02)
+PANEL, ACROSS, MOST = 1.93, 3, 6  # inches; drawings
+SHOWN = 0.3  # depth of the layer as drawn, over its outer radius
+RISE = 0.3  # of the largest displacement, over the depth as drawn
+LEVELS = np.linspace(-1.0, 1.0, 12)  # of the stream function over its largest value; none of them 0
+# Triangles that a cell is cut into for drawing, by its number of nodes.
+CUTS = {
+    3: [[0, 1, 2]],
+    4: [[0, 1, 2], [0, 2, 3]],
+    6: [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]],
+    9: [[0, 4, 8], [0, 8, 7], [4, 1, 5], [4, 5, 8], [8, 5, 2], [8, 2, 6], [7, 8, 6], [7, 6, 3]],
+}
+
 
 def surface_figure(result: VolumeResult) -> Figure:
     """Section through the rotation axis and the geometric one: walls, and the surface of the liquid.
 
-    The surface is that of the volume asked for, or of the optimal one, which just touches the wall where
+    The surface is that of the given volume, or of the optimal one, which just touches the wall where
     it is nearest to the rotation axis.
 
     Parameters
@@ -82,22 +97,6 @@ def _surface(result: VolumeResult, x: Array) -> Array:
     if result.surface is not None and result.surface.surface_constant is not None:
         constant = result.surface.surface_constant
     return np.asarray(beta * np.square(x) + constant)
-
-
-Axes = Any  # matplotlib's, which no module that only draws imports
-
-MODES_FRAME = Frame(left=0.25, top=0.42, between=0.5, below=0.02)
-PANEL, ACROSS, MOST = 1.93, 3, 6  # inches; drawings
-SHOWN = 0.3  # depth of the layer as drawn, over its outer radius
-RISE = 0.3  # of the largest displacement, over the depth as drawn
-LEVELS = np.linspace(-1.0, 1.0, 12)  # of the stream function over its largest value; none of them 0
-# Triangles that a cell is cut into for drawing, by its number of nodes.
-CUTS = {
-    3: [[0, 1, 2]],
-    4: [[0, 1, 2], [0, 2, 3]],
-    6: [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]],
-    9: [[0, 4, 8], [0, 8, 7], [4, 1, 5], [4, 5, 8], [8, 5, 2], [8, 2, 6], [7, 8, 6], [7, 6, 3]],
-}
 
 
 def modes_figure(result: ModesResult) -> Figure:

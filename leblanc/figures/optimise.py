@@ -96,7 +96,7 @@ _MAP = "Every pair of volumes that was tried. "
 
 
 def front_figure(result: OptimumResult) -> Figure:
-    """Vibration over the mass of liquid; the size of a mark tells the stability margin."""
+    """Vibration over the mass of liquid; the size of a mark shows the stability margin."""
     with style():
         figure = Figure()
         axes = figure.add_axes((0, 0, 1, 1))
@@ -300,7 +300,7 @@ def _short(value: float) -> float:
 
 
 def _caption(result: OptimumResult, text: str, forms: bool = True) -> Caption:
-    """What is shown, the scene, what was asked for."""
+    """What is shown, the scene, the objective."""
     assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
     notes = " ".join(map(one_line, texts(result.notes)))
     vibration = result.meaning if result.unit == "m" else "the amplitude that is limited"

@@ -48,7 +48,7 @@ class Frame:
 
 @dataclass(frozen=True)
 class Caption:
-    """Words below a figure.
+    """Text below a figure.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class Caption:
 
 
 class Figure(matplotlib.figure.Figure):
-    """A figure of matplotlib that carries its words.
+    """A figure of matplotlib that carries its caption and alternative text.
 
     Attributes
     ----------

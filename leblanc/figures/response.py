@@ -32,6 +32,25 @@ Draw = Callable[[Any, Curves, RunResult], None]
 
 FRAME = Frame(left=0.72, top=0.46, between=0.12, below=0.42)
 
+Axes = Any  # matplotlib's, which no module that only draws imports
+
+WET, DRY, SHADE = "#0072B2", "#D55E00", "0.90"  # after Okabe and Ito: safe for the colour blind
+UNSTABLE = (0, (3.5, 1.5))
+STRIP = 0.055  # height of the dry-patch strip over that of the axes
+FLAT = 100.0  # a peak so many times the usual value flattens all the rest on a linear axis
+MARKS = 14  # along a line
+OUT_OF_RANGE = "model out of range"
+
+FORWARD, BACKWARD, STRAIGHT, SPIN = "#0072B2", "#D55E00", "0.35", "0.2"  # after Okabe and Ito
+CLEAR = 0.2  # from here on a whirl is drawn as one with or against the spin
+HZ = 60.0  # rpm in one hertz
+# Colour, dashes and marker of each sense of whirl.
+STYLES = (
+    ("with the spin", 1.0, FORWARD, "solid", "^"),
+    ("against the spin", -1.0, BACKWARD, (0, (5, 1.5)), "v"),
+    ("to and fro", 0.0, STRAIGHT, (0, (1, 1.2)), "o"),
+)
+
 
 def write_figures(result: RunResult, directory: Path) -> tuple[FigureFiles, ...]:
     """Draw all figures of a study and write each as PNG and SVG.
@@ -98,16 +117,6 @@ def _over_speed(result: RunResult, name: str, panels: Sequence[tuple[float, Draw
         add_rate_axis(rows[0][0])
         lay_out(figure, rows, [height for height, _ in panels], FRAME, caption(result, text))
     return figure
-
-
-Axes = Any  # matplotlib's, which no module that only draws imports
-
-WET, DRY, SHADE = "#0072B2", "#D55E00", "0.90"  # after Okabe and Ito: safe for the colour blind
-UNSTABLE = (0, (3.5, 1.5))
-STRIP = 0.055  # height of the dry-patch strip over that of the axes
-FLAT = 100.0  # a peak so many times the usual value flattens all the rest on a linear axis
-MARKS = 14  # along a line
-OUT_OF_RANGE = "model out of range"
 
 
 def draw_amplitude(axes: Axes, curves: Curves, result: RunResult) -> None:
@@ -312,17 +321,6 @@ def _say_empty(axes: Axes) -> None:
     axes.text(0.5, 0.5, "no values", transform=axes.transAxes, horizontalalignment="center", bbox=box)
 
 
-FORWARD, BACKWARD, STRAIGHT, SPIN = "#0072B2", "#D55E00", "0.35", "0.2"  # after Okabe and Ito
-CLEAR = 0.2  # from here on a whirl is drawn as one with or against the spin
-HZ = 60.0  # rpm in one hertz
-# Colour, dashes and marker of each sense of whirl.
-STYLES = (
-    ("with the spin", 1.0, FORWARD, "solid", "^"),
-    ("against the spin", -1.0, BACKWARD, (0, (5, 1.5)), "v"),
-    ("to and fro", 0.0, STRAIGHT, (0, (1, 1.2)), "o"),
-)
-
-
 def campbell_figure(result: RunResult) -> Figure:
     """Natural frequencies of the dry rotor over its speed."""
     with style():
@@ -339,7 +337,7 @@ def campbell_figure(result: RunResult) -> Figure:
 
 
 def draw_campbell(axes: Axes, result: RunResult) -> None:
-    """Natural frequencies over speed, forward and backward told apart, and where the spin meets them.
+    """Natural frequencies over speed, forward and backward distinguished, and where the spin meets them.
 
     Parameters
     ----------

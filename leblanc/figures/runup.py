@@ -55,7 +55,7 @@ def write_figures(result: RunupResult, directory: Path) -> tuple[FigureFiles, ..
 
 
 def speed_figure(result: RunupResult) -> Figure:
-    """Amplitude over speed, up and back told apart, with the steady branches behind."""
+    """Amplitude over speed, up and back distinguished, with the steady branches behind."""
     speed, amplitude = result.speed * RPM, result.amplitude * MM
     low, high = float(speed.min()), float(speed.max())
     room = 0.02 * (high - low) if high > low else 1.0

@@ -66,9 +66,9 @@ def _boxes(figure: Figure, result: SweepResult) -> None:
     """A box for each amplitude, and one for the growth rate on an axis of its own."""
     last = [("last_amplitude", "with liquid"), ("last_amplitude_dry", "without liquid")]
     if result.speeds > 1:
-        last = [(name, f"at the last speed,\n{words}") for name, words in last]
+        last = [(name, f"at the last speed,\n{text}") for name, text in last]
         peaks = [("peak_amplitude", "with liquid"), ("peak_amplitude_dry", "without liquid")]
-        last = [(name, f"largest,\n{words}") for name, words in peaks] + last
+        last = [(name, f"largest,\n{text}") for name, text in peaks] + last
     growth = [("peak_growth", "largest growth\nof a whirl")]
     panels = [(last, "Amplitude (mm)", MM), (growth, "Growth (1/s)", 1.0)]
     rows, heights = [], []
@@ -76,7 +76,7 @@ def _boxes(figure: Figure, result: SweepResult) -> None:
         axes: Any = figure.add_axes((0, 0, 1, 1), label=label)
         for k, (name, _) in enumerate(outputs):
             _box(axes, float(k), result.single[name].quantiles[0] * unit, dry=name.endswith("_dry"))
-        axes.set_yticks(range(len(outputs)), [words for _, words in outputs])
+        axes.set_yticks(range(len(outputs)), [text for _, text in outputs])
         axes.set_ylim(len(outputs) - 0.5, -0.5)
         axes.grid(visible=False, axis="y")
         axes.set_xlabel(label)

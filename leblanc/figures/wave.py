@@ -28,7 +28,7 @@ from leblanc.figures.response import STRIP
 from leblanc.results.base import one_line
 from leblanc.results.drawn import FILLED, LARGEST_FACTOR, rounded_down
 from leblanc.results.layer import LayerPeriodsResult, LayerResult, Wave, WaveFrames
-from leblanc.units import MM, RPM
+from leblanc.units import DEGREE, MINUS, MM, RPM, TIMES
 from meshes.arrays import Array
 
 RAYS = 721  # half a degree apart, closed
@@ -37,6 +37,29 @@ SHOWN = 0.2  # mean depth as drawn, over the wall's radius
 MOST_FRAMES = 120  # of a film
 TURN = 0.25 * math.pi  # of the deflection from frame to frame: more of it and the eye sees it run backwards
 FRAME_RATE = 20  # 1/s; a GIF counts in hundredths of a second
+
+Axes = Any  # matplotlib's, which no module that only draws imports
+
+WALL, LIQUID, SURFACE, FORCE, DEFLECTION = "0.15", "#56B4E9", "#0072B2", "#D55E00", "0.15"
+BOUND = "\N{NO-BREAK SPACE}"
+REACH = 1.33  # of the drawing, over the wall's radius
+ARROW = 0.42  # length of the force's arrow, over the wall's radius
+OUTSIDE = (1.08, 1.27)  # ends of the deflection's arrow, over the wall's radius
+DRY_BAR = {"color": "0.35", "linewidth": 5, "linestyle": (0, (0.2, 0.3)), "label": "dry patch on the wall"}
+MEAN_LINE = {"color": "0.25", "linewidth": 1.0, "linestyle": (0, (5, 2)), "label": "mean depth"}
+
+Show = Callable[[int], None]
+
+TURNED = "#D55E00"
+
+DrawTime = Callable[[Axes, Wave, WaveFrames], None]
+
+WAVE_FRAME = Frame(left=0.1, top=0.1, between=0.0, below=0.44)
+FILM_FRAME = Frame(left=0.1, top=0.28, between=0.0, below=0.26)
+TIME_FRAME = Frame(left=0.72, top=0.12, between=0.12, below=0.4)
+WAVE_HEIGHT, PROFILE_LEFT, PROFILE_BELOW, ASIDE = 2.75, 3.55, 0.15, 0.15  # inches
+NOTED_LINES = 10  # of a caption with notes
+RPM_ROOM = 0.42  # for a second axis on the right, inches
 
 
 def unrolled(theta: Array, depth: Array) -> tuple[Array, Array]:
@@ -112,34 +135,34 @@ def is_dry(depth: Array, mean_depth: float) -> NDArray[np.bool_]:
     return dry & beside
 
 
-def depth_factor(record: Wave, deepest: float) -> float:
+def depth_factor(wave: Wave, deepest: float) -> float:
     """Factor that makes a thin layer visible and keeps a deep one between the walls.
 
     Parameters
     ----------
-    record : walls and mean depth
+    wave : walls and mean depth
     deepest : of all that is drawn on one scale, m
     """
-    if not (deepest > 0.0 and record.mean_depth > 0.0):
+    if not (deepest > 0.0 and wave.mean_depth > 0.0):
         return 1.0
     # In this order no quotient of a depth near zero overflows.
-    fits = FILLED * (record.radius - record.inner_radius) / max(deepest, record.radius / LARGEST_FACTOR)
-    shows = SHOWN * record.radius / max(record.mean_depth, record.radius / LARGEST_FACTOR)
+    fits = FILLED * (wave.radius - wave.inner_radius) / max(deepest, wave.radius / LARGEST_FACTOR)
+    shows = SHOWN * wave.radius / max(wave.mean_depth, wave.radius / LARGEST_FACTOR)
     return rounded_down(max(1.0, min(fits, shows)))
 
 
-def frames(record: Wave, history: WaveFrames) -> NDArray[np.intp]:
+def frames(wave: Wave, history: WaveFrames) -> NDArray[np.intp]:
     """Indices over time of a film's frames: all of the history, or as much of its end as the eye can follow.
 
     Parameters
     ----------
-    record, history : speeds, times
+    wave, history : speeds, times
 
     Returns
     -------
     Rising, evenly spaced in time as far as the history is, at most 120.
     """
-    time, whirl_speed = history.time, abs(record.seen_from_the_drum)
+    time, whirl_speed = history.time, abs(wave.seen_from_the_drum)
     span = float(time[-1] - time[0])
     if whirl_speed * span > TURN * (MOST_FRAMES - 1):
         span = TURN * (MOST_FRAMES - 1) / whirl_speed
@@ -148,98 +171,86 @@ def frames(record: Wave, history: WaveFrames) -> NDArray[np.intp]:
     return np.unique(np.searchsorted(middle, wanted, side="left"))
 
 
-Axes = Any  # matplotlib's, which no module that only draws imports
-
-WALL, LIQUID, SURFACE, FORCE, DEFLECTION = "0.15", "#56B4E9", "#0072B2", "#D55E00", "0.15"
-MINUS, DEGREE, TIMES = "\N{MINUS SIGN}", "\N{DEGREE SIGN}", "\N{MULTIPLICATION SIGN}"
-BOUND = "\N{NO-BREAK SPACE}"
-REACH = 1.33  # of the drawing, over the wall's radius
-ARROW = 0.42  # length of the force's arrow, over the wall's radius
-OUTSIDE = (1.08, 1.27)  # ends of the deflection's arrow, over the wall's radius
-DRY_BAR = {"color": "0.35", "linewidth": 5, "linestyle": (0, (0.2, 0.3)), "label": "dry patch on the wall"}
-MEAN_LINE = {"color": "0.25", "linewidth": 1.0, "linestyle": (0, (5, 2)), "label": "mean depth"}
-
-
-def draw_annulus(axes: Axes, record: Wave, factor: float) -> None:
+def draw_annulus(axes: Axes, wave: Wave, factor: float) -> None:
     """Walls, liquid, force, centre of mass, senses of spin and whirl, in the frame of the deflection.
 
     Parameters
     ----------
     axes : an empty drawing
-    record : what to draw
+    wave : what to draw
     factor : of the depth
     """
-    walls(axes, record)
-    angle, surface = free_surface(record.radius * MM, record.theta, record.depth * MM, factor)
-    if np.any(record.depth > 0.0):
-        x, y = outline(record.radius * MM, angle, surface)
+    walls(axes, wave)
+    angle, surface = free_surface(wave.radius * MM, wave.theta, wave.depth * MM, factor)
+    if np.any(wave.depth > 0.0):
+        x, y = outline(wave.radius * MM, angle, surface)
         fill(axes, x, y, facecolor=LIQUID, edgecolor="none", label="liquid")
-        free = wet_surface(record, angle, surface, factor)
+        free = wet_surface(wave, angle, surface, factor)
         axes.plot(free.real, free.imag, color=SURFACE, linewidth=0.8)
-    bar = dry_wall(record, angle, surface, factor)
+    bar = dry_wall(wave, angle, surface, factor)
     if not np.isnan(bar).all():
         axes.plot(bar.real, bar.imag, **DRY_BAR)
-    arrow(axes, record, 1.0, DEFLECTION, "deflection")
-    turning(axes, record, "spin", 1.0, 135.0)
-    if record.whirl_speed != 0.0:
-        turning(axes, record, "whirl", math.copysign(1.0, record.whirl_speed), 225.0)
+    arrow(axes, wave, 1.0, DEFLECTION, "deflection")
+    turning(axes, wave, "spin", 1.0, 135.0)
+    if wave.whirl_speed != 0.0:
+        turning(axes, wave, "whirl", math.copysign(1.0, wave.whirl_speed), 225.0)
     axes.plot([0.0], [0.0], "+", color="black", markersize=9, markeredgewidth=1.2, label="geometric axis")
-    if cmath.isfinite(record.force_ratio) and record.force_ratio != 0.0:
-        _force(axes, record)
-    if cmath.isfinite(record.offset):
-        mass = record.offset * MM
+    if cmath.isfinite(wave.force_ratio) and wave.force_ratio != 0.0:
+        _force(axes, wave)
+    if cmath.isfinite(wave.offset):
+        mass = wave.offset * MM
         mark = {"markerfacecolor": "white", "markeredgecolor": "black", "markersize": 5.0}
         axes.plot([mass.real], [mass.imag], "D", zorder=5, label="liquid's centre of mass", **mark)
     place = {"xycoords": "axes fraction", "textcoords": "offset points", "ha": "center", "va": "top"}
-    axes.annotate(f"{describe_force(record)}\n{describe_offset(record)}", (0.5, 0.0), xytext=(0, -3), **place)
+    axes.annotate(f"{describe_force(wave)}\n{describe_offset(wave)}", (0.5, 0.0), xytext=(0, -3), **place)
 
 
-def walls(axes: Axes, record: Wave) -> None:
+def walls(axes: Axes, wave: Wave) -> None:
     """Walls, and limits that leave room around them.
 
     Parameters
     ----------
-    axes, record : an empty drawing, what to draw
+    axes, wave : an empty drawing, what to draw
     """
     circle = np.exp(1j * np.linspace(0.0, 2.0 * math.pi, RAYS))
-    for radius in (record.radius * MM, record.inner_radius * MM):
+    for radius in (wave.radius * MM, wave.inner_radius * MM):
         if radius > 0.0:
             axes.plot(radius * circle.real, radius * circle.imag, color=WALL, linewidth=1.4)
-    axes.set_xlim(-REACH * record.radius * MM, REACH * record.radius * MM)
-    axes.set_ylim(-REACH * record.radius * MM, REACH * record.radius * MM)
+    axes.set_xlim(-REACH * wave.radius * MM, REACH * wave.radius * MM)
+    axes.set_ylim(-REACH * wave.radius * MM, REACH * wave.radius * MM)
     axes.set_aspect("equal")
     axes.axis("off")
 
 
-def wet_surface(record: Wave, angle: Array, surface: Array, factor: float) -> Any:
+def wet_surface(wave: Wave, angle: Array, surface: Array, factor: float) -> Any:
     """Points of the free surface as complex numbers, nan where the wall is dry.
 
     Parameters
     ----------
-    record : the layer
+    wave : the layer
     angle, surface, factor : as drawn: rad, mm, shape (m,), factor of the depth
     """
-    dry = is_dry((record.radius * MM - surface) / factor, record.mean_depth * MM)
+    dry = is_dry((wave.radius * MM - surface) / factor, wave.mean_depth * MM)
     return np.where(dry, np.nan, surface * np.exp(1j * angle))
 
 
-def dry_wall(record: Wave, angle: Array, surface: Array, factor: float) -> Any:
+def dry_wall(wave: Wave, angle: Array, surface: Array, factor: float) -> Any:
     """Points just outside the wall as complex numbers, nan where liquid covers it.
 
     Parameters
     ----------
-    record, angle, surface, factor : as for `wet_surface`
+    wave, angle, surface, factor : as for `wet_surface`
     """
-    dry = is_dry((record.radius * MM - surface) / factor, record.mean_depth * MM)
-    return np.where(dry, 1.035 * record.radius * MM * np.exp(1j * angle), np.nan)
+    dry = is_dry((wave.radius * MM - surface) / factor, wave.mean_depth * MM)
+    return np.where(dry, 1.035 * wave.radius * MM * np.exp(1j * angle), np.nan)
 
 
-def arrow(axes: Axes, record: Wave, direction: complex, color: str, label: str) -> Any:
+def arrow(axes: Axes, wave: Wave, direction: complex, color: str, label: str) -> Any:
     """Arrow outside the wall.
 
     Parameters
     ----------
-    axes, record : the drawing, what to draw
+    axes, wave : the drawing, what to draw
     direction : of the size 1 at most, which sets the length; 0 draws none
     color, label : of the line
 
@@ -247,7 +258,7 @@ def arrow(axes: Axes, record: Wave, direction: complex, color: str, label: str) 
     -------
     The line, to be moved.
     """
-    x, y, head = arrow_ends(record, direction)
+    x, y, head = arrow_ends(wave, direction)
     return _line_with_head(axes, x, y, head, color, label)
 
 
@@ -259,12 +270,12 @@ def _line_with_head(axes: Axes, x: list[float], y: list[float], head: Any, color
     return line
 
 
-def arrow_ends(record: Wave, direction: complex) -> tuple[list[float], list[float], Any]:
+def arrow_ends(wave: Wave, direction: complex) -> tuple[list[float], list[float], Any]:
     """Ends of an arrow outside the wall.
 
     Parameters
     ----------
-    record, direction : as for `arrow`
+    wave, direction : as for `arrow`
 
     Returns
     -------
@@ -272,7 +283,7 @@ def arrow_ends(record: Wave, direction: complex) -> tuple[list[float], list[floa
     """
     size, angle = abs(direction), cmath.phase(direction)
     start, stop = OUTSIDE
-    ends = np.array([start, start + (stop - start) * size]) * cmath.exp(1j * angle) * record.radius * MM
+    ends = np.array([start, start + (stop - start) * size]) * cmath.exp(1j * angle) * wave.radius * MM
     ends = ends if size > 0.0 else np.full(2, complex(math.nan, math.nan))
     return ends.real.tolist(), ends.imag.tolist(), _head(angle)
 
@@ -282,49 +293,49 @@ def _head(angle: float) -> tuple[int, int, float]:
     return (3, 0, math.degrees(angle) - 90.0)
 
 
-def _force(axes: Axes, record: Wave) -> None:
+def _force(axes: Axes, wave: Wave) -> None:
     """Arrow from the geometric axis in the direction of the force."""
-    angle = cmath.phase(record.force_ratio)
-    tip = ARROW * record.radius * MM * cmath.exp(1j * angle)
+    angle = cmath.phase(wave.force_ratio)
+    tip = ARROW * wave.radius * MM * cmath.exp(1j * angle)
     _line_with_head(axes, [0.0, tip.real], [0.0, tip.imag], _head(angle), FORCE, "force on the drum")
 
 
-def turning(axes: Axes, record: Wave, name: str, sense: float, middle: float) -> None:
+def turning(axes: Axes, wave: Wave, name: str, sense: float, middle: float) -> None:
     """Named arc with a head.
 
     Parameters
     ----------
-    axes, record : the drawing, what to draw
+    axes, wave : the drawing, what to draw
     name : written beside it
     sense, middle : 1 counter-clockwise, -1 clockwise; angle of its middle, deg
     """
     sweep = np.radians(middle + sense * np.linspace(-19.0, 19.0, 30))
-    arc = 1.15 * record.radius * MM * np.exp(1j * sweep)
+    arc = 1.15 * wave.radius * MM * np.exp(1j * sweep)
     axes.plot(arc.real, arc.imag, color="0.3", linewidth=1.0, gid=name)
     axes.annotate(
         *("", (arc[-1].real, arc[-1].imag)),
         xytext=(arc[-3].real, arc[-3].imag),
         arrowprops={"arrowstyle": "-|>", "color": "0.3", "linewidth": 1.0, "shrinkA": 0, "shrinkB": 0},
     )
-    place = 1.22 * record.radius * MM * cmath.exp(1j * math.radians(middle))
+    place = 1.22 * wave.radius * MM * cmath.exp(1j * math.radians(middle))
     align = "bottom" if place.imag > 0.0 else "top"
     axes.text(place.real, place.imag, name, fontsize=7, color="0.3", ha="right", va=align)
 
 
-def draw_profile(axes: Axes, record: Wave) -> None:
+def draw_profile(axes: Axes, wave: Wave) -> None:
     """Depth in mm against the angle from the deflection.
 
     Parameters
     ----------
     axes : an empty plot
-    record : what to draw
+    wave : what to draw
     """
-    angle, depth = unrolled(record.theta, record.depth)
+    angle, depth = unrolled(wave.theta, wave.depth)
     axes.fill_between(np.degrees(angle), depth * MM, color=LIQUID, alpha=0.45, linewidth=0)
     axes.plot(np.degrees(angle), depth * MM, color=SURFACE, linewidth=1.2, label="depth of the layer")
-    dry = is_dry(depth, record.mean_depth)
-    axes.axhline(record.mean_depth * MM, **MEAN_LINE)
-    profile_axis(axes, float(max(depth.max(), record.mean_depth)) * MM, bool(dry.any()))
+    dry = is_dry(depth, wave.mean_depth)
+    axes.axhline(wave.mean_depth * MM, **MEAN_LINE)
+    profile_axis(axes, float(max(depth.max(), wave.mean_depth)) * MM, bool(dry.any()))
     axes.set_xlabel("Angle from the deflection, with the spin (deg)")
     if dry.any():
         bar = np.where(dry, 0.5 * STRIP, np.nan)
@@ -348,9 +359,9 @@ def profile_axis(axes: Axes, top: float, dry: bool) -> None:
     axes.tick_params(axis="x", pad=5.0)  # the lowest depth stands beside the first angle
 
 
-def describe_force(record: Wave) -> str:
+def describe_force(wave: Wave) -> str:
     """The force in words, over that of a full drum."""
-    force = record.force_ratio
+    force = wave.force_ratio
     if not cmath.isfinite(force):
         return "force not converged"
     sign, size = MINUS if force.imag < 0.0 else "+", f"{abs(force):.4g}{_at_angle(force)}"
@@ -358,11 +369,11 @@ def describe_force(record: Wave) -> str:
     return f"force ratio {signed(force.real)}{imaginary}"
 
 
-def describe_offset(record: Wave) -> str:
+def describe_offset(wave: Wave) -> str:
     """The centre of mass in words."""
-    if not cmath.isfinite(record.offset):
+    if not cmath.isfinite(wave.offset):
         return "centre of mass not found"
-    return f"centre of mass {abs(record.offset) * MM:.3g} mm{_at_angle(record.offset)}"
+    return f"centre of mass {abs(wave.offset) * MM:.3g} mm{_at_angle(wave.offset)}"
 
 
 def _at_angle(value: complex) -> str:
@@ -375,26 +386,26 @@ def signed(value: float) -> str:
     return f"{value:.4g}".replace("-", MINUS)
 
 
-def describe_case(record: Wave) -> str:
+def describe_case(wave: Wave) -> str:
     """Title, model, sizes and speeds in words."""
-    inner = f", inner wall {record.inner_radius * MM:.4g}{BOUND}mm" if record.inner_radius > 0.0 else ""
-    slip = record.seen_from_the_drum
+    inner = f", inner wall {wave.inner_radius * MM:.4g}{BOUND}mm" if wave.inner_radius > 0.0 else ""
+    slip = wave.seen_from_the_drum
     drum = (
         f"{signed(slip)}{BOUND}rad/s seen from the drum"
         if slip != 0.0
         else "the deflection at rest in the drum"
     )
     return (
-        f"{one_line(record.title)}. Liquid model: {one_line(record.model)}. "
-        f"Wall {record.radius * MM:.4g}{BOUND}mm{inner}, mean depth {record.mean_depth * MM:.4g}{BOUND}mm, "
-        f"whirl amplitude {record.whirl_amplitude * MM:.4g}{BOUND}mm; spin {_speed(record.spin)}, "
-        f"whirl {_speed(record.whirl_speed)}, {drum}."
+        f"{one_line(wave.title)}. Liquid model: {one_line(wave.model)}. "
+        f"Wall {wave.radius * MM:.4g}{BOUND}mm{inner}, mean depth {wave.mean_depth * MM:.4g}{BOUND}mm, "
+        f"whirl amplitude {wave.whirl_amplitude * MM:.4g}{BOUND}mm; spin {_speed(wave.spin)}, "
+        f"whirl {_speed(wave.whirl_speed)}, {drum}."
     )
 
 
-def describe_notes(record: Wave) -> str:
+def describe_notes(wave: Wave) -> str:
     """Notes as one sentence, empty if there are none."""
-    return f" Notes: {'; '.join(map(one_line, record.notes))}." if record.notes else ""
+    return f" Notes: {'; '.join(map(one_line, wave.notes))}." if wave.notes else ""
 
 
 def describe_depths(factor: float) -> str:
@@ -408,12 +419,7 @@ def _speed(rate: float) -> str:
     return f"{signed(rate)}{BOUND}rad/s ({signed(rate * RPM)}{BOUND}rpm)"
 
 
-Show = Callable[[int], None]
-
-TURNED = "#D55E00"
-
-
-def draw_force(axes: Axes, _record: Wave, history: WaveFrames) -> None:
+def draw_force(axes: Axes, _wave: Wave, history: WaveFrames) -> None:
     """Both parts of the force ratio, a point for each period."""
     if history.force_ratio is None or history.period_time is None:
         return
@@ -425,7 +431,7 @@ def draw_force(axes: Axes, _record: Wave, history: WaveFrames) -> None:
     axes.set_ylabel("Force ratio (\N{EN DASH})")
 
 
-def draw_rotation(axes: Axes, _record: Wave, history: WaveFrames) -> None:
+def draw_rotation(axes: Axes, _wave: Wave, history: WaveFrames) -> None:
     """Mean rotation of the liquid in the drum, a point for each period."""
     if history.mean_rotation is None or history.period_time is None:
         return
@@ -438,37 +444,37 @@ def draw_rotation(axes: Axes, _record: Wave, history: WaveFrames) -> None:
     beside.set_ylabel("(rpm)")
 
 
-def draw_depths(axes: Axes, record: Wave, history: WaveFrames) -> None:
+def draw_depths(axes: Axes, wave: Wave, history: WaveFrames) -> None:
     """Deepest and shallowest place at each time."""
     crest, trough = history.depth.max(axis=1) * MM, history.depth.min(axis=1) * MM
     mark = "o" if history.time.size == 1 else None
     axes.plot(history.time, crest, color=SURFACE, linewidth=1.2, marker=mark, label="crest")
     style = {"color": TURNED, "linewidth": 1.2, "linestyle": (0, (3.5, 1.5)), "marker": mark}
     axes.plot(history.time, trough, label="trough", **style)
-    axes.axhline(record.mean_depth * MM, **MEAN_LINE | {"linewidth": 0.8, "linestyle": (0, (1, 1.2))})
-    top = max(float(crest.max()), record.mean_depth * MM)
+    axes.axhline(wave.mean_depth * MM, **MEAN_LINE | {"linewidth": 0.8, "linestyle": (0, (1, 1.2))})
+    top = max(float(crest.max()), wave.mean_depth * MM)
     axes.set_ylim(-0.04 * top if top > 0.0 else -0.04, 1.12 * top if top > 0.0 else 1.0)
     axes.set_ylabel("Depth (mm)")
 
 
-def film(left: Axes, right: Axes, record: Wave, history: WaveFrames) -> Show:
+def film(left: Axes, right: Axes, wave: Wave, history: WaveFrames) -> Show:
     """Both drawings of a film in the frame of the drum.
 
     Parameters
     ----------
     left, right : an empty drawing and an empty plot
-    record, history : what to draw
+    wave, history : what to draw
 
     Returns
     -------
     What sets both to the time of an index.
     """
-    chosen = frames(record, history)
+    chosen = frames(wave, history)
     layers = history.depth[chosen]
-    dry = bool(is_dry(layers, record.mean_depth).any())
-    show_annulus = _annulus(left, record, history, depth_factor(record, float(layers.max())), dry)
-    profile_axis(right, max(float(layers.max()), record.mean_depth) * MM, dry)
-    show_profile = _profile(right, record, history, dry)
+    dry = bool(is_dry(layers, wave.mean_depth).any())
+    show_annulus = _annulus(left, wave, history, depth_factor(wave, float(layers.max())), dry)
+    profile_axis(right, max(float(layers.max()), wave.mean_depth) * MM, dry)
+    show_profile = _profile(right, wave, history, dry)
     digits = _digits(history.time[chosen])
 
     def show(index: int) -> None:
@@ -479,39 +485,39 @@ def film(left: Axes, right: Axes, record: Wave, history: WaveFrames) -> Show:
     return show
 
 
-def _annulus(axes: Axes, record: Wave, history: WaveFrames, factor: float, dry: bool) -> Show:
-    """Draw what stands still of the annulus, and return what moves the rest."""
-    radius, largest = record.radius * MM, float(np.abs(history.deflection).max())
-    walls(axes, record)
-    turning(axes, record, "spin", 1.0, 135.0)
+def _annulus(axes: Axes, wave: Wave, history: WaveFrames, factor: float, dry: bool) -> Show:
+    """Draw what is fixed of the annulus, and return what moves the rest."""
+    radius, largest = wave.radius * MM, float(np.abs(history.deflection).max())
+    walls(axes, wave)
+    turning(axes, wave, "spin", 1.0, 135.0)
     axes.plot([0.0], [0.0], "+", color="black", markersize=9, markeredgewidth=1.2, label="geometric axis")
     axes.plot([0.97 * radius], [0.0], "s", color=WALL, markersize=6, zorder=5, label="mark on the drum")
     (liquid,) = axes.fill([0.0], [0.0], facecolor=LIQUID, edgecolor="none", label="liquid")
     (free,) = axes.plot([], [], color=SURFACE, linewidth=0.8)
     (bar,) = axes.plot([], [], **DRY_BAR | ({} if dry else {"label": "_"}))
-    deflected = arrow(axes, record, 0.0, DEFLECTION, "deflection")
+    deflected = arrow(axes, wave, 0.0, DEFLECTION, "deflection")
 
     def show(index: int) -> None:
         depth = history.depth[index] * MM
         angle, surface = free_surface(radius, history.theta, depth, factor)
         liquid.set_xy(np.stack(outline(radius, angle, surface), axis=1))
-        wet = wet_surface(record, angle, surface, factor)
+        wet = wet_surface(wave, angle, surface, factor)
         free.set_data(wet.real, wet.imag)
-        edge = dry_wall(record, angle, surface, factor)
+        edge = dry_wall(wave, angle, surface, factor)
         bar.set_data(edge.real, edge.imag)
         direction = complex(history.deflection[index]) / largest if largest > 0.0 else 0.0
-        x, y, head = arrow_ends(record, direction)
+        x, y, head = arrow_ends(wave, direction)
         deflected.set_data(x, y)
         deflected.set_marker(head)
 
     return show
 
 
-def _profile(axes: Axes, record: Wave, history: WaveFrames, dry: bool) -> Show:
-    """Draw what stands still of the depth around the wall, and return what moves the rest."""
+def _profile(axes: Axes, wave: Wave, history: WaveFrames, dry: bool) -> Show:
+    """Draw what is fixed of the depth around the wall, and return what moves the rest."""
     across = {"transform": axes.get_xaxis_transform()}
     (curve,) = axes.plot([], [], color=SURFACE, linewidth=1.2, label="depth of the layer")
-    axes.axhline(record.mean_depth * MM, **MEAN_LINE)
+    axes.axhline(wave.mean_depth * MM, **MEAN_LINE)
     style = {"color": DEFLECTION, "linewidth": 1.2, "linestyle": (0, (1, 1.2))}
     (place,) = axes.plot([], [], label="angle of the deflection", **style, **across)
     (bar,) = axes.plot([], [], **DRY_BAR | ({} if dry else {"label": "_"}), **across)
@@ -520,7 +526,7 @@ def _profile(axes: Axes, record: Wave, history: WaveFrames, dry: bool) -> Show:
     def show(index: int) -> None:
         angle, depth = unrolled(history.theta, history.depth[index])
         curve.set_data(np.degrees(angle), depth * MM)
-        bar.set_data(np.degrees(angle), np.where(is_dry(depth, record.mean_depth), 0.5 * STRIP, np.nan))
+        bar.set_data(np.degrees(angle), np.where(is_dry(depth, wave.mean_depth), 0.5 * STRIP, np.nan))
         deflection = complex(history.deflection[index])
         there = math.degrees(cmath.phase(deflection)) if deflection != 0.0 else math.nan
         place.set_data([there, there], [0.0, 1.0])
@@ -529,60 +535,50 @@ def _profile(axes: Axes, record: Wave, history: WaveFrames, dry: bool) -> Show:
 
 
 def _digits(time: Array) -> int:
-    """Decimals that tell one frame from the next."""
+    """Decimals that distinguish one frame from the next."""
     step = float(np.min(np.diff(time))) if time.size > 1 else 1e-2
     return min(max(0, 1 - math.floor(math.log10(step))), 9)
 
 
-def describe_film(record: Wave, history: WaveFrames) -> str:
+def describe_film(wave: Wave, history: WaveFrames) -> str:
     """What a film shows and how fast, in words."""
-    chosen = frames(record, history)
+    chosen = frames(wave, history)
     time, whole = history.time[chosen], float(history.time[-1] - history.time[0])
     span = float(time[-1] - time[0])
     part = "" if span >= 0.9 * whole else f" (the last {span:.3g} s of {whole:.3g} s)"
-    factor = depth_factor(record, float(history.depth[chosen].max()))
+    factor = depth_factor(wave, float(history.depth[chosen].max()))
     drawn = describe_depths(factor)
     text = f"Seen from the drum{part}. {drawn}; the arrow grows with the deflection."
     if span > 0.0:
         text += f" One second of the film is {span / (time.size - 1) * FRAME_RATE:.3g} s."
-        if abs(record.seen_from_the_drum) * float(np.max(np.diff(time))) > 2.0 * TURN:
+        if abs(wave.seen_from_the_drum) * float(np.max(np.diff(time))) > 2.0 * TURN:
             text += " The frames are too far apart to follow the deflection."
     return text
 
 
-DrawTime = Callable[[Axes, Wave, WaveFrames], None]
-
-WAVE_FRAME = Frame(left=0.1, top=0.1, between=0.0, below=0.44)
-FILM_FRAME = Frame(left=0.1, top=0.28, between=0.0, below=0.26)
-TIME_FRAME = Frame(left=0.72, top=0.12, between=0.12, below=0.4)
-WAVE_HEIGHT, PROFILE_LEFT, PROFILE_BELOW, ASIDE = 2.75, 3.55, 0.15, 0.15  # inches
-NOTED_LINES = 10  # of a caption with notes
-RPM_ROOM = 0.42  # for a second axis on the right, inches
-
-
-def wave_figure(record: Wave) -> Figure:
+def wave_figure(wave: Wave) -> Figure:
     """The layer seen along the axis and its depth around the wall, in the frame of the deflection."""
-    deepest = float(np.max(record.depth))
-    factor = depth_factor(record, max(deepest, record.mean_depth))
+    deepest = float(np.max(wave.depth))
+    factor = depth_factor(wave, max(deepest, wave.mean_depth))
     with style():
         figure = Figure()
         left, right = (figure.add_axes((0, 0, 1, 1), label=name) for name in ("annulus", "profile"))
-        draw_annulus(left, record, factor)
-        draw_profile(right, record)
+        draw_annulus(left, wave, factor)
+        draw_profile(right, wave)
         right.yaxis.set_major_formatter(number)
         text = (
             f"{describe_depths(factor)}; arrows show directions, the place of the centre of mass "
             "is not exaggerated. Force ratio: force over that of a full drum; angles from the deflection, "
             "positive with the spin. "
-            f"{describe_case(record)}{describe_notes(record)}"
+            f"{describe_case(wave)}{describe_notes(wave)}"
         )
         _beside(figure, left, right, WAVE_FRAME, text)
     return figure
 
 
-def history_figure(record: Wave, history: WaveFrames) -> Figure:
+def history_figure(wave: Wave, history: WaveFrames) -> Figure:
     """Force, mean rotation and depths over time; the first two only if the history has periods."""
-    record.require_room(history)
+    wave.require_room(history)
     panels: list[tuple[float, DrawTime]] = [(1.2, draw_depths)]
     text = "Largest and smallest depth around the wall."
     if history.period_time is not None:
@@ -597,14 +593,14 @@ def history_figure(record: Wave, history: WaveFrames) -> Figure:
         first, last = float(history.time[0]), float(history.time[-1])
         margin = 0.02 * (last - first) if last > first else 0.5
         for (axes,), (_, draw) in zip(rows, panels, strict=True):
-            draw(axes, record, history)
+            draw(axes, wave, history)
             axes.set_xlim(first - margin, last + margin)
             for scale in (axes, *axes.child_axes):
                 scale.yaxis.set_major_formatter(number)
             axes.tick_params(labelbottom=axes is rows[-1][0])
         rows[-1][0].set_xlabel("Time (s)")
-        words = f"{text} {describe_case(record)}{describe_notes(record)}"
-        lay_out(figure, rows, [height for height, _ in panels], TIME_FRAME, words, NOTED_LINES)
+        shown = f"{text} {describe_case(wave)}{describe_notes(wave)}"
+        lay_out(figure, rows, [height for height, _ in panels], TIME_FRAME, shown, NOTED_LINES)
         for (axes,) in rows:
             box = axes.get_position()
             axes.set_position((box.x0, box.y0, box.width - RPM_ROOM / WIDTH, box.height))
@@ -612,7 +608,7 @@ def history_figure(record: Wave, history: WaveFrames) -> Figure:
 
 
 def animate(
-    record: Wave, history: WaveFrames, path: Path, drawn: Callable[[int, int], None] | None = None
+    wave: Wave, history: WaveFrames, path: Path, drawn: Callable[[int, int], None] | None = None
 ) -> int:
     """Write the film of a wave, in the frame of the drum.
 
@@ -621,7 +617,7 @@ def animate(
 
     Parameters
     ----------
-    record, history : what to show; of a long history its end, as much of it as 120 frames can follow
+    wave, history : what to show; of a long history its end, as much of it as 120 frames can follow
     path : a .gif, or an .mp4 if there is an ffmpeg
     drawn : called after each frame with the number of frames drawn and of all
 
@@ -634,19 +630,19 @@ def animate(
     InputError : another kind of file, an .mp4 without an ffmpeg, a layer deeper than the wall's radius
     """
     require_film(path)
-    record.require_room(history)
-    shown = frames(record, history).tolist()
-    return write_film(lambda: _film(record, history), shown, FRAME_RATE, path, drawn)
+    wave.require_room(history)
+    shown = frames(wave, history).tolist()
+    return write_film(lambda: _film(wave, history), shown, FRAME_RATE, path, drawn)
 
 
-def _film(record: Wave, history: WaveFrames) -> tuple[Figure, Callable[[int], None]]:
+def _film(wave: Wave, history: WaveFrames) -> tuple[Figure, Callable[[int], None]]:
     """Figure of a film and what sets it to the time of an index."""
     with style():
         figure = Figure()
         left, right = (figure.add_axes((0, 0, 1, 1), label=name) for name in ("annulus", "profile"))
-        show = film(left, right, record, history)
+        show = film(left, right, wave, history)
         right.yaxis.set_major_formatter(number)
-        text = f"{describe_film(record, history)} {describe_case(record)}"
+        text = f"{describe_film(wave, history)} {describe_case(wave)}"
         _beside(figure, left, right, FILM_FRAME, text)
         # Video codecs halve both sides of a picture for its colours.
         figure.set_size_inches(WIDTH, 2.0 * math.ceil(0.5 * FILM_DPI * figure.get_figheight()) / FILM_DPI)

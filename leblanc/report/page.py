@@ -53,7 +53,7 @@ def about(
     scene: Scene,
     command: str = "",
     data: str = "",
-    aim: Optimisation | None = None,
+    task: Optimisation | None = None,
     unused: tuple[str, ...] = (),
 ) -> About:
     """What a report of a scene is about.
@@ -62,10 +62,10 @@ def about(
     ----------
     scene : the machine
     command, data : as in `About`
-    aim : of an optimisation, in place of the scene's
+    task : of an optimisation, in place of the scene's
     unused : tables of the scene that the report's numbers do not depend on
     """
-    inputs = scene_inputs(scene, aim, unused)
+    inputs = scene_inputs(scene, task, unused)
     paths = [cell.path for cell in inputs.cells if cell.assumed]
     elsewhere = tuple(
         path
@@ -84,11 +84,11 @@ def command_line(name: str, scene: Path, *options: tuple[str, object, object]) -
     scene : the file, as it was given
     options : name, value and default of each; those at their default are left out, a flag stands alone
     """
-    words = ["leblanc", name, str(scene)]
+    parts = ["leblanc", name, str(scene)]
     for option, value, default in options:
         if value != default:
-            words += [option] if value is True else [option, str(value)]
-    return " ".join(map(shlex.quote, words))
+            parts += [option] if value is True else [option, str(value)]
+    return " ".join(map(shlex.quote, parts))
 
 
 def versions() -> dict[str, str]:
@@ -117,7 +117,7 @@ def why(spans: Sequence[ModelSpan]) -> Table:
         )
         for span in spans
     ]
-    return table("", ("Speeds (rpm)", "Model", "Estimated error", "Why"), rows, words=True)
+    return table("", ("Speeds (rpm)", "Model", "Estimated error", "Why"), rows, sentences=True)
 
 
 def models(names: Sequence[str]) -> list[tuple[str, str]]:

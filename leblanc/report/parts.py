@@ -48,26 +48,26 @@ class Table:
     title : above it, may be empty
     head : headings of the columns; none for a list of labels and values
     rows : of cells, as many as there are columns
-    words : cells are sentences, not numbers
+    sentences : cells are sentences, not numbers
     """
 
     title: str
     head: tuple[str, ...]
     rows: tuple[tuple[Cell, ...], ...]
-    words: bool = False
+    sentences: bool = False
 
 
 def table(
-    title: str, head: Sequence[str], rows: Sequence[Sequence[str | Cell]], words: bool = False
+    title: str, head: Sequence[str], rows: Sequence[Sequence[str | Cell]], sentences: bool = False
 ) -> Table:
     """Table of texts and cells.
 
     Parameters
     ----------
-    title, head, rows, words : as for `Table`; a text becomes a cell
+    title, head, rows, sentences : as for `Table`; a text becomes a cell
     """
     cells = tuple(tuple(cell if isinstance(cell, Cell) else Cell(cell) for cell in row) for row in rows)
-    return Table(title, tuple(head), cells, words)
+    return Table(title, tuple(head), cells, sentences)
 
 
 @dataclass(frozen=True)

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 SHOWN = 4  # figures, of which the phase stands in its own file only; with more, all
 
+LISTED = 11  # volumes of the table of bands
+
 
 def response_checks(result: RunResult) -> Table:
     """Where the answer is not what it seems, as a table."""
@@ -96,11 +98,11 @@ def integrations(result: ExciterResult) -> Table:
 def exciter_checks(result: ExciterResult) -> Table:
     """Where the answer is not what it seems."""
     lost = [check.speed for check in result.checks if not check.converged]
-    words = ", ".join(f"{number(speed * RPM)} rpm" for speed in lost) or "none"
+    text = ", ".join(f"{number(speed * RPM)} rpm" for speed in lost) or "none"
     beyond = ~result.dual_frequency
     outside = not math.isfinite(result.printed_critical)
     rows = [
-        ("Time integration not finite", Cell(words, warning=bool(lost))),
+        ("Time integration not finite", Cell(text, warning=bool(lost))),
         ("Balls do not stick", Cell(ranges(result.speed, beyond), warning=bool(np.any(beyond)))),
         ("Regression of the source", Cell("outside its ranges" if outside else "inside", warning=outside)),
     ]
@@ -139,9 +141,6 @@ def write_exciter_report(result: ExciterResult, what: About, figure: FigureFiles
         "remarks": [began, "The numbers over speed are printed by the same command with --json."],
     }
     write_page("exciter", what, parts, path)
-
-
-LISTED = 11  # volumes of the table of bands
 
 
 def bands(result: WhirlMap) -> Table:
@@ -194,12 +193,12 @@ def write_map_report(result: WhirlMap, what: About, figure: FigureFiles, path: P
     figure : of it
     path : the file to write or replace
     """
-    told = dict(whirl_map_facts(result))
+    values = dict(whirl_map_facts(result))
     low, high = (number(float(speed) * RPM) for speed in (result.speed[0], result.speed[-1]))
     parts = {
         "title": "Self-excited whirl over speed and volume",
         "machine": f"Whirls that grow by themselves from {low} to {high} rpm, from no liquid to "
-        f"{told['Most liquid, all chambers']}.",
+        f"{values['Most liquid, all chambers']}.",
         "answer": whirl_map_answer(result),
         "facts": table("", (), whirl_map_facts(result)),
         "checks": map_checks(result),

@@ -20,7 +20,7 @@ from leblanc.results.runup import RunupResult
 from leblanc.text.numbers import MOST_RANGES, number
 from leblanc.text.runup import describe_model
 from leblanc.text.runup import moments as samples
-from leblanc.units import MM, RPM
+from leblanc.units import MINUS, MM, RPM
 
 if TYPE_CHECKING:
     from leblanc.figures.page import FigureFiles
@@ -120,8 +120,7 @@ def energy(result: RunupResult) -> Table:
         return label, number(value), number(100.0 * value / work) if work > 0.0 else ""
 
     rows = [
-        row(("+ " if name in GAINS else "\N{MINUS SIGN} ") + text, values[name])
-        for name, text in TERMS.items()
+        row(("+ " if name in GAINS else f"{MINUS} ") + text, values[name]) for name, text in TERMS.items()
     ]
     rows.append(row("= not accounted for", audit.remainder))
     if audit.motor != 0.0:
@@ -188,7 +187,7 @@ def why(result: RunupResult) -> Table:
     text, taken = one_line(result.model_reason), describe_model(result.model, result.cells, result.dispersion)
     reason = f"{text[:1].upper()}{text[1:]} Taken as {taken}."
     head = ("Speeds (rpm)", "Model", "Estimated error", "Why")
-    return table("", head, [(span, result.model, error, reason)], words=True)
+    return table("", head, [(span, result.model, error, reason)], sentences=True)
 
 
 def write_runup_report(result: RunupResult, what: About, figures: Sequence[FigureFiles], path: Path) -> None:

@@ -29,12 +29,12 @@ class NoteCode(StrEnum):
 class Note:
     """One thing that a reader of a result must know.
 
-    A program asks for `code` and `data`, a reader reads `text`. A sentence is written in one place: the
+    A program uses `code` and `data`, a reader reads `text`. A sentence is written in one place: the
     function that makes the note.
 
     Parameters
     ----------
-    code : what is said
+    code : kind of the sentence
     data : the numbers of the sentence, SI
     text : the sentence
     """
@@ -132,7 +132,7 @@ def attributes(
 
 
 def presented_by(address: str) -> Callable[[Any], Any]:
-    """The function of a room above that presents a result, loaded when it is first asked for.
+    """The function of a room above that presents a result, loaded when it is first used.
 
     Results import neither figures nor texts. A result names them as "module:function", and this is the only
     place that follows such a name: `result.plot()` works without an import that runs upward.

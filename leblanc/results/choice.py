@@ -23,7 +23,7 @@ class Choice:
     ----------
     model : the most exact of the models taken
     models : name of the model taken at each speed
-    asked : the scene names the model itself
+    prescribed : the scene names the model itself
     in_range : the liquid rides with the drum
     captured_from : speed above which it does, rad/s; None if at every speed
     tolerance : relative error that the scene allows
@@ -37,7 +37,7 @@ class Choice:
 
     model: str
     models: NDArray[np.str_]
-    asked: bool
+    prescribed: bool
     in_range: Flags
     captured_from: float | None
     tolerance: float
@@ -118,7 +118,7 @@ def _reason(choice: Choice, model: str, part: Index) -> str:
             "are those of liquid that does"
         )
     why = _statics_reason(choice, part) if model == "statics" else _linear_reason(choice, part)
-    if choice.asked:
+    if choice.prescribed:
         why = f"the scene asks for it; {why}"
     if not choice.missed[part[0]]:
         return why
@@ -137,7 +137,7 @@ def _linear_reason(choice: Choice, part: Index) -> str:
             "it is exact until the surface touches an end of the wall or an inner wall, and the axis moves "
             f"{moves}"
         )
-    if not choice.asked:
+    if not choice.prescribed:
         return f"what it leaves out changes amplitude and liquid by less than {percent(worst)}"
     size = f"by up to {percent(worst)}" if np.isfinite(worst) else "without a bound"
     return f"against the exact equilibrium amplitude or liquid may be off {size}"
@@ -148,7 +148,7 @@ def _statics_reason(choice: Choice, part: Index) -> str:
     strain, worst = choice.linear.strain[part], choice.linear.worst[part].max()
     known = np.isfinite(worst)
     off = f"linear theory may be off by {percent(worst)}" if known else "linear theory has no bound of error"
-    if choice.asked and worst <= choice.tolerance:
+    if choice.prescribed and worst <= choice.tolerance:
         return f"{off}, within the tolerance"
     if not np.isfinite(strain).all():
         return f"{off}: at this spin the surface does not cover the wall's height or clear an inner wall"

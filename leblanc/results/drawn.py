@@ -20,6 +20,11 @@ if TYPE_CHECKING:
     from leblanc.results.response import RunResult
     from leblanc.results.runup import RunupFrames, RunupResult
 
+LARGEST_FACTOR = 1e6  # of a depth as drawn
+FILLED = 0.55  # deepest place as drawn over the room between the walls
+SWING = 0.3  # largest deflection as drawn, over the smallest wall radius
+USUAL = 0.9  # of the frames of a film, whose depths its drawing is scaled to
+
 
 @dataclass(frozen=True)
 class Scale:
@@ -87,12 +92,6 @@ def half_angle(share: float) -> float:
         half = 0.5 * (low + high)
         low, high = (low, half) if half - math.sin(half) * math.cos(half) > share else (half, high)
     return 0.5 * (low + high)
-
-
-LARGEST_FACTOR = 1e6  # of a depth as drawn
-FILLED = 0.55  # deepest place as drawn over the room between the walls
-SWING = 0.3  # largest deflection as drawn, over the smallest wall radius
-USUAL = 0.9  # of the frames of a film, whose depths its drawing is scaled to
 
 
 def film_factor(chambers: Sequence[FilledChamber], depth: Array, deflection: Complex) -> float:

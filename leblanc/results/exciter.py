@@ -26,7 +26,7 @@ class Check:
     ----------
     speed : of the shaft, rad/s
     stuck_speed : mean speed of the balls, rad/s
-    slow, fast : amplitudes of the platform, m; nan where they cannot be told apart
+    slow, fast : amplitudes of the platform, m; nan where they cannot be distinguished
     holds : the dual-frequency motion holds
     converged : every number is finite
     """

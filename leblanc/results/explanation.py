@@ -151,7 +151,7 @@ def _layer_variables(layers: tuple[LayerExplanation | None, ...]) -> dict[str, V
 
 @dataclass(frozen=True)
 class ExciterExplanation(Result):
-    """Numbers that decide how a vibrating table with balls behaves, without any integration in time.
+    """Numbers that determine how a vibrating table with balls behaves, without any integration in time.
 
     Parameters
     ----------
@@ -257,7 +257,7 @@ class Comparison(Result):
     Parameters
     ----------
     name, source, assumed, digest : of the scene as it was given
-    answers : one for each model, in the order asked for
+    answers : one for each model, in the order given
 
     Raises
     ------
@@ -272,7 +272,7 @@ class Comparison(Result):
     """
 
     figure: ClassVar[str] = "leblanc.figures.comparison:comparison_figure"
-    summary: ClassVar[str] = "leblanc.text.explanation:summary"
+    summary: ClassVar[str] = "leblanc.text.explanation:comparison_facts"
 
     name: str
     source: str
@@ -286,7 +286,7 @@ class Comparison(Result):
 
     @property
     def models(self) -> tuple[str, ...]:
-        """Names of the models, in the order asked for."""
+        """Names of the models, in the order given."""
         return tuple(answer.model for answer in self.answers)
 
     @property
@@ -385,11 +385,11 @@ class Comparison(Result):
         )
         amplitude, offset = table(lambda result: result.amplitude), table(lambda result: result.liquid_offset)
         dry, reference = self.amplitude_dry, f"from {self.reference}, over its largest amplitude"
-        words = np.array([answer.reason for answer in self.answers], dtype=object)
+        reasons = np.array([answer.reason for answer in self.answers], dtype=object)
         return NamedArrays(
             {
                 "answered": flags(each, answered, "no yes", "answered", "the model answers this scene"),
-                "reason": var(each, words, "1", "reason", "why the model does not answer"),
+                "reason": var(each, reasons, "1", "reason", "why the model does not answer"),
                 "cpu_time": var(each, numbers(times), "s", "processor time", "that the answer took"),
                 "amplitude": var(over, amplitude, "m", "amplitude", "of the branch reported"),
                 "amplitude_dry": var(("speed",), dry, "m", "amplitude", "without liquid"),

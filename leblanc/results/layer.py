@@ -87,7 +87,7 @@ def dry_wall() -> Note:
 
 @dataclass(frozen=True)
 class LayerCase:
-    """The layer and the whirl that were asked for.
+    """The layer and the whirl of a question.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ class LayerResult(Result):
 
     Parameters
     ----------
-    case : what was asked for
+    case : the layer and the whirl
     force_ratio : force on the drum over m_f omega_w^2 A
     offset : liquid's centre of mass from the drum's axis, m
     mass_error : of the surface that the model draws, relative
@@ -211,7 +211,7 @@ class LayerPeriodsResult(Result):
 
     Parameters
     ----------
-    case : what was asked for
+    case : the layer and the whirl
     history : force, centre of mass and depths period by period, and the depth at the end
     notes : why there is no answer, and where the model is out of its range
     validity : dimensionless numbers the model rests on, each with its range
@@ -287,7 +287,7 @@ class LayerPeriodsResult(Result):
 
 
 def _attributes(case: LayerCase, converged: bool, in_range: bool, notes: tuple[Note, ...]) -> dict[str, Any]:
-    """What was asked for, whether it was answered, versions."""
+    """The question, whether it was answered, versions."""
     return {
         "title": "Layer under a whirl",
         **asdict(case),

@@ -47,7 +47,7 @@ class Surface:
     unbalance_volume : first moment of the liquid about the rotation axis over its density, m^4
     unbalance_volume_fem : the same by finite elements, m^4
     case : against the optimal volume
-    converged : both surfaces hold the volume asked for
+    converged : both surfaces hold the given volume
     """
 
     surface_constant: float | None
@@ -70,7 +70,7 @@ class VolumeResult(Result):
     fem_error : of the latter, relative
     printed_eq18 : as the source prints it, m^3; None where the formula has no value
     corrected_eq18 : with its moment corrected, m^3; None where the formula has no value
-    volume : that was asked for, m^3; None without one
+    volume : that was given, m^3; None without one
     surface : of that volume
 
     Examples
@@ -98,11 +98,11 @@ class VolumeResult(Result):
 
     @property
     def converged(self) -> bool:
-        """The surface of the volume asked for was found."""
+        """The surface of the given volume was found."""
         return self.surface is None or self.surface.converged
 
     def to_json(self) -> dict[str, Any]:
-        """What `volume` prints for scripts, SI; the surface only where a volume was asked for."""
+        """What `volume` prints for scripts, SI; the surface only where a volume was given."""
         found: dict[str, Any] = {
             "optimal_volume": self.optimal_volume,
             "optimal_volume_fem": self.optimal_volume_fem,
@@ -152,7 +152,7 @@ class ModesCode(NoteCode):
     SHARP_EDGES = "sharp_edges"
 
 
-def of_mesh(finding: Finding) -> Note:
+def mesh_finding(finding: Finding) -> Note:
     """What is found in a mesh."""
     return Note(ModesCode.MESH, asdict(finding), f"mesh: {finding}")
 
@@ -174,8 +174,8 @@ def baffles_clear() -> Note:
     return Note(ModesCode.BAFFLES_CLEAR, {}, "the baffles stand clear of the liquid")
 
 
-def coarse(error: float) -> Note:
-    """The relative error of the fastest mode is worth more segments."""
+def coarse_mesh(error: float) -> Note:
+    """The relative error of the fastest mode calls for more segments."""
     text = f"the mesh is coarse for the fastest of these modes (error about {error:.1g}): more --segments"
     return Note(ModesCode.COARSE, {"error": error}, text)
 

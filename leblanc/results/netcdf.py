@@ -71,8 +71,8 @@ class NamedArrays:
     def __post_init__(self) -> None:
         object.__setattr__(self, "attrs", {"Conventions": "CF-1.11", **self.attrs})
         sizes = self.sizes
-        for name, one in self.arrays.items():
-            for dim, length in zip(one.dims, one.values.shape, strict=True):
+        for name, array in self.arrays.items():
+            for dim, length in zip(array.dims, array.values.shape, strict=True):
                 if length != sizes[dim]:
                     raise InputError(name, f"{length} along {dim}", f"{sizes[dim]}, as another variable has")
 
@@ -86,8 +86,8 @@ class NamedArrays:
         """Lengths of the dimensions."""
         return {
             dim: length
-            for one in self.arrays.values()
-            for dim, length in zip(one.dims, one.values.shape, strict=True)
+            for array in self.arrays.values()
+            for dim, length in zip(array.dims, array.values.shape, strict=True)
         }
 
     def to_dataset(self) -> Dataset:
@@ -95,7 +95,7 @@ class NamedArrays:
         import xarray as xr
 
         variables, coords = (
-            {name: xr.Variable(one.dims, one.values, one.attrs) for name, one in part.items()}
+            {name: xr.Variable(array.dims, array.values, array.attrs) for name, array in part.items()}
             for part in (self.variables, self.coords)
         )
         return xr.Dataset(variables, coords=coords, attrs=self.attrs)
@@ -142,7 +142,7 @@ def flags(dims: tuple[str, ...], values: NDArray[Any], meanings: str, name: str,
     Parameters
     ----------
     dims, values, text : as for `variable`
-    meanings : words for the states, in the order of their values
+    meanings : names of the states, in the order of their values
     name : long name
     """
     found = variable(dims, values.astype(np.int8), "1", name, text)
@@ -167,38 +167,40 @@ def write_netcdf(found: NamedArrays, path: Path) -> None:
     with replacing(path) as temporary, h5py.File(temporary, "w", track_order=True) as file:
         file.attrs.update({**found.attrs, **held.get("", {})})
         stored = {}
-        for name, one in found.arrays.items():
+        for name, array in found.arrays.items():
             # The name of a dimension is its scale's, also where a variable of another shape has it.
-            clash = name in sizes and one.dims != (name,)
-            texts, missing = one.values.dtype.kind in "UO", one.values.dtype.kind == "f"
+            clash = name in sizes and array.dims != (name,)
+            texts, missing = array.values.dtype.kind in "UO", array.values.dtype.kind == "f"
             stored[name] = data = file.create_dataset(
                 f"_nc4_non_coord_{name}" if clash else name,
-                data=one.values.astype(object) if texts else one.values,
-                dtype=h5py.string_dtype() if texts else one.values.dtype,
+                data=array.values.astype(object) if texts else array.values,
+                dtype=h5py.string_dtype() if texts else array.values.dtype,
                 fillvalue=np.nan if missing else None,
                 track_order=True,
             )
             if missing:
-                data.attrs["_FillValue"] = np.full(1, np.nan, one.values.dtype)
-            data.attrs.update({**one.attrs, **held.get(name, {})})
+                data.attrs["_FillValue"] = np.full(1, np.nan, array.values.dtype)
+            data.attrs.update({**array.attrs, **held.get(name, {})})
         for number, (dim, length) in enumerate(sizes.items()):
             alone = dim not in file
             scale = file.create_dataset(dim, (length,), ">f4") if alone else file[dim]
             scale.make_scale(f"{_DIMENSION_ALONE} {length:10d}" if alone else dim)
             scale.attrs["_Netcdf4Dimid"] = np.int32(number)
-        for name, one in found.arrays.items():
-            for k, dim in enumerate(one.dims):
+        for name, array in found.arrays.items():
+            for k, dim in enumerate(array.dims):
                 if stored[name] != file[dim]:
                     stored[name].dims[k].attach_scale(file[dim])
 
 
 def _held_by(found: NamedArrays) -> dict[str, dict[str, str]]:
     """Attributes that name the coordinates which are no dimensions: of the whole under ""."""
-    others = {name: set(one.dims) for name, one in sorted(found.coords.items()) if name not in found.sizes}
+    others = {
+        name: set(array.dims) for name, array in sorted(found.coords.items()) if name not in found.sizes
+    }
     held = {}
-    for name, one in found.arrays.items():
-        names = [other for other, dims in others.items() if dims <= set(one.dims)]
-        if names and name not in others and name not in one.dims:
+    for name, array in found.arrays.items():
+        names = [other for other, dims in others.items() if dims <= set(array.dims)]
+        if names and name not in others and name not in array.dims:
             held[name] = " ".join(names)
     left = [other for other in others if not any(other in names.split() for names in held.values())]
     return {name: {"coordinates": names} for name, names in ({"": " ".join(left)} | held).items() if names}

@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     from solvers.whirl.edges import Bands
 
 
+CLOSURE = 1e-3  # of the work: what the energy balance may leave
+ERROR = 0.02  # of the largest amplitude: an error estimate to speak of
+
+
 class RunCode(NoteCode):
     """What the notes of a response say."""
 
@@ -47,7 +51,7 @@ def liquid_models(choice: Choice) -> Note | None:
     if choice.cut:
         text = "Liquid model: finite elements for small disturbances; their error is not estimated."
         return Note(RunCode.LIQUID_MODEL, {"fem": choice.models.size}, text)
-    if choice.asked:
+    if choice.prescribed:
         return None
     exact, count = int(np.count_nonzero(choice.models == "statics")), choice.models.size
     text = (
@@ -70,7 +74,7 @@ def tolerance_missed(choice: Choice, speed: Array) -> Note | None:
         return None
     (first, last), worst = speed[missed][[0, -1]], choice.error[missed].max()
     size = f"up to {percent(worst)}" if np.isfinite(worst) else "without a bound"
-    whose = " of the model asked for" if choice.asked else ""
+    whose = " of the model asked for" if choice.prescribed else ""
     text = (
         f"Between {first * RPM:.4g} and {last * RPM:.4g} rpm the estimated error{whose} is {size}, more than "
         f"the tolerance of {percent(choice.tolerance)}."
@@ -187,7 +191,7 @@ def wall(chamber: int, speed: float, volume: float, enough: float, deflection: f
 
 
 def mesh(chamber: int, finding: str) -> Note:
-    """What is poor in the mesh of a chamber's section.
+    """Faults of the mesh of a chamber's section.
 
     Parameters
     ----------
@@ -195,10 +199,6 @@ def mesh(chamber: int, finding: str) -> Note:
     finding : in words
     """
     return Note(RunCode.MESH, {"chamber": chamber}, f"Mesh of chamber {chamber + 1}: {finding}.")
-
-
-CLOSURE = 1e-3  # of the work: what the energy balance may leave
-ERROR = 0.02  # of the largest amplitude: an error estimate to speak of
 
 
 class RunupCode(NoteCode):
@@ -298,7 +298,7 @@ def self_excited_on_the_way(bands: tuple[tuple[float, float], ...], friction: Fr
 
 
 def out_of_range(code: RunupCode, chamber: int, holds: Flags, limit: float = math.nan) -> Note | None:
-    """At what share of the samples the layer of a chamber is no fair picture of its liquid; None if nowhere.
+    """At what share of the samples the layer of a chamber does not describe its liquid; None if nowhere.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ from meshes.arrays import Array, Flags
 
 
 class Feasibility(Enum):
-    """Whether some volumes keep to all that was asked, and what that means."""
+    """Whether some volumes meet every constraint, and what that means."""
 
     FEASIBLE = "every constraint is met"
     INFEASIBLE = "no volumes meet every constraint; these exceed them least"
@@ -232,7 +232,7 @@ class OptimumResult(Result):
     friction : of the liquid
     tolerance : relative error that the scene allows
     in_time : the objective is judged by run-ups in time
-    objective, meaning, unit : name, words and unit of the value
+    objective, meaning, unit : name, description and unit of the value
     working_speed : rad/s
     volume : the answer, m^3, shape (c,)
     value, baseline : of the objective with these volumes and without liquid
@@ -244,11 +244,11 @@ class OptimumResult(Result):
     closed_form : for each chamber, at the deflection that the answer itself has; empty where it has none
     evaluations : sets of volumes evaluated
     candidates : all of them
-    front : what must be given up for what; None if it was not asked for
+    front : what must be given up for what; None if it was not computed
     sweep : from no liquid to the fullest chamber, shares as in the answer; None with the front
     notes : limits and findings
     response : of the machine with these volumes over the scene's speeds; None where the liquid model of the
-        search gives no steady answer, or where it was not asked for; its models are those of the search
+        search gives no steady answer, or where it was not computed; its models are those of the search
     emulator : what the emulator that the search asked says of the answer; None without one
 
     Examples

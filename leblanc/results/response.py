@@ -145,7 +145,7 @@ class RunResult(Result):
     critical_speed_dry, critical_speed_wet : without liquid and with its added mass, rad/s; of several the one
         at which the unbalance moves the axis most
     motion : None for a planar rotor
-    whirl : None where it was not asked for
+    whirl : None where it was not computed
     error_estimate : relative, of amplitude and liquid the larger one, nan where there is none, shape (n,);
         None where nothing was estimated
     models : which liquid model answers at which speeds, how well, and why; empty where that is not known
@@ -275,12 +275,12 @@ class RunResult(Result):
 
     @property
     def growth(self) -> Array | None:
-        """Growth of the whirl that grows most by itself, 1/s, shape (n,); None where it was not asked for."""
+        """Growth of the whirl that grows most by itself, 1/s, shape (n,); None where it was not computed."""
         return None if self.whirl is None else self.whirl.growth
 
     @property
     def whirl_speed(self) -> Array | None:
-        """Speed of that whirl in space, rad/s, shape (n,); None where it was not asked for."""
+        """Speed of that whirl in space, rad/s, shape (n,); None where it was not computed."""
         return None if self.whirl is None else self.whirl.whirl_speed
 
     @property

@@ -81,12 +81,12 @@ class RunupResult(Result):
     cells, dispersion : of each layer; whether its waves have the dispersion of the finite depth
     history : of rotor and liquid
     turning : index of the last time before the speed falls again; the last one of all if it never does
-    in_range : the layer is a fair picture of the liquid at that time, shape (k,)
+    in_range : the layer describes the liquid at that time, shape (k,)
     steady : synchronous response at the speeds passed, of a Jeffcott rotor; None for others
     bands : of speed in which some whirl grows by itself, rad/s, an end of the range counting as an edge
     chambers, planes : one for each chamber; its position along the axis, m
     notes : limits of validity and findings
-    frames : the layers at regular times; None if they were not asked for
+    frames : the layers at regular times; None if they were not kept
 
     Examples
     --------
@@ -320,7 +320,7 @@ def _columns(result: RunupResult) -> dict[str, Any]:
 
     drum = "in the drum frame, from its zero mark, positive with the spin"
     here = "liquid's centre of mass from the axis"
-    held = "the liquid rides with the drum as a layer"
+    captured = "the liquid rides with the drum as a layer"
     columns = {
         "time": variable(over, h.time, "s", "time"),
         "chamber": variable(("chamber",), np.arange(1, count + 1, dtype=np.int32), "1", "chamber"),
@@ -332,7 +332,7 @@ def _columns(result: RunupResult) -> dict[str, Any]:
         "liquid_angle": variable(over, np.angle(h.liquid_position), "rad", f"angle of that place {drum}"),
         "in_range": flags(over, result.in_range, "no yes", "the layer is a fair picture of the liquid"),
         "coordinates": variable(("time", "coordinate"), h.coordinates, "1", "of the rotor, m or rad"),
-        "captured": flags(("time", "chamber"), h.captured[:, :count], "no yes", held),
+        "captured": flags(("time", "chamber"), h.captured[:, :count], "no yes", captured),
         "depth_min": each(h.depth_min, "m", "least depth around the wall"),
         "depth_max": each(h.depth_max, "m", "largest depth around the wall"),
         "mean_rotation": each(h.mean_rotation, "rad s-1", "mean rotation of the liquid in the drum"),
@@ -348,7 +348,7 @@ def _columns(result: RunupResult) -> dict[str, Any]:
 
 
 def turn_mean(values: Complex, angle: Array) -> Complex:
-    """Mean over the turns of the rotor around each time: what stands still in space drops out of it.
+    """Mean over the turns of the rotor around each time: what is fixed in space drops out of it.
 
     The mean is taken over one turn, or over as many whole turns as hold eight samples.
 

@@ -43,7 +43,7 @@ class Sensitivity:
     method : in words
     used : samples that went in; for "saltelli" points of the design
     first : share that the field explains by itself, shape (fields,)
-    total : share that is gone once the field is known besides all others; None where the samples do not tell
+    total : share that is gone once the field is known besides all others; None where the samples are too few
     first_interval, total_interval : half widths of the 95 % intervals; None where the design is complete
     """
 
@@ -93,7 +93,7 @@ class SweepResult(Result):
     single : statistics of outputs that are one number a sample
     units : of these outputs
     over_speed : statistics of the others at each speed
-    sensitivities : of outputs that are one number a sample; None where the samples do not tell
+    sensitivities : of outputs that are one number a sample; None where the samples are too few
     digest : fingerprint of the sweep
     read : reads the store, each time it is called
 

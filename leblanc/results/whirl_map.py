@@ -25,9 +25,9 @@ class WhirlMap(Result):
     name, source, assumed, digest : of the scene
     speed : spin speed Omega, rad/s, shape (n,)
     volume : liquid in all chambers together, m^3, shape (v,)
-    growth : of the whirl that grows most, 1/s, 0 if rounding cannot tell, nan if not found, shape (v, n)
+    growth : of the whirl that grows most, 1/s, 0 if it is below rounding, nan if not found, shape (v, n)
     whirl_speed : of that whirl in the standing frame, rad/s, positive with the spin, shape (v, n)
-    in_range : the plane layer is a fair picture of the liquid there, shape (v, n)
+    in_range : the plane layer describes the liquid there, shape (v, n)
     edges : for each volume the bands of speed in which a whirl grows, rad/s; an end that is the first or last
         speed is where the range ends
     friction, damping : of the liquid, of the support, in words
@@ -78,13 +78,13 @@ class WhirlMap(Result):
         for row, found in zip(ends, self.edges, strict=True):
             row[: len(found)] = np.reshape(found, (len(found), 2))
         mode = "of the whirl that grows most"
-        held = flags(over, self.in_range, "no yes", "in range", "the plane layer holds there")
+        valid = flags(over, self.in_range, "no yes", "in range", "the plane layer holds there")
         edge = "of a band in which a whirl grows; the ends of the range of speeds count as edges"
         return NamedArrays(
             {
                 "growth": var(over, self.growth, "s-1", "growth rate", f"{mode}; above 0 unstable"),
                 "whirl_speed": var(over, self.whirl_speed, "rad s-1", "whirl speed", f"{mode}, in space"),
-                "in_range": held,
+                "in_range": valid,
                 "edge_low": var(("volume", "band"), ends[..., 0], "rad s-1", "lower edge", edge),
                 "edge_high": var(("volume", "band"), ends[..., 1], "rad s-1", "upper edge", edge),
             },

@@ -31,6 +31,12 @@ _LENGTH = quantity(units.LENGTH, 1e-12, 1e3)
 _Pair = tuple[float, float]
 _Volumes = Annotated[_Pair, PlainValidator(Span(Quantity(units.VOLUME, 0.0, 1e9)))]
 
+MAX_POINTS = 1000  # of a motor's curve
+
+_RATE = Quantity(units.ANGULAR_ACCELERATION, 1e-9, 1e9)
+_MotorSpeed = Annotated[float, quantity(units.ANGULAR_SPEED, 0.0, 1e6)]
+_Torque = Annotated[float, quantity(units.TORQUE, -1e9, 1e9)]
+
 
 class DutyPoint(Part):
     """A speed of a duty cycle and its share of the time."""
@@ -93,13 +99,6 @@ class Optimisation(Part):
     volumes: Annotated[tuple[_Volumes, ...], entries(1, 1000, "pairs of volumes, one for each chamber")] = (
         Field((), description="least and most of each chamber; from nothing to what it holds if left out")
     )
-
-
-MAX_POINTS = 1000  # of a motor's curve
-
-_RATE = Quantity(units.ANGULAR_ACCELERATION, 1e-9, 1e9)
-_MotorSpeed = Annotated[float, quantity(units.ANGULAR_SPEED, 0.0, 1e6)]
-_Torque = Annotated[float, quantity(units.TORQUE, -1e9, 1e9)]
 
 
 class Motor(Part):

@@ -102,7 +102,7 @@ def choose(scene: Scene) -> Choice:
 
     Raises
     ------
-    InputError : the scene asks for a model that does not answer the synchronous response, or is an exciter
+    InputError : the scene names a model that does not answer the synchronous response, or is an exciter
     """
     return choose_all([prepare(scene)])[0]
 
@@ -191,29 +191,29 @@ def _other_errors(machine: Prepared) -> tuple[LinearError, Array]:
 
 
 def _choice(machine: Prepared, linear: LinearError, gravity: Array) -> Choice:
-    """The cheapest model that the errors allow, or the one asked for."""
+    """The cheapest model that the errors allow, or the one that the scene names."""
     scene, speed = machine.scene, machine.speed
-    asked, tolerance = scene.model.liquid, scene.model.tolerance
+    liquid, tolerance = scene.model.liquid, scene.model.tolerance
     # What gravity does to all models alike does not speak for the dearer one. Where a wall may run dry the
     # exact equilibrium says where.
     enough = linear.wet & (linear.worst <= tolerance)
     cut = is_cut(scene)
-    small = "fem" if cut or asked == "fem" else "linear"
-    if cut or asked != "auto":
-        enough = np.full(speed.shape, asked != "statics")
+    small = "fem" if cut or liquid == "fem" else "linear"
+    if cut or liquid != "auto":
+        enough = np.full(speed.shape, liquid != "statics")
     models = np.where(enough, small, "statics")
     captured_from = _captured_from(scene)
-    held = np.ones(speed.shape, dtype=bool) if captured_from is None else speed > captured_from
+    in_range = np.ones(speed.shape, dtype=bool) if captured_from is None else speed > captured_from
     error = np.where(enough, linear.worst, ROUNDING) + gravity
     if cut:
         # The exact equilibrium of compartments, which would judge small disturbances, is not computed.
-        held = held & (speed > max(_covers(fill, machine.axial_gravity) for fill in scene.fills))
+        in_range = in_range & (speed > max(_covers(fill, machine.axial_gravity) for fill in scene.fills))
         error = np.full(speed.shape, np.nan)
     return Choice(
         model=small if enough.all() else "statics",
         models=models,
-        asked=asked != "auto",
-        in_range=held,
+        prescribed=liquid != "auto",
+        in_range=in_range,
         captured_from=captured_from,
         tolerance=tolerance,
         error=error,

@@ -67,9 +67,9 @@ def _check(scene: Scene, models: Sequence[str]) -> None:
 
 def _answer(scene: Scene, name: str) -> ModelAnswer:
     """The answer by one model, and its processor time."""
-    asked = scene.altered(model=scene.model.altered(liquid=name))
+    variant = scene.altered(model=scene.model.altered(liquid=name))
     began = time.process_time()
-    result = run_scene(asked)
+    result = run_scene(variant)
     return ModelAnswer(name, "", time.process_time() - began, result)
 
 

@@ -28,7 +28,7 @@ from solvers.synchronous.response import critical_speed, wet_critical_speeds
 
 
 def explain_exciter(scene: Scene) -> ExciterExplanation:
-    """Numbers that decide how an exciter behaves, without any integration in time [YF17, eq. 2-7 and 13].
+    """Numbers that determine how an exciter behaves, without any integration in time [YF17, eq. 2-7 and 13].
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def explain_scene(scene: Scene) -> Explanation:
 
     Raises
     ------
-    InputError : the scene asks for a liquid model that does not answer the response to an unbalance
+    InputError : the scene names a liquid model that does not answer the response to an unbalance
     """
     machine = prepare(scene)
     gravity, (choice,) = machine.axial_gravity, choose_all([machine])

@@ -12,9 +12,19 @@ import numpy as np
 
 from fluid import waves
 from fluid.fill import Fill
-from leblanc.results import layer as notes_of
 from leblanc.results.base import Note
-from leblanc.results.layer import LayerCase, LayerPeriodsResult, LayerResult, Wave, WaveFrames
+from leblanc.results.layer import (
+    LayerCase,
+    LayerPeriodsResult,
+    LayerResult,
+    Wave,
+    WaveFrames,
+    against_whirl,
+    dry_wall,
+    inner_wall,
+    no_answer,
+    out_of_range,
+)
 from leblanc.studies.validity import judge
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.layer.settle import LongWave, film, simulate
@@ -65,7 +75,7 @@ def answer_layer(
     notes, surface = wave_notes(wave), fill.surface_radius
     in_range = not notes
     if in_range and wave.answer.dry_patch[0]:
-        notes = (notes_of.dry_wall(),)
+        notes = (dry_wall(),)
     kappa = (fill.chamber.radius / surface) ** 2 if gravity else math.nan
     return LayerResult(
         case=_case(fill, whirl, model.name),
@@ -106,17 +116,17 @@ def _force_ratio(fill: Fill, whirl: Whirl, wave: LiquidWave) -> complex:
 
 def wave_notes(wave: LiquidWave) -> tuple[Note, ...]:
     """Why there is no answer, and where the model is out of its range."""
-    inner_wall = wave.answer.limits.get("inner_wall")
+    clear = wave.answer.limits.get("inner_wall")
     return (
-        *([notes_of.no_answer(wave.reason)] if wave.reason else []),
-        *notes_of.out_of_range(judge(wave)),
-        *([notes_of.against_whirl(wave.counter)] if wave.counter > _ONE_WAY else []),
-        *([] if inner_wall is None or inner_wall[0] else [notes_of.inner_wall()]),
+        *([no_answer(wave.reason)] if wave.reason else []),
+        *out_of_range(judge(wave)),
+        *([against_whirl(wave.counter)] if wave.counter > _ONE_WAY else []),
+        *([] if clear is None or clear[0] else [inner_wall()]),
     )
 
 
 def _case(fill: Fill, whirl: Whirl, model: str) -> LayerCase:
-    """What was asked for, for whoever shows the answer."""
+    """The whirl and the chamber, for texts and figures."""
     return LayerCase(
         model=model,
         radius=fill.chamber.radius,
@@ -170,7 +180,7 @@ def layer_film(
     """A layer in the drum frame for a film; the parameters are `layer_history`'s.
 
     Long waves start from rest and run for six whirl periods unless a duration is given; waves of the other
-    models stand still in the frame of the deflection and run round the drum for two.
+    models are steady in the frame of the deflection and run round the drum for two.
 
     Returns
     -------
@@ -199,7 +209,7 @@ def _film_from_rest(fill: Fill, whirl: Whirl, model: LongWave, duration: float) 
 
 
 def steady_film(answer: LayerResult, whirl: Whirl, duration: float) -> WaveFrames:
-    """Pictures of a wave that stands still in the frame of the deflection, as it runs round the drum.
+    """Pictures of a wave that is steady in the frame of the deflection, as it runs round the drum.
 
     Parameters
     ----------

@@ -12,9 +12,17 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.liquid import Liquid
 from fluid.waves import free_wave_frequencies
-from leblanc.results import liquid as notes_of
 from leblanc.results.base import Note
-from leblanc.results.liquid import ModesResult
+from leblanc.results.liquid import (
+    ModesResult,
+    baffles_clear,
+    coarse_mesh,
+    mesh_finding,
+    other_radius,
+    sharp_edges,
+    straight_sides,
+    thick_layers,
+)
 from leblanc.scene.chambers import is_outline, section_of_any_file
 from meshes.arrays import Array
 from meshes.baffles import Baffles
@@ -123,7 +131,7 @@ def round_sections(
     baffles = chamber.baffles
     span = baffles.wetted_span(radius, a) if baffles is not None else None
     if baffles is not None and span is None:
-        notes.append(notes_of.baffles_clear())
+        notes.append(baffles_clear())
     title = f"Round chamber, R = {radius * 1e3:.4g} mm"
     if baffles is not None and span is not None:
         inner, outer = span
@@ -161,12 +169,12 @@ def section_of_file(
         raise InputError("--baffles", chamber.baffles.count, "left out with --mesh, which has its own walls")
     section = section_of_any_file(source.path, source.unit, source.size, ("--mesh-unit", "--mesh-size"))
     a = surface_radius_of(section, volume / chamber.height)
-    notes = [notes_of.of_mesh(finding) for finding in mesh_findings(section)]
+    notes = [mesh_finding(finding) for finding in mesh_findings(section)]
     if section.order == 1 and not is_outline(source.path):
-        notes.append(notes_of.straight_sides())
+        notes.append(straight_sides())
     farthest = float(np.hypot(*section.points.T).max())
     if abs(farthest / chamber.radius - 1.0) > _OTHER:
-        notes.append(notes_of.other_radius(farthest))
+        notes.append(other_radius(farthest))
     size = 4.0 * math.pi * a / fineness.segments
     liquid = liquid_outside(section, a, order=2, surface_size=size, wall_size=2.0 * size)
     sections = [liquid, halved(liquid)]
@@ -224,7 +232,7 @@ def answer_modes(
     estimate = _error(condense(sections[0]), size / speed, fineness.order)
     if source is not None:
         crests = int(modes.crests.max())
-        notes += [notes_of.of_mesh(finding) for finding in wave_findings(sections[-1], crests)]
+        notes += [mesh_finding(finding) for finding in wave_findings(sections[-1], crests)]
     notes += _limits(damping, _depth(sections[-1]), estimate)
     clear = source is None and _is_ring(sections[-1], chamber.radius)
     strongest = modes.psi[np.arange(len(size)), first_largest(modes.psi)]
@@ -279,11 +287,11 @@ def _limits(damping: ModeDamping, depth: float, estimate: Array) -> list[Note]:
     notes = []
     worst = float(np.max(np.nan_to_num(estimate, nan=1.0)))
     if worst > _ROUGH:
-        notes.append(notes_of.coarse(worst))
+        notes.append(coarse_mesh(worst))
     if np.any(damping.thickness > _VISCOUS * depth):
-        notes.append(notes_of.thick_layers())
+        notes.append(thick_layers())
     if np.any(damping.edge_spread > 0.0):
-        notes.append(notes_of.sharp_edges())
+        notes.append(sharp_edges())
     return notes
 
 

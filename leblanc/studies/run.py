@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from leblanc.results import notes as run_notes
+from leblanc.results import notes
 from leblanc.results.base import FilledChamber, Note
 from leblanc.results.choice import Choice, model_spans
 from leblanc.results.response import Motion, RestMode, RunResult, SelfExcited
@@ -167,7 +167,7 @@ def run_scene(scene: Scene) -> RunResult:
 
     Raises
     ------
-    InputError : the scene asks for a liquid model that does not answer this, or its rotor is an exciter
+    InputError : the scene names a liquid model that does not answer this, or its rotor is an exciter
 
     Examples
     --------
@@ -232,20 +232,20 @@ def _notes(
     machine: Prepared, choice: Choice, answer: Response, motion: Motion | None, whirl: SelfExcited
 ) -> tuple[Note, ...]:
     """Limits of validity and findings."""
-    found = [run_notes.liquid_models(choice), run_notes.tolerance_missed(choice, machine.speed)]
+    found = [notes.liquid_models(choice), notes.tolerance_missed(choice, machine.speed)]
     if choice.captured_from is not None:
-        found.append(run_notes.not_carried(choice.captured_from))
+        found.append(notes.not_carried(choice.captured_from))
     if motion is None:
-        found.append(run_notes.slow_disturbances())
+        found.append(notes.slow_disturbances())
     else:
         chambers = bool(machine.scene.fills)
-        found.append(run_notes.plane(motion.position, motion.zero, chambers))
+        found.append(notes.plane(motion.position, motion.zero, chambers))
         found.append(_against_spin(answer, motion) if chambers else None)
-    found.append(run_notes.self_excited(whirl))
+    found.append(notes.self_excited(whirl))
     several = np.count_nonzero(np.isfinite(answer.branch_deflection), axis=1) > 1
     if several.any():
         first, last = answer.speed[several][[0, -1]].tolist()
-        found.append(run_notes.several_answers(first, last, stable=motion is None))
+        found.append(notes.several_answers(first, last, stable=motion is None))
     found += _walls(machine, answer, motion)
     found += _meshes(machine.scene)
     return tuple(note for note in found if note is not None)
@@ -261,7 +261,7 @@ def _against_spin(answer: Response, motion: Motion) -> Note | None:
     worst = int(np.argmax(share))
     if share[worst] <= 1e-6:
         return None
-    return run_notes.against_spin(float(share[worst]), float(answer.speed[known][worst]))
+    return notes.against_spin(float(share[worst]), float(answer.speed[known][worst]))
 
 
 def _walls(machine: Prepared, answer: Response, motion: Motion | None) -> list[Note]:
@@ -273,19 +273,19 @@ def _walls(machine: Prepared, answer: Response, motion: Motion | None) -> list[N
         if not np.isfinite(deflection) or fill.compartments > 1 or fill.chamber.section is not None:
             continue
         enough = float(optimal_volume(fill.chamber, deflection, speed, machine.axial_gravity))
-        found.append(run_notes.wall(k, speed, fill.volume, enough, float(deflection)))
+        found.append(notes.wall(k, speed, fill.volume, enough, float(deflection)))
     return found
 
 
 def _meshes(scene: Scene) -> list[Note]:
-    """What is poor in the meshes of chambers with a section of their own."""
-    notes: list[Note] = []
+    """Faults of the meshes of chambers with a section of their own."""
+    found: list[Note] = []
     for k, fill in enumerate(scene.fills):
         if fill.chamber.section is None or not fill.uneven:
             continue
         from meshes.findings import mesh_findings, wave_findings
 
         liquid = liquid_of(fill.chamber.section, fill.surface_radius)
-        found = (*mesh_findings(fill.chamber.section.mesh), *wave_findings(liquid, 1))
-        notes += [run_notes.mesh(k, str(finding)) for finding in found]
-    return notes
+        findings = (*mesh_findings(fill.chamber.section.mesh), *wave_findings(liquid, 1))
+        found += [notes.mesh(k, str(finding)) for finding in findings]
+    return found

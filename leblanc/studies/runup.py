@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from fluid.fill import Fill
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
-from leblanc.results import notes as runup_notes
+from leblanc.results import notes
 from leblanc.results.base import FilledChamber, Note, percent
 from leblanc.results.notes import RunupCode
 from leblanc.results.runup import Bands, RunupFrames, RunupResult
@@ -73,7 +73,7 @@ def runup_frames(history: RunupHistory) -> RunupFrames | None:
 
     Returns
     -------
-    In the drum frame; None where no snapshots were asked for
+    In the drum frame; None where no snapshots were kept
     """
     kept = history.snapshots
     if kept is None:
@@ -92,20 +92,20 @@ def runup_frames(history: RunupHistory) -> RunupFrames | None:
 
 
 def liquid_model(scene: Scene) -> str:
-    """Most exact liquid model that a scene's run-up may take: the one it asks for, or long waves.
+    """Most exact liquid model that a scene's run-up may take: the one that it names, or long waves.
 
     Raises
     ------
-    InputError : the scene asks for a model that does not go through time
+    InputError : the scene names a model that does not go through time
     """
-    asked = scene.model.liquid
-    if asked not in ("auto", *RUNUP_MODELS):
-        raise InputError("model.liquid", asked, "auto, " + " or ".join(RUNUP_MODELS) + " for a run-up")
-    return "long_wave" if asked == "auto" else asked
+    liquid = scene.model.liquid
+    if liquid not in ("auto", *RUNUP_MODELS):
+        raise InputError("model.liquid", liquid, "auto, " + " or ".join(RUNUP_MODELS) + " for a run-up")
+    return "long_wave" if liquid == "auto" else liquid
 
 
 def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tuple[Flags, tuple[Note, ...]]:
-    """Where the layer is a fair picture of the liquid, and why it is none elsewhere.
+    """Where the layer describes the liquid, and why it does not elsewhere.
 
     A layer must turn fast enough itself, whatever the drum does, must not be deep beside its radius
     [theory: long_wave, eq. 4], and must leave the inner wall clear.
@@ -114,14 +114,14 @@ def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tup
     ----------
     scene : the machine
     history : its run-up, k times
-    model : of its layers; what the scene asks for, or long waves, if None
+    model : of its layers; if None the one that the scene names, or long waves
 
     Returns
     -------
     Truth values, shape (k,), and one note for each reason
     """
     good = np.ones(history.time.shape, dtype=bool)
-    notes: list[Note | None] = []
+    found: list[Note | None] = []
     deepest, highest = LONG[1], LINEAR.ranges["wave_amplitude"][1]
     linear = (model or liquid_model(scene)) == "linear"
     for k, fill in enumerate(scene.fills):
@@ -129,7 +129,7 @@ def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tup
             continue
         wall = fill.chamber
         own = history.speed + history.mean_rotation[:, k]
-        held = history.captured[:, k] & (np.abs(own) > held_from(scene, fill))
+        carried = history.captured[:, k] & (np.abs(own) > held_from(scene, fill))
         reached = np.nan_to_num(history.depth_max[:, k]) >= wall.radius - wall.inner_radius
         touches = reached & (wall.inner_radius > 0.0)
         # The exact linear theory holds at any depth.
@@ -137,14 +137,14 @@ def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tup
         rise = np.nan_to_num(history.depth_max[:, k] - fill.depth)
         small = ~(linear & (rise > highest * fill.depth))
         for code, holds, limit in (
-            (RunupCode.TOO_SLOW, held, math.nan),
+            (RunupCode.TOO_SLOW, carried, math.nan),
             (RunupCode.INNER_WALL, ~touches, math.nan),
             (RunupCode.TOO_DEEP, np.full(good.shape, shallow), deepest),
             (RunupCode.TOO_HIGH, small, highest),
         ):
             good &= holds
-            notes.append(runup_notes.out_of_range(code, k, holds, limit))
-    return good, tuple(note for note in notes if note is not None)
+            found.append(notes.out_of_range(code, k, holds, limit))
+    return good, tuple(note for note in found if note is not None)
 
 
 def held_from(scene: Scene, fill: Fill) -> float:
@@ -153,8 +153,8 @@ def held_from(scene: Scene, fill: Fill) -> float:
     Its centrifugal acceleration at the surface must exceed gravity [theory: waves, eq. 11]; if the axis
     stands, the paraboloid must also cover the wall's height and leave an inner wall clear.
     """
-    held = float(capture_speed(fill.surface_radius, scene.gravity))
-    return max(held, covering_speed(fill, axial_gravity(scene)))
+    slowest = float(capture_speed(fill.surface_radius, scene.gravity))
+    return max(slowest, covering_speed(fill, axial_gravity(scene)))
 
 
 Progress = Callable[[float], None] | None
@@ -200,7 +200,7 @@ def chosen_run(
 
     Raises
     ------
-    InputError : the scene asks for a model that does not go through time
+    InputError : the scene names a model that does not go through time
     """
     model, tolerance = liquid_model(scene), scene.model.tolerance
     system, friction = dry_rotor(scene).system(), scene.model.friction
@@ -233,13 +233,13 @@ def chosen_run(
 
 def runup_outlook(scene: Scene) -> str:
     """Which liquid model the run-up of a scene will take, as far as that is known before, in words."""
-    asked, tolerance = scene.model.liquid, scene.model.tolerance
+    liquid, tolerance = scene.model.liquid, scene.model.tolerance
     if scene.runup is None:
         return ""
-    if asked not in ("auto", *RUNUP_MODELS):
-        return f"none: {asked} does not go through time; ask for auto, long_wave or linear"
-    if asked != "auto":
-        return f"{asked}, as the scene asks"
+    if liquid not in ("auto", *RUNUP_MODELS):
+        return f"none: {liquid} does not go through time; ask for auto, long_wave or linear"
+    if liquid != "auto":
+        return f"{liquid}, as the scene asks"
     ruled_out, wave = _ruled_out(scene), largest_wave(tolerance)
     if ruled_out:
         return f"long waves: {ruled_out}"
@@ -263,7 +263,7 @@ def _ruled_out(scene: Scene) -> str:
 def _judged_by(found: LinearRunError) -> str:
     """What a linear run says of its own error."""
     limits = MOST_WAVE, MOST_LAG
-    return runup_notes.linear_layers(found.wave, found.lag, found.touches, found.estimate, limits)
+    return notes.linear_layers(found.wave, found.lag, found.touches, found.estimate, limits)
 
 
 STEADY_SPEEDS = 401  # of the steady response drawn behind the run-up
@@ -341,27 +341,24 @@ def _notes(scene: Scene, taken: RunupChoice, steady: Response | None, bands: Ban
     h = taken.history
     after, which = np.nonzero(np.diff(h.captured.astype(np.int8), axis=0))
     switched = [(k + 1, j) for k, j in zip(after.tolist(), which.tolist(), strict=True)]
-    notes = [
-        runup_notes.liquid_model(taken.model, taken.reason),
-        None if h.converged else runup_notes.stopped(h.reason),
-        runup_notes.numerical_error(h.error_estimate),
-        runup_notes.energy_left(h.audit.closure),
-        runup_notes.largest_amplitude(h, steady),
-        *(
-            runup_notes.capture(j, bool(h.captured[k, j]), float(h.time[k]), float(h.speed[k]))
-            for k, j in switched
-        ),
-        runup_notes.self_excited_on_the_way(bands, scene.model.friction),
+    found = [
+        notes.liquid_model(taken.model, taken.reason),
+        None if h.converged else notes.stopped(h.reason),
+        notes.numerical_error(h.error_estimate),
+        notes.energy_left(h.audit.closure),
+        notes.largest_amplitude(h, steady),
+        *(notes.capture(j, bool(h.captured[k, j]), float(h.time[k]), float(h.speed[k])) for k, j in switched),
+        notes.self_excited_on_the_way(bands, scene.model.friction),
     ]
-    return [note for note in notes if note is not None]
+    return [note for note in found if note is not None]
 
 
 def planned(scene: Scene) -> Runup:
-    """The run-up that a scene asks for.
+    """The run-up of a scene.
 
     Raises
     ------
-    InputError : it asks for none
+    InputError : it has none
     """
     if scene.runup is None:
         allowed = (
@@ -385,7 +382,7 @@ def drive_of(plan: Runup) -> Drive:
 def numerics_of(
     plan: Runup, cells: int | None = None, samples: int | None = None, check: bool = True
 ) -> RunupNumerics:
-    """Resolution of a run-up, of the scene where nothing else is asked for."""
+    """Resolution of a run-up; the scene's where nothing else is given."""
     return RunupNumerics(
         cells=plan.cells if cells is None else cells,
         samples=plan.samples if samples is None else samples,

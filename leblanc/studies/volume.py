@@ -28,7 +28,7 @@ def answer_volume(
     eccentricity : deflection e, m
     speed : spin speed Omega, rad/s
     gravity : along the axis, m/s^2
-    volume : of liquid whose surface is asked for as well, m^3
+    volume : of liquid whose surface is computed as well, m^3
 
     Raises
     ------
@@ -70,8 +70,10 @@ def _surface(
     layer = volume / (2.0 * math.pi * chamber.radius * chamber.height)
     section = default_disc(chamber.radius, layer, inner_radius=chamber.inner_radius)
     # The mesh holds a little less than the chamber: a brimful chamber fills all of it.
-    held = min(volume, section_area(section) * chamber.height)
-    elements = solve_surface(section, chamber.height, _beta(speed, gravity), held, axis=(-eccentricity, 0.0))
+    filled = min(volume, section_area(section) * chamber.height)
+    elements = solve_surface(
+        section, chamber.height, _beta(speed, gravity), filled, axis=(-eccentricity, 0.0)
+    )
     constant = float(state.surface_constant)
     return Surface(
         surface_constant=constant if math.isfinite(constant) else None,

@@ -11,7 +11,7 @@ from fluid.fill import Fill
 from fluid.friction import Friction
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
-from leblanc.results import notes as map_notes
+from leblanc.results import notes
 from leblanc.results.base import Note
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import Scene
@@ -65,7 +65,7 @@ def map_scene(
     growth, whirl_speed = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
     edges = unstable_bands(rotor, rows, speed, law, growth)
     (own,) = unstable_bands(rotor, [scene.fills], speed, law)
-    held = np.array([_held(scene, fills, speed) for fills in rows])
+    carried = np.array([_held(scene, fills, speed) for fills in rows])
     pairs = zip(rows, whirl_speed - speed, strict=True)
     thin = np.array([_thin_layers(fills, slip) for fills, slip in pairs]) | (law.law != "stokes")
     return WhirlMap(
@@ -77,13 +77,13 @@ def map_scene(
         volume=np.array([sum(fill.volume for fill in fills) for fills in rows]),
         growth=growth,
         whirl_speed=whirl_speed,
-        in_range=held & thin,
+        in_range=carried & thin,
         edges=edges,
         friction=small_whirl_friction(law),
         damping=_damping(machine),
         scene_volume=sum(fill.volume for fill in scene.fills),
         scene_edges=own,
-        notes=_notes(machine, law, own, held, thin),
+        notes=_notes(machine, law, own, carried, thin),
     )
 
 
@@ -167,18 +167,18 @@ def _damping(machine: Prepared) -> str:
     return "damping as in the scene"
 
 
-def _notes(machine: Prepared, law: Friction, own: Bands, held: Flags, thin: Flags) -> tuple[Note, ...]:
+def _notes(machine: Prepared, law: Friction, own: Bands, carried: Flags, thin: Flags) -> tuple[Note, ...]:
     """Limits of validity and findings."""
     scene = machine.scene
-    notes = [map_notes.own_volume(sum(fill.volume for fill in scene.chambers), own)]
+    found = [notes.own_volume(sum(fill.volume for fill in scene.chambers), own)]
     if law.law == "quadratic":
-        notes.append(map_notes.quadratic())
+        found.append(notes.quadratic())
     if law.law in ("none", "quadratic") and np.any(machine.system.damping):
-        notes.append(map_notes.without_friction())
+        found.append(notes.without_friction())
     if len(scene.fills) > 1:
-        notes.append(map_notes.common_factor())
-    if not held.all():
-        notes.append(map_notes.not_held(float(np.mean(~held)), scene.rotor.axis == "horizontal"))
+        found.append(notes.common_factor())
+    if not carried.all():
+        found.append(notes.not_held(float(np.mean(~carried)), scene.rotor.axis == "horizontal"))
     if not thin.all():
-        notes.append(map_notes.thick_wall_layer(float(np.mean(~thin)), _THIN))
-    return tuple(notes)
+        found.append(notes.thick_wall_layer(float(np.mean(~thin)), _THIN))
+    return tuple(found)

@@ -1,1 +1,1 @@
-"""Results in words and numbers, for terminals and reports."""
+"""Results as lines and tables of text, for terminals and reports."""

@@ -65,10 +65,10 @@ def facts(result: ExciterResult) -> list[tuple[str, str]]:
 
 def alt(result: ExciterResult) -> str:
     """What the figure shows."""
-    told = dict(facts(result))
+    values = dict(facts(result))
     return (
         "Curves of the speeds at which the balls can stick together and of the platform's two vibrations "
-        f"over the shaft's speed; critical speed: {told['Critical speed, up to which the balls stick']}."
+        f"over the shaft's speed; critical speed: {values['Critical speed, up to which the balls stick']}."
     )
 
 
@@ -79,23 +79,23 @@ def lines(result: ExciterResult) -> list[str]:
     ----------
     result : the answer
     """
-    told = [f"Natural frequency of the platform: {result.machine.natural_frequency * RPM:.5g} rpm"]
+    sentences = [f"Natural frequency of the platform: {result.machine.natural_frequency * RPM:.5g} rpm"]
     if math.isfinite(result.critical):
         first, _, last = (speed * RPM for speed in result.characteristic)
-        told += [
+        sentences += [
             f"Three stuck speeds of the balls from {first:.5g} to {last:.5g} rpm of the shaft",
             f"Critical speed, up to which the balls stick together: {result.critical * RPM:.5g} rpm",
         ]
     else:
-        told.append("One stuck speed of the balls at every speed of the shaft")
+        sentences.append("One stuck speed of the balls at every speed of the shaft")
     for check in result.checks:
         began = f"Integrated at {check.speed * RPM:.5g} rpm: balls"
         if not check.holds:
-            told.append(f"{began} leave")
+            sentences.append(f"{began} leave")
             continue
         both = ""
         if math.isfinite(check.slow):
             slow, fast = check.slow * MM, check.fast * MM
             both = f", platform {slow:.3g} mm with them and {fast:.3g} mm with the shaft"
-        told.append(f"{began} stay at {check.stuck_speed * RPM:.5g} rpm{both}")
-    return told
+        sentences.append(f"{began} stay at {check.stuck_speed * RPM:.5g} rpm{both}")
+    return sentences

@@ -24,9 +24,12 @@ Rows = list[tuple[str, str]]
 _CYLINDER = 1e20  # steepness from which the surface is drawn as a cylinder
 _HZ = 60.0  # rpm in one hertz
 
+COMPARISON_HEAD = ("model", "largest amplitude (mm)", "at (rpm)", "difference (%)", "CPU time (s)")
+REFUSED = "does not answer"
+
 
 def machine_rows(answer: Explanation) -> Rows:
-    """The rotor as a whole: label and words."""
+    """The rotor as a whole; label and text."""
     dry, wet = answer.critical_speed_dry * RPM, answer.critical_speed_wet * RPM
     first, last = answer.speed_ratio
     rows = [
@@ -41,7 +44,7 @@ def machine_rows(answer: Explanation) -> Rows:
 
 
 def mode_rows(modes: tuple[RestMode, ...]) -> Rows:
-    """Natural frequencies at rest: frequency and words."""
+    """Natural frequencies at rest; frequency and text."""
     return [
         (
             f"{mode.frequency * RPM / _HZ:.4g} Hz",
@@ -52,7 +55,7 @@ def mode_rows(modes: tuple[RestMode, ...]) -> Rows:
 
 
 def layer_rows(layer: LayerExplanation | None) -> Rows:
-    """One chamber: label and words."""
+    """One chamber; label and text."""
     if layer is None:
         return [("fill", "empty")]
     n = layer.numbers
@@ -88,7 +91,7 @@ def span_heading(span: ModelSpan) -> str:
 
 
 def exciter_rows(answer: ExciterExplanation) -> Rows:
-    """A vibrating table with balls: label and words."""
+    """A vibrating table with balls; label and text."""
     numbers, (begin, _, end) = answer.dimensionless, answer.characteristic
     first, last = answer.speed_ratio
     share = "share of the balls in the moving mass over their rolling inertia"
@@ -124,21 +127,17 @@ def _rpm(speed: float) -> str:
     return f"{speed * RPM:.5g} rpm" if math.isfinite(speed) else "none"
 
 
-HEAD = ("model", "largest amplitude (mm)", "at (rpm)", "difference (%)", "CPU time (s)")
-REFUSED = "does not answer"
-
-
-def rows(found: Comparison) -> list[tuple[str, ...]]:
-    """A row of the table for each model, as `HEAD` says.
+def comparison_rows(found: Comparison) -> list[tuple[str, ...]]:
+    """A row of the table for each model, as `COMPARISON_HEAD` says.
 
     Parameters
     ----------
     found : the comparison
     """
-    return [_row(found, answer) for answer in found.answers]
+    return [_comparison_row(found, answer) for answer in found.answers]
 
 
-def _row(found: Comparison, answer: ModelAnswer) -> tuple[str, ...]:
+def _comparison_row(found: Comparison, answer: ModelAnswer) -> tuple[str, ...]:
     if answer.result is None or answer.cpu_time is None:
         return answer.model, REFUSED, "", "", ""
     at, amplitude = peak(answer.result.amplitude), answer.peak_amplitude
@@ -165,7 +164,7 @@ def difference(found: Comparison, model: str) -> str:
     return "rounding" if 0.0 < size < EXACT else f"{100.0 * size:.2g}"
 
 
-def reasons(found: Comparison) -> list[str]:
+def refusals(found: Comparison) -> list[str]:
     """Why models do not answer, a line for each.
 
     Parameters
@@ -188,7 +187,7 @@ def basis(found: Comparison) -> str:
     )
 
 
-def summary(found: Comparison) -> list[tuple[str, str]]:
+def comparison_facts(found: Comparison) -> list[tuple[str, str]]:
     """Main numbers: label and value.
 
     Parameters
@@ -197,20 +196,20 @@ def summary(found: Comparison) -> list[tuple[str, str]]:
     """
     return [
         ("Scene", one_line(found.name)),
-        *((answer.model, _told(found, answer)) for answer in found.answers),
+        *((answer.model, _fact(found, answer)) for answer in found.answers),
     ]
 
 
-def _told(found: Comparison, answer: ModelAnswer) -> str:
+def _fact(found: Comparison, answer: ModelAnswer) -> str:
     if answer.result is None or answer.cpu_time is None:
         return f"{REFUSED}: {one_line(answer.reason)}"
-    words = [f"{_size(answer)} at most"]
+    parts = [f"{_size(answer)} at most"]
     if answer.model == found.reference:
-        words.append("the reference")
+        parts.append("the reference")
     else:
         size = difference(found, answer.model)
-        words.append(f"difference {size}{' %' if size[0].isdigit() else ''}")
-    return ", ".join([*words, f"{answer.cpu_time:.2g} s of processor time"])
+        parts.append(f"difference {size}{' %' if size[0].isdigit() else ''}")
+    return ", ".join([*parts, f"{answer.cpu_time:.2g} s of processor time"])
 
 
 def _size(answer: ModelAnswer) -> str:
@@ -218,13 +217,13 @@ def _size(answer: ModelAnswer) -> str:
     return NOT_FOUND if answer.peak_amplitude is None else f"{number(answer.peak_amplitude * MM)} mm"
 
 
-def alt(found: Comparison) -> str:
+def comparison_alt(found: Comparison) -> str:
     """What the figure shows and the numbers a reader would take from it.
 
     Parameters
     ----------
     found : the comparison
     """
-    told = [f"{answer.model} {_size(answer)}" for answer in found.answers if answer.answered]
-    below = "; below, their differences" if len(told) > 1 else ""
-    return f"Curves of the amplitude over speed by each liquid model{below}; largest: {', '.join(told)}."
+    peaks = [f"{answer.model} {_size(answer)}" for answer in found.answers if answer.answered]
+    below = "; below, their differences" if len(peaks) > 1 else ""
+    return f"Curves of the amplitude over speed by each liquid model{below}; largest: {', '.join(peaks)}."

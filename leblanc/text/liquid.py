@@ -77,8 +77,8 @@ def periods_summary(result: LayerPeriodsResult) -> list[tuple[str, str]]:
 def _validity(converged: bool, in_range: bool, numbers: tuple[Number, ...]) -> list[tuple[str, str]]:
     """Whether there is an answer that holds."""
     wrong = "; ".join(str(entry) for entry in numbers if not entry.in_range)
-    held = "yes" if in_range else wrong or "no"
-    return [("Converged", "yes" if converged else "no"), ("Model in range", held)]
+    verdict = "yes" if in_range else wrong or "no"
+    return [("Converged", "yes" if converged else "no"), ("Model in range", verdict)]
 
 
 def _at_angle(value: complex, factor: float, unit: str) -> str:

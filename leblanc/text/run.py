@@ -70,8 +70,8 @@ def comparisons(result: RunResult) -> list[Comparison]:
     ]
     if result.motion is None:
         with_liquid, without = result.critical_speed_wet, result.critical_speed_dry
-        words = number(with_liquid * RPM), number(without * RPM), number(with_liquid / without)
-        found.append(Comparison("Critical speed (rpm)", *words))
+        values = number(with_liquid * RPM), number(without * RPM), number(with_liquid / without)
+        found.append(Comparison("Critical speed (rpm)", *values))
     return found
 
 
@@ -109,8 +109,8 @@ def _vibration(result: RunResult) -> list[tuple[str, str]]:
         return []
 
     def listed(speeds: tuple[tuple[float, float], ...]) -> str:
-        words = [f"{number(speed * RPM)}" + (" b" if sense < -AGAINST else "") for speed, sense in speeds]
-        return ", ".join(words) + " rpm" if words else "none"
+        parts = [f"{number(speed * RPM)}" + (" b" if sense < -AGAINST else "") for speed, sense in speeds]
+        return ", ".join(parts) + " rpm" if parts else "none"
 
     at_rest = [
         f"{number(mode.frequency / (2.0 * math.pi))} ({mode.damping_ratio:.2g})"
@@ -161,10 +161,10 @@ def limits(result: RunResult) -> list[Limit]:
     found.append(_limit("Wall dry in part", r.speed, r.dry_patch))
     found.append(_limit("Answer unstable", r.speed, ~r.stable))
     if result.whirl is not None:
-        words = [f"{low * RPM:.5g} to {high * RPM:.5g} rpm" for low, high in result.whirl.bands]
+        parts = [f"{low * RPM:.5g} to {high * RPM:.5g} rpm" for low, high in result.whirl.bands]
         lost = np.isnan(result.whirl.growth)
-        words += [f"not found at {ranges(r.speed, lost)}"] if lost.any() else []
-        found.append(Limit("Self-excited whirl", ", ".join(words) or "none", bool(words)))
+        parts += [f"not found at {ranges(r.speed, lost)}"] if lost.any() else []
+        found.append(Limit("Self-excited whirl", ", ".join(parts) or "none", bool(parts)))
     infinite = np.isinf(result.amplitude)
     if infinite.any():
         found.append(_limit("Amplitude infinite", r.speed, infinite))
@@ -197,7 +197,7 @@ def machine(result: RunResult) -> str:
 
 
 def remarks(result: RunResult) -> list[str]:
-    """What the numbers themselves ask a reader to bear in mind, besides the notes.
+    """Remarks that follow from the numbers themselves, besides the notes.
 
     Parameters
     ----------
@@ -226,8 +226,8 @@ def alts(result: RunResult) -> dict[str, str]:
     result : the response
     """
     largest, at, last, *_ = comparisons(result)
-    told = dict(facts(result))
-    centre = next(value for label, value in told.items() if label.startswith("Its centre"))
+    values = dict(facts(result))
+    centre = next(value for label, value in values.items() if label.startswith("Its centre"))
     return {
         "amplitude": f"Curves of the amplitude over speed: largest {largest.wet} mm at {at.wet} rpm with "
         f"liquid, {largest.dry} mm at {at.dry} rpm without.",

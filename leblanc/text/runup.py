@@ -23,7 +23,7 @@ def describe_model(model: str, cells: int, dispersion: bool) -> str:
 
 
 def moments(result: RunupResult) -> list[tuple[str, int]]:
-    """Label and index of the samples that a reader asks for: the largest amplitudes and the end."""
+    """Label and index of the main samples: the largest amplitudes and the end."""
     found = [("Largest on the way up" if result.turns_back else "Largest amplitude", result.peak())]
     if result.turns_back:
         found.append(("Largest on the way down", result.peak(back=True)))

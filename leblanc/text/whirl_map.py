@@ -23,23 +23,23 @@ def answer(found: WhirlMap) -> str:
     ----------
     found : the map
     """
-    told = dict(facts(found))
+    values = dict(facts(found))
     if not (found.growth > 0.0).any():
         return "No whirl grows by itself at any speed with any volume of liquid."
     own = f"with the scene's {number(found.scene_volume * ML)} ml"
     bands = f"from {band_words(found.scene_edges)} rpm" if found.scene_edges else "nowhere"
     return (
-        f"A whirl grows by itself at {told['A whirl grows at']}, fastest by {told['Fastest growth']}; "
+        f"A whirl grows by itself at {values['A whirl grows at']}, fastest by {values['Fastest growth']}; "
         f"{own} it grows {bands}."
     )
 
 
 def band_words(bands: Sequence[tuple[float, float]]) -> str:
     """Ranges of speed in which a whirl grows."""
-    words = [f"{low * RPM:.5g} to {high * RPM:.5g}" for low, high in bands]
-    if len(words) > MOST_BANDS:
-        return f"{len(words)} bands between {bands[0][0] * RPM:.5g} and {bands[-1][1] * RPM:.5g}"
-    return "; ".join(words) or "none"
+    parts = [f"{low * RPM:.5g} to {high * RPM:.5g}" for low, high in bands]
+    if len(parts) > MOST_BANDS:
+        return f"{len(parts)} bands between {bands[0][0] * RPM:.5g} and {bands[-1][1] * RPM:.5g}"
+    return "; ".join(parts) or "none"
 
 
 def facts(found: WhirlMap) -> list[tuple[str, str]]:
@@ -75,8 +75,8 @@ def facts(found: WhirlMap) -> list[tuple[str, str]]:
 
 def alt(found: WhirlMap) -> str:
     """What the figure shows and the numbers a reader would take from it."""
-    told = dict(facts(found))
+    values = dict(facts(found))
     return (
         "Map of the growth rate over speed and liquid, and of the whirl's speed where one grows; one grows "
-        f"at {told['A whirl grows at']}, fastest: {told['Fastest growth']}."
+        f"at {values['A whirl grows at']}, fastest: {values['Fastest growth']}."
     )

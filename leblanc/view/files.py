@@ -23,7 +23,16 @@ import numpy as np
 from leblanc.results.drawn import DrawnLiquid, MachineMotion, Scale
 from leblanc.results.netcdf import replacing
 from leblanc.view.parts import Picture
-from leblanc.view.picture import VIEWS, Plotter, aim, fill, pixels, plotter, require_screen, write_png
+from leblanc.view.picture import (
+    VIEWS,
+    Plotter,
+    fill,
+    pixels,
+    plotter,
+    point_camera,
+    require_screen,
+    write_png,
+)
 from leblanc.view.scene import describe_speed, describe_state, stage_of, still
 from meshes.errors import InputError
 
@@ -35,6 +44,18 @@ CLOSED = (
     '<meta http-equiv="Content-Security-Policy" content="default-src data: blob: '
     "'unsafe-inline' 'unsafe-eval'\">"
 )
+
+PAGE_SIZE = (1200, 900)  # pixels, until the browser tells its own
+STYLE = """
+html, body, #app { margin: 0; height: 100%; }
+.page { display: flex; flex-direction: column; height: 100vh; font: 15px sans-serif; color: #262626; }
+.tools { display: flex; flex-wrap: wrap; gap: 0.8em; align-items: center; padding: 0.6em 1em;
+  border-bottom: 1px solid #cccccc; background: #f6f6f6; }
+.tools input[type=range] { flex: 1 1 20em; min-width: 12em; }
+.tools output { min-width: 13em; font-variant-numeric: tabular-nums; }
+.words { padding: 0.4em 1em; min-height: 1.4em; }
+.sight { flex: 1 1 auto; min-height: 0; position: relative; }
+"""
 
 
 def write_picture(picture: Picture, path: Path) -> None:
@@ -94,7 +115,7 @@ def write_html(plot: Plotter, picture: Picture, path: Path) -> None:
 
     Parameters
     ----------
-    plot, picture : what to write; its words stand in the text of the page
+    plot, picture : what to write; its texts stand on the page
     path : an .html; its folder is made if it is missing
 
     Raises
@@ -106,10 +127,10 @@ def write_html(plot: Plotter, picture: Picture, path: Path) -> None:
         raise InputError("--screenshot", str(path), allowed)
     _in_perspective(plot)
     page = plot.trame.export_html(filename=None).read()
-    words = [f"<b>{escape(picture.title)}</b>", *map(escape, picture.state.split("\n"))]
-    words += [escape(picture.caption), escape(_key(picture))]
+    lines = [f"<b>{escape(picture.title)}</b>", *map(escape, picture.state.split("\n"))]
+    lines += [escape(picture.caption), escape(_key(picture))]
     style = "position:absolute;left:1em;top:1em;font:14px sans-serif;pointer-events:none;z-index:9"
-    text = f'<div id="words" style="{style}">{"<br>".join(words)}</div>'
+    text = f'<div id="words" style="{style}">{"<br>".join(lines)}</div>'
     # The viewer empties what it fills: the body, unless there is something of this class.
     text += '<div class="content" style="position:absolute;inset:0"></div>'
     page = f"{text}</body>".join(page.rsplit("</body>", 1)).replace(FOREIGN_ICON, "data:,")
@@ -130,7 +151,7 @@ def _key(picture: Picture) -> str:
 
 
 def _in_perspective(plot: Plotter) -> None:
-    """The view of the page's viewer, which knows no other projection, as near as the picture's own."""
+    """The view of the page's viewer, which has no other projection, as near as the picture's own."""
     camera = plot.camera
     plot.disable_parallel_projection()
     focus, position = np.array(camera.focal_point), np.array(camera.position)
@@ -143,19 +164,6 @@ def _in_perspective(plot: Plotter) -> None:
             actor.prop.line_width = max(1.0, 0.5 * actor.prop.line_width)
 
 
-PAGE_SIZE = (1200, 900)  # pixels, until the browser tells its own
-STYLE = """
-html, body, #app { margin: 0; height: 100%; }
-.page { display: flex; flex-direction: column; height: 100vh; font: 15px sans-serif; color: #262626; }
-.tools { display: flex; flex-wrap: wrap; gap: 0.8em; align-items: center; padding: 0.6em 1em;
-  border-bottom: 1px solid #cccccc; background: #f6f6f6; }
-.tools input[type=range] { flex: 1 1 20em; min-width: 12em; }
-.tools output { min-width: 13em; font-variant-numeric: tabular-nums; }
-.words { padding: 0.4em 1em; min-height: 1.4em; }
-.sight { flex: 1 1 auto; min-height: 0; position: relative; }
-"""
-
-
 @dataclass(frozen=True)
 class Frames:
     """Pictures of a machine, one for each position of the slider.
@@ -166,14 +174,14 @@ class Frames:
     first : which one is shown first
     picture : draws one, with the scale common to all or fitted to each
     values : what stands beside the slider for each
-    words : what stands below it for each
+    texts : what stands below it for each
     """
 
     count: int
     first: int
     picture: Callable[[int, bool], Picture]
     values: tuple[str, ...]
-    words: tuple[str, ...]
+    texts: tuple[str, ...]
 
 
 def frames_of_speeds(
@@ -200,9 +208,9 @@ def frames_of_speeds(
 
     count = motion.speed.size
     values = tuple(describe_speed("", spin).removeprefix(": ") for spin in motion.speed.tolist())
-    words = tuple("; ".join(describe_state(motion, k, dry[k])) for k in range(count))
+    texts = tuple("; ".join(describe_state(motion, k, dry[k])) for k in range(count))
     first = count - 1 if speed is None else int(np.argmin(np.abs(motion.speed - speed)))
-    return Frames(count, first, picture, values, words)
+    return Frames(count, first, picture, values, texts)
 
 
 def require_trame() -> None:
@@ -287,7 +295,7 @@ def _page(server: Any, plot: Any, name: str, frames: Frames) -> None:
     state = server.state
     state.trame__title = f"{name} - leblanc"
     state.index, state.fitted = frames.first, False
-    state.value, state.words = frames.values[frames.first], frames.words[frames.first]
+    state.value, state.words = frames.values[frames.first], frames.texts[frames.first]
     with DivLayout(server) as layout:
         client.Style(STYLE)
         with html.Div(classes="page"):
@@ -311,14 +319,14 @@ def _page(server: Any, plot: Any, name: str, frames: Frames) -> None:
     @state.change("index", "fitted")  # type: ignore[untyped-decorator]
     def _moved(index: Any, fitted: Any, **_: object) -> None:
         k = min(max(int(index), 0), frames.count - 1)
-        state.value, state.words = frames.values[k], frames.words[k]
+        state.value, state.words = frames.values[k], frames.texts[k]
         fill(plot, frames.picture(k, bool(fitted)))
         shown.update()
 
 
 def _turn(plot: Any, frames: Frames, server: Any, view: str) -> Callable[[], None]:
     def turn() -> None:
-        aim(plot, frames.picture(int(server.state.index), bool(server.state.fitted)), view)
+        point_camera(plot, frames.picture(int(server.state.index), bool(server.state.fitted)), view)
         server.controller.update_picture()
 
     return turn

@@ -35,6 +35,8 @@ FRAMES, MOST_FRAMES, RATE = 60, 600, 15  # frames a second; a GIF counts in hund
 FILM_SIZE = (800, 600)  # pixels; video codecs want even numbers
 COLOURS = 128  # of a GIF
 
+ROUND = 48  # frames of a period
+
 
 @dataclass(frozen=True)
 class Film:
@@ -186,7 +188,7 @@ def require_film(path: Path) -> str:
 
 
 def _write_gif(shown: Sequence[Pixels], path: Path) -> None:
-    """All frames in the colours of the middle one, so that what stands still is stored once."""
+    """All frames in the colours of the middle one, so that what is fixed is stored once."""
     from PIL import Image
 
     spread = Image.Quantize.MAXCOVERAGE  # small things keep their colour
@@ -221,9 +223,6 @@ def _write_mp4(shown: Sequence[Pixels], path: Path) -> None:
             reason = said[-1] if said else "ffmpeg failed"
             raise InputError("--animate", str(path), f"a .gif, since ffmpeg cannot write this: {reason}")
         shutil.copyfile(whole, part)
-
-
-ROUND = 48  # frames of a period
 
 
 def _moment(displacement: Complex, phase: float, lift: float) -> Array:

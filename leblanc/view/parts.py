@@ -37,7 +37,7 @@ class Piece:
 
 @dataclass(frozen=True)
 class Label:
-    """Words at a place, mm."""
+    """A text at a place, mm."""
 
     text: str
     place: tuple[float, float, float]
@@ -72,7 +72,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class Stage:
-    """What stands still while a machine is shown at several instants.
+    """What is fixed while a machine is shown at several instants.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ class Instant:
     deflection : of each chamber, not yet scaled, m
     lean : slope of the axis along itself, not yet scaled
     bodies : liquid of each chamber as drawn, None where there is none
-    title, state, caption : words
+    title, state, caption : texts
     down : direction of gravity across the axis seen from the drum, rad; None to leave it as it is at angle 0
     """
 
@@ -170,7 +170,7 @@ def axes(stage: Stage, instant: Instant) -> tuple[list[Piece], list[Label]]:
 
     Parameters
     ----------
-    stage, instant : what stands still and what does not
+    stage, instant : what is fixed and what moves
     """
     low, high = stage.ends
     ends = np.array([low - BELOW * stage.radius, high + ABOVE * stage.radius])
@@ -197,7 +197,7 @@ def marks(stage: Stage, instant: Instant) -> tuple[list[Piece], list[Label]]:
 
     Parameters
     ----------
-    stage, instant : what stands still and what does not
+    stage, instant : what is fixed and what moves
     """
     low, high = stage.ends
     widest = max(range(len(stage.fills)), key=lambda k: stage.fills[k].chamber.radius, default=None)
@@ -272,7 +272,7 @@ def scale_bar(stage: Stage, height: float) -> Piece:
 
     Parameters
     ----------
-    stage : what stands still
+    stage : what is fixed
     height : where it lies along the axis, m
     """
     half, away = 0.5 * bar_length(stage.radius), AWAY * stage.radius + stage.swing

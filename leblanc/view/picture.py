@@ -129,7 +129,7 @@ def plotter(picture: Picture, size: tuple[int, int] = SIZE, off_screen: bool = T
     plot.enable_depth_peeling(8)
     plot.enable_anti_aliasing("ssaa")
     fill(plot, picture)
-    aim(plot, picture, VIEWS[0])
+    point_camera(plot, picture, VIEWS[0])
     return plot
 
 
@@ -156,7 +156,7 @@ def fill(plot: Plotter, picture: Picture) -> None:
 
 
 def _write(prop: Any) -> None:
-    """Colour and font of some words."""
+    """Colour and font of a text."""
     prop.color = INK
     spec = find_spec("matplotlib")
     path = Path(spec.origin).parent / "mpl-data" / "fonts" / "ttf" / FONT if spec and spec.origin else None
@@ -221,19 +221,19 @@ def _words(plot: Plotter, picture: Picture, size: int, pyvista: Any) -> None:
     most = int(wide / (0.58 * size)) - 3
     above = [textwrap.shorten(picture.title, int(most / 1.3), placeholder="..."), *picture.state.split("\n")]
     below = textwrap.wrap(picture.caption, most)
-    rows = [(words, 0.985 - (1.4 + k) * line, size) for k, words in enumerate(above)]
+    rows = [(line_text, 0.985 - (1.4 + k) * line, size) for k, line_text in enumerate(above)]
     rows[0] = (above[0], 0.985 - 1.1 * line, round(1.3 * size))
-    rows += [(words, 0.012 + k * line, size) for k, words in enumerate(reversed(below))]
-    for words, height, letters in rows:
-        text = pyvista.Text(words, position=(0.02, height))
+    rows += [(line_text, 0.012 + k * line, size) for k, line_text in enumerate(reversed(below))]
+    for line_text, height, letters in rows:
+        text = pyvista.Text(line_text, position=(0.02, height))
         text.GetPositionCoordinate().SetCoordinateSystemToNormalizedDisplay()
         _write(text.prop)
         text.prop.font_size = letters
         plot.add_actor(text, reset_camera=False, render=False)
 
 
-def aim(plot: Plotter, picture: Picture, view: str) -> None:
-    """Point the camera so that the whole picture lies between its words.
+def point_camera(plot: Plotter, picture: Picture, view: str) -> None:
+    """Point the camera so that the whole picture lies between its texts.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ from leblanc.figures.chambers import plates
 from leblanc.figures.page import zero_of
 from leblanc.results.base import one_line
 from leblanc.results.drawn import DrawnLiquid, LiquidBodies, LiquidShape, MachineMotion, Scale, strips
-from leblanc.units import MM, RPM
+from leblanc.units import DEGREE, MINUS, MM, RPM
 from leblanc.view.parts import (
     ABOVE,
     AWAY,
@@ -41,6 +41,9 @@ from meshes.section import Section
 STEPS = 4  # straight pieces of a curved side
 _SAME = 1e-9  # of the farthest point: ends nearer to each other are one
 _PARTS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])  # of a curved triangle
+
+SKIN = 0.003  # walls are drawn so much outside the liquid, over the radius, so that the two do not coincide
+_ON_PLATE = 1e-6  # of a plate's length, that a face may be off it
 
 
 @dataclass(frozen=True)
@@ -135,7 +138,7 @@ def baffles(stage: Stage, lines: Complex, k: int, centre: complex, floor: float,
 
     Parameters
     ----------
-    stage : what stands still
+    stage : what is fixed
     lines : as from `plates_of`
     k : number of the chamber, from 0
     centre : of the chamber as drawn, m
@@ -151,7 +154,7 @@ def section_walls(
 
     Parameters
     ----------
-    stage : what stands still
+    stage : what is fixed
     section : of the chamber
     k : number of the chamber, from 0
     centre : of the chamber as drawn, m
@@ -197,16 +200,12 @@ def _ruled(stage: Stage, name: str, look: str, lines: Complex, floor: float, lid
     return Piece(name, points, cells, look)
 
 
-SKIN = 0.003  # walls are drawn so much outside the liquid, over the radius, so that the two do not coincide
-_ON_PLATE = 1e-6  # of a plate's length, that a face may be off it
-
-
 def compose(stage: Stage, instant: Instant) -> Picture:
     """Picture of a machine at one instant.
 
     Parameters
     ----------
-    stage, instant : what stands still and what does not
+    stage, instant : what is fixed and what moves
     """
     factor = stage.scale.deflection
     pieces: list[Piece] = []
@@ -354,11 +353,8 @@ def _shore(surface: Indices, wall: Indices) -> Indices:
     return np.asarray(edges[0][np.isin(open_, closed)], dtype=np.int64)
 
 
-MINUS, DEGREE = "\N{MINUS SIGN}", "\N{DEGREE SIGN}"
-
-
 def stage_of(motion: MachineMotion, scale: Scale) -> Stage:
-    """What stands still in pictures of a machine.
+    """What is fixed in pictures of a machine.
 
     Parameters
     ----------
@@ -466,29 +462,29 @@ def describe_drawing(motion: MachineMotion, index: int, liquid: DrawnLiquid) -> 
     motion, index, liquid : the machine, which speed, its liquid as drawn
     """
     scale = liquid.scale
-    words = [scale.in_words(), "Seen from the drum."]
+    parts = [scale.in_words(), "Seen from the drum."]
     if motion.fills and scale != Scale():
-        words.append("The liquid is in equilibrium with the deflection as drawn.")
+        parts.append("The liquid is in equilibrium with the deflection as drawn.")
     wrong = [here for there, here in zip(liquid.dry, liquid.drawn_dry, strict=True) if here != there]
     if wrong:
-        words.append(f"A wall is {'dry in part' if wrong[0] else 'wet all round'} in the picture alone.")
+        parts.append(f"A wall is {'dry in part' if wrong[0] else 'wet all round'} in the picture alone.")
     if any(fill.compartments > 1 for fill in motion.fills):
-        words.append("Baffles close the compartments: each keeps its volume.")
+        parts.append("Baffles close the compartments: each keeps its volume.")
     open_ = [fill for fill in motion.fills if fill.chamber.baffles is not None and fill.compartments == 1]
     if scale.depth > 1.0 and open_:
-        words.append("Distances of the baffles from the wall grow with the depth.")
+        parts.append("Distances of the baffles from the wall grow with the depth.")
     if names := dict.fromkeys(
         fill.chamber.section.name for fill in motion.fills if fill.chamber.section is not None
     ):
-        words.append(f"Section from {', '.join(names)}.")
+        parts.append(f"Section from {', '.join(names)}.")
     if motion.moved:
-        words.append("Chambers drawn one behind the other; the scene does not say where they are.")
+        parts.append("Chambers drawn one behind the other; the scene does not say where they are.")
     tilting, answer = motion.response.motion, motion.response.response
     if tilting is not None and abs(tilting.backward[index]) > 0.01 * abs(answer.deflection[index]):
-        words.append(
+        parts.append(
             f"Drawn is the part that turns with the spin; {abs(tilting.backward[index]) * MM:.2g} mm "
             "turn against it."
         )
     if motion.response.assumed:
-        words.append("Some values of the scene are assumed.")
-    return words
+        parts.append("Some values of the scene are assumed.")
+    return parts

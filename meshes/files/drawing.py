@@ -39,7 +39,7 @@ def closed_loops(path: str | Path, ends: Indices, places: Array) -> list[list[in
 
     Parameters
     ----------
-    path : of the drawing, for words
+    path : of the drawing, for messages
     ends : places of the two ends of each curve, shape (K, 2)
     places : where they are, shape (P, 2)
 
@@ -109,7 +109,7 @@ def read_drawing(path: str | Path) -> tuple[list[Curve], float | None]:
 
     Parameters
     ----------
-    path : a `.dxf` file; text, dimensions, hatches and the like are passed over, blocks are opened
+    path : a `.dxf` file; text, dimensions, hatches and similar entities are skipped, blocks are opened
 
     Returns
     -------

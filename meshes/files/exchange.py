@@ -65,7 +65,7 @@ def plane_cells(
 
     Parameters
     ----------
-    path : of the file, for words
+    path : of the file, for messages
     contents : of the file
     scale : length of the file's unit, m
     kinds : the cells that will do

@@ -50,7 +50,7 @@ def edge_numbers(triangles: Indices) -> tuple[Indices, Indices]:
 
 
 def refine(points: Array, triangles: Indices, size: Callable[[Array], Array]) -> tuple[Array, Indices]:
-    """Bisect triangles until no edge is longer than asked for at its middle.
+    """Bisect triangles until no edge is longer than the given size at its middle.
 
     Parameters
     ----------

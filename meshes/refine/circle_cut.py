@@ -324,10 +324,10 @@ def cut_along(
         beyond = np.ones(len(triangles), dtype=bool)
         followed = circles(points, triangles)
         for circle in followed:
-            held = np.zeros(len(points), dtype=bool)
+            fixed = np.zeros(len(points), dtype=bool)
             for other in followed:
-                held |= np.abs(other.beyond(points)) <= 1e-11 * other.radius
-            points, triangles, beyond = follow_circle(points, triangles, circle, held)
+                fixed |= np.abs(other.beyond(points)) <= 1e-11 * other.radius
+            points, triangles, beyond = follow_circle(points, triangles, circle, fixed)
         kept = triangles[beyond] if outside else triangles
         folded = kept[jacobians(points, kept).min(axis=1) <= 0.0]
         if not len(folded):

@@ -316,9 +316,9 @@ def liquid_outside(
 ) -> LiquidSection:
     """Liquid of a section outside the circle r = a, with walls of any shape.
 
-    The section is refined by bisection where asked for, and near the circle at least to a quarter of its
-    radius. Nodes near the circle are moved onto it, crossed triangles are split, and the sides on it become
-    quadratic arcs. Walls keep their shape.
+    The section is refined by bisection where sizes are given, and near the circle at least to a quarter of
+    its radius. Nodes near the circle are moved onto it, crossed triangles are split, and the sides on it
+    become quadratic arcs. Walls keep their shape.
 
     Parameters
     ----------

@@ -46,7 +46,7 @@ def random_scene(seed: int, chambers: int, count: int = 25) -> Scene:
     return Scene(name="random", rotor=rotor, chambers=fills, speeds=speeds, model=model)
 
 
-def random_aim(seed: int, scene: Scene) -> Optimisation:
+def random_task(seed: int, scene: Scene) -> Optimisation:
     """One of the objectives, in turn."""
     chance = np.random.default_rng(seed + 10_000)
     objective = ("working_speed", "peak", "mean", "least_mass")[seed % 4]
@@ -80,25 +80,25 @@ def amplitudes(scene: Scene, volumes: Array, at: float | None = None) -> Array:
     return np.concatenate(rows)
 
 
-def values(scene: Scene, aim: Optimisation, volumes: Array) -> Array:
+def values(scene: Scene, task: Optimisation, volumes: Array) -> Array:
     """The objective, infinite where a limit is exceeded: from its definition."""
     stop = scene.speeds.stop
-    if aim.objective == "working_speed":
+    if task.objective == "working_speed":
         return amplitudes(scene, volumes, stop)[:, 0]
-    if aim.objective == "peak":
+    if task.objective == "peak":
         return amplitudes(scene, volumes).max(axis=1)
-    if aim.objective == "mean":
-        speeds, weights = np.array([(one.speed, one.weight) for one in aim.duty]).T
+    if task.objective == "mean":
+        speeds, weights = np.array([(one.speed, one.weight) for one in task.duty]).T
         each = np.stack([amplitudes(scene, volumes, float(one))[:, 0] for one in speeds])
         return np.asarray(weights @ each / weights.sum())
-    assert aim.objective == "least_mass"
-    assert aim.vibration_limit is not None
+    assert task.objective == "least_mass"
+    assert task.vibration_limit is not None
     density = np.array([fill.liquid.density for fill in scene.fills])
-    good = amplitudes(scene, volumes, stop)[:, 0] <= aim.vibration_limit
+    good = amplitudes(scene, volumes, stop)[:, 0] <= task.vibration_limit
     return np.where(good, volumes @ density, math.inf)
 
 
-def brute_force(scene: Scene, aim: Optimisation, first: int, rounds: int, inner: int) -> tuple[Array, float]:
+def brute_force(scene: Scene, task: Optimisation, first: int, rounds: int, inner: int) -> tuple[Array, float]:
     """Best of a dense grid, and of denser ones around its best."""
     capacity = _capacity(scene)
     levels = [
@@ -111,7 +111,7 @@ def brute_force(scene: Scene, aim: Optimisation, first: int, rounds: int, inner:
     ]
     for turn in range(rounds + 1):
         grid = np.stack(np.meshgrid(*levels, indexing="ij"), axis=-1).reshape(-1, capacity.size)
-        found = values(scene, aim, grid)
+        found = values(scene, task, grid)
         k = int(np.argmin(found))
         best, value = grid[k], float(found[k])
         if turn == rounds or not math.isfinite(value):

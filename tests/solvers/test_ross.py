@@ -295,7 +295,7 @@ def test_growth() -> None:
 PEER = peer_ross.RotorProblem(speed=np.linspace(5.3, 600.0, 12))
 
 
-@kills("validation.benchmarks.peer_ross:RotorProblem.exact", "place @ held", "-place @ held")
+@kills("validation.benchmarks.peer_ross:RotorProblem.exact", "place @ supports", "-place @ supports")
 @kills(
     "validation.benchmarks.peer_ross:RotorProblem.exact",
     "(rotor.transverse_inertia - rotor.polar",
@@ -308,8 +308,8 @@ PEER = peer_ross.RotorProblem(speed=np.linspace(5.3, 600.0, 12))
 )
 @kills(
     "validation.benchmarks.peer_ross:RotorProblem.exact",
-    "held.sum(axis=0) - rotor.mass",
-    "held.sum(axis=0) + rotor.mass",
+    "supports.sum(axis=0) - rotor.mass",
+    "supports.sum(axis=0) + rotor.mass",
 )
 @kills(
     "validation.benchmarks.peer_ross:RotorProblem.exact", "turning - arm * crossed", "turning + arm * crossed"

@@ -126,8 +126,8 @@ def processor_time(command: Sequence[str], given: str = "") -> float:
         process.returncode = os.waitstatus_to_exitcode(status)
         if process.returncode != 0:
             said.seek(0)
-            words = said.read().decode(errors="replace")
-            raise RuntimeError(f"{' '.join(command)} ended with code {process.returncode}\n{words}")
+            message = said.read().decode(errors="replace")
+            raise RuntimeError(f"{' '.join(command)} ended with code {process.returncode}\n{message}")
     return usage.ru_utime + usage.ru_stime
 
 
@@ -260,7 +260,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         found.append(cold_start(command, chosen.repeats))
         print(f"\n{text(found[-1])}", flush=True)
     if chosen.json is not None:
-        rows = ",\n".join(json.dumps(_plain(one)) for one in found)
+        rows = ",\n".join(json.dumps(_plain(start)) for start in found)
         whole = f'{{"imports": {json.dumps(doors)}, "commands": [\n{rows}\n]}}\n'
         chosen.json.write_text(whole, encoding="utf-8")
     return 0

@@ -23,7 +23,7 @@ class Cost:
 
     Parameters
     ----------
-    scene, chambers, objective : what was asked
+    scene, chambers, objective : of the optimisation
     seconds : of processor time
     judged : sets of volumes
     """
@@ -38,11 +38,11 @@ class Cost:
 def measured(name: str, objective: str) -> Cost:
     """Cost of one search; the mean is over four speeds, the peak is the steady one."""
     scene = example(name)
-    aim = Optimisation(
+    task = Optimisation(
         objective=objective, steady=True, duty=_duty(scene), vibration_limit=_limit(scene, objective)
     )
     begin = time.process_time()
-    best = optimise_scene(scene, aim=aim, front=False, response=False)
+    best = optimise_scene(scene, task=task, front=False, response=False)
     seconds = time.process_time() - begin
     return Cost(scene.name, len(scene.fills), objective, seconds, best.evaluations)
 
@@ -60,7 +60,7 @@ def _limit(scene: Scene, objective: str) -> float | None:
     """Half of what the liquid can do."""
     if objective != "least_mass":
         return None
-    best = optimise_scene(scene.altered(optimise=None), aim=Optimisation(), front=False)
+    best = optimise_scene(scene.altered(optimise=None), task=Optimisation(), front=False)
     return 0.5 * (best.value + best.baseline)
 
 

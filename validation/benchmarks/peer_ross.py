@@ -76,10 +76,10 @@ class RotorProblem:
         """Deflection of the first disc, m: two complex equations for circular whirl, by Cramer's rule."""
         rotor, w = self.rigid(), self.speed
         place = np.array([support.position for support in rotor.supports])
-        held = np.array([k + 1j * w * c for k, c in zip(self.stiffness, self.damping, strict=True)])
-        direct = held.sum(axis=0) - rotor.mass * w**2
-        crossed = place @ held
-        turning = np.square(place) @ held - (rotor.transverse_inertia - rotor.polar_inertia) * w**2
+        supports = np.array([k + 1j * w * c for k, c in zip(self.stiffness, self.damping, strict=True)])
+        direct = supports.sum(axis=0) - rotor.mass * w**2
+        crossed = place @ supports
+        turning = np.square(place) @ supports - (rotor.transverse_inertia - rotor.polar_inertia) * w**2
         force, arm = self.unbalance * w**2, place[0]
         moved = force * (turning - arm * crossed)
         turned = force * (arm * direct - crossed)

@@ -437,21 +437,19 @@ def _equal_error(samples: tuple[Sample, ...], name: str) -> list[str]:
     return found
 
 
-def write(results: Results, directory: Path, held: str) -> None:
+def write(results: Results, directory: Path, sharing: str) -> None:
     """Tables and figures of a run.
 
     Parameters
     ----------
     results : of `collect`
     directory : where `benchmarks.md` and the figures go
-    held : how the processor was shared, in words
+    sharing : how the processor was shared, in words
     """
-    pass  # JOINED
-
     text = [
         "# Results of one run",
         "",
-        f"On {held}. " + ", ".join(f"{k} {v}" for k, v in results.versions.items()),
+        f"On {sharing}. " + ", ".join(f"{k} {v}" for k, v in results.versions.items()),
         "",
     ]
     for section in results.sections:

@@ -99,7 +99,7 @@ def measure(
     contestants : who runs
     error : of an answer
     repeats : of runs that take less than 20 s; of longer ones one is timed
-    progress : is told what runs
+    progress : is called with what runs
 
     Returns
     -------

@@ -194,7 +194,7 @@ def _artificial_unbalance() -> list[Case]:
         f"{drum * eccentricity * far * 1e3:.2f} mm far above resonance"
     )
     found = []
-    for name, words, factor in (
+    for name, meaning, factor in (
         ("far", "far above resonance", far),
         ("peak", "at the worst speed", float(response.max())),
     ):
@@ -202,7 +202,7 @@ def _artificial_unbalance() -> list[Case]:
             compare(
                 f"errata/dg-section-4-{name}",
                 "DG21, section 4 and table 1",
-                f"vertical amplitude for 1800 g mm, m, {words}",
+                f"vertical amplitude for 1800 g mm, m, {meaning}",
                 printed,
                 unbalance * factor,
                 tolerance=0.1,

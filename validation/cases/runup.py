@@ -101,9 +101,9 @@ def sweep(
     cells : of the layer
     workers : processes
     """
-    asked = [(volume, rate, cells) for rate in rates for volume in volumes]
+    runs = [(volume, rate, cells) for rate in rates for volume in volumes]
     with ProcessPoolExecutor(max_workers=workers) as pool:
-        return list(pool.map(run, *zip(*asked, strict=True)))
+        return list(pool.map(run, *zip(*runs, strict=True)))
 
 
 def steady_end(volumes: Sequence[float] = VOLUMES) -> Array:
@@ -149,12 +149,12 @@ def cases() -> list[Case]:
             ("speed", "speed there, rad/s", point.peak_speed),
             ("end", "amplitude at the end, mm", point.last * MM),
         )
-        for (kind, words, value), printed in zip(rows, given, strict=True):
+        for (kind, quantity, value), printed in zip(rows, given, strict=True):
             found.append(
                 compare(
                     f"runup/{kind}-{name}",
                     _SOURCE,
-                    f"{words}: {what}",
+                    f"{quantity}: {what}",
                     printed,
                     value,
                     tolerance=_TOLERANCE,

@@ -198,7 +198,7 @@ def _frequencies() -> Case:
 def _with_distance() -> list[Case]:
     """Largest angular and longitudinal motion over the whole range of speeds, as the laundry moves off."""
     found = []
-    for name, coordinate, unit, words in (
+    for name, coordinate, unit, meaning in (
         ("angular-motion", "alpha", "mrad", "turn about x"),
         ("longitudinal-motion", "y", "mm", "motion along the axis"),
     ):
@@ -208,7 +208,7 @@ def _with_distance() -> list[Case]:
             Case(
                 name=f"tub/{name}",
                 source="DG21, section 5 and Fig. 5",
-                quantity=f"largest {words}, {unit}, for y_D = 0 to 90 mm in steps of 15 mm",
+                quantity=f"largest {meaning}, {unit}, for y_D = 0 to 90 mm in steps of 15 mm",
                 printed="grows with y_D",
                 computed=", ".join(f"{value:.3g}" for value in size),
                 difference="the same" if rises else "does not grow throughout",

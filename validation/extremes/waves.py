@@ -106,7 +106,7 @@ def extremes(model: str) -> Iterator[Extreme]:
 
 
 def outcome(case: Extreme) -> Outcome:
-    """Ask the model."""
+    """Answer of the model."""
     surface = _RADIUS * (1.0 - case.depth)
     volume = math.pi * (_RADIUS - surface) * (_RADIUS + surface) * _HEIGHT
     fill = Fill(Chamber(_RADIUS, _HEIGHT), Liquid("test", 1000.0, case.viscosity), volume)

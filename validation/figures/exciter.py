@@ -232,9 +232,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, default=Path("docs/images"))
     parser.add_argument("--count", type=int, default=COUNT)
-    asked = parser.parse_args()
-    found = compare(asked.count)
-    for path in (machine_figure(asked.out), start_figure(asked.out), regression_figure(found, asked.out)):
+    options = parser.parse_args()
+    found = compare(options.count)
+    for path in (
+        machine_figure(options.out),
+        start_figure(options.out),
+        regression_figure(found, options.out),
+    ):
         path.with_suffix(".svg").unlink()
         print(path)
     print(table(found))

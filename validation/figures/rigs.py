@@ -34,8 +34,8 @@ def angle_figure(damping_ratio: float) -> Figure:
         axes: Any = figure.add_axes((0, 0, 1, 1))
         for ratio, color, dashes in curves:
             angle = np.degrees(steady(speed / RPM, ratio)[1])
-            words = f"damping ratio {ratio:.3f}" + (", fitted" if ratio == damping_ratio else "")
-            axes.plot(speed, angle, color=color, linestyle=dashes, linewidth=1.4, label=words)
+            look_text = f"damping ratio {ratio:.3f}" + (", fitted" if ratio == damping_ratio else "")
+            axes.plot(speed, angle, color=color, linestyle=dashes, linewidth=1.4, label=look_text)
         marks = {"marker": "s", "linestyle": "none", "color": "black", "markerfacecolor": "white"}
         seen = np.array(measured["angle_deg"], dtype=float)
         axes.vlines(measured["speed_rpm"], seen - _READING, seen + _READING, color="black", linewidth=0.8)

@@ -94,7 +94,7 @@ case_table(wrong)
 # %%
 found = verdicts(volumes)
 assert found["erratum"] == {name for name in found["erratum"] if name.startswith("eq18-")}
-assert {one: len(names) for one, names in found.items()} == {"agrees": 11, "erratum": 9}
+assert {verdict: len(names) for verdict, names in found.items()} == {"agrees": 11, "erratum": 9}
 assert verdicts(wrong) == {
     "erratum": {
         *("dr-gyroscopic-alpha", "dr-gyroscopic-gamma", "dr-a24", "dr-a25"),

@@ -71,7 +71,9 @@ header = (
     "trough",
     "rotation at the last common time, rad/s",
 )
-Table(header, tuple((name, *(f"{one:+.2f}" for one in values)) for name, values in bore_summary().items()))
+Table(
+    header, tuple((name, *(f"{value:+.2f}" for value in values)) for name, values in bore_summary().items())
+)
 
 # %% [markdown]
 # ## Number by number
@@ -104,14 +106,17 @@ case_table(cases)
 # %%
 assert verdicts(cases) == {
     "agrees": {"A_f1", "A_f2", "B_0.85_f1", "B_1.3_f1", "B_1.3_f2", "C_0.05_f1-mean-rotation"},
-    "differs": {"B_0.5_f1", *(f"C_0.05_f1-{one}" for one in ("plain", "dispersion", "friction", "both"))},
+    "differs": {
+        "B_0.5_f1",
+        *(f"C_0.05_f1-{variant}" for variant in ("plain", "dispersion", "friction", "both")),
+    },
 }
 fifth = [
-    str(one.difference).split(", ")[4]
-    for one in cases
-    if one.name.startswith("layer/C") and one.printed == 0.0
+    str(case.difference).split(", ")[4]
+    for case in cases
+    if case.name.startswith("layer/C") and case.printed == 0.0
 ]
-assert all(float(one) > 50.0 for one in fifth[:4])
+assert all(float(deviation) > 50.0 for deviation in fifth[:4])
 half = next(case for case in cases if case.name == "layer/B_0.5_f1")
 # The gas adds 0.001; without it the deviation is within the 0.6 % that the flow is said to be sure of.
 assert isinstance(half.printed, float) and isinstance(half.computed, float)

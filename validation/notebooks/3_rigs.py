@@ -74,8 +74,8 @@ measured = data("dr18_fig24.json")
 ramps = [runup_lag.lag(rate, damping_ratio, cells=48) for rate in (20.0, 5.0)]
 rows = [("measured", *(f"{angle:g}" for angle in measured["angle_deg"]))]
 rows += [
-    (f"run-up at {one.rate:g} rad/s^2", *(f"{math.degrees(angle):.0f}" for angle in one.angles))
-    for one in ramps
+    (f"run-up at {ramp.rate:g} rad/s^2", *(f"{math.degrees(angle):.0f}" for angle in ramp.angles))
+    for ramp in ramps
 ]
 Table(("Liquid behind the unbalance, deg", *(f"{speed} rpm" for speed in measured["speed_rpm"])), tuple(rows))
 
@@ -131,4 +131,4 @@ assert verdicts(horizontal) == {
 }
 assert verdicts(vertical) == {"trend": {"90-rad-s"}, "differs": {"8-rad-s", "12.5-rad-s"}}
 assert verdicts(vector) == {"agrees": {"eq-24", "eq-26"}, "erratum": {"eq-25"}}
-assert all(one.converged for one in ramps) and math.degrees(ramps[0].angles[0]) > 100.0
+assert all(ramp.converged for ramp in ramps) and math.degrees(ramps[0].angles[0]) > 100.0

@@ -43,7 +43,9 @@ from validation.figures.tub import draw, plots
 from validation.notebook_page import Table, case_table, picture, verdicts
 
 known = Assumed()
-Table(("Assumed, SI", "value"), tuple((one.name, str(getattr(known, one.name))) for one in fields(known)))
+Table(
+    ("Assumed, SI", "value"), tuple((field.name, str(getattr(known, field.name))) for field in fields(known))
+)
 
 # %% [markdown]
 # ## The course of the figures

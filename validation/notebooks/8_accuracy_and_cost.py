@@ -81,11 +81,11 @@ case_table(cases)
 
 # %%
 over = [
-    f"{name}, {one.question}: {one.default.error:.1e} of {found.tolerance:g}"
+    f"{name}, {comparison.question}: {comparison.default.error:.1e} of {found.tolerance:g}"
     for name in names()
     for found in (again.record(name),)
-    for one in found.comparisons
-    if one.default.error > found.tolerance
+    for comparison in found.comparisons
+    if comparison.default.error > found.tolerance
 ]
 print("\n".join(over))
 
@@ -97,4 +97,4 @@ assert set(verdicts(cases)) == {"agrees"}
 defaults = {name for name in verdicts(cases)["agrees"] if name.endswith("-default")}
 assert len(defaults) == sum(len(again.record(name).comparisons) for name in names()) == 17
 # Where the default misses the tolerance it is a run-up with the scene's own cells, or the exciter's formulas.
-assert all(", runup" in one or one.startswith("vibratory_table") for one in over)
+assert all(", runup" in question or question.startswith("vibratory_table") for question in over)

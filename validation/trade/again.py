@@ -43,14 +43,14 @@ def _errors(name: str, question: Question) -> list[Case]:
 
 def _error(where: str, label: str, name: str, printed: float, error: float) -> Case:
     """One error as it was kept and as it is now."""
-    words = (
+    text = (
         f"trade/{where}-{label.replace(' ', '-')}",
         f"validation/trade/{name}.json",
         f"error of {label}: {where.replace('-', ', ')}",
     )
     if max(printed, error) <= _ROUNDING:
-        return Case(*words, printed, error, "rounding", "agrees", "exact here")
-    return compare(*words, printed, error, tolerance=_TOLERANCE)
+        return Case(*text, printed, error, "rounding", "agrees", "exact here")
+    return compare(*text, printed, error, tolerance=_TOLERANCE)
 
 
 def _default(name: str, comparison: Comparison) -> Case:

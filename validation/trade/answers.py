@@ -40,7 +40,7 @@ class Case:
 
     @property
     def selectable(self) -> bool:
-        """A scene can ask for it: its response takes no grid, its run-up takes any."""
+        """A scene can name it: its response takes no grid, its run-up takes any."""
         return self.resolution is None or self.question == RUNUP
 
     @property
@@ -139,7 +139,7 @@ def _response(scene: Scene, case: Case) -> Answer:
     from solvers.synchronous.models import CellsAtRest, ElementsAtRest
 
     size = case.resolution
-    models, held = chosen_models(scene, "statics" if size else case.model)
+    models, in_range = chosen_models(scene, "statics" if size else case.model)
     if size is None:
         amplitude, _, good, used = steady(scene, models)
     else:
@@ -147,7 +147,7 @@ def _response(scene: Scene, case: Case) -> Answer:
         model = CellsAtRest(size) if cells else ElementsAtRest(size, int(case.variant[-1]))
         amplitude, _, good, _ = steady(scene, model)
         used = (case.model,)
-    good = good & held
+    good = good & in_range
     bad = not np.isfinite(amplitude).all()
     return Answer(amplitude, bool(good.all()), "no bounded answer" if bad else "", used)
 
@@ -171,8 +171,8 @@ def taken_run(scene: Scene, model: str, cells: int, dispersion: bool) -> RunupCh
     """
     plan = planned(scene)
     numerics = RunupNumerics(cells, plan.samples, dispersion, companion=False)
-    asked = scene.altered(model=scene.model.altered(liquid=model))
-    return chosen_run(asked, drive_of(plan), across_gravity(scene), numerics)
+    variant = scene.altered(model=scene.model.altered(liquid=model))
+    return chosen_run(variant, drive_of(plan), across_gravity(scene), numerics)
 
 
 def _exciter(scene: Scene, case: Case) -> Answer:
@@ -190,8 +190,10 @@ def _exciter(scene: Scene, case: Case) -> Answer:
         return Answer(np.ravel(both) * machine.length, True, "", (case.model,))
     runs = [integrate(numbers, float(n), machine.ball_count, steps=case.resolution) for n in ratio]
     values = np.array([(run.slow, run.fast) for run in runs]).ravel() * machine.length
-    held = all(run.holds for run in runs)
-    return Answer(values, held, "" if np.isfinite(values).all() else "the balls break away", (case.model,))
+    in_range = all(run.holds for run in runs)
+    return Answer(
+        values, in_range, "" if np.isfinite(values).all() else "the balls break away", (case.model,)
+    )
 
 
 _ANSWERS: dict[str, Callable[[Scene, Case], Answer]] = {

@@ -49,7 +49,7 @@ class Question:
     about : what is asked, and what was cut, in words
     cases : in the order of the table; the first is the default
     reference : the best of them
-    ladder : the reference and its coarser fellows, finest first, whose differences tell its own error; alone
+    ladder : the reference and coarser ones, finest first, whose differences give its own error; alone
         if it is exact
     """
 
@@ -71,14 +71,14 @@ def questions(scene: Scene, quick: bool = False) -> tuple[Question, ...]:
     """
     if isinstance(scene.rotor, Exciter):
         return (exciter_question(scene, quick),)
-    asked = [response_question(scene, quick)]
+    found = [response_question(scene, quick)]
     if scene.runup is not None:
-        asked.append(runup_question(scene, quick))
-    return tuple(asked)
+        found.append(runup_question(scene, quick))
+    return tuple(found)
 
 
 def response_question(scene: Scene, quick: bool = False) -> Question:
-    """The synchronous response at the speeds that tell most.
+    """The synchronous response at the speeds that distinguish models most.
 
     Best is the exact equilibrium of the liquid, which every other model here approaches.
     """
@@ -113,10 +113,10 @@ def telling_speeds(scene: Scene, count: int = SPEEDS) -> Array:
     -------
     rad/s, rising, shape (k,)
     """
-    models, held = chosen_models(scene, "statics")
+    models, in_range = chosen_models(scene, "statics")
     speed, amplitude, dry = scene.speed_array(), *steady(scene, models)[:2]
-    if held.any():
-        speed, amplitude, dry = speed[held], amplitude[held], dry[held]
+    if in_range.any():
+        speed, amplitude, dry = speed[in_range], amplitude[in_range], dry[in_range]
     if speed.size <= count:
         return speed
     top = int(np.argmax(amplitude))
@@ -143,7 +143,7 @@ def _flank(amplitude: Array, top: int, way: int) -> int | None:
 def runup_question(scene: Scene, quick: bool = False) -> Question:
     """The passage of the largest vibration of a scene's run-up.
 
-    Best are the long waves on the finest cells, with dispersion if the scene asks for it.
+    Best are the long waves on the finest cells, with dispersion if the scene has it.
     """
     plan, about = passage(scene)
     cut = scene.altered(runup=plan)
@@ -163,12 +163,12 @@ def _doubled(cells: tuple[int, ...], wanted: int) -> tuple[int, ...]:
 
 
 def passage(scene: Scene) -> tuple[Runup, str]:
-    """A scene's run-up cut to the passage of its largest vibration, and that in words.
+    """A scene's run-up cut to the passage of its largest vibration, and its description.
 
     A coarse run finds it. A ramp then runs from 0.7 to 1.2 of the speed there, within its own ends, and
     neither holds nor comes back; a motor runs from its start to 1.2 of the time there. A ramp with gravity
     across the axis starts at twice the speed of capture at least: near that a layer falls on one mesh and
-    stays up on the next, and no mesh is fine enough to tell.
+    stays up on the next, and no mesh is fine enough to show it.
     """
     plan = planned(scene)
     whole = scene.altered(runup=plan.altered(back=False, samples=SAMPLES))
@@ -195,8 +195,8 @@ def passage(scene: Scene) -> tuple[Runup, str]:
 
 def _capture(scene: Scene) -> float:
     """Speed above which every layer rides with the drum against gravity across the axis, rad/s."""
-    held = [layer_capture(fill, across_gravity(scene)) for fill in scene.fills]
-    return max((speed for speed in held if math.isfinite(speed)), default=0.0)
+    captured = [layer_capture(fill, across_gravity(scene)) for fill in scene.fills]
+    return max((speed for speed in captured if math.isfinite(speed)), default=0.0)
 
 
 def exciter_question(scene: Scene, quick: bool = False) -> Question:

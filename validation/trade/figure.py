@@ -190,11 +190,11 @@ def _away(box: _Box, x: float, y: float) -> float:
 def _caption(record: TradeRecord) -> str:
     """What is shown, the scene, what the errors are of, the best answers."""
     assumed = ", ".join(map(one_line, record.assumed)) or "nothing"
-    asked = " ".join(
+    text = " ".join(
         f"{comparison.about[0].upper()}{comparison.about[1:]}; best answer: {comparison.reference}."
         for comparison in record.comparisons
     )
     return (
         "Error and least CPU time of every model, bars: spread of the times; numbers: cells or edges round a "
-        f"wall, or steps in a turn. Scene: {one_line(record.name)}. {asked} Assumed: {assumed}."
+        f"wall, or steps in a turn. Scene: {one_line(record.name)}. {text} Assumed: {assumed}."
     )

@@ -52,7 +52,7 @@ class Row:
     repeats : how many were timed
     first, memory : see `Run`
     in_range : the model says of itself that it holds there
-    selectable : a scene can ask for it
+    selectable : a scene can name it
     note : why there is no answer, or empty
     on_front : no other row dominates it
     default, recommended : what the scene's default gives; what is advised for its tolerance
@@ -127,7 +127,7 @@ def compare(question: Question, runs: Mapping[Case, Run], tolerance: float) -> C
     ----------
     question : with its cases
     runs : of each
-    tolerance : relative error that is asked for
+    tolerance : relative error that is allowed
     """
     best = runs[question.reference].answer
     own, order = reference_error(question, [runs[case].answer for case in question.ladder])
@@ -278,7 +278,7 @@ def recommend(rows: Sequence[Row], own: float, tolerance: float) -> int:
     ----------
     rows : of one question, the default first
     own : error of the reference
-    tolerance : relative error that is asked for
+    tolerance : relative error that is allowed
     """
     known = [k for k, row in enumerate(rows) if row.selectable and not row.note and math.isfinite(row.error)]
     within = [k for k in known if rows[k].error <= tolerance]

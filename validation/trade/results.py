@@ -69,7 +69,7 @@ def recommendation(comparison: Comparison, tolerance: float) -> str:
     Parameters
     ----------
     one : the comparison
-    tolerance : relative error that is asked for
+    tolerance : relative error that is allowed
     """
     advised, default = comparison.recommended, comparison.default
     if advised is None:
@@ -153,5 +153,5 @@ def _line(row: Row) -> str:
     error = f"{row.error:.2e}" if row.resolved else ("-" if math.isfinite(row.error) else "none")
     peak = f"{row.peak_error:.2e}" if math.isfinite(row.peak_error) else "none"
     numbers = f"{error:>10}{peak:>12}{row.time * _KILO:>11.4g}{row.spread:>8.0%}{row.memory / _MEGA:>8.2f}"
-    words = "  " + ", ".join(marks) + (f"; {row.note}" if row.note else "")
-    return f"{row.label:27}{numbers}{words if words.strip(' ;') else ''}"
+    text = "  " + ", ".join(marks) + (f"; {row.note}" if row.note else "")
+    return f"{row.label:27}{numbers}{text if text.strip(' ;') else ''}"

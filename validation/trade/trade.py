@@ -37,7 +37,7 @@ class TradeRecord:
     Parameters
     ----------
     name, source, assumed, digest : of the scene
-    tolerance : relative error that it asks for
+    tolerance : relative error that it allows
     comparisons : one for each question
     """
 
@@ -59,17 +59,17 @@ def trade_scene(
     scene : the machine
     quick : short ladders
     repeats : how often what is short is timed
-    progress : is told what runs and the share that is done
+    progress : is called with what runs and the share that is done
     """
     require_clear(scene, "a comparison of models, most of which know circular walls alone")
     tell = progress or (lambda _, __: None)
     tolerance = scene.model.tolerance
     found = []
-    asked = questions(scene, quick)
-    for k, question in enumerate(asked):
+    cases = questions(scene, quick)
+    for k, question in enumerate(cases):
 
         def said(text: str, share: float, k: int = k) -> None:
-            tell(text, (k + share) / len(asked))
+            tell(text, (k + share) / len(cases))
 
         runs = measure(question, repeats, said)
         found.append(compare(question, runs, tolerance))
@@ -97,7 +97,7 @@ def measure(question: Question, repeats: int, progress: Progress) -> dict[Case, 
     ----------
     question : with its cases
     repeats : of each case that is not long
-    progress : is told what runs and the share that is done
+    progress : is called with what runs and the share that is done
     """
     runs: dict[Case, Run] = {}
     for k, case in enumerate(question.cases):
@@ -136,8 +136,8 @@ def alone(scene: Scene, case: Case) -> Run:
         check=False,
     )
     if done.returncode != 0:
-        words = done.stderr.decode(errors="replace").strip().splitlines() or ["no message"]
-        raise RuntimeError(f"{case.label}: the process ended with {done.returncode}: {words[-1]}")
+        message = done.stderr.decode(errors="replace").strip().splitlines() or ["no message"]
+        raise RuntimeError(f"{case.label}: the process ended with {done.returncode}: {message[-1]}")
     read = json.loads(done.stdout)
     found = Answer(np.array(read["values"]), read["in_range"], read["reason"], tuple(read["used"]))
     return Run(found, (read["time"],), read["first"], read["memory"])

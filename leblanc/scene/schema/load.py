@@ -99,17 +99,17 @@ def shown(value: object) -> str:
     return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
 
 
-def meant(given: object, words: Iterable[str]) -> str:
+def meant(given: object, names: Iterable[str]) -> str:
     """What a misspelled word may have meant, to follow what is allowed; empty where nothing is near.
 
     Parameters
     ----------
     given : what was written
-    words : what may be written
+    names : what may be written
     """
     if not isinstance(given, str):
         return ""
-    found = difflib.get_close_matches(given.lower()[:_LONGEST], list(words), n=1)
+    found = difflib.get_close_matches(given.lower()[:_LONGEST], list(names), n=1)
     return f"; did you mean {found[0]}?" if found and found[0] != given else ""
 
 

@@ -1,4 +1,4 @@
-"""A table of a scene as a frozen model, and its faults in plain words."""
+"""A table of a scene as a frozen model, and the messages of its faults."""
 
 from __future__ import annotations
 
@@ -281,7 +281,7 @@ def _kind_fault(item: ErrorDetails, file: str, keys: tuple[str | int, ...], fiel
     path = field_path((*keys, "kind"))
     if not isinstance(given, Mapping) or "kind" not in given:
         return SceneFault(file, path, None, f"given: {rule.allowed}")
-    return SceneFault(file, path, shown(given["kind"]), rule.allowed + meant(given["kind"], rule.words))
+    return SceneFault(file, path, shown(given["kind"]), rule.allowed + meant(given["kind"], rule.names))
 
 
 def _way(

@@ -45,7 +45,7 @@ class Quantity:
 
     @property
     def allowed(self) -> str:
-        """The rule in words."""
+        """What is allowed, as a text."""
         zero = "0, or " if self.or_zero and self.low > 0.0 else ""
         unit = f" {self.dimension.unit}" if self.dimension.unit else ""
         return f"{self.dimension.allowed}, {zero}from {self.low:g} to {self.high:g}{unit}"
@@ -66,7 +66,7 @@ class Several:
 
     @property
     def allowed(self) -> str:
-        """The rule in words."""
+        """What is allowed, as a text."""
         return f"{self.each.allowed}; or a list of three, along x, y, z"
 
     def __call__(self, value: object) -> float | tuple[float, ...]:
@@ -87,7 +87,7 @@ class Whole:
 
     @property
     def allowed(self) -> str:
-        """The rule in words."""
+        """What is allowed, as a text."""
         return f"a whole number from {self.low} to {self.high}"
 
     def __call__(self, value: object) -> int:
@@ -99,20 +99,20 @@ class Whole:
 
 @dataclass(frozen=True)
 class OneOf:
-    """One of a few words."""
+    """One of a few names."""
 
-    words: tuple[str, ...]
+    names: tuple[str, ...]
 
     @property
     def allowed(self) -> str:
-        """The rule in words."""
-        return "one of: " + ", ".join(self.words)
+        """What is allowed, as a text."""
+        return "one of: " + ", ".join(self.names)
 
     def __call__(self, value: object) -> str:
         """The word."""
-        if isinstance(value, str) and value in self.words:
+        if isinstance(value, str) and value in self.names:
             return value
-        raise Refused(self.allowed + meant(value, self.words))
+        raise Refused(self.allowed + meant(value, self.names))
 
 
 @dataclass(frozen=True)
@@ -124,7 +124,7 @@ class Text:
 
     @property
     def allowed(self) -> str:
-        """The rule in words."""
+        """What is allowed, as a text."""
         empty = "" if self.may_be_empty else ", not empty"
         return f"a text in quotes of at most {self.longest} printable characters{empty}"
 
@@ -161,7 +161,7 @@ class Entries:
 
     @property
     def allowed(self) -> str:
-        """The rule in words."""
+        """What is allowed, as a text."""
         size = f"{self.low}" if self.low == self.high else f"{self.low} to {self.high}"
         return f"a list of {size} {self.what}"
 
@@ -180,7 +180,7 @@ class Span:
 
     @property
     def allowed(self) -> str:
-        """The rule in words."""
+        """What is allowed, as a text."""
         return f"a list of two, the second at least the first, each {self.each.allowed}"
 
     def __call__(self, value: object) -> tuple[float, float]:
@@ -223,14 +223,14 @@ def whole(low: int, high: int) -> PlainValidator:
     return PlainValidator(Whole(low, high))
 
 
-def one_of(*words: str) -> PlainValidator:
-    """Rule of one of a few words, for an annotation.
+def one_of(*names: str) -> PlainValidator:
+    """Rule of one of a few names, for an annotation.
 
     Parameters
     ----------
-    words : that may be written
+    names : that may be written
     """
-    return PlainValidator(OneOf(words))
+    return PlainValidator(OneOf(names))
 
 
 # Rules that several tables share; the plain names are those of optional values.

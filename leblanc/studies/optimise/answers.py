@@ -1,4 +1,4 @@
-"""Answers of a scene's machine with other volumes of liquid; no pair of volumes and speed is asked twice."""
+"""Responses of a machine with other volumes of liquid; no pair of volumes and speed is solved twice."""
 
 from __future__ import annotations
 
@@ -49,11 +49,6 @@ class FilledMachine:
     def planar(self) -> bool:
         """The rotor moves in one plane, so that a single speed costs no more than its share of many."""
         return isinstance(self.scene.rotor, JeffcottRotor)
-
-    @property
-    def asked(self) -> int:
-        """How many pairs of volumes and speed were answered."""
-        return len(self._known)
 
     def at(self, volumes: Array, speed: Array) -> FillAnswers:
         """Answers at m pairs.

@@ -1,4 +1,4 @@
-"""A vibration over the volumes as an emulator of a sweep gives it, for searches that ask very often."""
+"""A vibration over the volumes by an emulator of a sweep, for searches with very many evaluations."""
 
 from __future__ import annotations
 
@@ -67,13 +67,13 @@ class EmulatedVibration:
         return least, most
 
 
-def emulated_vibration(store: Path, scene: Scene, aim: Optimisation, seed: int = 0) -> EmulatedVibration:
+def emulated_vibration(store: Path, scene: Scene, task: Optimisation, seed: int = 0) -> EmulatedVibration:
     """Emulator of the vibration that an optimisation is after, from a sweep over the volumes.
 
     Parameters
     ----------
     store : of a sweep of this very scene, in which volumes vary and nothing else
-    scene, aim : the machine and what is asked for
+    scene, task : the machine and what its liquid is chosen for
     seed : see `leblanc.studies.sweep.emulator.emulate`
 
     Raises
@@ -87,14 +87,14 @@ def emulated_vibration(store: Path, scene: Scene, aim: Optimisation, seed: int =
     chambers = tuple(int(match[1]) for match in matches if match is not None)
     if len(chambers) != len(matches):
         raise InputError("--emulator", str(store), "a sweep that varies volumes and nothing else")
-    return EmulatedVibration(emulate_store(found, _output(scene, aim), seed), chambers)
+    return EmulatedVibration(emulate_store(found, _output(scene, task), seed), chambers)
 
 
-def _output(scene: Scene, aim: Optimisation) -> str:
-    """Output of a sweep that is the vibration asked for."""
-    if aim.objective == "working_speed" and aim.working_speed in (None, scene.speeds.stop):
+def _output(scene: Scene, task: Optimisation) -> str:
+    """Output of a sweep that is the vibration of the objective."""
+    if task.objective == "working_speed" and task.working_speed in (None, scene.speeds.stop):
         return "last_amplitude"
-    if aim.objective == "peak" and (aim.steady or scene.runup is None):
+    if task.objective == "peak" and (task.steady or scene.runup is None):
         return "peak_amplitude"
     allowed = "working_speed at the last speed, or peak of the steady response, with an emulator"
-    raise InputError("--objective", aim.objective, allowed)
+    raise InputError("--objective", task.objective, allowed)

@@ -93,11 +93,6 @@ class RunupPeak(AlwaysExact):
         self.model = runup_model(liquid_model(scene))
         self._known: dict[bytes, float] = {}
 
-    @property
-    def asked(self) -> int:
-        """How many run-ups were made."""
-        return len(self._known)
-
     def exact(self, volumes: Array, bound: float = math.inf) -> Array:
         """See `Vibration`; infinite for a run that did not come to its end."""
         return np.array([self._one(np.ascontiguousarray(row)) for row in volumes])
@@ -224,7 +219,7 @@ def _so_far(known: Array) -> Array:
 
 
 def _around_peaks(row: Array) -> Index:
-    """Indices to ask for next: in the gaps on both sides of the highest peaks known."""
+    """Indices to compute next: in the gaps on both sides of the highest peaks known."""
     at = np.flatnonzero(~np.isnan(row))
     value = row[at]
     before, behind = np.concatenate(([-np.inf], value[:-1])), np.concatenate((value[1:], [-np.inf]))
@@ -276,11 +271,6 @@ class Robust(AlwaysExact):
         self.machines = [FilledMachine(changed) for changed, _ in made]
         self.growths = np.array([growth for _, growth in made])
         self.capacity = np.array([fill.chamber.capacity for fill in scene.fills])
-
-    @property
-    def asked(self) -> int:
-        """How many pairs of volumes and condition were answered."""
-        return sum(machine.asked for machine in self.machines)
 
     def exact(self, volumes: Array, bound: float = math.inf) -> Array:
         """See `Vibration`."""

@@ -48,7 +48,7 @@ _ASKED = "the scene asks for it; "
 def optimise_scene(
     scene: Scene,
     objective: str | None = None,
-    aim: Optimisation | None = None,
+    task: Optimisation | None = None,
     front: bool = True,
     progress: Callable[[int], None] | None = None,
     emulator: EmulatedVibration | None = None,
@@ -59,8 +59,8 @@ def optimise_scene(
     Parameters
     ----------
     scene : the machine; its own volumes do not matter
-    objective : in place of the aim's
-    aim : in place of the scene's
+    objective : in place of the task's
+    task : in place of the scene's
     front : find out as well what must be given up for what
     progress : called with the number of sets of volumes evaluated so far
     emulator : asked by the search in place of the solvers, which then evaluate the best that it found
@@ -82,21 +82,21 @@ def optimise_scene(
     >>> bool(best.value < best.baseline)
     True
     """
-    wish = aim or scene.optimise or Optimisation()
-    wish = wish if objective is None else wish.altered(objective=objective)
+    task = task or scene.optimise or Optimisation()
+    task = task if objective is None else task.altered(objective=objective)
     if not scene.fills:
         raise InputError("chambers", "none", "at least one to choose the volume of")
     require_clear(scene, "a search over volumes, which rests on the exact equilibrium in a clear ring")
-    low, high = bounds_of(scene, wish)
+    low, high = bounds_of(scene, task)
     machine = FilledMachine(scene)
-    if wish.deflection is not None:
-        result = _at_deflection(scene, wish, wet_walls(scene, wish.deflection, working_speed(scene, wish)))
+    if task.deflection is not None:
+        result = _at_deflection(scene, task, wet_walls(scene, task.deflection, working_speed(scene, task)))
         return _with_response(result, scene, machine) if response else result
 
     def solve(problem: Problem) -> Found:
         return best_volumes(scene, problem, low, high, progress)
 
-    problem = problem_of(scene, wish, machine, solve)
+    problem = problem_of(scene, task, machine, solve)
     exact, quick = on_all_cells(scene, problem), problem
     if emulator is not None:
         low, high = emulator.inside(low, high, np.array([fill.volume for fill in scene.fills]))
@@ -104,18 +104,18 @@ def optimise_scene(
     chosen = best_volumes(scene, quick, low, high, progress)
     if quick is not exact:
         chosen = evaluated_again(exact, chosen)
-    result = _result(scene, wish, exact, machine, chosen)
+    result = _result(scene, task, exact, machine, chosen)
     if emulator is not None:
         answer = emulator.answer(chosen.point)
         result = replace(result, emulator=answer, notes=(optimum.emulated(answer), *result.notes))
     if front:
-        edge, sweep = front_around(scene, problem, chosen, result.vibration, growth_speeds(scene, wish))
+        edge, sweep = front_around(scene, problem, chosen, result.vibration, growth_speeds(scene, task))
         result = replace(result, front=edge, sweep=sweep)
     return _with_response(result, scene, machine) if response else result
 
 
 def _result(
-    scene: Scene, aim: Optimisation, problem: Problem, machine: FilledMachine, found: Found
+    scene: Scene, task: Optimisation, problem: Problem, machine: FilledMachine, found: Found
 ) -> OptimumResult:
     """The best volumes with all that belongs to them."""
     evaluate, volume = problem.evaluate, found.point
@@ -133,7 +133,7 @@ def _result(
     return _of_scene(
         scene,
         in_time=isinstance(evaluate.vibration, RunupPeak),
-        objective=aim.objective,
+        objective=task.objective,
         meaning=problem.meaning,
         unit="kg" if evaluate.by_mass else "m",
         working_speed=problem.working_speed,
@@ -144,7 +144,7 @@ def _result(
         vibration_baseline=dry,
         constraints=constraints,
         mass=mass,
-        growth=float(growth(scene, volume[None], growth_speeds(scene, aim))[0]),
+        growth=float(growth(scene, volume[None], growth_speeds(scene, task))[0]),
         closed_form=_closed_forms(machine, volume, problem.working_speed),
         evaluations=int(np.unique(found.points, axis=0).shape[0]),
         candidates=Candidates(
@@ -159,7 +159,7 @@ def _result(
     )
 
 
-def _at_deflection(scene: Scene, aim: Optimisation, found: WettedWalls) -> OptimumResult:
+def _at_deflection(scene: Scene, task: Optimisation, found: WettedWalls) -> OptimumResult:
     """The least volumes that leave no wall dry over its whole height at a given deflection."""
     volume = np.array(found.volumes)
     single = np.ones(1)
@@ -177,7 +177,7 @@ def _at_deflection(scene: Scene, aim: Optimisation, found: WettedWalls) -> Optim
         vibration_baseline=found.deflection,
         constraints={"capacity": _capacity(scene, volume), "dry_patch": found.dry_wall},
         mass=found.mass,
-        growth=float(growth(scene, volume[None], growth_speeds(scene, aim))[0]),
+        growth=float(growth(scene, volume[None], growth_speeds(scene, task))[0]),
         closed_form=found.closed_form,
         evaluations=found.evaluations,
         candidates=Candidates(
@@ -223,7 +223,7 @@ def _with_response(result: OptimumResult, scene: Scene, machine: FilledMachine) 
 
 
 def _of_search(span: ModelSpan) -> ModelSpan:
-    """The scene leaves the model to the search, which asks for one."""
+    """The scene leaves the model to the search, which names one."""
     return replace(span, reason=span.reason.removeprefix(_ASKED))
 
 

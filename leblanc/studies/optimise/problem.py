@@ -203,33 +203,33 @@ class Problem:
     notes: tuple[Note, ...] = ()
 
 
-def working_speed(scene: Scene, aim: Optimisation) -> float:
+def working_speed(scene: Scene, task: Optimisation) -> float:
     """Speed at which the machine works: the one given, or the scene's last, rad/s."""
-    return scene.speeds.stop if aim.working_speed is None else aim.working_speed
+    return scene.speeds.stop if task.working_speed is None else task.working_speed
 
 
-def operating_speeds(scene: Scene, aim: Optimisation) -> Speeds:
+def operating_speeds(scene: Scene, task: Optimisation) -> Speeds:
     """Speeds at which the machine is used: the scene's, or evenly over the range given."""
-    if aim.operating is None:
+    if task.operating is None:
         return scene.speeds
-    start, stop = aim.operating
+    start, stop = task.operating
     return Speeds(start=start, stop=stop, count=1 if start == stop else max(2, scene.speeds.count))
 
 
-def growth_speeds(scene: Scene, aim: Optimisation) -> Array:
+def growth_speeds(scene: Scene, task: Optimisation) -> Array:
     """Operating speeds at which small whirls are looked at, rad/s."""
-    speeds = operating_speeds(scene, aim)
+    speeds = operating_speeds(scene, task)
     return np.linspace(speeds.start, speeds.stop, min(speeds.count, _GROWTH_SPEEDS))
 
 
 def problem_of(
-    scene: Scene, aim: Optimisation, machine: FilledMachine, solve: Callable[[Problem], Found]
+    scene: Scene, task: Optimisation, machine: FilledMachine, solve: Callable[[Problem], Found]
 ) -> Problem:
     """The problem that a scene poses.
 
     Parameters
     ----------
-    scene, aim : the machine and what is asked for
+    scene, task : the machine and what its liquid is chosen for
     machine : the same with any volumes
     solve : gives the best volumes for another problem, on the way to this one
 
@@ -237,28 +237,28 @@ def problem_of(
     ------
     InputError : no such objective, or one that lacks something
     """
-    if aim.objective not in OBJECTIVES:
-        raise InputError("--objective", aim.objective, "one of " + ", ".join(OBJECTIVES))
-    speed = working_speed(scene, aim)
+    if task.objective not in OBJECTIVES:
+        raise InputError("--objective", task.objective, "one of " + ", ".join(OBJECTIVES))
+    speed = working_speed(scene, task)
     planar = isinstance(scene.rotor, JeffcottRotor)
     density = np.array([fill.liquid.density for fill in scene.fills])
     at_work = AtSpeed(machine, np.array([speed]), np.ones(1))
-    constraints = _constraints(scene, aim, machine, speed)
+    constraints = _constraints(scene, task, machine, speed)
     rpm = f"{speed * RPM:.4g} rpm"
     evaluate = Evaluator(at_work, density, constraints)
     problem = Problem(evaluate, f"amplitude at {rpm}", speed, (speed,), not planar)
-    return _MAKERS[aim.objective](scene, aim, machine, problem, solve)
+    return _MAKERS[task.objective](scene, task, machine, problem, solve)
 
 
 def _constraints(
-    scene: Scene, aim: Optimisation, machine: FilledMachine, speed: float
+    scene: Scene, task: Optimisation, machine: FilledMachine, speed: float
 ) -> tuple[Constraint, ...]:
-    """What was asked to be kept to."""
-    found = [] if aim.dry_patch else [dry_wall(machine, speed)]
-    if aim.stability_margin is not None:
-        found.append(stability(scene, growth_speeds(scene, aim), aim.stability_margin))
-    if aim.clearance is not None:
-        found.append(clearance(PeakOver(machine, operating_speeds(scene, aim)), aim.clearance))
+    """The constraints of the task."""
+    found = [] if task.dry_patch else [dry_wall(machine, speed)]
+    if task.stability_margin is not None:
+        found.append(stability(scene, growth_speeds(scene, task), task.stability_margin))
+    if task.clearance is not None:
+        found.append(clearance(PeakOver(machine, operating_speeds(scene, task)), task.clearance))
     return tuple(found)
 
 
@@ -266,13 +266,13 @@ _Make = Callable[[Scene, Optimisation, FilledMachine, Problem, Callable[[Problem
 
 
 def _working_speed(
-    scene: Scene, aim: Optimisation, machine: FilledMachine, problem: Problem, _: object
+    scene: Scene, task: Optimisation, machine: FilledMachine, problem: Problem, _: object
 ) -> Problem:
     return problem
 
 
-def _peak(scene: Scene, aim: Optimisation, machine: FilledMachine, problem: Problem, _: object) -> Problem:
-    if scene.runup is not None and not aim.steady:
+def _peak(scene: Scene, task: Optimisation, machine: FilledMachine, problem: Problem, _: object) -> Problem:
+    if scene.runup is not None and not task.steady:
         few = min(_COARSE_CELLS, scene.runup.cells)
         text = "largest amplitude of the run-up in time"
         evaluate = replace(problem.evaluate, vibration=RunupPeak(scene, few))
@@ -294,10 +294,10 @@ def _resonances(scene: Scene) -> tuple[float, ...]:
     return math.sqrt(rotor.stiffness / (rotor.mass + added)), math.sqrt(rotor.stiffness / rotor.mass)
 
 
-def _mean(scene: Scene, aim: Optimisation, machine: FilledMachine, problem: Problem, _: object) -> Problem:
-    if aim.duty:
-        speeds, weights = np.array([(stage.speed, stage.weight) for stage in aim.duty]).T
-        text, notes = f"mean amplitude over a duty cycle of {len(aim.duty)} speeds", problem.notes
+def _mean(scene: Scene, task: Optimisation, machine: FilledMachine, problem: Problem, _: object) -> Problem:
+    if task.duty:
+        speeds, weights = np.array([(stage.speed, stage.weight) for stage in task.duty]).T
+        text, notes = f"mean amplitude over a duty cycle of {len(task.duty)} speeds", problem.notes
     else:
         speeds = scene.speed_array()
         weights = np.ones(speeds.size)
@@ -310,16 +310,16 @@ def _mean(scene: Scene, aim: Optimisation, machine: FilledMachine, problem: Prob
 
 def _least_mass(
     scene: Scene,
-    aim: Optimisation,
+    task: Optimisation,
     machine: FilledMachine,
     problem: Problem,
     solve: Callable[[Problem], Found],
 ) -> Problem:
     vibration: Vibration = problem.evaluate.vibration
     where = f"at {problem.working_speed * RPM:.4g} rpm"
-    if aim.limit_at == "operating":
-        vibration, where = PeakOver(machine, operating_speeds(scene, aim)), "at the operating speeds"
-    limit, notes = aim.vibration_limit, problem.notes
+    if task.limit_at == "operating":
+        vibration, where = PeakOver(machine, operating_speeds(scene, task)), "at the operating speeds"
+    limit, notes = task.vibration_limit, problem.notes
     if limit is None:
         least = solve(replace(problem, evaluate=replace(problem.evaluate, vibration=vibration))).objective
         limit = _SLACK * least
@@ -336,21 +336,21 @@ def _least_mass(
     return replace(problem, evaluate=evaluate, meaning=text, notes=notes)
 
 
-def _robust(scene: Scene, aim: Optimisation, machine: FilledMachine, problem: Problem, _: object) -> Problem:
+def _robust(scene: Scene, task: Optimisation, machine: FilledMachine, problem: Problem, _: object) -> Problem:
     if not isinstance(scene.rotor, JeffcottRotor):
         raise InputError("rotor.kind", scene.rotor.kind, "jeffcott for the objective robust")
-    notes, unbalance = problem.notes, aim.unbalance
-    if unbalance is None and aim.temperature is None:
+    notes, unbalance = problem.notes, task.unbalance
+    if unbalance is None and task.temperature is None:
         low, high = _DOUBLE
         unbalance = low * scene.rotor.unbalance, high * scene.rotor.unbalance
         notes = (*notes, optimum.no_range())
-    around = operating_conditions(scene.rotor.unbalance, unbalance, aim.temperature, aim.samples, aim.seed)
-    vibration = Robust(scene, problem.working_speed, around, aim.quantile)
+    around = operating_conditions(scene.rotor.unbalance, unbalance, task.temperature, task.samples, task.seed)
+    vibration = Robust(scene, problem.working_speed, around, task.quantile)
     constraints = problem.evaluate.constraints
-    if aim.temperature is not None:
+    if task.temperature is not None:
         constraints = (*constraints, room_when_warm(vibration))
-    kind = "worst" if aim.quantile == 1.0 else f"{aim.quantile:.4g} quantile of the"
-    ranges = [name for name, span in (("unbalance", unbalance), ("temperature", aim.temperature)) if span]
+    kind = "worst" if task.quantile == 1.0 else f"{task.quantile:.4g} quantile of the"
+    ranges = [name for name, span in (("unbalance", unbalance), ("temperature", task.temperature)) if span]
     text = (
         f"{kind} amplitude at {problem.working_speed * RPM:.4g} rpm over {len(around)} circumstances of "
         + " and ".join(ranges)

@@ -30,7 +30,7 @@ _AGAIN = 3  # searches at most, if a peak turns out to have been hidden between 
 _CLOSER = 6  # of the best that a cheaper vibration found are evaluated again
 
 
-def bounds_of(scene: Scene, aim: Optimisation) -> tuple[Array, Array]:
+def bounds_of(scene: Scene, task: Optimisation) -> tuple[Array, Array]:
     """Least and most volume of each chamber, m^3, shape (c,) each.
 
     Raises
@@ -38,12 +38,12 @@ def bounds_of(scene: Scene, aim: Optimisation) -> tuple[Array, Array]:
     InputError : not one pair for each chamber, more than a chamber holds
     """
     capacity = np.array([fill.chamber.capacity for fill in scene.fills])
-    if not aim.volumes:
+    if not task.volumes:
         return np.zeros_like(capacity), capacity
-    if len(aim.volumes) != capacity.size:
+    if len(task.volumes) != capacity.size:
         text = f"a list of {capacity.size} pairs of volumes, one for each chamber"
-        raise InputError("optimise.volumes", len(aim.volumes), text)
-    low, high = np.array(aim.volumes).T
+        raise InputError("optimise.volumes", len(task.volumes), text)
+    low, high = np.array(task.volumes).T
     for k, (most, room) in enumerate(zip(low, capacity, strict=True)):
         if most > room:
             raise InputError(

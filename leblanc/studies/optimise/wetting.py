@@ -35,11 +35,11 @@ def wetting_volumes(chamber: Chamber, deflection: float, speed: float, gravity: 
     """
     touching = float(optimal_volume(chamber, deflection, speed, gravity))
     full = full_volume(chamber, deflection, speed, gravity)
-    held = min(touching, chamber.capacity)
+    filled = min(touching, chamber.capacity)
     most = chamber.capacity if math.isinf(full) else full
     of_touching, of_most = (
         float(equilibrium(chamber, volume, deflection, speed, gravity).unbalance()[0])
-        for volume in (held, most)
+        for volume in (filled, most)
     )
     share = of_touching / of_most if of_most > 0.0 else 1.0
     return WettingVolumes(deflection, speed, touching, full, share)
@@ -85,12 +85,12 @@ def optimal_volume_by_search(
     chamber = fill.chamber
 
     def judge(volumes: Array) -> Judgement:
-        held = volumes[:, 0]
-        state = equilibrium(chamber, held, deflection, speed, gravity)
+        amount = volumes[:, 0]
+        state = equilibrium(chamber, amount, deflection, speed, gravity)
         # Height of the surface at the near wall, over a measure of the heights at both, whatever the speed.
         fallen = 2.0 * state.wetted_height - state.nearest_depth
         over = np.divide(-state.nearest_depth, fallen, out=np.ones_like(fallen), where=fallen > 0.0)
-        return Judgement(held.copy(), over)
+        return Judgement(amount.copy(), over)
 
     low, high = np.zeros(1), np.array([chamber.capacity])
     return search(judge, low, high, np.array([fill.liquid.density]), plan=plan or SearchPlan(edge=1e-11))
@@ -165,7 +165,7 @@ def _dry_wall(scene: Scene, volumes: tuple[float, ...], deflection: float, speed
     dry = 0.0
     for fill, volume in zip(scene.fills, volumes, strict=True):
         # A little above the volume that just wets it.
-        held = min(volume * (1.0 + 1e-9), fill.chamber.capacity)
-        dry = max(dry, float(equilibrium(fill.chamber, held, deflection, speed, gravity).dry_patch))
+        filled = min(volume * (1.0 + 1e-9), fill.chamber.capacity)
+        dry = max(dry, float(equilibrium(fill.chamber, filled, deflection, speed, gravity).dry_patch))
     meaning = "wall dry somewhere at the deflection given (1) or nowhere (0)"
     return ConstraintValue(0.0, dry, dry == 0.0, "1", meaning)

@@ -46,6 +46,14 @@ from solvers.synchronous.response import response
 
 GAP = 0.25  # between chambers moved apart, over the wider one's radius
 
+SWING, MOST = 0.35, 100.0  # vibration as drawn over the track's radius, and the largest factor
+
+VISIBLE = 0.04  # a largest deflection smaller than this over the radius is drawn larger
+
+MOST_MODES = 40
+AROUND_MODE, ACROSS = 120, 4  # elements around and across the layer
+LIFT = 0.6  # of the layer's depth, or of the room inside it: displacement as drawn
+
 
 def machine_motion(scene: Scene, speed: float | None = None) -> MachineMotion:
     """Answer of a scene at one speed, or at all its own.
@@ -64,17 +72,17 @@ def machine_motion(scene: Scene, speed: float | None = None) -> MachineMotion:
         if not (math.isfinite(speed) and speed > 0.0):
             raise InputError("--speed", speed, "a finite number above 0")
         scene = scene.altered(speeds=Speeds.at(speed))
-    record = run_scene(scene)
+    result = run_scene(scene)
     places, moved = places_of(scene)
-    found = record.response.deflection
+    found = result.response.deflection
     deflection = np.where(np.isfinite(found), found, np.nan)[:, None]
-    if record.motion is not None and scene.fills:
-        at = record.motion.chamber_forward
+    if result.motion is not None and scene.fills:
+        at = result.motion.chamber_forward
         deflection = np.where(np.isfinite(at), at, np.nan)
     elif scene.fills:
         deflection = np.repeat(deflection, len(scene.fills), axis=1)
-    gravity, lean = axial_gravity(scene), _lean(scene, record)
-    return MachineMotion(record, scene.fills, places, moved, gravity, deflection, lean)
+    gravity, lean = axial_gravity(scene), _lean(scene, result)
+    return MachineMotion(result, scene.fills, places, moved, gravity, deflection, lean)
 
 
 def require_rotor(scene: Scene) -> None:
@@ -89,14 +97,14 @@ def require_rotor(scene: Scene) -> None:
         raise InputError("rotor.kind", "exciter", allowed)
 
 
-def _lean(scene: Scene, record: RunResult) -> Complex:
+def _lean(scene: Scene, result: RunResult) -> Complex:
     """Slope of the axis, from its forward part at two places of the rigid rotor."""
     if isinstance(scene.rotor, JeffcottRotor):
-        return np.zeros(record.response.speed.shape, dtype=complex)
+        return np.zeros(result.response.speed.shape, dtype=complex)
     planes = np.array([fill.chamber.plane for fill in scene.fills])
-    if planes.size and np.ptp(planes) > 0.0 and record.motion is not None:
+    if planes.size and np.ptp(planes) > 0.0 and result.motion is not None:
         ends = [int(planes.argmin()), int(planes.argmax())]
-        low, high = (record.motion.chamber_forward[:, k] for k in ends)
+        low, high = (result.motion.chamber_forward[:, k] for k in ends)
         known = np.isfinite(low) & np.isfinite(high)
         low, high = np.where(known, low, np.nan), np.where(known, high, np.nan)
         return np.asarray((high - low) / np.ptp(planes))
@@ -219,9 +227,6 @@ def _is_dry(fill: Fill, moved: complex, volume: float, speed: float, gravity: fl
     return bool(volume < optimal_volume(fill.chamber, abs(moved), speed, gravity))
 
 
-SWING, MOST = 0.35, 100.0  # vibration as drawn over the track's radius, and the largest factor
-
-
 def table_view(scene: Scene, speed: float | None = None) -> TableView:
     """A table with balls at the moment when balls and unbalance both point along the vibration.
 
@@ -257,9 +262,6 @@ def table_view(scene: Scene, speed: float | None = None) -> TableView:
         kind=rotor.balls.name,
         factor=factor,
     )
-
-
-VISIBLE = 0.04  # a largest deflection smaller than this over the radius is drawn larger
 
 
 def runup_view(
@@ -318,11 +320,6 @@ def _liquid(fill: Fill, scale: Scale, frames: RunupFrames, k: int, j: int) -> Li
     if np.isnan(depth).any():
         return body_of_pool(fill.chamber, fill.volume, moved, float(frames.pool[k]))
     return body_of_layer(fill.chamber, moved, frames.theta, scale.depth * depth)
-
-
-MOST_MODES = 40
-AROUND_MODE, ACROSS = 120, 4  # elements around and across the layer
-LIFT = 0.6  # of the layer's depth, or of the room inside it: displacement as drawn
 
 
 def mode_view(scene: Scene, number: int, speed: float | None = None, chamber: int = 1) -> ModeView:

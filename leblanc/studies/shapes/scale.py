@@ -189,7 +189,7 @@ def _room(fills: tuple[Fill, ...], size: Array) -> float:
 
 
 def given_scale(factor: float, fills: tuple[Fill, ...], deflection: Complex) -> Scale:
-    """The factor that the user asks for, of the deflection alone.
+    """The factor that the user gives, of the deflection alone.
 
     Parameters
     ----------
@@ -208,7 +208,7 @@ def given_scale(factor: float, fills: tuple[Fill, ...], deflection: Complex) -> 
 
 
 def scale_of(motion: MachineMotion, factor: float | None = None) -> Scale:
-    """The factor asked for, or one that makes the deflection visible at all speeds of a machine.
+    """The given factor, or one that makes the deflection visible at all speeds of a machine.
 
     Parameters
     ----------

@@ -45,7 +45,7 @@ class Output:
     kind : "float64"; "int8", -1 where there is no answer; "str"
     over_speed : one value at each speed, not one in all
     units, long_name, text : as CF asks, and what more there is to say
-    meanings : words for the values of a flag, from -1 on
+    meanings : names of the values of a flag, from -1 on
     """
 
     name: str
@@ -318,6 +318,6 @@ def _answer(scenes: Sequence[Scene]) -> list[tuple[int, Answers | str]]:
 
 
 def reason_of(error: Exception) -> str:
-    """An error in words that are the same each time."""
+    """The message of an error, the same each time."""
     said = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
     return _ADDRESS.sub("0x...", escaped(said))[:_LONGEST]

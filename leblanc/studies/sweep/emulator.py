@@ -130,9 +130,9 @@ def emulate(fields: Sequence[str], values: Array, output: Array, seed: int = 0) 
     taken = rng.permutation(output.size)[:MOST]
     wide, positive = (low > 0.0) & (high > _WIDE * np.maximum(low, 1e-300)), bool(output.min() > 0.0)
     points = _unit(values[taken], low, high, wide)
-    told = np.log(output[taken]) if positive else output[taken]
-    centre, scale = float(told.mean()), float(told.std())
-    standard = (told - centre) / scale
+    scaled = np.log(output[taken]) if positive else output[taken]
+    centre, scale = float(scaled.mean()), float(scaled.std())
+    standard = (scaled - centre) / scale
     process, settled = _fit(points, standard)
     missed, claimed, all_settled = _on_unseen(points, standard)
     # A difference of logarithms is the relative error; without them it is over the spread.
@@ -204,7 +204,7 @@ def emulate_store(store: Store | Path, output: str, seed: int = 0) -> Emulator:
 
     Raises
     ------
-    InputError : no such store or output, a field of words, too few samples
+    InputError : no such store or output, a field of texts, too few samples
 
     Examples
     --------
@@ -226,7 +226,7 @@ def emulate_store(store: Store | Path, output: str, seed: int = 0) -> Emulator:
 
 
 def emulated_outputs(store: Store, seed: int = 0) -> dict[str, Emulator | str]:
-    """An emulator of every output that is one number a sample, or in words why there is none.
+    """An emulator of every output that is one number a sample, or the reason why there is none.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Samples of a sweep: sample k is the same whoever asks for it, alone or among others."""
+"""Samples of a sweep: sample k is the same whether it is drawn alone or among others."""
 
 from __future__ import annotations
 

@@ -190,7 +190,7 @@ def _create(path: Path, sweep: Sweep) -> None:
         fill = {NUMBER: np.nan, FLAG: -1, TEXT: ""}[output.kind]
         array(output.name, output.kind, output.over_speed, fill, _output_attributes(output))
     for field in sweep.fields:
-        kind, empty = (TEXT, "") if field.words else (NUMBER, np.nan)
+        kind, empty = (TEXT, "") if field.categorical else (NUMBER, np.nan)
         said = {"units": field.unit, "long_name": field.path, "description": "varied field of the scene"}
         array(field.path, kind, False, empty, said)
     states = {"flag_values": list(range(len(STATUS))), "flag_meanings": " ".join(STATUS)}
@@ -280,7 +280,7 @@ def _to_disk(path: Path) -> None:
 
 
 def field_values(field: VariedField, drawn: NDArray[np.float64]) -> NDArray[Any]:
-    """Sampled values of a field as the store holds them: SI numbers, or words.
+    """Sampled values of a field as the store holds them: SI numbers, or texts.
 
     Parameters
     ----------
@@ -288,7 +288,7 @@ def field_values(field: VariedField, drawn: NDArray[np.float64]) -> NDArray[Any]
     drawn : sampled numbers, shape (n,)
     """
     values = [field.value(level) for level in drawn]
-    if not field.words:
+    if not field.categorical:
         return np.array(values, dtype=np.float64)
     return np.array([value if isinstance(value, str) else _table(value) for value in values], dtype=object)
 
@@ -314,10 +314,10 @@ def read_arrays(path: Path) -> NamedArrays:
     store, found = read_store(path), {}
     for name in store.arrays:
         values, said = store.read(name), store.attributes(name)
-        one = variable(store.dims(name), values, *(str(said.pop(key)) for key in _SINGLE))
+        entry = variable(store.dims(name), values, *(str(said.pop(key)) for key in _SINGLE))
         if "flag_values" in said:
             said["flag_values"] = np.array(said["flag_values"], dtype=np.int8)
-        one.attrs.update(said)
-        found[name] = one
+        entry.attrs.update(said)
+        found[name] = entry
     speed = found.pop("speed")
     return NamedArrays(found, coords={"speed": speed}, attrs=store.attributes())

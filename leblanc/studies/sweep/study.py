@@ -77,7 +77,7 @@ class Choice:
     options: tuple[Any, ...]
 
     @property
-    def words(self) -> bool:
+    def categorical(self) -> bool:
         """Some option is no number."""
         return not all(isinstance(option, float | int) for option in self.options)
 
@@ -299,9 +299,9 @@ class VariedField:
         return keys_of(self.path)
 
     @property
-    def words(self) -> bool:
-        """The values are words, and samples hold their numbers."""
-        return isinstance(self.distribution, Choice) and self.distribution.words
+    def categorical(self) -> bool:
+        """The values are texts, and samples hold their indices."""
+        return isinstance(self.distribution, Choice) and self.distribution.categorical
 
     def value(self, drawn: float) -> Any:
         """What the scene gets for a sampled number."""

@@ -26,7 +26,7 @@ _MOST = 16_384  # samples taken from a larger set: the confidence interval is na
 
 
 def sensitivity(
-    method: str, fields: Array, words: Sequence[bool], output: Array, seed: int
+    method: str, fields: Array, categorical: Sequence[bool], output: Array, seed: int
 ) -> Sensitivity | None:
     """Sensitivity of an output to each field, by what the samples of a method allow.
 
@@ -34,7 +34,7 @@ def sensitivity(
     ----------
     method : of sampling
     fields : sampled values, shape (samples, fields)
-    words : whether a field takes a few values only, shape (fields,)
+    categorical : whether a field takes a few values only, shape (fields,)
     output : of each sample, nan where there is none, shape (samples,)
     seed : of the resampling
 
@@ -50,7 +50,7 @@ def sensitivity(
         return None
     if method == "grid":
         return variance_shares(fields, output)
-    return given_data(fields, words, output, seed)
+    return given_data(fields, categorical, output, seed)
 
 
 def _varies(output: Array) -> bool:
@@ -79,13 +79,13 @@ def variance_shares(fields: Array, output: Array) -> Sensitivity:
     return Sensitivity("variance of the means over levels", output.size, np.array(shares))
 
 
-def given_data(fields: Array, words: Sequence[bool], output: Array, seed: int) -> Sensitivity | None:
+def given_data(fields: Array, categorical: Sequence[bool], output: Array, seed: int) -> Sensitivity | None:
     """First-order indices of any sample by random balance designs [theory: sampling, eq. 8].
 
     Parameters
     ----------
     fields : sampled values, shape (samples, fields)
-    words : whether a field takes a few values only, shape (fields,)
+    categorical : whether a field takes a few values only, shape (fields,)
     output : of each sample, shape (samples,)
     seed : of the resampling, and of the order among equal values
     """
@@ -96,7 +96,7 @@ def given_data(fields: Array, words: Sequence[bool], output: Array, seed: int) -
     step = -(-output.size // _MOST)
     taken, output = fields[::step].copy(), output[::step]
     rng = np.random.default_rng(seed)
-    for j in np.flatnonzero(words):
+    for j in np.flatnonzero(categorical):
         _, place = np.unique(taken[:, j], return_inverse=True)
         taken[:, j] = place + rng.random(output.size)  # equal values come in any order
     names = [str(j) for j in range(taken.shape[1])]
@@ -188,12 +188,12 @@ def summarise(store: Store, sweep: Sweep) -> SweepResult:
     """
     counts = np.bincount(store.read("status"), minlength=4)
     fields = sample_rows(sweep)(0, store.samples)
-    words = [field.words for field in sweep.fields]
+    categorical = [field.categorical for field in sweep.fields]
     single, shares = {}, {}
     for output in SINGLE:
         values = store.read(output.name)
         single[output.name] = statistics(values[:, None])
-        shares[output.name] = sensitivity(sweep.method, fields, words, values, sweep.seed)
+        shares[output.name] = sensitivity(sweep.method, fields, categorical, values, sweep.seed)
     speeds = sweep.scene.speeds.count
     own_speeds = any(field.path.startswith("speeds.") for field in sweep.fields)
     return SweepResult(

@@ -198,7 +198,7 @@ def run_sweep(
 ) -> Store:
     """Answer every sample that the store does not hold yet.
 
-    It may be ended at any moment, however rudely; the same call goes on from the finished blocks, and the
+    It may be ended at any moment, in any way; the same call continues from the finished blocks, and the
     store comes out the same, byte for byte, whatever the workers.
 
     Parameters
@@ -278,10 +278,10 @@ def _missing(store: Store) -> list[int]:
     return np.flatnonzero(store.read("status")[:: store.block] == PENDING).tolist()
 
 
-def _workers(asked: int | None, blocks: int) -> int:
+def _workers(wanted: int | None, blocks: int) -> int:
     """As many as there are cores and work; a process of its own is not worth one block."""
-    if asked is not None:
-        return asked
+    if wanted is not None:
+        return wanted
     import os
 
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -45,20 +45,20 @@ def test_the_table_comes_in_si() -> None:
             clearance="3 mm",
         )
     )
-    aim = scene.optimise
-    assert aim is not None
-    assert aim.temperature == pytest.approx((278.15, 293.15))
-    assert aim.unbalance == pytest.approx((0.1, 0.2))
-    assert (aim.duty[0].speed, aim.duty[0].weight) == pytest.approx((2.0 * np.pi, 2.0))
-    assert aim.volumes[0] == pytest.approx((1e-5, 5e-4))
-    assert aim.operating == pytest.approx((20.0 * np.pi, 24.0 * np.pi))
-    assert aim.working_speed == pytest.approx(30.0 * np.pi)
+    task = scene.optimise
+    assert task is not None
+    assert task.temperature == pytest.approx((278.15, 293.15))
+    assert task.unbalance == pytest.approx((0.1, 0.2))
+    assert (task.duty[0].speed, task.duty[0].weight) == pytest.approx((2.0 * np.pi, 2.0))
+    assert task.volumes[0] == pytest.approx((1e-5, 5e-4))
+    assert task.operating == pytest.approx((20.0 * np.pi, 24.0 * np.pi))
+    assert task.working_speed == pytest.approx(30.0 * np.pi)
 
 
 def test_a_scene_without_the_table_keeps_its_digest() -> None:
-    plain, aimed = scene_from_table(table()), scene_from_table(table(objective="peak"))
-    assert aimed.altered(optimise=None).digest == plain.digest
-    assert aimed.digest != plain.digest
+    plain, with_task = scene_from_table(table()), scene_from_table(table(objective="peak"))
+    assert with_task.altered(optimise=None).digest == plain.digest
+    assert with_task.digest != plain.digest
 
 
 @pytest.mark.parametrize(
@@ -182,15 +182,15 @@ def test_wrong_options(
 
 def test_words_tell_what_is_not_feasible(scene_file: Path) -> None:
     scene = load_scene(scene_file)
-    best = optimise_scene(scene, aim=Optimisation(objective="least_mass", vibration_limit=1e-5), front=False)
+    best = optimise_scene(scene, task=Optimisation(objective="least_mass", vibration_limit=1e-5), front=False)
     text = "\n".join(describe_optimum(best))
     assert "NOT FEASIBLE" in text and "EXCEEDED" in text
     assert "Closed form, chamber 1" in text
 
 
-def _optimum(name: str, **aim: object) -> OptimumResult:
+def _optimum(name: str, **task: object) -> OptimumResult:
     scene = load_scene(EXAMPLES / f"{name}.toml")
-    return optimise_scene(scene.altered(speeds=scene.speeds.altered(count=9)), aim=Optimisation(**aim))
+    return optimise_scene(scene.altered(speeds=scene.speeds.altered(count=9)), task=Optimisation(**task))
 
 
 @pytest.mark.parametrize("name", ["runup", "horizontal_rig"])

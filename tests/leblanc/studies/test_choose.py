@@ -68,7 +68,7 @@ def test_a_finer_tolerance_takes_the_exact_model_more_often() -> None:
 def test_a_model_that_is_asked_for_is_taken_and_its_error_told() -> None:
     for name in ("statics", "linear"):
         choice = choose(asked(strong(), name))
-        assert choice.asked and set(choice.models.tolist()) == {name} and choice.model == name
+        assert choice.prescribed and set(choice.models.tolist()) == {name} and choice.model == name
         assert set(run_scene(asked(strong(), name)).response.model.tolist()) == {name}
     linear, auto = choose(asked(strong(), "linear")), choose(strong())
     assert linear.error.max() > 0.5 and linear.missed.any()

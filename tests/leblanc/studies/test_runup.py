@@ -327,7 +327,7 @@ def test_gravity_across() -> None:
     "covering_speed(fill, axial_gravity(scene))",
     "covering_speed(fill, 2.0 * axial_gravity(scene))",
 )
-@kills("leblanc.studies.runup:held_from", "max(held, covering", "min(held, covering")
+@kills("leblanc.studies.runup:held_from", "max(slowest, covering", "min(slowest, covering")
 def test_gravity_along() -> None:
     """The paraboloid covers the wall's height: g h_c/Omega^2 < V/(pi h_c), in a centrifuge's field."""
     machine = scene(chambers=[_chamber(1e-3)])
@@ -734,8 +734,8 @@ def test_an_interrupted_run_leaves_its_files(tmp_path: Path, monkeypatch: pytest
 
 @kills(
     "leblanc.studies.runup:liquid_model",
-    'return "long_wave" if asked == "auto"',
-    'return "linear" if asked == "auto"',
+    'return "long_wave" if liquid == "auto"',
+    'return "linear" if liquid == "auto"',
 )
 def test_liquid_model() -> None:
     """Long waves unless the scene asks for linear layers; what has no time is refused."""

@@ -12,7 +12,7 @@ from leblanc.cli.output import print_json
 from leblanc.figures.comparison import LOOKS
 from leblanc.results.explanation import Comparison, ModelAnswer
 from leblanc.results.response import RunResult
-from leblanc.text.explanation import reasons, rows
+from leblanc.text.explanation import comparison_rows, refusals
 from meshes.errors import InputError
 from tests.mutants import kills
 from tests.oracles.records import ADDED, MASS, RPM, dry_deflection, record_of, response_of
@@ -102,10 +102,10 @@ def test_json_dataset_and_table_say_the_same(capsys: pytest.CaptureFixture[str])
         assert np.isnan(data[key].sel(model="kdv")).all()
     assert data.answered.values.tolist() == [1, 0, 1]
     np.testing.assert_array_equal(data.amplitude_dry, said["amplitude_dry"])
-    table = rows(found)
+    table = comparison_rows(found)
     assert [row[0] for row in table] == ["linear", "kdv", "statics"] and table[2][3] == "reference"
     assert table[0][1] == f"{1e3 * linear['peak_amplitude']:.4g}"
-    assert reasons(found) == ["kdv: model.liquid must be another"]
+    assert refusals(found) == ["kdv: model.liquid must be another"]
 
 
 def test_lines_of_the_figure_are_told_apart_without_colour() -> None:

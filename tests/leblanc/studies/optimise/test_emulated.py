@@ -34,8 +34,8 @@ def test_search(tmp_path: Path) -> None:
     scene, store = swept(tmp_path)
     emulator = emulated_vibration(store, scene, Optimisation())
     assert emulator.chambers == (1, 0)  # the order of the study
-    quick = optimise_scene(scene, aim=Optimisation(), front=False, emulator=emulator)
-    true = optimise_scene(scene, aim=Optimisation(), front=False)
+    quick = optimise_scene(scene, task=Optimisation(), front=False, emulator=emulator)
+    true = optimise_scene(scene, task=Optimisation(), front=False)
     assert quick.emulator is not None and quick.notes[0] == emulated(quick.emulator)
     again = answer_scenes([with_volumes(scene, quick.volume)]).amplitude[0, -1]
     # The value told is that of the solvers.
@@ -68,9 +68,9 @@ def test_what_does_not_fit_is_said(tmp_path: Path) -> None:
     scene, store = swept(tmp_path)
     with pytest.raises(InputError, match="this very scene"):
         emulated_vibration(store, scene.altered(gravity=9.8), Optimisation())
-    for aim in (Optimisation(objective="mean"), Optimisation(working_speed=100.0)):
+    for task in (Optimisation(objective="mean"), Optimisation(working_speed=100.0)):
         with pytest.raises(InputError) as caught:
-            emulated_vibration(store, scene, aim)
+            emulated_vibration(store, scene, task)
         assert caught.value.field == "--objective"
     emulated_vibration(store, scene, Optimisation(objective="peak"))
     more = SMOOTH_FILLS + '"rotor.mass" = { uniform = [3.9, 4.1] }\n'

@@ -32,7 +32,7 @@ from meshes.errors import InputError
 from solvers.search import Judgement, SearchPlan, search
 from solvers.statics.hydrostatics import equilibrium
 from tests.mutants import kills
-from tests.oracles.optimise import amplitudes, brute_force, random_aim, random_scene
+from tests.oracles.optimise import amplitudes, brute_force, random_scene, random_task
 
 EXAMPLES = Path(__file__).parents[4] / "examples"
 WATER = known_liquid("water")
@@ -284,10 +284,10 @@ def test_front() -> None:
 def against_brute_force(seed: int, chambers: int, count: int = 25) -> None:
     """Never worse than a dense grid by more than 0.1 % of the objective."""
     scene = random_scene(seed, chambers, count)
-    aim = random_aim(seed, scene)
-    best = optimise_scene(scene, aim=aim, front=False)
+    task = random_task(seed, scene)
+    best = optimise_scene(scene, task=task, front=False)
     first, rounds, inner = {1: (60, 3, 10), 2: (16, 3, 5), 3: (7, 4, 3)}[chambers]
-    _, value = brute_force(scene, aim, first, rounds, inner)
+    _, value = brute_force(scene, task, first, rounds, inner)
     if math.isfinite(value):
         assert best.feasible
         assert best.value <= value * 1.001
@@ -323,10 +323,10 @@ def test_special_case_of_a_given_deflection() -> None:
     """Through the whole optimiser: the volume is the closed form's, which stands beside it."""
     scene = load_scene(EXAMPLES / "runup.toml")
     for speed in (40.0, 100.0):
-        best = optimise_scene(scene, aim=Optimisation(deflection=2e-3, working_speed=speed))
+        best = optimise_scene(scene, task=Optimisation(deflection=2e-3, working_speed=speed))
         assert best.volume[0] == pytest.approx(best.closed_form[0].optimal_volume, rel=1e-9)
         assert best.feasible
-    flat = optimise_scene(load_scene(EXAMPLES / "horizontal_rig.toml"), aim=Optimisation(deflection=5e-4))
+    flat = optimise_scene(load_scene(EXAMPLES / "horizontal_rig.toml"), task=Optimisation(deflection=5e-4))
     for volume, form in zip(flat.volume, flat.closed_form, strict=True):
         assert volume == pytest.approx(form.optimal_volume, rel=1e-9)
 
@@ -348,14 +348,14 @@ def test_the_best_volume_is_self_consistent() -> None:
 def test_constraints_bind() -> None:
     scene = load_scene(EXAMPLES / "washing_machine.toml")
     free = optimise_scene(scene, front=False)
-    dry = optimise_scene(scene, aim=Optimisation(dry_patch=False), front=False)
+    dry = optimise_scene(scene, task=Optimisation(dry_patch=False), front=False)
     assert dry.feasible and dry.constraints["dry_patch"].value == 0.0
     assert dry.volume[0] >= dry.closed_form[0].optimal_volume * (1.0 - 1e-6)
     bound = Optimisation(volumes=((1e-5, 5e-5),))
-    held = optimise_scene(scene, aim=bound, front=False)
+    held = optimise_scene(scene, task=bound, front=False)
     # The more the better up to the closed form; a hair of the amplitude, 1e-6, is some 3e-5 of this volume.
     assert held.volume[0] == pytest.approx(5e-5, rel=1e-4)
-    calm = optimise_scene(scene, aim=Optimisation(stability_margin=0.05), front=False)
+    calm = optimise_scene(scene, task=Optimisation(stability_margin=0.05), front=False)
     assert calm.feasible and calm.growth <= -0.05
     assert calm.volume[0] < free.volume[0]
     assert free.growth > -0.05
@@ -364,7 +364,7 @@ def test_constraints_bind() -> None:
 def test_nothing_allowed_is_said() -> None:
     """No volume brings the amplitude below a hundredth of what the added mass allows."""
     scene = load_scene(EXAMPLES / "runup.toml")
-    best = optimise_scene(scene, aim=Optimisation(objective="least_mass", vibration_limit=2e-5), front=False)
+    best = optimise_scene(scene, task=Optimisation(objective="least_mass", vibration_limit=2e-5), front=False)
     assert not best.feasible
     assert not best.constraints["vibration"].satisfied
     # The least violation is the least amplitude.
@@ -376,7 +376,7 @@ def test_clearance_binds() -> None:
     scene = load_scene(EXAMPLES / "washing_machine.toml").altered(
         speeds=Speeds(start=6.0, stop=105.0, count=67)
     )
-    best = optimise_scene(scene, aim=Optimisation(clearance=8.0e-3), front=False)
+    best = optimise_scene(scene, task=Optimisation(clearance=8.0e-3), front=False)
     free = optimise_scene(scene, front=False)
     assert best.feasible
     assert best.constraints["clearance"].value <= 8.0e-3
@@ -406,7 +406,7 @@ def test_what_does_not_fit_is_refused() -> None:
     scene = load_scene(EXAMPLES / "runup.toml")
     tub = load_scene(EXAMPLES / "tub.toml")
     table = load_scene(EXAMPLES / "vibratory_table.toml")
-    for one, aim, field in (
+    for one, task, field in (
         (scene, Optimisation().altered(objective="best"), "objective"),
         (scene, Optimisation(volumes=((0.0, 1.0), (0.0, 1.0))), "optimise.volumes"),
         (scene, Optimisation(volumes=((1.0, 2.0),)), "optimise.volumes.0"),
@@ -415,4 +415,4 @@ def test_what_does_not_fit_is_refused() -> None:
         (table, Optimisation(), "chambers"),
     ):
         with pytest.raises(InputError, match=field):
-            optimise_scene(one, aim=aim, front=False)
+            optimise_scene(one, task=task, front=False)
