@@ -1,1 +1,1 @@
-"""How it is solved: quadrature, root finding, finite elements, the rotor's answer."""
+"""How it is solved: the liquid alone, the dry rotor, both; `liquid_model` is what a liquid answers."""

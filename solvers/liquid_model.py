@@ -29,6 +29,7 @@ Range = tuple[float, float]
 CAPTURED: Range = (1.0, math.inf)
 THIN_LAYERS: Range = (0.0, 0.2)
 LONG: Range = (0.0, 0.3)
+_ACROSS = 1e-9  # of the pull, that may be rounding
 
 
 @dataclass(frozen=True)
@@ -113,7 +114,7 @@ class Whirls:
         """Those at some indices, shape (m,)."""
         return Whirls(*(getattr(self, name)[which] for name in self.__dataclass_fields__))
 
-    def one(self, k: int) -> Whirl:
+    def whirl(self, k: int) -> Whirl:
         """A single one of them."""
         spin, speed, size, gravity = self.spin[k], self.speed[k], abs(self.deflection[k]), self.gravity[k]
         return Whirl(float(spin), float(speed), float(size), gravity=float(gravity))
@@ -203,6 +204,19 @@ class LiquidAnswer:
         for limit in self.limits.values():
             kept &= limit
         return kept
+
+    def real_unbalance(self) -> Array:
+        """Unbalance of liquid that pulls along the deflection alone, kg m.
+
+        Raises
+        ------
+        InputError : some pull across it, as liquid has that does not stand still in the drum
+        """
+        across = np.abs(self.unbalance.imag) > _ACROSS * np.abs(self.unbalance)
+        if across.any():
+            allowed = "real: liquid at rest in the drum, on which the synchronous response rests"
+            raise InputError("unbalance", complex(self.unbalance[across][0]), allowed)
+        return np.asarray(self.unbalance.real)
 
     def force(self, whirls: Whirls) -> Complex:
         """Force on the chamber in the standing frame at the instant of the deflections, N.
@@ -345,7 +359,7 @@ class WaveModel(LiquidModel, Protocol):
             parts = [self.answer(fills.at(rows), whirls.at(rows)) for rows in apart]
             return LiquidAnswer.joined(parts).at(np.argsort(np.concatenate(apart)))
         return LiquidAnswer.joined(
-            [self.wave(fills.fill(k), whirls.one(k)).answer for k in range(len(fills))]
+            [self.wave(fills.fill(k), whirls.whirl(k)).answer for k in range(len(fills))]
         )
 
 

@@ -11,9 +11,9 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.friction import Friction
 from meshes.errors import InputError, require_positive
+from solvers.layer.records import Outcome
 from solvers.rotor.system import RotorSystem
 from solvers.runup.long_wave import couple
-from solvers.runup.machine import Outcome
 from solvers.runup.runup import RunupNumerics
 
 _SAMPLES = 800

@@ -115,10 +115,10 @@ def _tell(result: RunupResult, folder: Path) -> None:
 
 def _finish(result: RunupResult, scene: Path) -> None:
     """Say what did not come to its end, after all that was reached is written."""
-    from leblanc.results.runup import RunupEnd
     from leblanc.scene.schema.load import NotConverged
+    from solvers.layer.records import Outcome
 
-    if result.end is RunupEnd.INTERRUPTED:
+    if result.outcome is Outcome.INTERRUPTED:
         raise KeyboardInterrupt
     if not result.converged:
         raise NotConverged([f"{scene}: {result.reason}; what was reached is written"])

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import asdict, dataclass
-from enum import Enum
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,33 +16,13 @@ from leblanc.results.netcdf import NamedArrays, flags, variable
 from leblanc.results.response import phase
 from leblanc.units import friction_words
 from meshes.arrays import Array, Complex, Flags
+from solvers.layer.records import Outcome
 from solvers.runup.runup import EnergyAudit, RunupHistory
 from solvers.synchronous.response import Response
 
 Values = NDArray[Any]
 Bands = tuple[tuple[float, float], ...]
 _FEWEST = 8  # samples in a mean over turns
-
-
-class RunupEnd(Enum):
-    """How a run-up ended, and what that means."""
-
-    DONE = "it came to its end"
-    AT_AXIS = "the surface of a layer came to the axis"
-    NO_STEPS_LEFT = "the time steps ran out"
-    NOT_COUPLED = "rotor and layers did not agree in the shortest steps"
-    MOTOR_STANDS = "the motor stands"
-    INTERRUPTED = "interrupted"
-
-    @classmethod
-    def of_reason(cls, reason: str) -> RunupEnd:
-        """The end that a solver's reason names; a reason is empty or begins with the message of an end."""
-        if not reason:
-            return cls.DONE
-        for end in cls:
-            if reason.startswith(end.value):
-                return end
-        raise ValueError(f"no such end of a run-up: {reason}")
 
 
 class Capture(NamedTuple):
@@ -146,9 +125,9 @@ class RunupResult(Result):
     summary = "leblanc.text.runup:summary"
 
     @property
-    def end(self) -> RunupEnd:
+    def outcome(self) -> Outcome:
         """How the run ended."""
-        return RunupEnd.of_reason(self.history.reason)
+        return self.history.outcome
 
     @property
     def converged(self) -> bool:

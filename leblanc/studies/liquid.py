@@ -1,20 +1,20 @@
-"""Liquid models by the names that scenes and commands give them; here alone a name becomes an object."""
+"""Liquid models by the names that scenes and commands give them; here alone a name becomes an object.
+
+A room of solvers is imported where one of its models is made: the response needs no waves, no run-up.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
 
 from fluid.friction import NO_FRICTION, Friction, FrictionLaw
 from meshes.errors import InputError
-from solvers.layer.settle import LongWave
-from solvers.layer.state import Numerics
 from solvers.liquid_model import LiquidModel, WaveModel
-from solvers.runup.linear import couple_linear
-from solvers.runup.long_wave import couple
-from solvers.runup.machine import RunupModel
-from solvers.sloshing.model import SmallWaves
 from solvers.synchronous.models import LINEAR, STATICS
-from solvers.waves.one_family import OneFamily
+
+if TYPE_CHECKING:
+    from solvers.runup.machine import RunupModel
 
 _Make = Callable[[Friction, int | None, bool], WaveModel]
 _POINTS = 256  # round the wall, unless another number is asked for
@@ -26,14 +26,21 @@ def _linear(friction: Friction, cells: int | None, dispersion: bool) -> WaveMode
 
 
 def _long_wave(friction: Friction, cells: int | None, dispersion: bool) -> WaveModel:
+    from solvers.layer.settle import LongWave
+    from solvers.layer.state import Numerics
+
     return LongWave(friction, Numerics(_POINTS if cells is None else cells, dispersion))
 
 
 def _kdv(friction: Friction, cells: int | None, dispersion: bool) -> WaveModel:
+    from solvers.waves.one_family import OneFamily
+
     return OneFamily(friction, _POINTS if cells is None else cells, dispersion)
 
 
 def _fem(friction: Friction, cells: int | None, dispersion: bool) -> WaveModel:
+    from solvers.sloshing.model import SmallWaves
+
     _require_none(friction, "finite elements, which are inviscid")
     return SmallWaves() if cells is None else SmallWaves(cells)
 
@@ -55,8 +62,7 @@ WAVE_MODELS = tuple(_MAKE)
 # Those that answer the unbalance of a rotor: the liquid is at rest in a synchronous whirl.
 SYNCHRONOUS_MODELS = ("statics", "linear", "fem")
 # Those that go through time with a rotor.
-_RUNUP: Mapping[str, RunupModel] = {"long_wave": couple, "linear": couple_linear}
-RUNUP_MODELS = tuple(_RUNUP)
+RUNUP_MODELS = ("long_wave", "linear")
 
 
 def wave_model(
@@ -99,6 +105,9 @@ def runup_model(name: str) -> RunupModel:
     ------
     InputError : no model of that name goes through time
     """
-    if name not in _RUNUP:
-        raise InputError("model.liquid", name, " or ".join(_RUNUP) + " for a run-up")
-    return _RUNUP[name]
+    from solvers.runup.linear import couple_linear
+    from solvers.runup.long_wave import couple
+
+    if name not in RUNUP_MODELS:
+        raise InputError("model.liquid", name, " or ".join(RUNUP_MODELS) + " for a run-up")
+    return couple if name == "long_wave" else couple_linear

@@ -47,5 +47,5 @@ def summary(result: RunupResult) -> list[tuple[str, str]]:
     return [
         *((label, value(k)) for label, k in moments(result)),
         ("Liquid model", describe_model(result.model, result.cells, result.dispersion)),
-        ("End", result.reason or result.end.value),
+        ("End", result.reason or "it came to its end"),
     ]

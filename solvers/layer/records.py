@@ -69,14 +69,29 @@ LOADS = floats(
 )
 
 
-class LayerOutcome(IntEnum):
-    """How a layer's way through a time ended; compiled code knows it as well."""
+class Outcome(IntEnum):
+    """How a stretch of time steps ended, of a layer or of a rotor with layers; compiled code knows it too."""
 
     DONE = 0
-    RAN_OUT = 1
+    TOO_LONG = 1
     AT_AXIS = 2
+    RAN_OUT = 3
+    NOT_COUPLED = 4
+    STOPPED = 5
+    INTERRUPTED = 6
 
     @property
     def message(self) -> str:
         """Why it went no further; empty where it came to its end."""
-        return ("", "the time steps ran out", "the surface came to the axis")[self]
+        return _MESSAGES[self]
+
+
+_MESSAGES = {
+    Outcome.DONE: "",
+    Outcome.TOO_LONG: "a layer outran the shortest step",
+    Outcome.AT_AXIS: "the surface of a layer came to the axis",
+    Outcome.RAN_OUT: "the time steps ran out",
+    Outcome.NOT_COUPLED: "rotor and layers did not agree in the shortest steps",
+    Outcome.STOPPED: "the motor stands",
+    Outcome.INTERRUPTED: "interrupted",
+}

@@ -16,7 +16,7 @@ from fluid.fill import Fill
 from fluid.friction import QUADRATIC, Friction
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError
-from solvers.layer.records import LOADS, Drive, LayerOutcome, Record, Wall, records
+from solvers.layer.records import LOADS, Drive, Outcome, Record, Wall, records
 from solvers.liquid_model import Whirl
 
 
@@ -187,8 +187,8 @@ class MovingLayer:
             self.scratch,
             sums,
         )
-        if outcome != LayerOutcome.DONE:
-            self.reason = LayerOutcome(outcome).message
+        if outcome != Outcome.DONE:
+            self.reason = Outcome(outcome).message
             return None
         self.time += length
         last = offset(self.area, self.drive, self.angles, self.time)

@@ -25,9 +25,11 @@ from solvers.layer.finite_volume import (
     log_of_surface,
     ring_rates,
 )
-from solvers.layer.records import LayerOutcome
+from solvers.layer.records import Outcome
 
 _jit: Any = njit(**COMPILED)
+# Parts of one function: compiled one by one and linked they would cost twice the time to compile.
+_inner: Any = njit(inline="always")
 
 # Courant number beyond which a step is taken again.
 LARGEST = 1.0
@@ -107,17 +109,47 @@ def pull(x, y, angles, pull_cell, pull_face):
         pull_face[i] = x * angles[2, i] + y * angles[3, i]
 
 
+@_inner
+def stage_rates(area, q, spin, euler, x, y, angles, dt, spread, pull_cell, pull_face, spare, rate_a, rate_q):
+    """Rates of change at one stage of a time step, for callers that are compiled themselves.
+
+    Parameters
+    ----------
+    area, q : state at the stage, shape (n,)
+    spin, euler : there, and its rate of change
+    x, y : body force in the drum frame
+    angles : cosine and sine at the cells' middles and at their left faces, shape (4, n)
+    dt : of the step, 0 where only the fastest wave is asked for
+    spread : as for `solvers.layer.finite_volume.rates`
+    pull_cell, pull_face, rate_a, rate_q : results, shape (n,)
+    spare : scratch
+
+    Returns
+    -------
+    Outcome.DONE, AT_AXIS, or TOO_LONG where the step is to be taken again; the fastest wave
+    """
+    step = 2.0 * np.pi / area.size
+    pull(x, y, angles, pull_cell, pull_face)
+    fastest = ring_rates(area, q, spin, euler, pull_cell, pull_face, step, dt, spread, spare, rate_a, rate_q)
+    outcome = Outcome.DONE
+    if not fastest < np.inf:
+        outcome = Outcome.AT_AXIS
+    elif dt * fastest > LARGEST * step:
+        outcome = Outcome.TOO_LONG
+    return outcome, fastest
+
+
 def scratch(cells: int) -> NDArray[np.float64]:
     """Scratch that `advance` wants for a ring of so many cells."""
     return np.zeros((WORK + 7, cells + 2 * GHOSTS))
 
 
 @_jit
-def _whirl(time, drive, angles, pull_cell, pull_face):
+def _whirl(time, drive):
     """Body force in the drum frame: minus the axis' acceleration, and gravity across the axis.
 
     The amplitude grows as tau - sin(2 pi tau)/(2 pi), tau = time/ramp; its rate of change is left out of the
-    acceleration [theory: long_wave, eq. 8]. Fills its radial part at cells and faces; returns its parts.
+    acceleration [theory: long_wave, eq. 8].
     """
     slip, ramp = drive.slip, drive.ramp
     grown = 1.0
@@ -126,7 +158,6 @@ def _whirl(time, drive, angles, pull_cell, pull_face):
     push = drive.amplitude * drive.whirl * drive.whirl * grown
     x = push * np.cos(slip * time) - drive.weight * np.sin(drive.spin * time)
     y = push * np.sin(slip * time) - drive.weight * np.cos(drive.spin * time)
-    pull(x, y, angles, pull_cell, pull_face)
     return x, y
 
 
@@ -187,7 +218,7 @@ def advance(area, q, start, stop, drive, wall, angles, courant, most, spare, loa
 
     Returns
     -------
-    LayerOutcome, and the steps tried
+    Outcome, and the steps tried
     """
     n = area.size
     step = 2.0 * np.pi / n
@@ -200,7 +231,8 @@ def advance(area, q, start, stop, drive, wall, angles, courant, most, spare, loa
     # 0: only the largest speed is asked for; 1 and 2: the two stages of Heun's method.
     stage = 0
     while time < stop:
-        _whirl(time + dt if stage == 2 else time, drive, angles, pull_cell, pull_face)
+        if steps >= most:
+            return Outcome.RAN_OUT, steps
         if stage == 1:
             # The speed may have grown since it was taken: a tenth is kept in hand.
             dt = min(courant * step / (1.1 * fastest), stop - time)
@@ -210,15 +242,15 @@ def advance(area, q, start, stop, drive, wall, angles, courant, most, spare, loa
         if stage < 2:
             for i in range(n):
                 next_a[i], next_q[i] = area[i], q[i]
+        x, y = _whirl(time + dt if stage == 2 else time, drive)
         limit = dt if stage > 0 else 0.0
-        fastest = ring_rates(
-            next_a, next_q, spin, 0.0, pull_cell, pull_face, step, limit, spread, spare, rate_a, rate_q
-        )
-        if steps >= most:
-            return LayerOutcome.RAN_OUT, steps
-        if not fastest < np.inf:
-            return LayerOutcome.AT_AXIS, steps
-        if stage > 0 and dt * fastest > LARGEST * step:
+        outcome, fastest = stage_rates(
+            next_a, next_q, spin, 0.0, x, y, angles, limit, spread,
+            pull_cell, pull_face, spare, rate_a, rate_q,
+        )  # fmt: skip
+        if outcome == Outcome.AT_AXIS:
+            return outcome, steps
+        if outcome == Outcome.TOO_LONG:
             # A film has run faster than the step allows: once more, shorter.
             for i in range(n):
                 q[i] = begin_q[i]
@@ -227,9 +259,10 @@ def advance(area, q, start, stop, drive, wall, angles, courant, most, spare, loa
             continue
         if stage == 1:
             if not predict(area, q, rate_a, rate_q, dt, next_a, next_q):
-                return LayerOutcome.AT_AXIS, steps
+                return Outcome.AT_AXIS, steps
         elif stage == 2:
-            x, y = _whirl(time, drive, angles, pull_cell, pull_face)
+            x, y = _whirl(time, drive)
+            pull(x, y, angles, pull_cell, pull_face)
             cosine, sine = np.cos(slip * time), np.sin(slip * time)
             _tally(area, begin_q, spin, pull_cell, angles, spare, cosine, sine, dt, sums)
             sums.push_x += (x * cosine + y * sine) * dt
@@ -239,4 +272,4 @@ def advance(area, q, start, stop, drive, wall, angles, courant, most, spare, loa
             time += dt
             steps += 1
         stage = 2 if stage == 1 else 1
-    return LayerOutcome.DONE, steps
+    return Outcome.DONE, steps

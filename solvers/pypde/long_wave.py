@@ -23,7 +23,7 @@ from fluid.fill import Fill
 from fluid.friction import NO_FRICTION, Friction
 from meshes.arrays import Array
 from meshes.errors import InputError
-from solvers.layer.records import LayerOutcome
+from solvers.layer.records import Outcome
 from solvers.liquid_model import Whirl
 from solvers.pypde import terms
 from solvers.pypde import terms as layer
@@ -259,7 +259,7 @@ class FiniteVolumeSolver(SolverBase):  # type: ignore[no-untyped-call]
         def advance(state: Any, start: float, stop: float) -> float:
             found = layer.march(self.terms, *_parts(state), start, stop, self.courant)
             area, momentum, outcome, steps = found
-            if outcome is not LayerOutcome.DONE:
+            if outcome is not Outcome.DONE:
                 self.info["status"] = "lost"
                 raise ConvergenceError(f"{outcome.message} between t = {start:g} s and {stop:g} s")
             state.data[0], state.data[1] = area, momentum

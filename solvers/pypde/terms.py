@@ -21,7 +21,7 @@ from fluid.friction import NO_FRICTION, Friction, damping_rate
 from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative
 from solvers.layer.finite_volume import DRY, FULL, GHOSTS, THIN, WORK, rates
-from solvers.layer.records import LOADS, Drive, LayerOutcome, Wall, records
+from solvers.layer.records import LOADS, Drive, Outcome, Wall, records
 from solvers.layer.state import ring
 from solvers.layer.step import advance, scratch
 from solvers.liquid_model import Whirl
@@ -125,7 +125,7 @@ def layer_rates(terms: LongWaveTerms, area: Array, momentum: Array, time: float)
 
 def march(
     terms: LongWaveTerms, area: Array, momentum: Array, start: float, stop: float, courant: float
-) -> tuple[Array, Array, LayerOutcome, int]:
+) -> tuple[Array, Array, Outcome, int]:
     """Advance a layer by Heun steps in which no cell falls below zero, at a constant spin.
 
     Parameters
@@ -161,7 +161,7 @@ def march(
     )
     wall, loads = Wall(law, coefficient, _lid(terms), _spread(terms, a)), records(LOADS)
     outcome, steps = advance(a, q, start, stop, drive, wall, ring(n), courant, _STEPS, scratch(n), loads)
-    return a * radius**2, q * radius**4, LayerOutcome(outcome), int(steps)
+    return a * radius**2, q * radius**4, Outcome(outcome), int(steps)
 
 
 def require_constant_spin(terms: LongWaveTerms) -> None:

@@ -22,10 +22,9 @@ from solvers.layer.finite_volume import (
     WORK,
     faded_velocity,
     log_of_surface,
-    ring_rates,
 )
-from solvers.layer.step import LARGEST, calm, copy, correct, predict, pull, surface_radius, wall_friction
-from solvers.runup.machine import Outcome
+from solvers.layer.records import Outcome
+from solvers.layer.step import calm, copy, correct, predict, stage_rates, surface_radius, wall_friction
 
 _jit: Any = njit(**COMPILED)
 _unwrapped: Any = njit(**(COMPILED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
@@ -210,15 +209,13 @@ def layer_step(area, q, spins, force, layer, coefficient, dt, angles, spare, gai
     fastest = 0.0
     for stage in range(2):
         spin, x, y = spins[stage], force[2 * stage], force[2 * stage + 1]
-        pull(x, y, angles, pull_cell, pull_face)
-        speed = ring_rates(
-            next_a, next_q, spin, euler, pull_cell, pull_face, step, dt, spread, spare, rate_a, rate_q
-        )
-        if not speed < np.inf:
-            return Outcome.AT_AXIS, speed
+        outcome, speed = stage_rates(
+            next_a, next_q, spin, euler, x, y, angles, dt, spread,
+            pull_cell, pull_face, spare, rate_a, rate_q,
+        )  # fmt: skip
         fastest = max(fastest, speed)
-        if dt * fastest > LARGEST * step:
-            return Outcome.TOO_LONG, fastest
+        if outcome != Outcome.DONE:
+            return outcome, fastest
         done = _power(next_a, next_q, spin, euler, x, y, angles, rate_a, gains, 0.5 * dt)
         gains.loss += 0.5 * dt * done
         if stage == 0:

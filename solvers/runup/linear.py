@@ -12,10 +12,10 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.friction import Friction, FrictionLaw, damping_rate
 from meshes.arrays import Array
-from solvers.layer.records import records
+from solvers.layer.records import Outcome, records
 from solvers.layer.state import ring
 from solvers.rotor.system import RotorSystem
-from solvers.runup.machine import Outcome, Reading
+from solvers.runup.machine import Reading
 from solvers.runup.state import RELEASE, SUMS, CoupledRotor, at_rest, layer_properties, mean_area
 
 if TYPE_CHECKING:

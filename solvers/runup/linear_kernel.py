@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 
 from meshes.arrays import Array
 from solvers.layer.finite_volume import COMPILED
-from solvers.layer.records import Record, floats
+from solvers.layer.records import Outcome, Record, floats
 from solvers.runup.kernel import motor_torque, solve
-from solvers.runup.machine import Outcome
 
 _jit: Any = njit(**COMPILED)
 

@@ -11,10 +11,10 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.friction import Friction
 from meshes.arrays import Array, Flags
-from solvers.layer.records import Record, records
+from solvers.layer.records import Outcome, Record, records
 from solvers.layer.state import ring
 from solvers.rotor.system import RotorSystem
-from solvers.runup.machine import Outcome, Reading
+from solvers.runup.machine import Reading
 from solvers.runup.state import (
     GAINS,
     LAYER,

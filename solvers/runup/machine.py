@@ -1,8 +1,8 @@
 """What turns the rotor in a run-up, and what a run-up asks of a liquid model.
 
-The speed over time is given, or follows from a motor with its torque curve. A liquid model is a rotor with
-its liquid at one moment, which can go on in time; it is made by a function with the arguments of
-`solvers.runup.long_wave.couple`, and `run_up` drives any.
+The speed over time is given, or follows from a motor with its torque curve. A liquid model is a function
+that makes a rotor with its liquid at one moment; `solvers.runup.runup.run_up` drives any such machine
+through time.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import IntEnum
 from typing import Any, Protocol
 
 import numpy as np
@@ -19,6 +18,7 @@ from fluid.fill import Fill
 from fluid.friction import Friction
 from meshes.arrays import Array, Complex, Flags, Index
 from meshes.errors import InputError, require_positive
+from solvers.layer.records import Outcome
 from solvers.rotor.system import RotorSystem
 
 
@@ -107,32 +107,6 @@ def torque_curve(drive: Drive) -> Array:
     if isinstance(drive, Ramp):
         return np.zeros((2, 0))
     return np.array([drive.speeds, drive.torques], dtype=float)
-
-
-class Outcome(IntEnum):
-    """How a stretch of time steps ended; compiled code knows it as well."""
-
-    DONE = 0
-    TOO_LONG = 1
-    AT_AXIS = 2
-    RAN_OUT = 3
-    NOT_COUPLED = 4
-    STOPPED = 5
-
-    @property
-    def message(self) -> str:
-        """Why it went no further; empty where it came to its end."""
-        return _MESSAGES[self]
-
-
-_MESSAGES = {
-    Outcome.DONE: "",
-    Outcome.TOO_LONG: "a layer outran the shortest step",
-    Outcome.AT_AXIS: "the surface of a layer came to the axis",
-    Outcome.RAN_OUT: "the time steps ran out",
-    Outcome.NOT_COUPLED: "rotor and layers did not agree in the shortest steps",
-    Outcome.STOPPED: "the motor stands",
-}
 
 
 @dataclass(frozen=True)

@@ -17,18 +17,10 @@ from fluid.friction import NO_FRICTION, Friction
 from fluid.whirl import is_full
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
+from solvers.layer.records import Outcome
 from solvers.rotor.system import RotorSystem
 from solvers.runup.long_wave import couple
-from solvers.runup.machine import (
-    Drive,
-    LayerSnapshots,
-    Outcome,
-    Ramp,
-    Reading,
-    RunupMachine,
-    RunupModel,
-    torque_curve,
-)
+from solvers.runup.machine import Drive, LayerSnapshots, Ramp, Reading, RunupMachine, RunupModel, torque_curve
 
 _MOST = 200_000_000  # steps between two samples
 
@@ -125,8 +117,8 @@ class RunupHistory:
     audit : of the energy
     steps, layer_steps : of time, and of single layers within them
     disagreement : largest relative difference left between the accelerations of rotor and layers
-    converged : it came to the end
-    reason : why not, or empty
+    outcome : how it ended
+    reason : why it did not come to the end, and when; or empty
     snapshots : of the layers, cell by cell, at the times asked for; None where none were
     """
 
@@ -147,9 +139,14 @@ class RunupHistory:
     steps: int
     layer_steps: int
     disagreement: float
-    converged: bool
+    outcome: Outcome
     reason: str
     snapshots: LayerSnapshots | None = None
+
+    @property
+    def converged(self) -> bool:
+        """It came to the end."""
+        return self.outcome is Outcome.DONE
 
     @property
     def amplitude(self) -> Array:
@@ -256,7 +253,7 @@ def _march(
     """The run itself, sample by sample."""
     time, rate = _times(drive, numerics.samples)
     machine.drive(torque_curve(drive), 0.0 if isinstance(drive, Ramp) else drive.inertia)
-    energy, captured, reason = machine.energy(), 0.0, ""
+    energy, captured, outcome = machine.energy(), 0.0, Outcome.DONE
     wanted = np.unique([np.abs(time - moment).argmin() for moment in snapshots]).astype(np.intp)
     readings, depths = [machine.read()], [machine.depth()] if 0 in wanted else []
     for k, stop in enumerate(time[1:].tolist()):
@@ -264,17 +261,16 @@ def _march(
             captured += machine.switch()
             outcome, brought = _advance(machine, stop, float(rate[k]), numerics.courant)
             captured += brought
-            reason = outcome.message
         except KeyboardInterrupt:
-            reason = "interrupted"
-        if reason:
-            reason = f"{reason} at {machine.time:.6g} s, {machine.spin:.6g} rad/s"
+            outcome = Outcome.INTERRUPTED
+        if outcome is not Outcome.DONE:
             break
         readings.append(machine.read())
         if k + 1 in wanted:
             depths.append(machine.depth())
         if k % 64 == 0:
             progress((k + 1) / rate.size)
+    when = f"at {machine.time:.6g} s, {machine.spin:.6g} rad/s"
     sums = machine.sums
     audit = EnergyAudit(
         captured=captured,
@@ -291,8 +287,8 @@ def _march(
         steps=int(sums.steps),
         layer_steps=int(sums.layer_steps),
         disagreement=float(sums.disagreement),
-        converged=not reason,
-        reason=reason,
+        outcome=outcome,
+        reason="" if outcome is Outcome.DONE else f"{outcome.message} {when}",
         snapshots=kept,
     )
 

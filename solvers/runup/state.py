@@ -1,6 +1,7 @@
-"""What the coupled time steps work on: the machine, its chambers, its state, room for the steps. SI units.
+"""What the coupled time steps work on, and how every run-up begins. SI units.
 
-Numbers that change one by one stand in records, see `solvers.layer.records`.
+The steps take the machine, its chambers, its state and scratch. Numbers that change one by one stand in
+records, see `solvers.layer.records`.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ def mean_area(fill: Fill) -> float:
 
 
 class LayerProperties(NamedTuple):
-    """What the steps know of a layer, in the order of the record LAYER of `solvers.runup.state`.
+    """What the steps know of a layer.
 
     Parameters
     ----------
@@ -51,6 +52,12 @@ class LayerProperties(NamedTuple):
     coefficient: float
     lid: float
     spread: float
+
+
+# The same as a record; the number of the law is an integer.
+LAYER = np.dtype(
+    [(name, np.int64 if name == "law" else np.float64) for name in LayerProperties._fields], align=True
+)
 
 
 def layer_properties(fill: Fill, friction: Friction, dispersion: bool) -> LayerProperties:
@@ -95,109 +102,6 @@ def pool_offset(fill: Fill) -> float:
     return -radius * 2.0 * math.sin(half) ** 3 / (3.0 * share)
 
 
-class Rest(NamedTuple):
-    """A rotor without deflection and its liquid at rest in the drum; n coordinates, l chambers.
-
-    Parameters
-    ----------
-    capture : speed above which each liquid rides with the drum as a layer, rad/s, inf for a solid mass, (l,)
-    pool : offset of the centre of mass of liquid that is no layer, along the first direction, m, shape (l,)
-    planes : displacement of each chamber's axis for unit coordinates, shape (l, 2, n)
-    shaft : record SHAFT at the spin, shape (1,)
-    gravity : acceleration across the axis, shape (2,)
-    """
-
-    capture: Array
-    pool: Array
-    planes: Array
-    shaft: Record
-    gravity: Array
-
-
-def at_rest(system: RotorSystem, fills: Sequence[Fill], spin: float, gravity: float) -> Rest:
-    """How every run-up begins.
-
-    Parameters
-    ----------
-    system, fills, gravity : as for `solvers.runup.runup.run_up`
-    spin : at the beginning, rad/s
-
-    Raises
-    ------
-    InputError : a negative gravity
-    """
-    require_not_negative("gravity", gravity)
-    shaft = records(SHAFT)
-    shaft[0].spin = spin
-    return Rest(
-        capture=np.array([layer_capture(fill, gravity) for fill in fills]),
-        pool=np.array([pool_offset(fill) if gravity > 0.0 else 0.0 for fill in fills]),
-        planes=planes_of(system, fills),
-        shaft=shaft,
-        gravity=np.array([-gravity, 0.0]),
-    )
-
-
-def planes_of(system: RotorSystem, fills: Sequence[Fill]) -> Array:
-    """Displacement of each chamber's axis for unit coordinates, shape (l, 2, n)."""
-    planes = np.array([system.at(fill.chamber.plane) for fill in fills], dtype=float)
-    return planes.reshape(len(fills), 2, len(system.coordinates))
-
-
-@dataclass
-class CoupledRotor(ABC):
-    """What every rotor with layers has, long waves or linear; see `solvers.runup.machine.RunupMachine`.
-
-    Parameters
-    ----------
-    system, fills : what it is made from
-    capture, pool : as of `Rest`, shape (l,)
-    """
-
-    system: RotorSystem
-    fills: tuple[Fill, ...]
-    capture: Array
-    pool: Array
-
-    @property
-    @abstractmethod
-    def shaft(self) -> np.record:
-        """Record SHAFT of the moment."""
-
-    @property
-    @abstractmethod
-    def sums(self) -> np.record:
-        """Record SUMS: works, heats and counts so far."""
-
-    @property
-    def time(self) -> float:
-        """Time, s."""
-        return float(self.shaft.time)
-
-    @property
-    def spin(self) -> float:
-        """Spin speed, rad/s."""
-        return float(self.shaft.spin)
-
-    @property
-    def masses(self) -> Array:
-        """Mass of the liquid in each chamber, kg, shape (l,)."""
-        return np.array([fill.mass for fill in self.fills])
-
-
-# What `solvers.runup.state.LayerProperties` says of a layer.
-LAYER = np.dtype(
-    [
-        ("radius", np.float64),
-        ("weight", np.float64),
-        ("mass", np.float64),
-        ("law", np.int64),
-        ("coefficient", np.float64),
-        ("lid", np.float64),
-        ("spread", np.float64),
-    ],
-    align=True,
-)
 # What a layer is measured by: moment and its rate of change by the flow, inertia of the flow, angular
 # momentum and energy in the frame that does not turn [theory: coupling, eq. 2, 4 and 7].
 MEASURES = floats("moment_x", "moment_y", "flow_x", "flow_y", "xx", "xy", "yy", "spinning", "energy")
@@ -301,3 +205,93 @@ class Room(NamedTuple):
     turn: Array
     force: Array
     spare: Array
+
+
+class Rest(NamedTuple):
+    """A rotor without deflection and its liquid at rest in the drum; n coordinates, l chambers.
+
+    Parameters
+    ----------
+    capture : speed above which each liquid rides with the drum as a layer, rad/s, inf for a solid mass, (l,)
+    pool : offset of the centre of mass of liquid that is no layer, along the first direction, m, shape (l,)
+    planes : displacement of each chamber's axis for unit coordinates, shape (l, 2, n)
+    shaft : record SHAFT at the spin, shape (1,)
+    gravity : acceleration across the axis, shape (2,)
+    """
+
+    capture: Array
+    pool: Array
+    planes: Array
+    shaft: Record
+    gravity: Array
+
+
+def at_rest(system: RotorSystem, fills: Sequence[Fill], spin: float, gravity: float) -> Rest:
+    """How every run-up begins.
+
+    Parameters
+    ----------
+    system, fills, gravity : as for `solvers.runup.runup.run_up`
+    spin : at the beginning, rad/s
+
+    Raises
+    ------
+    InputError : a negative gravity
+    """
+    require_not_negative("gravity", gravity)
+    shaft = records(SHAFT)
+    shaft[0].spin = spin
+    return Rest(
+        capture=np.array([layer_capture(fill, gravity) for fill in fills]),
+        pool=np.array([pool_offset(fill) if gravity > 0.0 else 0.0 for fill in fills]),
+        planes=planes_of(system, fills),
+        shaft=shaft,
+        gravity=np.array([-gravity, 0.0]),
+    )
+
+
+def planes_of(system: RotorSystem, fills: Sequence[Fill]) -> Array:
+    """Displacement of each chamber's axis for unit coordinates, shape (l, 2, n)."""
+    planes = np.array([system.at(fill.chamber.plane) for fill in fills], dtype=float)
+    return planes.reshape(len(fills), 2, len(system.coordinates))
+
+
+@dataclass
+class CoupledRotor(ABC):
+    """What every rotor with layers has, long waves or linear; see `solvers.runup.machine.RunupMachine`.
+
+    Parameters
+    ----------
+    system, fills : what it is made from
+    capture, pool : as of `Rest`, shape (l,)
+    """
+
+    system: RotorSystem
+    fills: tuple[Fill, ...]
+    capture: Array
+    pool: Array
+
+    @property
+    @abstractmethod
+    def shaft(self) -> np.record:
+        """Record SHAFT of the moment."""
+
+    @property
+    @abstractmethod
+    def sums(self) -> np.record:
+        """Record SUMS: works, heats and counts so far."""
+
+    @property
+    def time(self) -> float:
+        """Time, s."""
+        return float(self.shaft.time)
+
+    @property
+    def spin(self) -> float:
+        """Spin speed, rad/s."""
+        return float(self.shaft.spin)
+
+    @property
+    def masses(self) -> Array:
+        """Mass of the liquid in each chamber, kg, shape (l,)."""
+        return np.array([fill.mass for fill in self.fills])

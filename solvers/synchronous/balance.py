@@ -120,7 +120,7 @@ class Balance:
                 same, gravity = Fills.same(fill, rows.size), np.full(rows.size, self.gravity)
                 whirls = Whirls.synchronous(self.speed[which[rows]], deflection[rows, j], gravity)
                 law = self.model.answer(same, whirls)
-                unbalance[rows, j], slope[rows, j] = law.unbalance.real, law.slope
+                unbalance[rows, j], slope[rows, j] = law.real_unbalance(), law.slope
                 for flag, found in zip(flags, (law.dry_patch, law.in_range, law.converged), strict=True):
                     flag[rows, j] = found
         return Liquid(unbalance, slope, *flags)

@@ -3,7 +3,7 @@
 Closed forms; nothing is solved for [theory: model_error]. Every deflection of a planar machine that satisfies
 the balance with the exact law lies between two bounds, which follow from the linear answer and from a bound
 of what the law is below its straight line. A rotor that tilts or has unlike springs has bounds of its own.
-`estimate` takes whichever the rotor has.
+`error_estimate` takes whichever the rotor has.
 """
 
 from __future__ import annotations

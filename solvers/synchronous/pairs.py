@@ -101,7 +101,7 @@ class Pairs:
         np.logical_or.at(dry, rows, law.dry_patch)
         np.logical_and.at(in_range, rows, law.in_range)
         np.logical_and.at(converged, rows, law.converged)
-        unbalance, slope = (_summed(rows, x, size) for x in (law.unbalance.real, law.slope))
+        unbalance, slope = (_summed(rows, x, size) for x in (law.real_unbalance(), law.slope))
         return LiquidState(unbalance, slope, dry, in_range, converged)
 
     def pull(self, deflection: Array, which: Index) -> Array:
@@ -119,7 +119,7 @@ class Pairs:
         if bent.size:
             k = which[rows[bent]]
             whirls = Whirls.synchronous(self.speed[k], e[bent], self.gravity[k])
-            moment[bent] = self.model.answer(fills.at(bent), whirls).unbalance.real
+            moment[bent] = self.model.answer(fills.at(bent), whirls).real_unbalance()
         total = _summed(rows, np.maximum(moment - fills.mass * e, 0.0), deflection.size)
         return np.asarray(np.square(self.speed[which]) * total)
 

@@ -13,6 +13,7 @@ from fluid.friction import Friction
 from fluid.liquid import known_liquid
 from leblanc.studies.liquid import WAVE_MODELS, synchronous_model, wave_model
 from meshes.chamber import Chamber
+from meshes.errors import InputError
 from solvers.layer.settle import LongWave
 from solvers.layer.state import Numerics
 from solvers.liquid_model import LiquidModel, Whirl, Whirls
@@ -141,6 +142,17 @@ def test_waves_estimate_their_errors() -> None:
     for model in (wave_model("kdv"), LongWave(Friction("linear", 0.5), Numerics(256))):
         found = model.answer(Fills.of([FILL]), asked)
         assert 0.0 < found.error[0] < 0.2 and abs(found.unbalance[0] / exact - 1.0) < 0.5
+
+
+@kills("solvers.liquid_model:LiquidAnswer.real_unbalance", "self.unbalance.imag", "self.unbalance.real")
+def test_the_synchronous_response_refuses_a_pull_across_the_deflection() -> None:
+    """Friction drags the liquid of a slow whirl behind; such an answer has no place in a planar balance."""
+    model = wave_model("kdv", Friction("linear", 5.0))
+    dragged = model.answer(Fills.of([FILL]), whirls(31.0, SMALL))
+    with pytest.raises(InputError, match="unbalance"):
+        dragged.real_unbalance()
+    found = STATICS.answer(Fills.of([FILL]), whirls(SPIN, SMALL))
+    assert found.real_unbalance() == pytest.approx(FILL.full_mass * SMALL, rel=1e-9)
 
 
 def test_names_become_models_in_one_place() -> None:

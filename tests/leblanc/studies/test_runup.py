@@ -37,6 +37,7 @@ from leblanc.studies.runup import (
 )
 from meshes.chamber import Chamber
 from meshes.errors import InputError
+from solvers.layer.records import Outcome
 from solvers.runup.machine import Motor, Ramp
 from solvers.runup.runup import EnergyAudit, RunupHistory
 from tests.mutants import kills
@@ -290,7 +291,7 @@ def history_of(count: int, layers: int, **changes: Any) -> RunupHistory:
         "steps": 10,
         "layer_steps": 10,
         "disagreement": 0.0,
-        "converged": True,
+        "outcome": Outcome.DONE,
         "reason": "",
     }
     return RunupHistory(**values | changes)
@@ -723,7 +724,7 @@ def test_what_was_reached_is_written(tmp_path: Path, capsys: pytest.CaptureFixtu
 
 
 def test_an_interrupted_run_leaves_its_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    history = history_of(20, 1, converged=False, reason="interrupted at 1 s, 100 rad/s")
+    history = history_of(20, 1, outcome=Outcome.INTERRUPTED, reason="interrupted at 1 s, 100 rad/s")
     monkeypatch.setattr(runup_module, "runup_scene", lambda *_: made_up(history))
     file = write_scene(tmp_path / "s.toml", table())
     with pytest.raises(KeyboardInterrupt):

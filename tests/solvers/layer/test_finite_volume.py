@@ -10,7 +10,7 @@ import pytest
 
 from fluid import long_wave as lw
 from solvers.layer.finite_volume import DRY, GHOSTS, WORK, rates, solve_ring
-from solvers.layer.records import LOADS, Drive, LayerOutcome, Wall, records
+from solvers.layer.records import LOADS, Drive, Outcome, Wall, records
 from solvers.layer.step import advance, scratch
 
 SPIN = 1.0
@@ -35,7 +35,7 @@ def run(
 ):  # type: ignore[no-untyped-def]
     n, sums, whole = area.size, records(LOADS), Drive(*drive, SPIN)
     outcome, steps = advance(area, q, 0.0, length, whole, Wall(*rub), angles(n), 0.8, 10**9, scratch(n), sums)
-    assert outcome == LayerOutcome.DONE
+    assert outcome == Outcome.DONE
     return steps
 
 

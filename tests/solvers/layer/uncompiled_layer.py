@@ -13,7 +13,7 @@ from solvers.layer import finite_volume
 from solvers.layer import finite_volume as face_flux
 from solvers.layer import state as layer_loads
 from solvers.layer import step as forced_layer
-from solvers.layer.records import LOADS, Drive, LayerOutcome, Wall, records
+from solvers.layer.records import LOADS, Drive, Outcome, Wall, records
 from tests.mutants import kills
 
 SPIN, PULL, TURNED = 1.0, 0.1, 0.4
@@ -262,7 +262,7 @@ def run(
     outcome, steps = forced_layer.advance(
         *(area, q, 0.0, length, whole, wall, angles(n), courant, 10**6, spare, sums)
     )
-    assert outcome == LayerOutcome.DONE and steps > 0
+    assert outcome == Outcome.DONE and steps > 0
     last = layer_loads.offset(area, whole, angles(n), length)
     return layer_loads.means(sums[0], length, 2 * np.pi * area.mean(), drive[3], (first, last))
 
@@ -375,7 +375,8 @@ def test_drive() -> None:
         grown = part - np.sin(2 * np.pi * part) / (2 * np.pi)
         force = 0.01 * whirl**2 * grown * np.exp(1j * slip * time) - 1j * weight * np.exp(-1j * SPIN * time)
         cell, face, ring = np.empty(5), np.empty(5), angles(5)
-        x, y = forced_layer._whirl(time, Drive(0.01, slip, ramp, whirl, weight, SPIN), ring, cell, face)
+        x, y = forced_layer._whirl(time, Drive(0.01, slip, ramp, whirl, weight, SPIN))
+        forced_layer.pull(x, y, ring, cell, face)
         assert abs(complex(x, y) - force) < 1e-15
         np.testing.assert_allclose(cell, (force * np.exp(-1j * middles(5))).real, atol=1e-15)
         np.testing.assert_allclose(face, (force * np.exp(-1j * (middles(5) - np.pi / 5))).real, atol=1e-15)

@@ -14,10 +14,11 @@ from fluid.friction import Friction
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from meshes.errors import InputError
+from solvers.layer.records import Outcome
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.linear import couple_linear
 from solvers.runup.long_wave import couple
-from solvers.runup.machine import Motor, Outcome, Ramp, RunupModel
+from solvers.runup.machine import Motor, Ramp, RunupModel
 from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
 from solvers.synchronous.response import response
 from tests.mutants import kills

@@ -11,9 +11,9 @@ from fluid.fill import Fill
 from fluid.friction import Friction
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
+from solvers.layer.records import Outcome
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.linear import LinearCoupled, couple_linear
-from solvers.runup.machine import Outcome
 from solvers.whirl.growth import asynchronous_growth
 from tests.mutants import kills
 

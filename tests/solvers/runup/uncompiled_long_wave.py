@@ -12,14 +12,13 @@ from fluid.friction import Friction
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers.layer import finite_volume
-from solvers.layer.records import records
+from solvers.layer.records import Outcome, records
 from solvers.layer.state import ring
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.runup import kernel as coupled_layer
 from solvers.runup import kernel as coupled_parts
 from solvers.runup.long_wave import Coupled, couple
-from solvers.runup.machine import Outcome
 from solvers.runup.state import GAINS, LAYER, MEASURES
 from tests.mutants import kills
 
@@ -372,7 +371,7 @@ def test_motor() -> None:
     assert found.sums.motor == pytest.approx(work, rel=1e-4)
 
 
-@kills("solvers.runup.long_wave:couple", "np.array([-gravity, 0.0])", "np.array([gravity, 0.0])")
+@kills("solvers.runup.state:at_rest", "np.array([-gravity, 0.0])", "np.array([gravity, 0.0])")
 def test_gravity() -> None:
     """The rotor held, liquid let go is pulled against the first direction by its flow's inertia."""
     rotor = Jeffcott(3.0, 1e15, 0.0, 0.0)

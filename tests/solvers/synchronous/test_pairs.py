@@ -69,9 +69,13 @@ def test_each_as_if_alone() -> None:
     "here.added_mass, here.mass",
 )
 @kills("solvers.synchronous.pairs:Pairs.pull", "moment - fills.mass * e", "moment")
-@kills("solvers.synchronous.pairs:Pairs.liquid", "(law.unbalance, law.slope))", "(law.slope, law.unbalance))")
+@kills(
+    "solvers.synchronous.pairs:Pairs.liquid",
+    "(law.real_unbalance(), law.slope))",
+    "(law.slope, law.real_unbalance()))",
+)
 @kills("solvers.synchronous.pairs:Pairs.pull", "moment = fills.added_mass * e", "moment = fills.mass * e")
-@kills("solvers.synchronous.pairs:Pairs.pull", "moment[bent] = law.unbalance", "moment[bent] = law.slope")
+@kills("solvers.synchronous.pairs:Pairs.pull", "whirls).real_unbalance()", "whirls).slope")
 def test_sums() -> None:
     """The pull and the liquid's state of a machine are sums over its chambers, each asked by itself."""
     pairs = pair_machines(machines(), OWNER, SPEED, GRAVITY, STATICS)
