@@ -7,7 +7,7 @@ from leblanc.results.sweep import SweepResult
 from leblanc.text.numbers import number
 from leblanc.units import MM
 
-_SHARED = ("peak_amplitude", "last_amplitude", "peak_growth")  # whose sensitivities are told
+_SHARED = ("peak_amplitude", "last_amplitude", "peak_growth")  # whose sensitivities are shown
 
 
 def lines(result: SweepResult) -> list[str]:

@@ -38,7 +38,7 @@ from meshes.errors import InputError
 
 ROOMIER = 1.2  # of a page's view, in which what is near looks larger
 
-# A page asks nobody for anything: the viewer's icon is dropped, and the browser is told to refuse the rest.
+# A page loads nothing from elsewhere: the icon of the viewer is dropped, and a policy refuses the rest.
 FOREIGN_ICON = "https://kitware.github.io/vtk-js/icon/favicon-"
 CLOSED = (
     '<meta http-equiv="Content-Security-Policy" content="default-src data: blob: '
