@@ -190,7 +190,7 @@ def optimise(
     limit : of the vibration, for least_mass, m
     steady : the peak is that of the steady response even if the scene has a run-up
     seed : of the random sample of robust
-    emulator : store of a sweep over the volumes, of which the search asks an emulator
+    emulator : store of a sweep over the volumes, from which the search gets an emulator
     front : find out as well what must be given up for what
     progress : called with the number of sets of volumes judged
 

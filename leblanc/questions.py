@@ -1,4 +1,4 @@
-"""What `layer`, `modes`, `volume` and `optimise` ask, from options of the command line or keywords in Python.
+"""Questions of `layer`, `modes`, `volume` and `optimise`, from options of the command or keywords in Python.
 
 Quantities are numbers in SI units or texts with a unit. Faults name the option, as in "--whirl-speed".
 """
@@ -76,7 +76,7 @@ def layer_question(
     duration: Quantity | None = None,
     ramp: Quantity = 0.0,
 ) -> LayerQuestion:
-    """What `layer` is asked; the parameters are those of `leblanc.api.layer`.
+    """The question of `layer`; the parameters are those of `leblanc.api.layer`.
 
     Raises
     ------
@@ -121,7 +121,7 @@ def modes_question(
     layers: int = 6,
     order: int = 2,
 ) -> dict[str, Any]:
-    """What `modes` is asked, by the names of `leblanc.studies.modes.answer_modes`.
+    """The question of `modes`, by the names of `leblanc.studies.modes.answer_modes`.
 
     The parameters are those of `leblanc.api.modes`.
 
@@ -157,7 +157,7 @@ def volume_question(
     gravity: Quantity = 9.81,
     inner_radius: Quantity = 0.0,
 ) -> dict[str, Any]:
-    """What `volume` is asked, by the names of `leblanc.studies.volume.answer_volume`.
+    """The question of `volume`, by the names of `leblanc.studies.volume.answer_volume`.
 
     The parameters are those of `leblanc.api.volume`.
 

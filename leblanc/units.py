@@ -27,7 +27,7 @@ class Dimension:
 
     Parameters
     ----------
-    name : in words, as in "must be a length"
+    name : for messages, as in "must be a length"
     unit : its SI unit, that of plain numbers; empty for a pure number
     example : how a user may write one
     also : other units taken as equal to the SI unit, but not their multiples

@@ -59,7 +59,7 @@ class SearchPlan:
     valleys : of the grid from which steps go down
     sweeps : of steps, at most
     settled : relative gain of a round below which a valley counts as followed to its end
-    hair : values that differ by less, relative, count as equal in the end
+    margin : values that differ by less, relative, count as equal in the end
     edge : distance at which the edge of a plateau or of what is allowed counts as found, over its place
     sections : into which such an edge is closed in at once
     """
@@ -70,29 +70,29 @@ class SearchPlan:
     valleys: int = 3
     sweeps: int = 16
     settled: float = 2e-5
-    hair: float = 1e-6
+    margin: float = 1e-6
     edge: float = 1e-6
     sections: int = 32
 
 
-def best_of(judged: Judgement, cost: Array, hair: float = 1e-6) -> int:
+def best_of(judged: Judgement, cost: Array, margin: float = 1e-6) -> int:
     """Index of the best of the points judged [theory: optimum, eq. 6].
 
-    Those that exceed their constraints least, of these the least objective, of all within a hair of that the
-    least cost, and of those the one that is farthest from exceeding anything.
+    Those that exceed their constraints least, of these the least objective, of those within a margin of
+    it the least cost, and of those the one that is farthest from exceeding anything.
 
     Parameters
     ----------
     judged : m points
     cost : of each, shape (m,)
-    hair : relative
+    margin : relative
     """
     over = np.maximum(judged.excess, 0.0)
-    left = np.flatnonzero(over <= over.min() * (1.0 + hair))
+    left = np.flatnonzero(over <= over.min() * (1.0 + margin))
     for values in (judged.objective, cost, judged.excess):
         here = values[left]
         least = here.min()
-        near = here <= least + hair * abs(least) if np.isfinite(least) else here == least
+        near = here <= least + margin * abs(least) if np.isfinite(least) else here == least
         left = left[near]
     return int(left[0])
 
@@ -433,16 +433,16 @@ def _valleys(points: Array, said: Judgement, cost: Array, levels: list[Array], p
     left = np.arange(points.shape[0])
     while left.size and len(kept) < plan.valleys:
         part = Judgement(said.objective[left], said.excess[left])
-        k = int(left[best_of(part, points[left] @ cost, plan.hair)])
+        k = int(left[best_of(part, points[left] @ cost, plan.margin)])
         kept.append(k)
         left = left[np.abs(rank[left] - rank[k]).max(axis=1) > 1.5]
     return kept
 
 
 def _least_cost(ask: _Log, point: Array, low: Array, cost: Array, plan: SearchPlan) -> Array:
-    """The point drawn towards the lower corner, axis by axis, as far as its value stays within a hair."""
+    """The point drawn towards the lower corner, axis by axis, as far as its value stays within the margin."""
     start = ask(point[None])
-    limit = float(start.objective[0]) + plan.hair * abs(float(start.objective[0]))
+    limit = float(start.objective[0]) + plan.margin * abs(float(start.objective[0]))
     most = max(float(start.excess[0]), 0.0)
     point = point.copy()
     order = np.argsort(-(cost * (point - low)), kind="stable")

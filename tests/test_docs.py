@@ -271,7 +271,7 @@ def test_pages_of_models_have_their_parts() -> None:
         "## Equations",
         "## Range",
         "## Error",
-        "## How to ask for it",
+        "## How to choose it",
         "## Weak spots",
     )
     for page in (DOCS / "models").glob("*.md"):

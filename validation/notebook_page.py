@@ -44,7 +44,7 @@ class Table:
         return "\n".join([*lines, self.foot] if self.foot else lines)
 
     def _repr_html_(self) -> str:
-        """As Jupyter and Sphinx ask for it; line breaks in a cell are kept."""
+        """For Jupyter and Sphinx; line breaks in a cell are kept."""
         first, *others = (escape(cell) for cell in self.header)
         # The first column says what a row is about, mostly in the most words.
         head = f'<th {_LEFT[:-1]}; width: 42%">{first}</th>'
@@ -73,7 +73,7 @@ class Picture:
         return "figure"
 
     def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
-        """As Jupyter asks for it."""
+        """For Jupyter."""
         return self.png, {"width": self.width}
 
 
@@ -135,7 +135,7 @@ def drawn(draw: Callable[[Path], Path]) -> Picture:
 
     Parameters
     ----------
-    draw : writes it to a folder and tells where
+    draw : writes it to a folder and returns where
     """
     with TemporaryDirectory() as folder:
         return picture(draw(Path(folder)))

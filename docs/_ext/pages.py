@@ -141,12 +141,12 @@ class ColdStarts(SphinxDirective):
         head = ("command", "CPU time", "its libraries alone", "ratio", "without physics", *found[0].parts())
         rows = [
             (
-                " ".join(("leblanc", *(Path(word).name for word in one.arguments))),
-                *(f"{seconds:.2f} s" for seconds in (one.total, one.libraries)),
-                *(f"{ratio:.2f}" for ratio in (one.ratio, (one.total - one.physics) / one.libraries)),
-                *(f"{seconds:.2f} s" for seconds in one.parts().values()),
+                " ".join(("leblanc", *(Path(word).name for word in start.arguments))),
+                *(f"{seconds:.2f} s" for seconds in (start.total, start.libraries)),
+                *(f"{ratio:.2f}" for ratio in (start.ratio, (start.total - start.physics) / start.libraries)),
+                *(f"{seconds:.2f} s" for seconds in start.parts().values()),
             )
-            for one in found
+            for start in found
         ]
         return [table(head, rows, code=(0,))]
 

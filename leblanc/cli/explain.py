@@ -39,7 +39,7 @@ def explain(
 
 
 def _print(answer: Explanation) -> None:
-    """The explanation in words."""
+    """The explanation as text."""
     from leblanc.results.base import percent
     from leblanc.text.explanation import layer_rows, machine_rows, mode_rows, span_heading, span_rows
     from leblanc.text.run import described

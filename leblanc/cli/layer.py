@@ -96,7 +96,7 @@ _HELP = {
 
 
 def _tell(shown: dict[str, Any]) -> None:
-    """The answer in words, the numbers it rests on one to a line."""
+    """The answer as text, each number that it rests on in a line."""
     periods = [name for name in _PERIODS if getattr(shown.get(name), "ndim", 0) == 1]
     for name, value in shown.items():
         if name not in ("validity", "notes", *periods):

@@ -99,7 +99,7 @@ def _film(result: RunupResult, path: Path) -> None:
 
 
 def _tell(result: RunupResult, folder: Path) -> None:
-    """The run in words."""
+    """The run as text."""
     from leblanc.units import MM, RPM
 
     rows = [("largest amplitude", result.peak()), ("at the end", result.time.size - 1)]

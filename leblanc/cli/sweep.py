@@ -83,7 +83,7 @@ def _emulator_json(emulators: dict[str, Emulator | str] | None) -> dict[str, Any
 
 
 def _emulator_lines(emulators: dict[str, Emulator | str] | None) -> list[str]:
-    """The same in words."""
+    """The same as text."""
     lines = []
     for name, emulator in (emulators or {}).items():
         label = f"emulator of {name.replace('_', ' ')}"

@@ -298,7 +298,7 @@ def moved(result: RunResult, chambers: tuple[FilledChamber, ...], index: int) ->
 
 
 def describe_scale(views: Views) -> str:
-    """The exaggeration in words."""
+    """The exaggeration as text."""
     deflection, depth = f"{TIMES} {views.scale.deflection:g}", f"{TIMES} {views.scale.depth:g}"
     if views.scale.depth == 1.0:
         depth = "to scale"
@@ -321,7 +321,7 @@ def more_heading_rows(result: RunResult, views: Views) -> int:
 
 
 def describe_state(result: RunResult, index: int) -> str:
-    """Numbers of one view in words."""
+    """Numbers of one view as text."""
     r = result.response
     w, offset = r.deflection[index], r.liquid_offset[index]
     if w == 0.0:

@@ -360,7 +360,7 @@ def profile_axis(axes: Axes, top: float, dry: bool) -> None:
 
 
 def describe_force(wave: Wave) -> str:
-    """The force in words, over that of a full drum."""
+    """The force as text, over that of a full drum."""
     force = wave.force_ratio
     if not cmath.isfinite(force):
         return "force not converged"
@@ -370,7 +370,7 @@ def describe_force(wave: Wave) -> str:
 
 
 def describe_offset(wave: Wave) -> str:
-    """The centre of mass in words."""
+    """The centre of mass as text."""
     if not cmath.isfinite(wave.offset):
         return "centre of mass not found"
     return f"centre of mass {abs(wave.offset) * MM:.3g} mm{_at_angle(wave.offset)}"
@@ -387,7 +387,7 @@ def signed(value: float) -> str:
 
 
 def describe_case(wave: Wave) -> str:
-    """Title, model, sizes and speeds in words."""
+    """Title, model, sizes and speeds as text."""
     inner = f", inner wall {wave.inner_radius * MM:.4g}{BOUND}mm" if wave.inner_radius > 0.0 else ""
     slip = wave.seen_from_the_drum
     drum = (

@@ -62,7 +62,7 @@ EXACT = 1e-9  # a relative error that is nothing but rounding
 
 
 def percent(value: float) -> str:
-    """A share in per cent, two digits; in words where it is the whole or nothing."""
+    """A share in per cent, two digits; a text where it is the whole or nothing."""
     if value >= 0.995:
         return "about 100 % or more"
     return "rounding" if value < EXACT else f"{100.0 * value:.2g} %"

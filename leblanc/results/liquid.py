@@ -29,7 +29,7 @@ class Coverage(IntEnum):
 
     @property
     def message(self) -> str:
-        """The case in words."""
+        """The case as text."""
         return {
             Coverage.MORE: "more than just covers the wall: wet all round",
             Coverage.AS_MUCH: "just covers the wall",

@@ -304,7 +304,7 @@ def out_of_range(code: RunupCode, chamber: int, holds: Flags, limit: float = mat
     ----------
     code : TOO_SLOW, INNER_WALL, TOO_DEEP or TOO_HIGH
     chamber : index from 0
-    holds : where the layer is a fair picture, shape (k,)
+    holds : where the layer describes the liquid, shape (k,)
     limit : depth over radius, or rise over depth, that is too much
     """
     if holds.all():

@@ -357,7 +357,7 @@ class OptimumResult(Result):
         return NamedArrays(columns, coords, self._attributes())
 
     def _attributes(self) -> dict[str, Any]:
-        """Scene, what was asked for, versions."""
+        """Scene, objective, versions."""
         own: dict[str, Any] = {
             "objective": self.objective,
             "meaning": self.meaning,

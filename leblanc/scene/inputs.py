@@ -221,7 +221,7 @@ _DEFAULT = Optimisation()
 
 
 def optimise_rows(wanted: Optimisation) -> list[Row]:
-    """What is said beyond the defaults; the objective always.
+    """Values that differ from the defaults, and the objective.
 
     Parameters
     ----------

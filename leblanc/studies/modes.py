@@ -110,7 +110,7 @@ def ring_sections(
 def round_sections(
     chamber: Chamber, volume: float, liquid: Liquid, fineness: Resolution
 ) -> tuple[list[LiquidSection], list[Note], str]:
-    """Coarser and finer mesh of the liquid in a round chamber, notes, and the chamber in words.
+    """Coarser and finer mesh of the liquid in a round chamber, notes, and a description of the chamber.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def round_sections(
 def section_of_file(
     chamber: Chamber, volume: float, fineness: Resolution, source: SectionSource
 ) -> tuple[list[LiquidSection], list[Note], str]:
-    """Coarser and finer mesh of the liquid in a chamber from a file, notes, and the section in words.
+    """Coarser and finer mesh of the liquid in a chamber from a file, notes, and a description of the section.
 
     Parameters
     ----------

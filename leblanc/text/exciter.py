@@ -1,4 +1,4 @@
-"""The answer of a vibrating table with balls in words."""
+"""The answer of a vibrating table with balls as text."""
 
 from __future__ import annotations
 

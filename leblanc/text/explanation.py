@@ -1,4 +1,4 @@
-"""Why a liquid model answers, and how far several models are apart, in words."""
+"""Why a liquid model answers, and how far several models are apart, as text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The liquid alone in words: optimal volume, layer under a whirl, modes."""
+"""The liquid alone as text: optimal volume, layer under a whirl, modes."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def modes_summary(result: ModesResult) -> list[tuple[str, str]]:
 
 
 def modes_table(result: ModesResult) -> list[str]:
-    """The modes in words, equal ones on one line.
+    """The modes as text, equal ones on one line.
 
     Parameters
     ----------

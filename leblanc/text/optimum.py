@@ -1,4 +1,4 @@
-"""An optimum in words, for a terminal."""
+"""An optimum as text, for a terminal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The response of a machine to its unbalance, and the liquid models that answered, in words."""
+"""The response of a machine to its unbalance, and the liquid models that answered, as text."""
 
 from __future__ import annotations
 

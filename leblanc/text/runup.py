@@ -1,4 +1,4 @@
-"""A run-up in words."""
+"""A run-up as text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a sweep found, in words."""
+"""The result of a sweep as text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The map of self-excited whirl in words."""
+"""The map of self-excited whirl as text."""
 
 from __future__ import annotations
 

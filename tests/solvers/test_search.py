@@ -28,7 +28,7 @@ def solve(judge: Judge, count: int, **more: object):  # type: ignore[no-untyped-
     "solvers.search:_least_on_axis", "holds = (said.objective <= limit)", "holds = (said.objective >= limit)"
 )
 def test_plateau() -> None:
-    """Of a plateau the edge with the least liquid; the slope before it is 1/place, so a hair is 0.2 hairs."""
+    """Of a plateau the edge with the least liquid; a margin m of its value is 0.2 m of its place."""
     for place in (0.0123, 0.4, 3e-4):
         found = solve(free(lambda x, k=place: np.maximum(1.0 - 0.8 * x[:, 0] / k, 0.2)), 1)
         assert found.point[0] == pytest.approx(place, rel=2e-6)

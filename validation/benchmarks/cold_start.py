@@ -196,7 +196,7 @@ def cold_start(arguments: Sequence[str], repeats: int = 5) -> ColdStart:
 
 
 def text(found: ColdStart) -> str:
-    """A measurement in words.
+    """A measurement as text.
 
     Parameters
     ----------

@@ -159,7 +159,7 @@ def front(samples: Iterable[Sample]) -> list[Sample]:
 def at_equal_error(ours: Iterable[Sample], other: Iterable[Sample]) -> list[tuple[float, float]]:
     """Time of the other code over ours where both have the same error.
 
-    Ours is interpolated along its front in the logarithms of both; beyond it nothing is said.
+    Ours is interpolated along its front in the logarithms of both; beyond it nothing is compared.
 
     Parameters
     ----------

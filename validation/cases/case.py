@@ -82,7 +82,7 @@ def compare(
 
     Returns
     -------
-    Case whose difference is printed/computed - 1, or in words where the computed value is 0
+    Case whose difference is printed/computed - 1, or a text where the computed value is 0
 
     Raises
     ------

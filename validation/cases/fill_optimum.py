@@ -37,8 +37,8 @@ def cases() -> list[Case]:
                 volume * _ML,
                 float(answer.volume[0]) * _ML,
                 tolerance=tolerance,
-                note="printed is the closed form; the search takes the least volume within a hair of the "
-                f"best: agrees within {100.0 * tolerance:g} %",
+                note="printed is the closed form; the search takes the least volume within a small margin "
+                f"of the best: agrees within {100.0 * tolerance:g} %",
             ),
             compare(
                 f"fill_optimum/{name}-amplitude",

@@ -95,7 +95,7 @@ def _kind(value: Array) -> str:
 
 
 def _words(volume: Array, value: Array) -> str:
-    """A curve in words: where it is least, and by what factor it changes."""
+    """A curve as text: where it is least, and by what factor it changes."""
     k = int(np.argmin(value * (1.0 + 1e-9 * np.arange(value.size))))
     fall = "falls all the way" if np.all(np.diff(value) < 0.0) else "not monotone"
     return f"least at {volume[k]:g} ml, {value[k] / value[0]:.2f} of that without; {fall}"

@@ -146,7 +146,7 @@ def cases() -> list[Case]:
 
 
 def _supercritical() -> Case:
-    """Far above resonance the centre of mass of everything stands still."""
+    """Far above resonance the centre of mass of everything is at rest."""
     machine = suspended_tub()
     system = machine.system()
     found = orbit(system, unbalance_response(system, [1e4]), 0.0)

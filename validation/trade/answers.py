@@ -45,7 +45,7 @@ class Case:
 
     @property
     def label(self) -> str:
-        """In a few words."""
+        """A short description."""
         size = "" if self.resolution is None else f" {self.resolution}"
         return f"{self.model}{size}{', ' + self.variant if self.variant else ''}"
 

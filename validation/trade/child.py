@@ -19,7 +19,7 @@ _STATUS, _RESET = Path("/proc/self/status"), Path("/proc/self/clear_refs")
 def resident() -> tuple[int, int]:
     """Memory that this process holds now and at most so far, bytes.
 
-    Linux tells both and lets the second be set back. Elsewhere both are the most so far, which is all that
+    Linux reports both and lets the second be set back. Elsewhere both are the most so far, which is all that
     the resource module knows; there a process also inherits the figure of the one that started it.
     """
     with suppress(OSError, KeyError, ValueError):

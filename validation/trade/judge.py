@@ -80,7 +80,7 @@ class Row:
 
     @property
     def label(self) -> str:
-        """In a few words."""
+        """A short description."""
         return Case(self.question, self.model, self.resolution, self.variant).label
 
 
@@ -271,7 +271,7 @@ def _noise(row: Row, other: Row) -> float:
 def recommend(rows: Sequence[Row], own: float, tolerance: float) -> int:
     """Index of the row that is advised: the cheapest within the tolerance, the default if it is as cheap.
 
-    Advised is what a scene can ask for, with the physics that it asks for. If none of that is within the
+    Advised is what a scene can name, with the physics of the scene. If none of that is within the
     tolerance, the most accurate one, of equals the cheapest; -1 if nothing has answered.
 
     Parameters

@@ -1,4 +1,4 @@
-"""What `trade` prints and writes: the JSON object, the table, the recommendation in words."""
+"""What `trade` prints and writes: the JSON object, the table, the recommendation as text."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def recommendation(comparison: Comparison, tolerance: float) -> str:
 
 
 def error_words(row: Row, comparison: Comparison) -> str:
-    """An error as a share, or that it cannot be told from the best answer's own.
+    """An error as a share, or that it cannot be distinguished from the best answer's own.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def _share(value: float) -> str:
 
 
 def trade_lines(record: TradeRecord) -> list[str]:
-    """The tables in words, one line each.
+    """The tables as text, one line each.
 
     Parameters
     ----------

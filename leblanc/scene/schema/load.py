@@ -1,4 +1,4 @@
-"""Reads a scene file or a study file as TOML; what can be wrong with it, in words."""
+"""Reads a scene file or a study file as TOML; the messages of what can be wrong with it."""
 
 from __future__ import annotations
 

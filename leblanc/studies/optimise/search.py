@@ -20,11 +20,11 @@ from solvers.search import Found, Judgement, SearchPlan, search
 
 # Where an answer costs tens of milliseconds and more.
 _SPARING = SearchPlan(
-    levels=(16, 6, 4), finest=2e-3, valleys=2, sweeps=3, settled=1e-2, hair=1e-3, edge=3e-2, sections=4
+    levels=(16, 6, 4), finest=2e-3, valleys=2, sweeps=3, settled=1e-2, margin=1e-3, edge=3e-2, sections=4
 )
 # Where it takes some speeds to know a value.
 _FEW = SearchPlan(
-    levels=(14, 9, 5), crossed=False, finest=1e-3, sweeps=6, settled=5e-4, hair=2e-5, edge=1e-3, sections=10
+    levels=(14, 9, 5), crossed=False, finest=1e-3, sweeps=6, settled=5e-4, margin=2e-5, edge=1e-3, sections=10
 )
 _AGAIN = 3  # searches at most, if a peak turns out to have been hidden between the speeds looked at
 _CLOSER = 6  # of the best that a cheaper vibration found are evaluated again
@@ -72,7 +72,7 @@ def best_volumes(
         found = search(judge, low, high, problem.evaluate.density, starts, alike, plan)
         if found.excess <= 0.0 and not problem.evaluate.by_mass:
             value = float(problem.evaluate.vibration.exact(found.point[None])[0])
-            if value > found.objective * (1.0 + plan.hair):
+            if value > found.objective * (1.0 + plan.margin):
                 continue  # what was hidden is known by now
         break
     return found

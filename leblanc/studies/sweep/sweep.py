@@ -217,7 +217,7 @@ def run_sweep(
     Raises
     ------
     InputError : another process works on the store, it belongs to another sweep, the cluster does not fit
-    SceneError : the scene asks for what no sample can answer
+    SceneError : the scene needs what no sample can answer
     NotConverged : the cluster was lost
     """
     if fresh and scheduler is not None:
@@ -247,7 +247,7 @@ def run_sweep(
 
 @contextmanager
 def _interrupts() -> Iterator[threading.Event]:
-    """What tells of a Ctrl-C that was lost: Python drops one that comes while it destroys an object."""
+    """Notices a Ctrl-C that was lost: Python drops one that comes while it destroys an object."""
     seen = threading.Event()
     if threading.current_thread() is not threading.main_thread():
         yield seen  # only the main thread may set handlers
@@ -279,7 +279,7 @@ def _missing(store: Store) -> list[int]:
 
 
 def _workers(wanted: int | None, blocks: int) -> int:
-    """As many as there are cores and work; a process of its own is not worth one block."""
+    """As many as there are cores and work; a single block needs no process of its own."""
     if wanted is not None:
         return wanted
     import os

@@ -143,7 +143,7 @@ def test_json_and_files(scene_file: Path, tmp_path: Path, capsys: pytest.Capture
     with h5py.File(tmp_path / "optimum.nc") as file:
         judged = file["objective"][...]
         good = (file["excess"][...] <= 0.0) & (file["sure"][...] == 1)
-        # The answer is the least of what was judged, but for a hair given up for less liquid.
+        # The answer is the least of what was judged, but for a margin given up for less liquid.
         assert judged[good].min() >= found["value"] * (1.0 - 3e-6)  # type: ignore[operator]
         assert file["best_volume"][0] == pytest.approx(found["volume"][0])  # type: ignore[index]
         assert file["front_mass"].size == len(found["pareto"])

@@ -70,14 +70,14 @@ def largest_unbalance(chamber: Chamber, deflection: float, speed: float, gravity
         return Judgement(-state.unbalance()[0] / most, np.full(volumes.shape[0], -1.0))
 
     low, high = np.zeros(1), np.array([chamber.capacity])
-    plan = SearchPlan(hair=1e-13, edge=1e-11)
+    plan = SearchPlan(margin=1e-13, edge=1e-11)
     return float(search(judge, low, high, np.array([WATER.density]), plan=plan).point[0])
 
 
 def test_largest_unbalance() -> None:
     """On a horizontal axis the largest unbalance has the same least volume; along an upright one eq. 1 has.
 
-    The unbalance is short of the largest by x**1.5 or x**2.5 of what is missing, so a hair of 1e-13 hides
+    The unbalance is short of the largest by x**1.5 or x**2.5 of what is missing, so a margin of 1e-13 hides
     1e-13**(2/3) = 2e-9 or 1e-13**0.4 = 6e-6 of the volume, times a number of order one to ten.
     """
     for chamber, deflection, speed in CHAMBERS:
@@ -336,7 +336,7 @@ def test_the_best_volume_is_self_consistent() -> None:
     scene = load_scene(EXAMPLES / "runup.toml")
     best = optimise_scene(scene, front=False)
     form = best.closed_form[0]
-    # A hair of 1e-6 of the amplitude is some 4e-6 of the unbalance, whose edge hides (4e-6)**0.4 = 0.7 %.
+    # A margin of 1e-6 of the amplitude is some 4e-6 of the unbalance, whose edge hides (4e-6)**0.4 = 0.7 %.
     assert form.full_volume * 0.98 < best.volume[0] <= form.full_volume * (1.0 + 1e-6)
     # Above the wet critical speed all liquid adds its full mass [theory: rotor, eq. 3].
     added = WATER.density * math.pi * 0.25**2 * 0.04
@@ -353,7 +353,7 @@ def test_constraints_bind() -> None:
     assert dry.volume[0] >= dry.closed_form[0].optimal_volume * (1.0 - 1e-6)
     bound = Optimisation(volumes=((1e-5, 5e-5),))
     held = optimise_scene(scene, task=bound, front=False)
-    # The more the better up to the closed form; a hair of the amplitude, 1e-6, is some 3e-5 of this volume.
+    # The more the better up to the closed form; a margin of the amplitude, 1e-6, is some 3e-5 of this volume.
     assert held.volume[0] == pytest.approx(5e-5, rel=1e-4)
     calm = optimise_scene(scene, task=Optimisation(stability_margin=0.05), front=False)
     assert calm.feasible and calm.growth <= -0.05
