@@ -35,6 +35,7 @@ from leblanc.studies.whirl_map import map_scene
 from leblanc.text import exciter as text_exciter
 from leblanc.text import whirl_map as text_map
 from leblanc.text.run import MODELS
+from solvers.layer.records import Outcome
 from tests.leblanc.studies.test_runup import lying
 from tests.leblanc.studies.test_runup import table as machine
 from tests.oracles.pages import Page, printed, read_page
@@ -377,7 +378,7 @@ def calm_run() -> RunupResult:
     nothing = replace(h.audit, **{one.name: 0.0 for one in fields(h.audit)})
     history = replace(
         h, captured=all_the_time, depth_min=np.full_like(h.depth_min, 1e-3), mass_error=1e-12,
-        error_estimate=0.01, converged=True, audit=nothing,
+        error_estimate=0.01, outcome=Outcome.DONE, audit=nothing,
     )  # fmt: skip
     return replace(record, history=history, in_range=np.ones_like(record.in_range), bands=())
 
@@ -395,7 +396,7 @@ def test_runup_warnings() -> None:
 
     audit = replace(h.audit, unbalance=1.0, support=0.99)
     for heading, text, troubled in (
-        ("Stopped before its end", "a reason", with_history(converged=False, reason="a reason")),
+        ("Stopped before its end", "a reason", with_history(outcome=Outcome.STOPPED, reason="a reason")),
         ("Liquid model out of range", where, replace(record, in_range=~part)),
         ("Liquid not carried round", where, with_history(captured=~part[:, None])),
         ("Liquid leaves a wall dry", where, with_history(depth_min=np.where(part, 1e-7, 1e-3)[:, None])),
@@ -476,7 +477,7 @@ def test_runup_report_is_the_json() -> None:
 def test_a_run_that_stopped_says_so(tmp_path: Path) -> None:
     record = calm_run()
     stopped = replace(
-        record, history=replace(record.history, converged=False, reason="the layer <left> the drum")
+        record, history=replace(record.history, outcome=Outcome.AT_AXIS, reason="the layer <left> the drum")
     )
     report_runup.write_runup_report(stopped, about(lying()), (), tmp_path / "runup.html")
     page = read_page(tmp_path / "runup.html")
