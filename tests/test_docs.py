@@ -457,11 +457,10 @@ def test_kept_measurements_are_those_that_the_page_tables(tmp_path: Path) -> Non
 
 
 def test_kept_comparisons_are_read_as_they_were_written() -> None:
-    from validation.figures.kept import PICTURED, kept_trade
-    from validation.trade import kept
+    from validation.trade import again, kept, names
     from validation.trade.results import trade_json
 
-    for name in PICTURED:
-        again, before = trade_json(kept_trade(name)), kept(name)
-        same = [key for key in again if key != "versions"]
-        assert {key: again[key] for key in same} == {key: before[key] for key in same}
+    for name in names():
+        read, before = trade_json(again.record(name)), kept(name)
+        same = [key for key in read if key != "versions"]
+        assert {key: read[key] for key in same} == {key: before[key] for key in same}

@@ -7,69 +7,11 @@ validation.trade` and `python -m validation.benchmarks --keep`.
 from __future__ import annotations
 
 import argparse
-import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from validation.trade.trade import TradeRecord
 
 # Scenes whose comparison is drawn.
 PICTURED = ("runup", "horizontal_rig")
-
-
-def kept_trade(name: str) -> TradeRecord:
-    """Kept comparison of a scene.
-
-    Parameters
-    ----------
-    name : stem of the scene's file
-    """
-    from validation.trade import kept
-    from validation.trade.judge import Comparison, Row
-    from validation.trade.trade import TradeRecord
-
-    found = kept(name)
-    comparisons = []
-    for question in found["questions"]:
-        mine = [_numbers(row) for row in found["rows"] if row["question"] == question["question"]]
-        for row in mine:
-            del row["time_ratio"]
-            row |= {"used": tuple(row["used"]), "resolution": _whole(row["resolution"])}
-        comparisons.append(
-            Comparison(
-                question=question["question"],
-                about=question["about"],
-                reference=question["reference"],
-                reference_error=_number(question["reference_error"]),
-                order=_number(question["order"]),
-                rows=tuple(Row(**row) for row in mine),
-                dominated_by=tuple(question["default_dominated_by"]),
-                overhead=_number(question["default_overhead"]),
-            )
-        )
-    return TradeRecord(
-        name=found["name"],
-        source="",
-        assumed=tuple(found["assumed"]),
-        digest=found["digest"],
-        tolerance=found["tolerance"],
-        comparisons=tuple(comparisons),
-    )
-
-
-def _number(value: float | None) -> float:
-    return math.nan if value is None else float(value)
-
-
-def _whole(value: float | None) -> int | None:
-    return None if value is None or math.isnan(value) else int(value)
-
-
-def _numbers(row: dict[str, Any]) -> dict[str, Any]:
-    """A row in which what is missing is not a number."""
-    return {key: math.nan if value is None else value for key, value in row.items()}
 
 
 def draw(out: Path) -> list[Path]:
@@ -80,11 +22,12 @@ def draw(out: Path) -> list[Path]:
     out : folder, made if it is missing
     """
     from validation.benchmarks.report import accuracy_figure, growth_figure, kept_results
+    from validation.trade import again
     from validation.trade.figure import save, trade_figure
 
     files = []
     for name in PICTURED:
-        drawn = save(trade_figure(kept_trade(name)), out, f"trade_{name}", "Accuracy against cost")
+        drawn = save(trade_figure(again.record(name)), out, f"trade_{name}", "Accuracy against cost")
         files.append(drawn.png)
     results = kept_results()
     files += [accuracy_figure(section, out) for section in results.sections]
