@@ -271,7 +271,7 @@ def sweep(
     >>> import leblanc as lb
     >>> found = lb.sweep("study.toml", workers=0)  # doctest: +SKIP
     """
-    from leblanc.cli.output import out_dir
+    from leblanc.files import out_dir
     from leblanc.studies.sweep.study import load_sweep
     from leblanc.studies.sweep.summary import sweep_result
 

@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from leblanc.cli.output import out_dir, print_json, print_table, say
+from leblanc.cli.output import print_json, print_table, say
+from leblanc.files import out_dir
 
 
 def compare(

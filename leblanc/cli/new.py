@@ -10,7 +10,8 @@ from typing import Annotated
 
 import typer
 
-from leblanc.cli.output import say, writing
+from leblanc.cli.output import say
+from leblanc.files import writing
 
 
 def new(
@@ -35,6 +36,8 @@ def new(
         file = file or Path(name)
     if not force and os.path.lexists(file):
         raise FileExistsError(errno.EEXIST, "exists already; --force overwrites a file", str(file))
+    if not file.parent.is_dir():
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(file))
     with writing(file) as part:
         part.write_bytes(content)
     say(f"wrote {file}; try: {next_step} {file}")

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.output import out_dir, print_json, say
+from leblanc.cli.output import print_json, say
+from leblanc.files import out_dir
 
 if TYPE_CHECKING:
     from leblanc.results.optimum import OptimumResult

@@ -4,19 +4,13 @@ from __future__ import annotations
 
 import json
 import math
-import os
-import re
 import sys
-import tempfile
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any, Literal
 
 _WIDTH = 110  # characters of a line where there is no terminal
-_LONGEST_NAME = 200  # bytes; file systems allow 255
-_RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)  # on Windows
 
 
 def say(text: str) -> None:
@@ -86,67 +80,3 @@ def _plain(value: Any) -> Any:
     if hasattr(value, "tolist"):  # arrays and their scalars, without importing numpy for it
         return _plain(value.tolist())
     raise TypeError(f"{type(value).__name__} has no form in JSON")
-
-
-def out_dir(scene_name: str, out: Path | None) -> Path:
-    """Folder for the files of a command, made if need be and tried for writing.
-
-    Parameters
-    ----------
-    scene_name : names the folder out/<scene name> where the user chose none
-    out : the user's choice
-
-    Raises
-    ------
-    OSError : it cannot be made or written; carries the path
-    """
-    folder = Path("out") / safe_name(scene_name) if out is None else out
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with _naming(folder), tempfile.TemporaryFile(dir=folder):
-            pass  # better now than after the work
-    except PermissionError as error:
-        if out is None:
-            error.strerror = f"{error.strerror}; --out DIR chooses another folder"
-        raise
-    return folder
-
-
-def safe_name(name: str) -> str:
-    """The name with what file systems refuse replaced by underscores."""
-    kept = "".join("_" if letter in '/\\:*?"<>|' or not letter.isprintable() else letter for letter in name)
-    short = kept.encode()[:_LONGEST_NAME].decode(errors="ignore").strip(". ")
-    return f"_{short}" if not short or _RESERVED.fullmatch(short) else short
-
-
-@contextmanager
-def writing(path: Path) -> Iterator[Path]:
-    """Path to write to; what was written takes its place at `path` when the block ends well.
-
-    Until then, and if the block fails, whatever stood at `path` stands there untouched.
-
-    Parameters
-    ----------
-    path : of the file; its folder must exist
-
-    Raises
-    ------
-    OSError : it cannot be written; carries the path
-    """
-    part = path.with_name(f".{path.stem[:100]}.{os.getpid()}.part{path.suffix}")
-    try:
-        with _naming(path):
-            yield part
-            part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
-
-
-@contextmanager
-def _naming(path: Path) -> Iterator[None]:
-    """Give an error of the file system the path that the user knows."""
-    try:
-        yield
-    except OSError as error:
-        error.filename, error.filename2 = str(path), None
-        raise

@@ -22,8 +22,8 @@ from matplotlib.patches import Polygon
 from matplotlib.ticker import MultipleLocator as MultipleLocator  # handed on: this is the only door
 from numpy.typing import ArrayLike
 
+from leblanc.files import writing
 from leblanc.results.base import one_line
-from leblanc.results.netcdf import replacing
 from leblanc.results.response import RunResult
 from leblanc.units import RPM
 from meshes.errors import InputError
@@ -132,11 +132,11 @@ def save(figure: Figure, directory: Path, name: str, title: str) -> FigureFiles:
     )
     FigureCanvasAgg(figure)
     with style():
-        with replacing(files.png) as path:
+        with writing(files.png) as path:
             metadata = {"Software": None, "Title": title}
             # The usual level 6 takes a tenth of all drawing for a few per cent of the size.
             figure.savefig(path, format="png", metadata=metadata, pil_kwargs={"compress_level": 3})
-        with replacing(files.svg) as path:
+        with writing(files.svg) as path:
             figure.savefig(path, format="svg", metadata={"Date": None, "Creator": "leblanc", "Title": title})
     return files
 
@@ -296,7 +296,7 @@ def write_film(
     if kind == ".mp4" and not FFMpegWriter.isAvailable():
         raise InputError("--animate", str(path), "a .gif, since no ffmpeg was found to write an .mp4")
     player = matplotlib.rcParams["animation.ffmpeg_path"]
-    with style(), replacing(path) as part, TemporaryDirectory() as folder:
+    with style(), writing(path) as part, TemporaryDirectory() as folder:
         matplotlib.rcParams["animation.ffmpeg_path"] = player
         writer = (PillowWriter if kind == ".gif" else FFMpegWriter)(fps=rate)
         figure, show = make()

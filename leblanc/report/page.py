@@ -10,11 +10,11 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from leblanc.files import writing
 from leblanc.report.parts import Inputs, Table, scene_inputs, table
 from leblanc.results import base as provenance
 from leblanc.results.base import Note, NoteCode, one_line
 from leblanc.results.choice import ModelSpan
-from leblanc.results.netcdf import replacing
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import Optimisation
 from leblanc.text.run import described, error_words, speeds_words
@@ -168,7 +168,7 @@ def write_page(body: str, what: About, parts: Mapping[str, Any], path: Path) -> 
         "citation": citation(),
     }
     text = page.get_template(f"{body}.html.j2").render(common, **parts)
-    with replacing(path) as temporary:
+    with writing(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
 

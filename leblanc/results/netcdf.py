@@ -6,9 +6,7 @@ without it. This is the only door to xarray, and to h5netcdf, which writes the f
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from leblanc.files import writing
 from meshes.errors import InputError
 
 if TYPE_CHECKING:
@@ -101,23 +100,6 @@ class NamedArrays:
         return xr.Dataset(variables, coords=coords, attrs=self.attrs)
 
 
-@contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """Path to write to instead of `path`; takes its place once all is written, so no reader sees half a file.
-
-    Parameters
-    ----------
-    path : the file to write; its folder is made if it is missing
-    """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        yield temporary
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
 def variable(dims: tuple[str, ...], values: Any, units: str, long_name: str, text: str = "") -> Variable:
     """Variable with what a reader needs to use it.
 
@@ -159,7 +141,7 @@ def write_netcdf(found: NamedArrays, path: Path) -> None:
     import h5py
 
     held = _held_by(found)
-    with replacing(path) as temporary, h5netcdf.File(temporary, "w") as file:
+    with writing(path) as temporary, h5netcdf.File(temporary, "w") as file:
         file.attrs.update({**found.attrs, **held.get("", {})})
         file.dimensions = found.sizes
         for name, entry in found.arrays.items():

@@ -20,8 +20,8 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.files import writing
 from leblanc.results.drawn import DrawnLiquid, MachineMotion, Scale
-from leblanc.results.netcdf import replacing
 from leblanc.view.parts import Picture
 from leblanc.view.picture import (
     VIEWS,
@@ -136,7 +136,7 @@ def write_html(plot: Plotter, picture: Picture, path: Path) -> None:
     page = f"{text}</body>".join(page.rsplit("</body>", 1)).replace(FOREIGN_ICON, "data:,")
     title = f"{CLOSED}<title>{escape(picture.title)}</title>"
     page = re.sub("<title>.*?</title>", lambda _: title, page, count=1)
-    with replacing(path) as part:
+    with writing(path) as part:
         part.write_text(page, encoding="utf-8")
 
 

@@ -12,6 +12,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from leblanc.files import writing
 from leblanc.results.base import one_line
 from leblanc.results.drawn import (
     DrawnLiquid,
@@ -22,7 +23,6 @@ from leblanc.results.drawn import (
     RunupView,
     Scale,
 )
-from leblanc.results.netcdf import replacing
 from leblanc.units import MM, RPM
 from leblanc.view.parts import Instant, Picture, Stage
 from leblanc.view.picture import Pixels, fill, pixels, plotter, write_png
@@ -196,7 +196,7 @@ def _write_gif(shown: Sequence[Pixels], path: Path) -> None:
         COLOURS, method=spread, dither=Image.Dither.NONE
     )
     frames = [Image.fromarray(image).quantize(palette=palette, dither=Image.Dither.NONE) for image in shown]
-    with replacing(path) as part:
+    with writing(path) as part:
         frames[0].save(
             part,
             format="gif",
@@ -212,7 +212,7 @@ def _write_mp4(shown: Sequence[Pixels], path: Path) -> None:
     high, wide = shown[0].shape[:2]
     raw = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{wide}x{high}", "-r", str(RATE), "-i", "-"]
     coded = ["-pix_fmt", "yuv420p", "-fflags", "+bitexact", "-flags:v", "+bitexact"]
-    with replacing(path) as part, TemporaryDirectory() as folder:
+    with writing(path) as part, TemporaryDirectory() as folder:
         whole = Path(folder) / "film.mp4"
         command = ["ffmpeg", "-y", "-loglevel", "error", *raw, *coded, str(whole)]
         done = subprocess.run(

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.netcdf import replacing
+from leblanc.files import writing
 from leblanc.view.parts import Picture, Piece
 from meshes.errors import InputError
 
@@ -289,7 +289,7 @@ def write_png(shown: Pixels, path: Path) -> None:
     """
     from PIL import Image
 
-    with replacing(path) as part:
+    with writing(path) as part:
         few = Image.fromarray(shown).quantize(
             256, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE
         )

@@ -8,7 +8,8 @@ from typing import Annotated
 
 import typer
 
-from leblanc.cli.output import out_dir, print_json, say, writing
+from leblanc.cli.output import print_json, say
+from leblanc.files import out_dir, writing
 
 
 def trade(

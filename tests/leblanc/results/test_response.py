@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from leblanc.results.netcdf import replacing, write_netcdf
+from leblanc.files import writing
+from leblanc.results.netcdf import write_netcdf
 from leblanc.results.response import RunResult
 from meshes.errors import InputError
 from tests.oracles.records import folded, record_of, response_of, rig
@@ -100,7 +101,7 @@ def test_texts_that_a_file_cannot_carry(tmp_path: Path):
 def test_interrupted_writing_leaves_the_old_file(tmp_path: Path):
     path = tmp_path / "summary.html"
     path.write_text("old", encoding="utf-8")
-    with pytest.raises(KeyboardInterrupt), replacing(path) as temporary:
+    with pytest.raises(KeyboardInterrupt), writing(path) as temporary:
         temporary.write_text("half", encoding="utf-8")
         raise KeyboardInterrupt
     assert path.read_text(encoding="utf-8") == "old"

@@ -1,0 +1,79 @@
+"""Folders and files that are written: names that every file system takes, files that are whole or absent."""
+
+from __future__ import annotations
+
+import os
+import re
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+_LONGEST_NAME = 200  # bytes; file systems allow 255
+_RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)  # on Windows
+
+
+def out_dir(scene_name: str, out: Path | None) -> Path:
+    """Folder for the files of a command, made if need be and tried for writing.
+
+    Parameters
+    ----------
+    scene_name : names the folder out/<scene name> where the user chose none
+    out : the user's choice
+
+    Raises
+    ------
+    OSError : it cannot be made or written; carries the path
+    """
+    folder = Path("out") / safe_name(scene_name) if out is None else out
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with _naming(folder), tempfile.TemporaryFile(dir=folder):
+            pass  # better now than after the work
+    except PermissionError as error:
+        if out is None:
+            error.strerror = f"{error.strerror}; --out DIR chooses another folder"
+        raise
+    return folder
+
+
+def safe_name(name: str) -> str:
+    """The name with what file systems refuse replaced by underscores."""
+    kept = "".join("_" if letter in '/\\:*?"<>|' or not letter.isprintable() else letter for letter in name)
+    short = kept.encode()[:_LONGEST_NAME].decode(errors="ignore").strip(". ")
+    return f"_{short}" if not short or _RESERVED.fullmatch(short) else short
+
+
+@contextmanager
+def writing(path: Path) -> Iterator[Path]:
+    """Path to write to; what was written takes its place at `path` when the block ends well.
+
+    Until then, and if the block fails, whatever stood at `path` stands there untouched: no reader sees half a
+    file.
+
+    Parameters
+    ----------
+    path : of the file; its folder is made if it is missing
+
+    Raises
+    ------
+    OSError : it cannot be written; carries the path
+    """
+    part = path.with_name(f".{path.stem[:100]}.{os.getpid()}.part{path.suffix}")
+    try:
+        with _naming(path):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            yield part
+            part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+@contextmanager
+def _naming(path: Path) -> Iterator[None]:
+    """Give an error of the file system the path that the user knows."""
+    try:
+        yield
+    except OSError as error:
+        error.filename, error.filename2 = str(path), None
+        raise
