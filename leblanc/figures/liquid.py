@@ -122,6 +122,10 @@ def modes_figure(result: ModesResult) -> Figure:
             rows.append(row)
         caption = _caption(result, stretch)
         lay_out(figure, rows, [PANEL] * len(rows), MODES_FRAME, caption, 6)
+        slowest = ", ".join(f"{float(modes.frequency[k]):.4g}" for k in shown)
+        figure.alt = (
+            f"Shapes of {len(shown)} modes of the liquid along the axis; frequencies {slowest} rad/s."
+        )
     return figure
 
 

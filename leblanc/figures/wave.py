@@ -573,6 +573,10 @@ def wave_figure(wave: Wave) -> Figure:
             f"{describe_case(wave)}{describe_notes(wave)}"
         )
         _beside(figure, left, right, WAVE_FRAME, text)
+        figure.alt = (
+            "The layer seen along the axis and its depth around the wall, "
+            f"from {float(np.min(wave.depth)) * MM:.4g} to {deepest * MM:.4g} mm."
+        )
     return figure
 
 
@@ -604,6 +608,12 @@ def history_figure(wave: Wave, history: WaveFrames) -> Figure:
         for (axes,) in rows:
             box = axes.get_position()
             axes.set_position((box.x0, box.y0, box.width - RPM_ROOM / WIDTH, box.height))
+        curves = (
+            "depths"
+            if history.period_time is None
+            else "force on the drum, the liquid's rotation, its depths"
+        )
+        figure.alt = f"Curves over time of the {curves}."
     return figure
 
 

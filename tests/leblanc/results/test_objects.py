@@ -10,10 +10,12 @@ from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
 from types import CodeType, FrameType
+from typing import Any
 
 import numpy as np
 import pytest
 
+from leblanc.api import layer, modes
 from leblanc.cli import main
 from leblanc.cli.output import print_json
 from leblanc.figures.liquid import surface_figure
@@ -33,6 +35,7 @@ from meshes.chamber import Chamber
 from tests.oracles.data_files import assert_read_back
 
 CHAMBER = Chamber(0.065, 0.02)
+LAYER: dict[str, Any] = {"radius": 0.15, "volume": "671 ml", "height": 0.05, "speed": 40.0}
 ROOT = Path(__file__).parents[3]
 
 
@@ -51,6 +54,11 @@ RESULTS = {
     "compare": lambda: compare_models(scene("horizontal_rig"), ["kdv", "linear", "statics"]),
     "explain": lambda: explain_scene(scene("runup")),
     "explain an exciter": lambda: explain_exciter(scene("vibratory_table")),
+    "layer": lambda: layer(**LAYER, whirl_speed=32.0, whirl_amplitude="0.15 mm"),
+    "layer from rest": lambda: layer(
+        **LAYER, whirl_speed=32.0, whirl_amplitude="0.15 mm", model="long_wave", cells=32, duration=2.0
+    ),
+    "modes": lambda: modes(**LAYER, count=3, segments=32),
     "volume": lambda: answer_volume(CHAMBER, 1e-3, 20.0, 9.81, 3e-5),
     "exciter": lambda: run_exciter(scene("vibratory_table")),
 }
