@@ -103,9 +103,9 @@ def _tell(result: RunupResult, folder: Path) -> None:
     """The run as text."""
     from leblanc.units import MM, RPM
 
-    rows = [("largest amplitude", result.peak()), ("at the end", result.time.size - 1)]
+    rows = [("largest amplitude", result.peak_index()), ("at the end", result.time.size - 1)]
     if result.turns_back:
-        rows.insert(1, ("largest on the way down", result.peak(back=True)))
+        rows.insert(1, ("largest on the way down", result.peak_index(back=True)))
     for label, k in rows:
         size, speed, time = result.amplitude[k] * MM, result.speed[k] * RPM, result.time[k]
         print(f"{label:26}{size:10.4g} mm at {speed:8.5g} rpm, {time:.4g} s")

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cache
 from importlib import import_module, metadata
+from operator import attrgetter
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
@@ -144,6 +145,16 @@ def presented_by(address: str) -> Callable[[Any], Any]:
     module, _, name = address.partition(":")
     found: Callable[[Any], Any] = getattr(import_module(module), name)
     return found
+
+
+def carried(path: str) -> Any:
+    """A name of a result's JSON for what stands deeper in the result.
+
+    Parameters
+    ----------
+    path : from the result, as "history.time"; where a part of it is None the result does not have the name
+    """
+    return property(attrgetter(path))
 
 
 class Result(ABC):

@@ -7,8 +7,9 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
-from leblanc.results.base import Result, attributes
+from leblanc.results.base import Result, attributes, carried
 from leblanc.results.netcdf import NamedArrays, flags
 from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Flags
@@ -112,9 +113,39 @@ class ExciterResult(Result):
         ratio = self.speed / self.machine.natural_frequency
         return -np.arctan2(2.0 * self.numbers.damping * ratio, 1.0 - np.square(ratio))
 
+    @property
+    def liquid_offset(self) -> Array:
+        """There is no liquid: nan, shape (n,)."""
+        return np.full(self.speed.shape, np.nan)
+
+    liquid_angle = liquid_offset
+
+    @property
+    def dry_patch(self) -> Flags:
+        """No wall can run dry, shape (n,)."""
+        return np.zeros(self.speed.shape, dtype=np.bool_)
+
+    @property
+    def model(self) -> NDArray[np.str_]:
+        """What answers at each speed, shape (n,)."""
+        return np.full(self.speed.shape, "balls")
+
+    @property
+    def characteristic_speeds(self) -> dict[str, float | None]:
+        """Shaft speeds where the stuck speeds change, rad/s, by name."""
+        return named_speeds(self.characteristic)
+
+    stable = carried("dual_frequency")
+    stuck_speeds = carried("stuck")
+    amplitude_slow = carried("slow")
+    amplitude_fast = carried("fast")
+    critical_speed = carried("critical")
+    critical_speed_printed = carried("printed_critical")
+    natural_frequency = carried("machine.natural_frequency")
+    dimensionless = carried("numbers")
+
     def to_json(self) -> dict[str, Any]:
         """What `run` prints for scripts: SI units, radians, null for what is not there."""
-        first, through, last = map(number_or_none, self.characteristic)
         nothing = [None] * self.speed.size
         return {
             "speed": self.speed.tolist(),
@@ -123,14 +154,14 @@ class ExciterResult(Result):
             "phase": self.phase.tolist(),
             "liquid_offset": nothing,
             "liquid_angle": nothing,
-            "dry_patch": [False] * self.speed.size,
-            "stable": self.dual_frequency.tolist(),
-            "model": ["balls"] * self.speed.size,
+            "dry_patch": self.dry_patch.tolist(),
+            "stable": self.stable.tolist(),
+            "model": self.model.tolist(),
             "stuck_speeds": [[number_or_none(speed) for speed in row] for row in self.stuck],
             "amplitude_slow": self.slow.tolist(),
             "amplitude_fast": self.fast.tolist(),
             "dual_frequency": self.dual_frequency.tolist(),
-            "characteristic_speeds": {"second_pair": first, "through_resonance": through, "merger": last},
+            "characteristic_speeds": self.characteristic_speeds,
             "critical_speed": number_or_none(self.critical),
             "critical_speed_printed": number_or_none(self.printed_critical),
             "natural_frequency": self.machine.natural_frequency,
@@ -171,6 +202,17 @@ class ExciterResult(Result):
             coords={"speed": var(over, self.speed, rate, "shaft speed", "of the exciter")},
             attrs=attributes(self, "run", {}, ()),
         )
+
+
+def named_speeds(characteristic: tuple[float, float, float]) -> dict[str, float | None]:
+    """Characteristic shaft speeds by name, None where there are none.
+
+    Parameters
+    ----------
+    characteristic : second pair, through the resonance, merger, rad/s
+    """
+    names = ("second_pair", "through_resonance", "merger")
+    return dict(zip(names, map(number_or_none, characteristic), strict=True))
 
 
 def number_or_none(value: float) -> float | None:

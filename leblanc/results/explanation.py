@@ -12,7 +12,7 @@ import numpy as np
 from fluid.numbers import LayerNumbers
 from leblanc.results.base import Result, attributes
 from leblanc.results.choice import ModelSpan
-from leblanc.results.exciter import number_or_none
+from leblanc.results.exciter import named_speeds, number_or_none
 from leblanc.results.netcdf import NamedArrays, Variable, flags
 from leblanc.results.netcdf import variable as var
 from leblanc.results.response import RestMode, RunResult, peak
@@ -185,15 +185,19 @@ class ExciterExplanation(Result):
     assumed: tuple[str, ...] = ()
     digest: str = ""
 
+    @property
+    def characteristic_speeds(self) -> dict[str, float | None]:
+        """Shaft speeds where the stuck speeds change, rad/s, by name."""
+        return named_speeds(self.characteristic)
+
     def to_json(self) -> dict[str, Any]:
         """What `explain` prints for scripts, SI, null for what is not there."""
-        first, through, last = map(number_or_none, self.characteristic)
         return {
             "name": self.name,
             "natural_frequency": self.natural_frequency,
             "speed_ratio": list(self.speed_ratio),
             "dimensionless": asdict(self.dimensionless),
-            "characteristic_speeds": {"second_pair": first, "through_resonance": through, "merger": last},
+            "characteristic_speeds": self.characteristic_speeds,
             "critical_speed_printed": number_or_none(self.critical_speed_printed),
         }
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.results.base import Note, NoteCode, Result, one_line, texts, versions
+from leblanc.results.base import Note, NoteCode, Result, carried, one_line, texts, versions
 from leblanc.results.netcdf import NamedArrays, variable
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative, require_positive
@@ -243,6 +243,17 @@ class LayerPeriodsResult(Result):
     def in_range(self) -> bool:
         """The model holds."""
         return not self.notes
+
+    time = carried("history.time")
+    force_ratio = carried("history.force_ratio")
+    mean_rotation = carried("history.mean_rotation")
+    depth_max = carried("history.depth_max")
+    depth_min = carried("history.depth_min")
+    offset = carried("history.offset")
+    pressure_ratio = carried("history.pressure_ratio")
+    mass_error = carried("history.mass_error")
+    theta = carried("history.theta")
+    depth = carried("history.depth")
 
     def to_json(self, profile: bool = True) -> dict[str, Any]:
         """What `layer --duration` prints for scripts, SI and radians.

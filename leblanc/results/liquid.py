@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.base import Note, NoteCode, Result, one_line, texts, versions
+from leblanc.results.base import Note, NoteCode, Result, carried, one_line, texts, versions
 from leblanc.results.netcdf import NamedArrays, variable
 from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array
@@ -100,6 +100,11 @@ class VolumeResult(Result):
     def converged(self) -> bool:
         """The surface of the given volume was found."""
         return self.surface is None or self.surface.converged
+
+    surface_constant = carried("surface.surface_constant")
+    unbalance_volume = carried("surface.unbalance_volume")
+    unbalance_volume_fem = carried("surface.unbalance_volume_fem")
+    case = carried("surface.case")
 
     def to_json(self) -> dict[str, Any]:
         """What `volume` prints for scripts, SI; the surface only where a volume was given."""

@@ -307,6 +307,11 @@ class OptimumResult(Result):
         """Decay of the small whirl that dies out slowest at the operating speeds, 1/s; below 0 it grows."""
         return -self.growth
 
+    @property
+    def pareto(self) -> list[dict[str, Any]]:
+        """What must be given up for what, point by point; empty if it was not computed."""
+        return [] if self.front is None else self.front.to_json()
+
     def to_json(self) -> dict[str, Any]:
         """What `optimise` prints for scripts, SI."""
         names = ("objective", "volume", "value", "baseline", "feasible", "evaluations", "unit", "meaning")
@@ -318,7 +323,7 @@ class OptimumResult(Result):
             | {
                 "constraints": {name: asdict(value) for name, value in self.constraints.items()},
                 "closed_form": [form.to_json() for form in self.closed_form],
-                "pareto": [] if self.front is None else self.front.to_json(),
+                "pareto": self.pareto,
                 "name": self.name,
                 "digest": self.digest,
                 "assumed": self.assumed,

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.base import FilledChamber, Note, Result, attributes, one_line, texts
+from leblanc.results.base import FilledChamber, Note, Result, attributes, carried, one_line, texts
 from leblanc.results.choice import ModelSpan
 from leblanc.results.netcdf import NamedArrays, Variable, flags
 from leblanc.results.netcdf import variable as var
@@ -65,6 +65,16 @@ class Motion:
     critical_speeds_dry: tuple[tuple[float, float], ...]
     critical_speeds_wet: tuple[tuple[float, float], ...]
     zero: str
+
+    @property
+    def natural_frequency(self) -> list[float]:
+        """Of each mode of the dry rotor at rest, rad/s."""
+        return [mode.frequency for mode in self.modes]
+
+    @property
+    def natural_damping_ratio(self) -> list[float]:
+        """Of each of these modes."""
+        return [mode.damping_ratio for mode in self.modes]
 
 
 @dataclass(frozen=True)
@@ -288,6 +298,18 @@ class RunResult(Result):
         """Names of the liquid models, in the order in which they appear over speed."""
         return tuple(dict.fromkeys(self.response.model.tolist()))
 
+    # Every branch; what a rotor adds that is not planar.
+    branches = carried("response.branch_deflection")
+    branch_stable = carried("response.branch_stable")
+    whirl_bands = carried("whirl.bands")
+    position = carried("motion.position")
+    backward = carried("motion.backward")
+    chamber_deflection = carried("motion.chamber_forward")
+    natural_frequency = carried("motion.natural_frequency")
+    natural_damping_ratio = carried("motion.natural_damping_ratio")
+    critical_speeds_dry = carried("motion.critical_speeds_dry")
+    critical_speeds_wet = carried("motion.critical_speeds_wet")
+
     def to_json(self) -> dict[str, Any]:
         """What `run` prints for scripts: plain Python values, SI, radians, complex numbers as [re, im].
 
@@ -371,8 +393,8 @@ def _motion_json(motion: Motion | None) -> dict[str, Any]:
         "position": motion.position,
         "backward": _finite(motion.backward),
         "chamber_deflection": _finite(motion.chamber_forward),
-        "natural_frequency": [mode.frequency for mode in motion.modes],
-        "natural_damping_ratio": [mode.damping_ratio for mode in motion.modes],
+        "natural_frequency": motion.natural_frequency,
+        "natural_damping_ratio": motion.natural_damping_ratio,
         "critical_speeds_dry": [list(speed) for speed in motion.critical_speeds_dry],
         "critical_speeds_wet": [list(speed) for speed in motion.critical_speeds_wet],
     }

@@ -231,7 +231,44 @@ class RunupResult(Result):
         pairs = zip(row.tolist(), column.tolist(), strict=True)
         return tuple(Capture(k + 1, j, bool(self.captured[k + 1, j])) for k, j in pairs)
 
-    def peak(self, back: bool = False) -> int:
+    @property
+    def liquid_offset(self) -> Array:
+        """Distance of the liquid's centre of mass from the rotation axis, m, shape (k,)."""
+        return np.asarray(np.abs(self.liquid_position))
+
+    @property
+    def liquid_angle(self) -> Array:
+        """Its angle from the drum's zero mark, rad, shape (k,)."""
+        return np.asarray(np.angle(self.liquid_position))
+
+    @property
+    def liquid_offset_mean(self) -> Array:
+        """Distance of its mean over whole turns, m, shape (k,)."""
+        return np.asarray(np.abs(self.mean_position))
+
+    @property
+    def liquid_angle_mean(self) -> Array:
+        """Angle of that mean, rad, shape (k,)."""
+        return np.asarray(np.angle(self.mean_position))
+
+    @property
+    def peak(self) -> dict[str, float]:
+        """Amplitude, speed and time of the largest amplitude on the way up."""
+        return self._moment(self.peak_index())
+
+    @property
+    def peak_back(self) -> dict[str, float]:
+        """The same on the way back."""
+        return self._moment(self.peak_index(back=True))
+
+    @property
+    def end(self) -> dict[str, float]:
+        """Amplitude, speed, time and angles at the end."""
+        last = self.time.size - 1
+        angles = ("phase", "liquid_offset", "liquid_angle")
+        return self._moment(last) | {name: float(getattr(self, name)[last]) for name in angles}
+
+    def peak_index(self, back: bool = False) -> int:
         """Index of the largest amplitude on the way up, or on the way back."""
         if back and self.turns_back:
             return self.turning + 1 + int(np.argmax(self.amplitude[self.turning + 1 :]))
@@ -239,36 +276,16 @@ class RunupResult(Result):
 
     def to_json(self) -> dict[str, Any]:
         """What `runup` prints for scripts, SI and radians; of chambers a list in each list over time."""
-        position, mean = self.liquid_position, self.mean_position
-        found: dict[str, Any] = {
-            "time": self.time,
-            "speed": self.speed,
-            "amplitude": self.amplitude,
-            "phase": self.phase,
-            "liquid_offset": np.abs(position),
-            "liquid_angle": np.angle(position),
-            "liquid_offset_mean": np.abs(mean),
-            "liquid_angle_mean": np.angle(mean),
-            "mass_error": self.mass_error,
-            "captured": self.captured,
-            "in_range": self.in_range,
-            "depth_max": self.depth_max,
-            "depth_min": self.depth_min,
-            "mean_rotation": self.mean_rotation,
-        }
-        last = self.time.size - 1
-        ends = {"peak": self._moment(self.peak()), "end": self._moment(last)}
-        if self.turns_back:
-            ends["peak_back"] = self._moment(self.peak(back=True))
-        ends["end"] |= {name: float(found[name][-1]) for name in ("phase", "liquid_offset", "liquid_angle")}
+        over = ["time", "speed", "amplitude", "phase", "liquid_offset", "liquid_angle"]
+        over += ["liquid_offset_mean", "liquid_angle_mean", "mass_error", "captured", "in_range"]
+        over += ["depth_max", "depth_min", "mean_rotation", "peak", "end"]
+        over += ["peak_back"] if self.turns_back else []
         rest = ("error_estimate", "converged", "reason", "steps", "cells", "model", "model_reason")
         own = ("model_error", "name", "digest", "assumed", "bands")
-        return (
-            found
-            | ends
-            | {name: getattr(self, name) for name in (*rest, *own)}
-            | {"energy": self._energy(), "notes": texts(self.notes)}
-        )
+        return {name: getattr(self, name) for name in (*over, *rest, *own)} | {
+            "energy": self._energy(),
+            "notes": texts(self.notes),
+        }
 
     def _moment(self, index: int) -> dict[str, float]:
         """Amplitude, speed and time of one sample."""

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.base import Result
+from leblanc.results.base import Result, carried
 from leblanc.results.netcdf import NamedArrays
 from meshes.arrays import Array
 
@@ -126,6 +126,9 @@ class SweepResult(Result):
     sensitivities: Mapping[str, Sensitivity | None]
     digest: str
     read: Callable[[], NamedArrays] = field(repr=False, compare=False)
+
+    outputs = carried("single")
+    sensitivity = carried("sensitivities")
 
     def to_json(self) -> dict[str, Any]:
         """What `sweep` prints for scripts: SI, lists over speed or over the varied fields."""

@@ -24,15 +24,15 @@ def describe_model(model: str, cells: int, dispersion: bool) -> str:
 
 def moments(result: RunupResult) -> list[tuple[str, int]]:
     """Label and index of the main samples: the largest amplitudes and the end."""
-    found = [("Largest on the way up" if result.turns_back else "Largest amplitude", result.peak())]
+    found = [("Largest on the way up" if result.turns_back else "Largest amplitude", result.peak_index())]
     if result.turns_back:
-        found.append(("Largest on the way down", result.peak(back=True)))
+        found.append(("Largest on the way down", result.peak_index(back=True)))
     return [*found, ("At the end", result.time.size - 1)]
 
 
 def largest(result: RunupResult) -> str:
     """The largest amplitude on the way up and where it was."""
-    k = result.peak()
+    k = result.peak_index()
     size, speed = number(float(result.amplitude[k]) * MM), number(float(result.speed[k]) * RPM)
     return f"{size} mm at {speed} rpm"
 

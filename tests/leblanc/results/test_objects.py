@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from leblanc.api import layer, modes
+from leblanc.api import layer, modes, optimise, run_up
 from leblanc.cli import main
 from leblanc.cli.output import print_json
 from leblanc.figures.liquid import surface_figure
@@ -43,12 +43,17 @@ def scene(name: str) -> Scene:
     return load_scene(ROOT / f"examples/{name}.toml")
 
 
+RUNUP = scene("runup").replace({"runup.duration": "1 s", "runup.cells": 16})
+
+
 @cache
 def run() -> RunResult:
     return run_scene(scene("tub"))
 
 
 RESULTS = {
+    "runup": lambda: run_up(RUNUP, samples=50, check=False),
+    "optimise": lambda: optimise(scene("horizontal_rig")),
     "run": run,
     "map": lambda: map_scene(scene("horizontal_rig"), 5, 21),
     "compare": lambda: compare_models(scene("horizontal_rig"), ["kdv", "linear", "statics"]),
@@ -88,6 +93,11 @@ def test_every_result_has_every_way_out(
     result: Result = RESULTS[name]()
     print_json(result.to_json())
     assert json.loads(capsys.readouterr().out)
+    for key, value in result.to_json().items():
+        carried = getattr(result, key)
+        assert not callable(carried), key
+        if isinstance(value, np.ndarray) and value.dtype.kind in "fc":
+            np.testing.assert_array_equal(carried, value)
     data = result.to_dataset()
     assert all(variable.attrs["units"] and variable.attrs["long_name"] for variable in data.values())
     assert data.attrs["version_numpy"] == np.__version__

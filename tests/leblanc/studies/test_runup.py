@@ -258,9 +258,9 @@ def test_a_run_up_and_back(record: RunupResult) -> None:
     assert h.time[-1] == pytest.approx(2.5, rel=1e-12)
     # The way back begins after the hold.
     assert h.time[record.turning] == pytest.approx(1.5, rel=1e-12)
-    assert record.peak() <= record.turning < record.peak(back=True)
-    assert h.amplitude[record.peak()] == h.amplitude[: record.turning + 1].max()
-    assert h.amplitude[record.peak(back=True)] == h.amplitude[record.turning + 1 :].max()
+    assert record.peak_index() <= record.turning < record.peak_index(back=True)
+    assert h.amplitude[record.peak_index()] == h.amplitude[: record.turning + 1].max()
+    assert h.amplitude[record.peak_index(back=True)] == h.amplitude[record.turning + 1 :].max()
     assert record.in_range.all()
     # The liquid's weight times its distance is what the layer and the axis' deflection make together.
     exact = (h.deflection[:, 0] + h.offset[:, 0]) * np.exp(-1j * h.angle)
@@ -477,7 +477,7 @@ def test_figures(tmp_path: Path, record: RunupResult) -> None:
     lines = {line.get_label(): line for line in speed.axes[0].get_lines()}
     up, back = lines["run-up"], lines["run-down"]
     assert up.get_linestyle() != back.get_linestyle()  # told apart without colour too
-    assert np.allclose(up.get_ydata().max(), 1e3 * record.history.amplitude[record.peak()])
+    assert np.allclose(up.get_ydata().max(), 1e3 * record.history.amplitude[record.peak_index()])
     assert np.allclose(up.get_xdata()[[0, -1]], [20.0 / RPM, 40.0 / RPM])
     words = " ".join(text.get_text() for text in reversed(speed.texts))
     assert "16 cells" in words

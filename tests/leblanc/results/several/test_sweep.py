@@ -54,6 +54,7 @@ def test_json_is_that_of_the_command(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert main(["sweep", str(path), "--workers", "0", "--netcdf", "--out", str(out), "--json"]) == 0
     printed = capsys.readouterr().out
     result = sweep_result(study_in(tmp_path, STUDY, LINEAR), out)
+    assert all(hasattr(result, key) for key in result.to_json())
     print_json(result.to_json())
     assert capsys.readouterr().out == printed
     assert [*json.loads(printed)] == [
