@@ -381,9 +381,9 @@ def test_gravity_captures_and_drops_the_liquid() -> None:
 
 
 @kills(
-    "leblanc.results.runup:RunupResult.to_json",
-    '"liquid_angle": np.angle(position)',
-    '"liquid_angle": -np.angle(position)',
+    "leblanc.results.runup:RunupResult.liquid_angle",
+    "np.angle(self.liquid_position)",
+    "-np.angle(self.liquid_position)",
 )
 def test_json(capsys: pytest.CaptureFixture[str] | None = None) -> None:
     """Place of the liquid and of the axis in the drum, turned back by hand from the standing frame."""
