@@ -11,6 +11,7 @@ from __future__ import annotations
 import functools
 import math
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from numbers import Real
 from typing import Any
@@ -53,6 +54,7 @@ MM = 1e3  # millimetres in one metre
 ML = 1e6  # millilitres in one cubic metre
 LITRE = 1e3  # litres in one cubic metre
 NOT_FOUND = "not found"  # as printed
+_PLAIN = 7  # digits of a number that is written out; the fastest spin has them, in rpm
 MINUS, DEGREE, TIMES = "\N{MINUS SIGN}", "\N{DEGREE SIGN}", "\N{MULTIPLICATION SIGN}"
 
 NUMBER = Dimension("pure number", "", "0.1")
@@ -120,6 +122,145 @@ _SIGN = re.compile(r"\s*(\*\*|[*/^])\s*")
 _HERTZ = re.compile(r"(?<![A-Za-z])([A-Za-z]*?)(?:Hz|hertz)(?![A-Za-z])")
 
 
+@dataclass(frozen=True)
+class Unit:
+    """A unit in which values are shown.
+
+    Parameters
+    ----------
+    name : as printed, and as it may be typed
+    count : how many of it one SI unit is
+    """
+
+    name: str
+    count: float
+
+    def number(self, value: float) -> str:
+        """The value in this unit for print, without the unit.
+
+        Parameters
+        ----------
+        value : SI
+        """
+        return number(value * self.count)
+
+    def text(self, value: float) -> str:
+        """The value with this unit; what is not finite has none.
+
+        Parameters
+        ----------
+        value : SI
+        """
+        return f"{self.number(value)} {self.name}" if math.isfinite(value) else number(value)
+
+
+# Units that a person would write, each with the size in SI from which it is taken. The first one takes all
+# that is smaller, the one at None what is zero or not known.
+_UNITS: dict[Dimension, tuple[tuple[float, Unit], ...]] = {
+    LENGTH: (
+        (0.0, Unit("nm", 1e9)),
+        (1e-7, Unit("um", 1e6)),
+        (1e-4, Unit("mm", MM)),
+        (10.0, Unit("m", 1.0)),
+    ),
+    MASS: ((0.0, Unit("mg", 1e6)), (1e-3, Unit("g", 1e3)), (1.0, Unit("kg", 1.0)), (1e4, Unit("t", 1e-3))),
+    VOLUME: (
+        (0.0, Unit("ul", 1e9)),
+        (1e-7, Unit("ml", ML)),
+        (1e-2, Unit("l", LITRE)),
+        (10.0, Unit("m^3", 1.0)),
+    ),
+    UNBALANCE: (
+        (0.0, Unit("mg mm", 1e9)),
+        (1e-8, Unit("g mm", 1e6)),
+        (1e-3, Unit("kg mm", MM)),
+        (10.0, Unit("kg m", 1.0)),
+    ),
+    TIME: ((0.0, Unit("us", 1e6)), (1e-4, Unit("ms", 1e3)), (0.1, Unit("s", 1.0))),
+    ANGULAR_SPEED: ((0.0, Unit("rpm", RPM)),),
+}
+_USUAL = {LENGTH: "mm", MASS: "g", VOLUME: "ml", UNBALANCE: "g mm", TIME: "s", ANGULAR_SPEED: "rpm"}
+
+
+def unit_for(dimension: Dimension, *values: float) -> Unit:
+    """Unit in which a person would write values that stand side by side.
+
+    Parameters
+    ----------
+    dimension : of the values; one without a choice of units is shown in its SI unit
+    values : SI; the largest finite one decides
+
+    Examples
+    --------
+    >>> unit_for(LENGTH, 7.2e-3, 5.6e-6).name, unit_for(LENGTH, 5.6e-6).name, unit_for(LENGTH, 0.0).name
+    ('mm', 'um', 'mm')
+    """
+    units = _UNITS.get(dimension, ((0.0, Unit(dimension.unit, 1.0)),))
+    size = max((abs(value) for value in values if math.isfinite(value)), default=0.0)
+    if size == 0.0:
+        usual = _USUAL.get(dimension, dimension.unit)
+        return next(unit for _, unit in units if unit.name == usual)
+    # What would be printed as the next unit's least, rounded to four digits, is in that unit.
+    return [unit for least, unit in units if size * (1.0 + 5e-5) >= least][-1]
+
+
+def with_unit(value: float, dimension: Dimension) -> str:
+    """A value for print in the unit that a person would write.
+
+    Parameters
+    ----------
+    value : SI
+    dimension : what it measures
+
+    Examples
+    --------
+    >>> with_unit(5.636e-6, LENGTH), with_unit(0.115, UNBALANCE), with_unit(1047.2, ANGULAR_SPEED)
+    ('5.636 um', '115 kg mm', '10000 rpm')
+    """
+    return unit_for(dimension, value).text(value)
+
+
+def in_rpm(speed: float, missing: str = NOT_FOUND) -> str:
+    """A speed for print.
+
+    Parameters
+    ----------
+    speed : rad/s
+    missing : in place of a speed that is not finite
+    """
+    return with_unit(speed, ANGULAR_SPEED) if math.isfinite(speed) else missing
+
+
+def rpm_range(low: float, high: float) -> str:
+    """A range of speeds for print.
+
+    Parameters
+    ----------
+    low, high : rad/s
+    """
+    return f"{number(low * RPM)} to {in_rpm(high)}"
+
+
+def rpm_bands(bands: Iterable[tuple[float, float]]) -> str:
+    """Ranges of speed for print; empty without any.
+
+    Parameters
+    ----------
+    bands : first and last speed of each, rad/s
+    """
+    return ", ".join(rpm_range(low, high) for low, high in bands)
+
+
+def celsius(temperature: float) -> str:
+    """A temperature for print, as a person would write it.
+
+    Parameters
+    ----------
+    temperature : K
+    """
+    return f"{number(float(f'{temperature - 273.15:.10g}'))} degC"
+
+
 def number(value: float) -> str:
     """Value to four digits for print, without zeros at the end."""
     if not math.isfinite(value):
@@ -127,7 +268,7 @@ def number(value: float) -> str:
     if value == 0.0:
         return "0"
     exponent = math.floor(math.log10(abs(value)))
-    if not -4 <= exponent < 6:
+    if not -4 <= exponent < _PLAIN:
         return f"{value:.3e}".replace("-", MINUS)
     text = f"{value:.{max(0, 3 - exponent)}f}"
     return (text.rstrip("0").rstrip(".") if "." in text else text).replace("-", MINUS)

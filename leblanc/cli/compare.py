@@ -31,14 +31,14 @@ def compare(
 
     from leblanc.figures.comparison import comparison_figure, save
     from leblanc.results.netcdf import write_netcdf
-    from leblanc.text.explanation import COMPARISON_HEAD, basis, comparison_rows, refusals
+    from leblanc.text.explanation import basis, comparison_head, comparison_rows, refusals
 
     write_netcdf(found.named_arrays(), folder / "compare.nc")
     files = save(comparison_figure(found), folder, "compare", "Amplitude over speed by liquid model")
     if json:
         print_json(found.to_json())
     else:
-        print_table(comparison_rows(found), COMPARISON_HEAD, right=True)
+        print_table(comparison_rows(found), comparison_head(found), right=True)
         print("\n".join([basis(found), *refusals(found)]))
         print(f"See {files.png}; the data are in {folder / 'compare.nc'}")
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.output import print_json, say
+from leblanc.cli.output import print_json, print_table, say
 from leblanc.files import out_dir
 
 if TYPE_CHECKING:
@@ -70,22 +70,11 @@ def layer(
     if json:
         print_json(shown)
     else:
-        _tell(shown)
+        _tell(result, profile)
     if not result.converged:
         reason = "; ".join(shown["notes"][:1])
         raise NotConverged([f"leblanc layer: {reason or 'no answer'}; {_HELP[model]}"])
 
-
-# Of a layer that starts from rest, one row for each whirl period.
-_PERIODS = {
-    "time": "time, s",
-    "force_ratio": "force ratio",
-    "mean_rotation": "mean rotation, rad/s",
-    "depth_max": "depth max, m",
-    "depth_min": "depth min, m",
-    "offset": "offset, m",
-    "pressure_ratio": "pressure ratio",
-}
 
 _HELP = {
     "statics": "less liquid or a smaller whirl may help",
@@ -96,21 +85,35 @@ _HELP = {
 }
 
 
-def _tell(shown: dict[str, Any]) -> None:
+def _tell(result: LayerResult | LayerPeriodsResult, profile: bool) -> None:
     """The answer as text, each number that it rests on in a line."""
-    periods = [name for name in _PERIODS if getattr(shown.get(name), "ndim", 0) == 1]
-    for name, value in shown.items():
-        if name not in ("validity", "notes", *periods):
-            print(f"{name.replace('_', ' '):18}{value}")
+    from leblanc.results.layer import LayerResult
+    from leblanc.text.liquid import (
+        VALIDITY_HEAD,
+        layer_periods,
+        layer_profile,
+        layer_summary,
+        periods_summary,
+        validity_rows,
+        whirl_words,
+    )
+
+    print(whirl_words(result.case))
+    if isinstance(result, LayerResult):
+        print_table(layer_summary(result))
+        if profile:
+            head, rows = layer_profile(result)
+            print()
+            print_table(rows, head, right=True)
+    else:
+        print_table(periods_summary(result))
+        head, rows = layer_periods(result)
+        if rows:
+            print()
+            print_table(rows, head, right=True)
     print()
-    if periods:
-        print("".join(f"{_PERIODS[name]:>22}" for name in periods))
-        for row in zip(*(shown[name] for name in periods), strict=True):
-            print("".join(f"{value:22.4g}" for value in row))
-        print()
-    for number in shown["validity"]:
-        print(f"{number['name'].replace('_', ' '):18}{number['value']:<10.4g}{number['meaning']}")
-    for note in shown["notes"]:
+    print_table(validity_rows(result.validity), VALIDITY_HEAD)
+    for note in result.notes:
         print(f"note: {note}")
 
 

@@ -50,13 +50,14 @@ def modes(
     from leblanc.scene.schema.load import NotConverged
     from leblanc.studies.modes import answer_modes
     from leblanc.text.liquid import modes_table
+    from leblanc.units import LENGTH, with_unit
 
     question = ask(modes_question, given)
     result = answer_modes(**question)
     if json:
         print_json(result.to_json())
     else:
-        print(f"{result.title}; free surface at {result.surface_radius * 1e3:.6g} mm; {liquid}")
+        print(f"{result.title}; free surface at {with_unit(result.surface_radius, LENGTH)}; {liquid}")
         print("\n".join(modes_table(result)))
         print(f"force ratio of a synchronous whirl {result.synchronous_force_ratio:.6g}")
         for note in result.notes:

@@ -39,7 +39,7 @@ def run(
     from leblanc.report.page import about, command_line
     from leblanc.report.run import write_run_report
     from leblanc.results.netcdf import write_netcdf
-    from leblanc.text.run import comparisons
+    from leblanc.text.run import amplitude_place, comparisons, limit_rows
 
     write_netcdf(result.named_arrays(), folder / "response.nc")
     figures = write_figures(result, folder)
@@ -50,6 +50,10 @@ def run(
     else:
         rows = [(row.label, row.wet, row.dry, row.ratio) for row in comparisons(result)]
         print_table(rows, ("", "with liquid", "without", "ratio"), right=True)
+        if place := amplitude_place(result):
+            print(f"Amplitudes are those {place}.")
+        print("\nLimits of the answer")
+        print_table(limit_rows(result), indent=2)
         print(f"Read {folder / 'summary.html'}; the data are in {folder / 'response.nc'}")
 
     if not result.converged.all():

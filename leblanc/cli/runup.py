@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.output import print_json, say
+from leblanc.cli.output import print_json, print_table, say
 from leblanc.files import out_dir
 
 if TYPE_CHECKING:
@@ -101,14 +101,9 @@ def _film(result: RunupResult, path: Path) -> None:
 
 def _tell(result: RunupResult, folder: Path) -> None:
     """The run as text."""
-    from leblanc.units import MM, RPM
+    from leblanc.text.runup import answer_rows
 
-    rows = [("largest amplitude", result.peak_index()), ("at the end", result.time.size - 1)]
-    if result.turns_back:
-        rows.insert(1, ("largest on the way down", result.peak_index(back=True)))
-    for label, k in rows:
-        size, speed, time = result.amplitude[k] * MM, result.speed[k] * RPM, result.time[k]
-        print(f"{label:26}{size:10.4g} mm at {speed:8.5g} rpm, {time:.4g} s")
+    print_table(answer_rows(result))
     for note in result.notes:
         print(f"note: {note.text}")
     print(f"Read {folder / 'runup.html'}; the data are in {folder / 'runup.nc'}")

@@ -14,7 +14,7 @@ from leblanc.results.base import FilledChamber
 from leblanc.results.drawn import chord, rounded_down
 from leblanc.results.response import RunResult, peak, phase
 from leblanc.text.run import alts
-from leblanc.units import DEGREE, MINUS, MM, RPM, TIMES
+from leblanc.units import DEGREE, LENGTH, MINUS, MM, TIMES, in_rpm, number, with_unit
 from meshes.arrays import Array, Complex
 from meshes.baffles import Baffles
 from meshes.chamber_section import ChamberSection
@@ -310,7 +310,7 @@ def describe_view(result: RunResult, index: int) -> str:
     """Name and speed of one view."""
     r = result.response
     name = "Working speed" if index == r.speed.size - 1 else "Largest deflection"
-    text = f"{name}, {r.speed[index] * RPM:.4g} rpm"
+    text = f"{name}, {in_rpm(r.speed[index])}"
     return text if r.in_range[index] else f"{text}\n(model out of range)"
 
 
@@ -326,13 +326,13 @@ def describe_state(result: RunResult, index: int) -> str:
     w, offset = r.deflection[index], r.liquid_offset[index]
     if w == 0.0:
         return "no deflection"
-    place = f"{abs(w) * MM:.3g} mm at {_degrees(float(phase(w)))}{DEGREE}"
+    place = f"{with_unit(abs(w), LENGTH)} at {_degrees(float(phase(w)))}{DEGREE}"
     text = f"deflection {place}"
     if result.motion is not None:
         several = len({chamber.plane for chamber in result.chambers}) > 1
         text = f"{'first chamber' if several else 'deflection'} {place}"
     if offset > 0.0:
-        text += f"\nliquid {offset * MM:.3g} mm at {_degrees(float(r.liquid_angle[index]))}{DEGREE}"
+        text += f"\nliquid {with_unit(offset, LENGTH)} at {_degrees(float(r.liquid_angle[index]))}{DEGREE}"
     return text
 
 
@@ -391,9 +391,9 @@ def draw_chambers(
     axes.set_ylim(-reach, reach)
     axes.set_aspect("equal")
     if len(views.drawings) > 1:
-        names = ", ".join(f"{chamber.radius * MM:.4g}" for chamber in chambers)
+        names = ", ".join(f"{number(chamber.radius * MM)}" for chamber in chambers)
         planes = {chamber.plane for drawing in views.drawings for chamber in drawing}
-        place = f", at {chambers[0].plane * MM:.4g}".replace("-", MINUS) if len(planes) > 1 else ""
+        place = f", at {number(chambers[0].plane * MM)}".replace("-", MINUS) if len(planes) > 1 else ""
         axes.set_title(f"radius {names}{place} mm", fontsize=7, color="0.3", pad=3.0, y=1.0)
     axes.axis("off")
 

@@ -134,7 +134,7 @@ def _draw_group(
         parts.append((j, liquid, free, walls))
     (down,) = axes.plot([], [], "v", color="0.4", markersize=6, label="down" if result.gravity else "_")
     reach = REACH * largest + float(np.abs(frames.deflection).max()) * factor * MM
-    names = ", ".join(f"{result.chambers[j].radius * MM:.4g}" for j in group)
+    names = ", ".join(f"{number(result.chambers[j].radius * MM)}" for j in group)
     axes.text(0.5, -0.04, f"radius {names} mm", transform=axes.transAxes, ha="center", fontsize=7)
     axes.set_xlim(-reach, reach)
     axes.set_ylim(-reach, reach)

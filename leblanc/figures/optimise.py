@@ -23,7 +23,7 @@ from leblanc.figures.page import (
 from leblanc.results.base import one_line, texts
 from leblanc.results.optimum import OptimumResult
 from leblanc.text.numbers import number as short
-from leblanc.units import MM, RPM
+from leblanc.units import MM, in_rpm
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -305,7 +305,7 @@ def _caption(result: OptimumResult, text: str, forms: bool = True) -> Caption:
     notes = " ".join(map(one_line, texts(result.notes)))
     vibration = result.meaning if result.unit == "m" else "the amplitude that is limited"
     what = result.constraints["vibration"].meaning if "vibration" in result.constraints else vibration
-    at = f"Closed forms at the deflection of the best point at {result.working_speed * RPM:.4g} rpm. "
+    at = f"Closed forms at the deflection of the best point at {in_rpm(result.working_speed)}. "
     at = at if forms and result.closed_form else ""
     shown = f"{text}Vibration: {what}. Objective: {result.objective}. {at}"
     origin = (

@@ -25,7 +25,7 @@ from leblanc.figures.page import (
 )
 from leblanc.results.response import RunResult
 from leblanc.text.run import alts
-from leblanc.units import MM, RPM
+from leblanc.units import LENGTH, RPM, in_rpm, with_unit
 from meshes.arrays import Array, Flags
 
 Draw = Callable[[Any, Curves, RunResult], None]
@@ -77,7 +77,7 @@ def amplitude_figure(result: RunResult) -> Figure:
     """Amplitude over speed with and without liquid."""
     text = "Amplitude of the deflection."
     if result.motion is not None:
-        text = f"Largest radius of the axis' orbit at {number(result.motion.position * MM)} mm."
+        text = f"Largest radius of the axis' orbit at {with_unit(result.motion.position, LENGTH)}."
     return _over_speed(result, "amplitude", [(2.75, draw_amplitude)], text)
 
 
@@ -230,7 +230,7 @@ def background(axes: Axes, curves: Curves, result: RunResult, lines: list[Array]
         (result.capture_speed, (0, (8, 3)), "0.3", "liquid captured from"),
     ):
         if speed is not None and low <= speed * RPM <= high:
-            text = f"{label} {speed * RPM:.4g} rpm"
+            text = f"{label} {in_rpm(speed)}"
             axes.axvline(speed * RPM, color=color, linewidth=0.9, linestyle=line, label=text, zorder=1)
 
 

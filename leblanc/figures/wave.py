@@ -28,7 +28,7 @@ from leblanc.figures.response import STRIP
 from leblanc.results.base import one_line
 from leblanc.results.drawn import FILLED, LARGEST_FACTOR, rounded_down
 from leblanc.results.layer import LayerPeriodsResult, LayerResult, Wave, WaveFrames
-from leblanc.units import DEGREE, MINUS, MM, RPM, TIMES
+from leblanc.units import DEGREE, LENGTH, MINUS, MM, RPM, TIMES, with_unit
 from meshes.arrays import Array
 
 RAYS = 721  # half a degree apart, closed
@@ -373,7 +373,7 @@ def describe_offset(wave: Wave) -> str:
     """The centre of mass as text."""
     if not cmath.isfinite(wave.offset):
         return "centre of mass not found"
-    return f"centre of mass {abs(wave.offset) * MM:.3g} mm{_at_angle(wave.offset)}"
+    return f"centre of mass {with_unit(abs(wave.offset), LENGTH)}{_at_angle(wave.offset)}"
 
 
 def _at_angle(value: complex) -> str:
@@ -388,7 +388,7 @@ def signed(value: float) -> str:
 
 def describe_case(wave: Wave) -> str:
     """Title, model, sizes and speeds as text."""
-    inner = f", inner wall {wave.inner_radius * MM:.4g}{BOUND}mm" if wave.inner_radius > 0.0 else ""
+    inner = f", inner wall {_length(wave.inner_radius)}" if wave.inner_radius > 0.0 else ""
     slip = wave.seen_from_the_drum
     drum = (
         f"{signed(slip)}{BOUND}rad/s seen from the drum"
@@ -397,8 +397,8 @@ def describe_case(wave: Wave) -> str:
     )
     return (
         f"{one_line(wave.title)}. Liquid model: {one_line(wave.model)}. "
-        f"Wall {wave.radius * MM:.4g}{BOUND}mm{inner}, mean depth {wave.mean_depth * MM:.4g}{BOUND}mm, "
-        f"whirl amplitude {wave.whirl_amplitude * MM:.4g}{BOUND}mm; spin {_speed(wave.spin)}, "
+        f"Wall {_length(wave.radius)}{inner}, mean depth {_length(wave.mean_depth)}, "
+        f"whirl amplitude {_length(wave.whirl_amplitude)}; spin {_speed(wave.spin)}, "
         f"whirl {_speed(wave.whirl_speed)}, {drum}."
     )
 
@@ -413,6 +413,11 @@ def describe_depths(factor: float) -> str:
     if factor == 1.0:
         return "Walls and depth of the layer to scale"
     return f"Depth of the layer drawn {TIMES}{BOUND}{factor:g}, walls to scale"
+
+
+def _length(length: float) -> str:
+    """A length whose unit does not part from it."""
+    return with_unit(length, LENGTH).replace(" ", BOUND)
 
 
 def _speed(rate: float) -> str:
@@ -575,7 +580,7 @@ def wave_figure(wave: Wave) -> Figure:
         _beside(figure, left, right, WAVE_FRAME, text)
         figure.alt = (
             "The layer seen along the axis and its depth around the wall, "
-            f"from {float(np.min(wave.depth)) * MM:.4g} to {deepest * MM:.4g} mm."
+            f"from {_length(float(np.min(wave.depth)))} to {_length(deepest)}."
         )
     return figure
 

@@ -11,7 +11,7 @@ from leblanc.figures.page import save as save  # a figure is drawn and written t
 from leblanc.results.base import one_line
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.text.whirl_map import alt
-from leblanc.units import ML, RPM
+from leblanc.units import ML, RPM, VOLUME, with_unit
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -162,7 +162,7 @@ def _outline(axes: Axes, result: WhirlMap, hatched: bool) -> None:
         axes.plot(*np.array(narrow).T, label="unstable band between two speeds", **style)
     if 0.0 < result.scene_volume <= result.volume[-1]:
         axes.axhline(
-            result.scene_volume * ML, label=f"scene's volume, {result.scene_volume * ML:.4g} ml", **OWN
+            result.scene_volume * ML, label=f"scene's volume, {with_unit(result.scene_volume, VOLUME)}", **OWN
         )
 
 

@@ -16,7 +16,7 @@ from leblanc.results.base import texts
 from leblanc.results.optimum import OptimumResult
 from leblanc.text.numbers import number
 from leblanc.text.optimum import shown
-from leblanc.units import ML, MM, RPM
+from leblanc.units import LENGTH, MASS, ML, VOLUME, in_rpm, unit_for, with_unit
 
 if TYPE_CHECKING:
     from leblanc.figures.page import FigureFiles
@@ -46,26 +46,33 @@ def _value(label: str, value: float, baseline: float, unit: str) -> tuple[str, s
 def volumes(result: OptimumResult) -> Table:
     """The answer chamber by chamber, with the closed forms at the deflection it has."""
     rows = []
+    liquid = unit_for(VOLUME, *result.volume.tolist(), *(form.optimal_volume for form in result.closed_form))
+    length = unit_for(LENGTH, *(form.deflection for form in result.closed_form))
     for k, (chamber, volume) in enumerate(zip(result.chambers, result.volume.tolist(), strict=True)):
         row = [
             f"{k + 1}",
-            number(volume * ML),
+            liquid.number(volume),
             chamber.liquid_name,
             number(100.0 * volume / chamber.capacity),
         ]
         if result.closed_form:
             form = result.closed_form[k]
-            full = number(form.full_volume * ML) if math.isfinite(form.full_volume) else "never"
+            full = liquid.number(form.full_volume) if math.isfinite(form.full_volume) else "never"
             row += [
-                number(form.deflection * MM),
-                number(form.optimal_volume * ML),
+                length.number(form.deflection),
+                liquid.number(form.optimal_volume),
                 number(100.0 * form.unbalance_share),
                 full,
             ]
         rows.append(row)
-    head = ["Chamber", "best volume (ml)", "liquid", "% of what it holds"]
+    head = ["Chamber", f"best volume ({liquid.name})", "liquid", "% of what it holds"]
     if result.closed_form:
-        head += ["deflection (mm)", "just covers the wall (ml)", "% of the effect", "wet to the lid (ml)"]
+        head += [
+            f"deflection ({length.name})",
+            f"just covers the wall ({liquid.name})",
+            "% of the effect",
+            f"wet to the lid ({liquid.name})",
+        ]
     return table("", head, rows)
 
 
@@ -77,8 +84,8 @@ def facts(result: OptimumResult) -> list[tuple[str, str]]:
     result : the optimum
     """
     return [
-        ("Working speed", f"{number(result.working_speed * RPM)} rpm"),
-        ("Mass of the liquid", f"{number(result.mass * 1e3)} g"),
+        ("Working speed", in_rpm(result.working_speed)),
+        ("Mass of the liquid", with_unit(result.mass, MASS)),
         ("Stability margin at the operating speeds", f"{number(result.stability_margin)} 1/s"),
         ("Sets of volumes judged", f"{result.evaluations}"),
     ]
@@ -109,17 +116,21 @@ def front(result: OptimumResult) -> Table:
     chosen = np.flatnonzero((edge.volume == result.volume).all(axis=1)).tolist()
     spread = np.linspace(0, edge.mass.size - 1, LISTED).round().astype(int)
     kept = np.unique(np.concatenate((spread, np.array(chosen, dtype=int)))).tolist()
+    mass = unit_for(MASS, *edge.mass[kept].tolist())
+    liquid = unit_for(VOLUME, *edge.volume[kept].ravel().tolist())
+    size = unit_for(LENGTH, *edge.vibration[kept].tolist())
     rows = [
         (
-            f"{number(float(edge.mass[k]) * 1e3)}{' (chosen)' if k in chosen else ''}",
-            ", ".join(number(volume * ML) for volume in edge.volume[k].tolist()),
-            number(float(edge.vibration[k]) * MM),
+            f"{mass.number(float(edge.mass[k]))}{' (chosen)' if k in chosen else ''}",
+            ", ".join(liquid.number(volume) for volume in edge.volume[k].tolist()),
+            size.number(float(edge.vibration[k])),
             number(float(edge.stability_margin[k])),
         )
         for k in kept
     ]
-    of = f"Liquid (g), {len(kept)} of {edge.mass.size} points"
-    return table("", (of, "volumes (ml)", "vibration (mm)", "stability margin (1/s)"), rows)
+    of = f"Liquid ({mass.name}), {len(kept)} of {edge.mass.size} points"
+    head = (of, f"volumes ({liquid.name})", f"vibration ({size.name})", "stability margin (1/s)")
+    return table("", head, rows)
 
 
 def checks(result: OptimumResult) -> Table:

@@ -23,7 +23,7 @@ from leblanc.text.run import BALLS, WHIRL, answer, comparisons, facts, limits, m
 from leblanc.text.whirl_map import answer as whirl_map_answer
 from leblanc.text.whirl_map import band_words
 from leblanc.text.whirl_map import facts as whirl_map_facts
-from leblanc.units import ML, MM, RPM
+from leblanc.units import LENGTH, RPM, VOLUME, in_rpm, unit_for
 
 if TYPE_CHECKING:
     from leblanc.figures.page import FigureFiles
@@ -86,19 +86,26 @@ def exciter_numbers(result: ExciterResult) -> Table:
 def integrations(result: ExciterResult) -> Table:
     """Time integrations beside the formulas."""
     rows: list[Sequence[str | Cell]] = []
+    unit = unit_for(LENGTH, *(size for check in result.checks for size in (check.slow, check.fast)))
     for check in result.checks:
         stay = Cell("stay" if check.holds else "leave", warning=not check.converged)
         stuck = number(check.stuck_speed * RPM) if check.holds else ""
-        both = [number(x * MM) if check.holds and math.isfinite(x) else "" for x in (check.slow, check.fast)]
+        both = [unit.number(x) if check.holds and math.isfinite(x) else "" for x in (check.slow, check.fast)]
         rows.append((number(check.speed * RPM), stay, stuck, *both))
-    head = ("Shaft (rpm)", "balls", "at (rpm)", "platform with them (mm)", "with the shaft (mm)")
+    head = (
+        "Shaft (rpm)",
+        "balls",
+        "at (rpm)",
+        f"platform with them ({unit.name})",
+        f"with the shaft ({unit.name})",
+    )
     return table("Integrated in time", head, rows)
 
 
 def exciter_checks(result: ExciterResult) -> Table:
     """Where the answer is not what it seems."""
     lost = [check.speed for check in result.checks if not check.converged]
-    text = ", ".join(f"{number(speed * RPM)} rpm" for speed in lost) or "none"
+    text = ", ".join(in_rpm(speed) for speed in lost) or "none"
     beyond = ~result.dual_frequency
     outside = not math.isfinite(result.printed_critical)
     rows = [
@@ -145,19 +152,19 @@ def write_exciter_report(result: ExciterResult, what: About, figure: FigureFiles
 
 def bands(result: WhirlMap) -> Table:
     """Bands of speed in which a whirl grows, for a few volumes spread over the map."""
-    rows = []
+    rows, unit = [], unit_for(VOLUME, *result.volume.tolist())
     for k in np.unique(np.linspace(0, result.volume.size - 1, LISTED).round().astype(int)).tolist():
         growth = result.growth[k]
         lost = bool(np.isnan(growth).any())
         most = float(np.nanmax(growth)) if not np.isnan(growth).all() else np.nan
         rows.append(
             (
-                number(float(result.volume[k]) * ML),
+                unit.number(float(result.volume[k])),
                 Cell(band_words(result.edges[k]), warning=lost),
                 number(most),
             )
         )
-    head = ("Liquid (ml)", "a whirl grows between (rpm)", "largest growth (1/s)")
+    head = (f"Liquid ({unit.name})", "a whirl grows between (rpm)", "largest growth (1/s)")
     return table("", head, rows)
 
 

@@ -20,13 +20,13 @@ from leblanc.results.runup import RunupResult
 from leblanc.text.numbers import MOST_RANGES, number
 from leblanc.text.runup import describe_model
 from leblanc.text.runup import moments as samples
-from leblanc.units import MINUS, MM, RPM
+from leblanc.units import LENGTH, MASS, MINUS, RPM, rpm_bands, rpm_range, unit_for, with_unit
 
 if TYPE_CHECKING:
     from leblanc.figures.page import FigureFiles
 
 DRY = 1e-3  # of the layer's mean depth: a wall with less on it counts as dry
-MASS = 1e-6  # relative change of a layer's volume to speak of
+MASS_CHANGE = 1e-6  # relative change of a layer's volume to speak of
 BALANCE = "runup_energy"  # the figure beside the table of the energy
 TERMS = {
     "unbalance": "work of the unbalance",
@@ -64,21 +64,17 @@ def times(time: NDArray[np.float64], mask: NDArray[np.bool_]) -> str:
 
 def moments(result: RunupResult) -> Table:
     """Largest amplitude on the way up and down, that of the steady response, and the end."""
-    rows = [
-        (
-            label,
-            number(float(result.amplitude[k]) * MM),
-            number(float(result.speed[k]) * RPM),
-            number(float(result.time[k])),
-        )
+    found = [
+        (label, float(result.amplitude[k]), float(result.speed[k]), number(float(result.time[k])))
         for label, k in samples(result)
     ]
     highest = None if result.steady is None else peak(result.steady.deflection)
     if result.steady is not None and highest is not None:
         size = float(abs(result.steady.deflection[highest]))
-        speed = float(result.steady.speed[highest])
-        rows.append(("Largest of the steady response", number(size * MM), number(speed * RPM), ""))
-    return table("", ("", "amplitude (mm)", "at (rpm)", "after (s)"), rows)
+        found.append(("Largest of the steady response", size, float(result.steady.speed[highest]), ""))
+    unit = unit_for(LENGTH, *(size for _, size, _, _ in found))
+    rows = [(label, unit.number(size), number(speed * RPM), time) for label, size, speed, time in found]
+    return table("", ("", f"amplitude ({unit.name})", "at (rpm)", "after (s)"), rows)
 
 
 def facts(result: RunupResult) -> list[tuple[str, str]]:
@@ -93,9 +89,9 @@ def facts(result: RunupResult) -> list[tuple[str, str]]:
     if mass > 0.0:
         place = result.liquid_position[-1]
         angle = number(math.degrees(math.atan2(place.imag, place.real)))
-        where = f"{number(abs(place) * MM)} mm off the axis at {angle} deg"
+        where = f"{with_unit(abs(place), LENGTH)} off the axis at {angle} deg"
     return [
-        ("Mass of the liquid", f"{number(mass * 1e3)} g"),
+        ("Mass of the liquid", with_unit(mass, MASS)),
         ("Its centre of mass at the end", where),
         ("Phase of the deflection at the end", f"{number(math.degrees(float(result.phase[-1])))} deg"),
         ("Resolution", f"{result.cells} cells, {result.steps} steps, {result.time.size} samples kept"),
@@ -143,7 +139,7 @@ def checks(result: RunupResult) -> Table:
         found.append((f"{name} not carried round", times(result.time, loose), bool(loose.any())))
         dry = ~loose & (np.nan_to_num(result.depth_min[:, k], nan=math.inf) <= DRY * depth)
         found.append((f"{name} leaves a wall dry", times(result.time, dry), bool(dry.any())))
-    bands = ", ".join(f"{low * RPM:.4g} to {high * RPM:.4g} rpm" for low, high in result.bands)
+    bands = rpm_bands(result.bands)
     rough = not result.error_estimate <= ERROR
     return table(
         "",
@@ -156,7 +152,7 @@ def checks(result: RunupResult) -> Table:
                 Cell(_share(result.error_estimate) if rough else "no", warning=rough),
             ),
             _size(f"Energy lost above {number(100.0 * CLOSURE)} %", result.energy.closure, CLOSURE),
-            _size(f"Mass changed above {number(MASS)}", result.mass_error, MASS),
+            _size(f"Mass changed above {number(MASS_CHANGE)}", result.mass_error, MASS_CHANGE),
         ],
     )
 
@@ -182,7 +178,7 @@ def events(result: RunupResult) -> Table:
 
 def why(result: RunupResult) -> Table:
     """The liquid model of the run, its error and the reason for it."""
-    span = f"{number(float(result.speed.min()) * RPM)} to {number(float(result.speed.max()) * RPM)}"
+    span = rpm_range(float(result.speed.min()), float(result.speed.max())).removesuffix(" rpm")
     error = "not known" if math.isnan(result.model_error) else percent(result.model_error)
     text, taken = one_line(result.model_reason), describe_model(result.model, result.cells, result.dispersion)
     reason = f"{text[:1].upper()}{text[1:]} Taken as {taken}."

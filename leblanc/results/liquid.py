@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from leblanc.results.base import Note, NoteCode, Result, carried, one_line, texts, versions
 from leblanc.results.netcdf import NamedArrays, variable
 from leblanc.results.netcdf import variable as var
+from leblanc.units import LENGTH, with_unit
 from meshes.arrays import Array
 from meshes.chamber import Chamber
 from meshes.findings import Finding
@@ -170,7 +171,7 @@ def straight_sides() -> Note:
 
 def other_radius(farthest: float) -> Note:
     """The section reaches to another radius than the one given, m."""
-    text = f"the section reaches to {farthest * 1e3:.5g} mm from the axis: that counts, not --radius"
+    text = f"the section reaches to {with_unit(farthest, LENGTH)} from the axis: that counts, not --radius"
     return Note(ModesCode.OTHER_RADIUS, {"radius": farthest}, text)
 
 

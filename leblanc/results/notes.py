@@ -14,7 +14,7 @@ from fluid.friction import Friction
 from leblanc.results.base import Note, NoteCode, percent
 from leblanc.results.choice import Choice
 from leblanc.results.response import SelfExcited, peak
-from leblanc.units import ML, MM, RPM, friction_words
+from leblanc.units import LENGTH, RPM, VOLUME, friction_words, in_rpm, number, rpm_bands, rpm_range, with_unit
 from meshes.arrays import Array, Flags
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ def tolerance_missed(choice: Choice, speed: Array) -> Note | None:
     size = f"up to {percent(worst)}" if np.isfinite(worst) else "without a bound"
     whose = " of the model asked for" if choice.prescribed else ""
     text = (
-        f"Between {first * RPM:.4g} and {last * RPM:.4g} rpm the estimated error{whose} is {size}, more than "
+        f"Between {number(first * RPM)} and {in_rpm(last)} the estimated error{whose} is {size}, more than "
         f"the tolerance of {percent(choice.tolerance)}."
     )
     return Note(RunCode.TOLERANCE_MISSED, {"first": first, "last": last, "error": worst}, text)
@@ -90,7 +90,7 @@ def not_carried(below: float) -> Note:
     below : speed above which the liquid rides with the drum, rad/s
     """
     text = (
-        f"Below {below * RPM:.3g} rpm gravity across the axis keeps the liquid from riding with the drum: "
+        f"Below {in_rpm(below)} gravity across the axis keeps the liquid from riding with the drum: "
         "out of range."
     )
     return Note(RunCode.NOT_CARRIED, {"below": below}, text)
@@ -102,6 +102,18 @@ def slow_disturbances() -> Note:
     return Note(RunCode.SLOW_DISTURBANCES, {}, text)
 
 
+def plane_words(position: float, chambers: bool) -> str:
+    """Plane of an amplitude, as it stands wherever one is shown.
+
+    Parameters
+    ----------
+    position : of the plane along the axis, m
+    chambers : the plane is that of the first chamber; else the one to which positions count
+    """
+    place = "of chamber 1" if chambers else "of the origin"
+    return f"in the plane {place} at {with_unit(position, LENGTH)}"
+
+
 def plane(position: float, zero: str, chambers: bool) -> Note:
     """Where the motion of a rotor that tilts is measured.
 
@@ -111,10 +123,9 @@ def plane(position: float, zero: str, chambers: bool) -> Note:
     zero : what angles count from
     chambers : the plane is that of the first chamber
     """
-    place = "the first chamber" if chambers else "the origin of positions"
     start = "the unbalance" if zero == "unbalance" else zero
     text = (
-        f"Amplitude: largest radius of the orbit at {place}, {position * MM:.4g} mm. Angles: of its part "
+        f"Amplitude: largest radius of the orbit {plane_words(position, chambers)}. Angles: of its part "
         f"that turns with the spin, from {start}."
     )
     return Note(RunCode.PLANE, {"position": position}, text)
@@ -129,7 +140,7 @@ def against_spin(share: float, speed: float) -> Note:
     speed : where it does, rad/s
     """
     text = (
-        f"Up to {share:.2g} of the orbit goes against the spin, at {speed * RPM:.4g} rpm; the liquid answers "
+        f"Up to {share:.2g} of the orbit goes against the spin, at {in_rpm(speed)}; the liquid answers "
         "that part by linear theory."
     )
     return Note(RunCode.AGAINST_SPIN, {"share": share, "speed": speed}, text)
@@ -145,12 +156,12 @@ def self_excited(whirl: SelfExcited) -> Note:
     if not whirl.bands:
         text = f"No whirl grows by itself at these speeds ({theory})."
         return Note(RunCode.SELF_EXCITED, data, text)
-    listed = ", ".join(f"{low * RPM:.5g} to {high * RPM:.5g} rpm" for low, high in whirl.bands)
+    listed = ", ".join(rpm_range(low, high) for low, high in whirl.bands)
     most, fastest = int(np.argmax(whirl.growth)), ""
     if whirl.growth[most] > 0.0:
         growth, turning = float(whirl.growth[most]), float(whirl.whirl_speed[most])
         data |= {"growth": growth, "whirl_speed": turning}
-        fastest = f", fastest at {growth:.3g} 1/s, whirling at {turning * RPM:.4g} rpm"
+        fastest = f", fastest at {growth:.3g} 1/s, whirling at {in_rpm(turning)}"
     text = f"A whirl grows by itself from {listed}{fastest}: unstable there ({theory})."
     return Note(RunCode.SELF_EXCITED, data, text)
 
@@ -165,7 +176,7 @@ def several_answers(first: float, last: float, stable: bool) -> Note:
     """
     which = "largest stable one" if stable else "largest"
     text = (
-        f"Several deflections satisfy the balance between {first * RPM:.4g} and {last * RPM:.4g} rpm; "
+        f"Several deflections satisfy the balance between {number(first * RPM)} and {in_rpm(last)}; "
         f"reported is the {which}, where a slow run-up arrives."
     )
     return Note(RunCode.SEVERAL_ANSWERS, {"first": first, "last": last}, text)
@@ -183,8 +194,8 @@ def wall(chamber: int, speed: float, volume: float, enough: float, deflection: f
     """
     has = "wet all round" if volume > enough else "dry in part"
     text = (
-        f"Chamber {chamber + 1} at {speed * RPM:.4g} rpm: wall {has} with {volume * ML:.4g} ml; "
-        f"{enough * ML:.4g} ml just cover it, deflection {deflection * MM:.3g} mm."
+        f"Chamber {chamber + 1} at {in_rpm(speed)}: wall {has} with {with_unit(volume, VOLUME)}; "
+        f"{with_unit(enough, VOLUME)} just cover it, deflection {with_unit(deflection, LENGTH)}."
     )
     data = {"chamber": chamber, "speed": speed, "volume": volume, "enough": enough, "deflection": deflection}
     return Note(RunCode.WALL, data, text)
@@ -268,12 +279,12 @@ def largest_amplitude(history: RunupHistory, steady: Response | None) -> Note:
     k = int(np.argmax(history.amplitude))
     size, speed = float(history.amplitude[k]), float(history.speed[k])
     data = {"amplitude": size, "speed": speed}
-    text = f"Largest amplitude {size * MM:.4g} mm at {speed * RPM:.4g} rpm"
+    text = f"Largest amplitude {with_unit(size, LENGTH)} at {in_rpm(speed)}"
     highest = None if steady is None else peak(steady.deflection)
     if steady is None or highest is None:
         return Note(RunupCode.PEAK, data, f"{text}.")
     most, at = float(abs(steady.deflection[highest])), float(steady.speed[highest])
-    text = f"{text}; in the steady response it is {most * MM:.4g} mm at {at * RPM:.4g} rpm."
+    text = f"{text}; in the steady response it is {with_unit(most, LENGTH)} at {in_rpm(at)}."
     return Note(RunupCode.PEAK_STEADY, data | {"steady_amplitude": most, "steady_speed": at}, text)
 
 
@@ -281,7 +292,7 @@ def capture(chamber: int, captured: bool, time: float, speed: float) -> Note:
     """When the liquid of a chamber, counted from 0, began or ceased to ride with the drum."""
     text = (
         f"Chamber {chamber + 1}: its liquid {'is captured' if captured else 'falls back'} at "
-        f"{time:.4g} s, {speed * RPM:.4g} rpm."
+        f"{time:.4g} s, {in_rpm(speed)}."
     )
     code = RunupCode.CAPTURED if captured else RunupCode.FALLS_BACK
     return Note(code, {"chamber": chamber + 1, "time": time, "speed": speed}, text)
@@ -291,7 +302,7 @@ def self_excited_on_the_way(bands: tuple[tuple[float, float], ...], friction: Fr
     """Speeds at which whirl grows by itself, rad/s; None where there are none."""
     if not bands:
         return None
-    listed = ", ".join(f"{low * RPM:.4g} to {high * RPM:.4g} rpm" for low, high in bands)
+    listed = rpm_bands(bands)
     law = friction_words(friction)
     text = f"By linear theory with liquid friction {law}, some whirl grows by itself at {listed}."
     return Note(RunupCode.SELF_EXCITED, {"bands": bands}, text)
@@ -359,10 +370,10 @@ def own_volume(volume: float, bands: Bands) -> Note:
     volume : of liquid in all chambers, m^3
     bands : of speed, rad/s
     """
-    with_it = f"With the scene's {volume * ML:.4g} ml"
+    with_it = f"With the scene's {with_unit(volume, VOLUME)}"
     text = f"{with_it} no whirl grows by itself at these speeds."
     if bands:
-        listed = ", ".join(f"{low * RPM:.5g} to {high * RPM:.5g} rpm" for low, high in bands)
+        listed = rpm_bands(bands)
         text = f"{with_it} a whirl grows by itself from {listed}."
     return Note(MapCode.OWN_VOLUME, {"volume": volume, "bands": tuple(bands)}, text)
 

@@ -16,7 +16,7 @@ from leblanc.results.netcdf import NamedArrays, flags
 from leblanc.results.netcdf import variable as var
 from leblanc.results.response import RunResult
 from leblanc.results.sweep import EmulatorError
-from leblanc.units import MM, RPM
+from leblanc.units import LENGTH, in_rpm, with_unit
 from meshes.arrays import Array, Flags
 
 
@@ -48,7 +48,7 @@ def given_deflection(deflection: float, speed: float, gap: float) -> Note:
     gap : largest relative difference of search and closed form
     """
     text = (
-        f"The deflection is given, {deflection * MM:.4g} mm at {speed * RPM:.4g} rpm: the volumes are the "
+        f"The deflection is given, {with_unit(deflection, LENGTH)} at {in_rpm(speed)}: the volumes are the "
         "least that leave no part of a wall dry over its whole height; search and closed form differ by "
         f"{gap:.1e}."
     )
@@ -73,7 +73,7 @@ def no_duty() -> Note:
 
 def no_limit(limit: float) -> Note:
     """The vibration limit is one per cent above the least that is possible, m."""
-    share = f"{limit * MM:.4g} mm, one per cent above the least possible"
+    share = f"{with_unit(limit, LENGTH)}, one per cent above the least possible"
     text = f"No vibration limit is given: taken is {share}."
     return Note(OptimumCode.NO_LIMIT, {"limit": limit}, text)
 
@@ -96,8 +96,8 @@ def emulated(answer: EmulatedAnswer) -> Note:
     text = (
         f"The search asked an emulator of {error.samples} samples, off by {error.root_mean_square:.2g} on "
         f"unseen ones (root mean square; largest {error.largest:.2g}); the best volumes it found were judged "
-        f"by the solvers. By the emulator alone: {answer.value * MM:.4g} mm, give or take "
-        f"{2.0 * answer.deviation * MM:.2g} mm."
+        f"by the solvers. By the emulator alone: {with_unit(answer.value, LENGTH)}, give or take "
+        f"{with_unit(2.0 * answer.deviation, LENGTH)}."
     )
     return Note(OptimumCode.EMULATED, asdict(answer), text)
 

@@ -12,21 +12,27 @@ from leblanc.scene.rows import Row, RowTable, Value, degrees, mm, row, rpm
 from leblanc.scene.scene import Scene
 from leblanc.scene.schema.load import escaped
 from leblanc.scene.tasks import Optimisation, Runup
-from leblanc.units import MINUS, ML, MM, RPM, friction_words, number
+from leblanc.units import (
+    ANGULAR_SPEED,
+    LENGTH,
+    MINUS,
+    MM,
+    RPM,
+    UNBALANCE,
+    VOLUME,
+    Dimension,
+    Unit,
+    celsius,
+    friction_words,
+    in_rpm,
+    number,
+    unit_for,
+)
 from meshes.baffles import Baffles
 from meshes.chamber_section import ChamberSection
 
 MOST = 6  # speeds of a duty cycle or of a motor's curve that are listed one by one
 
-_CHAMBERS = (
-    "Chamber",
-    "radius (mm)",
-    "inner radius (mm)",
-    "height (mm)",
-    "plane (mm)",
-    "volume (ml)",
-    "liquid",
-)
 _BAFFLES = ("Chamber", "baffles", "tips at (mm)", "gap at the wall (mm)", "first at (deg)")
 _SECTIONS = ("Chamber", "section", "area (cm²)", "farthest wall (mm)", "cells at the wall (mm)")
 
@@ -108,8 +114,13 @@ def runup_rows(scene: Scene, cells: int, dispersion: bool) -> tuple[tuple[str, s
 
 def _chambers(scene: Scene) -> Iterator[RowTable]:
     """Sizes and fill; the plane along the axis where some chamber has one."""
-    head, rows = list(_CHAMBERS), [_chamber(fill, k) for k, fill in enumerate(scene.fills)]
-    if isinstance(scene.rotor, JeffcottRotor) and all(fill.chamber.plane == 0.0 for fill in scene.fills):
+    walls = [fill.chamber for fill in scene.fills]
+    length = unit_for(LENGTH, *(size for wall in walls for size in (wall.radius, wall.height, wall.plane)))
+    volume = unit_for(VOLUME, *(fill.volume for fill in scene.fills))
+    sizes = [f"{name} ({length.name})" for name in ("radius", "inner radius", "height", "plane")]
+    head = ["Chamber", *sizes, f"volume ({volume.name})", "liquid"]
+    rows = [_chamber(fill, k, length, volume) for k, fill in enumerate(scene.fills)]
+    if isinstance(scene.rotor, JeffcottRotor) and all(wall.plane == 0.0 for wall in walls):
         del head[4]
         rows = [(*line[:4], *line[5:]) for line in rows]
     baffles = [(k, fill.chamber.baffles) for k, fill in enumerate(scene.fills)]
@@ -123,23 +134,23 @@ def _chambers(scene: Scene) -> Iterator[RowTable]:
             yield RowTable(titles, tuple(lines))
 
 
-def _chamber(fill: Fill, k: int) -> tuple[Value, ...]:
+def _chamber(fill: Fill, k: int, length: Unit, volume: Unit) -> tuple[Value, ...]:
     chamber, at, name = fill.chamber, f"chambers.{k}", fill.liquid.name
     if KNOWN_LIQUIDS.get(name) != fill.liquid:
         density, viscosity = number(fill.liquid.density), number(fill.liquid.viscosity * 1e6)
         name = f"{name}, {density} kg/m³, {viscosity} mm²/s"
     wall = (
-        Value(number(chamber.radius * MM), (f"{at}.radius",)),
-        Value(number(chamber.inner_radius * MM), (f"{at}.inner_radius",)),
+        Value(length.number(chamber.radius), (f"{at}.radius",)),
+        Value(length.number(chamber.inner_radius), (f"{at}.inner_radius",)),
     )
     if chamber.section is not None:
         wall = Value("see section"), Value("")
     return (
         Value(f"{k + 1}"),
         *wall,
-        Value(number(chamber.height * MM), (f"{at}.height",)),
-        Value(number(chamber.plane * MM), (f"{at}.plane",)),
-        Value(number(fill.volume * ML), (f"{at}.volume",)),
+        Value(length.number(chamber.height), (f"{at}.height",)),
+        Value(length.number(chamber.plane), (f"{at}.plane",)),
+        Value(volume.number(fill.volume), (f"{at}.volume",)),
         Value(name, (f"{at}.liquid",)),
     )
 
@@ -176,7 +187,7 @@ def _study(scene: Scene) -> list[Row]:
             "Speeds",
             (
                 Value(number(speeds.start * RPM), ("speeds.start",)),
-                Value(f"to {number(speeds.stop * RPM)} rpm", ("speeds.stop",)),
+                Value(f"to {in_rpm(speeds.stop)}", ("speeds.stop",)),
                 Value(f"at {speeds.count} speed{several}", ("speeds.count",)),
             ),
         ),
@@ -196,7 +207,7 @@ def _runup(plan: Runup) -> list[Row]:
     if plan.motor is not None:
         motor = plan.motor
         points = [
-            f"{number(torque)} N m at {number(speed * RPM)} rpm"
+            f"{number(torque)} N m at {in_rpm(speed)}"
             for speed, torque in zip(motor.speeds, motor.torques, strict=True)
         ]
         curve = ", ".join(points if len(points) <= MOST else [points[0], "...", points[-1]])
@@ -235,14 +246,14 @@ def optimise_rows(wanted: Optimisation) -> list[Row]:
         ("vibration_limit", "Vibration limit", _length(wanted.vibration_limit)),
         ("limit_at", "Limit holds at", f"{wanted.limit_at.replace('_', ' ')} speeds"),
         ("deflection", "Deflection given", _length(wanted.deflection)),
-        ("unbalance", "Unbalance range", _range(wanted.unbalance, 1e6, "g mm")),
-        ("temperature", "Temperature range", _range(wanted.temperature, 1.0, "K")),
+        ("unbalance", "Unbalance range", _span(wanted.unbalance, UNBALANCE)),
+        ("temperature", "Temperature range", _temperatures(wanted.temperature)),
         ("quantile", "Quantile", number(wanted.quantile)),
         ("samples", "Samples of the ranges", f"{wanted.samples}"),
         ("seed", "Seed", f"{wanted.seed}"),
         ("dry_patch", "Dry wall", "not allowed at the working speed"),
         ("stability_margin", "Stability margin", _rate(wanted.stability_margin)),
-        ("operating", "Operating speeds", _range(wanted.operating, RPM, "rpm")),
+        ("operating", "Operating speeds", _span(wanted.operating, ANGULAR_SPEED)),
         ("clearance", "Clearance", _length(wanted.clearance)),
         ("volumes", "Volumes", _volumes(wanted)),
     ):
@@ -263,7 +274,7 @@ def _optimise(wanted: Optimisation, scene: Scene) -> list[Row]:
 
 
 def _speed(value: float | None) -> str:
-    return "" if value is None else f"{number(value * RPM)} rpm"
+    return "" if value is None else in_rpm(value)
 
 
 def _length(value: float | None) -> str:
@@ -274,19 +285,23 @@ def _rate(value: float | None) -> str:
     return "" if value is None else f"at least {number(value)} 1/s"
 
 
-def _range(ends: tuple[float, float] | None, unit: float, name: str) -> str:
-    return "" if ends is None else f"{number(ends[0] * unit)} to {number(ends[1] * unit)} {name}"
+def _span(ends: tuple[float, float] | None, dimension: Dimension) -> str:
+    if ends is None:
+        return ""
+    unit = unit_for(dimension, *ends)
+    return f"{unit.number(ends[0])} to {unit.text(ends[1])}"
+
+
+def _temperatures(ends: tuple[float, float] | None) -> str:
+    return "" if ends is None else " to ".join(map(celsius, ends))
 
 
 def _duty(wanted: Optimisation) -> str:
-    parts = [f"{number(point.speed * RPM)} rpm (weight {number(point.weight)})" for point in wanted.duty]
+    parts = [f"{in_rpm(point.speed)} (weight {number(point.weight)})" for point in wanted.duty]
     if len(parts) <= MOST:
         return ", ".join(parts)
     return f"{len(parts)} speeds from {parts[0]} to {parts[-1]}"
 
 
 def _volumes(wanted: Optimisation) -> str:
-    return ", ".join(
-        f"chamber {k + 1} {number(low * ML)} to {number(high * ML)} ml"
-        for k, (low, high) in enumerate(wanted.volumes)
-    )
+    return ", ".join(f"chamber {k + 1} {_span(span, VOLUME)}" for k, span in enumerate(wanted.volumes))

@@ -36,7 +36,7 @@ from leblanc.scene.schema.rules import (
     quantity,
     whole,
 )
-from leblanc.units import MM, RPM, number
+from leblanc.units import MASS, MM, UNBALANCE, in_rpm, number, unit_for, with_unit
 
 if TYPE_CHECKING:
     from solvers.rotor.exciter.machine import Exciter as ExciterMachine
@@ -110,11 +110,11 @@ class JeffcottRotor(Part):
     def rows(self) -> list[Row]:
         """What it says, for readers."""
         machine = self.machine()
-        speed, ratio = f"{number(machine.natural_frequency * RPM)} rpm", number(machine.damping_ratio)
+        speed, ratio = in_rpm(machine.natural_frequency), number(machine.damping_ratio)
         stiffness, damping = f"{number(machine.stiffness)} N/m", f"{number(machine.damping)} N s/m"
         return [
             _kind(self),
-            row("Mass", f"{number(self.mass)} kg", "rotor.mass"),
+            row("Mass", with_unit(self.mass, MASS), "rotor.mass"),
             row("Critical speed, dry", speed, "rotor.critical_speed", "rotor.stiffness"),
             row("Stiffness", stiffness, "rotor.stiffness", "rotor.critical_speed"),
             row("Damping ratio", ratio, "rotor.damping_ratio", "rotor.damping"),
@@ -218,7 +218,7 @@ class TwoPlaneRotor(Part):
         across, about = f"{number(self.transverse_inertia)} kg m²", f"{number(self.polar_inertia)} kg m²"
         return [
             _kind(self),
-            row("Mass", f"{number(self.mass)} kg", "rotor.mass"),
+            row("Mass", with_unit(self.mass, MASS), "rotor.mass"),
             row("Inertia across the axis", across, "rotor.transverse_inertia"),
             row("Inertia about the axis", about, "rotor.polar_inertia"),
         ]
@@ -234,18 +234,19 @@ class TwoPlaneRotor(Part):
             )
             for k, support in enumerate(self.supports)
         )
+        unit = unit_for(UNBALANCE, *(part.size for part in self.unbalances))
         unbalances = tuple(
             (
                 Value(f"{k + 1}"),
                 Value(number(part.position * MM), (f"rotor.unbalances.{k}.position",)),
-                Value(number(part.size * 1e6), (f"rotor.unbalances.{k}.size",)),
+                Value(unit.number(part.size), (f"rotor.unbalances.{k}.size",)),
                 Value(degrees(part.angle), (f"rotor.unbalances.{k}.angle",)),
             )
             for k, part in enumerate(self.unbalances)
         )
         found = [RowTable(("Support", "at (mm)", "stiffness (N/m)", "damping (N s/m)"), supports)]
         if unbalances:
-            found.append(RowTable(("Unbalance", "at (mm)", "size (g mm)", "angle (deg)"), unbalances))
+            found.append(RowTable(("Unbalance", "at (mm)", f"size ({unit.name})", "angle (deg)"), unbalances))
         return found
 
 
@@ -385,8 +386,8 @@ class TubRotor(Part):
         heavy = self.drum_position[1] if self.unbalance_position is None else self.unbalance_position
         return [
             _kind(self),
-            row("Tub mass", f"{number(self.tub_mass)} kg", "rotor.tub_mass"),
-            row("Drum mass", f"{number(self.drum_mass)} kg", "rotor.drum_mass"),
+            row("Tub mass", with_unit(self.tub_mass, MASS), "rotor.tub_mass"),
+            row("Drum mass", with_unit(self.drum_mass, MASS), "rotor.drum_mass"),
             row("Tub inertias x, y, z", f"{three(self.tub_inertia)} kg m²", "rotor.tub_inertia"),
             row("Drum inertia about its axis", f"{about} kg m²", "rotor.drum_polar_inertia"),
             row("Drum inertia across it", f"{across} kg m²", "rotor.drum_transverse_inertia"),
@@ -487,7 +488,7 @@ class Exciter(Part):
         what = "rotor.balls.pendulum_inertia" if balls.kind is None else "rotor.balls.kind"
         found = [
             row("Rotor", "exciter", "rotor.kind"),
-            row("Platform mass", f"{number(self.platform_mass)} kg", "rotor.platform_mass"),
+            row("Platform mass", with_unit(self.platform_mass, MASS), "rotor.platform_mass"),
             row("Stiffness", f"{number(self.stiffness)} N/m", "rotor.stiffness"),
             row("Damping", f"{number(self.damping)} N s/m", "rotor.damping"),
             row("Unbalance of the shaft", unbalance(self.unbalance), "rotor.unbalance"),
@@ -495,7 +496,7 @@ class Exciter(Part):
                 "In the track",
                 (Value(f"{balls.count}", ("rotor.balls.count",)), Value(f"{balls.name}s", (what,))),
             ),
-            row("Mass of each", f"{number(balls.mass * 1e3)} g", "rotor.balls.mass"),
+            row("Mass of each", with_unit(balls.mass, MASS), "rotor.balls.mass"),
             row("Radius of the track", mm(balls.track_radius), "rotor.balls.track_radius"),
             row("Damping along it", f"{number(balls.damping)} N s/m", "rotor.balls.damping"),
         ]

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from leblanc.units import MM, RPM, number
+from leblanc.units import LENGTH, UNBALANCE, in_rpm, number, with_unit
 from meshes.baffles import Baffles
 
 _UNIT = re.compile(r"(.*?)(?: \((.*)\))?")
@@ -103,7 +103,7 @@ def rpm(speed: float) -> str:
     ----------
     speed : rad/s
     """
-    return f"{number(speed * RPM)} rpm ({number(speed)} rad/s)"
+    return f"{in_rpm(speed)} ({number(speed)} rad/s)"
 
 
 def mm(length: float) -> str:
@@ -113,7 +113,7 @@ def mm(length: float) -> str:
     ----------
     length : m
     """
-    return f"{number(length * MM)} mm"
+    return with_unit(length, LENGTH)
 
 
 def unbalance(size: float) -> str:
@@ -123,7 +123,7 @@ def unbalance(size: float) -> str:
     ----------
     size : kg m
     """
-    return f"{number(size * 1e6)} g mm"
+    return with_unit(size, UNBALANCE)
 
 
 def three(values: Sequence[float], unit: float = 1.0) -> str:
@@ -154,6 +154,6 @@ def baffle_words(baffles: Baffles) -> str:
     ----------
     baffles : of a chamber
     """
-    inner = f"{baffles.tip_radius * MM:.4g} mm from the axis" if baffles.tip_radius > 0.0 else "the axis"
-    outer = f"{baffles.wall_gap * MM:.4g} mm off the wall" if baffles.wall_gap > 0.0 else "the wall"
+    inner = f"{mm(baffles.tip_radius)} from the axis" if baffles.tip_radius > 0.0 else "the axis"
+    outer = f"{mm(baffles.wall_gap)} off the wall" if baffles.wall_gap > 0.0 else "the wall"
     return f"{baffles.count}, from {outer} to {inner}"

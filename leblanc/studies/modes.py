@@ -24,6 +24,7 @@ from leblanc.results.liquid import (
     thick_layers,
 )
 from leblanc.scene.chambers import is_outline, section_of_any_file
+from leblanc.units import LENGTH, with_unit
 from meshes.arrays import Array
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
@@ -132,11 +133,11 @@ def round_sections(
     span = baffles.wetted_span(radius, a) if baffles is not None else None
     if baffles is not None and span is None:
         notes.append(baffles_clear())
-    title = f"Round chamber, R = {radius * 1e3:.4g} mm"
+    title = f"Round chamber, R = {with_unit(radius, LENGTH)}"
     if baffles is not None and span is not None:
         inner, outer = span
-        ends = "through the surface" if inner == a else f"to {inner * 1e3:.4g} mm from the axis"
-        start = "the wall" if outer == radius else f"{(radius - outer) * 1e3:.3g} mm off the wall"
+        ends = "through the surface" if inner == a else f"to {with_unit(inner, LENGTH)} from the axis"
+        start = "the wall" if outer == radius else f"{with_unit(radius - outer, LENGTH)} off the wall"
         title += f", {baffles.count} baffles from {start} {ends}"
     return ring_sections(radius, a, baffles if span else None, fineness), notes, title
 

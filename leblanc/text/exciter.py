@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from leblanc.results.exciter import ExciterResult
-from leblanc.text.numbers import NOT_FOUND, number
-from leblanc.units import MM, RPM
+from leblanc.text.numbers import NOT_FOUND
+from leblanc.units import LENGTH, in_rpm, rpm_range, with_unit
 
 NUMBERS = {
     "smallness": "Share of the balls in the moving mass, over their rolling inertia",
@@ -17,7 +17,7 @@ NUMBERS = {
 
 
 def _rpm(speed: float, missing: str = NOT_FOUND) -> str:
-    return f"{number(speed * RPM)} rpm" if math.isfinite(speed) else missing
+    return in_rpm(speed, missing)
 
 
 def answer(result: ExciterResult) -> str:
@@ -48,9 +48,7 @@ def facts(result: ExciterResult) -> list[tuple[str, str]]:
     three = f"{_rpm(first)} to {_rpm(last)}" if math.isfinite(first) else none
     at = _rpm(float(result.speed[-1]))
     slow = (
-        f"{number(float(result.slow[-1]) * MM)} mm"
-        if result.dual_frequency[-1]
-        else "none: they do not stick"
+        with_unit(float(result.slow[-1]), LENGTH) if result.dual_frequency[-1] else "none: they do not stick"
     )
     return [
         ("Natural frequency of the platform", _rpm(result.machine.natural_frequency)),
@@ -59,7 +57,7 @@ def facts(result: ExciterResult) -> list[tuple[str, str]]:
         ("Critical speed, up to which the balls stick", _rpm(result.critical, "none")),
         ("The same by the source's regression", _rpm(result.printed_critical, "outside its ranges")),
         (f"Vibration with the balls at {at}", slow),
-        (f"Vibration with the shaft at {at}", f"{number(float(result.fast[-1]) * MM)} mm"),
+        (f"Vibration with the shaft at {at}", with_unit(float(result.fast[-1]), LENGTH)),
     ]
 
 
@@ -79,23 +77,23 @@ def lines(result: ExciterResult) -> list[str]:
     ----------
     result : the answer
     """
-    sentences = [f"Natural frequency of the platform: {result.machine.natural_frequency * RPM:.5g} rpm"]
+    sentences = [f"Natural frequency of the platform: {in_rpm(result.machine.natural_frequency)}"]
     if math.isfinite(result.critical):
-        first, _, last = (speed * RPM for speed in result.characteristic)
+        first, _, last = result.characteristic
         sentences += [
-            f"Three stuck speeds of the balls from {first:.5g} to {last:.5g} rpm of the shaft",
-            f"Critical speed, up to which the balls stick together: {result.critical * RPM:.5g} rpm",
+            f"Three stuck speeds of the balls from {rpm_range(first, last)} of the shaft",
+            f"Critical speed, up to which the balls stick together: {in_rpm(result.critical)}",
         ]
     else:
         sentences.append("One stuck speed of the balls at every speed of the shaft")
     for check in result.checks:
-        began = f"Integrated at {check.speed * RPM:.5g} rpm: balls"
+        began = f"Integrated at {in_rpm(check.speed)}: balls"
         if not check.holds:
             sentences.append(f"{began} leave")
             continue
         both = ""
         if math.isfinite(check.slow):
-            slow, fast = check.slow * MM, check.fast * MM
-            both = f", platform {slow:.3g} mm with them and {fast:.3g} mm with the shaft"
-        sentences.append(f"{began} stay at {check.stuck_speed * RPM:.5g} rpm{both}")
+            slow, fast = with_unit(check.slow, LENGTH), with_unit(check.fast, LENGTH)
+            both = f", platform {slow} with them and {fast} with the shaft"
+        sentences.append(f"{began} stay at {in_rpm(check.stuck_speed)}{both}")
     return sentences

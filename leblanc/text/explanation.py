@@ -15,8 +15,8 @@ from leblanc.results.explanation import (
 )
 from leblanc.results.response import RestMode, peak
 from leblanc.text.numbers import NOT_FOUND, number
-from leblanc.text.run import error_words, speeds_words
-from leblanc.units import ML, MM, RPM
+from leblanc.text.run import amplitude_place, error_words, speeds_words
+from leblanc.units import LENGTH, RPM, VOLUME, Unit, in_rpm, unit_for, with_unit
 from meshes.arrays import Array
 
 Rows = list[tuple[str, str]]
@@ -24,21 +24,20 @@ Rows = list[tuple[str, str]]
 _CYLINDER = 1e20  # steepness from which the surface is drawn as a cylinder
 _HZ = 60.0  # rpm in one hertz
 
-COMPARISON_HEAD = ("model", "largest amplitude (mm)", "at (rpm)", "difference (%)", "CPU time (s)")
 REFUSED = "does not answer"
 
 
 def machine_rows(answer: Explanation) -> Rows:
     """The rotor as a whole; label and text."""
-    dry, wet = answer.critical_speed_dry * RPM, answer.critical_speed_wet * RPM
+    dry, wet = in_rpm(answer.critical_speed_dry), in_rpm(answer.critical_speed_wet)
     first, last = answer.speed_ratio
     rows = [
-        ("critical speed", f"{dry:.5g} rpm without liquid, {wet:.5g} rpm with it at small deflections"),
+        ("critical speed", f"{dry} without liquid, {wet} with it at small deflections"),
         ("damping ratio", f"{answer.damping_ratio:.4g}"),
         ("speeds", f"{first:.3g} to {last:.3g} times the dry critical speed"),
     ]
     if answer.captured_from is not None:
-        captured = f"above {answer.captured_from * RPM:.4g} rpm the liquid rides with the drum"
+        captured = f"above {in_rpm(answer.captured_from)} the liquid rides with the drum"
         rows.append(("captured", captured))
     return rows
 
@@ -47,8 +46,8 @@ def mode_rows(modes: tuple[RestMode, ...]) -> Rows:
     """Natural frequencies at rest; frequency and text."""
     return [
         (
-            f"{mode.frequency * RPM / _HZ:.4g} Hz",
-            f"{mode.frequency * RPM:.4g} rpm, damping ratio {mode.damping_ratio:.3g}, mostly a {mode.moves}",
+            f"{number(mode.frequency * RPM / _HZ)} Hz",
+            f"{in_rpm(mode.frequency)}, damping ratio {mode.damping_ratio:.3g}, mostly a {mode.moves}",
         )
         for mode in modes
     ]
@@ -64,11 +63,11 @@ def layer_rows(layer: LayerExplanation | None) -> Rows:
         steepness = "a cylinder: no gravity along the axis"
     covers = "not known for such a chamber"
     if not math.isnan(layer.optimal_volume):
-        covers = f"from {layer.optimal_volume * ML:.4g} ml at the dry rotor's last deflection"
+        covers = f"from {with_unit(layer.optimal_volume, VOLUME)} at the dry rotor's last deflection"
     return [
         *([("walls", layer.walls)] if layer.walls else []),
         ("fill", f"{n.fill:.4g} of the capacity"),
-        ("layer at fast spin", f"{layer.depth * MM:.4g} mm deep, h0/R = {n.relative_depth:.4g}"),
+        ("layer at fast spin", f"{with_unit(layer.depth, LENGTH)} deep, h0/R = {n.relative_depth:.4g}"),
         ("curvature", f"kappa = {n.curvature:.5g}"),
         ("added mass", f"{layer.added_mass_ratio:.4g} of the rotor's mass while the wall is wet"),
         ("mass of the liquid", f"{layer.liquid_mass_ratio:.4g} of the rotor's mass"),
@@ -124,11 +123,29 @@ def _ends(values: Array) -> str:
 
 
 def _rpm(speed: float) -> str:
-    return f"{speed * RPM:.5g} rpm" if math.isfinite(speed) else "none"
+    return in_rpm(speed, "none")
+
+
+def comparison_head(found: Comparison) -> tuple[str, ...]:
+    """Headings of the table of models.
+
+    Parameters
+    ----------
+    found : the comparison
+    """
+    place = next((amplitude_place(result) for result in found.results.values()), "")
+    amplitude = f"largest amplitude{f' {place}' if place else ''} ({_unit(found).name})"
+    return "model", amplitude, "at (rpm)", "difference (%)", "CPU time (s)"
+
+
+def _unit(found: Comparison) -> Unit:
+    """Unit of the amplitudes of all models."""
+    peaks = [answer.peak_amplitude for answer in found.answers]
+    return unit_for(LENGTH, *(size for size in peaks if size is not None))
 
 
 def comparison_rows(found: Comparison) -> list[tuple[str, ...]]:
-    """A row of the table for each model, as `COMPARISON_HEAD` says.
+    """A row of the table for each model, as `comparison_head` says.
 
     Parameters
     ----------
@@ -143,7 +160,7 @@ def _comparison_row(found: Comparison, answer: ModelAnswer) -> tuple[str, ...]:
     at, amplitude = peak(answer.result.amplitude), answer.peak_amplitude
     return (
         answer.model,
-        NOT_FOUND if amplitude is None else number(amplitude * MM),
+        NOT_FOUND if amplitude is None else _unit(found).number(amplitude),
         "" if at is None else number(float(answer.result.speed[at]) * RPM),
         "reference" if answer.model == found.reference else difference(found, answer.model),
         f"{answer.cpu_time:.2g}",
@@ -214,7 +231,7 @@ def _fact(found: Comparison, answer: ModelAnswer) -> str:
 
 def _size(answer: ModelAnswer) -> str:
     """Largest amplitude with its unit."""
-    return NOT_FOUND if answer.peak_amplitude is None else f"{number(answer.peak_amplitude * MM)} mm"
+    return NOT_FOUND if answer.peak_amplitude is None else with_unit(answer.peak_amplitude, LENGTH)
 
 
 def comparison_alt(found: Comparison) -> str:

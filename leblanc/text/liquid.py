@@ -6,19 +6,22 @@ import cmath
 import math
 from collections.abc import Sequence
 
-from leblanc.results.layer import LayerPeriodsResult, LayerResult, Number
+import numpy as np
+
+from leblanc.results.layer import LayerCase, LayerPeriodsResult, LayerResult, Number
 from leblanc.results.liquid import ModesResult, VolumeResult
 from leblanc.text.numbers import number
-from leblanc.units import ML, MM, RPM
+from leblanc.units import LENGTH, NUMBER, VOLUME, Dimension, in_rpm, unit_for, with_unit
 
 
 def question(result: VolumeResult) -> str:
     """What was understood, in engineers' units."""
     chamber = result.chamber
-    inner = f", inner radius {chamber.inner_radius * MM:.6g} mm" if chamber.inner_radius > 0.0 else ""
+    inner = f", inner radius {with_unit(chamber.inner_radius, LENGTH)}" if chamber.inner_radius > 0.0 else ""
     return (
-        f"Chamber of radius {chamber.radius * MM:.6g} mm{inner}, height {chamber.height * MM:.6g} mm; "
-        f"deflection {result.eccentricity * MM:.6g} mm at {result.speed * RPM:.6g} rpm"
+        f"Chamber of radius {with_unit(chamber.radius, LENGTH)}{inner}, height "
+        f"{with_unit(chamber.height, LENGTH)}; deflection {with_unit(result.eccentricity, LENGTH)} at "
+        f"{in_rpm(result.speed)}"
     )
 
 
@@ -46,16 +49,114 @@ def facts(result: VolumeResult) -> list[tuple[str, str]]:
 
 
 def _volume(value: float | None) -> str:
-    return "none" if value is None else f"{value * ML:.10g} ml"
+    if value is None:
+        return "none"
+    unit = unit_for(VOLUME, value)
+    return f"{value * unit.count:.10g} {unit.name}"  # digits that show how near the finite elements come
+
+
+def whirl_words(case: LayerCase) -> str:
+    """What was understood of a question about a layer.
+
+    Parameters
+    ----------
+    case : the layer and the whirl
+    """
+    inner = f", inner wall {with_unit(case.inner_radius, LENGTH)}" if case.inner_radius > 0.0 else ""
+    return (
+        f"Wall of radius {with_unit(case.radius, LENGTH)}{inner}, mean depth "
+        f"{with_unit(case.mean_depth, LENGTH)}; spin {in_rpm(case.speed)}, whirl of "
+        f"{with_unit(case.whirl_amplitude, LENGTH)} at {in_rpm(case.whirl_speed)}"
+    )
+
+
+VALIDITY_HEAD = ("The model rests on", "value", "holds for", "that is")
+MOST_ANGLES = 24  # of a profile on a terminal
+
+
+def validity_rows(numbers: tuple[Number, ...]) -> list[tuple[str, ...]]:
+    """Dimensionless numbers, each with the range of the model, as `VALIDITY_HEAD` says.
+
+    Parameters
+    ----------
+    numbers : of an answer
+    """
+    return [
+        (
+            entry.name.replace("_", " "),
+            f"{number(entry.value)}{'' if entry.in_range else ', OUT OF RANGE'}",
+            _range_words(entry),
+            entry.meaning,
+        )
+        for entry in numbers
+    ]
+
+
+def _range_words(entry: Number) -> str:
+    if entry.least is None and entry.most is None:
+        return "any"
+    most = math.inf if entry.most is None else entry.most
+    least = entry.least or 0.0
+    return f"at least {number(least)}" if math.isinf(most) else f"{number(least)} to {number(most)}"
+
+
+def layer_periods(result: LayerPeriodsResult) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Heading and a row for each whirl period of a layer from rest.
+
+    Parameters
+    ----------
+    result : the answer
+    """
+    h = result.history
+    unit = unit_for(LENGTH, *h.depth_max.tolist(), *np.abs(h.offset).tolist())
+    head = (
+        "time (s)", "force ratio", "at (deg)", "by pressure", "rotation (rad/s)",
+        f"deepest ({unit.name})", f"shallowest ({unit.name})", f"centre of mass ({unit.name})",
+    )  # fmt: skip
+    rows = [
+        (
+            number(float(h.time[k])),
+            number(abs(complex(h.force_ratio[k]))),
+            number(math.degrees(cmath.phase(complex(h.force_ratio[k])))),
+            number(abs(complex(h.pressure_ratio[k]))),
+            number(float(h.mean_rotation[k])),
+            unit.number(float(h.depth_max[k])),
+            unit.number(float(h.depth_min[k])),
+            unit.number(abs(complex(h.offset[k]))),
+        )
+        for k in range(h.time.size)
+    ]
+    return head, rows
+
+
+def layer_profile(
+    result: LayerResult | LayerPeriodsResult,
+) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Heading and rows of the depth around the wall, at no more than `MOST_ANGLES` of its angles.
+
+    Parameters
+    ----------
+    result : the answer
+    """
+    unit = unit_for(LENGTH, *result.depth.tolist())
+    step = max(1, math.ceil(result.theta.size / MOST_ANGLES))
+    rows = [
+        (number(math.degrees(float(angle))), unit.number(float(depth)))
+        for angle, depth in zip(result.theta[::step], result.depth[::step], strict=True)
+    ]
+    every = f", every {step}. of {result.theta.size}" if step > 1 else ""
+    return (f"angle (deg){every}", f"depth ({unit.name})"), rows
 
 
 def layer_summary(result: LayerResult) -> list[tuple[str, str]]:
     """The main numbers of a layer's answer, as labels and values."""
     return [
         ("Liquid model", result.case.model),
-        ("Force ratio", _at_angle(result.force_ratio, 1.0, "")),
-        ("Centre of mass", _at_angle(result.offset, MM, " mm")),
-        ("Mean rotation in the drum", f"{number(result.mean_rotation)} rad/s"),
+        ("Force ratio", _at_angle(result.force_ratio)),
+        ("Centre of mass", _at_angle(result.offset, LENGTH)),
+        ("Mean rotation in the drum", _rate(result.mean_rotation)),
+        *_steady(result),
+        ("Error of the liquid's volume", number(result.mass_error)),
         *_validity(result.converged, result.in_range, result.validity),
     ]
 
@@ -68,8 +169,8 @@ def periods_summary(result: LayerPeriodsResult) -> list[tuple[str, str]]:
     return [
         ("Liquid model", result.case.model),
         ("Whirl periods", f"{h.time.size}"),
-        ("Force ratio of the last one", _at_angle(complex(h.force_ratio[-1]), 1.0, "")),
-        ("Mean rotation in the drum", f"{number(float(h.mean_rotation[-1]))} rad/s"),
+        ("Force ratio of the last one", _at_angle(complex(h.force_ratio[-1]))),
+        ("Mean rotation in the drum", _rate(float(h.mean_rotation[-1]))),
         *_validity(result.converged, result.in_range, result.validity),
     ]
 
@@ -81,12 +182,26 @@ def _validity(converged: bool, in_range: bool, numbers: tuple[Number, ...]) -> l
     return [("Converged", "yes" if converged else "no"), ("Model in range", verdict)]
 
 
-def _at_angle(value: complex, factor: float, unit: str) -> str:
+def _steady(result: LayerResult) -> list[tuple[str, str]]:
+    """What gravity across the axis does, where there is any."""
+    held = [] if result.captured else [("Liquid not carried round", "gravity is stronger at its surface")]
+    if result.gravity_offset == 0.0:
+        return held
+    return [("Centre of mass under gravity", f"{with_unit(result.gravity_offset, LENGTH)} in space"), *held]
+
+
+def _rate(value: float) -> str:
+    """An angular velocity, or that the model has none."""
+    return f"{number(value)} rad/s" if math.isfinite(value) else "not known to this model"
+
+
+def _at_angle(value: complex, dimension: Dimension = NUMBER) -> str:
     """Size and angle from the deflection."""
     if not cmath.isfinite(value):
         return "not found"
-    angle = f"{math.degrees(cmath.phase(value)):.0f} deg from the deflection"
-    return f"{number(abs(value) * factor)}{unit} at {angle}"
+    angle = f"{number(round(math.degrees(cmath.phase(value))))} deg from the deflection"
+    size = with_unit(abs(value), dimension) if dimension.unit else number(abs(value))
+    return f"{size} at {angle}"
 
 
 def modes_summary(result: ModesResult) -> list[tuple[str, str]]:
@@ -94,7 +209,7 @@ def modes_summary(result: ModesResult) -> list[tuple[str, str]]:
     slowest = ", ".join(number(float(sigma)) for sigma in result.frequency[:6])
     return [
         ("Chamber", result.title),
-        ("Free surface at", f"{number(result.surface_radius * MM)} mm"),
+        ("Free surface at", with_unit(result.surface_radius, LENGTH)),
         ("Slowest modes, seen from the drum", f"{slowest} rad/s"),
         ("Force ratio of a synchronous whirl", number(result.synchronous_force_ratio)),
     ]

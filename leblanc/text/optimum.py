@@ -7,7 +7,9 @@ import math
 from leblanc.results.base import texts
 from leblanc.results.optimum import OptimumResult
 from leblanc.text.numbers import number
-from leblanc.units import ML, MM, RPM
+from leblanc.units import LENGTH, MASS, ML, UNBALANCE, VOLUME, in_rpm, with_unit
+
+_DIMENSIONS = {dimension.unit.replace("*", " "): dimension for dimension in (LENGTH, MASS, UNBALANCE)}
 
 
 def describe_optimum(result: OptimumResult) -> list[str]:
@@ -34,7 +36,7 @@ def summary(result: OptimumResult) -> list[tuple[str, str]]:
     return [
         ("Objective", f"{result.objective}, the {result.meaning}"),
         *(
-            (f"Chamber {k + 1}", f"{number(volume * ML)} ml of {chamber.liquid_name}")
+            (f"Chamber {k + 1}", f"{with_unit(volume, VOLUME)} of {chamber.liquid_name}")
             for k, (chamber, volume) in enumerate(pairs)
         ),
         ("Value", f"{shown(result.value, result.unit)}; without liquid {_baseline(result)}"),
@@ -44,12 +46,9 @@ def summary(result: OptimumResult) -> list[tuple[str, str]]:
 
 def shown(value: float, unit: str) -> str:
     """A value in the unit that engineers use."""
-    if unit == "m":
-        return f"{number(value * MM)} mm"
-    if unit == "kg":
-        return f"{number(value * 1e3)} g"
-    if unit == "kg m":
-        return f"{number(value * 1e6)} g mm"
+    dimension = _DIMENSIONS.get(unit)
+    if dimension is not None:
+        return with_unit(value, dimension)
     return f"{number(value)} {unit}" if unit != "1" else number(value)
 
 
@@ -61,10 +60,11 @@ def _answer(result: OptimumResult) -> list[str]:
     for k, (chamber, volume) in enumerate(zip(result.chambers, result.volume.tolist(), strict=True)):
         share = volume / chamber.capacity
         lines.append(
-            f"Chamber {k + 1}: {volume * ML:.5g} ml of {chamber.liquid_name} ({share:.3%} of what it holds)"
+            f"Chamber {k + 1}: {with_unit(volume, VOLUME)} of {chamber.liquid_name} "
+            f"({number(100.0 * share)} % of what it holds)"
         )
     lines.append(f"Value: {shown(result.value, result.unit)}; without liquid {_baseline(result)}")
-    lines.append(f"Liquid: {result.mass * 1e3:.4g} g; {result.evaluations} sets of volumes judged")
+    lines.append(f"Liquid: {with_unit(result.mass, MASS)}; {result.evaluations} sets of volumes judged")
     return lines
 
 
@@ -94,12 +94,12 @@ def _closed_forms(result: OptimumResult) -> list[str]:
         full = (
             "its wall is never wet up to the lid"
             if math.isinf(form.full_volume)
-            else f"{form.full_volume * ML:.5g} ml wet it up to the lid, and more adds nothing"
+            else f"{with_unit(form.full_volume, VOLUME)} wet it up to the lid, and more adds nothing"
         )
         lines.append(
-            f"Closed form, chamber {k + 1}, {form.deflection * MM:.4g} mm at {form.speed * RPM:.4g} rpm: "
-            f"{form.optimal_volume * ML:.5g} ml just cover the wall ({form.unbalance_share:.1%} of the "
-            f"largest unbalance); {full}"
+            f"Closed form, chamber {k + 1}, {with_unit(form.deflection, LENGTH)} at {in_rpm(form.speed)}: "
+            f"{with_unit(form.optimal_volume, VOLUME)} just cover the wall "
+            f"({number(100.0 * form.unbalance_share)} % of the largest unbalance); {full}"
         )
     return lines
 

@@ -10,9 +10,10 @@ import numpy as np
 
 from leblanc.results.base import one_line, percent
 from leblanc.results.choice import ModelSpan
+from leblanc.results.notes import plane_words
 from leblanc.results.response import RunResult, peak
 from leblanc.text.numbers import NOT_FOUND, number, ranges
-from leblanc.units import MM, RPM
+from leblanc.units import LENGTH, MASS, RPM, VOLUME, in_rpm, rpm_bands, rpm_range, unit_for, with_unit
 from meshes.arrays import Array, Flags
 
 AGAINST = 0.5  # from here on a whirl counts as one with or against the spin
@@ -28,29 +29,111 @@ def answer(result: RunResult) -> str:
     largest, at, last, *_ = comparisons(result)
     if largest.wet == NOT_FOUND:
         return "No answer was found at any speed."
-    speed = f"{number(result.speed[-1] * RPM)} rpm"
+    speed, place = in_rpm(float(result.speed[-1])), amplitude_place(result)
+    where = f" {place}" if place else ""
     if not result.liquid_mass > 0.0:
-        return f"Without liquid the amplitude is {largest.wet} mm at most, at {at.wet} rpm."
+        return f"Without liquid the amplitude{where} is {largest.wet_text} at most, at {at.wet} rpm."
     if result.speed.size == 1:
-        return f"At {speed} the amplitude is {last.wet} mm with the liquid and {last.dry} mm without."
-    grows = ""
-    if result.whirl is not None and result.whirl.bands:
-        bands = [f"{number(low * RPM)} to {number(high * RPM)}" for low, high in result.whirl.bands]
-        grows = f"; a whirl grows by itself from {', '.join(bands)} rpm"
+        return (
+            f"At {speed} the amplitude{where} is {last.wet_text} with the liquid{_doubted(result, -1)} and "
+            f"{last.dry_text} without."
+        )
+    highest = peak(result.amplitude)
+    assert highest is not None
     return (
-        f"The largest amplitude is {largest.wet} mm at {at.wet} rpm with the liquid and {largest.dry} mm at "
-        f"{at.dry} rpm without; at {speed} it is {last.wet} mm instead of {last.dry} mm{grows}."
+        f"The largest amplitude{where} is {largest.wet_text} at {at.wet} rpm with the liquid"
+        f"{_doubted(result, highest)} and {largest.dry_text} at {at.dry} rpm without; at {speed} it is "
+        f"{last.wet_text}{_doubted(result, -1)} instead of {last.dry_text}."
     )
+
+
+def _doubted(result: RunResult, index: int) -> str:
+    """What keeps an amplitude from being believed, in brackets; empty where nothing does."""
+    found = _wrong(result, index)
+    return f" ({', '.join(found)})" if found else ""
+
+
+def _wrong(result: RunResult, index: int) -> list[str]:
+    """What keeps an amplitude from being believed."""
+    r = result.response
+    checks = (("out of range", r.in_range), ("unstable", r.stable))
+    return [text for text, holds in checks if not holds[index]]
+
+
+def amplitude_place(result: RunResult) -> str:
+    """Where along the axis amplitudes are those of; empty for a rotor that moves in one plane.
+
+    Parameters
+    ----------
+    result : the response
+    """
+    if result.motion is None:
+        return ""
+    return plane_words(result.motion.position, bool(result.chambers))
+
+
+def doubt(result: RunResult) -> str:
+    """Where the answer must not be relied on, in one sentence.
+
+    Parameters
+    ----------
+    result : the response
+    """
+    failed = [f"{_lower(limit.label)} at {limit.where}" for limit in limits(result) if limit.failed]
+    if failed:
+        return f"Doubtful: {'; '.join(failed)}."
+    error = largest_error(result)
+    size = f"; their estimated error is {error}" if error else ""
+    return f"No limit of the models is passed at these speeds{size}."
+
+
+def _lower(label: str) -> str:
+    """A label inside a sentence."""
+    return f"{label[:1].lower()}{label[1:]}"
+
+
+def largest_error(result: RunResult) -> str:
+    """The largest error that the models estimate; empty where none is estimated.
+
+    Parameters
+    ----------
+    result : the response
+    """
+    if result.error_estimate is None or np.isnan(result.error_estimate).all():
+        return ""
+    known = result.error_estimate[np.isfinite(result.error_estimate)]
+    unknown = result.error_estimate.size - known.size
+    most = percent(float(known.max())) if known.size else "without a bound"
+    rest = f", without a bound at {unknown} of {result.speed.size} speeds" if known.size and unknown else ""
+    return (f"at most {most}" if most[0].isdigit() else most) + rest
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """With liquid, without, and their ratio, as printed."""
+    """With liquid, without, and their ratio, as printed.
+
+    Parameters
+    ----------
+    label : what is compared, with the unit in brackets
+    wet, dry, ratio : numbers
+    unit : of the first two
+    """
 
     label: str
     wet: str
     dry: str
     ratio: str
+    unit: str = ""
+
+    @property
+    def wet_text(self) -> str:
+        """That with liquid, and its unit."""
+        return f"{self.wet} {self.unit}"
+
+    @property
+    def dry_text(self) -> str:
+        """That without, and its unit."""
+        return f"{self.dry} {self.unit}"
 
 
 def comparisons(result: RunResult) -> list[Comparison]:
@@ -64,14 +147,14 @@ def comparisons(result: RunResult) -> list[Comparison]:
     wet, dry = peak(result.amplitude), peak(result.amplitude_dry)
     at_wet, at_dry = (NOT_FOUND if i is None else number(r.speed[i] * RPM) for i in (wet, dry))
     found = [
-        _compared("Largest amplitude (mm)", result, wet, dry),
-        Comparison("at the speed (rpm)", at_wet, at_dry, ""),
-        _compared(f"Amplitude at {number(r.speed[-1] * RPM)} rpm (mm)", result, -1, -1),
+        _compared("Largest amplitude", result, wet, dry),
+        Comparison("at the speed (rpm)", at_wet, at_dry, "", "rpm"),
+        _compared(f"Amplitude at {in_rpm(float(r.speed[-1]))}", result, -1, -1),
     ]
     if result.motion is None:
         with_liquid, without = result.critical_speed_wet, result.critical_speed_dry
         values = number(with_liquid * RPM), number(without * RPM), number(with_liquid / without)
-        found.append(Comparison("Critical speed (rpm)", *values))
+        found.append(Comparison("Critical speed (rpm)", *values, "rpm"))
     return found
 
 
@@ -81,7 +164,10 @@ def _compared(label: str, result: RunResult, wet: int | None, dry: int | None) -
     without = math.nan if dry is None else float(result.amplitude_dry[dry])
     comparable = without > 0.0 and math.isfinite(without) and math.isfinite(with_liquid)
     ratio = number(with_liquid / without) if comparable else ""
-    return Comparison(label, number(with_liquid * MM), number(without * MM), ratio)
+    unit = unit_for(LENGTH, with_liquid, without)
+    wet_text, dry_text = unit.number(with_liquid), unit.number(without)
+    wrong = "" if wet is None else "".join(f", {text}" for text in _wrong(result, wet))
+    return Comparison(f"{label} ({unit.name}{wrong})", wet_text, dry_text, ratio, unit.name)
 
 
 def facts(result: RunResult) -> list[tuple[str, str]]:
@@ -95,10 +181,10 @@ def facts(result: RunResult) -> list[tuple[str, str]]:
     where = NOT_FOUND if math.isnan(r.liquid_offset[-1]) else "none"
     if r.liquid_offset[-1] > 0.0:
         angle = number(math.degrees(r.liquid_angle[-1]))
-        where = f"{number(r.liquid_offset[-1] * MM)} mm off the axis at {angle} deg"
+        where = f"{with_unit(float(r.liquid_offset[-1]), LENGTH)} off the axis at {angle} deg"
     return [
-        ("Mass of the liquid", f"{number(result.liquid_mass * 1e3)} g"),
-        (f"Its centre of mass at {number(r.speed[-1] * RPM)} rpm", where),
+        ("Mass of the liquid", with_unit(result.liquid_mass, MASS)),
+        (f"Its centre of mass at {in_rpm(float(r.speed[-1]))}", where),
         *_vibration(result),
     ]
 
@@ -153,7 +239,7 @@ def limits(result: RunResult) -> list[Limit]:
     ]
     if result.capture_speed is not None:
         loose = r.speed <= result.capture_speed
-        edge = f" (below {number(result.capture_speed * RPM)} rpm)" if loose.any() else ""
+        edge = f" (below {in_rpm(result.capture_speed)})" if loose.any() else ""
         found.append(Limit("Liquid not carried round", f"{ranges(r.speed, loose)}{edge}", bool(loose.any())))
     if tolerance is not None and result.error_estimate is not None:
         missed = ~(result.error_estimate <= tolerance)
@@ -161,7 +247,7 @@ def limits(result: RunResult) -> list[Limit]:
     found.append(_limit("Wall dry in part", r.speed, r.dry_patch))
     found.append(_limit("Answer unstable", r.speed, ~r.stable))
     if result.whirl is not None:
-        parts = [f"{low * RPM:.5g} to {high * RPM:.5g} rpm" for low, high in result.whirl.bands]
+        parts = [rpm_bands(result.whirl.bands)] if result.whirl.bands else []
         lost = np.isnan(result.whirl.growth)
         parts += [f"not found at {ranges(r.speed, lost)}"] if lost.any() else []
         found.append(Limit("Self-excited whirl", ", ".join(parts) or "none", bool(parts)))
@@ -169,6 +255,18 @@ def limits(result: RunResult) -> list[Limit]:
     if infinite.any():
         found.append(_limit("Amplitude infinite", r.speed, infinite))
     return found
+
+
+def limit_rows(result: RunResult) -> list[tuple[str, str]]:
+    """The checks of the answer for a terminal: label and speeds, the largest error among them.
+
+    Parameters
+    ----------
+    result : the response
+    """
+    rows = [(limit.label, limit.where) for limit in limits(result)]
+    error = largest_error(result)
+    return [*rows, ("Estimated error of the liquid model", error)] if error else rows
 
 
 def _limit(label: str, speed: Array, fails: Flags) -> Limit:
@@ -184,15 +282,13 @@ def machine(result: RunResult) -> str:
     """
     r = result.response
     count = len(result.chambers)
-    volume = number(sum(chamber.volume for chamber in result.chambers) * 1e6)
+    volume = with_unit(sum(chamber.volume for chamber in result.chambers), VOLUME)
     liquids = " and ".join(dict.fromkeys(one_line(c.liquid_name) for c in result.chambers))
     chambers = f"{count} chambers, together" if count > 1 else "one chamber"
-    carries = f"{chambers} with {volume} ml of {liquids}" if count else "no chamber"
-    speeds = f"at {number(r.speed[0] * RPM)} rpm"
+    carries = f"{chambers} with {volume} of {liquids}" if count else "no chamber"
+    speeds = f"at {in_rpm(float(r.speed[0]))}"
     if r.speed.size > 1:
-        speeds = (
-            f"from {number(r.speed[0] * RPM)} to {number(r.speed[-1] * RPM)} rpm in {r.speed.size} speeds"
-        )
+        speeds = f"from {rpm_range(r.speed[0], r.speed[-1])} in {r.speed.size} speeds"
     return f"A rotor with a {result.axis} axis that carries {carries}, {speeds}."
 
 
@@ -226,17 +322,18 @@ def alts(result: RunResult) -> dict[str, str]:
     result : the response
     """
     largest, at, last, *_ = comparisons(result)
+    where = f" {place}" if (place := amplitude_place(result)) else ""
     values = dict(facts(result))
     centre = next(value for label, value in values.items() if label.startswith("Its centre"))
     return {
-        "amplitude": f"Curves of the amplitude over speed: largest {largest.wet} mm at {at.wet} rpm with "
-        f"liquid, {largest.dry} mm at {at.dry} rpm without.",
+        "amplitude": f"Curves of the amplitude{where} over speed: largest {largest.wet_text} at {at.wet} "
+        f"rpm with liquid, {largest.dry_text} at {at.dry} rpm without.",
         "liquid": "Curves of the distance and the angle of the liquid's centre of mass over speed; at the "
         f"last speed: {centre}.",
         "phase": "Curves of the angle from the unbalance to the deflection over speed, with and without "
         "liquid.",
         "chamber": "Drawing of each chamber with its liquid, seen along the axis, at the largest deflection, "
-        f"{largest.wet} mm, and at the last speed, {last.wet} mm.",
+        f"{largest.wet_text}, and at the last speed, {last.wet_text}.",
         "campbell": "Curves of the natural frequencies without liquid over speed.",
     }
 
@@ -249,7 +346,9 @@ def summary(result: RunResult) -> list[tuple[str, str]]:
     result : the response
     """
     rows = [(row.label, f"{row.wet} with liquid, {row.dry} without") for row in comparisons(result)]
-    return [("Scene", one_line(result.name)), *rows, *facts(result)]
+    place = amplitude_place(result)
+    plane = [("Amplitudes", place)] if place else []
+    return [("Scene", one_line(result.name)), *plane, *rows, *facts(result)]
 
 
 # What the model does, and what it takes for granted.
@@ -302,7 +401,7 @@ def described(names: Iterable[str]) -> list[tuple[str, str]]:
 
 def speeds_words(span: ModelSpan) -> str:
     """First and last speed of a range, rpm; one where they are the same."""
-    first, last = f"{span.first * RPM:.5g}", f"{span.last * RPM:.5g}"
+    first, last = number(span.first * RPM), number(span.last * RPM)
     return first if first == last else f"{first} to {last}"
 
 

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from leblanc.results.runup import RunupResult
-from leblanc.text.numbers import number
-from leblanc.units import MM, RPM
+from leblanc.units import LENGTH, TIME, in_rpm, with_unit
 
 
 def describe_model(model: str, cells: int, dispersion: bool) -> str:
@@ -30,22 +29,33 @@ def moments(result: RunupResult) -> list[tuple[str, int]]:
     return [*found, ("At the end", result.time.size - 1)]
 
 
+def answer_rows(result: RunupResult) -> list[tuple[str, str]]:
+    """The largest amplitudes and that at the end: label and value.
+
+    Parameters
+    ----------
+    result : the run-up
+    """
+
+    def value(k: int) -> str:
+        size, speed = with_unit(float(result.amplitude[k]), LENGTH), in_rpm(float(result.speed[k]))
+        outside = "" if result.in_range[k] else " (out of the liquid model's range)"
+        return f"{size} at {speed}, after {with_unit(float(result.time[k]), TIME)}{outside}"
+
+    return [(label, value(k)) for label, k in moments(result)]
+
+
 def largest(result: RunupResult) -> str:
     """The largest amplitude on the way up and where it was."""
     k = result.peak_index()
-    size, speed = number(float(result.amplitude[k]) * MM), number(float(result.speed[k]) * RPM)
-    return f"{size} mm at {speed} rpm"
+    return f"{with_unit(float(result.amplitude[k]), LENGTH)} at {in_rpm(float(result.speed[k]))}"
 
 
 def summary(result: RunupResult) -> list[tuple[str, str]]:
     """The main numbers of a run-up, as labels and values."""
 
-    def value(k: int) -> str:
-        size, speed = number(float(result.amplitude[k]) * MM), number(float(result.speed[k]) * RPM)
-        return f"{size} mm at {speed} rpm, after {number(float(result.time[k]))} s"
-
     return [
-        *((label, value(k)) for label, k in moments(result)),
+        *answer_rows(result),
         ("Liquid model", describe_model(result.model, result.cells, result.dispersion)),
         ("End", result.reason or "it came to its end"),
     ]

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from leblanc.results.base import one_line
 from leblanc.results.sweep import SweepResult
-from leblanc.text.numbers import number
-from leblanc.units import MM
+from leblanc.units import LENGTH, unit_for
 
 _SHARED = ("peak_amplitude", "last_amplitude", "peak_growth")  # whose sensitivities are shown
 
@@ -64,15 +63,17 @@ def summary(result: SweepResult) -> list[tuple[str, str]]:
 
 
 def spread(result: SweepResult, name: str) -> str:
-    """Median of an amplitude and the range of nine samples in ten, mm.
+    """Median of an amplitude and the range of nine samples in ten.
 
     Parameters
     ----------
     result : the sweep
     name : of the output
     """
-    low, middle, high = (number(float(x) * MM) for x in result.single[name].quantiles[0, [0, 2, 4]])
-    return f"{middle} mm, nine in ten from {low} to {high} mm"
+    sizes = [float(size) for size in result.single[name].quantiles[0, [0, 2, 4]]]
+    unit = unit_for(LENGTH, *sizes)
+    low, middle, high = map(unit.number, sizes)
+    return f"{middle} {unit.name}, nine in ten from {low} to {high} {unit.name}"
 
 
 def alt(result: SweepResult) -> str:

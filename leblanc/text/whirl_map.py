@@ -8,7 +8,7 @@ import numpy as np
 
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.text.numbers import number
-from leblanc.units import ML, RPM
+from leblanc.units import RPM, VOLUME, in_rpm, with_unit
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,7 +26,7 @@ def answer(found: WhirlMap) -> str:
     values = dict(facts(found))
     if not (found.growth > 0.0).any():
         return "No whirl grows by itself at any speed with any volume of liquid."
-    own = f"with the scene's {number(found.scene_volume * ML)} ml"
+    own = f"with the scene's {with_unit(found.scene_volume, VOLUME)}"
     bands = f"from {band_words(found.scene_edges)} rpm" if found.scene_edges else "nowhere"
     return (
         f"A whirl grows by itself at {values['A whirl grows at']}, fastest by {values['Fastest growth']}; "
@@ -36,9 +36,9 @@ def answer(found: WhirlMap) -> str:
 
 def band_words(bands: Sequence[tuple[float, float]]) -> str:
     """Ranges of speed in which a whirl grows."""
-    parts = [f"{low * RPM:.5g} to {high * RPM:.5g}" for low, high in bands]
+    parts = [f"{number(low * RPM)} to {number(high * RPM)}" for low, high in bands]
     if len(parts) > MOST_BANDS:
-        return f"{len(parts)} bands between {bands[0][0] * RPM:.5g} and {bands[-1][1] * RPM:.5g}"
+        return f"{len(parts)} bands between {number(bands[0][0] * RPM)} and {number(bands[-1][1] * RPM)}"
     return "; ".join(parts) or "none"
 
 
@@ -55,17 +55,17 @@ def facts(found: WhirlMap) -> list[tuple[str, str]]:
     if unstable.any():
         row, column = np.unravel_index(int(np.nanargmax(growth)), growth.shape)
         speed, volume = float(found.speed[column]), float(found.volume[row])
-        at = f"{number(speed * RPM)} rpm, {number(volume * ML)} ml"
+        at = f"{in_rpm(speed)}, {with_unit(volume, VOLUME)}"
         fastest = f"{number(float(growth[row, column]))} 1/s at {at}"
         turning = f"{number(float(found.whirl_speed[row, column]) / speed)} of the spin"
     return [
         ("Volumes by speeds", f"{found.volume.size} by {found.speed.size}"),
-        ("Most liquid, all chambers", f"{number(float(found.volume[-1]) * ML)} ml"),
+        ("Most liquid, all chambers", with_unit(float(found.volume[-1]), VOLUME)),
         ("A whirl grows at", f"{number(100.0 * float(np.count_nonzero(unstable)) / size)} % of the points"),
         ("Fastest growth", fastest),
         ("That whirl's speed in space", turning),
         (
-            f"Bands with the scene's {number(found.scene_volume * ML)} ml (rpm)",
+            f"Bands with the scene's {with_unit(found.scene_volume, VOLUME)} (rpm)",
             band_words(found.scene_edges),
         ),
         ("Friction of the liquid", found.friction),

@@ -8,7 +8,7 @@ import numpy as np
 
 from leblanc.results.base import one_line
 from leblanc.results.drawn import TableView
-from leblanc.units import MM, RPM
+from leblanc.units import LENGTH, MM, in_rpm, with_unit
 from leblanc.view.parts import NO_CELLS, Label, Picture, Piece, bar_length, circle, line
 from meshes.arrays import Array, Indices
 
@@ -33,8 +33,8 @@ def table_picture(table: TableView) -> Picture:
         "Balls and unbalance turn at different speeds; drawn is a moment when they line up.",
     ]
     state = [
-        f"balls stuck together at {table.stuck_speed * RPM:.4g} rpm: platform {table.slow * MM:.3g} mm",
-        f"unbalance of the shaft: platform {table.fast * MM:.3g} mm",
+        f"balls stuck together at {in_rpm(table.stuck_speed)}: platform {with_unit(table.slow, LENGTH)}",
+        f"unbalance of the shaft: platform {with_unit(table.fast, LENGTH)}",
     ]
     labels = [
         Label("unbalance", (0.0, -0.62 * track * MM, 0.55 * track * MM)),
@@ -46,7 +46,7 @@ def table_picture(table: TableView) -> Picture:
     return Picture(
         (*pieces, *swing, bar),
         tuple(labels),
-        f"{one_line(table.name)}: shaft at {table.speed * RPM:.4g} rpm ({table.speed:.4g} rad/s)",
+        f"{one_line(table.name)}: shaft at {in_rpm(table.speed)} ({table.speed:.4g} rad/s)",
         "\n".join(state),
         " ".join(caption),
         lying=True,

@@ -23,7 +23,7 @@ from leblanc.results.drawn import (
     RunupView,
     Scale,
 )
-from leblanc.units import MM, RPM
+from leblanc.units import LENGTH, RPM, in_rpm, unit_for
 from leblanc.view.parts import Instant, Picture, Stage
 from leblanc.view.picture import Pixels, fill, pixels, plotter, write_png
 from leblanc.view.scene import compose, stage_of, still
@@ -111,8 +111,9 @@ def _instant(stage: Stage, view: RunupView, k: int) -> Instant:
     spread = [j for j in range(len(found)) if planes[j] != planes[0]]
     lean = (found[spread[0]] - found[0]) / (planes[spread[0]] - planes[0]) if spread else 0j
     speed, name = float(frames.speed[k]), one_line(view.result.name)
+    unit = unit_for(LENGTH, float(frames.amplitude.max()))  # one for all frames
     state = [
-        f"t = {frames.time[k]:.2f} s, amplitude {frames.amplitude[k] * MM:.3g} mm",
+        f"t = {frames.time[k]:.2f} s, amplitude {unit.text(frames.amplitude[k])}",
         f"liquid model {view.result.model}",
     ]
     caption = [stage.scale.in_words(), "Seen from the drum.", "The surface stands upright along the axis."]
@@ -292,7 +293,7 @@ def mode_picture(mode: ModeView, phase: float = 0.0) -> Picture:
         deflection=(0j,),
         lean=0j,
         bodies=(shape_of(mode, phase, mode.lift),),
-        title=f"{one_line(mode.name)}: sloshing mode {mode.number} at {mode.speed * RPM:.4g} rpm",
+        title=f"{one_line(mode.name)}: sloshing mode {mode.number} at {in_rpm(mode.speed)}",
         state=f"{crests} around, {sense}\n{abs(mode.frequency):.4g} rad/s seen from the drum",
         caption=" ".join(caption),
     )

@@ -15,7 +15,7 @@ from leblanc.figures.chambers import plates
 from leblanc.figures.page import zero_of
 from leblanc.results.base import one_line
 from leblanc.results.drawn import DrawnLiquid, LiquidBodies, LiquidShape, MachineMotion, Scale, strips
-from leblanc.units import DEGREE, MINUS, MM, RPM
+from leblanc.units import DEGREE, LENGTH, MINUS, in_rpm, with_unit
 from leblanc.view.parts import (
     ABOVE,
     AWAY,
@@ -405,7 +405,7 @@ def describe_speed(name: str, speed: float) -> str:
     name : of the scene
     speed : rad/s
     """
-    return f"{one_line(name)}: {speed * RPM:.4g} rpm ({speed:.4g} rad/s)"
+    return f"{one_line(name)}: {in_rpm(speed)} ({speed:.4g} rad/s)"
 
 
 def describe_state(motion: MachineMotion, index: int, dry: Sequence[bool]) -> list[str]:
@@ -451,7 +451,7 @@ def place_in_words(deflection: complex, zero: str) -> str:
         return "none"
     angle = f"{math.degrees(cmath.phase(deflection)):.0f}"
     angle = "0" if angle == "-0" else angle.replace("-", MINUS)
-    return f"{abs(deflection) * MM:.3g} mm at {angle}{DEGREE} from {zero}"
+    return f"{with_unit(abs(deflection), LENGTH)} at {angle}{DEGREE} from {zero}"
 
 
 def describe_drawing(motion: MachineMotion, index: int, liquid: DrawnLiquid) -> list[str]:
@@ -482,7 +482,7 @@ def describe_drawing(motion: MachineMotion, index: int, liquid: DrawnLiquid) -> 
     tilting, answer = motion.response.motion, motion.response.response
     if tilting is not None and abs(tilting.backward[index]) > 0.01 * abs(answer.deflection[index]):
         parts.append(
-            f"Drawn is the part that turns with the spin; {abs(tilting.backward[index]) * MM:.2g} mm "
+            f"Drawn is the part that turns with the spin; {with_unit(abs(tilting.backward[index]), LENGTH)} "
             "turn against it."
         )
     if motion.response.assumed:

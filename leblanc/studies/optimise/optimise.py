@@ -36,7 +36,7 @@ from leblanc.studies.optimise.problem import Problem, growth, growth_speeds, pro
 from leblanc.studies.optimise.search import best_volumes, bounds_of, evaluated_again, on_all_cells
 from leblanc.studies.optimise.wetting import WettedWalls, wet_walls, wetting_volumes
 from leblanc.studies.run import run_scene
-from leblanc.units import RPM
+from leblanc.units import in_rpm
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.liquid_model import LONG
@@ -167,7 +167,7 @@ def _at_deflection(scene: Scene, task: Optimisation, found: WettedWalls) -> Opti
         scene,
         in_time=False,
         objective="working_speed",
-        meaning=f"liquid's unbalance at the deflection given, at {found.speed * RPM:.4g} rpm",
+        meaning=f"liquid's unbalance at the deflection given, at {in_rpm(found.speed)}",
         unit="kg m",
         working_speed=found.speed,
         volume=volume,

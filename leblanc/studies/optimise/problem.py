@@ -23,7 +23,7 @@ from leblanc.studies.optimise.objectives import (
     Vibration,
     operating_conditions,
 )
-from leblanc.units import MM, RPM
+from leblanc.units import LENGTH, in_rpm, rpm_range, with_unit
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.search import Found, Judgement
@@ -244,7 +244,7 @@ def problem_of(
     density = np.array([fill.liquid.density for fill in scene.fills])
     at_work = AtSpeed(machine, np.array([speed]), np.ones(1))
     constraints = _constraints(scene, task, machine, speed)
-    rpm = f"{speed * RPM:.4g} rpm"
+    rpm = in_rpm(speed)
     evaluate = Evaluator(at_work, density, constraints)
     problem = Problem(evaluate, f"amplitude at {rpm}", speed, (speed,), not planar)
     return _MAKERS[task.objective](scene, task, machine, problem, solve)
@@ -280,7 +280,7 @@ def _peak(scene: Scene, task: Optimisation, machine: FilledMachine, problem: Pro
         notes = (fewer,) if few < scene.runup.cells else ()
         return replace(problem, evaluate=evaluate, meaning=text, costly=True, notes=notes)
     speeds = scene.speeds
-    text = f"largest steady amplitude from {speeds.start * RPM:.4g} to {speeds.stop * RPM:.4g} rpm"
+    text = f"largest steady amplitude from {rpm_range(speeds.start, speeds.stop)}"
     evaluate = replace(problem.evaluate, vibration=PeakOver(machine, speeds))
     return replace(problem, evaluate=evaluate, meaning=text, speeds=(speeds.stop, *_resonances(scene)))
 
@@ -316,7 +316,7 @@ def _least_mass(
     solve: Callable[[Problem], Found],
 ) -> Problem:
     vibration: Vibration = problem.evaluate.vibration
-    where = f"at {problem.working_speed * RPM:.4g} rpm"
+    where = f"at {in_rpm(problem.working_speed)}"
     if task.limit_at == "operating":
         vibration, where = PeakOver(machine, operating_speeds(scene, task)), "at the operating speeds"
     limit, notes = task.vibration_limit, problem.notes
@@ -332,7 +332,7 @@ def _least_mass(
         by_mass=True,
         best=math.inf,
     )
-    text = f"liquid's mass for an amplitude of at most {limit * MM:.4g} mm {where}"
+    text = f"liquid's mass for an amplitude of at most {with_unit(limit, LENGTH)} {where}"
     return replace(problem, evaluate=evaluate, meaning=text, notes=notes)
 
 
@@ -352,7 +352,7 @@ def _robust(scene: Scene, task: Optimisation, machine: FilledMachine, problem: P
     kind = "worst" if task.quantile == 1.0 else f"{task.quantile:.4g} quantile of the"
     ranges = [name for name, span in (("unbalance", unbalance), ("temperature", task.temperature)) if span]
     text = (
-        f"{kind} amplitude at {problem.working_speed * RPM:.4g} rpm over {len(around)} circumstances of "
+        f"{kind} amplitude at {in_rpm(problem.working_speed)} over {len(around)} circumstances of "
         + " and ".join(ranges)
     )
     evaluate = replace(problem.evaluate, vibration=vibration, constraints=constraints)
