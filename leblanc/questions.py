@@ -16,7 +16,16 @@ from fluid.friction import Friction
 from fluid.liquid import Liquid, known_liquid
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import OBJECTIVES, Optimisation
-from leblanc.units import ACCELERATION, ANGULAR_SPEED, LENGTH, TIME, VOLUME, parse_friction, parse_option
+from leblanc.units import (
+    ACCELERATION,
+    ANGULAR_SPEED,
+    LENGTH,
+    TIME,
+    VOLUME,
+    allowed_as_typed,
+    parse_friction,
+    parse_option,
+)
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.errors import InputError, require_not_negative
@@ -38,6 +47,21 @@ def ask(question: Callable[..., Question], given: Mapping[str, Any]) -> Question
     given : values by their names, as `locals()` of a command or call that has the same parameters and more
     """
     return question(**{name: given[name] for name in signature(question).parameters})
+
+
+def as_typed(error: InputError, given: Mapping[str, Any]) -> InputError:
+    """What is refused of an option, with the value as it was typed and its bounds in the unit typed.
+
+    Parameters
+    ----------
+    error : of a study, or of what reads the option
+    given : values by the names of the options
+    """
+    name = error.field.removeprefix("--").replace("-", "_")
+    typed = given.get(name)
+    if not isinstance(typed, str):
+        return error
+    return InputError(f"--{name.replace('_', '-')}", typed, allowed_as_typed(error.allowed, typed))
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ import math
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import partial
 from numbers import Real
 from typing import Any
 
@@ -75,6 +76,10 @@ ACCELERATION = Dimension("acceleration", "m/s^2", "9.81 m/s^2")
 TEMPERATURE = Dimension("temperature", "K", "20 degC")
 ANGULAR_SPEED = Dimension("angular speed", "rad/s", "1000 rpm", also=("1/s",))
 ANGULAR_ACCELERATION = Dimension("angular acceleration", "rad/s^2", "8 rad/s^2", also=("1/s^2",))
+_DIMENSIONS = (
+    *(LENGTH, VOLUME, MASS, DENSITY, VISCOSITY, STIFFNESS, DAMPING, UNBALANCE, INERTIA, TORQUE, ANGLE, TIME),
+    *(RATE, ACCELERATION, TEMPERATURE, ANGULAR_SPEED, ANGULAR_ACCELERATION),
+)
 
 # Units of usual scenes, each in the SI unit of its dimension; all others are left to pint, whose
 # definitions take a third of a second to read. A test holds every entry to pint, bit for bit.
@@ -311,6 +316,65 @@ def parse(value: object, dimension: Dimension, field: str = "value") -> float:
         given = value if isinstance(value, str) else number
         raise InputError(field, given, f"{dimension.allowed}, and finite")
     return number
+
+
+_BOUND = r"-?(?:\d+\.?\d*)(?:e[+-]?\d+)?"
+
+
+def allowed_as_typed(allowed: str, typed: object) -> str:
+    """What is allowed with its bounds in the unit that the user typed instead of the SI unit.
+
+    Parameters
+    ----------
+    allowed : as in "from 1e-06 to 1000 m"
+    typed : the value as it was given, of a list its first text; without a unit the text stays as it is
+
+    Examples
+    --------
+    >>> allowed_as_typed("below the radius, 0.065 m", "300 mm")
+    'below the radius, 65 mm'
+    """
+    if isinstance(typed, list | tuple):
+        typed = next((entry for entry in typed if isinstance(entry, str)), None)
+    match = _QUANTITY.fullmatch(typed.translate(_SPELLINGS)) if isinstance(typed, str) else None
+    unit = match[2] if match else None
+    if not unit or len(str(typed)) > _LONGEST:
+        return allowed
+    for dimension in _DIMENSIONS:
+        if not re.search(rf"\d {re.escape(dimension.unit)}(?![\w^*/])", allowed):
+            continue
+        scale = _scale_of(unit, dimension)
+        if scale is not None:
+            bounds = re.compile(
+                rf'(?<!["\d.])({_BOUND} (?:to|and) )?({_BOUND}) {re.escape(dimension.unit)}(?![\w^*/])'
+            )
+            return bounds.sub(partial(_bounds_as_typed, unit=unit, scale=scale), allowed)
+    return allowed
+
+
+def _scale_of(unit: str, dimension: Dimension) -> tuple[float, float] | None:
+    """SI value of one unit and of its zero; None where it measures something else."""
+    if dimension is TEMPERATURE:
+        return (1.0, _OFFSETS[unit]) if unit in _OFFSETS else None
+    unit = "1" + unit if unit.startswith("/") else unit
+    factor = _COMMON.get(dimension, {}).get(_plain(unit)) or _factor(unit, dimension)
+    return (factor, 0.0) if isinstance(factor, float) else None
+
+
+def _bounds_as_typed(found: re.Match[str], unit: str, scale: tuple[float, float]) -> str:
+    """One bound, or two of them, in another unit."""
+    factor, zero = scale
+
+    def written(bound: str) -> str:
+        return re.sub(_BOUND, lambda it: _digits((float(it[0]) - zero) / factor), bound, count=1)
+
+    return f"{written(found[1] or '')}{written(found[2])} {unit}"
+
+
+def _digits(value: float) -> str:
+    """Six digits, as a person would type them."""
+    text = f"{value:.6g}"
+    return f"{value:.0f}" if "e+" in text and abs(value) < 1e9 else text
 
 
 def parse_option(text: str | float, dimension: Dimension, field: str) -> float:

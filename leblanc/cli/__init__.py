@@ -10,8 +10,10 @@ import gc
 import os
 import sys
 from collections.abc import Callable, Sequence
+from functools import wraps
 from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, version
-from typing import Annotated
+from pathlib import Path
+from typing import Annotated, Any
 
 import typer
 from typer.main import get_command
@@ -131,11 +133,34 @@ def application(wanted: str = "") -> typer.Typer:
 
     own = {module.__name__.rpartition(".")[2]: module for module in COMMANDS}
     for name in [wanted] if wanted in own else own:
-        found.command(name)(getattr(own[name], name))
+        found.command(name)(_as_typed(getattr(own[name], name)))
     if wanted not in own:
         for entry in sorted(entry_points(group="leblanc.commands")):
             _announced(found, entry)
     return found
+
+
+def _as_typed(command: Callable[..., None]) -> Callable[..., None]:
+    """The command, telling what it refuses as a user has typed it: in the scene's file or as an option."""
+
+    @wraps(command)
+    def asked(**options: Any) -> None:
+        try:
+            command(**options)
+        except InputError as error:
+            scene, fault = options.get("scene"), None
+            if isinstance(scene, Path):
+                from leblanc.scene.scene import Scene
+                from leblanc.scene.schema.load import fault_in
+
+                fault = fault_in(scene, error, Scene.model_fields)
+            if fault is not None:
+                raise fault from error
+            from leblanc.questions import as_typed
+
+            raise as_typed(error, options) from error
+
+    return asked
 
 
 def _announced(application: typer.Typer, entry: EntryPoint) -> None:

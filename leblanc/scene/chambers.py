@@ -304,5 +304,5 @@ def _in_section(values: Mapping[str, Any]) -> Iterator[Conflict]:
 def _in_capacity(volume: float, capacity: float) -> Iterator[Conflict]:
     """A chamber holds its liquid."""
     if volume > capacity * (1.0 + _ROUNDING):
-        text = f"at most what the chamber holds, {capacity:.6g} m^3 ({capacity * 1e6:.6g} ml)"
+        text = f"at most what the chamber holds, {capacity:.6g} m^3"
         yield Conflict(("volume",), text)

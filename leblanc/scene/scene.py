@@ -21,7 +21,7 @@ from leblanc.scene.rotors import Exciter as Exciter  # what a scene's rotor may 
 from leblanc.scene.rotors import JeffcottRotor as JeffcottRotor
 from leblanc.scene.rotors import TubRotor as TubRotor
 from leblanc.scene.rotors import TwoPlaneRotor as TwoPlaneRotor
-from leblanc.scene.schema.load import SceneError, SceneFault, meant, read_scene, shown
+from leblanc.scene.schema.load import SceneError, SceneFault, meant, read_scene, shown, with_lines
 from leblanc.scene.schema.part import Conflict, Part, faults_of
 from leblanc.scene.schema.paths import keys_of, require_field, with_values
 from leblanc.scene.schema.rules import Entries, Refused, Speed, Text, entries, one_of, quantity, whole
@@ -284,7 +284,9 @@ def load_scene(path: str | PathLike[str]) -> Scene:
     >>> lb.load_scene("examples/horizontal_rig.toml").speeds.count
     201
     """
-    return scene_from_table(read_scene(path), str(path))
+    table = read_scene(path)
+    with with_lines(path):
+        return scene_from_table(table, str(path))
 
 
 def scene_from_table(table: Mapping[str, Any], file: str = "scene") -> Scene:

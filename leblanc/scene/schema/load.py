@@ -6,11 +6,16 @@ import difflib
 import json
 import re
 import tomllib
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 from typing import Any
+
+from leblanc.scene.schema.lines import Place, line_of, places
+from leblanc.units import allowed_as_typed
+from meshes.errors import InputError
 
 _LONGEST = 60  # characters of a value that are shown
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
@@ -26,15 +31,18 @@ class SceneFault:
     field : path of the field, as in "chambers.0.volume"; empty if the file as a whole is wrong
     value : the value as it is shown to the user; None if there is none
     allowed : what the value must be, in words that follow "must be"
+    line : of the field in the file, counted from 1; None where it is not known
     """
 
     file: str
     field: str
     value: str | None
     allowed: str
+    line: int | None = None
 
     def __str__(self) -> str:
-        where = escaped(self.file) + (f": {self.field}" if self.field else "")
+        line = "" if self.line is None else f":{self.line}"
+        where = escaped(self.file) + line + (f": {self.field}" if self.field else "")
         given = "" if self.value is None else f" = {self.value}"
         return f"{where}{given}: must be {escaped(self.allowed)}"
 
@@ -172,6 +180,80 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
         raise fault(f"valid TOML: {_toml_fault(text, str(error))}") from error
     except ValueError as error:
         raise fault("valid TOML without numbers of thousands of digits") from error
+
+
+@contextmanager
+def with_lines(path: str | PathLike[str]) -> Iterator[None]:
+    """Add to faults of a file, raised inside, the lines at which they stand.
+
+    Parameters
+    ----------
+    path : the file; it has been read
+
+    Raises
+    ------
+    SceneError : the same with lines
+    """
+    try:
+        yield
+    except SceneError as error:
+        root = _places(path)
+        raise SceneError(
+            [
+                replace(fault, line=line_of(root, fault.field))
+                if fault.file == str(path) and fault.line is None and fault.field
+                else fault
+                for fault in error.faults
+            ]
+        ) from error.__cause__
+
+
+def fault_in(path: str | PathLike[str], error: InputError, keys: Iterable[str]) -> SceneError | None:
+    """What a study refuses of a scene as a fault of its file: the value as it stands there, and its line.
+
+    Parameters
+    ----------
+    path : the file; it has been read
+    error : of the study
+    keys : that such a file may have
+
+    Returns
+    -------
+    None where the error is not about a value of the file
+    """
+    found = _places(path)
+    if error.field.partition(".")[0] not in {*keys}:
+        return None
+    given: Any = read_toml(path)
+    for key in error.field.split("."):
+        if isinstance(given, dict) and key in given:
+            given = given[key]
+        elif isinstance(given, list) and key.isdecimal() and int(key) < len(given):
+            given = given[int(key)]
+        else:
+            given = error.value  # a default, or what follows from other values
+            break
+    allowed, line = allowed_as_typed(error.allowed, given), line_of(found, error.field)
+    return SceneError([SceneFault(str(path), error.field, shown(given), allowed, line)])
+
+
+def line_in(path: str | PathLike[str], field: str) -> int | None:
+    """Line of a field in a TOML file; None where it is not known.
+
+    Parameters
+    ----------
+    path : the file; it has been read
+    field : path of the field, as in "chambers.0.volume"
+    """
+    return line_of(_places(path), field)
+
+
+def _places(path: str | PathLike[str]) -> Place:
+    """Places of the keys of a file; none where it can no longer be read."""
+    try:
+        return places(Path(path).read_bytes()[:MAX_BYTES].decode("utf-8-sig"))
+    except (OSError, ValueError, AssertionError, IndexError, RecursionError):
+        return Place(0)  # it has changed since it was read
 
 
 def _toml_fault(text: str, said: str) -> str:

@@ -19,6 +19,7 @@ from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
 from leblanc.scene.schema.load import SceneError, SceneFault, field_path, meant, shown
 from leblanc.scene.schema.rules import OneOf, Refused
+from leblanc.units import allowed_as_typed
 from meshes.errors import InputError
 
 _TOGETHER, _ABSENT = "together", "absent"  # names of faults that no single value has
@@ -260,9 +261,10 @@ def _fault(item: ErrorDetails, file: str, root: type[Part]) -> SceneFault:
     cause = item.get("ctx", {}).get("error")
     if kind in (_TOGETHER, _ABSENT):
         given = value if kind == _TOGETHER else None
-        return SceneFault(file, field_path(keys), given, item["ctx"]["allowed"])
+        allowed = allowed_as_typed(item["ctx"]["allowed"], item["input"])
+        return SceneFault(file, field_path(keys), given, allowed)
     if isinstance(cause, InputError | Refused):
-        return SceneFault(file, field_path(keys), value, cause.allowed)
+        return SceneFault(file, field_path(keys), value, allowed_as_typed(cause.allowed, item["input"]))
     if kind == "extra_forbidden":
         names = list(owner.model_fields)
         text = f"left out or spelled as one of: {', '.join(names)}{meant(keys[-1], names)}"

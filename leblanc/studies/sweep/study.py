@@ -16,10 +16,19 @@ from pydantic import Field, PlainValidator, ValidationError
 
 from leblanc import units
 from leblanc.scene.scene import Exciter, Scene, scene_from_table
-from leblanc.scene.schema.load import SceneError, SceneFault, field_path, read_scene, read_toml, shown
+from leblanc.scene.schema.load import (
+    SceneError,
+    SceneFault,
+    field_path,
+    read_scene,
+    read_toml,
+    shown,
+    with_lines,
+)
 from leblanc.scene.schema.part import Conflict, Part, allowed_at, faults_of
 from leblanc.scene.schema.paths import Keys, keys_of, rule_at
 from leblanc.scene.schema.rules import Entries, Quantity, Refused, Text, Whole, one_of, whole
+from leblanc.units import allowed_as_typed
 from meshes.arrays import Array
 from meshes.errors import InputError
 
@@ -372,11 +381,19 @@ def load_sweep(path: str | PathLike[str]) -> Sweep:
     ------
     SceneError : with all that is wrong
     """
+    given = read_toml(path)
+    with with_lines(path):
+        return _sweep_of(given, path)
+
+
+def _sweep_of(given: Mapping[str, Any], path: str | PathLike[str]) -> Sweep:
+    """Sweep from the content of a study file."""
     file = str(path)
-    table = check_study(read_toml(path), file)
+    table = check_study(given, file)
     scene_path = Path(path).parent / table.scene
     scene_table = read_scene(scene_path)
-    scene = scene_from_table(scene_table, str(scene_path))
+    with with_lines(scene_path):
+        scene = scene_from_table(scene_table, str(scene_path))
     if isinstance(scene.rotor, Exciter):
         allowed = "a scene whose rotor answers at its speeds: jeffcott, two_plane or tub"
         raise SceneError([SceneFault(file, "scene", shown(table.scene), allowed)])
@@ -422,7 +439,7 @@ def _fields(
             said = None if value is None else shown(value)
             if value is None and not isinstance(given, Mapping):
                 said = shown(given)
-            faults.append(SceneFault(file, field_path(where), said, error.allowed))
+            faults.append(SceneFault(file, field_path(where), said, allowed_as_typed(error.allowed, value)))
             continue
         unit = rule.dimension.unit if isinstance(rule, Quantity) else ""
         fields.append(VariedField(path, unit or "1", distribution))

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from leblanc.cli import main
 from leblanc.scene.scene import load_scene
 from leblanc.scene.schema.load import MAX_BYTES, SceneError
 from tests.leblanc.scene.test_faulty_scenes import CHAMBER, GOOD, shell
@@ -112,6 +113,59 @@ def test_all_faults_come_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[s
         "speeds.step",
         "speeds.stop",
     ]
+
+
+def test_each_fault_has_its_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """That of the key, or of the table that lacks it."""
+    wrong = {'"4 kg"': '"-4 kg"', 'axis = "horizontal"': "", '"10 ml"': '"2 l"', '["rotor.mass"]': '["x"]'}
+    text = GOOD
+    for right, other in wrong.items():
+        text = text.replace(right, other)
+    path = tmp_path / "scene.toml"
+    path.write_text(text, encoding="utf-8")
+    lines = text.splitlines()
+    expected = {
+        "assumed.0": 'assumed = ["x"]',
+        "rotor.mass": 'mass = "-4 kg"',
+        "rotor.axis": "[rotor]",
+        "chambers.0.volume": 'volume = "2 l"',
+    }
+    found = [line.removeprefix(f"{path}:").split(": ") for line in shell(path, capsys).splitlines()]
+    assert {rest[0].split(" = ")[0]: lines[int(number) - 1] for number, *rest in found} == expected
+
+
+def test_what_a_study_refuses_is_told_where_it_stands(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A scene without a fault, of which a command cannot answer one value."""
+    path = tmp_path / "scene.toml"
+    path.write_text(GOOD.replace('"auto"', '"kdv"'), encoding="utf-8")
+    (line,) = shell(path, capsys).splitlines()
+    number = GOOD.splitlines().index('liquid = "auto"') + 1
+    assert line.startswith(f'{path}:{number}: model.liquid = "kdv": must be ')
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"--radius": "-65 mm"}, "leblanc: --radius = '-65 mm': must be a finite number above 0"),
+        ({"--inner-radius": "300 mm"}, "leblanc: --inner-radius = '300 mm': must be below radius (65 mm)"),
+        (
+            {"--volume": "3 l"},
+            "leblanc: --volume = '3 l': must be at most the chamber's capacity (0.265465 l)",
+        ),
+        (
+            {"--volume": "3e6 mm^3"},
+            "leblanc: --volume = '3e6 mm^3': must be at most the chamber's capacity (265465 mm^3)",
+        ),
+    ],
+)
+def test_an_option_is_refused_as_it_was_typed(
+    changed: dict[str, str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    given = {"--radius": "65 mm", "--height": "20 mm", "--eccentricity": "1 mm", "--speed": "1000 rpm"}
+    assert main(["volume", *(word for pair in (given | changed).items() for word in pair)]) == 2
+    assert capsys.readouterr().err == f"{said}\n"
 
 
 def test_names_and_values_stay_on_their_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
