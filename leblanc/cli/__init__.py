@@ -150,10 +150,9 @@ def _as_typed(command: Callable[..., None]) -> Callable[..., None]:
         except InputError as error:
             scene, fault = options.get("scene"), None
             if isinstance(scene, Path):
-                from leblanc.scene.scene import Scene
-                from leblanc.scene.schema.load import fault_in
+                from leblanc.scene.scene import fault_in
 
-                fault = fault_in(scene, error, Scene.model_fields)
+                fault = fault_in(scene, error)
             if fault is not None:
                 raise fault from error
             from leblanc.questions import as_typed

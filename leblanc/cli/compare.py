@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from leblanc.cli.output import print_json, print_table, say
+from leblanc.cli.output import load, print_json, print_table, say
 from leblanc.files import out_dir
 
 
@@ -22,10 +22,9 @@ def compare(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """The same scene by several liquid models. Table, figure, cost."""
-    from leblanc.scene.scene import load_scene
     from leblanc.studies.compare import compare_models
 
-    machine = load_scene(scene)
+    machine = load(scene)
     found = compare_models(machine, [name.strip() for name in models.split(",")])
     folder = out_dir(machine.name, out)
 

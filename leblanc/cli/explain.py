@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.output import print_json, print_table
+from leblanc.cli.output import load, print_json, print_table
 
 if TYPE_CHECKING:
     from leblanc.results.explanation import Explanation
@@ -18,11 +18,10 @@ def explain(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Key numbers of the machine; which liquid model answers, and why."""
-    from leblanc.scene.scene import load_scene
     from leblanc.studies.explain import explain_exciter, explain_scene
     from leblanc.text.explanation import exciter_rows
 
-    machine = load_scene(scene)
+    machine = load(scene)
     if machine.rotor.kind == "exciter":
         table = explain_exciter(machine)
         if json:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from leblanc.cli.output import print_json, say
+from leblanc.cli.output import load, print_json, say
 from leblanc.files import out_dir
 
 
@@ -29,10 +29,9 @@ def map(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Growth of self-excited whirl over speed and volume. Edges of the unstable bands, figure, report."""
-    from leblanc.scene.scene import load_scene
     from leblanc.units import VOLUME, parse_friction, parse_option
 
-    machine = load_scene(scene)
+    machine = load(scene)
     law = None if friction is None else parse_friction(friction, "--friction")
     most = None if max_volume is None else parse_option(max_volume, VOLUME, "--max-volume")
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.output import print_json, say
+from leblanc.cli.output import load, print_json, say
 from leblanc.files import out_dir
 
 if TYPE_CHECKING:
@@ -49,9 +49,8 @@ def optimise(
 ) -> None:
     """Best volume(s) for an objective, within constraints. Figures, data file, report."""
     from leblanc.questions import optimisation_of
-    from leblanc.scene.scene import load_scene
 
-    machine = load_scene(scene)
+    machine = load(scene)
     task = optimisation_of(machine, objective, deflection, limit, steady, seed)
     folder = out_dir(machine.name, out)
     result = _run(machine, task, not no_front, emulator)

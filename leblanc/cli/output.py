@@ -8,7 +8,10 @@ import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
+
+if TYPE_CHECKING:
+    from leblanc.scene.scene import Scene
 
 _WIDTH = 110  # characters of a line where there is no terminal
 
@@ -16,6 +19,30 @@ _WIDTH = 110  # characters of a line where there is no terminal
 def say(text: str) -> None:
     """Print a line of progress or a fault on stderr."""
     print(text, file=sys.stderr, flush=True)
+
+
+def load(path: Path) -> Scene:
+    """Scene from a file; what is hardly meant in it is said on stderr, one line each.
+
+    Parameters
+    ----------
+    path : the file
+
+    Raises
+    ------
+    SceneError : with everything that is wrong
+    """
+    from leblanc.scene.scene import scene_from_table
+    from leblanc.scene.schema.load import escaped, given_at, read_scene, with_lines
+    from leblanc.studies.plausible import doubts
+
+    table = read_scene(path)
+    with with_lines(path):
+        scene = scene_from_table(table, str(path))
+    for note in doubts(scene, table):
+        _, _, line = given_at(path, str(note.data["field"]))
+        say(f"{escaped(str(path))}{f':{line}' if line else ''}: warning: {note.text}")
+    return scene
 
 
 def print_table(

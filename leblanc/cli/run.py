@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.output import print_json, print_table, say
+from leblanc.cli.output import load, print_json, print_table, say
 from leblanc.files import out_dir
 
 if TYPE_CHECKING:
@@ -22,9 +22,8 @@ def run(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Answer of the machine at each speed. Figures, data file, report."""
-    from leblanc.scene.scene import load_scene
 
-    machine = load_scene(scene)
+    machine = load(scene)
     folder = out_dir(machine.name, out)
 
     if machine.rotor.kind == "exciter":

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.output import print_json, print_table, say
+from leblanc.cli.output import load, print_json, print_table, say
 from leblanc.files import out_dir
 
 if TYPE_CHECKING:
@@ -34,9 +34,8 @@ def runup(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Through the resonance in time, up and down. Figures, data file, energy balance, report."""
-    from leblanc.scene.scene import load_scene
 
-    machine = load_scene(scene)
+    machine = load(scene)
 
     from leblanc.studies.runup import planned
 

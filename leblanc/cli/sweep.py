@@ -40,10 +40,13 @@ def sweep(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Answers of many scenes that differ in a few values. The same command goes on after a stop."""
+    from leblanc.studies.plausible import doubts
     from leblanc.studies.sweep.sampling import sampling_note
     from leblanc.studies.sweep.study import load_sweep
 
     plan = load_sweep(study)
+    for doubt in doubts(plan.scene, plan.table):
+        say(f"{plan.scene_path}: warning: {doubt.text}")
     folder = out_dir(plan.name, out)
     note = sampling_note(plan)
     if note is not None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.output import print_json, say
+from leblanc.cli.output import load, print_json, say
 from leblanc.files import out_dir
 
 if TYPE_CHECKING:
@@ -53,10 +53,9 @@ def view(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Three-dimensional picture, film or browser page."""
-    from leblanc.scene.scene import load_scene
     from leblanc.units import ANGULAR_SPEED, parse_option
 
-    machine = load_scene(scene)
+    machine = load(scene)
     spin = None if speed is None else parse_option(speed, ANGULAR_SPEED, "--speed")
     _check_choices(screenshot, animate, frames, mode, window, browser, port)
     if browser:

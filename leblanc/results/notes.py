@@ -212,6 +212,37 @@ def mesh(chamber: int, finding: str) -> Note:
     return Note(RunCode.MESH, {"chamber": chamber}, f"Mesh of chamber {chamber + 1}: {finding}.")
 
 
+class DoubtCode(NoteCode):
+    """What a value of a scene is that is allowed but hardly meant."""
+
+    SIZE = "doubtful_size"
+    FILM = "doubtful_film"
+    LIQUID = "doubtful_liquid"
+    LIQUID_MASS = "doubtful_liquid_mass"
+    DAMPING = "doubtful_damping"
+    UNBALANCE = "doubtful_unbalance"
+    PLACE = "doubtful_place"
+    FREE = "free_direction"
+    GRAVITY = "doubtful_gravity"
+    SPEED = "doubtful_speed"
+
+
+def doubt(code: DoubtCode, field: str, looks: str, likely: str) -> Note:
+    """A value that is hardly meant.
+
+    Parameters
+    ----------
+    code : what it is
+    field : its path in the scene
+    looks : what makes it doubtful
+    likely : what may have been meant, as it would be written; empty where nothing suggests itself
+    """
+    meant = f"; did you mean {likely}?" if likely else ""
+    return Note(
+        code, {"field": field, "likely": likely}, f"Check {field}: {looks}{meant}{'' if meant else '.'}"
+    )
+
+
 class RunupCode(NoteCode):
     """What the notes of a run-up say."""
 

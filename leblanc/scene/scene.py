@@ -21,12 +21,13 @@ from leblanc.scene.rotors import Exciter as Exciter  # what a scene's rotor may 
 from leblanc.scene.rotors import JeffcottRotor as JeffcottRotor
 from leblanc.scene.rotors import TubRotor as TubRotor
 from leblanc.scene.rotors import TwoPlaneRotor as TwoPlaneRotor
-from leblanc.scene.schema.load import SceneError, SceneFault, meant, read_scene, shown, with_lines
+from leblanc.scene.schema.load import SceneError, SceneFault, given_at, meant, read_scene, shown, with_lines
 from leblanc.scene.schema.part import Conflict, Part, faults_of
 from leblanc.scene.schema.paths import keys_of, require_field, with_values
 from leblanc.scene.schema.rules import Entries, Refused, Speed, Text, entries, one_of, quantity, whole
 from leblanc.scene.tasks import Optimisation
 from leblanc.scene.tasks import Runup as Runup
+from leblanc.units import allowed_as_typed
 from meshes.errors import InputError
 
 if TYPE_CHECKING:
@@ -287,6 +288,26 @@ def load_scene(path: str | PathLike[str]) -> Scene:
     table = read_scene(path)
     with with_lines(path):
         return scene_from_table(table, str(path))
+
+
+def fault_in(path: str | PathLike[str], error: InputError) -> SceneError | None:
+    """What a study refuses of a scene as a fault of its file: the value as it stands there, and its line.
+
+    Parameters
+    ----------
+    path : the file; it has been read
+    error : of the study
+
+    Returns
+    -------
+    None where the error is not about a value of a scene
+    """
+    if error.field.partition(".")[0] not in Scene.model_fields:
+        return None
+    stands, value, line = given_at(path, error.field)
+    given = value if stands else error.value  # a default, or what follows from other values
+    allowed = allowed_as_typed(error.allowed, given)
+    return SceneError([SceneFault(str(path), error.field, shown(given), allowed, line)])
 
 
 def scene_from_table(table: Mapping[str, Any], file: str = "scene") -> Scene:

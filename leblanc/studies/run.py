@@ -16,6 +16,7 @@ from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
 from leblanc.studies.choose import Prepared, choose_all, liquid_models, prepare
 from leblanc.studies.liquid import synchronous_model
+from leblanc.studies.plausible import doubts
 from leblanc.studies.whirl_map import small_whirl_friction
 from meshes.arrays import Complex
 from meshes.chamber_section import liquid_of
@@ -247,7 +248,7 @@ def _notes(
         first, last = answer.speed[several][[0, -1]].tolist()
         found.append(notes.several_answers(first, last, stable=motion is None))
     found += _walls(machine, answer, motion)
-    found += _meshes(machine.scene)
+    found += [*_meshes(machine.scene), *doubts(machine.scene)]
     return tuple(note for note in found if note is not None)
 
 

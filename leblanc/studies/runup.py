@@ -21,6 +21,7 @@ from leblanc.scene.scene import JeffcottRotor, Runup, Scene, dry_rotor, jeffcott
 from leblanc.studies.choose import across_gravity as across_gravity  # of a run-up, asked for with it
 from leblanc.studies.choose import axial_gravity
 from leblanc.studies.liquid import RUNUP_MODELS, runup_model
+from leblanc.studies.plausible import doubts
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.liquid_model import LONG
@@ -331,7 +332,7 @@ def runup_scene(
         bands=bands,
         chambers=tuple(_chamber(fill) for fill in scene.fills),
         planes=tuple(fill.chamber.plane for fill in scene.fills),
-        notes=(*_notes(scene, taken, steady, bands), *limits),
+        notes=(*_notes(scene, taken, steady, bands), *limits, *doubts(scene)),
         frames=runup_frames(history),
     )
 

@@ -16,6 +16,7 @@ from leblanc.results.base import Note
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import Scene
 from leblanc.studies.choose import Prepared, prepare
+from leblanc.studies.plausible import doubts
 from leblanc.units import friction_words
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
@@ -83,7 +84,7 @@ def map_scene(
         damping=_damping(machine),
         scene_volume=sum(fill.volume for fill in scene.fills),
         scene_edges=own,
-        notes=_notes(machine, law, own, carried, thin),
+        notes=(*_notes(machine, law, own, carried, thin), *doubts(scene)),
     )
 
 

@@ -14,8 +14,6 @@ from pathlib import Path
 from typing import Any
 
 from leblanc.scene.schema.lines import Place, line_of, places
-from leblanc.units import allowed_as_typed
-from meshes.errors import InputError
 
 _LONGEST = 60  # characters of a value that are shown
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
@@ -208,44 +206,29 @@ def with_lines(path: str | PathLike[str]) -> Iterator[None]:
         ) from error.__cause__
 
 
-def fault_in(path: str | PathLike[str], error: InputError, keys: Iterable[str]) -> SceneError | None:
-    """What a study refuses of a scene as a fault of its file: the value as it stands there, and its line.
-
-    Parameters
-    ----------
-    path : the file; it has been read
-    error : of the study
-    keys : that such a file may have
-
-    Returns
-    -------
-    None where the error is not about a value of the file
-    """
-    found = _places(path)
-    if error.field.partition(".")[0] not in {*keys}:
-        return None
-    given: Any = read_toml(path)
-    for key in error.field.split("."):
-        if isinstance(given, dict) and key in given:
-            given = given[key]
-        elif isinstance(given, list) and key.isdecimal() and int(key) < len(given):
-            given = given[int(key)]
-        else:
-            given = error.value  # a default, or what follows from other values
-            break
-    allowed, line = allowed_as_typed(error.allowed, given), line_of(found, error.field)
-    return SceneError([SceneFault(str(path), error.field, shown(given), allowed, line)])
-
-
-def line_in(path: str | PathLike[str], field: str) -> int | None:
-    """Line of a field in a TOML file; None where it is not known.
+def given_at(path: str | PathLike[str], field: str) -> tuple[bool, Any, int | None]:
+    """What a file says of a field.
 
     Parameters
     ----------
     path : the file; it has been read
     field : path of the field, as in "chambers.0.volume"
+
+    Returns
+    -------
+    Whether it stands there; its value, None if not; its line, or that of what it is missing from
     """
-    return line_of(_places(path), field)
+    stands = True
+    value: Any = read_toml(path)
+    for key in field.split("."):
+        if isinstance(value, dict) and key in value:
+            value = value[key]
+        elif isinstance(value, list) and key.isdecimal() and int(key) < len(value):
+            value = value[int(key)]
+        else:
+            value, stands = None, False
+            break
+    return stands, value, line_of(_places(path), field)
 
 
 def _places(path: str | PathLike[str]) -> Place:

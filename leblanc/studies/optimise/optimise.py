@@ -35,6 +35,7 @@ from leblanc.studies.optimise.objectives import RunupPeak
 from leblanc.studies.optimise.problem import Problem, growth, growth_speeds, problem_of, working_speed
 from leblanc.studies.optimise.search import best_volumes, bounds_of, evaluated_again, on_all_cells
 from leblanc.studies.optimise.wetting import WettedWalls, wet_walls, wetting_volumes
+from leblanc.studies.plausible import doubts
 from leblanc.studies.run import run_scene
 from leblanc.units import in_rpm
 from meshes.arrays import Array, Flags
@@ -155,7 +156,7 @@ def _result(
             mass=said.details["mass"],
             exact=said.details["sure"] == 1.0,
         ),
-        notes=(*problem.notes, *_limits(scene, problem, volume)),
+        notes=(*problem.notes, *_limits(scene, problem, volume), *doubts(scene)),
     )
 
 
@@ -188,7 +189,7 @@ def _at_deflection(scene: Scene, task: Optimisation, found: WettedWalls) -> Opti
             mass=found.mass * single,
             exact=single > 0.0,
         ),
-        notes=found.notes,
+        notes=(*found.notes, *doubts(scene)),
     )
 
 
