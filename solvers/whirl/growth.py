@@ -140,11 +140,8 @@ def system_modes(
 
 
 def _fastest(modes: SystemModes, spin: Array) -> tuple[Array, Array]:
-    """Growth and whirl speed from eigenvalues; nan where a mode was lost that could matter."""
-    root, known = modes.root, modes.found
-    best = np.where(known, root.real, -np.inf).max(axis=1, keepdims=True)
-    # A mode that was lost does not matter if it decays faster than one that was found.
-    lost = np.any(~known & (root.real > best), axis=1)
+    """Growth and whirl speed from eigenvalues; nan where a mode that grows more may be missing."""
+    root, known, lost = modes.root, modes.found, ~modes.complete
     omega = modes.sense * root.imag - 1j * root.real
     omega = np.where(known, omega, complex(np.nan, np.nan))
     growth, whirl_speed = dominant(omega.T, modes.rounding.T, spin)

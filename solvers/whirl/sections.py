@@ -166,7 +166,9 @@ def most_growing(search: MostGrowing, speed: Array) -> SystemModes:
     )
     along, against = _sizes(search.circles, shape)
     scale = np.abs(root) + speed[:, None]
-    return SystemModes(root, np.where(along >= against, 1.0, -1.0), _RESOLVED * scale, found)
+    return SystemModes(
+        root, np.where(along >= against, 1.0, -1.0), _RESOLVED * scale, found, found.all(axis=1)
+    )
 
 
 def _circles(layers: Sequence[SectionLayer]) -> Array:

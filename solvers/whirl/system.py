@@ -7,12 +7,12 @@ axis, all real and in the standing frame; modes go as e^{lambda t}.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from fluid.whirl import Layer
-from meshes.arrays import Array, Complex, Flags
+from meshes.arrays import Array, Complex, Flags, Index
 from solvers.rotor.system import RotorSystem
 
 _EPS = float(np.finfo(float).eps)
@@ -74,12 +74,46 @@ class SystemModes:
         where it goes the other way, shape (n, m)
     rounding : how far rounding may have moved each, 1/s, shape (n, m)
     found : False where the iteration did not settle, shape (n, m)
+    complete : no mode is missing that grows more than the one of those found that grows most, shape (n,)
     """
 
     root: Complex
     sense: Array
     rounding: Array
     found: Flags
+    complete: Flags
+
+    def widened(self, width: int, gone: float) -> SystemModes:
+        """With modes that were not found appended, up to `width` at each speed.
+
+        Parameters
+        ----------
+        width : m, at least as many as there are
+        gone : lambda in place of them, 1/s
+        """
+        more = ((0, 0), (0, width - self.root.shape[1]))
+        return SystemModes(
+            np.pad(self.root, more, constant_values=gone),
+            np.pad(self.sense, more, constant_values=1.0),
+            np.pad(self.rounding, more),
+            np.pad(self.found, more),
+            self.complete,
+        )
+
+    def replaced(self, which: Index, others: SystemModes, gone: float) -> SystemModes:
+        """With those at some speeds in place of its own.
+
+        Parameters
+        ----------
+        which : speeds, shape (k,)
+        others : modes there
+        gone : lambda in place of those that one of both does not have, 1/s
+        """
+        width = max(self.root.shape[1], others.root.shape[1])
+        found, others = self.widened(width, gone), others.widened(width, gone)
+        for part in fields(found):
+            getattr(found, part.name)[which] = getattr(others, part.name)
+        return found
 
 
 def linear_modes(matrices: CoupledMatrices, circles: Array) -> SystemModes:
@@ -112,7 +146,14 @@ def linear_modes(matrices: CoupledMatrices, circles: Array) -> SystemModes:
     along, against = (
         np.square(np.abs(moved[:, ::2] + turn * moved[:, 1::2])).sum(axis=1) for turn in (1j, -1j)
     )
-    return SystemModes(values, sense_of(along, against), rounding, np.ones(values.shape, dtype=bool))
+    found = np.ones(values.shape, dtype=bool)
+    return SystemModes(values, sense_of(along, against), rounding, found, np.ones(len(values), dtype=bool))
+
+
+def joined(parts: Sequence[SystemModes]) -> SystemModes:
+    """Modes at the speeds of several blocks, each with as many, one block after the other."""
+    names = [part.name for part in fields(SystemModes)]
+    return SystemModes(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
 
 def sense_of(along: Array, against: Array) -> Array:

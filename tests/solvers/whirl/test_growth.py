@@ -25,7 +25,7 @@ from solvers.synchronous.response import response
 from solvers.whirl import edges as whirl_edges
 from solvers.whirl.edges import undamped_edges, unstable_bands
 from solvers.whirl.growth import asynchronous_growth, growth_at, growth_map, planar_layers, system_modes
-from solvers.whirl.laminar import _eliminate, _layer_waves
+from solvers.whirl.laminar import _eliminate, _layer_waves, _Problem
 from solvers.whirl.planar import PlanarProblem, planar_modes
 from solvers.whirl.system import coupled_matrices
 from tests.mutants import kills
@@ -386,13 +386,12 @@ def test_laminar_derivative() -> None:
     system, fill = machine(0.2, 0.1, 0.05, 1e-4)
     layer = plane_layer(fill, Friction("stokes"))
     assert layer is not None
-    layers, spin = [(0.0, layer)], np.array([[90.0]])
+    problem, spin = _Problem(system.system(), [(0.0, layer)], np.ones(1), 8), np.array([90.0])
     for value in (3.0 + 70.0j, -2.0 - 130.0j):
-        root, step = np.array([[value]]), 1e-4
-        any_rotor = system.system()
-        ends = [_eliminate(any_rotor, layers, np.ones(1), root + side * step, spin) for side in (1.0, -1.0)]
+        root, step = np.array([value]), 1e-4
+        ends = [_eliminate(problem, root + side * step, spin) for side in (1.0, -1.0)]
         slope = (ends[0].matrix - ends[1].matrix) / (2.0 * step)
-        here = _eliminate(any_rotor, layers, np.ones(1), root, spin)
+        here = _eliminate(problem, root, spin)
         # Of second order, (step/distance to the pole)^2 of some 1e-11, and rounding over the step.
         np.testing.assert_allclose(here.slope, slope, rtol=1e-6, atol=1e-6 * np.abs(slope).max())
 

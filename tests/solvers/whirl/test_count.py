@@ -1,0 +1,126 @@
+"""No whirl mode that grows most is missed: zeros counted, all of them computed, mirrored machines."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fluid.friction import Friction
+from fluid.whirl import is_full, plane_layer
+from leblanc.scene.scene import dry_rotor, scene_from_table
+from solvers.whirl import laminar
+from solvers.whirl.count import Region, missed_modes
+from solvers.whirl.growth import asynchronous_growth, system_modes
+from tests.mutants import kills
+from tests.oracles import random_machines
+from tests.oracles.machines import MACHINES
+
+STOKES = Friction("stokes")
+KINDS = {"two_plane": random_machines.two_plane, "tub": random_machines.tub}
+
+
+def polynomial(roots: np.ndarray) -> Any:
+    """(lambda - r_1) ... (lambda - r_m) over its size, log of that, and its slope over it."""
+
+    def at(points: np.ndarray, owner: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        gap = points[:, None] - roots[owner]
+        size = np.abs(gap)
+        return np.prod(gap / size, axis=1), np.log(size).sum(axis=1), (1.0 / gap).sum(axis=1)
+
+    return at
+
+
+@kills("solvers.whirl.count:missed_modes", "0.5 * (degree - held)", "0.5 * degree")
+@kills("solvers.whirl.count:_upper", "known.imag < -near, np.abs", "known.imag < -1e9, np.abs")
+def test_zeros_of_polynomials_are_counted() -> None:
+    """Pairs and real zeros on both sides of lines on both sides of 0; some of them known, some with both signs."""
+    rng = np.random.default_rng(5)
+    for line in (-0.7, 0.0, 0.6):
+        pairs = rng.normal(size=(40, 4)) + 1j * np.exp(rng.normal(size=(40, 4), scale=2.0))
+        alone = rng.normal(size=(40, 2)) + 0j
+        pairs[::3, 1] = pairs[::3, 0] * (1.0 + 1e-9)  # as good as twice the same
+        every = np.concatenate([pairs, pairs.conj(), alone], axis=1)
+        kept = rng.random(every.shape) < 0.5
+        kept[:, 4:8] &= ~kept[:, :4]  # of a pair at most one
+        kept[::3, 4:6] = False  # of two alike the same one, or they count as one
+        known = np.where(kept, every, complex(np.nan, np.nan))
+        right = every.real > line
+        # A mode known by one of its signs is known by both.
+        told = kept.copy()
+        told[:, :4] |= kept[:, 4:8]
+        told[:, 4:8] |= kept[:, :4]
+        unit = np.ones(40)
+        region = Region(line * unit, unit, unit, np.abs(every).max(axis=1))
+        found = missed_modes(polynomial(every), 10, known, region)
+        np.testing.assert_array_equal(found, (right & ~told).sum(axis=1))
+
+
+@kills("solvers.whirl.count:_phase", "smooth = (steep <= _STEP) &", "smooth =")
+def test_a_pair_close_to_the_line_is_seen() -> None:
+    """However close to the line, on either side, and far from the points that are looked at first."""
+    for away in (1e-2, 1e-5, 1e-8):
+        for side in (-1.0, 1.0):
+            twice = np.array([[side * away + 3.3217j, side * away * 1.5 + 3.3219j]])
+            every = np.concatenate([twice, twice.conj(), [[-1.0 + 2.0j, -1.0 - 2.0j]]], axis=1)
+            known, unit = every[:, 4:], np.ones(1)
+            found = missed_modes(polynomial(every), 6, known, Region(0.0 * unit, unit, unit, 5.0 * unit))
+            assert found[0] == (4.0 if side > 0.0 else 0.0)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@kills("solvers.whirl.laminar:all_modes", "3.0 * apart, 3.0 * both", "3.0 * both, 3.0 * apart")
+@kills("solvers.whirl.laminar:all_modes", "stiffness - 0.5 * unit", "stiffness + 0.5 * unit")
+@kills("solvers.whirl.laminar:all_modes", "(roots[0].real > 0.0) &", "")
+def test_all_modes_at_once(kind: str) -> None:
+    """What the iteration finds is among the eigenvalues of one polynomial, and grows as much as any of them."""
+    rng = np.random.default_rng(7)
+    for _ in range(6):
+        scene = scene_from_table(KINDS[kind](rng))
+        rotor, speed = dry_rotor(scene).system(), scene.speed_array()[::4]
+        layers = [(f.chamber.plane, plane_layer(f, STOKES)) for f in scene.fills if not is_full(f)]
+        every = laminar.all_modes(rotor, layers, speed)  # type: ignore[arg-type]
+        found = system_modes(rotor, scene.fills, speed, STOKES)
+        assert found.complete.all()
+        for k, spin in enumerate(speed):
+            own, all_of_them = found.root[k][found.found[k]], every[k][np.isfinite(every[k])]
+            scale = spin + np.abs(own)
+            # Two waves of one film are as close as 1e-5; eigenvalues keep half of their digits there.
+            assert np.all(np.abs(own[:, None] - all_of_them).min(axis=1) < 1e-6 * scale)
+            assert all_of_them.real.max() < own.real.max() + 1e-7 * spin
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_mirrored_machine_grows_alike(kind: str) -> None:
+    """At every speed, and known at every speed: one search that fails and one that does not would differ."""
+    rng = np.random.default_rng(5)
+    for _ in range(12):
+        table = KINDS[kind](rng)
+        growths = []
+        for own in (table, random_machines.mirrored(table)):
+            scene = scene_from_table(own)
+            growths.append(asynchronous_growth(dry_rotor(scene), scene.fills, scene.speed_array(), STOKES)[0])
+        assert np.isfinite(growths[0]).all()
+        within = 1e-9 * scene.speed_array()
+        np.testing.assert_array_less(np.abs(growths[0] - growths[1]), within + 1e-9 * np.abs(growths[0]))
+
+
+@kills("solvers.whirl.laminar:_certain", "~modes.complete", "~(modes.complete | True)")
+@kills("solvers.whirl.laminar:_counted", "complete=told & (count == 0.0)", "complete=told")
+def test_a_search_that_fails_is_seen_and_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without the starts of the waves modes are missed; the count says so and all are computed at once."""
+    scene = scene_from_table(MACHINES["two_plane"])
+    rotor, speed = dry_rotor(scene), np.linspace(40.0, 300.0, 14)
+    whole = asynchronous_growth(rotor, scene.fills, speed, STOKES)[0]
+    assert (whole > 0.0).any()
+    starts = laminar._starts
+    monkeypatch.setattr(laminar, "_starts", lambda *given: starts(*given)[:, :8])
+    again = asynchronous_growth(rotor, scene.fills, speed, STOKES)[0]
+    np.testing.assert_allclose(again, whole, rtol=1e-9, atol=1e-10)
+    # With too many coordinates for that, what is missed is not known.
+    monkeypatch.setattr(laminar, "_MOST", 0)
+    lost = asynchronous_growth(rotor, scene.fills, speed, STOKES)[0]
+    assert np.isnan(lost).any()
+    known = ~np.isnan(lost)
+    np.testing.assert_allclose(lost[known], whole[known], rtol=1e-9, atol=1e-10)
