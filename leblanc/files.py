@@ -7,7 +7,10 @@ import re
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
+
+from leblanc.interrupts import at_forced_end
 
 _LONGEST_NAME = 200  # bytes; file systems allow 255
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)  # on Windows
@@ -60,13 +63,16 @@ def writing(path: Path) -> Iterator[Path]:
     OSError : it cannot be written; carries the path
     """
     part = path.with_name(f".{path.stem[:100]}.{os.getpid()}.part{path.suffix}")
+    remove = partial(part.unlink, missing_ok=True)
+    at_forced_end.append(remove)
     try:
         with _naming(path):
             path.parent.mkdir(parents=True, exist_ok=True)
             yield part
             part.replace(path)
     finally:
-        part.unlink(missing_ok=True)
+        remove()
+        at_forced_end.remove(remove)
 
 
 @contextmanager

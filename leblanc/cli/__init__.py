@@ -20,10 +20,11 @@ from typer.main import get_command
 
 from leblanc.cli import compare, explain, layer, map, modes, new, optimise, run, runup, sweep, view, volume
 from leblanc.cli.output import say
+from leblanc.interrupts import INTERRUPTED, TERMINATED, Terminated, heard, leave, said
 from leblanc.scene.schema.load import NotConverged, SceneError, escaped
 from meshes.errors import InputError
 
-DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED, INTERRUPTED = 0, 1, 2, 3, 130
+DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED = 0, 1, 2, 3
 
 # Modules with one command each, a function of the module's name, in the order of the help.
 COMMANDS = (new, explain, run, compare, volume, layer, modes, map, runup, optimise, sweep, view)
@@ -42,7 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     exit code: 0 done, 1 the reader of the output is gone, 2 wrong input, 3 a solver did not converge,
-    130 interrupted
+    130 interrupted by Ctrl-C, 143 ended by SIGTERM
     """
     # A user's own pickle.py in the current folder is not for the processes that are started from here.
     os.environ.setdefault("PYTHONSAFEPATH", "1")
@@ -52,12 +53,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
         gc.set_threshold(50_000)
         # Nor has a command any use of plugins of pydantic, for which it looks in every installed package.
         os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
-    try:
+
+    def command() -> object:
         commands = get_command(application(given[0]))
-        return exit_code(lambda: commands.main(given, prog_name="leblanc", standalone_mode=False))
-    finally:
-        if arguments is None:
-            gc.freeze()  # nor is there any to look for as the process ends
+        return commands.main(given, prog_name="leblanc", standalone_mode=False)
+
+    if arguments is not None:
+        return exit_code(command)
+    with heard():
+        code = exit_code(command)
+    gc.freeze()  # nor is there any to look for as the process ends
+    leave(code)
+    return code
 
 
 def exit_code(action: Callable[[], object]) -> int:
@@ -83,8 +90,10 @@ def exit_code(action: Callable[[], object]) -> int:
         return WRONG_INPUT
     except KeyboardInterrupt:
         code = INTERRUPTED
-    if code == INTERRUPTED:
-        say("leblanc: interrupted")
+    except Terminated:
+        code = TERMINATED
+    if code in (INTERRUPTED, TERMINATED):
+        say(said(int(code) - 128))
     return code if isinstance(code, int) else DONE
 
 

@@ -68,6 +68,9 @@ LOADS = floats(
     *("force_x", "force_y", "offset_x", "offset_y", "turning", "depth_min", "depth_max", "push_x", "push_y")
 )
 
+# How far a layer has come, and its fastest wave; 0 where that is not known yet.
+PACE = floats("time", "fastest")
+
 
 class Outcome(IntEnum):
     """How a stretch of time steps ended, of a layer or of a rotor with layers; compiled code knows it too."""
@@ -79,6 +82,7 @@ class Outcome(IntEnum):
     NOT_COUPLED = 4
     STOPPED = 5
     INTERRUPTED = 6
+    RAN_AWAY = 7
 
     @property
     def message(self) -> str:
@@ -90,8 +94,9 @@ _MESSAGES = {
     Outcome.DONE: "",
     Outcome.TOO_LONG: "a layer outran the shortest step",
     Outcome.AT_AXIS: "the surface of a layer came to the axis",
-    Outcome.RAN_OUT: "the time steps ran out",
+    Outcome.RAN_OUT: "the time steps ran out: thin films move too fast for longer ones",
     Outcome.NOT_COUPLED: "rotor and layers did not agree in the shortest steps",
     Outcome.STOPPED: "the motor stands",
     Outcome.INTERRUPTED: "interrupted",
+    Outcome.RAN_AWAY: "a film beside a dry wall ran away, and the time steps shrank to nothing",
 }

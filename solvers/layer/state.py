@@ -141,7 +141,6 @@ class LayerFilm:
 
 
 _COURANT = 0.8
-_STEPS = 20_000_000  # in one whirl period
 
 
 @dataclass
@@ -170,11 +169,11 @@ class MovingLayer:
 
     def periods(self, count: float) -> Complex | None:
         """Advance by whirl periods; `solvers.layer.state.means` over them, or None with a `reason`."""
-        from solvers.layer.step import advance
+        from solvers.layer.step import march
 
         length = self.whirl.period * self.whirl.spin * count
         first, sums = offset(self.area, self.drive, self.angles, self.time), records(LOADS)
-        outcome, _ = advance(
+        outcome, taken = march(
             self.area,
             self.momentum,
             self.time,
@@ -183,12 +182,12 @@ class MovingLayer:
             self.wall,
             self.angles,
             _COURANT,
-            _STEPS,
             self.scratch,
             sums,
         )
-        if outcome != Outcome.DONE:
-            self.reason = Outcome(outcome).message
+        if outcome is not Outcome.DONE:
+            ran = outcome in (Outcome.RAN_OUT, Outcome.RAN_AWAY)
+            self.reason = f"{outcome.message} ({taken} steps)" if ran else outcome.message
             return None
         self.time += length
         last = offset(self.area, self.drive, self.angles, self.time)

@@ -14,6 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from fluid import friction, long_wave
+from meshes.arrays import Array
 from solvers.layer.finite_volume import (
     COMPILED,
     DRY,
@@ -25,7 +26,8 @@ from solvers.layer.finite_volume import (
     log_of_surface,
     ring_rates,
 )
-from solvers.layer.records import Outcome
+from solvers.layer.records import PACE, Drive, Outcome, Record, Wall, records
+from solvers.slices import FASTEST, RUNAWAY, slices, step_budget
 
 _jit: Any = njit(**COMPILED)
 # Parts of one function: compiled one by one and linked they would cost twice the time to compile.
@@ -34,7 +36,7 @@ _inner: Any = njit(inline="always")
 # Courant number beyond which a step is taken again.
 LARGEST = 1.0
 # Films thinner than this (area over R^2) are held back, at this multiple of the spin.
-FILM, FASTEST = 1e-5, 4.0
+FILM = 1e-5
 
 surface_radius = _jit(long_wave.free_surface_radius)
 _damping = _jit(friction.damping_rate)
@@ -202,13 +204,15 @@ def _tally(area, q, spin, pull, angles, work, cosine, sine, share, sums):
 
 
 @_jit
-def advance(area, q, start, stop, drive, wall, angles, courant, most, spare, loads):
+def advance(area, q, pace, stop, drive, wall, angles, courant, most, spare, loads):
     """Advance a layer under a prescribed whirl and integrate its loads over time.
 
     Parameters
     ----------
     area, q : state, changed in place, shape (n,)
-    start, stop : times
+    pace : record PACE, shape (1,): how far it has come, changed in place; after RAN_OUT the next call goes on
+        as if there had been none between
+    stop : time
     drive, wall : `solvers.layer.records`'s
     angles : cosine and sine at the cells' middles and at their left faces, shape (4, n)
     courant : Courant number
@@ -227,11 +231,12 @@ def advance(area, q, start, stop, drive, wall, angles, courant, most, spare, loa
     pull_cell, pull_face = spare[WORK, :n], spare[WORK + 1, :n]
     rate_a, rate_q = spare[WORK + 2, :n], spare[WORK + 3, :n]
     next_a, next_q, begin_q = spare[WORK + 4, :n], spare[WORK + 5, :n], spare[WORK + 6, :n]
-    time, steps, dt, fastest = start, 0, 0.0, 0.0
+    time, steps, dt, fastest = pace[0].time, 0, 0.0, pace[0].fastest
     # 0: only the largest speed is asked for; 1 and 2: the two stages of Heun's method.
-    stage = 0
+    stage = 1 if fastest > 0.0 else 0
     while time < stop:
-        if steps >= most:
+        if stage == 1 and steps >= most:
+            pace[0].time, pace[0].fastest = time, fastest
             return Outcome.RAN_OUT, steps
         if stage == 1:
             # The speed may have grown since it was taken: a tenth is kept in hand.
@@ -250,6 +255,8 @@ def advance(area, q, start, stop, drive, wall, angles, courant, most, spare, loa
         )  # fmt: skip
         if outcome == Outcome.AT_AXIS:
             return outcome, steps
+        if stage < 2 and fastest > RUNAWAY * abs(spin):
+            return Outcome.RAN_AWAY, steps
         if outcome == Outcome.TOO_LONG:
             # A film has run faster than the step allows: once more, shorter.
             for i in range(n):
@@ -272,4 +279,42 @@ def advance(area, q, start, stop, drive, wall, angles, courant, most, spare, loa
             time += dt
             steps += 1
         stage = 2 if stage == 1 else 1
+    pace[0].time, pace[0].fastest = time, fastest
     return Outcome.DONE, steps
+
+
+def march(
+    area: Array,
+    q: Array,
+    start: float,
+    stop: float,
+    drive: Drive,
+    wall: Wall,
+    angles: Array,
+    courant: float,
+    spare: Array,
+    loads: Record,
+    most: int | None = None,
+) -> tuple[Outcome, int]:
+    """`advance` from one time to another in slices, between which Python sees a Ctrl-C.
+
+    Parameters
+    ----------
+    area, q, stop, drive, wall, angles, courant, spare, loads : as for `advance`
+    start : time
+    most : most steps; by default `solvers.slices.step_budget`
+
+    Returns
+    -------
+    Outcome, and the steps tried
+    """
+    pace, outcome, taken = records(PACE), Outcome.RAN_OUT, 0
+    pace[0].time = start
+    if most is None:
+        most = step_budget(stop - start, drive.spin, area.size, courant)
+    for steps in slices(most, area.size):
+        reached, tried = advance(area, q, pace, stop, drive, wall, angles, courant, steps, spare, loads)
+        outcome, taken = Outcome(reached), taken + tried
+        if outcome is not Outcome.RAN_OUT:
+            break
+    return outcome, taken

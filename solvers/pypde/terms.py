@@ -23,10 +23,9 @@ from meshes.errors import InputError, require_not_negative
 from solvers.layer.finite_volume import DRY, FULL, GHOSTS, THIN, WORK, rates
 from solvers.layer.records import LOADS, Drive, Outcome, Wall, records
 from solvers.layer.state import ring
-from solvers.layer.step import advance, scratch
+from solvers.layer.step import march as march_layer
+from solvers.layer.step import scratch
 from solvers.liquid_model import Whirl
-
-_STEPS = 20_000_000  # from one time to the next
 
 
 @dataclass(frozen=True)
@@ -137,7 +136,7 @@ def march(
 
     Returns
     -------
-    A and q at the stop, how it ended, and the number of steps, 20 million at most
+    A and q at the stop, how it ended, and the number of steps, at most `solvers.slices.step_budget`
 
     Raises
     ------
@@ -160,8 +159,8 @@ def march(
         spin=whirl.spin,
     )
     wall, loads = Wall(law, coefficient, _lid(terms), _spread(terms, a)), records(LOADS)
-    outcome, steps = advance(a, q, start, stop, drive, wall, ring(n), courant, _STEPS, scratch(n), loads)
-    return a * radius**2, q * radius**4, Outcome(outcome), int(steps)
+    outcome, steps = march_layer(a, q, start, stop, drive, wall, ring(n), courant, scratch(n), loads)
+    return a * radius**2, q * radius**4, outcome, int(steps)
 
 
 def require_constant_spin(terms: LongWaveTerms) -> None:

@@ -235,6 +235,8 @@ def layer_step(area, q, spins, force, layer, coefficient, dt, angles, spare, gai
 # the drying edge of a layer makes them jump, the guess follows by halves after a few rounds; after the last
 # the step is shortened, and the shortest may pass with what is left. Momentum is handed over all the same.
 _AGREED, _PASSABLE, _STRAIGHT, _ROUNDS, _SHORTEST = 1e-6, 1e-2, 5, 12, 1.0 / 32.0
+# Steps shortened by more than this no longer follow what the layers do.
+_LEAST = 1e-6
 
 
 @_inner
@@ -433,7 +435,7 @@ def _accept(state, room, dt, fastest):
 
 
 @_jit
-def advance(machine, state, room, stop, courant, most):
+def advance(machine, state, room, stop, courant, most, resumed):
     """Advance rotor and layers to a time.
 
     Parameters
@@ -442,21 +444,25 @@ def advance(machine, state, room, stop, courant, most):
     stop : s
     courant : Courant number; the rotor turns in a step by at most this share of a cell
     most : most steps
+    resumed : the call before ended with RAN_OUT, and nothing has changed since
 
     Returns
     -------
-    Outcome.DONE, AT_AXIS, RAN_OUT, NOT_COUPLED (the accelerations did not agree in the shortest steps) or
-    STOPPED (the motor stands)
+    Outcome.DONE, AT_AXIS, RAN_OUT, TOO_LONG, NOT_COUPLED (the accelerations did not agree in the
+    shortest steps) or STOPPED (the motor stands); and the steps tried
     """
     shaft, pace, sums = state.shaft[0], state.pace[0], state.sums[0]
     cell, taken = 2.0 * np.pi / machine.angles.shape[1], 0
-    for j in range(room.guess.shape[0]):
-        measure(state.area[j], state.momentum[j], shaft.spin, machine.angles, room.spare[j], room.begin[j])
+    if not resumed:
+        for j in range(room.guess.shape[0]):
+            measure(
+                *(state.area[j], state.momentum[j], shaft.spin, machine.angles, room.spare[j]), room.begin[j]
+            )
     while shaft.time < stop:
         if shaft.spin <= 0.0:
-            return Outcome.STOPPED
+            return Outcome.STOPPED, taken
         if taken >= most:
-            return Outcome.RAN_OUT
+            return Outcome.RAN_OUT, taken
         taken += 1
         left = stop - shaft.time
         dt = pace.share * courant * cell / max(1.1 * pace.fastest, shaft.spin)
@@ -475,14 +481,16 @@ def advance(machine, state, room, stop, courant, most):
             copy(room.area, state.area)
             copy(room.momentum, state.momentum)
             pace.fastest, pace.share = max(pace.fastest, fastest), 0.5 * pace.share
+            if pace.share < _LEAST:
+                return status, taken
             continue
         if status != Outcome.DONE:
             copy(room.area, state.area)
             copy(room.momentum, state.momentum)
-            return status
+            return status, taken
         _tally(machine, state, room, dt)
         _accept(state, room, dt, fastest)
         shaft.time = stop if dt == left else shaft.time + dt
         sums.steps += 1.0
         sums.disagreement = max(sums.disagreement, gap)
-    return Outcome.DONE
+    return Outcome.DONE, taken

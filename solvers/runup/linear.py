@@ -17,6 +17,7 @@ from solvers.layer.state import ring
 from solvers.rotor.system import RotorSystem
 from solvers.runup.machine import Reading
 from solvers.runup.state import RELEASE, SUMS, CoupledRotor, at_rest, layer_properties, mean_area
+from solvers.slices import slices
 
 if TYPE_CHECKING:
     from solvers.runup.linear_kernel import LinearMachine
@@ -63,7 +64,12 @@ class LinearCoupled(CoupledRotor):
         from solvers.runup.linear_kernel import advance_linear
 
         self.shaft.rate = rate
-        return Outcome(advance_linear(self.machine, stop, courant * (2.0 * math.pi / self.cells), most))
+        angle_step, outcome = courant * (2.0 * math.pi / self.cells), Outcome.RAN_OUT
+        for steps in slices(most, self.machine.left.size):
+            outcome = Outcome(advance_linear(self.machine, stop, angle_step, steps))
+            if outcome is not Outcome.RAN_OUT:
+                break
+        return outcome
 
     def mass_error(self) -> float:
         """None: the layer keeps its mass by construction."""

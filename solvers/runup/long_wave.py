@@ -31,6 +31,7 @@ from solvers.runup.state import (
     mean_area,
     planes_of,
 )
+from solvers.slices import slices
 
 # A layer that gravity has thrown down is caught again at a speed higher by this factor.
 _AGAIN = 1.2
@@ -83,7 +84,12 @@ class Coupled(CoupledRotor):
         from solvers.runup.kernel import advance
 
         self.shaft.rate = rate
-        outcome = Outcome(advance(self.machine, self.state, self.room, stop, courant, most))
+        outcome, resumed = Outcome.RAN_OUT, False
+        for steps in slices(most, max(1, self.state.area.size)):
+            found, _ = advance(self.machine, self.state, self.room, stop, courant, steps, resumed)
+            outcome, resumed = Outcome(found), True
+            if outcome is not Outcome.RAN_OUT:
+                break
         self.area[self.active], self.momentum[self.active] = self.state.area, self.state.momentum
         return outcome
 

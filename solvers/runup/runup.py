@@ -21,8 +21,7 @@ from solvers.layer.records import Outcome
 from solvers.rotor.system import RotorSystem
 from solvers.runup.long_wave import couple
 from solvers.runup.machine import Drive, LayerSnapshots, Ramp, Reading, RunupMachine, RunupModel, torque_curve
-
-_MOST = 200_000_000  # steps between two samples
+from solvers.slices import step_budget
 
 
 @dataclass(frozen=True)
@@ -259,7 +258,8 @@ def _march(
     for k, stop in enumerate(time[1:].tolist()):
         try:
             captured += machine.switch()
-            outcome, brought = _advance(machine, stop, float(rate[k]), numerics.courant)
+            most = _budget(machine, drive, stop, numerics)
+            outcome, brought = _advance(machine, stop, float(rate[k]), numerics.courant, most)
             captured += brought
         except KeyboardInterrupt:
             outcome = Outcome.INTERRUPTED
@@ -296,11 +296,20 @@ def _march(
 _WORKS = ("unbalance", "drive", "gravity", "support", "friction", "bores", "profile", "motor")
 
 
-def _advance(machine: RunupMachine, stop: float, rate: float, courant: float) -> tuple[Outcome, float]:
+def _budget(machine: RunupMachine, drive: Drive, stop: float, numerics: RunupNumerics) -> int:
+    """Most steps up to a time."""
+    speeds = drive.corners()[1] if isinstance(drive, Ramp) else np.array(drive.speeds)
+    highest = max(machine.spin, float(speeds.max()))
+    return step_budget(stop - machine.time, highest, numerics.cells, numerics.courant)
+
+
+def _advance(
+    machine: RunupMachine, stop: float, rate: float, courant: float, most: int
+) -> tuple[Outcome, float]:
     """Advance to a time, letting liquid fall where gravity has won; the energy that this brought in, J."""
     brought = 0.0
     while True:
-        outcome = machine.advance(stop, rate, courant, _MOST)
+        outcome = machine.advance(stop, rate, courant, most)
         fallen = machine.fall(outcome)
         if fallen is None:
             return outcome, brought

@@ -5,6 +5,7 @@ Blocks are answered in this process, in local ones or on a cluster: the only doo
 
 from __future__ import annotations
 
+import functools
 import logging
 import signal
 import sys
@@ -258,6 +259,9 @@ def _interrupts() -> Iterator[threading.Event]:
         seen.set()
         if callable(before):
             before(number, frame)
+
+    if callable(before):
+        note = functools.wraps(before)(note)  # tells `leblanc.interrupts` that it passes on what it hears
 
     def drop(what: sys.UnraisableHookArgs) -> None:
         if what.exc_type is not KeyboardInterrupt:

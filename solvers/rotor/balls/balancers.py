@@ -138,7 +138,7 @@ def simulate(
     damping = system.damping + speed * system.gyroscopic
     numbers = np.array([speed, gravity])
     matrices = (system.mass, damping, system.stiffness, turning, axes, balls)
-    advance(state, *matrices, numbers, step, in_sample, record)
+    advance(state, matrices, numbers, step, in_sample, record)
     error = _audit(record, system, axes, balls, gravity)
     return BalancedRun(
         time=np.linspace(0.0, duration, samples),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -9,12 +10,13 @@ from numba import njit
 
 from meshes.arrays import Array
 from solvers.rotor.balls import motion as ball_motion
+from solvers.slices import slices
 
 _jit: Any = njit(cache=True, error_model="numpy", nogil=True)
 _rates: Any = _jit(ball_motion.rates)
 
 
-def _advance(
+def _stretch(
     state: Array,
     mass: Array,
     damping: Array,
@@ -26,8 +28,10 @@ def _advance(
     step: float,
     steps: int,
     record: Array,
+    begin: int,
+    end: int,
 ) -> None:
-    """Integrate by the classical Runge-Kutta method, of fourth order.
+    """Some of the steps of `advance`.
 
     Parameters
     ----------
@@ -35,23 +39,49 @@ def _advance(
     mass, damping, stiffness, turning, axes, balls, numbers : see `ball_motion.rates`
     step : time step, s
     steps : between two samples
-    record : result: the state at each sample, the start first, shape (samples, 2 n + 2 N + 2)
+    record : result: the state at each sample, shape (samples, 2 n + 2 N + 2)
+    begin, end : number of the first step, and of the one behind the last
     """
     slopes, trial = np.empty((4, state.size)), np.empty(state.size)
-    record[0] = state
-    for sample in range(1, record.shape[0]):
-        for i in range(steps):
-            time = ((sample - 1) * steps + i) * step
-            for stage in range(4):
-                share = 0.0 if stage == 0 else (1.0 if stage == 3 else 0.5)
-                for k in range(state.size):
-                    trial[k] = state[k] + (share * step * slopes[stage - 1, k] if stage > 0 else 0.0)
-                here = time + share * step
-                _rates(here, trial, mass, damping, stiffness, turning, axes, balls, numbers, slopes[stage])
+    for number in range(begin, end):
+        time = number * step
+        for stage in range(4):
+            share = 0.0 if stage == 0 else (1.0 if stage == 3 else 0.5)
             for k in range(state.size):
-                middle = slopes[1, k] + slopes[2, k]
-                state[k] += step / 6.0 * (slopes[0, k] + 2.0 * middle + slopes[3, k])
-        record[sample] = state
+                trial[k] = state[k] + (share * step * slopes[stage - 1, k] if stage > 0 else 0.0)
+            here = time + share * step
+            _rates(here, trial, mass, damping, stiffness, turning, axes, balls, numbers, slopes[stage])
+        for k in range(state.size):
+            middle = slopes[1, k] + slopes[2, k]
+            state[k] += step / 6.0 * (slopes[0, k] + 2.0 * middle + slopes[3, k])
+        if (number + 1) % steps == 0:
+            record[(number + 1) // steps] = state
 
 
-advance: Any = _jit(_advance)
+_compiled_stretch: Any = _jit(_stretch)
+
+
+def advance(
+    state: Array,
+    matrices: tuple[Array, ...],
+    numbers: Array,
+    step: float,
+    steps: int,
+    record: Array,
+    stretch: Callable[..., None] = _compiled_stretch,
+) -> None:
+    """Integrate by the classical Runge-Kutta method, of fourth order.
+
+    Parameters
+    ----------
+    state : start, shape (2 n + 2 N + 2,); becomes the end
+    matrices : mass, damping, stiffness, turning, axes, balls, see `ball_motion.rates`
+    numbers, step, steps : as for `stretch`
+    record : result: the state at each sample, the start first, shape (samples, 2 n + 2 N + 2)
+    stretch : what takes the steps of a slice, after each of which Python sees a Ctrl-C
+    """
+    record[0] = state
+    begin = 0
+    for taken in slices((record.shape[0] - 1) * steps, 4 * state.size):
+        stretch(state, *matrices, numbers, step, steps, record, begin, begin + taken)
+        begin += taken

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -9,9 +10,12 @@ from numba import njit
 
 from meshes.arrays import Array
 from solvers.rotor.exciter import machine as exciter
+from solvers.slices import slices
 
 _jit: Any = njit(cache=True, error_model="numpy", nogil=True)
 _rates: Any = _jit(exciter.rates)
+
+Stretch = Callable[..., int]
 
 
 def _step(time: float, state: Array, numbers: Array, step: float, slopes: Array, trial: Array) -> None:
@@ -54,7 +58,7 @@ def _mean_angle(state: Array, balls: int) -> float:
 _compiled_mean_angle: Any = _jit(_mean_angle)
 
 
-def _advance(
+def _stretch(
     state: Array,
     numbers: Array,
     step: float,
@@ -63,8 +67,11 @@ def _advance(
     means: Array,
     first: int,
     sums: Array,
+    before: Array,
+    begin: int,
+    end: int,
 ) -> int:
-    """Integrate block by block until the end, or until a ball is faster than `most` in the mean of a block.
+    """Some of the steps of `advance`.
 
     Parameters
     ----------
@@ -77,29 +84,35 @@ def _advance(
     first : block with which the last part begins
     sums : result: over that part, projections of the platform's position on sine and cosine of the balls'
         mean angle and of the shaft's, shape (4,), 0 at the start
+    before : angles of the balls at the beginning of the block, kept from one stretch to the next, shape (N,)
+    begin, end : number of the first step, and of the one behind the last
 
     Returns
     -------
-    Blocks done.
+    Blocks done if a ball was faster than `most` in the last of them; else 0.
     """
     blocks, balls = means.shape[0], means.shape[1] - 1
-    slopes, trial, before = np.empty((4, state.size)), np.empty(state.size), np.empty(balls)
-    for block in range(blocks):
-        before[:] = state[2 : 2 + balls]
-        means[block, balls] = 0.0
-        for i in range(steps):
-            time = (block * steps + i) * step
-            if block >= first:
-                # A Hann window: what leaks from one frequency to the other falls with the cube of its length.
-                slow, fast = _compiled_mean_angle(state, balls), numbers[6] * time
-                share = (i + 0.5 + (block - first) * steps) / ((blocks - first) * steps)
-                weight = 2.0 * (1.0 - np.cos(2.0 * np.pi * share)) / ((blocks - first) * steps)
-                sums[0] += weight * state[0] * np.sin(slow)
-                sums[1] += weight * state[0] * np.cos(slow)
-                sums[2] += weight * state[0] * np.sin(fast)
-                sums[3] += weight * state[0] * np.cos(fast)
-            _compiled_step(time, state, numbers, step, slopes, trial)
-            means[block, balls] = max(means[block, balls], _compiled_spread(state, balls))
+    slopes, trial = np.empty((4, state.size)), np.empty(state.size)
+    for number in range(begin, end):
+        block = number // steps
+        i = number - block * steps
+        if i == 0:
+            before[:] = state[2 : 2 + balls]
+            means[block, balls] = 0.0
+        time = (block * steps + i) * step
+        if block >= first:
+            # A Hann window: what leaks from one frequency to the other falls with the cube of its length.
+            slow, fast = _compiled_mean_angle(state, balls), numbers[6] * time
+            share = (i + 0.5 + (block - first) * steps) / ((blocks - first) * steps)
+            weight = 2.0 * (1.0 - np.cos(2.0 * np.pi * share)) / ((blocks - first) * steps)
+            sums[0] += weight * state[0] * np.sin(slow)
+            sums[1] += weight * state[0] * np.cos(slow)
+            sums[2] += weight * state[0] * np.sin(fast)
+            sums[3] += weight * state[0] * np.cos(fast)
+        _compiled_step(time, state, numbers, step, slopes, trial)
+        means[block, balls] = max(means[block, balls], _compiled_spread(state, balls))
+        if i < steps - 1:
+            continue
         fastest = 0.0
         for j in range(balls):
             means[block, j] = (state[2 + j] - before[j]) / (steps * step)
@@ -107,7 +120,39 @@ def _advance(
         # Written so that nan stops as well.
         if not fastest <= most:
             return int(block + 1)
-    return int(blocks)
+    return 0
 
 
-advance: Any = _jit(_advance)
+_compiled_stretch: Any = _jit(_stretch)
+
+
+def advance(
+    state: Array,
+    numbers: Array,
+    step: float,
+    steps: int,
+    most: float,
+    means: Array,
+    first: int,
+    sums: Array,
+    stretch: Stretch = _compiled_stretch,
+) -> int:
+    """Integrate block by block until the end, or until a ball is faster than `most` in the mean of a block.
+
+    Parameters
+    ----------
+    state, numbers, step, steps, most, means, first, sums : as for `stretch`
+    stretch : what takes the steps of a slice, after each of which Python sees a Ctrl-C
+
+    Returns
+    -------
+    Blocks done.
+    """
+    blocks, begin, before = means.shape[0], 0, np.empty(means.shape[1] - 1)
+    for taken in slices(blocks * steps, 4 * state.size):
+        end = begin + taken
+        stopped = stretch(state, numbers, step, steps, most, means, first, sums, before, begin, end)
+        if stopped:
+            return int(stopped)
+        begin = end
+    return blocks

@@ -11,7 +11,7 @@ import pytest
 from fluid import long_wave as lw
 from solvers.layer.finite_volume import DRY, GHOSTS, WORK, rates, solve_ring
 from solvers.layer.records import LOADS, Drive, Outcome, Wall, records
-from solvers.layer.step import advance, scratch
+from solvers.layer.step import march, scratch
 
 SPIN = 1.0
 
@@ -34,7 +34,7 @@ def run(
     area: np.ndarray, q: np.ndarray, length: float, drive=(0.0, 0.0, 0.0, 1.0, 0.0), rub=(0, 0.0, 0.0, 0.0)
 ):  # type: ignore[no-untyped-def]
     n, sums, whole = area.size, records(LOADS), Drive(*drive, SPIN)
-    outcome, steps = advance(area, q, 0.0, length, whole, Wall(*rub), angles(n), 0.8, 10**9, scratch(n), sums)
+    outcome, steps = march(area, q, 0.0, length, whole, Wall(*rub), angles(n), 0.8, scratch(n), sums)
     assert outcome == Outcome.DONE
     return steps
 

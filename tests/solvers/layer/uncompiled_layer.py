@@ -259,9 +259,7 @@ def run(
     n, sums = area.size, records(LOADS)
     spare, whole, wall = forced_layer.scratch(n), Drive(*drive, SPIN), Wall(*rub)
     first = layer_loads.offset(area, whole, angles(n), 0.0)
-    outcome, steps = forced_layer.advance(
-        *(area, q, 0.0, length, whole, wall, angles(n), courant, 10**6, spare, sums)
-    )
+    outcome, steps = forced_layer.march(*(area, q, 0.0, length, whole, wall, angles(n), courant, spare, sums))
     assert outcome == Outcome.DONE and steps > 0
     last = layer_loads.offset(area, whole, angles(n), length)
     return layer_loads.means(sums[0], length, 2 * np.pi * area.mean(), drive[3], (first, last))

@@ -1,0 +1,147 @@
+"""Ctrl-C and SIGTERM: heard within a second at any moment, and no file is left half written.
+
+Python hears a signal between two of its own instructions. Where compiled code of a library keeps it from that
+for longer, a thread ends the process in its place.
+"""
+
+from __future__ import annotations
+
+import _thread
+import atexit
+import math
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from types import FrameType
+from typing import NoReturn
+
+INTERRUPTED, TERMINATED = 128 + signal.SIGINT, 128 + signal.SIGTERM
+_SAID = {signal.SIGINT: "leblanc: interrupted", signal.SIGTERM: "leblanc: terminated"}
+_PATIENCE = 0.8  # seconds that Python has to hear a signal itself
+_AGAIN = 0.05  # seconds until what was dropped is raised once more
+
+
+class Terminated(SystemExit):
+    """Raised by SIGTERM, as KeyboardInterrupt is by SIGINT."""
+
+
+class _Ears:
+    """What the main thread has heard.
+
+    Parameters
+    ----------
+    handler : of its signals
+    last : when it was called the last time, s
+    closed : it listens no longer
+    """
+
+    def __init__(self) -> None:
+        self.handler: Callable[..., NoReturn] | None = None
+        self.last = -math.inf
+        self.closed = threading.Event()
+
+    def open(self, number: int) -> bool:
+        """Whether a signal is for this handler, or one that passes it on, and not for that of a library."""
+        found = signal.getsignal(number)
+        return callable(found) and getattr(found, "__wrapped__", found) is self.handler
+
+
+# What is to be done before the process is ended from another thread: files removed that are half written.
+at_forced_end: list[Callable[[], object]] = []
+
+
+@contextmanager
+def heard() -> Iterator[None]:
+    """Hear Ctrl-C as KeyboardInterrupt and SIGTERM as `Terminated`, within a second, as long as this lasts.
+
+    After `_PATIENCE` in compiled code the process is ended with the exit code that they have. A process that
+    ignores the one or the other from its start goes on doing so. Nothing outside of the main thread.
+    """
+    if threading.current_thread() is not threading.main_thread() or os.name != "posix":
+        yield
+        return
+    ears, complain = _Ears(), sys.unraisablehook
+
+    def note(number: int, frame: FrameType | None) -> NoReturn:
+        ears.last = time.monotonic()
+        raise KeyboardInterrupt if number == signal.SIGINT else Terminated(TERMINATED)
+
+    def raise_again(what: sys.UnraisableHookArgs) -> None:
+        # Python drops what is raised while it destroys an object, or within a library's callback.
+        if not issubclass(what.exc_type, KeyboardInterrupt | Terminated):
+            complain(what)
+            return
+        number = signal.SIGTERM if issubclass(what.exc_type, Terminated) else signal.SIGINT
+        timer = threading.Timer(_AGAIN, _thread.interrupt_main, [number])
+        timer.daemon = True
+        timer.start()
+
+    before = {number: signal.getsignal(number) for number in _SAID}
+    for number in _SAID:
+        if before[number] is not signal.SIG_IGN:
+            signal.signal(number, note)
+    sys.unraisablehook = raise_again
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+    waker = signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
+    ears.handler = note
+    threading.Thread(target=_watch, args=(reader, ears), daemon=True, name="interrupts").start()
+    try:
+        yield
+    finally:
+        ears.closed.set()
+        signal.set_wakeup_fd(waker)
+        os.close(writer)  # ends the thread
+        sys.unraisablehook = complain
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _watch(reader: int, ears: _Ears) -> None:
+    """Wait for signals, and end the process where the main thread does not hear one."""
+    with open(reader, "rb", buffering=0) as signals:
+        while number := signals.read(1):
+            if number[0] not in tuple(_SAID):
+                continue
+            came = time.monotonic()
+            # Its handler may have been quicker than this thread.
+            while not ears.closed.wait(_AGAIN) and ears.last < came - _PATIENCE / 2.0:
+                if time.monotonic() > came + _PATIENCE and ears.open(number[0]):
+                    _end(number[0])
+
+
+def _end(number: int) -> NoReturn:
+    """End the process as its main thread would have done."""
+    for action in at_forced_end:
+        action()
+    os.write(2, f"{said(number)}\n".encode())
+    os._exit(128 + number)
+
+
+def said(number: int) -> str:
+    """What is said of a signal."""
+    return _SAID[signal.Signals(number)]
+
+
+def leave(code: int) -> None:
+    """Let nothing that comes while Python takes itself down bring a traceback or another exit code.
+
+    Parameters
+    ----------
+    code : with which the process is to end; after a signal it does so here, without waiting for threads
+    """
+    if threading.current_thread() is threading.main_thread():
+        for number in _SAID:
+            if callable(signal.getsignal(number)):
+                signal.signal(number, signal.SIG_DFL)
+    if code in (INTERRUPTED, TERMINATED):
+        # Python itself would end by SIGINT if the interrupt came through an `exec`, though it was caught.
+        atexit._run_exitfuncs()
+        for stream in (sys.stdout, sys.stderr):
+            with suppress(OSError, ValueError):
+                stream.flush()
+        os._exit(code)
