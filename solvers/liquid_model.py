@@ -266,8 +266,21 @@ class LiquidModel(Protocol):
         """
         return np.zeros(speed.shape)
 
+    def added_mass(self, fills: Fills) -> Array:
+        """Mass that the liquid adds in a small whirl with the spin, kg, shape (n,).
 
-def added_mass_answer(fills: Fills, whirls: Whirls, error: Array | float = math.nan) -> LiquidAnswer:
+        That of the closed form [theory: sections, eq. 8], unless the model finds its own.
+
+        Parameters
+        ----------
+        fills : shape (n,)
+        """
+        return fills.added_mass
+
+
+def added_mass_answer(
+    fills: Fills, whirls: Whirls, error: Array | float = math.nan, added_mass: Array | None = None
+) -> LiquidAnswer:
     """Answer of small synchronous whirls, to which a layer adds a mass [theory: waves, eq. 8].
 
     It holds while the deflection is below the mean depth, or the least where a section is no circle.
@@ -276,14 +289,16 @@ def added_mass_answer(fills: Fills, whirls: Whirls, error: Array | float = math.
     ----------
     fills, whirls : what is asked
     error : estimated relative error of the unbalance
+    added_mass : kg, shape (n,); that of the closed form if None
     """
     size = whirls.amplitude
+    added = fills.added_mass if added_mass is None else added_mass
     wet = size < fills.depth
     return LiquidAnswer.at_rest(
         fills,
         whirls,
-        unbalance=fills.added_mass * size,
-        slope=fills.added_mass,
+        unbalance=added * size,
+        slope=added,
         dry_patch=~wet & (size > 0.0),
         limits={"wave_amplitude": wet},
         error=error,

@@ -35,6 +35,8 @@ def validate(
         print(f"    {result.quantity}")
         print(f"    printed {_shown(result.printed)} | computed {_shown(result.computed)}")
         print(f"    difference {_shown(result.difference)}" + (f"; {result.note}" if result.note else ""))
+        if (effect := result.effect) is not None:
+            print(f"    {effect.quantity}: {effect.measured:.3g} | computed {effect.computed:.3g}")
     counts = {verdict: sum(result.verdict == verdict for result in found) for verdict in _VERDICTS}
     print(", ".join(f"{count} {verdict}" for verdict, count in counts.items() if count))
 

@@ -88,6 +88,8 @@ def case_table(cases: Sequence[Case]) -> Table:
     for case in cases:
         what = f"{case.quantity}\n[{case.source}; case {case.name.partition('/')[2]}]"
         what += f"\n{case.note}" if case.note else ""
+        if (effect := case.effect) is not None:
+            what += f"\n{effect.quantity}: {effect.measured:.3g}, computed {effect.computed:.3g}"
         shown = (_shown(case.printed), _shown(case.computed), _difference(case.difference))
         rows.append((what, *shown, case.verdict))
     found = verdicts(cases)

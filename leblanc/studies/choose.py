@@ -21,6 +21,7 @@ from meshes.chamber_section import rest_offset, surface_is_whole
 from meshes.errors import InputError
 from solvers.liquid_model import ROUNDING, LiquidModel
 from solvers.rotor.jeffcott import Jeffcott
+from solvers.sloshing.model import REST_ERROR
 from solvers.synchronous.errors import LinearError, error_estimate, machine_errors
 
 if TYPE_CHECKING:
@@ -205,6 +206,8 @@ def _choice(machine: Prepared, linear: LinearError, gravity: Array) -> Choice:
     captured_from = _captured_from(scene)
     in_range = np.ones(speed.shape, dtype=bool) if captured_from is None else speed > captured_from
     error = np.where(enough, linear.worst, ROUNDING) + gravity
+    if small == "fem":
+        error = error + np.where(enough, REST_ERROR, 0.0)
     if cut:
         # The exact equilibrium of compartments, which would judge small disturbances, is not computed.
         in_range = in_range & (speed > max(_covers(fill, machine.axial_gravity) for fill in scene.fills))

@@ -83,6 +83,11 @@ class Balance:
     model: LiquidModel
     gravity: float
 
+    @property
+    def added_mass(self) -> Array:
+        """Full mass of each chamber, kg, shape (c,)."""
+        return self.model.added_mass(Fills.of(self.fills))
+
     def forward(self, answer: Complex) -> Complex:
         """Forward deflection at each chamber, m, shape (k, c), for coordinates of shape (k, n)."""
         return np.asarray(0.5 * answer @ np.conj(self.plane).T)
@@ -95,7 +100,7 @@ class Balance:
         which : of the speeds, shape (k,)
         share : shape (k,) or a number
         """
-        full = np.array([fill.added_mass for fill in self.fills])
+        full = self.added_mass
         added = 0.5 * np.einsum("c,ci,cj->ij", full, self.plane, np.conj(self.plane))
         size = (share * np.square(self.speed[which]))[:, None, None]
         return solve_each(self.stiffness[which] - size * added, self.force[which])
@@ -109,7 +114,7 @@ class Balance:
         deflection : m, shape (k, c)
         """
         shape = deflection.shape
-        full = np.array([fill.added_mass for fill in self.fills])
+        full = self.added_mass
         unbalance, slope = full * deflection, np.broadcast_to(full, shape).copy()
         flags = np.zeros(shape, dtype=bool), np.ones(shape, dtype=bool), np.ones(shape, dtype=bool)
         bent = ~(deflection <= self.limit[which])

@@ -71,7 +71,7 @@ def one_plane(balance: Balance) -> tuple[Complex, Index, Flags]:
     np.divide(1.0, compliance, out=support, where=moved)
     force = np.where(moved, np.abs(support * alone), 1.0)
     mass = sum(fill.mass for fill in balance.fills)
-    full = sum(fill.added_mass for fill in balance.fills)
+    full = float(balance.added_mass.sum())
     limit = np.where(moved, balance.limit.min(axis=1), np.inf)
     resistance = np.abs(support - squared * full)
     straight = over(force, resistance)

@@ -114,7 +114,7 @@ class Pairs:
             return np.zeros(deflection.shape)
         rows, fills, limit = found
         e = deflection[rows]
-        moment = fills.added_mass * e
+        moment = self.model.added_mass(fills) * e
         bent = np.flatnonzero(e > limit)
         if bent.size:
             k = which[rows[bent]]
@@ -168,7 +168,7 @@ def pair_machines(
         place = index[owner]
         rows = np.flatnonzero(place >= 0)
         here = fills.at(place[rows])
-        sums[:, rows] += here.mass, here.added_mass, here.mass * here.chamber.radius
+        sums[:, rows] += here.mass, model.added_mass(here), here.mass * here.chamber.radius
         slots.append(Slot(fills, place, np.full(owner.shape, np.inf)))
     mass, stiffness, damping, unbalance = np.ascontiguousarray(rotors[owner].T)
     pairs = Pairs(

@@ -51,7 +51,7 @@ def critical_speed(
         return np.asarray(rotor.stiffness - (rotor.mass + slope) * np.square(speed))
 
     # The slope of the unbalance never exceeds a full chamber's mass; a little more holds the rounding.
-    heaviest = rotor.mass + sum(fill.added_mass for fill in wet)
+    heaviest = rotor.mass + float(model.added_mass(Fills.of(wet)).sum())
     ends = np.sqrt(rotor.stiffness / np.array([heaviest, rotor.mass])) * np.array([1.0 - 1e-9, 1.0 + 1e-9])
     root, _ = bracketed_root(stiffness, ends[:1], ends[1:])
     return float(root[0])
@@ -93,7 +93,7 @@ def _added_mass(
     n = len(system.coordinates)
     total = np.zeros((n, n), dtype=complex)
     for fill, p in zip(wet, directions(system, wet), strict=True):
-        full = fill.added_mass
+        full = float(model.added_mass(Fills.of([fill]))[0])
         if speed is not None:
             whirl = Whirls.synchronous(np.array([speed]), np.zeros(1), np.array([gravity]))
             full = float(model.answer(Fills.of([fill]), whirl).slope[0])

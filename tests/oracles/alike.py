@@ -77,3 +77,42 @@ def assert_alike(
 def _complex(answer: dict[str, Any], angle: str, length: str) -> np.ndarray:
     """A length and its angle as one complex number."""
     return numbers(answer[length]).astype(float) * np.exp(1j * numbers(answer[angle]).astype(float))
+
+
+def differences(
+    found: dict[str, Any],
+    answer: dict[str, Any],
+    scales: tuple[float, float, float] = (1.0, 1.0, 1.0),
+    without: Collection[str] = (),
+) -> dict[str, float]:
+    """By key the largest difference of two answers, relative to the largest number of its kind.
+
+    Infinite where they differ in more than numbers: in shape, in what was found at all, in a state.
+    """
+    far: dict[str, float] = {}
+    for key in ANSWERED:
+        if key in without or key not in answer or isinstance(answer[key], str):
+            continue
+        expected = numbers(answer[key]).astype(float) * factor(ANSWERED[key], scales)
+        number = numbers(found[key]).astype(float) if key in found else np.array([np.inf])
+        beside = numbers(answer.get(_BESIDE.get(key, key), answer[key])).astype(float)
+        sizes = np.abs(beside[np.isfinite(beside)])
+        far[key] = _apart(number, expected, factor(ANSWERED[key], scales) * max(sizes.flat, default=0.0))
+    for angle, length in _ANGLES.items():
+        if angle in answer and angle not in without:
+            wanted = _complex(answer, angle, length) * factor(LENGTH, scales)
+            sizes = np.abs(wanted[np.isfinite(wanted)])
+            far[angle] = _apart(_complex(found, angle, length), wanted, max(sizes.flat, default=0.0))
+    for key in ("model", "state"):
+        if found.get(key) != answer.get(key):
+            far[key] = np.inf
+    return far
+
+
+def _apart(number: np.ndarray, expected: np.ndarray, size: float) -> float:
+    """Largest difference over `size`; infinite where shapes differ or one of both is not a number."""
+    if number.shape != expected.shape or not np.array_equal(np.isfinite(number), np.isfinite(expected)):
+        return np.inf
+    known = np.isfinite(expected)
+    off = float(np.max(np.abs(number[known] - expected[known]), initial=0.0))
+    return 0.0 if off == 0.0 else off / size if size > 0.0 else np.inf

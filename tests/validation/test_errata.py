@@ -8,7 +8,7 @@ import pytest
 from meshes.errors import InputError
 from tests.mutants import kills
 from validation.cases import errata
-from validation.cases.case import Case, compare
+from validation.cases.case import Case, Effect, compare, shape_verdict
 from validation.cases.errata import tub_matrices
 
 
@@ -138,6 +138,7 @@ def test_compare_decides_the_verdict() -> None:
     case = compare("g/a", "s", "q", 1.05, 1.0, tolerance=0.02, otherwise="trend")
     assert case.verdict == "trend"
     assert case.difference == pytest.approx(0.05)
+    assert compare("g/a", "s", "q", 2.1, 1.0, tolerance=0.02, otherwise="trend").verdict == "differs"
     assert compare("g/a", "s", "q", 0.0, 0.0, tolerance=0.0).verdict == "agrees"
     assert compare("g/a", "s", "q", -2.0, -1.0, tolerance=0.0).difference == -1.0
 
@@ -149,3 +150,40 @@ def test_case_rejects_what_a_report_cannot_show() -> None:
     with pytest.raises(InputError) as caught:
         Case("g/a", "s", "q", 1.0, 1.0, 0.0, "wrong")  # type: ignore[arg-type]
     assert caught.value.field == "verdict"
+
+
+@pytest.mark.parametrize(
+    ("measured", "computed", "without", "alike"),
+    [
+        (1.0, 2.0, None, True),
+        (1.0, 2.1, None, False),
+        (2.1, 1.0, None, False),
+        (1.0, -1.0, None, False),
+        (0.0, 0.1, None, False),
+        (0.0, 0.0, None, True),
+        # A peak that falls to 0.11 and one that falls to 0.94 of itself: the fall is 14 times as large.
+        (0.11, 0.94, 1.0, False),
+        # Within a factor of two of what is left, not of what is taken away; and the other way round.
+        (0.9, 0.5, 1.0, False),
+        (0.11, 0.02, 1.0, False),
+        (0.5, 0.4, 1.0, True),
+    ],
+)
+def test_a_trend_is_as_large_within_a_factor_of_two(
+    measured: float, computed: float, without: float | None, alike: bool
+) -> None:
+    effect = Effect("share", measured, computed, without)
+    assert effect.alike is alike
+    assert shape_verdict(True, effect) == ("trend" if alike else "differs")
+    assert shape_verdict(False, effect) == "differs"
+    if not alike:
+        with pytest.raises(InputError, match="factor of 2"):
+            Case("g/a", "s", "q", "falls", "falls", "the same shape", "trend", effect=effect)
+
+
+def test_a_trend_tells_the_size_of_its_effect_unless_the_source_has_words_alone() -> None:
+    assert Case("g/a", "s", "q", "grows", "1, 2", "the same", "trend").effect is None
+    for printed in (7.0, None):
+        with pytest.raises(InputError) as caught:
+            Case("g/a", "s", "q", printed, 7.1, "near", "trend")
+        assert caught.value.field == "effect"

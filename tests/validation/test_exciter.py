@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +19,10 @@ def test_cases_of_the_exciter() -> None:
     assert all(case.group == "exciter" for case in found.values())
     errata = {name for name, case in found.items() if case.verdict == "erratum"}
     assert errata == {"exciter/n1", "exciter/table-drag-empty", "exciter/table-drag-loaded"}
-    assert Counter(case.verdict for case in found.values())["differs"] == 0
+    # Started in the motion itself it is kept to three times the printed speed, which is no trend any more.
+    assert {name for name, case in found.items() if case.verdict == "differs"} == {
+        "exciter/critical-speed-by-start"
+    }
 
 
 def test_cases_of_two_planes() -> None:

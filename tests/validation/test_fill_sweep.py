@@ -18,15 +18,17 @@ def test_the_measured_sweep_has_the_shape_that_is_claimed() -> None:
 
 
 def test_verdicts_follow_from_the_curves() -> None:
-    """The machine is assumed, so nothing can agree."""
+    """Every effect is off by more than a factor of two, so not even a trend is met."""
     found = {one.name: one for one in cases()}
     assert set(found) == {f"fill_sweep/{name}" for name in ("resonance-peak", "peak", "cruise", "order")}
-    assert all(one.verdict in ("trend", "differs") for one in found.values())
+    assert all(case.verdict == "differs" for case in found.values())
     volume, runup, resonance, cruise = model_curves()
-    assert found["fill_sweep/resonance-peak"].verdict == "trend"
+    fall = found["fill_sweep/resonance-peak"].effect
+    assert fall is not None
+    # 3043/27742 measured; with this machine the peak is hardly less.
+    assert round(fall.measured, 2) == 0.11 and round(fall.computed, 2) == 0.94
     assert np.all(np.diff(resonance) < 0.0) and volume[int(np.argmin(resonance))] == 300.0
     # At cruise the liquid of the model does no harm, where that of the real machine did.
-    assert found["fill_sweep/cruise"].verdict == "differs"
     assert cruise[-1] < cruise[0]
     # More liquid than covers the wall changes nothing there: the same to rounding.
     np.testing.assert_allclose(cruise[-3:], cruise[-1], rtol=1e-9)

@@ -4,12 +4,63 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 from meshes.errors import InputError
 
 Verdict = Literal["agrees", "erratum", "trend", "differs"]
 Value = float | str | None
+
+# By how much the size of an effect may be off while its shape is still called the same.
+_FACTOR = 2.0
+
+
+@dataclass(frozen=True)
+class Effect:
+    """How large an effect is by the source, and how large computed.
+
+    Parameters
+    ----------
+    quantity : what its size is measured by, with its unit
+    measured, computed : sizes; of one sign where they are alike
+    without : the value that there would be without the effect, where the sizes are what it leaves of that:
+        the changes from it are compared as well; None where the sizes are the effect itself
+
+    Examples
+    --------
+    >>> Effect("peak over that without liquid", 0.11, 0.94, without=1.0).alike
+    False
+    """
+
+    quantity: str
+    measured: float
+    computed: float
+    without: float | None = None
+
+    @property
+    def alike(self) -> bool:
+        """Within a factor of two; nothing is like nothing alone."""
+        pairs = [(self.measured, self.computed)]
+        if self.without is not None:
+            pairs.append((self.measured - self.without, self.computed - self.without))
+        return all(_alike(*pair) for pair in pairs)
+
+
+def _alike(measured: float, computed: float) -> bool:
+    if measured == 0.0 or computed == 0.0:
+        return measured == computed
+    return 1.0 / _FACTOR <= computed / measured <= _FACTOR
+
+
+def shape_verdict(same: bool, effect: Effect | None = None) -> Verdict:
+    """`trend` where the shape is the same and the effect as large within a factor of two, else `differs`.
+
+    Parameters
+    ----------
+    same : the shape is that of the source
+    effect : its size; None where the source gives none
+    """
+    return "trend" if same and (effect is None or effect.alike) else "differs"
 
 
 @dataclass(frozen=True)
@@ -25,12 +76,14 @@ class Case:
     computed : the package's value, or its statement in words
     difference : of the printed from the computed value, relative to the latter; or in words
     verdict : `agrees`; `erratum`: the source is wrong and the derived value is shown; `trend`: only the shape
-        can be compared; `differs`
+        can be compared and is the same, its effect as large within a factor of two; `differs`
     note : what a reader must know to judge
+    effect : how large it is, where the source gives its size
 
     Raises
     ------
-    InputError : an unknown verdict, a number that is not finite
+    InputError : an unknown verdict, a number that is not finite, a `trend` whose effect is off by more than a
+        factor of two, or is not told though the source prints a number or nothing
     """
 
     name: str
@@ -41,6 +94,7 @@ class Case:
     difference: Value
     verdict: Verdict
     note: str = ""
+    effect: Effect | None = None
 
     def __post_init__(self) -> None:
         if self.verdict not in get_args(Verdict):
@@ -49,14 +103,21 @@ class Case:
             value = getattr(self, field)
             if isinstance(value, float) and not math.isfinite(value):
                 raise InputError(field, value, "a finite number, words, or None")
+        if self.verdict != "trend":
+            return
+        if self.effect is None and not isinstance(self.printed, str):
+            raise InputError("effect", None, "told of a trend, where the source does not print words alone")
+        if self.effect is not None and not self.effect.alike:
+            sizes = (self.effect.measured, self.effect.computed)
+            raise InputError("effect", sizes, f"within a factor of {_FACTOR:g} for a trend; else it differs")
 
     @property
     def group(self) -> str:
         """The part of the name before the slash."""
         return self.name.partition("/")[0]
 
-    def record(self) -> dict[str, Value]:
-        """The case as a flat dictionary that JSON can hold."""
+    def record(self) -> dict[str, Any]:
+        """The case as a dictionary that JSON can hold."""
         return asdict(self)
 
 
@@ -78,7 +139,7 @@ def compare(
     name, source, quantity, note : as in `Case`
     printed, computed : the two values
     tolerance : relative difference up to which they agree
-    otherwise : verdict if they do not
+    otherwise : verdict if they do not; a `trend` only within a factor of two
 
     Returns
     -------
@@ -101,6 +162,9 @@ def compare(
     else:
         difference = "none" if printed == 0.0 else f"{printed:g} instead of nothing"
         agrees = printed == 0.0
+    effect = Effect(quantity, printed, computed) if otherwise == "trend" else None
+    if not agrees and effect is not None:
+        otherwise = shape_verdict(True, effect)
     return Case(
-        name, source, quantity, printed, computed, difference, "agrees" if agrees else otherwise, note
+        name, source, quantity, printed, computed, difference, "agrees" if agrees else otherwise, note, effect
     )

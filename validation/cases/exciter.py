@@ -10,7 +10,7 @@ from solvers.rotor.exciter.machine import (
     stuck_speeds,
 )
 from solvers.rotor.exciter.motion import Start, critical_speed, integrate, printed_critical_speed
-from validation.cases.case import Case, compare
+from validation.cases.case import Case, Effect, compare, shape_verdict
 
 # The typical experiment [YF17, section 5.3].
 MACHINE = Dimensionless(smallness=0.01, drag=0.4, unbalance=0.25, damping=0.03)
@@ -104,6 +104,7 @@ def _critical() -> list[Case]:
     regression = float(printed_critical_speed(0.01, 0.4, 0.25, 0.03))
     note = "the start is not printed; platform at rest, balls at the natural frequency, 0.3 rad apart"
     quantity = "critical speed at eps = 0.01, b = 0.4, delta = 0.25, h = 0.03"
+    by = {name: Effect(f"critical speed, {name}", 7.0, check.holds) for name, check in found.items()}
     return [
         Case(
             name="exciter/critical-speed",
@@ -112,8 +113,9 @@ def _critical() -> list[Case]:
             printed=7.0,
             computed=found["released"].holds,
             difference=7.0 / found["released"].holds - 1.0,
-            verdict="trend",
+            verdict=shape_verdict(True, by["released"]),
             note=note,
+            effect=by["released"],
         ),
         Case(
             name="exciter/critical-speed-by-start",
@@ -122,8 +124,9 @@ def _critical() -> list[Case]:
             printed=7.0,
             computed=", ".join(f"{name} {check.holds:.2f}" for name, check in found.items()),
             difference="by the start",
-            verdict="trend",
+            verdict=shape_verdict(True, by["regime"]),
             note="the motion is stable far beyond the speed up to which it is reached",
+            effect=by["regime"],
         ),
         compare(
             "exciter/regression",

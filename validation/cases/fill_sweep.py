@@ -1,4 +1,4 @@
-"""Whether the best fill depends on the objective as a real washing machine's did: trends only.
+"""Whether the best fill depends on the objective as a real washing machine's did.
 
 The machine is a top loader with an upright drum; its ring, speeds and load are not known. The model's machine
 is assumed: what is compared is which of the objectives wants more liquid, and the shape over the volume.
@@ -16,7 +16,7 @@ from leblanc.studies.optimise.answers import FilledMachine
 from leblanc.studies.optimise.objectives import RunupPeak
 from leblanc.units import RPM
 from meshes.arrays import Array
-from validation.cases.case import Case, Verdict
+from validation.cases.case import Case, Effect, shape_verdict
 from validation.cases.rigs import data
 
 _ML = 1e-6  # m^3
@@ -75,17 +75,24 @@ def cases() -> list[Case]:
 def _shape(name: str, text: str, added: Array, seen: Array, volume: Array, own: Array) -> Case:
     """One objective: where it is least and how far it falls."""
     same = _kind(seen) == _kind(own)
-    verdict: Verdict = "trend" if same else "differs"
+    effect = Effect("least over that without liquid", _least(seen), _least(own), without=1.0)
     return Case(
         name=f"{_GROUP}/{name}",
         source=_SOURCE,
         quantity=f"{text}, from 0 to {added[-1]:g} ml",
         printed=_words(added, seen),
         computed=_words(volume, own),
-        difference="the same shape" if same else f"measured it is {_kind(seen)}, computed {_kind(own)}",
-        verdict=verdict,
+        difference=("the same shape" if same else f"measured it is {_kind(seen)}, computed {_kind(own)}")
+        + ("" if effect.alike else "; the effect is not as large"),
+        verdict=shape_verdict(same, effect),
         note=_ASSUMED,
+        effect=effect,
     )
+
+
+def _least(value: Array) -> float:
+    """What is left of a curve at its least, over that without liquid."""
+    return float(value.min() / value[0])
 
 
 def _kind(value: Array) -> str:
@@ -106,6 +113,9 @@ def _order(added: Array, measured: dict[str, list[float]], volume: Array, curves
     seen = [added[int(np.argmin(measured[name]))] for name in ("resonance_peak", "peak", "cruise_mean")]
     own = [volume[int(np.argmin(curve * (1.0 + 1e-9 * np.arange(curve.size))))] for curve in curves]
     same = bool(own[0] >= own[1] >= own[2]) and len(set(own)) > 1
+    # The objective whose best volume is furthest off.
+    far = max(zip(seen, own, strict=True), key=lambda pair: abs(pair[1] - pair[0]) / max(*pair, 1.0))
+    effect = Effect("best volume of an objective, the one furthest off, ml", *map(float, far))
     return Case(
         name=f"{_GROUP}/order",
         source=_SOURCE,
@@ -115,7 +125,8 @@ def _order(added: Array, measured: dict[str, list[float]], volume: Array, curves
         difference=("the same order" + (", two of them alike" if len(set(own)) < 3 else ""))
         if same
         else "another order",
-        verdict="trend" if same else "differs",
+        verdict=shape_verdict(same, effect),
+        effect=effect,
         note="in both the best volume depends on the objective; " + _ASSUMED
         if len(set(own)) > 1
         else _ASSUMED,

@@ -24,7 +24,7 @@ from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vector_model import deflection_lag
 from solvers.synchronous.response import critical_speed, response
-from validation.cases.case import Case
+from validation.cases.case import Case, Effect, shape_verdict
 
 
 def data(name: str) -> dict[str, Any]:
@@ -84,9 +84,9 @@ def horizontal_cases() -> list[Case]:
     rotor = _fit(lambda x: _liquid_angle(speed, x[0], _RESONANCE), angle, [0.1])
     free = _fit(lambda x: _liquid_angle(speed, x[0], x[1] * _RESONANCE), angle, [0.1, 1.0])
     return [
-        _summary("lag-alone", "tan(delta) alone, resonance held at 1000 rpm", *lag),
-        _summary("rotor-and-liquid", "rotor with liquid, resonance held at 1000 rpm", *rotor),
-        _summary("resonance-free", f"the same, resonance free: {1000 * free[0][1]:.0f} rpm", *free),
+        _summary("lag-alone", "tan(delta) alone, resonance held at 1000 rpm", angle, *lag),
+        _summary("rotor-and-liquid", "rotor with liquid, resonance held at 1000 rpm", angle, *rotor),
+        _summary("resonance-free", f"the same, resonance free: {1000 * free[0][1]:.0f} rpm", angle, *free),
         *_points(measured["speed_rpm"], angle, rotor[1]),
         _gravity(speed),
     ]
@@ -113,9 +113,13 @@ def _liquid_angle(speed: Array, damping_ratio: float, resonance: float) -> Array
     return np.asarray(-np.degrees(answer.liquid_angle))
 
 
-def _summary(name: str, what: str, parameters: Array, residual: Array) -> Case:
+def _summary(name: str, what: str, angle: Array, parameters: Array, residual: Array) -> Case:
     spread = float(np.sqrt(np.mean(residual**2)))
     listed = ", ".join(f"{error:+.1f}" for error in residual)
+    turned = angle + residual
+    effect = Effect(
+        "turn of the liquid through resonance, deg", float(np.ptp(angle)), float(turned[-1] - turned[0])
+    )
     return Case(
         name=f"horizontal_rig/{name}",
         source="DR18, Fig. 24",
@@ -123,8 +127,9 @@ def _summary(name: str, what: str, parameters: Array, residual: Array) -> Case:
         printed=None,
         computed=float(parameters[0]),
         difference=f"residuals {listed} deg, root mean square {spread:.1f} deg",
-        verdict="trend",
+        verdict=shape_verdict(bool(np.all(np.diff(turned) > 0.0)), effect),
         note="the damping is not given; the angles are read to 30 deg",
+        effect=effect,
     )
 
 
@@ -158,7 +163,7 @@ def _gravity(speed: Array) -> Case:
         printed="decreases the tangential component that moves the liquid",
         computed="none in linear theory: its pull turns backwards in the drum",
         difference=f"it moves the surface by {largest:.2f} of the mean depth at most, at {slowest:.0f} rpm",
-        verdict="trend",
+        verdict="differs",
         note="neither gravity nor the liquid's own unbalance explains the residuals",
     )
 
@@ -182,7 +187,7 @@ def vertical_cases() -> list[Case]:
                 printed="it compensates",
                 computed=f"{lag:.0f} deg behind the unbalance, amplitude times {gain[k]:.2f}",
                 difference="the same" if helps else "the liquid adds to the vibration here",
-                verdict="trend" if helps else "differs",
+                verdict=shape_verdict(helps),
                 note=f"mass, heights, damping and radius of the 30 g are assumed; critical speed with liquid "
                 f"{wet:.1f} rad/s; equilibrium compensates above it only",
             )

@@ -15,7 +15,7 @@ from meshes.arrays import Array
 from solvers.rotor.system import cage_speed
 from solvers.rotor.tub import Mount, Tub, Vector
 from solvers.rotor.vibration import modes, orbit, unbalance_response
-from validation.cases.case import Case, compare
+from validation.cases.case import Case, compare, shape_verdict
 
 # Given in table 1.
 TUB_MASS, DRUM_MASS = 48.2, 12.5  # kg
@@ -212,7 +212,7 @@ def _with_distance() -> list[Case]:
                 printed="grows with y_D",
                 computed=", ".join(f"{value:.3g}" for value in size),
                 difference="the same" if rises else "does not grow throughout",
-                verdict="trend" if rises else "differs",
+                verdict=shape_verdict(rises),
                 note=_ASSUMED + "; angles beyond 100 mrad are more than linear theory can say",
             )
         )
@@ -261,7 +261,7 @@ def _rigidity_centre() -> Case:
         printed="least where the rigidity centre is at the centre of gravity",
         computed=", ".join(f"{value:.3g}" for value in size),
         difference="the same" if rises else "it is not least there",
-        verdict="trend" if rises else "differs",
+        verdict=shape_verdict(rises),
         note=_ASSUMED + "; the source does not say along which axis l_c lies: here along the spin axis",
     )
 

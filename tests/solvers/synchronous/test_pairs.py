@@ -65,8 +65,8 @@ def test_each_as_if_alone() -> None:
 )
 @kills(
     "solvers.synchronous.pairs:pair_machines",
-    "here.added_mass, here.mass * here.chamber.radius",
-    "here.added_mass, here.mass",
+    "model.added_mass(here), here.mass * here.chamber.radius",
+    "model.added_mass(here), here.mass",
 )
 @kills("solvers.synchronous.pairs:Pairs.pull", "moment - fills.mass * e", "moment")
 @kills(
@@ -74,7 +74,7 @@ def test_each_as_if_alone() -> None:
     "(law.real_unbalance(), law.slope))",
     "(law.slope, law.real_unbalance()))",
 )
-@kills("solvers.synchronous.pairs:Pairs.pull", "moment = fills.added_mass * e", "moment = fills.mass * e")
+@kills("solvers.synchronous.pairs:Pairs.pull", "self.model.added_mass(fills) * e", "fills.mass * e")
 @kills("solvers.synchronous.pairs:Pairs.pull", "whirls).real_unbalance()", "whirls).slope")
 def test_sums() -> None:
     """The pull and the liquid's state of a machine are sums over its chambers, each asked by itself."""
