@@ -44,6 +44,25 @@ def summary(result: OptimumResult) -> list[tuple[str, str]]:
     ]
 
 
+def answer(result: OptimumResult) -> str:
+    """The best volumes and what they give, in one sentence.
+
+    Parameters
+    ----------
+    result : the optimum
+    """
+    volumes = " and ".join(with_unit(volume, VOLUME) for volume in result.volume.tolist())
+    liquid = f"{volumes}, {with_unit(result.mass, MASS)}" if result.volume.any() else "no liquid"
+    kept = "" if result.feasible else f" ({result.feasibility.value})"
+    if result.unit == "kg":
+        both = shown(result.vibration, "m"), shown(result.vibration_baseline, "m")
+        gives = f"the amplitude is {both[0]} instead of {both[1]}"
+    else:
+        gives = f"the {result.meaning} is {shown(result.value, result.unit)}"
+        gives += f" instead of {shown(result.baseline, result.unit)}" if result.baseline > 0.0 else ""
+    return f"With {liquid}{kept}, {gives}."
+
+
 def shown(value: float, unit: str) -> str:
     """A value in the unit that engineers use."""
     dimension = _DIMENSIONS.get(unit)
