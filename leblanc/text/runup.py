@@ -42,9 +42,10 @@ def answer(result: RunupResult) -> str:
     if result.steady is not None and highest is not None:
         size = with_unit(float(abs(result.steady.deflection[highest])), LENGTH)
         steady = f", where the steady response has {size} at {in_rpm(float(result.steady.speed[highest]))}"
+    place = f" {result.plane}" if result.plane else ""
     later = zip(["on the way down", "at the end"][-len(rest) :], rest, strict=True)
     return (
-        f"The largest amplitude is {_amplitude(result, first)}{steady}; "
+        f"The largest amplitude{place} is {_amplitude(result, first)}{steady}; "
         + ", ".join(f"{when} it is {_amplitude(result, index)}" for when, index in later)
         + "."
     )
@@ -72,13 +73,16 @@ def answer_rows(result: RunupResult) -> list[tuple[str, str]]:
 def largest(result: RunupResult) -> str:
     """The largest amplitude on the way up and where it was."""
     k = result.peak_index()
-    return f"{with_unit(float(result.amplitude[k]), LENGTH)} at {in_rpm(float(result.speed[k]))}"
+    where = f" {result.plane}" if result.plane else ""
+    return f"{with_unit(float(result.amplitude[k]), LENGTH)} at {in_rpm(float(result.speed[k]))}{where}"
 
 
 def summary(result: RunupResult) -> list[tuple[str, str]]:
     """The main numbers of a run-up, as labels and values."""
 
+    plane = [("Amplitudes", result.plane)] if result.plane else []
     return [
+        *plane,
         *answer_rows(result),
         ("Liquid model", describe_model(result.model, result.cells, result.dispersion)),
         ("End", result.reason or "it came to its end"),
