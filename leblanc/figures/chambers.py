@@ -336,7 +336,7 @@ def describe_state(result: RunResult, index: int) -> str:
     text = f"deflection {place}"
     if result.motion is not None:
         size = with_unit(float(result.amplitude[index]), LENGTH)
-        text = f"amplitude at chamber 1 {size},\nof it with the spin {place}"
+        text = f"amplitude {size} at chamber 1,\nof it with the spin {place}"
     if offset > 0.0:
         text += f"\nliquid {with_unit(offset, LENGTH)} at {_degrees(float(r.liquid_angle[index]))}{DEGREE}"
     return text

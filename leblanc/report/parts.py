@@ -79,7 +79,7 @@ def doubt(checks: Table, holds: str = "") -> str:
     holds : what is said of an answer that passes all, after that
     """
     failed = [
-        f"{label.text[:1].lower()}{label.text[1:]} ({found.text})"
+        f"{label.text[:1].lower()}{label.text[1:]}: {found.text}"
         for label, found in checks.rows
         if found.warning
     ]

@@ -219,7 +219,7 @@ def limits(result: RunResult) -> list[Limit]:
     ]
     if result.capture_speed is not None:
         loose = r.speed <= result.capture_speed
-        edge = f", all below {in_rpm(result.capture_speed)}" if loose.any() else ""
+        edge = f" (below {in_rpm(result.capture_speed)})" if loose.any() else ""
         found.append(Limit("Liquid not carried round", f"{ranges(r.speed, loose)}{edge}", bool(loose.any())))
     if tolerance is not None and result.error_estimate is not None:
         missed = ~(result.error_estimate <= tolerance)
