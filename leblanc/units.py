@@ -187,6 +187,16 @@ _UNITS: dict[Dimension, tuple[tuple[float, Unit], ...]] = {
 _USUAL = {LENGTH: "mm", MASS: "g", VOLUME: "ml", UNBALANCE: "g mm", TIME: "s", ANGULAR_SPEED: "rpm"}
 
 
+def units_of(dimension: Dimension) -> tuple[Unit, ...]:
+    """Units in which values are shown, by rising size.
+
+    Parameters
+    ----------
+    dimension : of the values
+    """
+    return tuple(unit for _, unit in _UNITS.get(dimension, ((0.0, Unit(dimension.unit, 1.0)),)))
+
+
 def unit_for(dimension: Dimension, *values: float) -> Unit:
     """Unit in which a person would write values that stand side by side.
 

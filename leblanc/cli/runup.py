@@ -103,6 +103,8 @@ def _tell(result: RunupResult, folder: Path) -> None:
     from leblanc.text.runup import answer_rows
 
     print_table(answer_rows(result))
+    if result.plane:
+        print(f"Amplitudes are those {result.plane}.")
     for note in result.notes:
         print(f"note: {note.text}")
     print(f"Read {folder / 'runup.html'}; the data are in {folder / 'runup.nc'}")

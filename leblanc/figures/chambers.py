@@ -13,7 +13,7 @@ from leblanc.figures.page import MOST_LINES, RIGHT, WIDTH, Figure, Frame, captio
 from leblanc.results.base import FilledChamber
 from leblanc.results.drawn import chord, rounded_down
 from leblanc.results.response import RunResult, peak, phase
-from leblanc.text.run import alts
+from leblanc.text.run import alts, amplitude_place
 from leblanc.units import DEGREE, LENGTH, MINUS, MM, TIMES, in_rpm, number, with_unit
 from meshes.arrays import Array, Complex
 from meshes.baffles import Baffles
@@ -261,10 +261,16 @@ def chamber_figure(result: RunResult) -> Figure:
         columns = len(drawn) if len(views.drawings) < 3 else len(views.drawings)
         rows = [drawn[i : i + columns] for i in range(0, len(drawn), columns)]
         sides = [min(2.7, (WIDTH - FRAME.left - RIGHT) / columns)] * len(rows)
-        part = "" if result.motion is None else " Drawn is the part of the motion that turns with the spin."
+        part = ""
+        if result.motion is not None:
+            place = amplitude_place(result)
+            part = f" Amplitudes are those {place}; drawn is the part of the motion that turns with the spin."
         text = caption(result, f"Chamber seen along the axis. {describe_scale(views)}{part}")
         more = HEADING_ROW * more_heading_rows(result, views)
-        frame = replace(FRAME, top=FRAME.top + more, between=FRAME.between + more)
+        below = 0.0 if result.motion is None else HEADING_ROW
+        frame = replace(
+            FRAME, top=FRAME.top + more, between=FRAME.between + more + below, below=FRAME.below + below
+        )
         lay_out(figure, rows, sides, frame, text, MOST_LINES if result.motion is None else NOTED_LINES)
     return figure
 
@@ -329,8 +335,8 @@ def describe_state(result: RunResult, index: int) -> str:
     place = f"{with_unit(abs(w), LENGTH)} at {_degrees(float(phase(w)))}{DEGREE}"
     text = f"deflection {place}"
     if result.motion is not None:
-        several = len({chamber.plane for chamber in result.chambers}) > 1
-        text = f"{'first chamber' if several else 'deflection'} {place}"
+        size = with_unit(float(result.amplitude[index]), LENGTH)
+        text = f"amplitude {size} at chamber 1,\nof it with the spin {place}"
     if offset > 0.0:
         text += f"\nliquid {with_unit(offset, LENGTH)} at {_degrees(float(r.liquid_angle[index]))}{DEGREE}"
     return text

@@ -12,6 +12,7 @@ from leblanc.figures.page import save as save  # a figure is drawn and written t
 from leblanc.figures.response import DRY, OUT_OF_RANGE, SHADE, value_axis
 from leblanc.results.base import one_line
 from leblanc.results.explanation import Comparison
+from leblanc.results.notes import plane_label
 from leblanc.text.explanation import comparison_alt
 from leblanc.units import MM, RPM
 from meshes.arrays import Array
@@ -47,6 +48,9 @@ def comparison_figure(found: Comparison) -> Figure:
         labels = ("amplitude", "difference")[: len(names)]
         rows = [figure.add_axes((0, 0, 1, 1), label=label) for label in labels]
         _draw_amplitude(rows[0], rpm, names, [line[drawn] for line in finite])
+        result = next(iter(found.results.values()))
+        place = "" if result.motion is None else plane_label(bool(result.chambers))
+        rows[0].set_ylabel(f"Amplitude{place} (mm)")
         if len(rows) > 1:
             _draw_difference(rows[1], rpm, names, [line[drawn] for line in apart])
         for axes in rows:
@@ -76,7 +80,6 @@ def _draw_amplitude(axes: Axes, rpm: Array, names: list[str], lines: list[Array]
     bare = {"color": DRY, "linewidth": 0.8, "marker": "o", "markerfacecolor": "white", "markevery": every}
     axes.plot(rpm, lines[-1], label="without liquid", zorder=1.9, **bare)
     value_axis(axes, 0.0, lines)
-    axes.set_ylabel("Amplitude (mm)")
 
 
 def _draw_difference(axes: Axes, rpm: Array, names: list[str], lines: list[Array]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -25,7 +26,7 @@ from numpy.typing import ArrayLike
 from leblanc.files import writing
 from leblanc.results.base import one_line
 from leblanc.results.response import RunResult
-from leblanc.units import RPM
+from leblanc.units import LENGTH, MASS, RPM, VOLUME, unit_for, units_of
 from meshes.errors import InputError
 
 # Lengths in inches.
@@ -146,6 +147,29 @@ def number(value: float, _position: float | None = None) -> str:
     return f"{value:.10g}".replace("-", "\N{MINUS SIGN}")
 
 
+_PLOTTED = {"mm": LENGTH, "ml": VOLUME, "g": MASS}  # units in which figures draw, as they end a label
+_UNIT = re.compile(r"\((mm|ml|g)\)$")
+
+
+def readable(axis: Any) -> None:
+    """Show an axis in the unit that a person would write for its limits: 5 um, not 0.005 mm.
+
+    Parameters
+    ----------
+    axis : whose label ends with the unit of what is drawn and whose limits are set
+    """
+    found = _UNIT.search(axis.get_label_text())
+    if found is None or axis.get_scale() != "linear":
+        return
+    dimension = _PLOTTED[found[1]]
+    drawn = next(unit for unit in units_of(dimension) if unit.name == found[1])
+    chosen = unit_for(dimension, *(float(limit) / drawn.count for limit in axis.get_view_interval()))
+    if chosen != drawn:
+        factor = chosen.count / drawn.count
+        axis.set_label_text(f"{axis.get_label_text()[: found.start()]}({chosen.name})")
+        axis.set_major_formatter(lambda value, _position=None: number(value * factor))
+
+
 def fill(axes: Axes, x: ArrayLike, y: ArrayLike, **look: Any) -> None:
     """Fill a polygon on axes whose limits are set.
 
@@ -201,6 +225,8 @@ def lay_out(
     figure.caption = Caption(caption) if isinstance(caption, str) else caption
     entries: dict[str, Any] = {}
     for axes in [axes for row in rows for axes in row]:
+        readable(axes.xaxis)
+        readable(axes.yaxis)
         handles, labels = axes.get_legend_handles_labels()
         entries = dict(zip(labels, handles, strict=True)) | entries
     lines = _wrapped(str(caption), WIDTH - 2.0 * RIGHT, most_lines)

@@ -23,9 +23,10 @@ from leblanc.figures.page import (
     style,
     zero_of,
 )
+from leblanc.results.notes import plane_label
 from leblanc.results.response import RunResult
-from leblanc.text.run import alts
-from leblanc.units import LENGTH, RPM, in_rpm, with_unit
+from leblanc.text.run import alts, amplitude_place
+from leblanc.units import RPM, in_rpm
 from meshes.arrays import Array, Flags
 
 Draw = Callable[[Any, Curves, RunResult], None]
@@ -77,7 +78,7 @@ def amplitude_figure(result: RunResult) -> Figure:
     """Amplitude over speed with and without liquid."""
     text = "Amplitude of the deflection."
     if result.motion is not None:
-        text = f"Largest radius of the axis' orbit at {with_unit(result.motion.position, LENGTH)}."
+        text = f"Largest radius of the axis' orbit {amplitude_place(result)}."
     return _over_speed(result, "amplitude", [(2.75, draw_amplitude)], text)
 
 
@@ -130,7 +131,7 @@ def draw_amplitude(axes: Axes, curves: Curves, result: RunResult) -> None:
         axes.plot(*unstable, **thin, linestyle=UNSTABLE, label="other branches, unstable")
     value_axis(axes, room_below(curves), [curves.amplitude, curves.amplitude_dry, curves.branches.ravel()])
     background(axes, curves, result, [curves.amplitude, curves.amplitude_dry])
-    axes.set_ylabel("Amplitude (mm)")
+    axes.set_ylabel(f"Amplitude{'' if result.motion is None else plane_label(bool(result.chambers))} (mm)")
 
 
 def draw_offset(axes: Axes, curves: Curves, result: RunResult) -> None:

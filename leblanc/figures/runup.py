@@ -15,6 +15,7 @@ from leblanc.figures.curves import gapped, joined, lag_degrees, link, spans, wid
 from leblanc.figures.page import WIDTH, Caption, Figure, FigureFiles, Frame, lay_out, number, save, style
 from leblanc.figures.response import DRY, SHADE, UNSTABLE, WET
 from leblanc.results.base import one_line
+from leblanc.results.notes import plane_label
 from leblanc.results.runup import RunupResult
 from leblanc.text.runup import describe_model, largest
 from leblanc.units import MM, RPM, friction_words
@@ -80,12 +81,13 @@ def speed_figure(result: RunupResult) -> Figure:
         axes.set_xlim(low - room, high + room)
         axes.set_ylim(0.0, top)
         axes.set_xlabel("Speed (rpm)")
-        axes.set_ylabel("Amplitude (mm)")
+        axes.set_ylabel(_label(result))
         above = axes.secondary_xaxis("top", functions=_RATES)
         above.set_xlabel("Speed (rad/s)")
         for axis in (axes.xaxis, axes.yaxis, above.xaxis):
             axis.set_major_formatter(number)
-        text = "Deflection of the first chamber's axis while the speed changes; arrows point on in time."
+        where = f" {result.plane}" if result.plane else ""
+        text = f"Deflection of the axis{where} while the speed changes; arrows point on in time."
         lay_out(figure, [[axes]], [2.9], SPEED_FRAME, caption(result, text), LINES)
         figure.alt = (
             f"Curve of the amplitude over speed with the steady branches behind; largest {largest(result)}."
@@ -212,7 +214,12 @@ def _draw_amplitude(axes: Axes, result: RunupResult) -> None:
     amplitude = result.amplitude * MM
     axes.plot(result.time, amplitude, color=UP, linewidth=1.2)
     axes.set_ylim(0.0, 1.12 * float(amplitude.max()) or 1.0)
-    axes.set_ylabel("Amplitude (mm)")
+    axes.set_ylabel(_label(result))
+
+
+def _label(result: RunupResult) -> str:
+    """Of an axis of amplitudes."""
+    return f"Amplitude{plane_label(chambers=True) if result.plane else ''} (mm)"
 
 
 def _place(result: RunupResult) -> Any:

@@ -10,6 +10,7 @@ from leblanc.figures.curves import COLUMNS, thin
 from leblanc.figures.page import Caption, Figure, Frame, add_rate_axis, lay_out, number, style
 from leblanc.figures.response import DRY, WET, value_axis
 from leblanc.results.base import one_line
+from leblanc.results.notes import plane_label
 from leblanc.results.sweep import SweepResult
 from leblanc.text.sweep import alt
 from leblanc.units import MM, RPM
@@ -52,7 +53,7 @@ def _over_speed(figure: Figure, result: SweepResult, speed: Array) -> None:
     axes.plot(rpm, dry, label="median without liquid", marker="o", markevery=every, **BARE)
     value_axis(axes, 0.0, [*wet.T, dry])
     axes.set_xlim(rpm[0], rpm[-1])
-    axes.set_ylabel("Amplitude (mm)")
+    axes.set_ylabel(f"Amplitude{plane_label('chamber' in result.plane) if result.plane else ''} (mm)")
     axes.set_xlabel("Speed (rpm)")
     axes.xaxis.set_major_formatter(number)
     axes.yaxis.set_major_formatter(number)
@@ -104,7 +105,7 @@ def _caption(result: SweepResult, text: str) -> Caption:
     """What is shown, the scene, the samples, what varies."""
     varied = ", ".join(map(one_line, result.fields))
     return Caption(
-        text,
+        f"{text} Amplitudes {result.plane}." if result.plane else text,
         f"Scene: {one_line(result.scene)}. Samples: {result.done} of {result.samples} done, {result.method}, "
         f"seed {result.seed}. Varied: {varied}.",
     )

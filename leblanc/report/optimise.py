@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from leblanc.report.page import About, models, notes, why, write_page
-from leblanc.report.parts import Cell, Table, picture, table
+from leblanc.report.parts import Cell, Table, doubt, picture, table
 from leblanc.report.run import response_checks as response_checks
 from leblanc.results.base import texts
 from leblanc.results.optimum import OptimumResult
 from leblanc.text.numbers import number
-from leblanc.text.optimum import shown
+from leblanc.text.optimum import amplitude_plane, answer, shown
 from leblanc.units import LENGTH, MASS, ML, VOLUME, in_rpm, unit_for, with_unit
 
 if TYPE_CHECKING:
@@ -165,10 +165,13 @@ def write_optimise_report(
     path : the file to write or replace
     """
     names = [span.model for span in result.models] + (["long_wave"] if result.in_time else [])
+    place = amplitude_plane(result)
     paste = ", ".join(f'"{volume * ML:.6g} ml"' for volume in result.volume.tolist())
     parts = {
         "title": "Best volume of liquid",
-        "machine": f"Objective {result.objective}: the {result.meaning}.",
+        "machine": f"Objective {result.objective}: the {result.meaning}{f' {place}' if place else ''}.",
+        "answer": answer(result),
+        "doubt": doubt(checks(result)),
         "values": values(result),
         "facts": table("", (), facts(result)),
         "volumes": volumes(result),

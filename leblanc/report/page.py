@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import platform
 import shlex
+import time
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import resources
@@ -137,6 +139,16 @@ def notes(given: Iterable[Note | str], elsewhere: Collection[NoteCode] = ()) -> 
     return [line for line in map(one_line, said) if line]
 
 
+def made_on() -> str:
+    """Day on which a report is made, as 2026-11-22, in UTC; what SOURCE_DATE_EPOCH says where it is set.
+
+    Only a report carries it: files of numbers and figures are the same whenever they are made.
+    """
+    given = os.environ.get("SOURCE_DATE_EPOCH", "")
+    moment = time.gmtime(int(given)) if given.isdecimal() and len(given) < 12 else time.gmtime()
+    return time.strftime("%Y-%m-%d", moment)
+
+
 def write_page(body: str, what: About, parts: Mapping[str, Any], path: Path) -> None:
     """Write a report.
 
@@ -164,6 +176,7 @@ def write_page(body: str, what: About, parts: Mapping[str, Any], path: Path) -> 
         "command": one_line(what.command),
         "data": what.data,
         "digest": what.digest,
+        "date": made_on(),
         "versions": versions(),
         "citation": citation(),
     }

@@ -70,6 +70,24 @@ def table(
     return Table(title, tuple(head), cells, sentences)
 
 
+def doubt(checks: Table, holds: str = "") -> str:
+    """What must not be relied on in an answer, in one sentence.
+
+    Parameters
+    ----------
+    checks : a row for each, its label and what fails it
+    holds : what is said of an answer that passes all, after that
+    """
+    failed = [
+        f"{label.text[:1].lower()}{label.text[1:]}: {found.text}"
+        for label, found in checks.rows
+        if found.warning
+    ]
+    if failed:
+        return f"Doubtful: {'; '.join(failed)}."
+    return f"No limit of the models is passed{f'; {holds}' if holds else ''}."
+
+
 @dataclass(frozen=True)
 class Picture:
     """A figure as a page shows it.

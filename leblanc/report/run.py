@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from leblanc.report.page import About, models, notes, why, write_page
-from leblanc.report.parts import Cell, Table, picture, table
+from leblanc.report.parts import Cell, Table, doubt, picture, table
 from leblanc.results.exciter import ExciterResult
 from leblanc.results.notes import OF_MODELS
 from leblanc.results.response import RunResult
@@ -19,7 +19,7 @@ from leblanc.text.exciter import NUMBERS
 from leblanc.text.exciter import answer as exciter_answer
 from leblanc.text.exciter import facts as exciter_facts
 from leblanc.text.numbers import number, ranges
-from leblanc.text.run import BALLS, WHIRL, answer, comparisons, facts, limits, machine, remarks
+from leblanc.text.run import BALLS, WHIRL, answer, comparisons, facts, largest_error, limits, machine, remarks
 from leblanc.text.whirl_map import answer as whirl_map_answer
 from leblanc.text.whirl_map import band_words
 from leblanc.text.whirl_map import facts as whirl_map_facts
@@ -52,10 +52,12 @@ def write_run_report(result: RunResult, what: About, figures: Sequence[FigureFil
     """
     shown = [figure for figure in figures if len(figures) > SHOWN or figure.name != "phase"]
     elsewhere = OF_MODELS if result.models else ()
+    error = largest_error(result)
     parts = {
         "title": "Response to the unbalance over speed",
         "machine": machine(result),
         "answer": answer(result),
+        "doubt": doubt(response_checks(result), f"estimated error {error}" if error else ""),
         "comparisons": table(
             "",
             ("", "with liquid", "without", "ratio"),
@@ -139,6 +141,7 @@ def write_exciter_report(result: ExciterResult, what: About, figure: FigureFiles
         "title": "Stuck speeds of the balls and vibration of the platform",
         "machine": machine,
         "answer": exciter_answer(result),
+        "doubt": doubt(exciter_checks(result)),
         "facts": table("", (), exciter_facts(result)),
         "numbers": exciter_numbers(result),
         "integrations": integrations(result),
@@ -207,6 +210,7 @@ def write_map_report(result: WhirlMap, what: About, figure: FigureFiles, path: P
         "machine": f"Whirls that grow by themselves from {low} to {high} rpm, from no liquid to "
         f"{values['Most liquid, all chambers']}.",
         "answer": whirl_map_answer(result),
+        "doubt": doubt(map_checks(result)),
         "facts": table("", (), whirl_map_facts(result)),
         "checks": map_checks(result),
         "bands": bands(result),

@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.report.page import About, models, notes, write_page
-from leblanc.report.parts import Cell, Table, picture, table
+from leblanc.report.parts import Cell, Table, doubt, picture, table
 from leblanc.results.base import one_line, percent
 from leblanc.results.notes import CLOSURE, ERROR, IN_TABLES
 from leblanc.results.response import peak
 from leblanc.results.runup import RunupResult
 from leblanc.text.numbers import MOST_RANGES, number
-from leblanc.text.runup import describe_model
+from leblanc.text.runup import answer, describe_model
 from leblanc.text.runup import moments as samples
 from leblanc.units import LENGTH, MASS, MINUS, RPM, rpm_bands, rpm_range, unit_for, with_unit
 
@@ -204,6 +204,8 @@ def write_runup_report(result: RunupResult, what: About, figures: Sequence[Figur
     )
     parts = {
         "title": "Run-up in time",
+        "answer": answer(result),
+        "doubt": doubt(checks(result)),
         "machine": machine,
         "moments": moments(result),
         "facts": table("", (), facts(result)),

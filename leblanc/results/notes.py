@@ -114,6 +114,16 @@ def plane_words(position: float, chambers: bool) -> str:
     return f"in the plane {place} at {with_unit(position, LENGTH)}"
 
 
+def plane_label(chambers: bool) -> str:
+    """The same for the label of an axis, where there is little room.
+
+    Parameters
+    ----------
+    chambers : as for `plane_words`
+    """
+    return " at chamber 1" if chambers else " at the origin"
+
+
 def plane(position: float, zero: str, chambers: bool) -> Note:
     """Where the motion of a rotor that tilts is measured.
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from fluid.friction import Friction
 from leblanc.results.base import FilledChamber, Note, Result, attributes, one_line, texts
 from leblanc.results.netcdf import NamedArrays, flags, variable
+from leblanc.results.notes import plane_words
 from leblanc.results.response import phase
 from leblanc.units import friction_words
 from meshes.arrays import Array, Complex, Flags
@@ -153,6 +154,11 @@ class RunupResult(Result):
     def amplitude(self) -> Array:
         """Modulus of the first deflection, m, shape (k,)."""
         return self.history.amplitude
+
+    @property
+    def plane(self) -> str:
+        """Plane of the amplitude, in words; empty for a rotor that moves in one plane."""
+        return "" if self.kind == "jeffcott" else plane_words(self.planes[0], chambers=True)
 
     @property
     def deflection(self) -> Complex:

@@ -96,6 +96,7 @@ class SweepResult(Result):
     sensitivities : of outputs that are one number a sample; None where the samples are too few
     digest : fingerprint of the sweep
     read : reads the store, each time it is called
+    plane : of the amplitudes, in words; empty for rotors that move in one plane
 
     Examples
     --------
@@ -126,6 +127,7 @@ class SweepResult(Result):
     sensitivities: Mapping[str, Sensitivity | None]
     digest: str
     read: Callable[[], NamedArrays] = field(repr=False, compare=False)
+    plane: str = ""
 
     outputs = carried("single")
     sensitivity = carried("sensitivities")

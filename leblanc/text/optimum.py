@@ -7,6 +7,7 @@ import math
 from leblanc.results.base import texts
 from leblanc.results.optimum import OptimumResult
 from leblanc.text.numbers import number
+from leblanc.text.run import amplitude_place
 from leblanc.units import LENGTH, MASS, ML, UNBALANCE, VOLUME, in_rpm, with_unit
 
 _DIMENSIONS = {dimension.unit.replace("*", " "): dimension for dimension in (LENGTH, MASS, UNBALANCE)}
@@ -25,6 +26,7 @@ def describe_optimum(result: OptimumResult) -> list[str]:
         *_closed_forms(result),
         f"Stability margin over the operating speeds: {number(result.stability_margin)} 1/s"
         + (" (a small whirl grows)" if result.growth > 0.0 else ""),
+        *([f"Amplitudes are those {place}."] if (place := amplitude_plane(result)) else []),
         *texts(result.notes),
         *_to_paste(result),
     ]
@@ -42,6 +44,35 @@ def summary(result: OptimumResult) -> list[tuple[str, str]]:
         ("Value", f"{shown(result.value, result.unit)}; without liquid {_baseline(result)}"),
         ("Constraints", result.feasibility.value),
     ]
+
+
+def answer(result: OptimumResult) -> str:
+    """The best volumes and what they give, in one sentence.
+
+    Parameters
+    ----------
+    result : the optimum
+    """
+    volumes = " and ".join(with_unit(volume, VOLUME) for volume in result.volume.tolist())
+    liquid = f"{volumes}, {with_unit(result.mass, MASS)}" if result.volume.any() else "no liquid"
+    kept = "" if result.feasible else f" ({result.feasibility.value})"
+    if result.unit == "kg":
+        both = shown(result.vibration, "m"), shown(result.vibration_baseline, "m")
+        gives = f"the amplitude is {both[0]} instead of {both[1]}"
+    else:
+        gives = f"the {result.meaning} is {shown(result.value, result.unit)}"
+        gives += f" instead of {shown(result.baseline, result.unit)}" if result.baseline > 0.0 else ""
+    return f"With {liquid}{kept}, {gives}{f' {place}' if (place := amplitude_plane(result)) else ''}."
+
+
+def amplitude_plane(result: OptimumResult) -> str:
+    """Plane of the amplitudes, in words; empty for a rotor that moves in one plane.
+
+    Parameters
+    ----------
+    result : the optimum
+    """
+    return "" if result.response is None else amplitude_place(result.response)
 
 
 def shown(value: float, unit: str) -> str:

@@ -72,26 +72,6 @@ def amplitude_place(result: RunResult) -> str:
     return plane_words(result.motion.position, bool(result.chambers))
 
 
-def doubt(result: RunResult) -> str:
-    """Where the answer must not be relied on, in one sentence.
-
-    Parameters
-    ----------
-    result : the response
-    """
-    failed = [f"{_lower(limit.label)} at {limit.where}" for limit in limits(result) if limit.failed]
-    if failed:
-        return f"Doubtful: {'; '.join(failed)}."
-    error = largest_error(result)
-    size = f"; their estimated error is {error}" if error else ""
-    return f"No limit of the models is passed at these speeds{size}."
-
-
-def _lower(label: str) -> str:
-    """A label inside a sentence."""
-    return f"{label[:1].lower()}{label[1:]}"
-
-
 def largest_error(result: RunResult) -> str:
     """The largest error that the models estimate; empty where none is estimated.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from leblanc.results.response import peak
 from leblanc.results.runup import RunupResult
 from leblanc.units import LENGTH, TIME, in_rpm, with_unit
 
@@ -29,6 +30,33 @@ def moments(result: RunupResult) -> list[tuple[str, int]]:
     return [*found, ("At the end", result.time.size - 1)]
 
 
+def answer(result: RunupResult) -> str:
+    """The largest amplitude, that of the steady response and that at the end, in one sentence.
+
+    Parameters
+    ----------
+    result : the run-up
+    """
+    first, *rest = [index for _, index in moments(result)]
+    steady, highest = "", None if result.steady is None else peak(result.steady.deflection)
+    if result.steady is not None and highest is not None:
+        size = with_unit(float(abs(result.steady.deflection[highest])), LENGTH)
+        steady = f", where the steady response has {size} at {in_rpm(float(result.steady.speed[highest]))}"
+    place = f" {result.plane}" if result.plane else ""
+    later = zip(["on the way down", "at the end"][-len(rest) :], rest, strict=True)
+    return (
+        f"The largest amplitude{place} is {_amplitude(result, first)}{steady}; "
+        + ", ".join(f"{when} it is {_amplitude(result, index)}" for when, index in later)
+        + "."
+    )
+
+
+def _amplitude(result: RunupResult, index: int) -> str:
+    """Amplitude of one sample and its speed; whether it can be believed."""
+    size, speed = with_unit(float(result.amplitude[index]), LENGTH), in_rpm(float(result.speed[index]))
+    return f"{size} at {speed}{'' if result.in_range[index] else ' (out of range)'}"
+
+
 def answer_rows(result: RunupResult) -> list[tuple[str, str]]:
     """The largest amplitudes and that at the end: label and value.
 
@@ -36,25 +64,25 @@ def answer_rows(result: RunupResult) -> list[tuple[str, str]]:
     ----------
     result : the run-up
     """
-
-    def value(k: int) -> str:
-        size, speed = with_unit(float(result.amplitude[k]), LENGTH), in_rpm(float(result.speed[k]))
-        outside = "" if result.in_range[k] else " (out of the liquid model's range)"
-        return f"{size} at {speed}, after {with_unit(float(result.time[k]), TIME)}{outside}"
-
-    return [(label, value(k)) for label, k in moments(result)]
+    return [
+        (label, f"{_amplitude(result, k)}, after {with_unit(float(result.time[k]), TIME)}")
+        for label, k in moments(result)
+    ]
 
 
 def largest(result: RunupResult) -> str:
     """The largest amplitude on the way up and where it was."""
     k = result.peak_index()
-    return f"{with_unit(float(result.amplitude[k]), LENGTH)} at {in_rpm(float(result.speed[k]))}"
+    where = f" {result.plane}" if result.plane else ""
+    return f"{with_unit(float(result.amplitude[k]), LENGTH)} at {in_rpm(float(result.speed[k]))}{where}"
 
 
 def summary(result: RunupResult) -> list[tuple[str, str]]:
     """The main numbers of a run-up, as labels and values."""
 
+    plane = [("Amplitudes", result.plane)] if result.plane else []
     return [
+        *plane,
         *answer_rows(result),
         ("Liquid model", describe_model(result.model, result.cells, result.dispersion)),
         ("End", result.reason or "it came to its end"),

@@ -21,7 +21,8 @@ def lines(result: SweepResult) -> list[str]:
         unit = result.units[name].replace("s-1", "1/s")
         numbers = [values.mean[0], values.deviation[0], *values.quantiles[0, [0, 2, 4]]]
         found.append(f"{name.replace('_', ' '):24}" + "".join(f"{x:12.4g}" for x in numbers) + f"  {unit}")
-    return [*found, *_shares(result), f"The data are in {result.store}"]
+    plane = [f"Amplitudes are those {result.plane}."] if result.plane else []
+    return [*found, *plane, *_shares(result), f"The data are in {result.store}"]
 
 
 def _shares(result: SweepResult) -> list[str]:
@@ -54,6 +55,8 @@ def summary(result: SweepResult) -> list[tuple[str, str]]:
         ("Samples done", f"{result.done} of {result.samples}, {result.method}, seed {result.seed}"),
         ("Varied", ", ".join(result.fields)),
     ]
+    if result.plane:
+        rows.append(("Amplitudes", result.plane))
     if result.speeds > 1:
         rows.append(("Largest amplitude", spread(result, "peak_amplitude")))
         rows.append(("Largest amplitude without liquid", spread(result, "peak_amplitude_dry")))

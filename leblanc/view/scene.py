@@ -15,6 +15,7 @@ from leblanc.figures.chambers import plates
 from leblanc.figures.page import zero_of
 from leblanc.results.base import one_line
 from leblanc.results.drawn import DrawnLiquid, LiquidBodies, LiquidShape, MachineMotion, Scale, strips
+from leblanc.text.run import amplitude_place
 from leblanc.units import DEGREE, LENGTH, MINUS, in_rpm, with_unit
 from leblanc.view.parts import (
     ABOVE,
@@ -419,11 +420,15 @@ def describe_state(motion: MachineMotion, index: int, dry: Sequence[bool]) -> li
     found, answer = motion.deflection[index], motion.response.response
     if not np.isfinite(found).all():
         return ["no bounded deflection found: the axis is drawn at rest"]
-    lines = []
+    lines, part = [], "deflection"
     several = len({round(abs(deflection), 12) for deflection in found}) > 1
+    if motion.response.motion is not None:
+        size = with_unit(float(motion.response.amplitude[index]), LENGTH)
+        lines.append(f"amplitude {amplitude_place(motion.response)}: {size}")
+        part = "with the spin"
     for k, deflection in enumerate(found):
         if k == 0 or several:
-            name = f"chamber {k + 1}: deflection" if several else "deflection"
+            name = f"chamber {k + 1}: {part}" if several else part
             lines.append(f"{name} {place_in_words(complex(deflection), zero_of(motion.response))}")
     if not motion.fills:
         return [*lines, "no liquid"]

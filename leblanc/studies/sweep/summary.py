@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from leblanc.results.notes import plane_words
 from leblanc.results.sweep import QUANTILES, Sensitivity, Statistics, SweepResult
 from leblanc.studies.sweep.block import DONE, FAILED, NOT_CONVERGED, SINGLE
 from leblanc.studies.sweep.sampling import sample_rows
@@ -216,7 +217,17 @@ def summarise(store: Store, sweep: Sweep) -> SweepResult:
         sensitivities=shares,
         digest=sweep.digest,
         read=partial(read_arrays, store.path),
+        plane="" if sweep.scene.rotor.kind == "jeffcott" else _plane(sweep),
     )
+
+
+def _plane(sweep: Sweep) -> str:
+    """Plane of the amplitudes, with its place unless that varies."""
+    if not sweep.scene.fills:
+        return plane_words(0.0, chambers=False)
+    varied = any(field.path.startswith("chambers.0.plane") for field in sweep.fields)
+    words = plane_words(sweep.scene.fills[0].chamber.plane, chambers=True)
+    return words.partition(" at ")[0] if varied else words
 
 
 def statistics(values: Array) -> Statistics:

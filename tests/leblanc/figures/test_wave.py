@@ -90,7 +90,7 @@ def test_labels_and_numbers():
     assert low == 0.0 and 23.0 < high < 30.0
     assert numbers(figure) == (
         "force ratio 0.49 + 3.12i (3.158 at 81\N{DEGREE SIGN})\n"
-        "centre of mass 22.4 mm at \N{MINUS SIGN}27\N{DEGREE SIGN}"
+        "centre of mass 22.36 mm at \N{MINUS SIGN}27\N{DEGREE SIGN}"
     )
     np.testing.assert_allclose(labelled(right, "mean depth").get_ydata(), 15.0, rtol=1e-12)
     assert set(legend(figure)) == {

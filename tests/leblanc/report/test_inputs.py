@@ -206,12 +206,14 @@ def test_units() -> None:
         "speeds.start": 60.0, "model.tolerance": 2.0, "runup.start": 30.0, "runup.stop": 900.0,
         "runup.rate": 2.0, "runup.duration": 9.0, "runup.cells": 32.0, "runup.samples": 77.0,
         "optimise.working_speed": 600.0, "optimise.vibration_limit": 1.5, "optimise.deflection": 0.7,
-        "optimise.unbalance": 1000.0, "optimise.temperature": 278.15, "optimise.quantile": 0.9,
+        "optimise.unbalance": 1.0, "optimise.temperature": 5.0, "optimise.quantile": 0.9,
         "optimise.operating": 500.0, "optimise.clearance": 4.0, "optimise.duty": 300.0,
     }  # fmt: skip
     for path, value in expected.items():
         # Four digits are printed.
         assert math.isclose(number(found[path]), value, rel_tol=6e-4), (path, found[path])
+    assert found["optimise.unbalance"].endswith(" kg mm")
+    assert found["optimise.temperature"].endswith(" degC")
     assert found["speeds.stop"] == "to 1200 rpm" and found["speeds.count"] == "at 20 speeds"
     assert found["model.friction"] == "linear, 0.5 1/s"
     assert found["chambers.0.liquid"] == "liquid, 900 kg/m³, 2 mm²/s"
@@ -224,7 +226,7 @@ def test_units_of_other_rotors() -> None:
     for path, value in {
         "rotor.transverse_inertia": 0.7, "rotor.polar_inertia": 0.2, "rotor.supports.0.position": -300.0,
         "rotor.supports.0.stiffness": 4e4, "rotor.supports.0.damping": 80.0,
-        "rotor.unbalances.0.position": 100.0, "rotor.unbalances.0.size": 1500.0,
+        "rotor.unbalances.0.position": 100.0, "rotor.unbalances.0.size": 1.5,
         "rotor.unbalances.0.angle": 120.0, "runup.motor.inertia": 0.3,
     }.items():  # fmt: skip
         assert math.isclose(number(planes[path]), value, rel_tol=6e-4), path
@@ -234,11 +236,11 @@ def test_units_of_other_rotors() -> None:
     assert tub["rotor.springs.1.stiffness"] == "(1200, 1300, 1400)"
     assert tub["rotor.dampers.0.damping"] == "155"
     assert tub["rotor.drum_position"] == "(0, 90, 0) mm" and tub["rotor.unbalance_position"] == "80 mm"
-    assert tub["rotor.unbalance"] == "185000 g mm"
+    assert tub["rotor.unbalance"] == "185 kg mm"
     table = told(scene_inputs(scene_from_table(full("exciter"))))
     for path, value in {
         "rotor.platform_mass": 90.1, "rotor.stiffness": 1.4e5, "rotor.damping": 150.0,
-        "rotor.unbalance": 10000.0, "rotor.balls.count": 2.0, "rotor.balls.mass": 325.0,
+        "rotor.unbalance": 10.0, "rotor.balls.count": 2.0, "rotor.balls.mass": 325.0,
         "rotor.balls.track_radius": 90.0, "rotor.balls.damping": 0.03,
     }.items():  # fmt: skip
         assert math.isclose(number(table[path]), value, rel_tol=6e-4), path

@@ -117,7 +117,7 @@ def test_map_numbers(record: WhirlMap | None = None) -> None:
         assert len(lines) == 1
         line = lines[0]
         assert row[2].text == printed(record.growth[line].max())
-        edges = [f"{low * RPM:.5g} to {high * RPM:.5g}" for low, high in record.edges[line]]
+        edges = [f"{printed(low * RPM)} to {printed(high * RPM)}" for low, high in record.edges[line]]
         assert row[1].text == ("; ".join(edges) or "none")
 
 
@@ -158,7 +158,7 @@ def test_map_report_is_the_json() -> None:
     assert page.row("Fastest growth") == [f"{printed(growth[k, j])} 1/s at {at}"]
     assert page.row("Friction of the liquid") == [answer["friction"]] == ["linear, 0.2 1/s"]
     assert page.row("Support") == [answer["damping"]]
-    bands = "; ".join(f"{low * RPM:.5g} to {high * RPM:.5g}" for low, high in answer["scene_edges"])
+    bands = "; ".join(f"{printed(low * RPM)} to {printed(high * RPM)}" for low, high in answer["scene_edges"])
     assert page.row("Bands with the scene's 20 ml (rpm)") == [bands]
     assert [row[2] for row in page.table("Liquid (ml)")] == [printed(max(row)) for row in growth.tolist()]
     assert page.of("li") == answer["notes"]
@@ -216,10 +216,11 @@ def test_optimum_numbers() -> None:
     assert found["Stability margin at the operating speeds"] == f"{printed(-record.growth)} 1/s"
     edge = record.front
     assert edge is not None
-    rows = report_optimise.front(record).rows
+    (of, *_), rows = report_optimise.front(record).head, report_optimise.front(record).rows
+    assert of.startswith("Liquid (kg), ")
     assert sum("(chosen)" in row[0].text for row in rows) == 1
     for row in rows:
-        points = [k for k in range(edge.mass.size) if printed(edge.mass[k] * 1e3) == row[0].text.split()[0]]
+        points = [k for k in range(edge.mass.size) if printed(edge.mass[k]) == row[0].text.split()[0]]
         mine = [
             (
                 printed(edge.volume[k, 0] * 1e6),
@@ -279,8 +280,10 @@ def test_optimise_report_is_the_json() -> None:
     limits = {row[0].partition(":")[0]: row[1:] for row in page.table("Constraint")}
     assert limits["vibration"][1] == f"{printed(answer['constraints']['vibration']['limit'] * 1e3)} mm"
     assert limits["vibration"][2] == "kept" and set(limits) == {"capacity", "vibration"}
-    front = {printed(one["mass"] * 1e3): one for one in answer["pareto"]}
-    for row in page.table(next(row[0] for row in page.rows if row and row[0].startswith("Liquid (g)"))):
+    head = next(row[0] for row in page.rows if row and row[0].startswith("Liquid ("))
+    factor = {"g": 1e3, "kg": 1.0}[head[8 : head.index(")")]]
+    front = {printed(one["mass"] * factor): one for one in answer["pareto"]}
+    for row in page.table(head):
         assert row[0].split()[0] in front
     # What is said of the machine with the best volumes is what `run` says of it.
     for chamber, volume in zip(table["chambers"], answer["volume"], strict=True):

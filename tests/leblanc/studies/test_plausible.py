@@ -130,7 +130,7 @@ def tub(springs: list[dict[str, Any]]) -> Scene:
 
 
 def test_directions_in_which_nothing_holds_a_tub() -> None:
-    """Upright springs in one vertical plane leave what they do not resist; springs all round leave nothing."""
+    """Upright springs in one plane leave what they do not resist; springs all round leave nothing."""
     upright = [{"position": [x, 0, 0.2], "stiffness": [0, 0, 5000]} for x in (0.2, -0.2)]
     (note,) = doubts(tub(upright))
     assert note.data["field"] == "rotor.springs"
