@@ -39,6 +39,8 @@ ANSWERED: dict[str, tuple[int, int, int]] = {
 
 # Numbers near zero are judged beside these.
 _BESIDE = {"backward": "deflection", "offset": "depth", "mean_rotation": "speed"}
+# Growth and whirl speed are parts of one root.
+_COMPLEX = {"growth": "whirl_speed"}
 # Angles, each of a length: where that is nothing but rounding so is the angle.
 _ANGLES = {"phase": "amplitude", "liquid_angle": "liquid_offset", "liquid_angle_mean": "liquid_offset_mean"}
 # Rounding of a conserved sum: it is near zero, whatever the machine.
@@ -90,12 +92,13 @@ def differences(
     Infinite where they differ in more than numbers: in shape, in what was found at all, in a state.
     """
     far: dict[str, float] = {}
+    near = _BESIDE | _COMPLEX
     for key in ANSWERED:
         if key in without or key not in answer or isinstance(answer[key], str):
             continue
         expected = numbers(answer[key]).astype(float) * factor(ANSWERED[key], scales)
         number = numbers(found[key]).astype(float) if key in found else np.array([np.inf])
-        beside = numbers(answer.get(_BESIDE.get(key, key), answer[key])).astype(float)
+        beside = numbers(answer.get(near.get(key, key), answer[key])).astype(float)
         sizes = np.abs(beside[np.isfinite(beside)])
         far[key] = _apart(number, expected, factor(ANSWERED[key], scales) * max(sizes.flat, default=0.0))
     for angle, length in _ANGLES.items():

@@ -9,7 +9,8 @@ from meshes.errors import InputError
 from tests.mutants import kills
 from validation.cases import errata
 from validation.cases.case import Case, Effect, compare, shape_verdict
-from validation.cases.errata import tub_matrices
+from validation.cases.errata import formulas
+from validation.cases.errata.tub import tub_matrices
 
 
 @cache
@@ -44,6 +45,17 @@ def test_records_are_json() -> None:
         ("errata/dg-section-4-far", 3.7e-3, 1800e-6 / 60.7),
         ("errata/dr-oblate", None, math.sqrt(3.0)),
         ("errata/ff-eq-10", 4.0, 2.0),
+        ("errata/dr-eq-4-y-beta", -1.0, 0.0),
+        ("errata/dr-eq-4-beta-gamma", 0.0, -1.0),
+        ("errata/dr-eq-4-alpha-gamma", 0.0, -1.0),
+        ("errata/dr-eq-14-x5", 5.0, 1.0),
+        ("errata/dr-eq-16-x5", 5.0, 1.0),
+        # 33 Hz over nine times the cage's share, (1 - 0.2305)/2.
+        ("errata/dr-table-bpfo", 9.55, 85.77 / 9.0),
+        ("errata/dr-fig-20", None, 1.0 / math.sqrt(1.0 - 2.0 * 0.2**2)),
+        # c_w eta pi l^3 sqrt(m/c_m)/I_x, and with (r/l)^2.
+        ("errata/dr-pump-drag-table", 1.48e-7, 3.554540e-3),
+        ("errata/dr-pump-drag-eq-41", 1.48e-7, 4.468145e-4),
     ],
 )
 def test_values(name: str, printed: float | None, computed: float) -> None:
@@ -52,6 +64,29 @@ def test_values(name: str, printed: float | None, computed: float) -> None:
         assert case.printed == printed
     # The two limits (a thin shift, a high speed) are reached within 1e-5.
     assert case.computed == pytest.approx(computed, rel=1e-5, abs=1e-12)
+
+
+def test_terms_of_the_tub_are_symmetric() -> None:
+    """Each of the five terms is the one that the spring's energy gives; four stand right elsewhere."""
+    found = {name: case.computed for name, case in by_name().items() if "-equation-" in name}
+    assert found["errata/dr-alpha-equation-stiffness"] == "-c_y*x*z"  # a_46 of the list below eq. 8
+    assert found["errata/dr-alpha-equation-damping"] == "-h_y*x*z"
+    assert found["errata/dr-beta-equation-damping"] == "-h_z*x"  # a_35
+    assert found["errata/dr-gamma-equation-damping"] == "-h_x*y*z"  # a_56
+    assert found["errata/dr-gamma-equation-rate"] == "c_x*y**2 + c_y*x**2"  # a_66
+
+
+def test_eq_13_names_another_moment() -> None:
+    case = by_name()["errata/dr-eq-13"]
+    assert (case.printed, case.computed) == ("E", "D")
+
+
+def test_weak_supports_move_the_region_of_balls() -> None:
+    """The conditions say 49.5 rad/s whatever the damping; eigenvalues that much with 40 N s/m alone."""
+    case = by_name()["errata/ff-conclusion-2"]
+    assert case.printed == pytest.approx(49.512, rel=1e-4)
+    assert case.computed == pytest.approx(79.24, abs=0.05)
+    assert "it is 49.4" in case.note
 
 
 def test_eq_18_is_litres_off() -> None:
@@ -84,7 +119,7 @@ def test_stiffness_entries_are_exchanged() -> None:
 
 
 @kills(
-    "validation.cases.errata:tub_matrices",
+    "validation.cases.errata.tub:tub_matrices",
     "sp.Matrix(q[:3]) + turn * place - place",
     "sp.Matrix(q[:3]) - turn * place + place",
 )
@@ -104,7 +139,7 @@ def test_tub_matrices_against_rigid_body_kinematics() -> None:
     np.testing.assert_array_equal(gyroscopic, -gyroscopic.T)
 
 
-@kills("validation.cases.errata:tub_matrices", "spin[0, 2] + omega", "spin[0, 2] + 2 * omega")
+@kills("validation.cases.errata.tub:tub_matrices", "spin[0, 2] + omega", "spin[0, 2] + 2 * omega")
 def test_gyroscopic_coupling_is_the_torque_that_turns_the_spin() -> None:
     """d/dt of J_b omega n, n the spin axis tilted by alpha about x and gamma about z."""
     matrices = tub_matrices()
@@ -122,13 +157,13 @@ def test_gyroscopic_coupling_is_the_torque_that_turns_the_spin() -> None:
 
 
 @kills(
-    "validation.cases.errata:_polar_moment_about_axis",
+    "validation.cases.errata.formulas:_polar_moment_about_axis",
     "(r[:, None] * np.sin(angle)) ** 2",
     "0.0 * r[:, None]",
 )
 def test_polar_moment() -> None:
     """Steiner: pi r^4/2 + pi r^2 d^2."""
-    assert errata._polar_moment_about_axis(0.3, 0.2) == pytest.approx(
+    assert formulas._polar_moment_about_axis(0.3, 0.2) == pytest.approx(
         np.pi * (0.3**4 / 2 + 0.3**2 * 0.2**2), rel=1e-14
     )
 

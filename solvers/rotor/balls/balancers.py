@@ -126,7 +126,7 @@ def simulate(
     require_not_negative("gravity", gravity)
     if not races or samples < 2 or steps < 8:
         raise InputError("races, samples, steps", (len(races), samples, steps), "at least 1, 2 and 8")
-    axes, balls = _balls(system, races)
+    axes, balls = race_arrays(system, races)
     n, count = len(system.coordinates), balls.shape[0]
     state = _initial(n, races, speed, places, count)
     in_sample = math.ceil(duration / (samples - 1) * _fastest(system, balls, speed) * steps / (2.0 * math.pi))
@@ -170,7 +170,7 @@ def _audit(record: Array, system: RotorSystem, axes: Array, balls: Array, gravit
     return gap / scale if scale > 0.0 else gap
 
 
-def _balls(system: RotorSystem, races: Sequence[BallRace]) -> tuple[Array, Array]:
+def race_arrays(system: RotorSystem, races: Sequence[BallRace]) -> tuple[Array, Array]:
     """Axis displacement in each ball's plane, and mass, radius, drag, rolling inertia of each ball."""
     axes = [system.at(race.position) for race in races for _ in race.masses]
     rows = [(mass, race.radius, race.drag, race.rolling) for race in races for mass in race.masses]

@@ -1,0 +1,214 @@
+"""What the sources say of rotors, bearings and pumps, beside what follows from their own equations."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from meshes.arrays import Array
+from solvers.rotor.balls.stability import balanced_roots
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.two_plane import TwoPlane
+from solvers.rotor.two_plane_balance import dynamic_balancing, of_two_planes
+from solvers.rotor.vibration import unbalance_response
+from validation.cases.case import Case, compare
+from validation.cases.two_plane import BALLS, LONG, RACES
+
+
+def cases() -> list[Case]:
+    """Errata of the stability condition, the resonance peak, the spindle, the pump, the balancers."""
+    return [
+        _products_of_inertia(),
+        _peak_shift(),
+        *_bearing(),
+        *_housing(),
+        *_drag_number(),
+        _weak_supports(),
+    ]
+
+
+def _products_of_inertia() -> Case:
+    """DR18, eq. 13: derivative of W by gamma_2 upright, gamma_3 following from the unit length."""
+    import sympy as sp
+
+    first, second, spin = sp.symbols("gamma_1 gamma_2 omega")
+    moments = sp.symbols("A B C D E F")
+    a, b, c, d, e, f = moments
+    third = sp.sqrt(1 - first**2 - second**2)
+    inertia = a * first**2 + b * second**2 + c * third**2
+    inertia -= 2 * (d * second * third + e * first * third + f * first * second)
+    slope = sp.diff(-(spin**2) * inertia / 2, second).subs({first: 0, second: 0})
+    computed = sp.simplify(slope / spin**2)
+    return Case(
+        "errata/dr-eq-13",
+        "DR18, eq. 13, second line",
+        "dW/d(gamma_2) over omega^2 of the upright body, without gravity",
+        "E",
+        str(computed),
+        "another moment",
+        "erratum",
+        "the first line has E in its place; eq. 15, D = E = 0, needs both",
+    )
+
+
+def _peak_shift() -> Case:
+    """DR18, below Fig. 20: where the largest deflection under an unbalance lies as damping grows."""
+    from scipy.optimize import minimize_scalar
+
+    def peak(ratio: float) -> float:
+        rotor = Jeffcott(1.0, 1.0, 2.0 * ratio, 1.0).system()
+        found = minimize_scalar(
+            lambda speed: -abs(unbalance_response(rotor, [speed])[0, 0]),
+            bounds=(0.5, 2.0),
+            method="bounded",
+            options={"xatol": 1e-10},
+        )
+        return float(found.x)
+
+    shift = peak(0.2)
+    return Case(
+        "errata/dr-fig-20",
+        "DR18, below Fig. 20(b)",
+        "speed of the largest deflection under an unbalance over the natural frequency, damping ratio 0.2",
+        "below 1: to lower speeds as damping grows",
+        shift,
+        "the opposite",
+        "erratum",
+        f"1/sqrt(1 - 2 zeta^2) = {1.0 / math.sqrt(1.0 - 2.0 * 0.2**2):.4f}; a force of one size "
+        "at all speeds has its peak below",
+    )
+
+
+# The spindle's speeds that bring each frequency of its bearings to 33 Hz, Hz [DR18, chapter 2.2, table 1].
+_RESONANCE = 33.0
+_CAGE, _OUTER, _INNER = 85.77, 9.55, 5.96
+
+
+def _bearing() -> list[Case]:
+    """Ball pass frequency of the outer ring from those of cage and inner ring in the same table."""
+    cage = _RESONANCE / _CAGE
+    balls = round(_RESONANCE / _INNER / (1.0 - cage))
+    computed = _RESONANCE / (cage * balls)
+    share = 1.0 - 2.0 * cage
+    rolling = [
+        _RESONANCE / (0.5 * across / share * (1.0 - share**2))
+        for across in (1.0, math.cos(math.radians(15.0)))
+    ]
+    return [
+        compare(
+            "errata/dr-table-bpfo",
+            "DR18, chapter 2.2, table 1",
+            "spindle's frequency at which BPFO is 33 Hz, Hz",
+            _OUTER,
+            computed,
+            tolerance=0.5 * 0.01 / _OUTER,
+            otherwise="erratum",
+            note=f"of the table's own FTF and BPFI: d cos(theta)/D = {share:.4f}, {balls} balls",
+        ),
+        compare(
+            "errata/dr-table-bsf",
+            "DR18, chapter 2.2, table 1",
+            "spindle's frequency at which BSF is 33 Hz, contact angle 15 deg, Hz",
+            16.1,
+            rolling[1],
+            tolerance=0.5 * 0.1 / 16.1,
+            otherwise="erratum",
+            note=f"printed is that of a contact angle of 0, {rolling[0]:.2f}; bearings 7004 have one",
+        ),
+    ]
+
+
+# Where reactions act on the housing: indices of the compliances that eq. 5 multiplies with X_1 to X_4 in the
+# rows of X_5 and X_6, one row each.
+_ROWS = {"X_5": ((1, 2), (1, 3), (1, 4), (1, 5)), "X_6": ((6, 2), (6, 3), (6, 4), (6, 5))}
+
+
+def _housing() -> list[Case]:
+    """Place of X_5 on the spindle's housing: eq. 14 and 16 against eq. 4 and 5."""
+    (place,) = {row for row, _ in _ROWS["X_5"]}
+    return [
+        compare(
+            f"errata/dr-eq-{number}-x5",
+            f"DR18, chapter 2.2, eq. {number}",
+            "section of the housing whose compliance multiplies X_5",
+            5.0,
+            float(place),
+            tolerance=0.0,
+            otherwise="erratum",
+            note="the row of X_5 in eq. 5; by reciprocity its column in eq. 4 as well; section 5 carries X_4",
+        )
+        for number in (14, 16)
+    ]
+
+
+def _drag_number() -> list[Case]:
+    """DR18, chapter 2.3, table 1: the drag's similarity number from the table's own values."""
+    shape, viscosity, length, radius = 0.91, 0.056, 22e-3, 7.8e-3
+    mass, stiffness, inertia = 12.42e-3, 6000.0, 6.9e-7
+    plain = shape * viscosity * math.pi * length**3 * math.sqrt(mass / stiffness) / inertia
+    # Radius and length over the scale of lengths, which is the length.
+    full = plain * (radius / length) ** 2
+    found = []
+    for name, source, computed, note in (
+        ("table", "table 1", plain, "the table's formula with the table's values"),
+        ("eq-41", "table 1 and eq. 41", full, "eq. 41 has r^2 l over the length as well, r = d/2"),
+    ):
+        found.append(
+            compare(
+                f"errata/dr-pump-drag-{name}",
+                f"DR18, chapter 2.3, {source}",
+                "similarity number of the blood's drag, Pi_H",
+                1.48e-7,
+                computed,
+                tolerance=0.01,
+                otherwise="erratum",
+                note=note,
+            )
+        )
+    return found
+
+
+def _weak_supports() -> Case:
+    """FF20, conclusion 2: from which speed balls balance a long rotor whose supports hardly damp."""
+    damping = 0.5
+    weak = replace(LONG, supports=tuple(replace(support, damping=damping) for support in LONG.supports))
+    printed = dynamic_balancing(of_two_planes(weak, BALLS), 1.0).above
+    usual = first_stable_speed(LONG)
+    return compare(
+        "errata/ff-conclusion-2",
+        "FF20, conclusion 2",
+        f"speed from which two ball balancers hold a long rotor, supports of {damping:g} N s/m, rad/s",
+        float(printed),
+        first_stable_speed(weak),
+        tolerance=0.05,
+        otherwise="erratum",
+        note="eigenvalues about the balanced state; with 40 N s/m it is "
+        f"{usual:.2f}: damping in the supports does move the region",
+    )
+
+
+def first_stable_speed(rotor: TwoPlane, low: float = 40.0, high: float = 150.0) -> float:
+    """Least speed above which the balanced state of rotor and balls is stable up to `high`, rad/s.
+
+    Parameters
+    ----------
+    rotor : with the balls of `RACES`
+    low, high : where it is looked for, rad/s; to the hundredth part of their distance, then halved
+    """
+    system = rotor.system()
+
+    def stable(speed: float) -> bool:
+        return float(balanced_roots(system, RACES, speed).real.max()) < 0.0
+
+    grid: Array = np.linspace(low, high, 101)
+    below = [speed for speed in grid.tolist() if not stable(speed)]
+    if not below:
+        return low
+    left = max(below)
+    right = left + (high - low) / 100.0
+    for _ in range(30):
+        middle = 0.5 * (left + right)
+        left, right = (left, middle) if stable(middle) else (middle, right)
+    return right
