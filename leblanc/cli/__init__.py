@@ -174,7 +174,7 @@ def _as_typed(command: Callable[..., None]) -> Callable[..., None]:
 def _announced(application: typer.Typer, entry: EntryPoint) -> None:
     """Add a command of another package; one that does not load says so when it is called."""
     try:
-        application.command(entry.name)(entry.load())
+        application.command(entry.name)(_as_typed(entry.load()))
     except (ImportError, AttributeError) as error:
         reason = f"{entry.value} cannot be loaded: {error}"
         anything = {"allow_extra_args": True, "ignore_unknown_options": True}

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from leblanc.cli.output import load, print_json, say
+from leblanc.cli.output import load, print_json, print_table, say
 from leblanc.files import out_dir
 
 
@@ -68,9 +68,12 @@ def map(
     if json:
         print_json(found.to_json())
     else:
-        print(f"liquid friction: {found.friction}; support: {found.damping}")
+        from leblanc.text.whirl_map import answer, facts
+
+        print(answer(found))
+        print_table(facts(found), indent=2)
         for note in found.notes:
-            print(note)
+            print(f"note: {note}")
         print(f"Read {folder / 'map.html'}; the data are in {folder / 'map.nc'}")
 
     lost = int((found.growth != found.growth).sum())

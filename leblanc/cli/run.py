@@ -75,7 +75,7 @@ def _run_exciter(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
     from leblanc.report.page import about, command_line
     from leblanc.report.run import write_exciter_report
     from leblanc.studies.exciter import run_exciter
-    from leblanc.text.exciter import lines
+    from leblanc.text.exciter import limits, lines
 
     result = run_exciter(machine)
     figure = write_exciter_figure(result, folder)
@@ -85,6 +85,8 @@ def _run_exciter(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
         print_json(result.to_json())
     else:
         print("\n".join(lines(result)))
+        print("\nLimits of the answer")
+        print_table([(limit.label, limit.where) for limit in limits(result)], indent=2)
         print(f"Read {folder / 'summary.html'}")
     if not result.converged:
         from leblanc.scene.schema.load import NotConverged

@@ -18,12 +18,13 @@ from leblanc.results.whirl_map import WhirlMap
 from leblanc.text.exciter import NUMBERS
 from leblanc.text.exciter import answer as exciter_answer
 from leblanc.text.exciter import facts as exciter_facts
+from leblanc.text.exciter import limits as exciter_limits
 from leblanc.text.numbers import number, ranges
 from leblanc.text.run import BALLS, WHIRL, answer, comparisons, facts, largest_error, limits, machine, remarks
 from leblanc.text.whirl_map import answer as whirl_map_answer
 from leblanc.text.whirl_map import band_words
 from leblanc.text.whirl_map import facts as whirl_map_facts
-from leblanc.units import LENGTH, RPM, VOLUME, in_rpm, unit_for
+from leblanc.units import LENGTH, RPM, VOLUME, unit_for
 
 if TYPE_CHECKING:
     from leblanc.figures.page import FigureFiles
@@ -106,15 +107,7 @@ def integrations(result: ExciterResult) -> Table:
 
 def exciter_checks(result: ExciterResult) -> Table:
     """Where the answer is not what it seems."""
-    lost = [check.speed for check in result.checks if not check.converged]
-    text = ", ".join(in_rpm(speed) for speed in lost) or "none"
-    beyond = ~result.dual_frequency
-    outside = not math.isfinite(result.printed_critical)
-    rows = [
-        ("Time integration not finite", Cell(text, warning=bool(lost))),
-        ("Balls do not stick", Cell(ranges(result.speed, beyond), warning=bool(np.any(beyond)))),
-        ("Regression of the source", Cell("outside its ranges" if outside else "inside", warning=outside)),
-    ]
+    rows = [(limit.label, Cell(limit.where, warning=limit.failed)) for limit in exciter_limits(result)]
     return table("", ("Limits of the answer", "at"), rows)
 
 

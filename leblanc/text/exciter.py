@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from leblanc.results.exciter import ExciterResult
-from leblanc.text.numbers import NOT_FOUND
+from leblanc.text.numbers import NOT_FOUND, ranges
+from leblanc.text.run import Limit
 from leblanc.units import LENGTH, in_rpm, rpm_range, with_unit
 
 NUMBERS = {
@@ -58,6 +59,23 @@ def facts(result: ExciterResult) -> list[tuple[str, str]]:
         ("The same by the source's regression", _rpm(result.printed_critical, "outside its ranges")),
         (f"Vibration with the balls at {at}", slow),
         (f"Vibration with the shaft at {at}", with_unit(float(result.fast[-1]), LENGTH)),
+    ]
+
+
+def limits(result: ExciterResult) -> list[Limit]:
+    """Where the answer is not what it seems: each check with what fails it.
+
+    Parameters
+    ----------
+    result : the answer
+    """
+    lost = [check.speed for check in result.checks if not check.converged]
+    beyond = ~result.dual_frequency
+    outside = not math.isfinite(result.printed_critical)
+    return [
+        Limit("Time integration not finite", ", ".join(map(in_rpm, lost)) or "none", bool(lost)),
+        Limit("Balls do not stick", ranges(result.speed, beyond), bool(beyond.any())),
+        Limit("Regression of the source", "outside its ranges" if outside else "inside", outside),
     ]
 
 

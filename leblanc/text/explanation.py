@@ -119,7 +119,7 @@ def exciter_facts(answer: ExciterExplanation) -> Rows:
 
 def _ends(values: Array) -> str:
     """From the first speed to the last."""
-    return f"{values[0]:.3g} to {values[1]:.3g}"
+    return f"{number(float(values[0]))} to {number(float(values[1]))}"
 
 
 def _rpm(speed: float) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 from leblanc.results.layer import LayerCase, LayerPeriodsResult, LayerResult, Number
 from leblanc.results.liquid import ModesResult, VolumeResult
 from leblanc.text.numbers import number
-from leblanc.units import LENGTH, NUMBER, VOLUME, Dimension, in_rpm, unit_for, with_unit
+from leblanc.units import LENGTH, ML, MM, NUMBER, VOLUME, Dimension, Unit, in_rpm, unit_for, with_unit
 
 
 def question(result: VolumeResult) -> str:
@@ -27,12 +27,13 @@ def question(result: VolumeResult) -> str:
 
 def facts(result: VolumeResult) -> list[tuple[str, str]]:
     """The answer: label and value with its unit."""
+    unit = unit_for(VOLUME, result.optimal_volume)
     rows = [
-        ("optimal volume", _volume(result.optimal_volume)),
-        ("by finite elements", _volume(result.optimal_volume_fem)),
+        ("optimal volume", _volume(result.optimal_volume, unit)),
+        ("by finite elements", _volume(result.optimal_volume_fem, unit)),
         ("relative difference", f"{result.fem_error:.2g}"),
-        ("as printed, DR18 eq. 18", _volume(result.printed_eq18)),
-        ("the same, corrected", _volume(result.corrected_eq18)),
+        ("as printed, DR18 eq. 18", _volume(result.printed_eq18, unit)),
+        ("the same, corrected", _volume(result.corrected_eq18, unit)),
     ]
     surface = result.surface
     if surface is None:
@@ -41,17 +42,19 @@ def facts(result: VolumeResult) -> list[tuple[str, str]]:
     return [
         *rows,
         ("surface constant", "none" if constant is None else f"{constant:.10g} m"),
-        ("unbalance volume", f"{surface.unbalance_volume:.10g} m^4"),
-        ("by finite elements", f"{surface.unbalance_volume_fem:.10g} m^4"),
+        ("unbalance volume", f"{surface.unbalance_volume * _ML_MM:.10g} ml mm"),
+        ("by finite elements", f"{surface.unbalance_volume_fem * _ML_MM:.10g} ml mm"),
         ("case", f"{surface.case.value}: {surface.case.message}"),
-        ("converged", str(surface.converged).lower()),
+        ("converged", "yes" if surface.converged else "no"),
     ]
 
 
-def _volume(value: float | None) -> str:
+_ML_MM = ML * MM  # millilitres times millimetres in one m^4
+
+
+def _volume(value: float | None, unit: Unit) -> str:
     if value is None:
         return "none"
-    unit = unit_for(VOLUME, value)
     return f"{value * unit.count:.10g} {unit.name}"  # digits that show how near the finite elements come
 
 

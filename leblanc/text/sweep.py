@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from leblanc.results.base import one_line
 from leblanc.results.sweep import SweepResult
-from leblanc.units import LENGTH, unit_for
+from leblanc.units import ANGULAR_SPEED, LENGTH, MASS, Unit, unit_for
 
 _SHARED = ("peak_amplitude", "last_amplitude", "peak_growth")  # whose sensitivities are shown
 
@@ -18,11 +18,24 @@ def lines(result: SweepResult) -> list[str]:
     """
     found = [f"{'':24}{'mean':>12}{'deviation':>12}{'5 %':>12}{'50 %':>12}{'95 %':>12}  unit"]
     for name, values in result.single.items():
-        unit = result.units[name].replace("s-1", "1/s")
-        numbers = [values.mean[0], values.deviation[0], *values.quantiles[0, [0, 2, 4]]]
-        found.append(f"{name.replace('_', ' '):24}" + "".join(f"{x:12.4g}" for x in numbers) + f"  {unit}")
+        numbers = [
+            float(values.mean[0]),
+            float(values.deviation[0]),
+            *values.quantiles[0, [0, 2, 4]].tolist(),
+        ]
+        unit = _unit(result.units[name], numbers)
+        cells = "".join(f"{unit.number(x):>12}" for x in numbers)
+        found.append(f"{name.replace('_', ' '):24}{cells}  {unit.name}")
     plane = [f"Amplitudes are those {result.plane}."] if result.plane else []
     return [*found, *plane, *_shares(result), f"The data are in {result.store}"]
+
+
+def _unit(written: str, numbers: list[float]) -> Unit:
+    """Unit in which a person would write an output."""
+    for dimension in (LENGTH, MASS, ANGULAR_SPEED):
+        if written == dimension.unit.replace("rad/s", "rad s-1"):
+            return unit_for(dimension, *numbers)
+    return Unit(written.replace("s-1", "1/s"), 1.0)
 
 
 def _shares(result: SweepResult) -> list[str]:
