@@ -61,7 +61,11 @@ def as_typed(error: InputError, given: Mapping[str, Any]) -> InputError:
     typed = given.get(name)
     if not isinstance(typed, str):
         return error
-    return InputError(f"--{name.replace('_', '-')}", typed, allowed_as_typed(error.allowed, typed))
+    option = f"--{name.replace('_', '-')}"
+    try:
+        return InputError(option, float(typed), error.allowed)  # in SI, as the bounds are
+    except ValueError:
+        return InputError(option, typed, allowed_as_typed(error.allowed, typed))
 
 
 @dataclass(frozen=True)

@@ -147,7 +147,7 @@ def layer_profile(
         (number(math.degrees(float(angle))), unit.number(float(depth)))
         for angle, depth in zip(result.theta[::step], result.depth[::step], strict=True)
     ]
-    every = f", every {step}. of {result.theta.size}" if step > 1 else ""
+    every = f", one in {step} of {result.theta.size}" if step > 1 else ""
     return (f"angle (deg){every}", f"depth ({unit.name})"), rows
 
 

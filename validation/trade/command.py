@@ -22,9 +22,9 @@ def trade(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Accuracy against cost of every model and resolution. The best choices among them, a figure."""
-    from leblanc.scene.scene import load_scene
+    from leblanc.cli.output import load
 
-    machine = load_scene(scene)
+    machine = load(scene)
     folder = out_dir(machine.name, out)
 
     from rich.progress import Progress

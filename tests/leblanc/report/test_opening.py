@@ -1,0 +1,96 @@
+"""A report opens with a sentence of result, one of doubt, and the day on which it was made."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import leblanc as lb
+from leblanc.cli import main
+from leblanc.report.page import made_on
+from leblanc.report.parts import Cell, doubt, table
+from leblanc.report.run import response_checks
+from leblanc.text.run import answer
+
+COMMANDS = {
+    "run": (["run", "{scene}"], "summary.html"),
+    "map": (["map", "{scene}", "--volumes", "3", "--speeds", "8"], "map.html"),
+    "optimise": (["optimise", "{scene}", "--no-front"], "optimise.html"),
+    "runup": (["runup", "{runup}", "--cells", "16", "--no-check"], "runup.html"),
+    "exciter": (["run", "{table}"], "summary.html"),
+}
+
+
+def scene(name: str, folder: Path) -> str:
+    """An example with few speeds and a short run-up."""
+    content = Path(f"examples/{name}.toml").read_text(encoding="utf-8")
+    content = re.sub(r"^count = \d{3}", "count = 9", content, flags=re.MULTILINE)
+    path = folder / f"{name}.toml"
+    path.write_text(content.replace('duration = "14 s"', 'duration = "2 s"'), encoding="utf-8")
+    return str(path)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_report_opens_with_result_doubt_and_date(
+    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1600000000")
+    arguments, report = COMMANDS[command]
+    names = {"scene": "centrifuge", "runup": "runup", "table": "vibratory_table"}
+    given = [word.format(**{k: scene(v, tmp_path) for k, v in names.items()}) for word in arguments]
+    assert main([*given, "--out", str(tmp_path)]) == 0
+    page = (tmp_path / report).read_text(encoding="utf-8")
+    opening = page.partition("<section")[0]
+    (said,) = re.findall(r'<p class="answer">(.+?)</p>', opening)
+    (doubted,) = re.findall(r'<p class="doubt">(.+?)</p>', opening)
+    assert said.endswith(".") and doubted.endswith(".")
+    # What is doubted is what the table of limits marks.
+    assert doubted.startswith("Doubtful: ") == ('class="warning"' in page.partition("<section")[2])
+    assert '<time datetime="2020-09-13">2020-09-13</time>' in opening  # 1 600 000 000 s after 1970, in UTC
+
+
+def test_the_doubt_names_each_limit_that_is_passed() -> None:
+    result = lb.run(lb.example("horizontal_rig").replace({"speeds.count": 20}))
+    checks = response_checks(result)
+    said = doubt(checks)
+    for label, where in checks.rows:
+        lower = label.text[:1].lower() + label.text[1:]
+        assert (f"{lower}: {where.text}" in said) == where.warning
+    assert "out of range" in said
+
+
+def test_no_doubt_where_nothing_is_passed() -> None:
+    calm = table("", (), [("Not converged", Cell("none"))])
+    assert doubt(calm) == "No limit of the models is passed."
+    assert doubt(calm, "estimated error at most 0.05 %").endswith("passed; estimated error at most 0.05 %.")
+
+
+def test_a_result_without_an_answer_says_so() -> None:
+    result = lb.run(lb.example("horizontal_rig").replace({"speeds.count": 3}))
+    lost = replace(
+        result, response=replace(result.response, deflection=result.response.deflection * float("nan"))
+    )
+    assert answer(lost) == "No answer was found at any speed."
+
+
+def test_data_and_figures_do_not_know_the_day(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same scene on two days: every file but the report is the same, byte for byte."""
+    path, files = scene("centrifuge", tmp_path), []
+    for seconds in ("1600000000", "1700000000"):
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", seconds)
+        out = tmp_path / seconds
+        assert main(["run", path, "--out", str(out)]) == 0
+        files.append({file.name: file.read_bytes() for file in out.iterdir()})
+    first, second = files
+    assert {name for name in first if first[name] != second[name]} == {"summary.html"}
+    changed = second["summary.html"].replace(b"2023-11-14", b"2020-09-13")
+    assert changed == first["summary.html"]
+
+
+@pytest.mark.parametrize("given", ["", "today", "-1", "9" * 30])
+def test_what_is_no_epoch_is_passed_over(given: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", given)
+    assert re.fullmatch(r"20\d\d-[01]\d-[0-3]\d", made_on())
