@@ -15,7 +15,7 @@ from leblanc.figures.runup import caption
 from leblanc.results.base import FilledChamber
 from leblanc.results.drawn import film_factor, half_angle
 from leblanc.results.runup import RunupFrames, RunupResult
-from leblanc.units import MM, RPM
+from leblanc.units import LENGTH, MM, RPM, unit_for
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -66,14 +66,14 @@ def film_figure(result: RunupResult, frames: RunupFrames) -> tuple[Figure, Show]
             for panel, group in zip(axes, shown, strict=False)
         ]
         shows.append(_draw_curve(axes[-1], result, frames))
-        title = axes[0]
+        title, unit = axes[0], unit_for(LENGTH, float(frames.amplitude.max()))
 
         def show(index: int) -> None:
             for move in shows:
                 move(index)
             title.set_title(
                 f"t = {frames.time[index]:.2f} s, {frames.speed[index] * RPM:.0f} rpm, "
-                f"{frames.amplitude[index] * MM:.2f} mm",
+                f"{frames.amplitude[index] * unit.count:.2f} {unit.name}",
                 loc="left",
             )
 

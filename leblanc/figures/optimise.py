@@ -22,8 +22,7 @@ from leblanc.figures.page import (
 )
 from leblanc.results.base import one_line, texts
 from leblanc.results.optimum import OptimumResult
-from leblanc.text.numbers import number as short
-from leblanc.units import MM, in_rpm
+from leblanc.units import LENGTH, MM, VOLUME, in_rpm, with_unit
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -61,10 +60,10 @@ def write_figures(result: OptimumResult, directory: Path) -> tuple[FigureFiles, 
 def objective_figure(result: OptimumResult) -> Figure:
     """Vibration over the volume of one chamber; a map for two; sections through the best point for more."""
     figure = _over_volumes(result)
-    best = ", ".join(short(volume * ML) for volume in result.volume.tolist())
+    best = ", ".join(with_unit(volume, VOLUME) for volume in result.volume.tolist())
     figure.alt = (
-        f"Vibration over the volumes that were tried; the best, {best} ml, gives "
-        f"{short(result.vibration * MM)} mm, no liquid {short(result.vibration_baseline * MM)} mm."
+        f"Vibration over the volumes that were tried; the best, {best}, gives "
+        f"{with_unit(result.vibration, LENGTH)}, no liquid {with_unit(result.vibration_baseline, LENGTH)}."
     )
     return figure
 

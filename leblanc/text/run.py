@@ -108,12 +108,15 @@ class Comparison:
     @property
     def wet_text(self) -> str:
         """That with liquid, and its unit."""
-        return f"{self.wet} {self.unit}"
+        return self._with_unit(self.wet)
 
     @property
     def dry_text(self) -> str:
         """That without, and its unit."""
-        return f"{self.dry} {self.unit}"
+        return self._with_unit(self.dry)
+
+    def _with_unit(self, size: str) -> str:
+        return f"{size} {self.unit}" if size[-1:].isdigit() else size
 
 
 def comparisons(result: RunResult) -> list[Comparison]:
