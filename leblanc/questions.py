@@ -61,6 +61,8 @@ def as_typed(error: InputError, given: Mapping[str, Any]) -> InputError:
     typed = given.get(name)
     if not isinstance(typed, str):
         return error
+    if not error.field.startswith("--") and not typed.lstrip("+-. ")[:1].isdigit():
+        return error  # no quantity: a name, which may be an argument and no option
     option = f"--{name.replace('_', '-')}"
     try:
         return InputError(option, float(typed), error.allowed)  # in SI, as the bounds are

@@ -112,11 +112,11 @@ def layer_periods(result: LayerPeriodsResult) -> tuple[tuple[str, ...], list[tup
     """
     h = result.history
     unit = unit_for(LENGTH, *h.depth_max.tolist(), *np.abs(h.offset).tolist())
-    head = (
+    head: tuple[str, ...] = (
         "time (s)", "force ratio", "at (deg)", "by pressure", "rotation (rad/s)",
         f"deepest ({unit.name})", f"shallowest ({unit.name})", f"centre of mass ({unit.name})",
     )  # fmt: skip
-    rows = [
+    rows: list[tuple[str, ...]] = [
         (
             number(float(h.time[k])),
             number(abs(complex(h.force_ratio[k]))),
@@ -143,7 +143,7 @@ def layer_profile(
     """
     unit = unit_for(LENGTH, *result.depth.tolist())
     step = max(1, math.ceil(result.theta.size / MOST_ANGLES))
-    rows = [
+    rows: list[tuple[str, ...]] = [
         (number(math.degrees(float(angle))), unit.number(float(depth)))
         for angle, depth in zip(result.theta[::step], result.depth[::step], strict=True)
     ]
