@@ -1,9 +1,9 @@
 """Where a rotor with liquid resonates: the tops of planar machines, and the resonances of any other rotor.
 
-A planar rotor moves in a circle that lags the unbalance. Its deflections over all speeds are one curve with
-the lag along it: with t the cotangent of the lag, the damper gives the deflection at a speed, and the balance
-along it gives the speed [theory: rotor, eq. 33]. Where the curve folds over the speed, it does not fold over
-the lag, so that its top is found like that of a linear rotor, however narrow it is.
+A planar rotor moves in a circle, and at the largest of all its deflections the deflection stands still over
+the speed. So does the liquid's share in the mass, as far as it depends on the deflection alone: the top is
+that of a linear rotor that has this mass [theory: rotor, eq. 33]. It is found however narrow the resonance
+is, and wherever the curve of the deflections folds.
 """
 
 from __future__ import annotations
@@ -13,17 +13,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fluid.fill import Fill
-from meshes.arrays import Array, Index
-from solvers.liquid_model import LiquidModel
+from fluid.fill import Fill, Fills
+from meshes.arrays import Array, Flags, Index
+from solvers.liquid_model import LiquidModel, Whirls
 from solvers.roots import bracketed_root
 from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
 from solvers.rotor.system import RotorSystem
 from solvers.synchronous.balance import backward_mass, directions
 from solvers.synchronous.models import STATICS
-from solvers.synchronous.pairs import pair_machines
 
-_STEPS = 4  # towards the top
+_STEPS = 3  # towards the top of a machine whose axis stands
 _NEAR = 1e-4  # relative distance of the speeds between which the liquid's share in the mass changes
 
 
@@ -44,7 +43,7 @@ class Tops:
 
 
 def planar_tops(machines: Sequence[PlanarMachine], gravity: Array, model: LiquidModel) -> Tops:
-    """Tops of the resonance curves of planar machines [theory: rotor, eq. 33 to 35].
+    """Tops of the resonance curves of planar machines [theory: rotor, eq. 33 and 34].
 
     Parameters
     ----------
@@ -67,98 +66,149 @@ def planar_tops(machines: Sequence[PlanarMachine], gravity: Array, model: Liquid
     """
     rotors = np.array([(r.mass, r.stiffness, r.damping, r.unbalance) for r, _ in machines]).reshape(-1, 4)
     mass, stiffness, damping, force = np.ascontiguousarray(rotors.T)
-    full, own = np.zeros((2, len(machines)))
-    for k, (_, fills) in enumerate(machines):
-        wet = [fill for fill in fills if fill.volume > 0.0]
-        full[k], own[k] = sum(fill.added_mass for fill in wet), sum(fill.mass for fill in wet)
-    moved = force > 0.0
-    damped = moved & (damping > 0.0)
-    speed, amplitude = np.full((2, len(machines)), np.nan)
+    liquid = _Liquid.of(machines, gravity, model)
+    full, own = liquid.added_mass, liquid.mass
+    speed, amplitude, total = np.full((3, len(machines)), np.nan)
     # Without damping the deflection grows without bound where the liquid left behind is a dead mass.
-    dead = np.where(_straight(machines, gravity, model), full, own)
-    free = moved & ~damped
-    speed[free], amplitude[free] = np.sqrt(stiffness / (mass + dead))[free], np.inf
-    rows = np.flatnonzero(damped)
+    free = (force > 0.0) & (damping == 0.0)
+    total[free] = (mass + np.where(liquid.straight(np.sqrt(stiffness / mass)), full, own))[free]
+    speed[free], amplitude[free] = np.sqrt(stiffness / total)[free], np.inf
+    rows = np.flatnonzero((force > 0.0) & (damping > 0.0))
+    curve = _Curve(*(x[rows] for x in (mass, stiffness, damping, force)))
+    total[rows] = mass[rows] + full[rows]
+    speed[rows], amplitude[rows] = curve.top(np.arange(rows.size), total[rows], np.zeros(rows.size))
+    # Wet all over, the liquid has its full mass whatever the deflection and the speed.
+    known = np.isfinite(speed[rows])
+    known[known] = amplitude[rows[known]] <= liquid.limit(rows[known], speed[rows[known]])
+    rows, curve = rows[~known], curve.at(~known)
     if rows.size:
-        curve = _Curve([machines[k] for k in rows.tolist()], gravity[rows], model, full[rows])
-        speed[rows], amplitude[rows] = curve.top()
-    total = np.divide(stiffness, np.square(speed), out=np.full(speed.shape, np.nan), where=speed > 0.0)
+        total[rows], speed[rows], amplitude[rows] = _bent(curve, liquid, rows)
     return Tops(speed, amplitude, 0.5 * damping / total)
 
 
-def _straight(machines: Sequence[PlanarMachine], gravity: Array, model: LiquidModel) -> Array:
-    """Whether every chamber adds its full mass however large the deflection is."""
-    rate = np.array([rotor.natural_frequency for rotor, _ in machines])
-    pairs = pair_machines(machines, np.arange(len(machines)), rate, gravity, model)
-    return np.isinf(pairs.limit)
+def _bent(curve: _Curve, liquid: _Liquid, rows: Index) -> tuple[Array, Array, Array]:
+    """Mass, speed and deflection at the tops of machines with a wall that runs dry; nan where there is none.
 
+    Parameters
+    ----------
+    curve, liquid : of the machines, and of all of them
+    rows : the machines, shape (m,)
+    """
+    full = liquid.added_mass[rows] * (1.0 + 1e-9)
+    # With less mass than that the deflection rises without end.
+    least = np.maximum(curve.mass * (1.0 - 1e-12), 0.5 * np.square(curve.damping) / curve.stiffness * (1.0 + 1e-9))
+    most = curve.mass + full
+    total, change = most, np.zeros(rows.size)
+    for _ in range(_STEPS if np.any(liquid.gravity[rows] > 0.0) else 1):
 
-class _Curve:
-    """Resonance curves of damped planar machines, with the cotangent t of the lag along them."""
+        def missing(mass: Array, which: Index) -> Array:
+            speed, deflection = curve.top(which, mass, change[which])
+            return np.asarray(curve.mass[which] + liquid.share(rows[which], deflection, speed) - mass)
 
-    def __init__(
-        self, machines: Sequence[PlanarMachine], gravity: Array, model: LiquidModel, full: Array
-    ) -> None:
-        self.machines, self.gravity, self.model = machines, gravity, model
-        values = [(r.mass, r.stiffness, r.damping, r.unbalance) for r, _ in machines]
-        self.mass, self.stiffness, self.damping, self.force = np.array(values).T
-        self.heaviest = self.mass + full * (1.0 + 1e-9)
-
-    def top(self) -> tuple[Array, Array]:
-        """Speed and deflection where the deflection is largest; nan where it rises without end."""
-        everyone = np.arange(self.mass.size)
-        t = np.zeros(everyone.size)
-        speed = self.speed(everyone, t)
-        for _ in range(_STEPS):
-            rows = np.flatnonzero(np.isfinite(speed))
-            t[rows] = self._level(rows, t[rows], speed[rows])
-            speed[:] = np.nan
-            rows = rows[np.isfinite(t[rows])]
-            speed[rows] = self.speed(rows, t[rows])
-        return speed, self.size(everyone, t, speed)
-
-    def _level(self, rows: Index, t: Array, speed: Array) -> Array:
-        """Cotangent at which the deflection stands still over the speed; nan where it does nowhere."""
-        mass, stiffness, damping = (x[rows] for x in (self.mass, self.stiffness, self.damping))
-        e, total = self.size(rows, t, speed), (stiffness - damping * speed * t) / np.square(speed)
-        # Upright, the liquid's share in the mass depends on the speed itself; otherwise on the deflection
-        # alone, which stands still at the top.
-        upright = np.flatnonzero((self.gravity[rows] > 0.0) & (total > mass * (1.0 + 1e-12)))
+        total, met = bracketed_root(missing, least, most)
+        total = np.where(met, total, np.nan)
+        speed, deflection = curve.top(np.arange(rows.size), total, change)
+        # Upright, the liquid's share in the mass depends on the speed itself as well.
+        upright = np.flatnonzero((liquid.gravity[rows] > 0.0) & met)
         if upright.size:
             near = speed[upright] * (1.0 + np.array([-_NEAR, _NEAR])[:, None])
-            owner, size = np.tile(rows[upright], 2), np.tile(e[upright], 2)
-            below, above = (self._pull(owner, near.ravel(), size) / np.square(near.ravel())).reshape(2, -1)
-            total[upright] += 0.25 * (above - below) / _NEAR
-        half = 0.5 * total * speed / damping
-        under = np.square(half) - 0.5
-        found = np.full(t.shape, np.nan)
-        np.divide(-0.5, half + np.sqrt(np.maximum(under, 0.0)), out=found, where=(half > 0.0) & (under > 0.0))
+            size = np.tile(deflection[upright], 2)
+            shares = liquid.share(np.tile(rows[upright], 2), size, near.ravel()).reshape(2, -1)
+            change[upright] = 0.25 * (shares[1] - shares[0]) / _NEAR
+    return total, speed, deflection
+
+
+@dataclass(frozen=True)
+class _Curve:
+    """Damped rotors M, K, C with unbalance U, shape (n,)."""
+
+    mass: Array
+    stiffness: Array
+    damping: Array
+    force: Array
+
+    def at(self, which: Index | Flags) -> _Curve:
+        """Some of them."""
+        return _Curve(*(x[which] for x in (self.mass, self.stiffness, self.damping, self.force)))
+
+    def top(self, which: Index, mass: Array, change: Array) -> tuple[Array, Array]:
+        """Speed and deflection at which the deflection stands still; nan where it does nowhere.
+
+        Parameters
+        ----------
+        which : of the rotors, shape (m,)
+        mass : of the rotor with its liquid, kg, shape (m,)
+        change : half of what its logarithm of the speed changes it by, kg, shape (m,)
+        """
+        stiffness, damping, force = (x[which] for x in (self.stiffness, self.damping, self.force))
+        # Both conditions, squared speeds eliminated [theory: rotor, eq. 34].
+        first = stiffness * (mass - change) - 0.5 * np.square(damping)
+        under = np.square(first) + 4.0 * mass * change * np.square(stiffness)
+        below = first + np.sqrt(np.maximum(under, 0.0))
+        sound = (under >= 0.0) & (below > 0.0)
+        squared = np.divide(2.0 * np.square(stiffness), below, out=np.full(mass.shape, np.nan), where=sound)
+        speed = np.sqrt(squared)
+        held = np.hypot(stiffness - mass * squared, damping * speed)
+        return speed, np.asarray(force * squared / held)
+
+
+@dataclass(frozen=True)
+class _Liquid:
+    """The liquid of all chambers of planar machines.
+
+    Parameters
+    ----------
+    fills : chambers with liquid, of all machines, shape (c,)
+    owner : the machine of each, shape (c,)
+    gravity, mass, added_mass : of each machine, shape (n,)
+    model : of the liquid
+    """
+
+    fills: Fills
+    owner: Index
+    gravity: Array
+    mass: Array
+    added_mass: Array
+    model: LiquidModel
+
+    @classmethod
+    def of(cls, machines: Sequence[PlanarMachine], gravity: Array, model: LiquidModel) -> _Liquid:
+        """That of some machines."""
+        wet = [(k, fill) for k, (_, fills) in enumerate(machines) for fill in fills if fill.volume > 0.0]
+        owner, fills = np.array([k for k, _ in wet], dtype=np.intp), Fills.of([fill for _, fill in wet])
+        sums = [np.bincount(owner, x, minlength=len(machines)) for x in (fills.mass, fills.added_mass)]
+        return cls(fills, owner, gravity, *sums, model)
+
+    def share(self, rows: Index, deflection: Array, speed: Array) -> Array:
+        """What the liquid adds to the mass of some machines: its unbalance over the deflection, kg."""
+        chamber, place = self._chambers(rows)
+        if chamber.size == 0:
+            return np.zeros(rows.size)
+        spin, own = speed[place], self.gravity[rows][place]
+        answer = self.model.answer(self.fills.at(chamber), Whirls.synchronous(spin, deflection[place], own))
+        return np.asarray(np.bincount(place, answer.real_unbalance(), minlength=rows.size) / deflection)
+
+    def limit(self, rows: Index, speed: Array) -> Array:
+        """Deflection up to which every chamber of some machines adds its full mass, m."""
+        found = np.full(rows.size, np.inf)
+        chamber, place = self._chambers(rows)
+        if chamber.size:
+            own = self.model.linear_limit(self.fills.at(chamber), speed[place], self.gravity[rows][place])
+            np.minimum.at(found, place, own)
         return found
 
-    def _pull(self, rows: Index, speed: Array, deflection: Array) -> Array:
-        """The liquid's pull over the deflection, N/m."""
-        pairs = pair_machines(self.machines, rows, speed, self.gravity, self.model)
-        beyond = pairs.pull(deflection, np.arange(speed.size)) / deflection
-        return np.asarray(beyond + np.square(speed) * pairs.liquid_mass)
+    def straight(self, speed: Array) -> Flags:
+        """Whether every chamber adds its full mass however large the deflection is."""
+        return np.isinf(self.limit(np.arange(speed.size), speed))
 
-    def size(self, rows: Index, t: Array, speed: Array) -> Array:
-        """Deflection at a speed and a lag, which the damper alone gives: U Omega/(C sqrt(1 + t^2))."""
-        return np.asarray(self.force[rows] * speed / (self.damping[rows] * np.hypot(1.0, t)))
-
-    def speed(self, rows: Index, t: Array) -> Array:
-        """Speed at a lag: the balance along the deflection, K - M Omega^2 - C Omega t = Omega^2 U_liq/e."""
-        mass, stiffness, damping = (x[rows] for x in (self.mass, self.stiffness, self.damping))
-
-        def left(speed: Array, which: Index) -> Array:
-            pull = self._pull(rows[which], speed, self.size(rows[which], t[which], speed))
-            held = stiffness[which] - mass[which] * np.square(speed) - damping[which] * speed * t[which]
-            return np.asarray(held - pull)
-
-        # Between the speeds at which the rotor has all of the liquid's mass and none of it.
-        shift = 0.5 * damping * t
-        ends = [np.sqrt(np.square(shift) + stiffness * m) for m in (self.heaviest[rows], mass)]
-        low, high = (ends[0] - shift) / self.heaviest[rows], (ends[1] - shift) / mass
-        return bracketed_root(left, low * (1.0 - 1e-9), high * (1.0 + 1e-9))[0]
+    def _chambers(self, rows: Index) -> tuple[Index, Index]:
+        """Chambers of some machines, and the place of each one's machine among them."""
+        order = np.argsort(self.owner, kind="stable")
+        first = np.searchsorted(self.owner[order], rows)
+        count = np.searchsorted(self.owner[order], rows, side="right") - first
+        place = np.repeat(np.arange(rows.size), count)
+        within = np.arange(place.size) - np.repeat(np.cumsum(count) - count, count)
+        return order[np.repeat(first, count) + within], place
 
 
 def resonances(system: RotorSystem, fills: Sequence[Fill], share: float = 1.0) -> tuple[Array, Array]:

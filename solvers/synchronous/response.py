@@ -155,6 +155,21 @@ class Response:
     residual: Array
     position: float = 0.0
 
+    @property
+    def parts(self) -> Complex:
+        """Forward and backward part of the branch reported, m, shape (n, 2)."""
+        return np.stack((self.deflection, self.backward), axis=1)
+
+    @property
+    def parts_dry(self) -> Complex:
+        """The same of the rotor without liquid, m, shape (n, 2)."""
+        return np.stack((self.deflection_dry, self.backward_dry), axis=1)
+
+    def at(self, which: Index) -> Response:
+        """The response at some of its speeds, by their index."""
+        own = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "position"}
+        return Response(**{name: values[which] for name, values in own.items()}, position=self.position)
+
 
 def response(
     rotor: Rotor,
@@ -163,6 +178,7 @@ def response(
     gravity: float = 9.81,
     model: LiquidModel | Sequence[LiquidModel] = STATICS,
     position: float | None = None,
+    near: Complex | None = None,
 ) -> Response:
     """Steady motion of a rotor with liquid in its chambers under its unbalance [theory: rotor, eq. 2, 28-30].
 
@@ -175,6 +191,8 @@ def response(
     model : of the liquid, for the forward part; one for all speeds or one for each
     position : of the plane that is reported, m; that of the first chamber if None, 0 without chambers. All
         planes of a Jeffcott rotor move alike
+    near : coordinates of answers at speeds close to each of these, from which a search with chambers in
+        several planes starts as well, shape (n, k, m)
 
     Returns
     -------
@@ -200,7 +218,8 @@ def response(
             return machine_responses([(rotor, fills)], owner, spin[at], np.array([gravity]), law)
         _require_speeds(spin)
         system = rotor.system()
-        return _of_balance(system, harmonic_balance(system, fills, spin[at], gravity, law), place)
+        terms = harmonic_balance(system, fills, spin[at], gravity, law)
+        return _of_balance(system, terms, place, None if near is None else near[at])
 
     if not isinstance(model, Sequence):
         return solve(model, np.arange(spin.size))
@@ -289,9 +308,9 @@ def _left(pairs: Pairs, deflection: Complex, unbalance: Array) -> Array:
     return np.asarray(np.divide(left, scale, out=np.zeros(scale.shape), where=scale > 0.0))
 
 
-def _of_balance(system: RotorSystem, terms: Balance, position: float) -> Response:
+def _of_balance(system: RotorSystem, terms: Balance, position: float, near: Complex | None) -> Response:
     """The solutions of a harmonic balance as tables over speed and branch, and the largest of each speed."""
-    answer, which, converged = solutions(terms)
+    answer, which, converged = solutions(terms, near)
     lost = np.setdiff1d(np.arange(terms.speed.size), which)
     nothing = np.full((lost.size, answer.shape[1]), complex(np.inf, 0.0))
     answer, which = np.concatenate((answer, nothing)), np.concatenate((which, lost))
@@ -378,12 +397,22 @@ class _Table:
 def _merged(parts: list[tuple[Index, Response]]) -> Response:
     """Responses of several models, each at its own speeds, in the order of the speeds."""
     order = np.argsort(np.concatenate([at for at, _ in parts]))
-    found: dict[str, Any] = {"position": parts[0][1].position}
+    return joined([part for _, part in parts]).at(order)
+
+
+def joined(parts: Sequence[Response]) -> Response:
+    """Responses at several sets of speeds as one, one set after the other.
+
+    Parameters
+    ----------
+    parts : of one rotor, at least one
+    """
+    found: dict[str, Any] = {"position": parts[0].position}
     for field in fields(Response):
-        values = [getattr(part, field.name) for _, part in parts]
+        values = [getattr(part, field.name) for part in parts]
         if field.name not in found:
             wide = _padded(values) if field.name.startswith("branch_") else values
-            found[field.name] = np.concatenate(wide)[order]
+            found[field.name] = np.concatenate(wide)
     return Response(**found)
 
 
