@@ -13,8 +13,7 @@ from typing import Protocol
 
 import numpy as np
 
-from leblanc.results.choice import Choice
-from leblanc.studies.choose import Prepared, choose_all, liquid_models
+from leblanc.studies.choose import Prepared, models_at, models_of
 from leblanc.studies.liquid import synchronous_model
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.rotor.jeffcott import Jeffcott
@@ -23,7 +22,7 @@ from solvers.synchronous.models import LINEAR
 from solvers.synchronous.peaks import Answer, Samples, refine, seeds
 from solvers.synchronous.planar import divide
 from solvers.synchronous.resonances import Tops, planar_tops, resonances
-from solvers.synchronous.response import Response, joined, machine_responses, response
+from solvers.synchronous.response import Response, by_speed, joined, machine_responses, response
 
 _UNDAMPED = 1e-8  # half width over speed of a resonance that nothing damps
 _NEAR, _NEARER = 1e-6, 1e-9  # relative distances over which its amplitude grows as one over the distance
@@ -66,14 +65,15 @@ class Asked(Protocol):
 
 
 def responses_between(
-    machines: Sequence[Prepared], choices: Sequence[Choice], answers: Sequence[Response]
+    machines: Sequence[Prepared], answers: Sequence[Response], dry: bool = True
 ) -> list[Response]:
     """Responses of machines at as many further speeds as it takes to find their largest amplitudes.
 
     Parameters
     ----------
     machines : all of them planar, or a single one
-    choices, answers : of each, at its own speeds
+    answers : of each, at its own speeds
+    dry : find the largest amplitudes without liquid as well
 
     Returns
     -------
@@ -82,7 +82,7 @@ def responses_between(
     at the others
     """
     planar = isinstance(machines[0].rotor, Jeffcott)
-    asked: Asked = _Planar(machines, choices) if planar else _Other(machines[0], answers[0])
+    asked: Asked = _Planar(machines) if planar else _Other(machines[0], answers[0])
     ends = [(float(machine.speed[0]), float(machine.speed[-1])) for machine in machines]
 
     def wet_parts(owner: Index, speed: Array) -> Complex:
@@ -92,7 +92,7 @@ def responses_between(
     endless_wet = _without_bound(wet_parts, asked.wet, ends)
     found = [[answer.at(np.zeros(0, dtype=np.intp))] for answer in answers]
 
-    def dry(owner: Index, speed: Array) -> Complex:
+    def still(owner: Index, speed: Array) -> Complex:
         return _marked(asked.without_liquid(owner, speed), _met(endless_dry, owner, speed))
 
     def wet(owner: Index, speed: Array) -> Complex:
@@ -108,12 +108,13 @@ def responses_between(
             found[k].append(answer.at(np.flatnonzero(owner == k)))
         return answer.parts
 
-    begin = [Samples(answer.speed, answer.parts_dry) for answer in answers]
-    seen = _explored(dry, begin, asked.dry, [np.zeros(0) for _ in ends], ends)
+    seen = [np.zeros(0) for _ in ends]
+    if dry:
+        begin = [Samples(answer.speed, answer.parts_dry) for answer in answers]
+        seen = [samples.speed for samples in _explored(still, begin, asked.dry, seen, ends)]
     begin = [Samples(answer.speed, answer.parts) for answer in answers]
-    _explored(wet, begin, asked.wet, [samples.speed for samples in seen], ends)
-    every = [joined(parts) for parts in found]
-    return [answer.at(np.argsort(answer.speed, kind="stable")) for answer in every]
+    _explored(wet, begin, asked.wet, seen, ends)
+    return [by_speed(parts) for parts in found]
 
 
 def _explored(
@@ -138,7 +139,10 @@ def _explored(
 def _without_bound(
     answer: Answer, near: Sequence[Resonances], ends: Sequence[tuple[float, float]]
 ) -> list[Array]:
-    """Speeds of each machine at which its amplitude has no bound, rad/s: it grows as one over the distance."""
+    """Speeds of each machine at which its amplitude has no bound, rad/s.
+
+    There it grows as one over the distance.
+    """
     found = []
     for k, (own, (start, stop)) in enumerate(zip(near, ends, strict=True)):
         sharp = (own.half_width <= _UNDAMPED * own.speed) & (own.speed >= start) & (own.speed <= stop)
@@ -170,15 +174,14 @@ def _marked(parts: Complex, endless: Flags) -> Complex:
 class _Planar:
     """Planar machines, many at once."""
 
-    def __init__(self, machines: Sequence[Prepared], choices: Sequence[Choice]) -> None:
+    def __init__(self, machines: Sequence[Prepared]) -> None:
         self.machines = machines
         self.rotors = [(machine.planar, machine.scene.fills) for machine in machines]
         self.gravity = np.array([machine.axial_gravity for machine in machines])
         self.dry = _at_tops([planar_tops([(rotor, ()) for rotor, _ in self.rotors], self.gravity, LINEAR)])
         # Where the model is chosen, the one that answers near the top may answer at none of the given speeds.
-        names = {name for choice in choices for name in choice.models.tolist()}
-        names |= {"statics" for choice in choices if not (choice.prescribed or choice.cut)}
-        models = [synchronous_model(name) for name in sorted(names)]
+        names = dict.fromkeys(name for machine in machines for name in models_of(machine.scene))
+        models = [synchronous_model(name) for name in names]
         self.wet = _at_tops([planar_tops(self.rotors, self.gravity, model) for model in models])
 
     def without_liquid(self, owner: Index, speed: Array) -> Complex:
@@ -194,10 +197,9 @@ class _Planar:
         present = np.unique(owner)
         rows = [np.flatnonzero(owner == k) for k in present.tolist()]
         pairs = zip(present.tolist(), rows, strict=True)
-        choices = choose_all([replace(self.machines[k], speed=speed[own]) for k, own in pairs])
+        chosen = models_at([replace(self.machines[k], speed=speed[own]) for k, own in pairs])
         order = np.argsort(np.concatenate(rows))
-        names = np.concatenate([choice.models for choice in choices])[order]
-        carried = np.concatenate([choice.in_range for choice in choices])[order]
+        names, carried = (np.concatenate(values)[order] for values in zip(*chosen, strict=True))
         parts, places = [], []
         for name in np.unique(names).tolist():
             own = np.flatnonzero(names == name)
@@ -241,16 +243,15 @@ class _Other:
     def with_liquid(self, owner: Index, speed: Array) -> Response:
         """See `Asked`."""
         machine = replace(self.machine, speed=speed)
-        (choice,) = choose_all([machine])
-        fills, gravity, models = machine.scene.fills, machine.axial_gravity, liquid_models(choice)
-        answer = response(
-            machine.rotor, fills, speed, gravity, models, self.position, near=self._neighbours(speed)
-        )
+        ((names, carried),) = models_at([machine])
+        models = [synchronous_model(name) for name in names.tolist()]
+        fills, near = machine.scene.fills, self._neighbours(speed)
+        answer = response(machine.rotor, fills, speed, machine.axial_gravity, models, self.position, near)
         self._speed = np.concatenate((self._speed, speed))
         self._coordinates = np.concatenate((self._coordinates, answer.coordinates))
         order = np.argsort(self._speed, kind="stable")
         self._speed, self._coordinates = self._speed[order], self._coordinates[order]
-        return replace(answer, in_range=answer.in_range & choice.in_range)
+        return replace(answer, in_range=answer.in_range & carried)
 
     def _neighbours(self, speed: Array) -> Complex:
         """Coordinates at the next speeds below and above, shape (m, 2, n)."""

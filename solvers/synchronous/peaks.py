@@ -21,7 +21,7 @@ from meshes.arrays import Array, Complex, Index
 Answer = Callable[[Index, Array], Complex]
 
 _ROUNDS = 40  # of questions at most
-_GAIN = 1e-10  # relative height that a maximum may still gain
+_GAIN = 1e-12  # relative height that a maximum may still gain
 _SEEN = 1e-3  # the same of a maximum that is lower than another one
 _TURN = 0.8  # rad from one sample to the next that show a resonance's shape
 _LOOKED = 6  # rounds in which a turn of the phase is followed whatever its height
@@ -181,9 +181,7 @@ def _wanted(samples: Samples, bound: float, turn: int, spacing: float) -> Array:
     return every[apart > _CLOSE * np.abs(every)]
 
 
-def _inside_turns(
-    x: Array, size: Array, parts: Complex, largest: float, turn: int, spacing: float
-) -> Array:
+def _inside_turns(x: Array, size: Array, parts: Complex, largest: float, turn: int, spacing: float) -> Array:
     """Speeds inside the intervals over which the phase of a part turns too far."""
     gap = np.diff(x)
     turned = np.abs(np.angle(parts[1:] * np.conj(parts[:-1])))

@@ -17,10 +17,9 @@ from fluid.fill import Fill, Fills
 from meshes.arrays import Array, Flags, Index
 from solvers.liquid_model import LiquidModel, Whirls
 from solvers.roots import bracketed_root
-from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
+from solvers.rotor.jeffcott import PlanarMachine
 from solvers.rotor.system import RotorSystem
 from solvers.synchronous.balance import backward_mass, directions
-from solvers.synchronous.models import STATICS
 
 _STEPS = 3  # towards the top of a machine whose axis stands
 _NEAR = 1e-4  # relative distance of the speeds between which the liquid's share in the mass changes
@@ -59,8 +58,10 @@ def planar_tops(machines: Sequence[PlanarMachine], gravity: Array, model: Liquid
     --------
     Without liquid the amplitude is e/(2 zeta sqrt(1 - zeta^2)), at omega/sqrt(1 - 2 zeta^2):
 
+    >>> from solvers.rotor.jeffcott import Jeffcott
+    >>> from solvers.synchronous.models import LINEAR
     >>> rotor = Jeffcott(mass=1.0, stiffness=100.0, damping=2.0, unbalance=1e-3)
-    >>> tops = planar_tops([(rotor, [])], np.zeros(1), STATICS)
+    >>> tops = planar_tops([(rotor, [])], np.zeros(1), LINEAR)
     >>> print(f"{tops.speed[0]:.6f} {1e3 * tops.amplitude[0]:.6f}")
     10.101525 5.025189
     """
@@ -96,7 +97,9 @@ def _bent(curve: _Curve, liquid: _Liquid, rows: Index) -> tuple[Array, Array, Ar
     """
     full = liquid.added_mass[rows] * (1.0 + 1e-9)
     # With less mass than that the deflection rises without end.
-    least = np.maximum(curve.mass * (1.0 - 1e-12), 0.5 * np.square(curve.damping) / curve.stiffness * (1.0 + 1e-9))
+    least = np.maximum(
+        curve.mass * (1.0 - 1e-12), 0.5 * np.square(curve.damping) / curve.stiffness * (1.0 + 1e-9)
+    )
     most = curve.mass + full
     total, change = most, np.zeros(rows.size)
     for _ in range(_STEPS if np.any(liquid.gravity[rows] > 0.0) else 1):
@@ -229,6 +232,7 @@ def resonances(system: RotorSystem, fills: Sequence[Fill], share: float = 1.0) -
 
     Examples
     --------
+    >>> from solvers.rotor.jeffcott import Jeffcott
     >>> rotor = Jeffcott(mass=1.0, stiffness=100.0, damping=2.0, unbalance=1e-3)
     >>> speed, half_width = resonances(rotor.system(), [])
     >>> print(np.round(speed, 3), np.round(half_width, 3))

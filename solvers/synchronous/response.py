@@ -165,6 +165,21 @@ class Response:
         """The same of the rotor without liquid, m, shape (n, 2)."""
         return np.stack((self.deflection_dry, self.backward_dry), axis=1)
 
+    @property
+    def amplitude(self) -> Array:
+        """Largest distance of the axis from the line it rests in, of the branch reported, m, shape (n,)."""
+        return np.asarray(np.abs(self.parts).sum(axis=1))
+
+    @property
+    def amplitude_dry(self) -> Array:
+        """The same of the rotor without liquid, m, shape (n,)."""
+        return np.asarray(np.abs(self.parts_dry).sum(axis=1))
+
+    @property
+    def branch_amplitude(self) -> Array:
+        """The same of every branch, nan where there is none, m, shape (n, b)."""
+        return np.asarray(np.abs(self.branch_deflection) + np.abs(self.branch_backward))
+
     def at(self, which: Index) -> Response:
         """The response at some of its speeds, by their index."""
         own = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "position"}
@@ -414,6 +429,17 @@ def joined(parts: Sequence[Response]) -> Response:
             wide = _padded(values) if field.name.startswith("branch_") else values
             found[field.name] = np.concatenate(wide)
     return Response(**found)
+
+
+def by_speed(parts: Sequence[Response]) -> Response:
+    """Responses at several sets of speeds as one, by rising speed.
+
+    Parameters
+    ----------
+    parts : of one rotor, at least one
+    """
+    every = joined(parts)
+    return every.at(np.argsort(every.speed, kind="stable"))
 
 
 def _padded(tables: list[NDArray[Any]]) -> list[NDArray[Any]]:
