@@ -216,7 +216,7 @@ class RunResult(Result):
             raise InputError("speeds", self.response.speed.shape, "a list of at least one speed")
         branches = self.response.branch_deflection.shape
         for each in fields(self.response):
-            if each.name in ("coordinates", "position"):
+            if each.name in ("coordinates", "branch_coordinates", "position"):
                 continue
             shape = getattr(self.response, each.name).shape
             expected = (count, *branches[1:]) if each.name.startswith("branch_") else (count,)

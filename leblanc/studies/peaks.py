@@ -27,6 +27,7 @@ from solvers.synchronous.response import Response, by_speed, joined, machine_res
 _UNDAMPED = 1e-8  # half width over speed of a resonance that nothing damps
 _NEAR, _NEARER = 1e-6, 1e-9  # relative distances over which its amplitude grows as one over the distance
 _GROWN = 100.0  # times, at least
+_THOROUGH = 4  # rounds in which chambers in several planes are searched from scratch
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ class Asked(Protocol):
 
 
 def responses_between(
-    machines: Sequence[Prepared], answers: Sequence[Response], dry: bool = True
+    machines: Sequence[Prepared], answers: Sequence[Response], dry: bool = True, drawn: bool = False
 ) -> list[Response]:
     """Responses of machines at as many further speeds as it takes to find their largest amplitudes.
 
@@ -74,6 +75,7 @@ def responses_between(
     machines : all of them planar, or a single one
     answers : of each, at its own speeds
     dry : find the largest amplitudes without liquid as well
+    drawn : show the shape of the resonances, as a figure needs it
 
     Returns
     -------
@@ -81,6 +83,9 @@ def responses_between(
     just one. Deflections are infinite where they have no bound. The liquid model is chosen at every speed as
     at the others
     """
+    nowhere = np.zeros(0, dtype=np.intp)
+    if all(machine.speed[-1] <= machine.speed[0] for machine in machines):
+        return [answer.at(nowhere) for answer in answers]
     planar = isinstance(machines[0].rotor, Jeffcott)
     asked: Asked = _Planar(machines) if planar else _Other(machines[0], answers[0])
     ends = [(float(machine.speed[0]), float(machine.speed[-1])) for machine in machines]
@@ -90,7 +95,7 @@ def responses_between(
 
     endless_dry = _without_bound(asked.without_liquid, asked.dry, ends)
     endless_wet = _without_bound(wet_parts, asked.wet, ends)
-    found = [[answer.at(np.zeros(0, dtype=np.intp))] for answer in answers]
+    found = [[answer.at(nowhere)] for answer in answers]
 
     def still(owner: Index, speed: Array) -> Complex:
         return _marked(asked.without_liquid(owner, speed), _met(endless_dry, owner, speed))
@@ -111,9 +116,9 @@ def responses_between(
     seen = [np.zeros(0) for _ in ends]
     if dry:
         begin = [Samples(answer.speed, answer.parts_dry) for answer in answers]
-        seen = [samples.speed for samples in _explored(still, begin, asked.dry, seen, ends)]
+        seen = [samples.speed for samples in _explored(still, begin, asked.dry, seen, ends, drawn)]
     begin = [Samples(answer.speed, answer.parts) for answer in answers]
-    _explored(wet, begin, asked.wet, seen, ends)
+    _explored(wet, begin, asked.wet, seen, ends, drawn)
     return [by_speed(parts) for parts in found]
 
 
@@ -123,11 +128,14 @@ def _explored(
     near: Sequence[Resonances],
     more: Sequence[Array],
     ends: Sequence[tuple[float, float]],
+    drawn: bool,
 ) -> list[Samples]:
     """Samples of each machine with those at its resonances, at more speeds, and at the peak."""
     fresh = []
     for own, resonance, others, (start, stop) in zip(samples, near, more, ends, strict=True):
-        here = seeds(resonance.speed, resonance.half_width, start, stop, own.speed)
+        # Where a bound is known, it is the height of a top: its place is enough.
+        width = resonance.half_width if drawn or math.isinf(resonance.bound) else 0.0 * resonance.half_width
+        here = seeds(resonance.speed, width, start, stop, own.speed)
         fresh.append(np.setdiff1d(np.union1d(here, others), own.speed))
     owner = np.repeat(np.arange(len(fresh)), [speed.size for speed in fresh])
     if owner.size:
@@ -233,7 +241,7 @@ class _Other:
         shares = (1.0, sum(fill.mass for fill in fills) / whole) if whole > 0.0 else (1.0,)
         near = [resonances(machine.system, fills, share) for share in shares]
         self.wet = [Resonances(*(np.concatenate(values) for values in zip(*near, strict=True)))]
-        self._speed, self._coordinates = answer.speed, answer.coordinates
+        self._known, self._rounds = answer, 0
 
     def without_liquid(self, owner: Index, speed: Array) -> Complex:
         """See `Asked`."""
@@ -245,15 +253,15 @@ class _Other:
         machine = replace(self.machine, speed=speed)
         ((names, carried),) = models_at([machine])
         models = [synchronous_model(name) for name in names.tolist()]
-        fills, near = machine.scene.fills, self._neighbours(speed)
-        answer = response(machine.rotor, fills, speed, machine.axial_gravity, models, self.position, near)
-        self._speed = np.concatenate((self._speed, speed))
-        self._coordinates = np.concatenate((self._coordinates, answer.coordinates))
-        order = np.argsort(self._speed, kind="stable")
-        self._speed, self._coordinates = self._speed[order], self._coordinates[order]
+        # The first speeds are apart; later ones close in on answers that are known.
+        near = self._neighbours(speed) if self._rounds >= _THOROUGH else None
+        gravity, fills = machine.axial_gravity, machine.scene.fills
+        answer = response(machine.rotor, fills, speed, gravity, models, self.position, near)
+        self._known, self._rounds = by_speed([self._known, answer]), self._rounds + 1
         return replace(answer, in_range=answer.in_range & carried)
 
     def _neighbours(self, speed: Array) -> Complex:
-        """Coordinates at the next speeds below and above, shape (m, 2, n)."""
-        above = np.clip(np.searchsorted(self._speed, speed), 1, self._speed.size - 1)
-        return np.stack((self._coordinates[above - 1], self._coordinates[above]), axis=1)
+        """Coordinates of all branches at the next speeds below and above, shape (m, k, n)."""
+        above = np.clip(np.searchsorted(self._known.speed, speed), 1, self._known.speed.size - 1)
+        found = self._known.branch_coordinates
+        return np.concatenate((found[above - 1], found[above]), axis=1)

@@ -194,7 +194,7 @@ def run_scene(scene: Scene) -> RunResult:
         wet = critical_speed(rotor, scene.fills, gravity, synchronous_model(choice.model))
     else:
         answer, motion, (dry, wet) = motion_response(machine, choice)
-    (refined,) = responses_between([machine], [answer])
+    (refined,) = responses_between([machine], [answer], drawn=True)
     whirl = self_excited(machine)
     answer = replace(
         answer, in_range=answer.in_range & choice.in_range, stable=whirl.leaves_stable(answer.stable)

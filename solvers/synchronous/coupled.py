@@ -29,7 +29,8 @@ def solutions(balance: Balance, near: Complex | None = None) -> tuple[Complex, I
     Parameters
     ----------
     balance : at s speeds, n coordinates
-    near : coordinates from which Newton's method starts as well, nan where there are none, shape (s, k, n)
+    near : coordinates of the solutions at close speeds, from which Newton's method starts, nan where there
+        are none, shape (s, k, n)
 
     Returns
     -------
@@ -120,11 +121,14 @@ def several_planes(balance: Balance, near: Complex | None = None) -> tuple[Compl
     wet = np.asarray(np.isfinite(straight).all(axis=1))
     wet &= np.all(np.abs(balance.forward(np.where(wet[:, None], straight, 0.0))) <= balance.limit, axis=1)
     answer, which = straight[wet], everyone[wet]
-    answer, which = _added(balance, answer, which, *_linear_starts(balance, everyone, _STARTS))
+    unknown, followed = everyone, 0
     if near is not None:
         known = np.isfinite(near).all(axis=2)
         answer, which = _added(balance, answer, which, near[known], np.nonzero(known)[0])
-    fresh = np.arange(which.size)
+        # What was found from a close speed is not looked for again.
+        unknown, followed = np.setdiff1d(everyone, which), which.size
+    answer, which = _added(balance, answer, which, *_linear_starts(balance, unknown, _STARTS))
+    fresh = np.arange(followed, which.size)
     # A fold is followed one speed at a time, in both directions.
     for _ in range(balance.speed.size):
         if fresh.size == 0:

@@ -131,6 +131,7 @@ class Response:
     branch_stable : their stability, shape (n, b)
     backward, backward_dry : backward part of the branch reported, and without liquid, m, shape (n,)
     branch_backward : of all branches, m, shape (n, b)
+    branch_coordinates : as coordinates, of all branches, nan where there are fewer, shape (n, b, m)
     coordinates : complex amplitudes of the branch reported, q = Re(coordinates e^{i Omega t}), shape (n, m)
     residual : what is left of the balance of forces over the largest of them, shape (n,)
     position : along the axis of the plane whose motion is reported, m
@@ -151,6 +152,7 @@ class Response:
     backward: Complex
     backward_dry: Complex
     branch_backward: Complex
+    branch_coordinates: Complex
     coordinates: Complex
     residual: Array
     position: float = 0.0
@@ -206,8 +208,8 @@ def response(
     model : of the liquid, for the forward part; one for all speeds or one for each
     position : of the plane that is reported, m; that of the first chamber if None, 0 without chambers. All
         planes of a Jeffcott rotor move alike
-    near : coordinates of answers at speeds close to each of these, from which a search with chambers in
-        several planes starts as well, shape (n, k, m)
+    near : coordinates of answers at speeds close to each of these, nan where there are none, from which a
+        search with chambers in several planes starts, shape (n, k, m)
 
     Returns
     -------
@@ -287,6 +289,7 @@ def machine_responses(
     still = np.where(bounded[chosen], w, 0.0)
     np.logical_and.at(converged, which, state.converged)
     none = np.zeros(speed.size, dtype=complex)
+    circle, endless = np.array([1.0, -1j]), complex(np.inf, 0.0)
     return Response(
         speed=speed,
         deflection=w,
@@ -303,7 +306,10 @@ def machine_responses(
         backward=none,
         backward_dry=none,
         branch_backward=table.spread(np.zeros(which.size, dtype=complex), _NONE),
-        coordinates=np.where(found, still[:, None] * np.array([1.0, -1j]), complex(np.inf, 0.0)),
+        branch_coordinates=table.spread(
+            np.where(bounded[:, None], np.where(bounded, phased, 0.0)[:, None] * circle, endless), _NONE
+        ),
+        coordinates=np.where(found, still[:, None] * circle, endless),
         residual=_left(pairs, still, state.unbalance[chosen]),
     )
 
@@ -356,6 +362,7 @@ def _of_balance(system: RotorSystem, terms: Balance, position: float, near: Comp
         backward=motion.backward[chosen],
         backward_dry=dry.backward,
         branch_backward=table.spread(motion.backward, _NONE),
+        branch_coordinates=table.spread(answer, _NONE),
         coordinates=answer[chosen],
         residual=_residual(terms, q, forward, law),
         position=position,
@@ -403,8 +410,8 @@ class _Table:
         return cls(which, columns, (speeds, int(counts.max())), best[np.cumsum(counts) - 1])
 
     def spread(self, values: NDArray[_Value], missing: complex | bool) -> NDArray[_Value]:
-        """Values of the solutions as a table (speed, branch), `missing` where there is none."""
-        table = np.full(self.shape, missing, dtype=values.dtype)
+        """Values of the solutions as a table (speed, branch, ...), `missing` where there is none."""
+        table = np.full((*self.shape, *values.shape[1:]), missing, dtype=values.dtype)
         table[self.rows, self.columns] = values
         return table
 
@@ -447,7 +454,8 @@ def _padded(tables: list[NDArray[Any]]) -> list[NDArray[Any]]:
     most = max(table.shape[1] for table in tables)
     wide = []
     for table in tables:
-        out = np.full((table.shape[0], most), False if table.dtype == bool else _NONE, dtype=table.dtype)
+        shape, missing = (table.shape[0], most, *table.shape[2:]), False if table.dtype == bool else _NONE
+        out = np.full(shape, missing, dtype=table.dtype)
         out[:, : table.shape[1]] = table
         wide.append(out)
     return wide
