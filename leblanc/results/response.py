@@ -334,7 +334,7 @@ class RunResult(Result):
     @property
     def models_used(self) -> tuple[str, ...]:
         """Names of the liquid models, in the order in which they appear over speed."""
-        return tuple(dict.fromkeys(self.response.model.tolist()))
+        return tuple(dict.fromkeys(self.curve.model.tolist()))
 
     # Every branch; what a rotor adds that is not planar.
     branches = carried("response.branch_deflection")
