@@ -223,7 +223,7 @@ class Views:
     Parameters
     ----------
     drawings : chambers of each column
-    instants : index over speed of each view
+    instants : index of each view over the speeds of the curve
     scale : exaggeration, common to all views so that they can be compared
     largest : deflection of all views, m
     left_out : number of chambers that found no room
@@ -282,10 +282,11 @@ def choose_views(result: RunResult) -> Views:
     ----------
     result : the study; a speed at which nothing was found is not drawn
     """
-    deflection = result.response.deflection
-    last, highest = deflection.size - 1, peak(result.amplitude)
+    curve = result.curve
+    deflection = curve.deflection
+    last, highest = deflection.size - 1, peak(curve.amplitude)
     instants = [i for i in (highest, last) if i is not None and np.isfinite(deflection[i])]
-    if highest is None or highest == last or result.amplitude[highest] == 0.0:
+    if highest is None or highest == last or curve.amplitude[highest] == 0.0:
         instants = instants[-1:]
     drawings = side_by_side(result.chambers)
     drawn = drawings[:MOST_DRAWINGS]
@@ -298,9 +299,7 @@ def choose_views(result: RunResult) -> Views:
 
 def moved(result: RunResult, chambers: tuple[FilledChamber, ...], index: int) -> complex:
     """Deflection of the axis at the chambers of one drawing, m; the unbalance along the real axis."""
-    if result.motion is None:
-        return complex(result.response.deflection[index])
-    return complex(result.motion.chamber_forward[index, result.chambers.index(chambers[0])])
+    return complex(result.chamber_curve[index, result.chambers.index(chambers[0])])
 
 
 def describe_scale(views: Views) -> str:
@@ -314,7 +313,7 @@ def describe_scale(views: Views) -> str:
 
 def describe_view(result: RunResult, index: int) -> str:
     """Name and speed of one view."""
-    r = result.response
+    r = result.curve
     name = "Working speed" if index == r.speed.size - 1 else "Largest deflection"
     text = f"{name}, {in_rpm(r.speed[index])}"
     return text if r.in_range[index] else f"{text}\n(model out of range)"
@@ -322,20 +321,20 @@ def describe_view(result: RunResult, index: int) -> str:
 
 def more_heading_rows(result: RunResult, views: Views) -> int:
     """Lines above the drawings besides the first."""
-    out_of_range = not result.response.in_range[views.instants].all()
+    out_of_range = not result.curve.in_range[views.instants].all()
     return int(len(views.drawings) > 1) + int(out_of_range)
 
 
 def describe_state(result: RunResult, index: int) -> str:
     """Numbers of one view as text."""
-    r = result.response
+    r = result.curve
     w, offset = r.deflection[index], r.liquid_offset[index]
     if w == 0.0:
         return "no deflection"
     place = f"{with_unit(abs(w), LENGTH)} at {_degrees(float(phase(w)))}{DEGREE}"
     text = f"deflection {place}"
     if result.motion is not None:
-        size = with_unit(float(result.amplitude[index]), LENGTH)
+        size = with_unit(float(result.curve.amplitude[index]), LENGTH)
         text = f"amplitude {size} at chamber 1,\nof it with the spin {place}"
     if offset > 0.0:
         text += f"\nliquid {with_unit(offset, LENGTH)} at {_degrees(float(r.liquid_angle[index]))}{DEGREE}"

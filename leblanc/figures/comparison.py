@@ -38,16 +38,15 @@ def comparison_figure(found: Comparison) -> Figure:
     """Amplitude of each model over speed; below, where there are several, their differences."""
     order = np.argsort(found.speed, kind="stable")
     names = list(found.results)
-    finite = [np.where(np.isfinite(size), size, np.nan)[order] * MM for size in _amplitudes(found)]
     apart = [100.0 * found.difference(name)[order] for name in names]
-    drawn = thin(np.column_stack([*finite, *apart]), COLUMNS)
+    drawn = thin(np.column_stack(apart), COLUMNS)
     rpm = found.speed[order][drawn] * RPM
     with style():
         figure = Figure()
         figure.alt = comparison_alt(found)
         labels = ("amplitude", "difference")[: len(names)]
         rows = [figure.add_axes((0, 0, 1, 1), label=label) for label in labels]
-        _draw_amplitude(rows[0], rpm, names, [line[drawn] for line in finite])
+        _draw_amplitude(rows[0], found)
         result = next(iter(found.results.values()))
         place = "" if result.motion is None else plane_label(bool(result.chambers))
         rows[0].set_ylabel(f"Amplitude{place} (mm)")
@@ -67,19 +66,28 @@ def comparison_figure(found: Comparison) -> Figure:
     return figure
 
 
-def _amplitudes(found: Comparison) -> list[Array]:
-    """Of every model that answers, and without liquid, m."""
-    return [*(result.amplitude for result in found.results.values()), found.amplitude_dry]
+def _drawn(speed: Array, amplitude: Array) -> tuple[Array, Array]:
+    """A line in rpm and mm, with as many points as show, by rising speed."""
+    order = np.argsort(speed, kind="stable")
+    line = np.where(np.isfinite(amplitude), amplitude, np.nan)[order] * MM
+    kept = thin(line[:, None], COLUMNS)
+    return speed[order][kept] * RPM, line[kept]
 
 
-def _draw_amplitude(axes: Axes, rpm: Array, names: list[str], lines: list[Array]) -> None:
-    marker = "o" if rpm.size == 1 else None
-    for name, line, look in zip(names, lines[:-1], LOOKS, strict=False):
-        axes.plot(rpm, line, label=name, marker=marker, **look)
-    every = max(1, rpm.size // 14)
-    bare = {"color": DRY, "linewidth": 0.8, "marker": "o", "markerfacecolor": "white", "markevery": every}
-    axes.plot(rpm, lines[-1], label="without liquid", zorder=1.9, **bare)
-    value_axis(axes, 0.0, lines)
+def _draw_amplitude(axes: Axes, found: Comparison) -> None:
+    """Amplitude by every model that answers, each with its own speeds, and without liquid."""
+    marker = "o" if found.speed.size == 1 else None
+    curves = {name: result.curve for name, result in found.results.items()}
+    lines = [_drawn(curve.speed, curve.amplitude) for curve in curves.values()]
+    for name, line, look in zip(curves, lines, LOOKS, strict=False):
+        axes.plot(*line, label=name, marker=marker, **look)
+    reference = curves[found.reference]
+    bare = _drawn(reference.speed, reference.amplitude_dry)
+    even = np.linspace(bare[0][0], bare[0][-1], 14)
+    marks = np.unique(np.clip(np.searchsorted(bare[0], even), 0, bare[0].size - 1)).tolist()
+    looks = {"color": DRY, "linewidth": 0.8, "marker": "o", "markerfacecolor": "white", "markevery": marks}
+    axes.plot(*bare, label="without liquid", zorder=1.9, **looks)
+    value_axis(axes, 0.0, [y for _, y in [*lines, bare]])
 
 
 def _draw_difference(axes: Axes, rpm: Array, names: list[str], lines: list[Array]) -> None:

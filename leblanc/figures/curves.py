@@ -179,7 +179,7 @@ def prepare(result: RunResult) -> Curves:
     ----------
     result : the study, of any number of speeds in any order
     """
-    r = result.response
+    r = result.curve
     order = np.argsort(r.speed, kind="stable")
     rpm = r.speed[order] * RPM
     margin = 0.0 if rpm[0] < rpm[-1] else max(0.05 * float(rpm[0]), 1.0)
@@ -187,8 +187,7 @@ def prepare(result: RunResult) -> Curves:
     deflection, branches = _bounded(r.deflection), _bounded(r.branch_deflection)
     size, size_dry = np.abs(deflection), np.abs(_bounded(r.deflection_dry))
     amplitude, amplitude_dry, each = (
-        np.where(np.isfinite(x), x, np.nan)
-        for x in (result.amplitude, result.amplitude_dry, result.branch_amplitude)
+        np.where(np.isfinite(x), x, np.nan) for x in (r.amplitude, r.amplitude_dry, r.branch_amplitude)
     )
     lines = [amplitude * MM, amplitude_dry * MM, r.liquid_offset * MM]
     lines.append(lag_degrees(r.liquid_angle, r.liquid_offset))

@@ -15,7 +15,7 @@ from leblanc.results.choice import ModelSpan
 from leblanc.results.exciter import named_speeds, number_or_none
 from leblanc.results.netcdf import NamedArrays, Variable, flags
 from leblanc.results.netcdf import variable as var
-from leblanc.results.response import RestMode, RunResult, peak
+from leblanc.results.response import RestMode, RunResult
 from meshes.arrays import Array
 from meshes.errors import InputError
 
@@ -247,9 +247,9 @@ class ModelAnswer:
 
     @property
     def peak_amplitude(self) -> float | None:
-        """Largest finite amplitude over the speeds, m; None where there is none."""
-        at = None if self.result is None else peak(self.result.amplitude)
-        return None if self.result is None or at is None else float(self.result.amplitude[at])
+        """Largest amplitude over the range of speeds, m; None where there is none, or none that is finite."""
+        found = math.nan if self.result is None else self.result.peak["amplitude"]
+        return found if math.isfinite(found) else None
 
 
 @dataclass(frozen=True)
@@ -328,8 +328,8 @@ class Comparison(Result):
         known = np.isfinite(own) & np.isfinite(other)
         found = np.full(own.shape, np.nan)
         found[known] = own[known] - other[known]
-        at = peak(other)
-        size = 0.0 if at is None else float(other[at])
+        largest = self.results[self.reference].peak["amplitude"]
+        size = largest if math.isfinite(largest) else float(np.max(other[known], initial=0.0))
         # Without any deflection of the reference there is nothing to compare with but zero itself.
         return found / size if size > 0.0 else np.where(found == 0.0, 0.0, np.nan)
 

@@ -38,6 +38,7 @@ class RunCode(NoteCode):
     AGAINST_SPIN = "against_spin"
     SELF_EXCITED = "self_excited"
     SEVERAL_ANSWERS = "several_answers"
+    UNBOUNDED = "unbounded"
     WALL = "wall"
     MESH = "mesh"
 
@@ -190,6 +191,19 @@ def several_answers(first: float, last: float, stable: bool) -> Note:
         f"reported is the {which}, where a slow run-up arrives."
     )
     return Note(RunCode.SEVERAL_ANSWERS, {"first": first, "last": last}, text)
+
+
+def unbounded(wet: float | None, dry: float | None) -> Note:
+    """The amplitude has no bound at a speed within the range.
+
+    Parameters
+    ----------
+    wet, dry : speeds with and without liquid, rad/s; None where it has one everywhere
+    """
+    found = [(name, speed) for name, speed in (("with", wet), ("without", dry)) if speed is not None]
+    where = " and ".join(f"{name} liquid at {speed * RPM:.4g} rpm" for name, speed in found)
+    text = f"Nothing damps the resonance {where}: the amplitude has no bound there."
+    return Note(RunCode.UNBOUNDED, {"speed": wet, "speed_dry": dry}, text)
 
 
 def wall(chamber: int, speed: float, volume: float, enough: float, deflection: float) -> Note:

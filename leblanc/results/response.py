@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, field, fields
 from itertools import pairwise
 from typing import Any, ClassVar
 
@@ -17,7 +17,8 @@ from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.rotor.campbell import Campbell
-from solvers.synchronous.response import Response
+from solvers.synchronous.peaks import highest
+from solvers.synchronous.response import Response, by_speed
 
 
 @dataclass(frozen=True)
@@ -53,6 +54,7 @@ class Motion:
     campbell : natural frequencies of the dry rotor over its speed
     critical_speeds_dry, critical_speeds_wet : undamped, each with the direction of its whirl, -1 to 1
     zero : what angles count from, in words
+    refined_forward : as chamber_forward, at the refined speeds; none if empty, shape (r, c)
     """
 
     position: float
@@ -65,6 +67,7 @@ class Motion:
     critical_speeds_dry: tuple[tuple[float, float], ...]
     critical_speeds_wet: tuple[tuple[float, float], ...]
     zero: str
+    refined_forward: Complex = field(default_factory=lambda: np.zeros((0, 0), dtype=complex))
 
     @property
     def natural_frequency(self) -> list[float]:
@@ -102,6 +105,13 @@ class SelfExcited:
         stable : against slow disturbances, shape (n,)
         """
         return np.asarray(stable & ~(self.growth > 0.0))
+
+    def inside(self, speed: Array) -> Flags:
+        """Whether speeds lie inside a band in which a whirl grows, shape (n,)."""
+        found = np.zeros(speed.shape, dtype=bool)
+        for low, high in self.bands:
+            found |= (speed >= low) & (speed <= high)
+        return found
 
 
 SCALARS = ("liquid_mass", "critical_speed_dry", "critical_speed_wet", "capture_speed")
@@ -160,6 +170,8 @@ class RunResult(Result):
         None where nothing was estimated
     models : which liquid model answers at which speeds, how well, and why; empty where that is not known
     tolerance : relative error that the scene allows; None where nothing was estimated
+    refined : the answer between these speeds as well, where it takes that to find the largest amplitudes, by
+        rising speed; None where nobody looked
 
     Raises
     ------
@@ -194,6 +206,7 @@ class RunResult(Result):
     error_estimate: Array | None = None
     models: tuple[ModelSpan, ...] = ()
     tolerance: float | None = None
+    refined: Response | None = None
 
     def __post_init__(self) -> None:
         if self.axis not in ("horizontal", "vertical"):
@@ -202,31 +215,56 @@ class RunResult(Result):
         if self.response.speed.ndim != 1 or count == 0:
             raise InputError("speeds", self.response.speed.shape, "a list of at least one speed")
         branches = self.response.branch_deflection.shape
-        for field in fields(self.response):
-            if field.name in ("coordinates", "position"):
+        for each in fields(self.response):
+            if each.name in ("coordinates", "branch_coordinates", "position"):
                 continue
-            shape = getattr(self.response, field.name).shape
-            expected = (count, *branches[1:]) if field.name.startswith("branch_") else (count,)
+            shape = getattr(self.response, each.name).shape
+            expected = (count, *branches[1:]) if each.name.startswith("branch_") else (count,)
             if shape != expected:
-                raise InputError(f"response.{field.name}", shape, f"of shape {expected}")
+                raise InputError(f"response.{each.name}", shape, f"of shape {expected}")
 
     @property
     def amplitude(self) -> Array:
         """Largest distance of the axis from the line it rests in, of the branch reported, m, shape (n,)."""
-        more = 0.0 if self.motion is None else np.abs(self.motion.backward)
-        return np.asarray(np.abs(self.response.deflection) + more)
+        return self.response.amplitude
 
     @property
     def amplitude_dry(self) -> Array:
         """The same of the rotor without liquid, m, shape (n,)."""
-        more = 0.0 if self.motion is None else np.abs(self.motion.backward_dry)
-        return np.asarray(np.abs(self.response.deflection_dry) + more)
+        return self.response.amplitude_dry
 
     @property
     def branch_amplitude(self) -> Array:
         """The same of every branch, nan where there is none, m, shape (n, b)."""
-        more = 0.0 if self.motion is None else np.abs(self.motion.branch_backward)
-        return np.asarray(np.abs(self.response.branch_deflection) + more)
+        return self.response.branch_amplitude
+
+    @property
+    def curve(self) -> Response:
+        """The answer at the speeds asked for and at the refined ones, by rising speed: what figures draw."""
+        return self.response if self.refined is None else by_speed([self.response, self.refined])
+
+    @property
+    def chamber_curve(self) -> Complex:
+        """Deflection at each chamber at the speeds of `curve`, m, shape (n, c)."""
+        if self.motion is None:
+            return np.repeat(self.curve.deflection[:, None], len(self.chambers), axis=1)
+        if self.refined is None:
+            return self.motion.chamber_forward
+        order = np.argsort(np.concatenate((self.speed, self.refined.speed)), kind="stable")
+        return np.concatenate((self.motion.chamber_forward, self.motion.refined_forward))[order]
+
+    @property
+    def peak(self) -> dict[str, float]:
+        """Largest amplitude over the whole range of speeds and where it is, m and rad/s.
+
+        The amplitude is infinite where it has no bound; both are nan where nothing was found.
+        """
+        return asdict(highest(self.curve.speed, self.curve.amplitude))
+
+    @property
+    def peak_dry(self) -> dict[str, float]:
+        """The same of the rotor without liquid."""
+        return asdict(highest(self.curve.speed, self.curve.amplitude_dry))
 
     @property
     def speed(self) -> Array:
@@ -296,7 +334,7 @@ class RunResult(Result):
     @property
     def models_used(self) -> tuple[str, ...]:
         """Names of the liquid models, in the order in which they appear over speed."""
-        return tuple(dict.fromkeys(self.response.model.tolist()))
+        return tuple(dict.fromkeys(self.curve.model.tolist()))
 
     # Every branch; what a rotor adds that is not planar.
     branches = carried("response.branch_deflection")
@@ -314,7 +352,8 @@ class RunResult(Result):
         """What `run` prints for scripts: plain Python values, SI, radians, complex numbers as [re, im].
 
         Lists run over speed, with None (null) where nothing was found; `branches` has one list for each
-        speed, of as many deflections as there are branches.
+        speed, of as many deflections as there are branches. The amplitude of a peak is None where it has no
+        bound; `refined` has speeds of its own.
         """
         r = self.response
         present = ~np.isnan(r.branch_deflection)
@@ -325,6 +364,8 @@ class RunResult(Result):
             "speed": _finite(r.speed),
             "amplitude": _finite(self.amplitude),
             "amplitude_dry": _finite(self.amplitude_dry),
+            "peak": _numbers(self.peak),
+            "peak_dry": _numbers(self.peak_dry),
             "phase": _finite(phase(r.deflection)),
             "liquid_offset": _finite(r.liquid_offset),
             "liquid_angle": _finite(r.liquid_angle),
@@ -338,6 +379,7 @@ class RunResult(Result):
             **({} if self.error_estimate is None else {"error_estimate": _finite(self.error_estimate)}),
             **_motion_json(self.motion),
             **_whirl_json(self.whirl),
+            **_refined_json(self.refined),
         }
 
     def named_arrays(self) -> NamedArrays:
@@ -357,6 +399,7 @@ class RunResult(Result):
             _variables(self),
             coords={
                 "speed": var(("speed",), self.speed, "rad s-1", "spin speed", "of the rotor about its axis"),
+                **_refined_speeds(self.refined),
                 "branch": var(("branch",), rank, "1", "branch", "rank by rising amplitude"),
             },
             attrs=attributes(self, "run", own, self.notes),
@@ -372,6 +415,19 @@ def _finite(values: NDArray[Any]) -> list[Any]:
         return list(values.tolist())
     found: list[Any] = np.where(known, values, np.array(None)).tolist()
     return found
+
+
+def _numbers(found: dict[str, float]) -> dict[str, float | None]:
+    """The same, None in place of what is not finite."""
+    return {name: value if math.isfinite(value) else None for name, value in found.items()}
+
+
+def _refined_json(refined: Response | None) -> dict[str, Any]:
+    """Amplitudes between the speeds asked for."""
+    if refined is None:
+        return {}
+    names = ("speed", "amplitude", "amplitude_dry")
+    return {"refined": {name: _finite(getattr(refined, name)) for name in names}}
 
 
 def _whirl_json(whirl: SelfExcited | None) -> dict[str, Any]:
@@ -435,10 +491,34 @@ def _variables(result: RunResult) -> dict[str, Variable]:
         "critical_speed_dry": var((), dry, rate, "critical speed without liquid", "undamped"),
         "critical_speed_wet": var((), wet, rate, "critical speed with liquid", "undamped, wall wet"),
         "capture_speed": var((), capture, rate, "capture speed", "the liquid rides with the drum above it"),
+        **_peak_variables(result),
         **_error_variables(result),
         **_motion_variables(result),
         **_whirl_variables(result),
     }
+
+
+def _refined_speeds(refined: Response | None) -> dict[str, Variable]:
+    """The speeds between those asked for, a dimension of their own."""
+    if refined is None:
+        return {}
+    text = "between those asked for, where it takes that to find the largest amplitudes"
+    return {"refined_speed": var(("refined_speed",), refined.speed, "rad s-1", "refined spin speed", text)}
+
+
+def _peak_variables(result: RunResult) -> dict[str, Variable]:
+    """Largest amplitudes over the range of speeds, and the amplitudes that were looked at for them."""
+    found, whole = {}, "largest amplitude over the whole range of speeds"
+    for name, peak, liquid in (("peak", result.peak, ""), ("peak_dry", result.peak_dry, ", without liquid")):
+        speed, size = (np.array(peak[key], dtype=np.float64) for key in ("speed", "amplitude"))
+        found[f"{name}_speed"] = var((), speed, "rad s-1", "speed of the peak", f"of the {whole}{liquid}")
+        found[f"{name}_amplitude"] = var((), size, "m", "peak", f"{whole}{liquid}")
+    if result.refined is not None:
+        over, text = ("refined_speed",), "at the refined speeds"
+        wet, dry = result.refined.amplitude, result.refined.amplitude_dry
+        found["refined_amplitude"] = var(over, wet, "m", "amplitude", text)
+        found["refined_amplitude_dry"] = var(over, dry, "m", "amplitude", f"{text}, without liquid")
+    return found
 
 
 def _error_variables(result: RunResult) -> dict[str, Variable]:

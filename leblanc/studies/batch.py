@@ -13,16 +13,18 @@ from leblanc.results.response import phase
 from leblanc.scene.scene import JeffcottRotor, Scene
 from leblanc.studies.choose import choose_all, prepare
 from leblanc.studies.liquid import synchronous_model
+from leblanc.studies.peaks import responses_between
 from leblanc.studies.run import run_scene
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
-from solvers.synchronous.response import machine_responses
+from solvers.synchronous.peaks import highest
+from solvers.synchronous.response import Response, joined, machine_responses
 from solvers.whirl.growth import machines_growth
 
 
 @dataclass(frozen=True)
 class Answers:
-    """Outputs of `run` of n scenes at s speeds each, SI; all shapes (n, s).
+    """Outputs of `run` of n scenes at s speeds each, SI; all shapes (n, s) but those of the peaks, (n,).
 
     Parameters
     ----------
@@ -36,6 +38,7 @@ class Answers:
         against whirls as well
     model : of the liquid, by name
     error_estimate : of the model taken, relative, of amplitude and liquid the larger one; nan where unknown
+    peak_amplitude, peak_amplitude_dry : largest over the range of speeds, found between them as well, m
     """
 
     speed: Array
@@ -52,6 +55,8 @@ class Answers:
     converged: Flags
     model: NDArray[np.str_]
     error_estimate: Array
+    peak_amplitude: Array
+    peak_amplitude_dry: Array
 
 
 def answer_scenes(scenes: Sequence[Scene]) -> Answers:
@@ -111,25 +116,37 @@ def _planar(scenes: Sequence[Scene]) -> Answers:
         "model": model,
         "error_estimate": np.concatenate([choice.error for choice in choices]),
     }
+    parts, places = [], []
     for name in np.unique(model).tolist():
         rows = np.flatnonzero(model == name)
-        answer = machine_responses(machines, owner[rows], speed[rows], gravity, synchronous_model(name))
-        values = {
-            "amplitude": np.abs(answer.deflection),
-            "amplitude_dry": np.abs(answer.deflection_dry),
-            "phase": phase(answer.deflection),
-        }
-        copied = ("liquid_offset", "liquid_angle", "dry_patch", "stable", "in_range", "converged")
-        for key, value in (values | {key: getattr(answer, key) for key in copied}).items():
-            found.setdefault(key, np.empty(speed.shape, value.dtype))[rows] = value
-    found["stable"] = found["stable"] & ~(growth > 0.0)
-    found["in_range"] = found["in_range"] & np.stack([choice.in_range for choice in choices]).ravel()
-    return Answers(**{name: values.reshape(shape) for name, values in found.items()})
+        parts.append(machine_responses(machines, owner[rows], speed[rows], gravity, synchronous_model(name)))
+        places.append(rows)
+    answer = joined(parts).at(np.argsort(np.concatenate(places)))
+    found["phase"] = phase(answer.deflection)
+    copied = ("amplitude", "amplitude_dry", "liquid_offset", "liquid_angle", "dry_patch", "converged")
+    found |= {name: getattr(answer, name) for name in copied}
+    found["stable"] = answer.stable & ~(growth > 0.0)
+    found["in_range"] = answer.in_range & np.stack([choice.in_range for choice in choices]).ravel()
+    each = [answer.at(np.flatnonzero(owner == k)) for k in range(len(scenes))]
+    peaks = _peaks(each, responses_between(prepared, each))
+    return Answers(**{name: values.reshape(shape) for name, values in found.items()}, **peaks)
+
+
+def _peaks(answers: Sequence[Response], between: Sequence[Response]) -> dict[str, Array]:
+    """Largest amplitudes of each scene at its speeds and between them."""
+    every = [joined(pair) for pair in zip(answers, between, strict=True)]
+    return {
+        f"peak_{name}": np.array([highest(each.speed, getattr(each, name)).amplitude for each in every])
+        for name in ("amplitude", "amplitude_dry")
+    }
 
 
 def _single(scene: Scene) -> Answers:
     """Answers of one scene as `run` gives them."""
     result = run_scene(scene)
     nothing = np.full(result.speed.shape, np.nan)
-    found = {field.name: getattr(result, field.name) for field in fields(Answers)}
+    over = [field.name for field in fields(Answers) if not field.name.startswith("peak_")]
+    found: dict[str, Any] = {name: getattr(result, name) for name in over}
+    found["peak_amplitude"] = np.array(result.peak["amplitude"])
+    found["peak_amplitude_dry"] = np.array(result.peak_dry["amplitude"])
     return Answers(**{name: (nothing if value is None else value)[None] for name, value in found.items()})

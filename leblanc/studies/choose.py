@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.friction import Friction
@@ -16,7 +17,7 @@ from fluid.whirl import covering_speed
 from leblanc.results.choice import Choice
 from leblanc.scene.scene import Scene, dry_rotor
 from leblanc.studies.liquid import SYNCHRONOUS_MODELS, synchronous_model
-from meshes.arrays import Array
+from meshes.arrays import Array, Flags
 from meshes.chamber_section import rest_offset, surface_is_whole
 from meshes.errors import InputError
 from solvers.liquid_model import ROUNDING, LiquidModel
@@ -131,6 +132,44 @@ def choose_all(machines: Sequence[Prepared]) -> list[Choice]:
     return [_choice(machine, *pair) for machine, pair in zip(machines, errors, strict=True)]
 
 
+def models_of(scene: Scene) -> tuple[str, ...]:
+    """Names of the liquid models that may answer a scene at some speed."""
+    if is_cut(scene):
+        return ("fem",)
+    return ("linear", "statics") if scene.model.liquid == "auto" else (scene.model.liquid,)
+
+
+def models_at(machines: Sequence[Prepared]) -> list[tuple[NDArray[np.str_], Flags]]:
+    """Liquid models of machines that have been chosen for, without an estimate of their errors.
+
+    Returns
+    -------
+    names of the models at the speeds of each machine, and whether the liquid rides with the drum there,
+    shape (n,) each
+    """
+    free = [machine.scene.model.liquid == "auto" and not is_cut(machine.scene) for machine in machines]
+    judged = [machine for machine, chooses in zip(machines, free, strict=True) if chooses]
+    chosen = iter(choose_all(judged) if judged else ())
+    found = []
+    for machine, chooses in zip(machines, free, strict=True):
+        if chooses:
+            choice = next(chosen)
+            found.append((choice.models, choice.in_range))
+        else:
+            (name,) = models_of(machine.scene)
+            found.append((np.full(machine.speed.shape, name), _carried(machine)))
+    return found
+
+
+def _carried(machine: Prepared) -> Flags:
+    """Whether the liquid rides with the drum, and covers a wall that is no circle, shape (n,)."""
+    captured_from, speed = _captured_from(machine.scene), machine.speed
+    found = np.ones(speed.shape, dtype=bool) if captured_from is None else speed > captured_from
+    if is_cut(machine.scene):
+        found &= speed > max(_covers(fill, machine.axial_gravity) for fill in machine.scene.fills)
+    return found
+
+
 def _check_walls(scene: Scene) -> None:
     """What there is no model for."""
     for k, fill in enumerate(scene.fills):
@@ -203,21 +242,18 @@ def _choice(machine: Prepared, linear: LinearError, gravity: Array) -> Choice:
     if cut or liquid != "auto":
         enough = np.full(speed.shape, liquid != "statics")
     models = np.where(enough, small, "statics")
-    captured_from = _captured_from(scene)
-    in_range = np.ones(speed.shape, dtype=bool) if captured_from is None else speed > captured_from
     error = np.where(enough, linear.worst, ROUNDING) + gravity
     if small == "fem":
         error = error + np.where(enough, REST_ERROR, 0.0)
     if cut:
         # The exact equilibrium of compartments, which would judge small disturbances, is not computed.
-        in_range = in_range & (speed > max(_covers(fill, machine.axial_gravity) for fill in scene.fills))
         error = np.full(speed.shape, np.nan)
     return Choice(
         model=small if enough.all() else "statics",
         models=models,
         prescribed=liquid != "auto",
-        in_range=in_range,
-        captured_from=captured_from,
+        in_range=_carried(machine),
+        captured_from=_captured_from(scene),
         tolerance=tolerance,
         error=error,
         linear=linear,

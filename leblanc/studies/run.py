@@ -16,6 +16,7 @@ from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
 from leblanc.studies.choose import Prepared, choose_all, liquid_models, prepare
 from leblanc.studies.liquid import synchronous_model
+from leblanc.studies.peaks import responses_between
 from leblanc.studies.plausible import doubts
 from leblanc.studies.whirl_map import small_whirl_friction
 from meshes.arrays import Complex
@@ -32,7 +33,13 @@ from solvers.rotor.vibration import (
 )
 from solvers.statics.hydrostatics import optimal_volume
 from solvers.synchronous.models import LINEAR
-from solvers.synchronous.response import Response, critical_speed, response, wet_critical_speeds
+from solvers.synchronous.response import (
+    Response,
+    by_speed,
+    critical_speed,
+    response,
+    wet_critical_speeds,
+)
 from solvers.whirl.edges import unstable_bands
 from solvers.whirl.growth import asynchronous_growth
 
@@ -187,10 +194,14 @@ def run_scene(scene: Scene) -> RunResult:
         wet = critical_speed(rotor, scene.fills, gravity, synchronous_model(choice.model))
     else:
         answer, motion, (dry, wet) = motion_response(machine, choice)
+    (refined,) = responses_between([machine], [answer], drawn=True)
     whirl = self_excited(machine)
     answer = replace(
         answer, in_range=answer.in_range & choice.in_range, stable=whirl.leaves_stable(answer.stable)
     )
+    refined = replace(refined, stable=refined.stable & ~whirl.inside(refined.speed))
+    if motion is not None:
+        motion = replace(motion, refined_forward=_at_chambers(machine.system, scene.fills, refined))
     return RunResult(
         name=scene.name,
         source=scene.source,
@@ -199,7 +210,7 @@ def run_scene(scene: Scene) -> RunResult:
         digest=scene.digest,
         response=answer,
         liquid_mass=sum(fill.mass for fill in scene.fills),
-        notes=_notes(machine, choice, answer, motion, whirl),
+        notes=_notes(machine, choice, answer, refined, motion, whirl),
         axis=scene.rotor.axis,
         chambers=tuple(_chamber(fill, motion) for fill in scene.fills),
         capture_speed=choice.captured_from,
@@ -210,6 +221,7 @@ def run_scene(scene: Scene) -> RunResult:
         error_estimate=choice.error,
         models=model_spans(choice, machine.speed),
         tolerance=choice.tolerance,
+        refined=refined,
     )
 
 
@@ -230,7 +242,12 @@ def _chamber(fill: Fill, motion: Motion | None) -> FilledChamber:
 
 
 def _notes(
-    machine: Prepared, choice: Choice, answer: Response, motion: Motion | None, whirl: SelfExcited
+    machine: Prepared,
+    choice: Choice,
+    answer: Response,
+    refined: Response,
+    motion: Motion | None,
+    whirl: SelfExcited,
 ) -> tuple[Note, ...]:
     """Limits of validity and findings."""
     found = [notes.liquid_models(choice), notes.tolerance_missed(choice, machine.speed)]
@@ -247,9 +264,17 @@ def _notes(
     if several.any():
         first, last = answer.speed[several][[0, -1]].tolist()
         found.append(notes.several_answers(first, last, stable=motion is None))
+    found.append(_endless(by_speed([answer, refined])))
     found += _walls(machine, answer, motion)
     found += [*_meshes(machine.scene), *doubts(machine.scene)]
     return tuple(note for note in found if note is not None)
+
+
+def _endless(answer: Response) -> Note | None:
+    """Where the amplitude has no bound, with and without liquid; None where it has one everywhere."""
+    endless = [np.isinf(size) for size in (answer.amplitude, answer.amplitude_dry)]
+    wet, dry = (float(answer.speed[at][0]) if at.any() else None for at in endless)
+    return None if wet is None and dry is None else notes.unbounded(wet, dry)
 
 
 def _against_spin(answer: Response, motion: Motion) -> Note | None:

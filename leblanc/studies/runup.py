@@ -19,8 +19,9 @@ from leblanc.results.runup import Bands, RunupFrames, RunupResult
 from leblanc.scene.inputs import runup_rows
 from leblanc.scene.scene import JeffcottRotor, Runup, Scene, dry_rotor, jeffcott, require_clear
 from leblanc.studies.choose import across_gravity as across_gravity  # of a run-up, asked for with it
-from leblanc.studies.choose import axial_gravity
+from leblanc.studies.choose import axial_gravity, is_cut, prepare
 from leblanc.studies.liquid import RUNUP_MODELS, runup_model
+from leblanc.studies.peaks import responses_between
 from leblanc.studies.plausible import doubts
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
@@ -37,7 +38,7 @@ from solvers.runup.runup import (
     run_up,
 )
 from solvers.synchronous.models import LINEAR
-from solvers.synchronous.response import Response, response
+from solvers.synchronous.response import Response, by_speed, response
 
 FRAMES = 180  # of a film
 MOST_FRAMES = 2000
@@ -393,11 +394,20 @@ def numerics_of(
 
 
 def steady_response(scene: Scene, speed: Array) -> Response | None:
-    """Synchronous response over the speeds that were passed; None unless the rotor is a Jeffcott rotor."""
+    """Synchronous response over the speeds that were passed, refined where it is largest.
+
+    None unless the rotor is a Jeffcott rotor.
+    """
     passed = _passed(speed, STEADY_SPEEDS)
     if not isinstance(scene.rotor, JeffcottRotor) or passed.size == 0:
         return None
-    return response(jeffcott(scene), scene.fills, passed, axial_gravity(scene))
+    answer = response(jeffcott(scene), scene.fills, passed, axial_gravity(scene))
+    if is_cut(scene):
+        return answer
+    exact = scene.altered(model=scene.model.altered(liquid="statics"))
+    return by_speed(
+        [answer, *responses_between([replace(prepare(exact), speed=passed)], [answer], drawn=True)]
+    )
 
 
 def whirl_bands(scene: Scene, speed: Array) -> Bands:

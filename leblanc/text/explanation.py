@@ -13,7 +13,7 @@ from leblanc.results.explanation import (
     LayerExplanation,
     ModelAnswer,
 )
-from leblanc.results.response import RestMode, peak
+from leblanc.results.response import RestMode
 from leblanc.text.numbers import NOT_FOUND, number
 from leblanc.text.run import amplitude_place, error_words, speeds_words
 from leblanc.units import LENGTH, RPM, VOLUME, Unit, in_rpm, unit_for, with_unit
@@ -157,11 +157,11 @@ def comparison_rows(found: Comparison) -> list[tuple[str, ...]]:
 def _comparison_row(found: Comparison, answer: ModelAnswer) -> tuple[str, ...]:
     if answer.result is None or answer.cpu_time is None:
         return answer.model, REFUSED, "", "", ""
-    at, amplitude = peak(answer.result.amplitude), answer.peak_amplitude
+    at, amplitude = answer.result.peak["speed"], answer.peak_amplitude
     return (
         answer.model,
         NOT_FOUND if amplitude is None else _unit(found).number(amplitude),
-        "" if at is None else number(float(answer.result.speed[at]) * RPM),
+        "" if math.isnan(at) else number(at * RPM),
         "reference" if answer.model == found.reference else difference(found, answer.model),
         f"{answer.cpu_time:.2g}",
     )

@@ -11,7 +11,7 @@ import numpy as np
 from leblanc.results.base import one_line, percent
 from leblanc.results.choice import ModelSpan
 from leblanc.results.notes import plane_words
-from leblanc.results.response import RunResult, peak
+from leblanc.results.response import RunResult
 from leblanc.text.numbers import NOT_FOUND, number, ranges
 from leblanc.units import LENGTH, MASS, RPM, VOLUME, in_rpm, rpm_bands, rpm_range, unit_for, with_unit
 from meshes.arrays import Array, Flags
@@ -26,25 +26,35 @@ def answer(result: RunResult) -> str:
     ----------
     result : the response
     """
-    largest, at, last, *_ = comparisons(result)
-    if largest.wet == NOT_FOUND:
+    most, at, last, *_ = comparisons(result)
+    if most.wet == NOT_FOUND:
         return "No answer was found at any speed."
     speed, place = in_rpm(float(result.speed[-1])), amplitude_place(result)
     where = f" {place}" if place else ""
     if not result.liquid_mass > 0.0:
-        return f"Without liquid the amplitude{where} is {largest.wet_text} at most, at {at.wet} rpm."
+        return f"Without liquid the amplitude{where} is {most.wet_text} at most, at {at.wet} rpm."
     if result.speed.size == 1:
         return (
             f"At {speed} the amplitude{where} is {last.wet_text} with the liquid{_doubted(result, -1)} and "
             f"{last.dry_text} without."
         )
-    highest = peak(result.amplitude)
+    highest = largest(result.curve.amplitude)
     assert highest is not None
     return (
-        f"The largest amplitude{where} is {largest.wet_text} at {at.wet} rpm with the liquid"
-        f"{_doubted(result, highest)} and {largest.dry_text} at {at.dry} rpm without; at {speed} it is "
+        f"The largest amplitude{where} is {most.wet_text} at {at.wet} rpm with the liquid"
+        f"{_doubted(result, highest)} and {most.dry_text} at {at.dry} rpm without; at {speed} it is "
         f"{last.wet_text}{_doubted(result, -1)} instead of {last.dry_text}."
     )
+
+
+def largest(amplitude: Array) -> int | None:
+    """Index of the largest amplitude, one without a bound above all; None if none was found.
+
+    Parameters
+    ----------
+    amplitude : nan where nothing was found, m, shape (n,)
+    """
+    return None if np.isnan(amplitude).all() else int(np.nanargmax(amplitude))
 
 
 def _doubted(result: RunResult, index: int) -> str:
@@ -55,7 +65,7 @@ def _doubted(result: RunResult, index: int) -> str:
 
 def _wrong(result: RunResult, index: int) -> list[str]:
     """What keeps an amplitude from being believed."""
-    r = result.response
+    r = result.curve
     checks = (("out of range", r.in_range), ("unstable", r.stable))
     return [text for text, holds in checks if not holds[index]]
 
@@ -126,8 +136,8 @@ def comparisons(result: RunResult) -> list[Comparison]:
     ----------
     result : the response
     """
-    r = result.response
-    wet, dry = peak(result.amplitude), peak(result.amplitude_dry)
+    r = result.curve
+    wet, dry = largest(r.amplitude), largest(r.amplitude_dry)
     at_wet, at_dry = (NOT_FOUND if i is None else number(r.speed[i] * RPM) for i in (wet, dry))
     found = [
         _compared("Largest amplitude", result, wet, dry),
@@ -142,9 +152,9 @@ def comparisons(result: RunResult) -> list[Comparison]:
 
 
 def _compared(label: str, result: RunResult, wet: int | None, dry: int | None) -> Comparison:
-    """Amplitudes at two places in the list of speeds."""
-    with_liquid = math.nan if wet is None else float(result.amplitude[wet])
-    without = math.nan if dry is None else float(result.amplitude_dry[dry])
+    """Amplitudes at two places of the curve."""
+    with_liquid = math.nan if wet is None else float(result.curve.amplitude[wet])
+    without = math.nan if dry is None else float(result.curve.amplitude_dry[dry])
     comparable = without > 0.0 and math.isfinite(without) and math.isfinite(with_liquid)
     ratio = number(with_liquid / without) if comparable else ""
     unit = unit_for(LENGTH, with_liquid, without)
@@ -282,10 +292,12 @@ def remarks(result: RunResult) -> list[str]:
     ----------
     result : the response
     """
-    r, found = result.response, []
-    highest = peak(result.amplitude)
+    r, found = result.curve, []
+    highest = largest(r.amplitude)
     if highest is None:
         found.append("No answer was found at any speed.")
+    elif np.isinf(r.amplitude[highest]):
+        found.append("The largest amplitude has no bound: nothing damps the resonance.")
     elif r.speed.size > 1 and r.speed[highest] in (r.speed.min(), r.speed.max()):
         found.append("The largest amplitude lies at an end of the range of speeds.")
     if highest is not None and not r.in_range[highest]:
@@ -304,19 +316,19 @@ def alts(result: RunResult) -> dict[str, str]:
     ----------
     result : the response
     """
-    largest, at, last, *_ = comparisons(result)
+    most, at, last, *_ = comparisons(result)
     where = f" {place}" if (place := amplitude_place(result)) else ""
     values = dict(facts(result))
     centre = next(value for label, value in values.items() if label.startswith("Its centre"))
     return {
-        "amplitude": f"Curves of the amplitude{where} over speed: largest {largest.wet_text} at {at.wet} "
-        f"rpm with liquid, {largest.dry_text} at {at.dry} rpm without.",
+        "amplitude": f"Curves of the amplitude{where} over speed: largest {most.wet_text} at {at.wet} "
+        f"rpm with liquid, {most.dry_text} at {at.dry} rpm without.",
         "liquid": "Curves of the distance and the angle of the liquid's centre of mass over speed; at the "
         f"last speed: {centre}.",
         "phase": "Curves of the angle from the unbalance to the deflection over speed, with and without "
         "liquid.",
         "chamber": "Drawing of each chamber with its liquid, seen along the axis, at the largest deflection, "
-        f"{largest.wet_text}, and at the last speed, {last.wet_text}.",
+        f"{most.wet_text}, and at the last speed, {last.wet_text}.",
         "campbell": "Curves of the natural frequencies without liquid over speed.",
     }
 

@@ -23,12 +23,14 @@ _ROUNDING = 1e-11  # of the largest term of the balance
 _SAME = 1e-6  # relative distance of two solutions that count as one
 
 
-def solutions(balance: Balance) -> tuple[Complex, Index, Flags]:
+def solutions(balance: Balance, near: Complex | None = None) -> tuple[Complex, Index, Flags]:
     """Solutions of the balance: all where the chambers sit in one plane, by Newton's method elsewhere.
 
     Parameters
     ----------
     balance : at s speeds, n coordinates
+    near : coordinates of the solutions at close speeds, from which Newton's method starts, nan where there
+        are none, shape (s, k, n)
 
     Returns
     -------
@@ -43,7 +45,7 @@ def solutions(balance: Balance) -> tuple[Complex, Index, Flags]:
         return answer[which], which, bounded
     apart = np.abs(balance.plane - balance.plane[0])
     alike = bool(np.all(apart <= 1e-12 * np.abs(balance.plane).max()))
-    return one_plane(balance) if alike else several_planes(balance)
+    return one_plane(balance) if alike else several_planes(balance, near)
 
 
 def one_plane(balance: Balance) -> tuple[Complex, Index, Flags]:
@@ -109,18 +111,24 @@ def _phase(support: Complex, alone: Complex, size: Array, pulled: Array) -> Comp
     return np.asarray(np.exp(1j * (np.angle(support * alone) - np.angle(support * size - pulled))))
 
 
-def several_planes(balance: Balance) -> tuple[Complex, Index, Flags]:
+def several_planes(balance: Balance, near: Complex | None = None) -> tuple[Complex, Index, Flags]:
     """Solutions where chambers sit in several planes: Newton from many starts, then from speed to speed.
 
-    Parameters and returns as in `one_plane`; solutions far from every start may be missed.
+    Parameters and returns as in `solutions` and `one_plane`; solutions far from every start may be missed.
     """
     everyone = np.arange(balance.speed.size)
     straight = balance.linear(everyone)
     wet = np.asarray(np.isfinite(straight).all(axis=1))
     wet &= np.all(np.abs(balance.forward(np.where(wet[:, None], straight, 0.0))) <= balance.limit, axis=1)
     answer, which = straight[wet], everyone[wet]
-    answer, which = _added(balance, answer, which, *_linear_starts(balance, everyone, _STARTS))
-    fresh = np.arange(which.size)
+    unknown, followed = everyone, 0
+    if near is not None:
+        known = np.isfinite(near).all(axis=2)
+        answer, which = _added(balance, answer, which, near[known], np.nonzero(known)[0])
+        # What was found from a close speed is not looked for again.
+        unknown, followed = np.setdiff1d(everyone, which), which.size
+    answer, which = _added(balance, answer, which, *_linear_starts(balance, unknown, _STARTS))
+    fresh = np.arange(followed, which.size)
     # A fold is followed one speed at a time, in both directions.
     for _ in range(balance.speed.size):
         if fresh.size == 0:

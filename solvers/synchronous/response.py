@@ -131,6 +131,7 @@ class Response:
     branch_stable : their stability, shape (n, b)
     backward, backward_dry : backward part of the branch reported, and without liquid, m, shape (n,)
     branch_backward : of all branches, m, shape (n, b)
+    branch_coordinates : as coordinates, of all branches, nan where there are fewer, shape (n, b, m)
     coordinates : complex amplitudes of the branch reported, q = Re(coordinates e^{i Omega t}), shape (n, m)
     residual : what is left of the balance of forces over the largest of them, shape (n,)
     position : along the axis of the plane whose motion is reported, m
@@ -151,9 +152,40 @@ class Response:
     backward: Complex
     backward_dry: Complex
     branch_backward: Complex
+    branch_coordinates: Complex
     coordinates: Complex
     residual: Array
     position: float = 0.0
+
+    @property
+    def parts(self) -> Complex:
+        """Forward and backward part of the branch reported, m, shape (n, 2)."""
+        return np.stack((self.deflection, self.backward), axis=1)
+
+    @property
+    def parts_dry(self) -> Complex:
+        """The same of the rotor without liquid, m, shape (n, 2)."""
+        return np.stack((self.deflection_dry, self.backward_dry), axis=1)
+
+    @property
+    def amplitude(self) -> Array:
+        """Largest distance of the axis from the line it rests in, of the branch reported, m, shape (n,)."""
+        return np.asarray(np.abs(self.parts).sum(axis=1))
+
+    @property
+    def amplitude_dry(self) -> Array:
+        """The same of the rotor without liquid, m, shape (n,)."""
+        return np.asarray(np.abs(self.parts_dry).sum(axis=1))
+
+    @property
+    def branch_amplitude(self) -> Array:
+        """The same of every branch, nan where there is none, m, shape (n, b)."""
+        return np.asarray(np.abs(self.branch_deflection) + np.abs(self.branch_backward))
+
+    def at(self, which: Index) -> Response:
+        """The response at some of its speeds, by their index."""
+        own = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "position"}
+        return Response(**{name: values[which] for name, values in own.items()}, position=self.position)
 
 
 def response(
@@ -163,6 +195,7 @@ def response(
     gravity: float = 9.81,
     model: LiquidModel | Sequence[LiquidModel] = STATICS,
     position: float | None = None,
+    near: Complex | None = None,
 ) -> Response:
     """Steady motion of a rotor with liquid in its chambers under its unbalance [theory: rotor, eq. 2, 28-30].
 
@@ -175,6 +208,8 @@ def response(
     model : of the liquid, for the forward part; one for all speeds or one for each
     position : of the plane that is reported, m; that of the first chamber if None, 0 without chambers. All
         planes of a Jeffcott rotor move alike
+    near : coordinates of answers at speeds close to each of these, nan where there are none, from which a
+        search with chambers in several planes starts, shape (n, k, m)
 
     Returns
     -------
@@ -200,7 +235,8 @@ def response(
             return machine_responses([(rotor, fills)], owner, spin[at], np.array([gravity]), law)
         _require_speeds(spin)
         system = rotor.system()
-        return _of_balance(system, harmonic_balance(system, fills, spin[at], gravity, law), place)
+        terms = harmonic_balance(system, fills, spin[at], gravity, law)
+        return _of_balance(system, terms, place, None if near is None else near[at])
 
     if not isinstance(model, Sequence):
         return solve(model, np.arange(spin.size))
@@ -253,6 +289,7 @@ def machine_responses(
     still = np.where(bounded[chosen], w, 0.0)
     np.logical_and.at(converged, which, state.converged)
     none = np.zeros(speed.size, dtype=complex)
+    circle, endless = np.array([1.0, -1j]), complex(np.inf, 0.0)
     return Response(
         speed=speed,
         deflection=w,
@@ -269,7 +306,10 @@ def machine_responses(
         backward=none,
         backward_dry=none,
         branch_backward=table.spread(np.zeros(which.size, dtype=complex), _NONE),
-        coordinates=np.where(found, still[:, None] * np.array([1.0, -1j]), complex(np.inf, 0.0)),
+        branch_coordinates=table.spread(
+            np.where(bounded[:, None], np.where(bounded, phased, 0.0)[:, None] * circle, endless), _NONE
+        ),
+        coordinates=np.where(found, still[:, None] * circle, endless),
         residual=_left(pairs, still, state.unbalance[chosen]),
     )
 
@@ -289,9 +329,9 @@ def _left(pairs: Pairs, deflection: Complex, unbalance: Array) -> Array:
     return np.asarray(np.divide(left, scale, out=np.zeros(scale.shape), where=scale > 0.0))
 
 
-def _of_balance(system: RotorSystem, terms: Balance, position: float) -> Response:
+def _of_balance(system: RotorSystem, terms: Balance, position: float, near: Complex | None) -> Response:
     """The solutions of a harmonic balance as tables over speed and branch, and the largest of each speed."""
-    answer, which, converged = solutions(terms)
+    answer, which, converged = solutions(terms, near)
     lost = np.setdiff1d(np.arange(terms.speed.size), which)
     nothing = np.full((lost.size, answer.shape[1]), complex(np.inf, 0.0))
     answer, which = np.concatenate((answer, nothing)), np.concatenate((which, lost))
@@ -322,6 +362,7 @@ def _of_balance(system: RotorSystem, terms: Balance, position: float) -> Respons
         backward=motion.backward[chosen],
         backward_dry=dry.backward,
         branch_backward=table.spread(motion.backward, _NONE),
+        branch_coordinates=table.spread(answer, _NONE),
         coordinates=answer[chosen],
         residual=_residual(terms, q, forward, law),
         position=position,
@@ -369,8 +410,8 @@ class _Table:
         return cls(which, columns, (speeds, int(counts.max())), best[np.cumsum(counts) - 1])
 
     def spread(self, values: NDArray[_Value], missing: complex | bool) -> NDArray[_Value]:
-        """Values of the solutions as a table (speed, branch), `missing` where there is none."""
-        table = np.full(self.shape, missing, dtype=values.dtype)
+        """Values of the solutions as a table (speed, branch, ...), `missing` where there is none."""
+        table = np.full((*self.shape, *values.shape[1:]), missing, dtype=values.dtype)
         table[self.rows, self.columns] = values
         return table
 
@@ -378,13 +419,34 @@ class _Table:
 def _merged(parts: list[tuple[Index, Response]]) -> Response:
     """Responses of several models, each at its own speeds, in the order of the speeds."""
     order = np.argsort(np.concatenate([at for at, _ in parts]))
-    found: dict[str, Any] = {"position": parts[0][1].position}
+    return joined([part for _, part in parts]).at(order)
+
+
+def joined(parts: Sequence[Response]) -> Response:
+    """Responses at several sets of speeds as one, one set after the other.
+
+    Parameters
+    ----------
+    parts : of one rotor, at least one
+    """
+    found: dict[str, Any] = {"position": parts[0].position}
     for field in fields(Response):
-        values = [getattr(part, field.name) for _, part in parts]
+        values = [getattr(part, field.name) for part in parts]
         if field.name not in found:
             wide = _padded(values) if field.name.startswith("branch_") else values
-            found[field.name] = np.concatenate(wide)[order]
+            found[field.name] = np.concatenate(wide)
     return Response(**found)
+
+
+def by_speed(parts: Sequence[Response]) -> Response:
+    """Responses at several sets of speeds as one, by rising speed.
+
+    Parameters
+    ----------
+    parts : of one rotor, at least one
+    """
+    every = joined(parts)
+    return every.at(np.argsort(every.speed, kind="stable"))
 
 
 def _padded(tables: list[NDArray[Any]]) -> list[NDArray[Any]]:
@@ -392,7 +454,8 @@ def _padded(tables: list[NDArray[Any]]) -> list[NDArray[Any]]:
     most = max(table.shape[1] for table in tables)
     wide = []
     for table in tables:
-        out = np.full((table.shape[0], most), False if table.dtype == bool else _NONE, dtype=table.dtype)
+        shape, missing = (table.shape[0], most, *table.shape[2:]), False if table.dtype == bool else _NONE
+        out = np.full(shape, missing, dtype=table.dtype)
         out[:, : table.shape[1]] = table
         wide.append(out)
     return wide

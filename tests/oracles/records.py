@@ -32,6 +32,7 @@ def circles(w: NDArray[np.complex128], branches: NDArray[np.complex128]) -> dict
         "backward": 0.0 * w,
         "backward_dry": 0.0 * w,
         "branch_backward": 0.0 * branches,
+        "branch_coordinates": np.stack((branches, -1j * branches), axis=2),
         "coordinates": np.stack((w, -1j * w), axis=1),
         "residual": np.zeros(w.shape),
     }

@@ -9,12 +9,16 @@ import numpy as np
 
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, jeffcott
 from leblanc.studies.batch import answer_scenes
-from leblanc.studies.choose import axial_gravity
+from leblanc.studies.choose import axial_gravity, models_at, prepare
 from leblanc.studies.liquid import synchronous_model
+from leblanc.studies.peaks import responses_between
 from meshes.arrays import Array, Flags
-from solvers.synchronous.response import machine_responses
+from solvers.synchronous.peaks import highest
+from solvers.synchronous.resonances import planar_tops
+from solvers.synchronous.response import by_speed, machine_responses, response
 
 AT_ONCE = 4000  # pairs; more at once would only take memory
+FEW = 24  # speeds from which the peak of a rotor that tilts is refined
 
 
 @dataclass(frozen=True)
@@ -44,6 +48,7 @@ class FilledMachine:
         liquid = "statics" if scene.model.liquid == "auto" else scene.model.liquid
         self.scene = scene.altered(optimise=None, runup=None, model=scene.model.altered(liquid=liquid))
         self._known: dict[tuple[bytes, float], tuple[float, float]] = {}
+        self._peaks: dict[tuple[bytes, float, float], float] = {}
 
     @property
     def planar(self) -> bool:
@@ -75,11 +80,53 @@ class FilledMachine:
         found = np.array([self._known[key] for key in keys]).reshape(-1, 2)
         return FillAnswers(found[:, 0], found[:, 1])
 
-    def over(self, volumes: Array, speeds: Speeds) -> Array:
-        """Amplitudes over evenly spaced speeds, m, shape (m, count); other rotors need their neighbours."""
-        scenes = [with_volumes(self.scene, row).altered(speeds=speeds) for row in volumes]
-        answers = answer_scenes(scenes)
-        return np.where(np.isnan(answers.amplitude), math.inf, answers.amplitude)
+    def peaks(self, volumes: Array, speeds: Speeds) -> Array:
+        """Largest amplitudes over a range of speeds, found between them as well, m, shape (m,).
+
+        Parameters
+        ----------
+        volumes : of the chambers, m^3, shape (m, c)
+        speeds : the range; how many there are does not matter
+        """
+        rows, span = np.ascontiguousarray(volumes), (speeds.start, speeds.stop)
+        keys = [(row.tobytes(), *span) for row in rows]
+        fresh = list(
+            {key: k for k, key in reversed(list(enumerate(keys))) if key not in self._peaks}.values()
+        )
+        fresh.sort()
+        if fresh:
+            found = self._planar_peaks if self.planar else self._other_peaks
+            for k, size in zip(fresh, found(rows[fresh], *span).tolist(), strict=True):
+                self._peaks[keys[k]] = math.inf if math.isnan(size) else size
+        return np.array([self._peaks[key] for key in keys])
+
+    def _planar_peaks(self, volumes: Array, start: float, stop: float) -> Array:
+        """The top of each resonance curve; where it lies outside the range, an end of the range."""
+        rotor, gravity = jeffcott(self.scene), np.full(volumes.shape[0], axial_gravity(self.scene))
+        machines = [(rotor, with_volumes(self.scene, row).fills) for row in volumes]
+        tops = planar_tops(machines, gravity, synchronous_model(self.scene.model.liquid))
+        outside = np.flatnonzero(~((tops.speed >= start) & (tops.speed <= stop)))
+        found = tops.amplitude.copy()
+        if outside.size:
+            ends = np.tile([start, stop], outside.size)
+            found[outside] = (
+                self.at(np.repeat(volumes[outside], 2, axis=0), ends).amplitude.reshape(-1, 2).max(1)
+            )
+        return found
+
+    def _other_peaks(self, volumes: Array, start: float, stop: float) -> Array:
+        """The same of rotors that tilt, each refined from a few speeds."""
+        speeds, found = Speeds.model_construct(start=start, stop=stop, count=FEW if stop > start else 1), []
+        for row in volumes:
+            machine = prepare(with_volumes(self.scene, row).altered(speeds=speeds))
+            ((names, _),) = models_at([machine])
+            models = [synchronous_model(name) for name in names.tolist()]
+            fills = machine.scene.fills
+            answer = response(machine.rotor, fills, machine.speed, machine.axial_gravity, models)
+            (between,) = responses_between([machine], [answer], dry=False)
+            every = by_speed([answer, between])
+            found.append(highest(every.speed, every.amplitude).amplitude)
+        return np.array(found)
 
     def _planar(self, volumes: Array, speed: Array) -> tuple[Array, Flags]:
         """Amplitude and dry wall at m pairs; whirls that grow by themselves are judged apart."""

@@ -85,8 +85,15 @@ OVER_SPEED: tuple[Output, ...] = (
 )
 
 SINGLE: tuple[Output, ...] = (
-    Output("peak_amplitude", NUMBER, False, "m", "largest amplitude", "over the speeds"),
-    Output("peak_amplitude_dry", NUMBER, False, "m", "largest amplitude", "over the speeds, without liquid"),
+    Output("peak_amplitude", NUMBER, False, "m", "largest amplitude", "over the range of speeds"),
+    Output(
+        "peak_amplitude_dry",
+        NUMBER,
+        False,
+        "m",
+        "largest amplitude",
+        "over the range of speeds, without liquid",
+    ),
     Output("last_amplitude", NUMBER, False, "m", "amplitude at the last speed"),
     Output("last_amplitude_dry", NUMBER, False, "m", "amplitude at the last speed", "without liquid"),
     Output("peak_growth", NUMBER, False, "s-1", "largest growth rate", "over the speeds; above 0 unstable"),
@@ -123,8 +130,9 @@ def values_of(answers: Answers) -> dict[str, NDArray[Any]]:
         for output in OVER_SPEED
     }
     # fmax takes the other of two where one is not a number; a whole row without numbers gives none.
-    for name in ("amplitude", "amplitude_dry", "growth"):
-        values[f"peak_{name}"] = np.fmax.reduce(values[name], axis=1)
+    values["peak_growth"] = np.fmax.reduce(values["growth"], axis=1)
+    for name in ("peak_amplitude", "peak_amplitude_dry"):
+        values[name] = getattr(answers, name)
     for name in ("amplitude", "amplitude_dry"):
         values[f"last_{name}"] = values[name][:, -1]
     return values

@@ -1,0 +1,267 @@
+"""The response of machines between the speeds that were asked for, where its amplitude may be largest.
+
+What is known of a machine says where to look first: the top of its resonance curve where it is planar, its
+resonances with and without liquid where it is not. From there `solvers.synchronous.peaks` refines.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from leblanc.studies.choose import Prepared, models_at, models_of
+from leblanc.studies.liquid import synchronous_model
+from meshes.arrays import Array, Complex, Flags, Index
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.vibration import orbit, unbalance_response
+from solvers.synchronous.models import LINEAR
+from solvers.synchronous.peaks import Answer, Samples, refine, seeds
+from solvers.synchronous.planar import divide
+from solvers.synchronous.resonances import Tops, planar_tops, resonances
+from solvers.synchronous.response import Response, by_speed, joined, machine_responses, response
+
+_UNDAMPED = 1e-8  # half width over speed of a resonance that nothing damps
+_NEAR, _NEARER = 1e-6, 1e-9  # relative distances over which its amplitude grows as one over the distance
+_GROWN = 100.0  # times, at least
+_THOROUGH = 4  # rounds in which chambers in several planes are searched from scratch
+
+
+@dataclass(frozen=True)
+class Resonances:
+    """Where a machine may have its peak.
+
+    Parameters
+    ----------
+    speed, half_width : rad/s, shape (k,)
+    bound : what no amplitude exceeds, m; infinite where that is not known
+    """
+
+    speed: Array
+    half_width: Array
+    bound: float = math.inf
+
+
+class Asked(Protocol):
+    """Machines that answer at any speed, each by its index.
+
+    Parameters
+    ----------
+    dry, wet : resonances of each machine without and with liquid
+    """
+
+    dry: Sequence[Resonances]
+    wet: Sequence[Resonances]
+
+    def without_liquid(self, owner: Index, speed: Array) -> Complex:
+        """Parts of the deflections of the dry rotors, m, shape (m, 2)."""
+        ...
+
+    def with_liquid(self, owner: Index, speed: Array) -> Response:
+        """Responses by the liquid model that is chosen at each speed."""
+        ...
+
+
+def responses_between(
+    machines: Sequence[Prepared], answers: Sequence[Response], dry: bool = True, drawn: bool = False
+) -> list[Response]:
+    """Responses of machines at as many further speeds as it takes to find their largest amplitudes.
+
+    Parameters
+    ----------
+    machines : all of them planar, or a single one
+    answers : of each, at its own speeds
+    dry : find the largest amplitudes without liquid as well
+    drawn : show the shape of the resonances, as a figure needs it
+
+    Returns
+    -------
+    Response of each between its first and its last speed, by rising speed; at no speed at all where it has
+    just one. Deflections are infinite where they have no bound. The liquid model is chosen at every speed as
+    at the others
+    """
+    nowhere = np.zeros(0, dtype=np.intp)
+    if all(machine.speed[-1] <= machine.speed[0] for machine in machines):
+        return [answer.at(nowhere) for answer in answers]
+    planar = isinstance(machines[0].rotor, Jeffcott)
+    asked: Asked = _Planar(machines) if planar else _Other(machines[0], answers[0])
+    ends = [(float(machine.speed[0]), float(machine.speed[-1])) for machine in machines]
+
+    def wet_parts(owner: Index, speed: Array) -> Complex:
+        return asked.with_liquid(owner, speed).parts
+
+    endless_dry = _without_bound(asked.without_liquid, asked.dry, ends)
+    endless_wet = _without_bound(wet_parts, asked.wet, ends)
+    found = [[answer.at(nowhere)] for answer in answers]
+
+    def still(owner: Index, speed: Array) -> Complex:
+        return _marked(asked.without_liquid(owner, speed), _met(endless_dry, owner, speed))
+
+    def wet(owner: Index, speed: Array) -> Complex:
+        answer = asked.with_liquid(owner, speed)
+        endless = _met(endless_wet, owner, speed)
+        answer = replace(
+            answer,
+            deflection=_marked(answer.parts, endless)[:, 0],
+            deflection_dry=_marked(answer.parts_dry, _met(endless_dry, owner, speed))[:, 0],
+            converged=answer.converged & ~endless,
+        )
+        for k in np.unique(owner).tolist():
+            found[k].append(answer.at(np.flatnonzero(owner == k)))
+        return answer.parts
+
+    seen = [np.zeros(0) for _ in ends]
+    if dry:
+        begin = [Samples(answer.speed, answer.parts_dry) for answer in answers]
+        seen = [samples.speed for samples in _explored(still, begin, asked.dry, seen, ends, drawn)]
+    begin = [Samples(answer.speed, answer.parts) for answer in answers]
+    _explored(wet, begin, asked.wet, seen, ends, drawn)
+    return [by_speed(parts) for parts in found]
+
+
+def _explored(
+    answer: Answer,
+    samples: Sequence[Samples],
+    near: Sequence[Resonances],
+    more: Sequence[Array],
+    ends: Sequence[tuple[float, float]],
+    drawn: bool,
+) -> list[Samples]:
+    """Samples of each machine with those at its resonances, at more speeds, and at the peak."""
+    fresh = []
+    for own, resonance, others, (start, stop) in zip(samples, near, more, ends, strict=True):
+        # Where a bound is known, it is the height of a top: its place is enough.
+        width = resonance.half_width if drawn or math.isinf(resonance.bound) else 0.0 * resonance.half_width
+        here = seeds(resonance.speed, width, start, stop, own.speed)
+        fresh.append(np.setdiff1d(np.union1d(here, others), own.speed))
+    owner = np.repeat(np.arange(len(fresh)), [speed.size for speed in fresh])
+    if owner.size:
+        parts = answer(owner, np.concatenate(fresh))
+        samples = [own.joined(fresh[k], parts[owner == k]) for k, own in enumerate(samples)]
+    return refine(answer, samples, [resonance.bound for resonance in near])
+
+
+def _without_bound(
+    answer: Answer, near: Sequence[Resonances], ends: Sequence[tuple[float, float]]
+) -> list[Array]:
+    """Speeds of each machine at which its amplitude has no bound, rad/s.
+
+    There it grows as one over the distance.
+    """
+    found = []
+    for k, (own, (start, stop)) in enumerate(zip(near, ends, strict=True)):
+        sharp = (own.half_width <= _UNDAMPED * own.speed) & (own.speed >= start) & (own.speed <= stop)
+        speed = np.unique(own.speed[sharp])
+        if speed.size:
+            beside = np.array([-_NEAR, -_NEARER, _NEARER, _NEAR])[:, None]
+            every = (speed * (1.0 + beside)).ravel()
+            parts = answer(np.full(every.size, k, dtype=np.intp), every)
+            below, nearer, nearest, above = np.abs(parts).sum(axis=1).reshape(4, -1)
+            speed = speed[np.maximum(nearer, nearest) >= _GROWN * np.maximum(below, above)]
+        found.append(speed)
+    return found
+
+
+def _met(endless: Sequence[Array], owner: Index, speed: Array) -> Flags:
+    """Which pairs of a machine and a speed have no bound, shape (m,)."""
+    found = np.zeros(speed.size, dtype=bool)
+    for k in np.unique(owner).tolist():
+        if endless[k].size:
+            found[owner == k] = np.isin(speed[owner == k], endless[k])
+    return found
+
+
+def _marked(parts: Complex, endless: Flags) -> Complex:
+    """Forward and backward parts, the forward one infinite where there is no bound."""
+    return np.where(endless[:, None], np.array([complex(np.inf, 0.0), 0.0]), parts)
+
+
+class _Planar:
+    """Planar machines, many at once."""
+
+    def __init__(self, machines: Sequence[Prepared]) -> None:
+        self.machines = machines
+        self.rotors = [(machine.planar, machine.scene.fills) for machine in machines]
+        self.gravity = np.array([machine.axial_gravity for machine in machines])
+        self.dry = _at_tops([planar_tops([(rotor, ()) for rotor, _ in self.rotors], self.gravity, LINEAR)])
+        # Where the model is chosen, the one that answers near the top may answer at none of the given speeds.
+        names = dict.fromkeys(name for machine in machines for name in models_of(machine.scene))
+        models = [synchronous_model(name) for name in names]
+        self.wet = _at_tops([planar_tops(self.rotors, self.gravity, model) for model in models])
+
+    def without_liquid(self, owner: Index, speed: Array) -> Complex:
+        """See `Asked`."""
+        rotors = np.array([(r.mass, r.stiffness, r.damping, r.unbalance) for r, _ in self.rotors])
+        mass, stiffness, damping, unbalance = rotors[owner].T
+        squared = np.square(speed)
+        deflection = divide(unbalance * squared, stiffness - mass * squared + 1j * damping * speed)
+        return np.stack((deflection, np.zeros_like(deflection)), axis=1)
+
+    def with_liquid(self, owner: Index, speed: Array) -> Response:
+        """See `Asked`."""
+        present = np.unique(owner)
+        rows = [np.flatnonzero(owner == k) for k in present.tolist()]
+        pairs = zip(present.tolist(), rows, strict=True)
+        chosen = models_at([replace(self.machines[k], speed=speed[own]) for k, own in pairs])
+        order = np.argsort(np.concatenate(rows))
+        names, carried = (np.concatenate(values)[order] for values in zip(*chosen, strict=True))
+        parts, places = [], []
+        for name in np.unique(names).tolist():
+            own = np.flatnonzero(names == name)
+            model = synchronous_model(name)
+            parts.append(machine_responses(self.rotors, owner[own], speed[own], self.gravity, model))
+            places.append(own)
+        answer = joined(parts).at(np.argsort(np.concatenate(places)))
+        return replace(answer, in_range=answer.in_range & carried)
+
+
+def _at_tops(tops: Sequence[Tops]) -> list[Resonances]:
+    """Resonances of planar machines, each with its top by every model."""
+    found = []
+    for k in range(tops[0].speed.size):
+        speed, size, half_width = np.array([(t.speed[k], t.amplitude[k], t.half_width[k]) for t in tops]).T
+        known = np.isfinite(speed)
+        bound = float(size.max()) if known.all() else math.inf
+        found.append(Resonances(speed[known], half_width[known], bound))
+    return found
+
+
+class _Other:
+    """A single rotor that is not planar."""
+
+    def __init__(self, machine: Prepared, answer: Response) -> None:
+        self.machine, self.position = machine, answer.position
+        fills = machine.scene.fills
+        self.dry = [Resonances(*resonances(machine.system, []))]
+        # Wet all over, and with a wall so dry that the liquid is a dead mass.
+        whole = sum(fill.added_mass for fill in fills)
+        shares = (1.0, sum(fill.mass for fill in fills) / whole) if whole > 0.0 else (1.0,)
+        near = [resonances(machine.system, fills, share) for share in shares]
+        self.wet = [Resonances(*(np.concatenate(values) for values in zip(*near, strict=True)))]
+        self._known, self._rounds = answer, 0
+
+    def without_liquid(self, owner: Index, speed: Array) -> Complex:
+        """See `Asked`."""
+        found = orbit(self.machine.system, unbalance_response(self.machine.system, speed), self.position)
+        return np.stack((found.forward, found.backward), axis=1)
+
+    def with_liquid(self, owner: Index, speed: Array) -> Response:
+        """See `Asked`."""
+        machine = replace(self.machine, speed=speed)
+        ((names, carried),) = models_at([machine])
+        models = [synchronous_model(name) for name in names.tolist()]
+        # The first speeds are apart; later ones close in on answers that are known.
+        near = self._neighbours(speed) if self._rounds >= _THOROUGH else None
+        gravity, fills = machine.axial_gravity, machine.scene.fills
+        answer = response(machine.rotor, fills, speed, gravity, models, self.position, near)
+        self._known, self._rounds = by_speed([self._known, answer]), self._rounds + 1
+        return replace(answer, in_range=answer.in_range & carried)
+
+    def _neighbours(self, speed: Array) -> Complex:
+        """Coordinates of all branches at the next speeds below and above, shape (m, k, n)."""
+        above = np.clip(np.searchsorted(self._known.speed, speed), 1, self._known.speed.size - 1)
+        found = self._known.branch_coordinates
+        return np.concatenate((found[above - 1], found[above]), axis=1)

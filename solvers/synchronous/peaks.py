@@ -1,0 +1,246 @@
+"""Largest amplitudes over a range of speeds, found between the speeds that were asked for.
+
+`refine` takes samples of complex amplitudes over speed and asks for more of them where a larger one may lie:
+around every maximum, and wherever the phase turns too far from one sample to the next, which is how a
+resonance shows that is narrower than their distance. Where a resonance is known to be, `seeds` has the speeds
+that show its shape, so that none is too narrow to be found. Many machines are refined at once: all that they
+want in a round is asked for together.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshes.arrays import Array, Complex, Index
+
+# Complex amplitudes of some machines at some speeds, shape (m,) each: their parts, shape (m, p).
+Answer = Callable[[Index, Array], Complex]
+
+_ROUNDS = 40  # of questions at most
+_GAIN = 1e-12  # relative height that a maximum may still gain
+_SEEN = 1e-3  # the same of a maximum that is lower than another one
+_TURN = 0.8  # rad from one sample to the next that show a resonance's shape
+_LOOKED = 6  # rounds in which a turn of the phase is followed whatever its height
+_WORTH = 0.3  # of the largest amplitude, from which on it is followed to its end
+_CLOSE = 4.0 * np.finfo(float).eps  # relative distance of two speeds that are one
+_SHAPE = (-4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0)  # half widths from a resonance
+
+
+@dataclass(frozen=True)
+class Peak:
+    """Largest amplitude over a range of speeds.
+
+    Parameters
+    ----------
+    speed : rad/s; nan where no amplitude is known
+    amplitude : m; infinite where it has no bound, nan where none is known
+    """
+
+    speed: float
+    amplitude: float
+
+    @property
+    def bounded(self) -> bool:
+        """It is finite."""
+        return math.isfinite(self.amplitude)
+
+    @property
+    def known(self) -> bool:
+        """There is one, with a bound or without."""
+        return not math.isnan(self.amplitude)
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Complex amplitudes of a machine over speed; the amplitude is the sum of the sizes of their parts.
+
+    Parameters
+    ----------
+    speed : rising, rad/s, shape (n,)
+    parts : m, nan or infinite where there is none, shape (n, p)
+    """
+
+    speed: Array
+    parts: Complex
+
+    @property
+    def amplitude(self) -> Array:
+        """m, shape (n,)."""
+        return np.asarray(np.abs(self.parts).sum(axis=1))
+
+    def joined(self, speed: Array, parts: Complex) -> Samples:
+        """With others, those of equal speed once."""
+        every = np.concatenate((self.speed, speed))
+        distinct, first = np.unique(every, return_index=True)
+        return Samples(distinct, np.concatenate((self.parts, parts))[first])
+
+
+def highest(speed: Array, amplitude: Array) -> Peak:
+    """The largest of some amplitudes, the first of equals.
+
+    Parameters
+    ----------
+    speed : rad/s, shape (n,)
+    amplitude : m, nan where there is none, shape (n,)
+
+    Examples
+    --------
+    >>> highest(np.array([1.0, 2.0, 3.0]), np.array([0.1, np.nan, 0.3]))
+    Peak(speed=3.0, amplitude=0.3)
+    """
+    if np.isnan(amplitude).all():
+        return Peak(math.nan, math.nan)
+    k = int(np.nanargmax(amplitude))
+    return Peak(float(speed[k]), float(amplitude[k]))
+
+
+def seeds(centre: Array, half_width: Array, start: float, stop: float, known: Array) -> Array:
+    """Speeds that show the shape of resonances, in a range of speeds.
+
+    Parameters
+    ----------
+    centre, half_width : of each resonance, rad/s, shape (k,)
+    start, stop : of the range, rad/s
+    known : speeds at which there are samples already, rising, shape (n,)
+
+    Returns
+    -------
+    rising, shape (m,): the centres, and beside them as many as show a resonance that the samples are too
+    coarse for
+    """
+    found = [centre]
+    for place, width in zip(centre.tolist(), half_width.tolist(), strict=True):
+        near = np.abs(known - place) <= 2.0 * width
+        if 0.0 < width < 0.3 * place and np.count_nonzero(near) < len(_SHAPE):
+            found.append(place + width * np.array(_SHAPE))
+    every = np.unique(np.concatenate(found)) if centre.size else centre
+    return every[(every >= start) & (every <= stop)]
+
+
+def refine(answer: Answer, samples: Sequence[Samples], bound: Sequence[float]) -> list[Samples]:
+    """Samples with as many more as it takes to find the largest amplitude of each machine.
+
+    Parameters
+    ----------
+    answer : parts of some machines, by their index, at some speeds
+    samples : of each machine, from one end of its range of speeds to the other
+    bound : what no amplitude of a machine exceeds, m; infinite where nothing is known. A machine that has
+        reached it is done
+
+    Returns
+    -------
+    Samples of each machine: the largest of their amplitudes is the peak to about 1e-10 of itself
+
+    Examples
+    --------
+    A resonance of damping ratio 1e-3 at 10 rad/s, from four speeds:
+
+    >>> def answer(owner, speed):
+    ...     return (1.0 / (100.0 - speed**2 + 2e-2j * speed))[:, None]
+    >>> speed = np.array([5.0, 8.0, 11.0, 20.0])
+    >>> (found,) = refine(answer, [Samples(speed, answer(None, speed))], [np.inf])
+    >>> print(f"{highest(found.speed, found.amplitude).amplitude * 2e-3 * 100.0:.6f}")
+    1.000001
+    """
+    found = list(samples)
+    spacing = [np.ptp(one.speed) / max(one.speed.size - 1, 1) for one in found]
+    going = list(range(len(found)))
+    for turn in range(_ROUNDS):
+        wanted = [_wanted(found[k], bound[k], turn, spacing[k]) for k in going]
+        pairs = [(k, speed) for k, speed in zip(going, wanted, strict=True) if speed.size]
+        if not pairs:
+            break
+        going = [k for k, _ in pairs]
+        owner = np.repeat(np.array(going, dtype=np.intp), [speed.size for _, speed in pairs])
+        parts = answer(owner, np.concatenate([speed for _, speed in pairs]))
+        for k, speed in pairs:
+            found[k] = found[k].joined(speed, parts[owner == k])
+    return found
+
+
+def _wanted(samples: Samples, bound: float, turn: int, spacing: float) -> Array:
+    """Speeds at which a machine is looked at next; none once its peak is known."""
+    x, size = samples.speed, samples.amplitude
+    known = np.isfinite(size)
+    if np.isinf(size).any() or not known.any():
+        return np.zeros(0)
+    x, size, parts = x[known], size[known], samples.parts[known]
+    largest = float(size.max())
+    if largest == 0.0 or largest >= bound * (1.0 - _GAIN) or x.size < 2:
+        return np.zeros(0)
+    found = [_around_maxima(x, size, largest), _inside_turns(x, size, parts, largest, turn, spacing)]
+    every = np.unique(np.concatenate(found))
+    place = np.searchsorted(x, every)
+    apart = np.minimum(
+        np.abs(every - x[np.minimum(place, x.size - 1)]), np.abs(every - x[np.maximum(place - 1, 0)])
+    )
+    return every[apart > _CLOSE * np.abs(every)]
+
+
+def _inside_turns(x: Array, size: Array, parts: Complex, largest: float, turn: int, spacing: float) -> Array:
+    """Speeds inside the intervals over which the phase of a part turns too far."""
+    gap = np.diff(x)
+    turned = np.abs(np.angle(parts[1:] * np.conj(parts[:-1])))
+    # What a part adds to the amplitude is what its phase is worth.
+    counts = np.maximum(np.abs(parts[1:]), np.abs(parts[:-1])) > 0.02 * largest
+    wide = np.any((turned > _TURN) & counts, axis=1)
+    high = np.maximum(size[1:], size[:-1]) >= _WORTH * largest
+    followed = np.where(high, gap > 1e-4 * spacing, turn < _LOOKED)
+    k = np.flatnonzero(wide & followed & (gap > 1e-12 * x[1:]))
+    return np.concatenate([x[k] + share * gap[k] for share in (0.25, 0.5, 0.75)])
+
+
+def _around_maxima(x: Array, size: Array, largest: float) -> Array:
+    """Speeds around the maxima of an amplitude: where a resonance has its top, and between it and its sides.
+
+    One over the amplitude squared is nearly a parabola over the speed around the top of a resonance.
+    """
+    edge = np.concatenate(([-np.inf], size, [-np.inf]))
+    found: list[float] = []
+    for i in np.flatnonzero((size >= edge[:-2]) & (size > edge[2:])).tolist():
+        low, high = x[max(i - 1, 0)], x[min(i + 1, x.size - 1)]
+        if high - low <= 8.0 * _CLOSE * x[i]:
+            continue
+        top, gain, flat = _vertex(x, size, i)
+        inside = low < top < high
+        if not inside:  # at an end of the range, from which the amplitude falls
+            if i not in (0, x.size - 1):
+                found += _between(low, x[i], high)
+            continue
+        sharp = gain > 0.05
+        if size[i] * (1.0 + gain) < (1.0 - _SEEN) * largest and not sharp and gain <= _SEEN:
+            continue
+        if gain <= _GAIN and (flat <= 1e-5 or size[i] < (1.0 - 1e-5) * largest):
+            continue
+        width = 0.06 * (high - low)
+        found += [y for y in (top, top - width, top + width) if low < y < high]
+        if sharp or flat > 0.05:
+            found += _between(low, x[i], high)
+    return np.array(found)
+
+
+def _between(low: float, middle: float, high: float) -> list[float]:
+    """Speeds on both sides of a maximum, by which each side shrinks to a third."""
+    sides = [(low, middle), (middle, high)]
+    return [a + share * (b - a) for a, b in sides if b > a for share in (1.0 / 3.0, 2.0 / 3.0)]
+
+
+def _vertex(x: Array, size: Array, i: int) -> tuple[float, float, float]:
+    """Place of the top, what it is above the sample i, and what the neighbours are below it, relatively."""
+    j = min(max(i, 1), x.size - 2)
+    if x.size < 3:
+        return float(x.mean()), 1.0, 1.0
+    (a, b, c), q = x[j - 1 : j + 2], np.square(size[i] / size[j - 1 : j + 2])
+    first, second = (q[1] - q[0]) / (b - a), (q[2] - q[1]) / (c - b)
+    curved = (second - first) / (c - a)
+    flat = 1.0 - float(size[j - 1 : j + 2].min()) / float(size[i])
+    if not curved > 0.0:
+        return -math.inf, 0.0, flat
+    top = 0.5 * (a + b) - 0.5 * first / curved
+    at_top = q[1] + (top - b) * (first + curved * (top - a))
+    gain = math.inf if at_top <= 0.0 else 1.0 / math.sqrt(at_top) - 1.0
+    return float(top), gain, flat
