@@ -74,6 +74,8 @@ TIME = Dimension("time", "s", "14 s")
 RATE = Dimension("rate", "1/s", "0.5 1/s")
 ACCELERATION = Dimension("acceleration", "m/s^2", "9.81 m/s^2")
 TEMPERATURE = Dimension("temperature", "K", "20 degC")
+TEMPERATURE_STEP = Dimension("difference of temperatures", "K", "900 K")
+EXPANSION = Dimension("thermal expansion", "1/K", "7e-4 1/K")
 ANGULAR_SPEED = Dimension("angular speed", "rad/s", "1000 rpm", also=("1/s",))
 ANGULAR_ACCELERATION = Dimension("angular acceleration", "rad/s^2", "8 rad/s^2", also=("1/s^2",))
 _DIMENSIONS = (
