@@ -15,6 +15,7 @@ from leblanc.scene.schema.rules import (
     Inertia,
     Quantity,
     Span,
+    Spans,
     Speed,
     Truth,
     entries,
@@ -73,8 +74,12 @@ class Optimisation(Part):
     deflection: Annotated[float | None, _LENGTH] = Field(
         None, description="of the axis at the working speed, given; the rotor's own if left out"
     )
-    unbalance: Annotated[_Pair | None, PlainValidator(Span(Quantity(units.UNBALANCE, 0.0, 1e9)))] = Field(
-        None, description="range of unbalances for the objective robust"
+    unbalance: Annotated[
+        _Pair | tuple[_Pair, ...] | None, PlainValidator(Spans(Quantity(units.UNBALANCE, 0.0, 1e9)))
+    ] = Field(
+        None,
+        description="range for the objective robust: of the rotor's largest unbalance, with which all others "
+        "grow by one factor; or a list of ranges, one for each, from which they are taken independently",
     )
     temperature: Annotated[_Pair | None, PlainValidator(Span(Quantity(units.TEMPERATURE, 150.0, 1000.0)))] = (
         Field(None, description="range of temperatures for the objective robust")

@@ -32,7 +32,15 @@ from leblanc.studies.liquid import SYNCHRONOUS_MODELS
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.emulated import EmulatedVibration
 from leblanc.studies.optimise.objectives import RunupPeak
-from leblanc.studies.optimise.problem import Problem, growth, growth_speeds, problem_of, working_speed
+from leblanc.studies.optimise.problem import (
+    Problem,
+    growth,
+    growth_speeds,
+    problem_of,
+    unbalances,
+    working_speed,
+)
+from leblanc.studies.optimise.robust import Robust, condition_table
 from leblanc.studies.optimise.search import best_volumes, bounds_of, evaluated_again, on_all_cells
 from leblanc.studies.optimise.wetting import WettedWalls, wet_walls, wetting_volumes
 from leblanc.studies.plausible import doubts
@@ -112,6 +120,9 @@ def optimise_scene(
     if front:
         edge, sweep = front_around(scene, problem, chosen, result.vibration, growth_speeds(scene, task))
         result = replace(result, front=edge, sweep=sweep)
+    if isinstance(exact.evaluate.vibration, Robust):
+        table = condition_table(scene, task, exact.evaluate.vibration, result.volume, unbalances(scene, task))
+        result = replace(result, robust=table)
     return _with_response(result, scene, machine) if response else result
 
 
