@@ -76,6 +76,7 @@ ACCELERATION = Dimension("acceleration", "m/s^2", "9.81 m/s^2")
 TEMPERATURE = Dimension("temperature", "K", "20 degC")
 TEMPERATURE_STEP = Dimension("difference of temperatures", "K", "900 K")
 EXPANSION = Dimension("thermal expansion", "1/K", "7e-4 1/K")
+VELOCITY = Dimension("velocity", "m/s", "6.3 mm/s")
 ANGULAR_SPEED = Dimension("angular speed", "rad/s", "1000 rpm", also=("1/s",))
 ANGULAR_ACCELERATION = Dimension("angular acceleration", "rad/s^2", "8 rad/s^2", also=("1/s^2",))
 _DIMENSIONS = (

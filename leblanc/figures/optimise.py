@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from fluid.temperature import CELSIUS
 from leblanc.figures.page import (
     RIGHT,
     WIDTH,
@@ -21,9 +22,10 @@ from leblanc.figures.page import (
     style,
 )
 from leblanc.results.base import one_line, texts
-from leblanc.results.optimum import OptimumResult
+from leblanc.results.optimum import ConditionTable, OptimumResult
 from leblanc.text.numbers import number as short
-from leblanc.units import MM, in_rpm
+from leblanc.text.optimum import load_words, worst_condition
+from leblanc.units import DEGREE, MM, in_rpm
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -55,7 +57,70 @@ def write_figures(result: OptimumResult, directory: Path) -> tuple[FigureFiles, 
     if result.front is not None and result.front.mass.size > 1:
         title = "Vibration, liquid and stability"
         files.append(save(front_figure(result), directory, "front", title))
+    if result.robust is not None and result.robust.amplitude.size > 1:
+        title = "Amplitude over the conditions"
+        files.append(save(conditions_figure(result), directory, "conditions", title))
     return tuple(files)
+
+
+def conditions_figure(result: OptimumResult) -> Figure:
+    """Amplitude with the best volumes over temperature, or over the unbalance where no temperature varies."""
+    table = result.robust
+    assert table is not None
+    with style():
+        figure = Figure()
+        axes = figure.add_axes((0, 0, 1, 1))
+        if table.temperature.size > 1:
+            _draw_over_temperature(axes, table)
+        else:
+            _draw_over_unbalance(axes, table)
+        axes.xaxis.set_major_formatter(number)
+        axes.yaxis.set_major_formatter(number)
+        axes.set_ylabel("Vibration (mm)")
+        axes.set_ylim(0.0, 1.12 * MM * float(max(table.amplitude_dry.max(), table.amplitude.max())))
+        text = (
+            "Solid with marks: with the best volumes; dotted: without liquid, at the same unbalances. "
+            f"Star: the condition that decides. {worst_condition(table)}. "
+        )
+        lay_out(figure, [[axes]], [HEIGHT], FRAME, _caption(result, text, False), LINES)
+        figure.alt = (
+            f"Vibration with the best volumes and without liquid over "
+            f"{'temperature' if table.temperature.size > 1 else 'unbalance'}. {worst_condition(table)}."
+        )
+    return figure
+
+
+_MARKS = ("o", "s", "^")  # of the least, middle and largest unbalance
+_STAR = {"color": BEST, "marker": "*", "markersize": 12.0, "linestyle": "none", "zorder": 4}
+
+
+def _draw_over_temperature(axes: Axes, table: ConditionTable) -> None:
+    """A curve for each unbalance, the dry amplitude beside it."""
+    celsius = table.temperature - CELSIUS
+    for j, size in enumerate(table.unbalance.tolist()):
+        label = load_words(size)
+        look = {"color": LINE, "marker": _MARKS[j % len(_MARKS)], "markersize": 3.5, "markevery": 6}
+        axes.plot(celsius, table.amplitude[:, j] * MM, label=label, linewidth=1.2, zorder=2, **look)
+        dry = {"label": "without liquid"} if j == 0 else {}
+        axes.plot(celsius[[0, -1]], [table.amplitude_dry[j] * MM] * 2, **BARE, **dry)
+    k = table.decisive
+    at = [table.condition_temperature[k] - CELSIUS], [table.condition_amplitude[k] * MM]
+    axes.plot(*at, label="decides", markeredgecolor="black", clip_on=False, **_STAR)
+    axes.set_xlabel(f"Temperature ({DEGREE}C)")
+
+
+def _draw_over_unbalance(axes: Axes, table: ConditionTable) -> None:
+    """One curve over the largest of the unbalances, the dry amplitude beside it."""
+    load = table.unbalance.max(axis=1)
+    unit, name = (1e3, "kg mm") if load.max() >= 0.01 else (1e6, "g mm")
+    look = {"color": LINE, "marker": "o", "markersize": 3.5, "markevery": 6}
+    axes.plot(load * unit, table.amplitude[0] * MM, label="best volumes", linewidth=1.2, zorder=2, **look)
+    axes.plot(load * unit, table.amplitude_dry * MM, **BARE, label="without liquid")
+    k = table.decisive
+    at = [table.condition_unbalance[k].max() * unit], [table.condition_amplitude[k] * MM]
+    axes.plot(*at, label="decides", markeredgecolor="black", clip_on=False, **_STAR)
+    several = table.unbalance.shape[1] > 1
+    axes.set_xlabel(f"{'Largest unbalance' if several else 'Unbalance'} ({name})")
 
 
 def objective_figure(result: OptimumResult) -> Figure:

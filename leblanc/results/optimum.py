@@ -287,6 +287,18 @@ class CandidateChamber:
     liquid_name: str
 
 
+def _quality_json(result: OptimumResult) -> dict[str, float | None]:
+    """Balance quality; null where it has no bound."""
+    names = "balance_quality", "balance_quality_dry"
+    found: list[float | None] = [getattr(result, name) for name in names]
+    if None in found:
+        return {}
+    return {
+        name: value if value is not None and math.isfinite(value) else None
+        for name, value in zip(names, found, strict=True)
+    }
+
+
 @dataclass(frozen=True)
 class OptimumResult(Result):
     """The best volumes of a scene and what they were chosen from; c chambers.
@@ -317,6 +329,8 @@ class OptimumResult(Result):
         search gives no steady answer, or where it was not computed; its models are those of the search
     emulator : what the emulator that the search asked says of the answer; None without one
     robust : amplitudes over temperature and unbalance, for the objective of that name; None for any other
+    balance_quality, balance_quality_dry : unbalance of rotor and liquid together over the rotor's mass times
+        the working speed, and that of the rotor alone, m/s [theory: rotor, eq. 33]; None where not known
 
     Examples
     --------
@@ -356,6 +370,8 @@ class OptimumResult(Result):
     response: RunResult | None = None
     emulator: EmulatedAnswer | None = None
     robust: ConditionTable | None = None
+    balance_quality: float | None = None
+    balance_quality_dry: float | None = None
 
     figure = "leblanc.figures.optimise:objective_figure"
     summary = "leblanc.text.optimum:summary"
@@ -388,6 +404,7 @@ class OptimumResult(Result):
         return (
             found
             | ({} if self.emulator is None else {"emulator": asdict(self.emulator)})
+            | _quality_json(self)
             | ({} if self.robust is None else {"robust": self.robust.to_json()})
             | {
                 "constraints": {name: asdict(value) for name, value in self.constraints.items()},

@@ -246,7 +246,7 @@ def optimise_rows(wanted: Optimisation) -> list[Row]:
         ("vibration_limit", "Vibration limit", _length(wanted.vibration_limit)),
         ("limit_at", "Limit holds at", f"{wanted.limit_at.replace('_', ' ')} speeds"),
         ("deflection", "Deflection given", _length(wanted.deflection)),
-        ("unbalance", "Unbalance range", _span(wanted.unbalance, UNBALANCE)),
+        ("unbalance", "Unbalance range", _unbalances(wanted)),
         ("temperature", "Temperature range", _temperatures(wanted.temperature)),
         ("quantile", "Quantile", number(wanted.quantile)),
         ("samples", "Samples of the ranges", f"{wanted.samples}"),
@@ -255,6 +255,7 @@ def optimise_rows(wanted: Optimisation) -> list[Row]:
         ("stability_margin", "Stability margin", _rate(wanted.stability_margin)),
         ("operating", "Operating speeds", _span(wanted.operating, ANGULAR_SPEED)),
         ("clearance", "Clearance", _length(wanted.clearance)),
+        ("balance_quality", "Balance quality", _grade(wanted.balance_quality)),
         ("volumes", "Volumes", _volumes(wanted)),
     ):
         if getattr(wanted, name) != getattr(_DEFAULT, name):
@@ -281,6 +282,10 @@ def _length(value: float | None) -> str:
     return "" if value is None else mm(value)
 
 
+def _grade(value: float | None) -> str:
+    return "" if value is None else f"at most {number(value * 1e3)} mm/s (G {number(value * 1e3)})"
+
+
 def _rate(value: float | None) -> str:
     return "" if value is None else f"at least {number(value)} 1/s"
 
@@ -294,6 +299,14 @@ def _span(ends: tuple[float, float] | None, dimension: Dimension) -> str:
 
 def _temperatures(ends: tuple[float, float] | None) -> str:
     return "" if ends is None else " to ".join(map(celsius, ends))
+
+
+def _unbalances(wanted: Optimisation) -> str:
+    """One range, or one for each unbalance."""
+    ranges = wanted.unbalance
+    if ranges is None or not isinstance(ranges[0], tuple):
+        return _span(ranges, UNBALANCE)  # type: ignore[arg-type]
+    return "; ".join(_span(ends, UNBALANCE) for ends in ranges)  # type: ignore[arg-type]
 
 
 def _duty(wanted: Optimisation) -> str:

@@ -445,7 +445,8 @@ def optimise_content(wanted: Optimisation) -> dict[str, Any]:
     wanted : of a scene
     """
     duty = [(stage.speed, stage.weight) for stage in wanted.duty]
-    return wanted.model_dump(exclude={"duty"}) | {"duty": duty}
+    later = {"balance_quality"} if wanted.balance_quality is None else set()
+    return wanted.model_dump(exclude={"duty", *later}) | {"duty": duty}
 
 
 def _rounded(value: Any) -> Any:

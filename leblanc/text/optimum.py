@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
+from fluid.temperature import CELSIUS
 from leblanc.results.base import texts
-from leblanc.results.optimum import OptimumResult
+from leblanc.results.optimum import ConditionTable, OptimumResult
+from leblanc.results.response import grade_words
 from leblanc.text.numbers import number
 from leblanc.text.run import amplitude_place
-from leblanc.units import LENGTH, MASS, ML, UNBALANCE, VOLUME, in_rpm, with_unit
+from leblanc.units import DEGREE, LENGTH, MASS, ML, MM, RPM, UNBALANCE, VOLUME, in_rpm, with_unit
 
 _DIMENSIONS = {dimension.unit.replace("*", " "): dimension for dimension in (LENGTH, MASS, UNBALANCE)}
 
@@ -26,6 +30,8 @@ def describe_optimum(result: OptimumResult) -> list[str]:
         *_closed_forms(result),
         f"Stability margin over the operating speeds: {number(result.stability_margin)} 1/s"
         + (" (a small whirl grows)" if result.growth > 0.0 else ""),
+        *_quality(result),
+        *_over_conditions(result),
         *([f"Amplitudes are those {place}."] if (place := amplitude_plane(result)) else []),
         *texts(result.notes),
         *_to_paste(result),
@@ -80,6 +86,8 @@ def shown(value: float, unit: str) -> str:
     dimension = _DIMENSIONS.get(unit)
     if dimension is not None:
         return with_unit(value, dimension)
+    if unit == "m/s":
+        return f"{number(value * 1e3)} mm/s"
     return f"{number(value)} {unit}" if unit != "1" else number(value)
 
 
@@ -104,6 +112,88 @@ def _baseline(result: OptimumResult) -> str:
         return shown(result.baseline, result.unit)
     both = f"{shown(result.vibration, 'm')} instead of {shown(result.vibration_baseline, 'm')}"
     return f"{shown(result.baseline, result.unit)}; amplitude {both}"
+
+
+def quality(result: OptimumResult) -> tuple[str, str] | None:
+    """Balance quality at the working speed as label and value; None where it is not known."""
+    if result.balance_quality is None or result.balance_quality_dry is None:
+        return None
+    both = result.balance_quality, result.balance_quality_dry
+    wet, dry = (f"{number(value * 1e3)} mm/s ({grade_words(value)})" for value in both)
+    label = f"Balance quality at {number(result.working_speed * RPM)} rpm, liquid included"
+    return label, f"{wet}; without liquid {dry}"
+
+
+def _quality(result: OptimumResult) -> list[str]:
+    said = quality(result)
+    return [] if said is None else [": ".join(said)]
+
+
+LISTED = 7  # temperatures, or unbalances, of a table on the terminal
+
+
+def over_conditions(table: ConditionTable) -> tuple[list[str], list[list[str]]]:
+    """Amplitudes, mm, over some of the temperatures and unbalances: head and rows.
+
+    Parameters
+    ----------
+    table : of an optimum for the objective robust
+    """
+    loads = [load_words(size) for size in table.unbalance.tolist()]
+    if table.heated:
+        kept = np.unique(np.linspace(0, table.temperature.size - 1, LISTED).round().astype(int)).tolist()
+        rows = [
+            [_degrees(table.temperature[k]), *(number(size * MM) for size in table.amplitude[k].tolist())]
+            for k in kept
+        ]
+        rows.append(["without liquid", *(number(size * MM) for size in table.amplitude_dry.tolist())])
+        return ["Amplitude (mm)", *loads], rows
+    kept = np.unique(np.linspace(0, len(loads) - 1, LISTED).round().astype(int)).tolist()
+    rows = [
+        [loads[k], number(float(table.amplitude[0, k]) * MM), number(float(table.amplitude_dry[k]) * MM)]
+        for k in kept
+    ]
+    return ["Unbalance", "amplitude (mm)", "without liquid (mm)"], rows
+
+
+def worst_condition(table: ConditionTable) -> str:
+    """The condition that decides, in words."""
+    k = table.decisive
+    heat = f" and {_degrees(table.condition_temperature[k])}" if table.heated else ""
+    what = "Worst" if table.quantile == 1.0 else f"{number(table.quantile)} quantile"
+    wet, dry = (
+        number(float(of[k]) * MM) for of in (table.condition_amplitude, table.condition_amplitude_dry)
+    )
+    load, count = load_words(table.condition_unbalance[k].tolist()), table.condition_amplitude.size
+    return f"{what} of {count} conditions: {wet} mm at {load}{heat} ({dry} mm without liquid)"
+
+
+def _degrees(kelvin: float) -> str:
+    return f"{number(round(float(kelvin) - CELSIUS, 9))} {DEGREE}C"
+
+
+def load_words(sizes: list[float]) -> str:
+    """Unbalances in one unit.
+
+    Parameters
+    ----------
+    sizes : kg m
+    """
+    unit, name = (1e3, "kg mm") if max(sizes) >= 0.01 else (1e6, "g mm")
+    return f"{', '.join(number(size * unit) for size in sizes)} {name}"
+
+
+def _over_conditions(result: OptimumResult) -> list[str]:
+    """The table over temperature and unbalance, and the condition that decides."""
+    if result.robust is None:
+        return []
+    head, rows = over_conditions(result.robust)
+    widths = [max(len(line[k]) for line in (head, *rows)) for k in range(len(head))]
+    padded = (
+        [cell.rjust(widths[k]) if k else cell.ljust(widths[k]) for k, cell in enumerate(line)]
+        for line in (head, *rows)
+    )
+    return [*("  ".join(line) for line in padded), worst_condition(result.robust)]
 
 
 def _constraints(result: OptimumResult) -> list[str]:

@@ -16,6 +16,7 @@ from leblanc.scene.rotors import unbalances_of
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, dry_rotor
 from leblanc.scene.tasks import OBJECTIVES, Optimisation
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
+from leblanc.studies.optimise.balance import QualityAtSpeed
 from leblanc.studies.optimise.objectives import (
     AtSpeed,
     PeakOver,
@@ -101,6 +102,16 @@ def limited(name: str, meaning: str, vibration: Vibration, limit: float) -> Cons
 def clearance(over: PeakOver, limit: float) -> Constraint:
     """Amplitude at all operating speeds up to the room that there is, m."""
     return limited("clearance", "largest amplitude at the operating speeds", over, limit)
+
+
+def balanced(quality: QualityAtSpeed, grade: float) -> Constraint:
+    """Unbalance of rotor and liquid together up to a grade of ISO 21940-11, m/s."""
+
+    def value(volumes: Array, _: float) -> Array:
+        return quality.of(volumes)
+
+    text = "unbalance of rotor and liquid over the rotor's mass, times the working speed"
+    return Constraint("balance_quality", text, "m/s", grade, grade, value)
 
 
 def growth(scene: Scene, volumes: Array, speed: Array) -> Array:
@@ -265,6 +276,8 @@ def _constraints(
         found.append(stability(scene, growth_speeds(scene, task), task.stability_margin))
     if task.clearance is not None:
         found.append(clearance(PeakOver(machine, operating_speeds(scene, task)), task.clearance))
+    if task.balance_quality is not None:
+        found.append(balanced(QualityAtSpeed(machine, speed), task.balance_quality))
     return tuple(found)
 
 
