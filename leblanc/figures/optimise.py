@@ -32,6 +32,7 @@ Axes = Any  # matplotlib's, which no module that only draws imports
 
 ML, GRAM = 1e6, 1e3  # millilitres in one cubic metre, grams in one kilogram
 FRAME = Frame(left=0.72, top=0.14, between=0.55, below=0.42)
+LOW = 1.1  # inches: of a panel that stands below another
 HEIGHT, BAR, ROOM = 2.7, 0.13, 0.85  # inches: of a panel, width of a colour bar, room for it
 LINES = 9  # of the caption
 LINE, DRY, BEST, FULL = "#0072B2", "#D55E00", "#009E73", "0.15"
@@ -69,9 +70,13 @@ def conditions_figure(result: OptimumResult) -> Figure:
     assert table is not None
     with style():
         figure = Figure()
-        axes = figure.add_axes((0, 0, 1, 1))
+        axes = figure.add_axes((0, 0, 1, 1), label="amplitude")
+        panels, heights = [[axes]], [HEIGHT]
         if table.temperature.size > 1:
             _draw_over_temperature(axes, table)
+            below = figure.add_axes((0, 0, 1, 1), label="margin")
+            _draw_margin(below, table)
+            panels, heights = [[axes], [below]], [HEIGHT, LOW]
         else:
             _draw_over_unbalance(axes, table)
         axes.xaxis.set_major_formatter(number)
@@ -81,8 +86,9 @@ def conditions_figure(result: OptimumResult) -> Figure:
         text = (
             "Solid with marks: with the best volumes; dotted: without liquid, at the same unbalances. "
             f"Star: the condition that decides. {worst_condition(table)}. "
+            f"{_MARGIN if len(panels) > 1 else ''}"
         )
-        lay_out(figure, [[axes]], [HEIGHT], FRAME, _caption(result, text, False), LINES)
+        lay_out(figure, panels, heights, FRAME, _caption(result, text, False), LINES)
         figure.alt = (
             f"Vibration with the best volumes and without liquid over "
             f"{'temperature' if table.temperature.size > 1 else 'unbalance'}. {worst_condition(table)}."
@@ -90,6 +96,10 @@ def conditions_figure(result: OptimumResult) -> Figure:
     return figure
 
 
+_MARGIN = (
+    "Margin: decay of the small whirl that dies out slowest at the operating speeds, by the viscosity there; "
+    "below 0 one grows. "
+)
 _MARKS = ("o", "s", "^")  # of the least, middle and largest unbalance
 _STAR = {"color": BEST, "marker": "*", "markersize": 12.0, "linestyle": "none", "zorder": 4}
 
@@ -107,6 +117,16 @@ def _draw_over_temperature(axes: Axes, table: ConditionTable) -> None:
     at = [table.condition_temperature[k] - CELSIUS], [table.condition_amplitude[k] * MM]
     axes.plot(*at, label="decides", markeredgecolor="black", clip_on=False, **_STAR)
     axes.set_xlabel(f"Temperature ({DEGREE}C)")
+
+
+def _draw_margin(axes: Axes, table: ConditionTable) -> None:
+    """Stability margin over temperature; below 0 a whirl grows."""
+    axes.plot(table.temperature - CELSIUS, table.stability_margin, color=LINE, linewidth=1.2, zorder=2)
+    axes.axhline(0.0, color=FULL, linewidth=0.8, zorder=1)
+    axes.xaxis.set_major_formatter(number)
+    axes.yaxis.set_major_formatter(number)
+    axes.set_xlabel(f"Temperature ({DEGREE}C)")
+    axes.set_ylabel("Margin (1/s)")
 
 
 def _draw_over_unbalance(axes: Axes, table: ConditionTable) -> None:

@@ -218,6 +218,8 @@ class ConditionTable:
     temperature : K; a single nan where no range was given; shape (t,)
     unbalance : size of each of the rotor's unbalances, kg m, shape (u, p)
     amplitude : m, shape (t, u)
+    stability_margin : decay of the small whirl that dies out slowest at the operating speeds, 1/s, which no
+        unbalance changes; below 0 it grows; shape (t,)
     amplitude_dry : without liquid, which no temperature changes, m, shape (u,)
     condition_temperature, condition_unbalance : of the conditions that the volumes were chosen for, K and
         kg m, shape (n,) and (n, p)
@@ -230,6 +232,7 @@ class ConditionTable:
     unbalance: Array
     amplitude: Array
     amplitude_dry: Array
+    stability_margin: Array
     condition_temperature: Array
     condition_unbalance: Array
     condition_amplitude: Array
@@ -245,6 +248,8 @@ class ConditionTable:
     def to_json(self) -> dict[str, Any]:
         """As `optimise` prints it; null for a temperature that was not given."""
         rows = {name: getattr(self, name).tolist() for name in _ROBUST_ARRAYS}
+        known = (margin if math.isfinite(margin) else None for margin in rows["stability_margin"])
+        rows["stability_margin"] = list(known)
         if not self.heated:
             rows |= {name: [None] * len(rows[name]) for name in ("temperature", "condition_temperature")}
         worst = self.decisive
@@ -262,6 +267,7 @@ class ConditionTable:
             "robust_unbalance": var((*along, "rotor_unbalance"), self.unbalance, "kg m", "unbalance", mass),
             "robust_amplitude": var(table, self.amplitude, "m", "amplitude", "with the best volumes"),
             "robust_amplitude_dry": var(along, self.amplitude_dry, "m", "amplitude", dry),
+            "robust_stability_margin": var(table[:1], self.stability_margin, "s-1", "stability margin"),
             "condition_temperature": var(of, self.condition_temperature, "K", "temperature"),
             "condition_unbalance": var(each, self.condition_unbalance, "kg m", "unbalance", mass),
             "condition_amplitude": var(of, self.condition_amplitude, "m", "amplitude", "in a condition"),
@@ -270,7 +276,7 @@ class ConditionTable:
 
 
 _OF_CONDITION = ("temperature", "unbalance", "amplitude", "amplitude_dry")
-_ROBUST_ARRAYS = (*_OF_CONDITION, *(f"condition_{name}" for name in _OF_CONDITION))
+_ROBUST_ARRAYS = (*_OF_CONDITION, "stability_margin", *(f"condition_{name}" for name in _OF_CONDITION))
 
 
 @dataclass(frozen=True)

@@ -143,11 +143,15 @@ def over_conditions(table: ConditionTable) -> tuple[list[str], list[list[str]]]:
     if table.heated:
         kept = np.unique(np.linspace(0, table.temperature.size - 1, LISTED).round().astype(int)).tolist()
         rows = [
-            [_degrees(table.temperature[k]), *(number(size * MM) for size in table.amplitude[k].tolist())]
+            [
+                _degrees(table.temperature[k]),
+                *(number(size * MM) for size in table.amplitude[k].tolist()),
+                number(float(table.stability_margin[k])),
+            ]
             for k in kept
         ]
-        rows.append(["without liquid", *(number(size * MM) for size in table.amplitude_dry.tolist())])
-        return ["Amplitude (mm)", *loads], rows
+        rows.append(["without liquid", *(number(size * MM) for size in table.amplitude_dry.tolist()), ""])
+        return ["Amplitude (mm)", *loads, "stability margin (1/s)"], rows
     kept = np.unique(np.linspace(0, len(loads) - 1, LISTED).round().astype(int)).tolist()
     rows = [
         [loads[k], number(float(table.amplitude[0, k]) * MM), number(float(table.amplitude_dry[k]) * MM)]

@@ -123,7 +123,15 @@ def optimise_scene(
         edge, sweep = front_around(scene, problem, chosen, result.vibration, growth_speeds(scene, task))
         result = replace(result, front=edge, sweep=sweep)
     if isinstance(exact.evaluate.vibration, Robust):
-        table = condition_table(scene, task, exact.evaluate.vibration, result.volume, unbalances(scene, task))
+        speeds, around = growth_speeds(scene, task), unbalances(scene, task)
+        table = condition_table(
+            scene,
+            task,
+            exact.evaluate.vibration,
+            result.volume,
+            around,
+            lambda warm, held: float(growth(warm, held[None], speeds)[0]),
+        )
         result = replace(result, robust=table)
     return _with_response(result, scene, machine) if response else result
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -242,7 +242,12 @@ _FINE, _COARSE = 25, 9  # points along the curve of a table; where an answer cos
 
 
 def condition_table(
-    scene: Scene, task: Optimisation, robust: Robust, volume: Array, unbalance: UnbalanceRange
+    scene: Scene,
+    task: Optimisation,
+    robust: Robust,
+    volume: Array,
+    unbalance: UnbalanceRange,
+    growth: Callable[[Scene, Array], float],
 ) -> ConditionTable:
     """What the machine does with the best volumes over the ranges of temperature and unbalance.
 
@@ -252,6 +257,7 @@ def condition_table(
     robust : its objective
     volume : the best, m^3, shape (c,)
     unbalance : over which it was chosen
+    growth : of the small whirl that grows most in a scene with other volumes, m^3, shape (c,); 1/s
     """
     around = robust.around
     count = _FINE if around.machines[0].planar else _COARSE
@@ -265,13 +271,16 @@ def condition_table(
     grid = [OperatingCondition(size, heat) for heat in heats for size in sizes]
     shape = len(heats), len(sizes)
     own, nothing = volume[None], np.zeros((1, volume.size))
+    over = Conditions(scene, around.speed, grid)
+    whirls = [growth(over.scenes[k], over.held(volume, k)) for k in range(0, len(grid), len(sizes))]
     judged = around.amplitudes(own)[:, 0]
     dry = {size: _dry(scene, around.speed, size, nothing) for size in _sizes((*grid, *around.conditions))}
     value = float(robust.exact(own)[0])
     return ConditionTable(
         temperature=np.array([math.nan if heat is None else heat for heat in heats]),
         unbalance=np.array(sizes),
-        amplitude=Conditions(scene, around.speed, grid).amplitudes(own).reshape(shape),
+        amplitude=over.amplitudes(own).reshape(shape),
+        stability_margin=-np.array(whirls),
         amplitude_dry=np.array([dry[size] for size in sizes]),
         condition_temperature=np.array(
             [math.nan if heat is None else heat for heat in (c.temperature for c in around.conditions)]

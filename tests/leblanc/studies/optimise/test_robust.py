@@ -165,6 +165,9 @@ def test_table_of_the_answer(best: OptimumResult) -> None:
         loaded = machine.altered(rotor=machine.rotor.altered(unbalance=float(table.unbalance[j, 0])))
         own = _filled(loaded, float(table.temperature[k]), tuple(best.volume.tolist()))
         assert table.amplitude[k, j] == pytest.approx(amplitude(own, speed), rel=1e-9)
+        speeds = growth_speeds(machine, Optimisation())
+        held = np.array([[own.chambers[0].volume]])
+        assert table.stability_margin[k] == pytest.approx(-growth(own, held, speeds)[0], rel=1e-9)
     assert table.condition_amplitude.max() == best.value
     assert table.condition_amplitude[table.decisive] == best.value
     assert table.amplitude.max() == pytest.approx(best.value, rel=1e-12)
@@ -185,7 +188,7 @@ def test_quantile_names_its_condition() -> None:
     spread = unbalance_range((0.1,), (0.05, 0.2))
     task = Optimisation(objective="robust", unbalance=(0.05, 0.2), quantile=0.5)
     robust = Robust(machine, 100.0, operating_conditions(spread, None), 0.5)
-    table = condition_table(machine, task, robust, np.array([2e-4]), spread)
+    table = condition_table(machine, task, robust, np.array([2e-4]), spread, lambda warm, held: 0.0)
     assert table.condition_unbalance[table.decisive, 0] == pytest.approx(0.125)
     assert not table.heated and table.to_json()["worst"]["temperature"] is None
     assert table.amplitude.shape == (1, 25)
