@@ -218,7 +218,7 @@ SALTS = {
 
 @dataclass(frozen=True)
 class BrineLaw:
-    """A salt in water over temperature [theory: optimum, eq. 16, 17].
+    """A salt in water over temperature [theory: liquids, eq. 6, 7].
 
     Parameters
     ----------
@@ -303,13 +303,13 @@ def _relative(density: _Property, viscosity: _Property, temperature: float) -> t
     return thinner, viscosity(here) / viscosity(there) / thinner
 
 
-SILICONE_SLOPE = 763.1 * math.log(10.0)  # K, of the logarithm of the viscosity over 1/T [KF96]
-SILICONE_EXPANSION = 9.5e-4  # 1/K [KF96]
+SILICONE_SLOPE = 763.1 * math.log(10.0)  # K, of the logarithm of the viscosity over 1/T [SHIN14]
+SILICONE_EXPANSION = 9.5e-4  # 1/K [SHIN14]
 _GRADED = CELSIUS + 25.0  # K, at which silicone oils have the viscosity that they are sold by
 
 
 def silicone_law(grade: float, density: float) -> GivenLaw:
-    """A silicone oil (polydimethylsiloxane) over temperature [KF96].
+    """A silicone oil (polydimethylsiloxane) over temperature [SHIN14].
 
     Parameters
     ----------

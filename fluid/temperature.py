@@ -1,7 +1,7 @@
 """How a property of a liquid depends on the temperature: a table, or a law with coefficients.
 
 A law is data, not code: it can be compared, kept in a scene and sent to another process. Temperatures are
-absolute. Theory page: optimum, eq. 11 to 15.
+absolute. Theory page: liquids, eq. 1 to 5.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from meshes.errors import InputError, require_not_negative, require_positive
 
 CELSIUS = 273.15  # K at 0 degrees Celsius
 REFERENCE = CELSIUS + 20.0  # K, to which a liquid's values belong where nothing else is said
-_WALTHER = 0.7  # mm^2/s, added to a viscosity above 2 mm^2/s [ASTMD341]
+_WALTHER = 0.7  # mm^2/s, added to a viscosity above 2 mm^2/s [ASTM17]
 _LEAST_WALTHER = 2.0  # mm^2/s, below which that constant is another one
 
 
@@ -56,7 +56,7 @@ class Constant:
 
 @dataclass(frozen=True)
 class Tabulated:
-    """A property from a table [theory: optimum, eq. 11].
+    """A property from a table [theory: liquids, eq. 1].
 
     Between its points a piecewise cubic that never leaves their range (PCHIP), of the logarithm of the
     property. Its error falls with the third power of the distance of even points; two points are joined by
@@ -114,7 +114,7 @@ class Tabulated:
 
 @dataclass(frozen=True)
 class Expansion:
-    """Density of a liquid whose volume grows linearly [theory: optimum, eq. 12].
+    """Density of a liquid whose volume grows linearly [theory: liquids, eq. 2].
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ class Expansion:
 
 @dataclass(frozen=True)
 class Walther:
-    """Kinematic viscosity of an oil through two points [theory: optimum, eq. 13; ASTMD341].
+    """Kinematic viscosity of an oil through two points [theory: liquids, eq. 3; ASTM17].
 
     log log(nu + 0.7) is a straight line over log T, nu in mm^2/s.
 
@@ -205,7 +205,7 @@ class Walther:
 
 @dataclass(frozen=True)
 class Vogel:
-    """Kinematic viscosity nu = a exp(b / (T - c)) [theory: optimum, eq. 14, 15].
+    """Kinematic viscosity nu = a exp(b / (T - c)) [theory: liquids, eq. 4, 5].
 
     With c = 0 it is Andrade's law.
 

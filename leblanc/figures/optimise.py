@@ -25,7 +25,7 @@ from leblanc.results.base import one_line, texts
 from leblanc.results.optimum import ConditionTable, OptimumResult
 from leblanc.text.numbers import number as short
 from leblanc.text.optimum import load_words, worst_condition
-from leblanc.units import DEGREE, MM, in_rpm
+from leblanc.units import DEGREE, MM, UNBALANCE, in_rpm, unit_for
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -132,7 +132,8 @@ def _draw_margin(axes: Axes, table: ConditionTable) -> None:
 def _draw_over_unbalance(axes: Axes, table: ConditionTable) -> None:
     """One curve over the largest of the unbalances, the dry amplitude beside it."""
     load = table.unbalance.max(axis=1)
-    unit, name = (1e3, "kg mm") if load.max() >= 0.01 else (1e6, "g mm")
+    weight = unit_for(UNBALANCE, *load.tolist())
+    unit, name = weight.count, weight.name
     look = {"color": LINE, "marker": "o", "markersize": 3.5, "markevery": 6}
     axes.plot(load * unit, table.amplitude[0] * MM, label="best volumes", linewidth=1.2, zorder=2, **look)
     axes.plot(load * unit, table.amplitude_dry * MM, **BARE, label="without liquid")

@@ -6,13 +6,11 @@ import math
 
 import numpy as np
 
-from fluid.temperature import CELSIUS
 from leblanc.results.base import texts
 from leblanc.results.optimum import ConditionTable, OptimumResult
-from leblanc.results.response import grade_words
 from leblanc.text.numbers import number
-from leblanc.text.run import amplitude_place
-from leblanc.units import DEGREE, LENGTH, MASS, ML, MM, RPM, UNBALANCE, VOLUME, in_rpm, with_unit
+from leblanc.text.run import amplitude_place, quality_words
+from leblanc.units import LENGTH, MASS, ML, UNBALANCE, VOLUME, celsius, in_rpm, unit_for, with_unit
 
 _DIMENSIONS = {dimension.unit.replace("*", " "): dimension for dimension in (LENGTH, MASS, UNBALANCE)}
 
@@ -118,10 +116,8 @@ def quality(result: OptimumResult) -> tuple[str, str] | None:
     """Balance quality at the working speed as label and value; None where it is not known."""
     if result.balance_quality is None or result.balance_quality_dry is None:
         return None
-    both = result.balance_quality, result.balance_quality_dry
-    wet, dry = (f"{number(value * 1e3)} mm/s ({grade_words(value)})" for value in both)
-    label = f"Balance quality at {number(result.working_speed * RPM)} rpm, liquid included"
-    return label, f"{wet}; without liquid {dry}"
+    wet, dry = quality_words(result.balance_quality), quality_words(result.balance_quality_dry)
+    return f"Balance quality at {in_rpm(result.working_speed)}", f"{wet}; without liquid {dry}"
 
 
 def _quality(result: OptimumResult) -> list[str]:
@@ -139,41 +135,38 @@ def over_conditions(table: ConditionTable) -> tuple[list[str], list[list[str]]]:
     ----------
     table : of an optimum for the objective robust
     """
+    length = unit_for(LENGTH, *table.amplitude.ravel().tolist(), *table.amplitude_dry.tolist())
     loads = [load_words(size) for size in table.unbalance.tolist()]
+    dry = [length.number(size) for size in table.amplitude_dry.tolist()]
     if table.heated:
-        kept = np.unique(np.linspace(0, table.temperature.size - 1, LISTED).round().astype(int)).tolist()
         rows = [
             [
-                _degrees(table.temperature[k]),
-                *(number(size * MM) for size in table.amplitude[k].tolist()),
+                celsius(float(table.temperature[k])),
+                *(length.number(size) for size in table.amplitude[k].tolist()),
                 number(float(table.stability_margin[k])),
             ]
-            for k in kept
+            for k in _some(table.temperature.size)
         ]
-        rows.append(["without liquid", *(number(size * MM) for size in table.amplitude_dry.tolist()), ""])
-        return ["Amplitude (mm)", *loads, "stability margin (1/s)"], rows
-    kept = np.unique(np.linspace(0, len(loads) - 1, LISTED).round().astype(int)).tolist()
-    rows = [
-        [loads[k], number(float(table.amplitude[0, k]) * MM), number(float(table.amplitude_dry[k]) * MM)]
-        for k in kept
-    ]
-    return ["Unbalance", "amplitude (mm)", "without liquid (mm)"], rows
+        head = [f"Amplitude ({length.name})", *loads, "stability margin (1/s)"]
+        return head, [*rows, ["without liquid", *dry, ""]]
+    rows = [[loads[k], length.number(float(table.amplitude[0, k])), dry[k]] for k in _some(len(loads))]
+    return ["Unbalance", f"amplitude ({length.name})", f"without liquid ({length.name})"], rows
+
+
+def _some(count: int) -> list[int]:
+    """Places of a few lines of a long table, its ends among them."""
+    return sorted(set(np.linspace(0, count - 1, LISTED).round().astype(int).tolist()))
 
 
 def worst_condition(table: ConditionTable) -> str:
     """The condition that decides, in words."""
     k = table.decisive
-    heat = f" and {_degrees(table.condition_temperature[k])}" if table.heated else ""
+    heat = f" and {celsius(float(table.condition_temperature[k]))}" if table.heated else ""
     what = "Worst" if table.quantile == 1.0 else f"{number(table.quantile)} quantile"
-    wet, dry = (
-        number(float(of[k]) * MM) for of in (table.condition_amplitude, table.condition_amplitude_dry)
-    )
+    both = table.condition_amplitude, table.condition_amplitude_dry
+    wet, dry = (with_unit(float(amplitude[k]), LENGTH) for amplitude in both)
     load, count = load_words(table.condition_unbalance[k].tolist()), table.condition_amplitude.size
-    return f"{what} of {count} conditions: {wet} mm at {load}{heat} ({dry} mm without liquid)"
-
-
-def _degrees(kelvin: float) -> str:
-    return f"{number(round(float(kelvin) - CELSIUS, 9))} {DEGREE}C"
+    return f"{what} of {count} conditions: {wet} at {load}{heat} ({dry} without liquid)"
 
 
 def load_words(sizes: list[float]) -> str:
@@ -183,8 +176,8 @@ def load_words(sizes: list[float]) -> str:
     ----------
     sizes : kg m
     """
-    unit, name = (1e3, "kg mm") if max(sizes) >= 0.01 else (1e6, "g mm")
-    return f"{', '.join(number(size * unit) for size in sizes)} {name}"
+    unit = unit_for(UNBALANCE, *sizes)
+    return f"{', '.join(map(unit.number, sizes))} {unit.name}"
 
 
 def _over_conditions(result: OptimumResult) -> list[str]:

@@ -4,7 +4,7 @@ The standard speaks of a rigid rotor without liquid: G is the speed e_per Omega 
 a rotor with the permissible residual unbalance e_per m goes round. It is not a measured vibration velocity.
 The analogue for a machine with liquid is the total unbalance that turns with the rotor, its own and the
 liquid's about the rotation axis, over the mass of the dry rotor: what a dry rotor would need to move as the
-machine does [theory: rotor, eq. 33-35].
+machine does [theory: balance_quality, eq. 1-3].
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from solvers.rotor.tub import Tub
 from solvers.rotor.two_plane import TwoPlane
 from solvers.rotor.vibration import dynamic_stiffness
 
-# Grades of the standard, m/s; each about two and a half times the one before [ISO21940].
+# Grades of the standard, m/s; each about two and a half times the one before [ISO16].
 GRADES = tuple(
     1e-3 * millimetres
     for millimetres in (0.4, 1.0, 2.5, 6.3, 16.0, 40.0, 100.0, 250.0, 630.0, 1600.0, 4000.0)
 )
-_LEAST_SHARE, _MOST_SHARE = 0.3, 0.7  # of the permissible unbalance that a plane may have [ISO21940]
+_LEAST_SHARE, _MOST_SHARE = 0.3, 0.7  # of the permissible unbalance that a plane may have [ISO16]
 _ROUNDING = 1e-9  # relative; a quality that is a grade to rounding has that grade
 
 
@@ -69,7 +69,7 @@ def grade_name(grade: float) -> str:
 
 
 def permissible_unbalance(grade: float, mass: float, speed: ArrayLike) -> Array:
-    """Residual unbalance that a grade permits, U_per = G m/Omega [ISO21940; theory: rotor, eq. 33].
+    """Residual unbalance that a grade permits, U_per = G m/Omega [ISO16; theory: balance_quality, eq. 1].
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ class TolerancePlane:
 
 
 def tolerance_planes(rotor: Rotor) -> tuple[TolerancePlane, ...]:
-    """Planes in which the unbalance of a rotor is judged [theory: rotor, eq. 35].
+    """Planes in which the unbalance of a rotor is judged [theory: balance_quality, eq. 3].
 
     Two for a rigid rotor in supports at two places and more, the outermost ones: each has the share of the
     mass that rests on it, from 0.3 to 0.7. One for a Jeffcott rotor, for a tub, whose drum bearings a scene
@@ -144,7 +144,7 @@ def tolerance_planes(rotor: Rotor) -> tuple[TolerancePlane, ...]:
 
 
 def residual_unbalance(system: RotorSystem, generalised: Complex, positions: ArrayLike) -> Complex:
-    """Unbalances in one or two planes that act on a rotor as a generalised one does [theory: rotor, eq. 34].
+    """Unbalances in one or two planes that act on a rotor as a generalised one does [theory: balance_quality, eq. 2].
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ def residual_unbalance(system: RotorSystem, generalised: Complex, positions: Arr
 
 
 def balance_quality(rotor: Rotor, speed: ArrayLike, coordinates: Complex | None = None) -> Array:
-    """Balance quality of a machine, m/s [theory: rotor, eq. 33-35].
+    """Balance quality of a machine, m/s [theory: balance_quality, eq. 1-3].
 
     Parameters
     ----------

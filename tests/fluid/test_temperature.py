@@ -282,7 +282,7 @@ def test_a_table_never_leaves_its_neighbours(values: list[float], share: float) 
 @kills("fluid.temperature:Walther.at", "+ _WALTHER)) for value", "- _WALTHER)) for value")
 @kills("fluid.temperature:Vogel.at", "(temperature - self.c)", "temperature")
 def test_named_laws() -> None:
-    """From their definitions, and an oil of ISO VG 32 with 5.4 mm^2/s at 100 C: 8.5 at 80 C [ASTMD341]."""
+    """From their definitions, and an oil of ISO VG 32 with 5.4 mm^2/s at 100 C: 8.5 at 80 C [ASTM17]."""
     oil = Walther((313.15, 373.15), (32e-6, 5.4e-6), 263.15, 373.15)
     assert oil.at(353.15) == pytest.approx(8.5e-6, rel=5e-3)  # given with two digits
     for kelvin, value in zip(oil.temperatures, oil.values, strict=True):

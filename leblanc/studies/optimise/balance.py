@@ -1,4 +1,4 @@
-"""Balance quality of a machine with any volumes [theory: rotor, eq. 33-35]."""
+"""Balance quality of a machine with any volumes [theory: balance_quality, eq. 1-3]."""
 
 from __future__ import annotations
 

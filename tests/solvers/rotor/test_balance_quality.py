@@ -43,7 +43,7 @@ def test_grades_of_the_standard() -> None:
 
 @kills("solvers.rotor.balance_quality:permissible_unbalance", "grade * mass / spin", "grade * mass * spin")
 def test_permissible_unbalance() -> None:
-    """In the units of the shop: U_per = 9549 G m/n, in g mm for G in mm/s, kg and rpm [ISO21940]."""
+    """In the units of the shop: U_per = 9549 G m/n, in g mm for G in mm/s, kg and rpm [ISO16]."""
     for grade, mass, rpm in ((0.0063, 40.0, 3000.0), (0.0025, 1.2, 12000.0)):
         speed = rpm * math.pi / 30.0
         expected = 9549.3 * grade * 1e3 * mass / rpm * 1e-6
