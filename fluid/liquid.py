@@ -265,8 +265,9 @@ class BrineLaw:
         v1, v2, v3, v4, v5, v6 = SALTS[self.salt].viscosity
         share = self.mass_fraction
         water = (celsius + 246.0) / ((0.05594 * celsius + 5.2842) * celsius + 137.37)
-        salt = math.exp((v1 * share**v2 + v3) / (v4 * celsius + 1.0)) / (v5 * share**v6 + 1.0)
-        return 1e-3 * water ** (1.0 - share) * salt**share
+        salt = math.exp((v1 * math.pow(share, v2) + v3) / (v4 * celsius + 1.0))
+        salt /= v5 * math.pow(share, v6) + 1.0
+        return 1e-3 * math.pow(water, 1.0 - share) * math.pow(salt, share)
 
     def relative(self, temperature: float) -> tuple[float, float]:
         """As `GivenLaw.relative`."""
@@ -303,13 +304,13 @@ def _relative(density: _Property, viscosity: _Property, temperature: float) -> t
     return thinner, viscosity(here) / viscosity(there) / thinner
 
 
-SILICONE_SLOPE = 763.1 * math.log(10.0)  # K, of the logarithm of the viscosity over 1/T [SHIN14]
-SILICONE_EXPANSION = 9.5e-4  # 1/K [SHIN14]
+SILICONE_SLOPE = 763.1 * math.log(10.0)  # K, of the logarithm of the viscosity over 1/T [KF96]
+SILICONE_EXPANSION = 9.5e-4  # 1/K [KF96]
 _GRADED = CELSIUS + 25.0  # K, at which silicone oils have the viscosity that they are sold by
 
 
 def silicone_law(grade: float, density: float) -> GivenLaw:
-    """A silicone oil (polydimethylsiloxane) over temperature [SHIN14].
+    """A silicone oil (polydimethylsiloxane) over temperature [KF96].
 
     Parameters
     ----------

@@ -156,7 +156,7 @@ class Expansion:
 
 @dataclass(frozen=True)
 class Walther:
-    """Kinematic viscosity of an oil through two points [theory: liquids, eq. 3; ASTM17].
+    """Kinematic viscosity of an oil through two points, ASTM D341 [theory: liquids, eq. 3].
 
     log log(nu + 0.7) is a straight line over log T, nu in mm^2/s.
 

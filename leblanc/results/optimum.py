@@ -336,7 +336,8 @@ class OptimumResult(Result):
     emulator : what the emulator that the search asked says of the answer; None without one
     robust : amplitudes over temperature and unbalance, for the objective of that name; None for any other
     balance_quality, balance_quality_dry : unbalance of rotor and liquid together over the rotor's mass times
-        the working speed, and that of the rotor alone, m/s [theory: balance_quality, eq. 1]; None where not known
+        the working speed, and that of the rotor alone, m/s [theory: balance_quality, eq. 1]; None where this
+        is not known
 
     Examples
     --------

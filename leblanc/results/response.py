@@ -178,8 +178,8 @@ class RunResult(Result):
     models : which liquid model answers at which speeds, how well, and why; empty where that is not known
     tolerance : relative error that the scene allows; None where nothing was estimated
     balance_quality, balance_quality_dry : unbalance of rotor and liquid together over the rotor's mass times
-        the speed, and that of the rotor alone, m/s [theory: balance_quality, eq. 1]; infinite where the motion is;
-        shape (n,); None where no mass spins
+        the speed, and that of the rotor alone, m/s [theory: balance_quality, eq. 1]; infinite where the
+        motion is; shape (n,); None where no mass spins
 
     Raises
     ------

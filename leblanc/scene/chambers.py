@@ -261,10 +261,10 @@ class LiquidProperties(Part):
     """A liquid by its properties, each a value or a law of the temperature; or a salt in water."""
 
     density: Annotated[Any, PlainValidator(Property(units.DENSITY, 1e-3, 1e6, False, DensityLaw))] = Field(
-        None, description="rho; or salt"
+        None, description="rho, or a table of its change with temperature; or salt"
     )
     viscosity: Annotated[Any, PlainValidator(Property(units.VISCOSITY, 0.0, 1e3, False, ViscosityLaw))] = (
-        Field(None, description="kinematic viscosity nu")
+        Field(None, description="kinematic viscosity nu, or a table of its change with temperature")
     )
     temperature: Annotated[float, quantity(units.TEMPERATURE, 1.0, 2000.0)] = Field(
         REFERENCE, description="at which the scene's volumes and a command without temperatures hold"

@@ -144,7 +144,7 @@ def tolerance_planes(rotor: Rotor) -> tuple[TolerancePlane, ...]:
 
 
 def residual_unbalance(system: RotorSystem, generalised: Complex, positions: ArrayLike) -> Complex:
-    """Unbalances in one or two planes that act on a rotor as a generalised one does [theory: balance_quality, eq. 2].
+    """Unbalances in one or two planes that act as a generalised one does [theory: balance_quality, eq. 2].
 
     Parameters
     ----------

@@ -118,7 +118,7 @@ def test_dry_motion_gives_back_the_unbalance(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["horizontal_rig", "tub"])
 def test_total_is_rotor_and_liquid(name: str) -> None:
-    """The liquid's mass times the distance of its centre of mass, at its angle, beside the rotor's unbalance."""
+    """The rotor's unbalance and the liquid's mass times the place of its centre of mass."""
     scene = example(name)
     result = run_scene(scene)
     (plane,) = tolerance_planes(dry_rotor(scene))

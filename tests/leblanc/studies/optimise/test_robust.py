@@ -12,10 +12,11 @@ import pytest
 
 from fluid.liquid import known_liquid, liquid_at
 from leblanc.results.optimum import OptimumResult
-from leblanc.scene.rotors import TwoPlaneRotor
+from leblanc.scene.rotors import TwoPlaneRotor, unbalances_of
 from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.optimise.answers import FilledMachine
+from leblanc.studies.optimise.objectives import AtSpeed
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.optimise.problem import growth, growth_speeds, problem_of
 from leblanc.studies.optimise.robust import (
@@ -131,15 +132,11 @@ def test_two_planes_against_each_condition(together: bool) -> None:
     )
 
 
-@pytest.mark.parametrize("name", ["runup", "two_plane_rig"])
-def test_one_condition_is_the_working_speed(name: str) -> None:
-    """The limit of the objective: no range at all."""
-    machine = scene(name).altered(speeds=Speeds(start=100.0, stop=150.0, count=2))
-    bound = tuple((0.0, 0.05 * fill.chamber.capacity) for fill in machine.fills)
-    plain = Optimisation(volumes=bound)
-    own = machine.rotor
-    sizes = [part.size for part in own.unbalances] if isinstance(own, TwoPlaneRotor) else [own.unbalance]
-    single = plain.altered(objective="robust", unbalance=tuple((size, size) for size in sizes))
+def test_one_condition_is_the_working_speed() -> None:
+    """The limit of the objective, through the whole optimiser: no range at all."""
+    machine = scene("runup").altered(speeds=Speeds(start=100.0, stop=150.0, count=2))
+    plain = Optimisation(volumes=((0.0, 0.05 * machine.fills[0].chamber.capacity),))
+    single = plain.altered(objective="robust", unbalance=(machine.rotor.unbalance,) * 2)
     first, other = (
         optimise_scene(machine, task=task, front=False, response=False) for task in (plain, single)
     )
@@ -147,6 +144,19 @@ def test_one_condition_is_the_working_speed(name: str) -> None:
     assert (first.value, first.baseline) == (other.value, other.baseline)
     assert other.robust is not None and other.robust.amplitude.shape == (1, 1)
     assert float(other.robust.amplitude[0, 0]) == first.value
+
+
+@pytest.mark.parametrize("name", ["two_plane_rig", "tub"])
+def test_one_condition_is_one_speed(name: str) -> None:
+    """The same of rotors that tilt: each unbalance in a range of no width."""
+    machine, speed = scene(name), 60.0
+    sizes = unbalances_of(machine.rotor)
+    (single,) = operating_conditions(unbalance_range(sizes, tuple((size, size) for size in sizes)), None)
+    assert single == OperatingCondition(sizes, None)
+    shares = np.array([[0.0], [0.1], [0.6]])
+    volumes = shares * [fill.chamber.capacity for fill in machine.fills]
+    plain = AtSpeed(FilledMachine(machine), np.array([speed]), np.ones(1))
+    np.testing.assert_array_equal(Robust(machine, speed, [single], 1.0).exact(volumes), plain.exact(volumes))
 
 
 @pytest.fixture(scope="module")
@@ -232,7 +242,7 @@ def test_stability_holds_at_every_temperature() -> None:
 
 def test_what_cannot_be_judged_is_refused() -> None:
     machine, two = scene("runup"), scene("two_plane_rig")
-    own = (0.1, 0.2)
+    own, mercury = (0.1, 0.2), machine.replace({"chambers.0.liquid": "mercury"})
     for ask, field in (
         (lambda: unbalance_range((), None), "rotor.unbalances"),
         (lambda: unbalance_range((0.0, 0.0), (0.1, 0.2)), "rotor.unbalances"),
@@ -243,12 +253,7 @@ def test_what_cannot_be_judged_is_refused() -> None:
         ),
         (lambda: Robust(machine, 100.0, [OperatingCondition((0.1,), 400.0)], 1.0), "temperature"),
         (
-            lambda: Robust(
-                machine.replace({"chambers.0.liquid": "mercury"}),
-                1.0,
-                [OperatingCondition((0.1,), 300.0)],
-                1.0,
-            ),
+            lambda: Robust(mercury, 1.0, [OperatingCondition((0.1,), 300.0)], 1.0),
             "liquid",
         ),
         (
