@@ -132,6 +132,23 @@ class Optimisation(Part):
     )
 
 
+def pairs_of(ranges: _Pair | tuple[_Pair, ...]) -> tuple[_Pair, ...]:
+    """Ranges of unbalance one by one; a single one is the first of one.
+
+    Parameters
+    ----------
+    ranges : as in `Optimisation.unbalance`
+    """
+    found: list[_Pair] = []
+    for entry in ranges:
+        if not isinstance(entry, tuple):
+            low, high = ranges
+            assert isinstance(low, float) and isinstance(high, float)
+            return ((low, high),)
+        found.append(entry)
+    return tuple(found)
+
+
 class Motor(Part):
     """A motor that drives the rotor."""
 

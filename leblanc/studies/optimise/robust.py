@@ -14,7 +14,7 @@ from fluid.liquid import expansion, liquid_at
 from leblanc.results.optimum import ConditionTable
 from leblanc.scene.rotors import with_unbalances
 from leblanc.scene.scene import Exciter, Scene
-from leblanc.scene.tasks import Optimisation
+from leblanc.scene.tasks import Optimisation, pairs_of
 from leblanc.studies.optimise.answers import FilledMachine
 from leblanc.studies.optimise.objectives import AlwaysExact
 from meshes.arrays import Array
@@ -90,22 +90,19 @@ def unbalance_range(
     if wanted is None:
         least, most = (tuple(factor * size for size in sizes) for factor in default)
         return UnbalanceRange(least, most, True)
-    ranges = wanted if isinstance(wanted[0], tuple) else None
-    if ranges is not None:
+    ranges = pairs_of(wanted)
+    if ranges != (wanted,):
         if len(ranges) != len(sizes):
             raise InputError("optimise.unbalance", f"{len(ranges)} ranges", f"one, or {len(sizes)}")
-        return UnbalanceRange(*(tuple(span[k] for span in ranges) for k in (0, 1)), len(sizes) == 1)  # type: ignore[index]
+        least, most = (tuple(span[k] for span in ranges) for k in (0, 1))
+        return UnbalanceRange(least, most, len(sizes) == 1)
     largest = max(sizes)
     if len(sizes) > 1 and not largest > 0.0:
         text = "above 0 somewhere, where all grow with one range; or give a range for each"
         raise InputError("rotor.unbalances", 0.0, text)
     parts = [size / largest if largest > 0.0 else 1.0 for size in sizes]
-    low, high = wanted
-    return UnbalanceRange(
-        tuple(low * part for part in parts),
-        tuple(high * part for part in parts),
-        True,  # type: ignore[operator]
-    )
+    ((low, high),) = ranges
+    return UnbalanceRange(tuple(low * part for part in parts), tuple(high * part for part in parts), True)
 
 
 def operating_conditions(

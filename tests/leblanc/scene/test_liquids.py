@@ -36,7 +36,7 @@ density = { temperatures = ["0 degC", "40 degC", "80 degC"], values = ["0.9 g/cm
 viscosity = { temperatures = ["10 degC", "30 degC", "70 degC"], values = ["90 cSt", "40 cSt", "12 cSt"] }
 """
 VOGEL = (
-    'density = 900\nviscosity = { law = "vogel", a = "0.05 mm^2/s", b = 900, c = 150, range = [270, 370] }'
+    'density = 900\nviscosity = { law = "vogel", a = 5e-8, b = 900, c = 150, range = [270, 370] }'
 )
 ANDRADE = (
     'density = 900\nviscosity = { law = "andrade", a = 1e-9, b = "2000 K", range = ["0 degC", "90 degC"] }'
