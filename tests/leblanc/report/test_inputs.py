@@ -199,7 +199,7 @@ def test_a_section_of_its_own_is_named_and_measured() -> None:
             {
                 "name": "oil",
                 "temperature": "40 degC",
-                "density": {"value": 870, "temperature": "15 degC", "expansion": 7e-4, "range": [270, 350]},
+                "density": {"value": 870, "temperature": "15 degC", "expansion": 7e-4, "range": [280, 350]},
                 "viscosity": {
                     "law": "walther",
                     "temperatures": ["40 degC", "100 degC"],
@@ -207,15 +207,16 @@ def test_a_section_of_its_own_is_named_and_measured() -> None:
                     "range": [270, 350],
                 },
             },
-            "oil, 855 kg/m³, 46 mm²/s at 40 degC; density 870 kg/m³ at 15 degC, expansion 0.0007 1/K; viscosity "
-            "46 mm²/s at 40 degC and 6.8 mm²/s at 100 degC by Walther; from −3.15 degC to 76.85 degC",
+            "oil, 855 kg/m³, 46 mm²/s at 40 degC; density 870 kg/m³ at 15 degC, expansion 0.0007 1/K; "
+            "viscosity 46 mm²/s at 40 degC and 6.8 mm²/s at 100 degC by Walther; "
+            "from 6.85 degC to 76.85 degC",
         ),
         (
             {
                 "density": {"temperatures": [280, 300, 320], "values": [1000, 998, 990]},
                 "viscosity": {"law": "vogel", "a": "0.05 mm^2/s", "b": 900, "c": 150, "range": [270, 370]},
             },
-            "liquid, 999 kg/m³, 26.78 mm²/s at 20 degC; density from a table of 3; viscosity a = 0.05 mm²/s, "
+            "liquid, 999 kg/m³, 26.88 mm²/s at 20 degC; density from a table of 3; viscosity a = 0.05 mm²/s, "
             "b = 900 K, c = 150 K by Vogel; from 6.85 degC to 46.85 degC",
         ),
     ],
@@ -224,7 +225,6 @@ def test_a_law_of_temperature_is_told(liquid: dict[str, Any], said: str) -> None
     table = full("jeffcott")
     table["chambers"][0]["liquid"] = liquid
     found = told(scene_inputs(scene_from_table(table)))["chambers.0.liquid"]
-    assert found.startswith(said.partition(" kg/m³")[0][:12]), found
     assert found == said
 
 
