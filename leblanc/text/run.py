@@ -139,7 +139,8 @@ def comparisons(result: RunResult) -> list[Comparison]:
         both = float(result.balance_quality[-1]), float(result.balance_quality_dry[-1])
         ratio = number(both[0] / both[1]) if both[1] > 0.0 and math.isfinite(both[0]) else ""
         label = f"Balance quality at {in_rpm(float(r.speed[-1]))}"
-        found.append(Comparison(label, *map(quality_words, both), ratio))
+        wet_words, dry_words = map(quality_words, both)
+        found.append(Comparison(label, wet_words, dry_words, ratio))
     return found
 
 

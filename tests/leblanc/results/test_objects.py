@@ -47,9 +47,7 @@ def scene(name: str) -> Scene:
 RUNUP = scene("runup").replace({"runup.duration": "1 s", "runup.cells": 16})
 
 
-WARM = Optimisation(
-    objective="robust", temperature=(280.0, 330.0), volumes=((0.0, 1e-5),) * 2, working_speed=100.0
-)
+WARM = Optimisation(objective="robust", temperature=(280.0, 330.0), volumes=((0.0, 1e-5),))
 
 
 @cache
@@ -60,7 +58,7 @@ def run() -> RunResult:
 RESULTS = {
     "runup": lambda: run_up(RUNUP, samples=50, check=False),
     "optimise": lambda: optimise(scene("horizontal_rig")),
-    "optimise robust": lambda: optimise(scene("two_plane_rig").altered(optimise=WARM), front=False),
+    "optimise robust": lambda: optimise(scene("runup").altered(optimise=WARM), front=False),
     "run": run,
     "map": lambda: map_scene(scene("horizontal_rig"), 5, 21),
     "compare": lambda: compare_models(scene("horizontal_rig"), ["kdv", "linear", "statics"]),
