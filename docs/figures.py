@@ -91,6 +91,11 @@ RECIPES = (
     _example("optimise", "runup", optimise_objective="objective"),
     _example("optimise", "washing_machine", "--objective", "peak", "--steady", optimise_front="front"),
     Recipe(
+        ("leblanc", "optimise", "docs/examples/warm.toml", "--no-front"),
+        ("optimise_conditions",),
+        {"optimise_conditions": "conditions"},
+    ),
+    Recipe(
         ("validation.figures.tub",),
         (
             "tub_fig4_vertical",

@@ -2,6 +2,7 @@
 
 A law gives what temperature changes; the values at 20 degrees Celsius are those of `KNOWN_LIQUIDS`, which
 come from other tables: they differ from the laws' by up to 0.3 % in density and 6 % in viscosity.
+Brines of any strength and silicone oils have the values of their laws.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from fluid.temperature import CELSIUS, REFERENCE, Expansion, GivenLaw, Vogel
 from meshes.errors import InputError, require_not_negative, require_positive
 
 
@@ -22,6 +24,7 @@ class Liquid:
     name : what to call it in reports
     density : rho, kg/m^3
     viscosity : kinematic viscosity nu, m^2/s
+    law : how both change with temperature; None where that is not known, or where the name says it
 
     Raises
     ------
@@ -36,6 +39,7 @@ class Liquid:
     name: str
     density: float
     viscosity: float
+    law: GivenLaw | BrineLaw | None = None
 
     def __post_init__(self) -> None:
         require_positive("density", self.density)
@@ -53,7 +57,6 @@ KNOWN_LIQUIDS: dict[str, Liquid] = {
         Liquid("ethylene_glycol", 1113.2, 1.81e-5),
         Liquid("glycerol", 1260.8, 1.12e-3),
         Liquid("mineral_oil", 870.0, 6.9e-5),  # ISO VG 32 at 20 degrees Celsius
-        Liquid("silicone_oil_100", 965.0, 1.0e-4),
         Liquid("mercury", 13545.9, 1.147e-7),
     )
 }
@@ -71,8 +74,6 @@ def known_liquid(name: str) -> Liquid:
     return KNOWN_LIQUIDS[name]
 
 
-CELSIUS = 273.15  # K at 0 degrees Celsius
-REFERENCE = CELSIUS + 20.0  # K, to which `KNOWN_LIQUIDS` belong
 SALINITY = 0.035  # of sea water, kg/kg
 OIL_EXPANSION = 7e-4  # of mineral oils, 1/K
 
@@ -96,6 +97,12 @@ class TemperatureLaw:
     density: _Property
     viscosity: _Property
     source: str
+
+    reference = REFERENCE
+
+    def relative(self, temperature: float) -> tuple[float, float]:
+        """As `GivenLaw.relative`."""
+        return _relative(self.density, self.viscosity, temperature)
 
 
 def water_density(celsius: float) -> float:
@@ -172,22 +179,198 @@ def oil_viscosity(celsius: float) -> float:
     return 1e-6 * square_millimetres * oil_density(celsius)
 
 
-LAWS: dict[str, TemperatureLaw] = {
+@dataclass(frozen=True)
+class Salt:
+    """Coefficients of a salt in water [LC04, LAL07; refitted in LAL09].
+
+    Parameters
+    ----------
+    lowest, highest : K, between which they hold
+    most : mass fraction up to which they hold, below saturation at 20 degrees Celsius
+    volume : c_0 to c_4 of its apparent density
+    viscosity : v_1 to v_6
+    """
+
+    lowest: float
+    highest: float
+    most: float
+    volume: tuple[float, float, float, float, float]
+    viscosity: tuple[float, float, float, float, float, float]
+
+
+SALTS = {
+    "sodium_chloride": Salt(
+        lowest=CELSIUS + 5.0,
+        highest=CELSIUS + 100.0,
+        most=0.26,
+        volume=(-0.0032411222, 0.0636354336, 1.0137139947, 0.0145951015, 3317.348544),
+        viscosity=(16.2217886, 1.32293087, 1.48485985, 0.00746912560, 30.7802008, 2.05826852),
+    ),
+    "calcium_chloride": Salt(
+        lowest=CELSIUS + 15.0,
+        highest=CELSIUS + 100.0,
+        most=0.42,
+        volume=(-9.7289374715, 14.7005352975, 4.1903334147, 0.0397403624, 2708.127789),
+        viscosity=(32.0143700, 0.788104086, -1.14120454, 0.00270010694, 776516.747, 5.83888131),
+    ),
+}
+
+
+@dataclass(frozen=True)
+class BrineLaw:
+    """A salt in water over temperature [theory: liquids, eq. 6, 7].
+
+    Parameters
+    ----------
+    salt : one of `SALTS`
+    mass_fraction : of the salt in the solution
+
+    Raises
+    ------
+    InputError : another salt, a mass fraction out of its range
+    """
+
+    salt: str
+    mass_fraction: float
+
+    reference = REFERENCE
+    source = "LC04, LAL07, LAL09"
+
+    def __post_init__(self) -> None:
+        if self.salt not in SALTS:
+            raise InputError("salt", self.salt, "one of: " + ", ".join(SALTS))
+        most = SALTS[self.salt].most
+        if not 0.0 <= self.mass_fraction <= most:
+            raise InputError("mass_fraction", self.mass_fraction, f"from 0 to {most:g} for {self.salt}")
+
+    @property
+    def lowest(self) -> float:
+        """From which temperature on it holds, K."""
+        return SALTS[self.salt].lowest
+
+    @property
+    def highest(self) -> float:
+        """Up to which temperature it holds, K."""
+        return SALTS[self.salt].highest
+
+    def density(self, celsius: float) -> float:
+        """Density of the solution, kg/m^3, its water that of [KELL75]."""
+        c0, c1, c2, c3, c4 = SALTS[self.salt].volume
+        share = self.mass_fraction
+        apparent = (c0 * share + c1) * math.exp(1e-6 * (celsius + c4) ** 2) / (share + c2 + c3 * celsius)
+        return 1.0 / ((1.0 - share) / water_density(celsius) + share / apparent)
+
+    def viscosity(self, celsius: float) -> float:
+        """Dynamic viscosity of the solution, Pa s."""
+        v1, v2, v3, v4, v5, v6 = SALTS[self.salt].viscosity
+        share = self.mass_fraction
+        water = (celsius + 246.0) / ((0.05594 * celsius + 5.2842) * celsius + 137.37)
+        salt = math.exp((v1 * math.pow(share, v2) + v3) / (v4 * celsius + 1.0))
+        salt /= v5 * math.pow(share, v6) + 1.0
+        return 1e-3 * math.pow(water, 1.0 - share) * math.pow(salt, share)
+
+    def relative(self, temperature: float) -> tuple[float, float]:
+        """As `GivenLaw.relative`."""
+        return _relative(self.density, self.viscosity, temperature)
+
+
+def brine(salt: str, mass_fraction: float) -> Liquid:
+    """A salt in water, at 20 degrees Celsius.
+
+    Parameters
+    ----------
+    salt : one of `SALTS`
+    mass_fraction : of the salt in the solution
+
+    Raises
+    ------
+    InputError : another salt, a mass fraction out of its range
+
+    Examples
+    --------
+    >>> round(brine("sodium_chloride", 0.2).density)
+    1148
+    """
+    law = BrineLaw(salt, mass_fraction)
+    density = law.density(REFERENCE - CELSIUS)
+    name = f"{100.0 * mass_fraction:g} % {salt.replace('_', ' ')} brine"
+    return Liquid(name, density, law.viscosity(REFERENCE - CELSIUS) / density, law)
+
+
+def _relative(density: _Property, viscosity: _Property, temperature: float) -> tuple[float, float]:
+    """Density and kinematic viscosity at a temperature, K, over those at 20 degrees Celsius."""
+    here, there = temperature - CELSIUS, REFERENCE - CELSIUS
+    thinner = density(here) / density(there)
+    return thinner, viscosity(here) / viscosity(there) / thinner
+
+
+SILICONE_SLOPE = 763.1 * math.log(10.0)  # K, of the logarithm of the viscosity over 1/T [KF96]
+SILICONE_EXPANSION = 9.5e-4  # 1/K [KF96]
+_GRADED = CELSIUS + 25.0  # K, at which silicone oils have the viscosity that they are sold by
+
+
+def silicone_law(grade: float, density: float) -> GivenLaw:
+    """A silicone oil (polydimethylsiloxane) over temperature [KF96].
+
+    Parameters
+    ----------
+    grade : its viscosity at 25 degrees Celsius, m^2/s, from 100 mm^2/s up
+    density : at that temperature, kg/m^3
+    """
+    span = CELSIUS - 25.0, CELSIUS + 250.0
+    thickness = Vogel(grade * math.exp(-SILICONE_SLOPE / _GRADED), SILICONE_SLOPE, 0.0, *span)
+    return GivenLaw(Expansion(density, _GRADED, SILICONE_EXPANSION, *span), thickness)
+
+
+_SILICONES = {
+    f"silicone_oil_{grade}": silicone_law(grade * 1e-6, density)
+    for grade, density in ((100, 965.0), (200, 970.0), (350, 970.0), (500, 970.0), (1000, 970.0))
+}
+KNOWN_LIQUIDS |= {
+    name: Liquid(name, law.density.at(REFERENCE), law.viscosity.at(REFERENCE))
+    for name, law in _SILICONES.items()
+}
+
+
+LAWS: dict[str, TemperatureLaw | BrineLaw | GivenLaw] = {
     "water": TemperatureLaw(CELSIUS, CELSIUS + 100.0, water_density, water_viscosity, "KELL75, IAPWS11"),
     "sea_water": TemperatureLaw(CELSIUS, CELSIUS + 100.0, sea_water_density, sea_water_viscosity, "SLZ10"),
     "glycerol": TemperatureLaw(CELSIUS, CELSIUS + 100.0, glycerol_density, glycerol_viscosity, "CHENG08"),
     "ethylene_glycol": TemperatureLaw(290.0, 450.0, glycol_density, glycol_viscosity, "ST03"),
     "mineral_oil": TemperatureLaw(CELSIUS, CELSIUS + 60.0, oil_density, oil_viscosity, "ISO92"),
+    "brine": BrineLaw("sodium_chloride", 0.26),
+    "calcium_chloride_brine": BrineLaw("calcium_chloride", 0.4),
+    **_SILICONES,
 }
 
 
-def liquid_at(liquid: Liquid, temperature: float) -> Liquid:
-    """A liquid at another temperature than 20 degrees Celsius.
+def law_of(liquid: Liquid) -> TemperatureLaw | BrineLaw | GivenLaw | None:
+    """How a liquid changes with temperature: its own law, or that of the known liquid that it is.
 
     Parameters
     ----------
-    liquid : one of `KNOWN_LIQUIDS`
+    liquid : of any kind
+
+    Returns
+    -------
+    None where no law is known
+    """
+    if liquid.law is not None:
+        return liquid.law
+    return LAWS.get(liquid.name) if KNOWN_LIQUIDS.get(liquid.name) == liquid else None
+
+
+def liquid_at(liquid: Liquid, temperature: float) -> Liquid:
+    """A liquid at another temperature than that to which its values belong.
+
+    Parameters
+    ----------
+    liquid : with a law: one of `LAWS`, or one of its own
     temperature : K
+
+    Returns
+    -------
+    The liquid there; it has no law, which counts from another temperature
 
     Raises
     ------
@@ -199,21 +382,23 @@ def liquid_at(liquid: Liquid, temperature: float) -> Liquid:
     >>> round(liquid_at(known_liquid("water"), 333.15).density, 1)
     983.2
     """
-    law = LAWS.get(liquid.name)
-    if law is None or KNOWN_LIQUIDS[liquid.name] != liquid:
+    law = law_of(liquid)
+    if law is None:
         known = ", ".join(LAWS)
-        raise InputError("liquid", liquid.name, f"one of {known} where temperatures matter")
+        text = f"one of {known}, or given over temperature itself, where temperatures matter"
+        raise InputError("liquid", liquid.name, text)
     if not law.lowest <= temperature <= law.highest:
-        span = f"from {law.lowest:g} to {law.highest:g} K for {liquid.name} [{law.source}]"
+        name = liquid.name if law.source == "as given" else f"{liquid.name} [{law.source}]"
+        degrees = f"{law.lowest - CELSIUS:g} to {law.highest - CELSIUS:g} degC"
+        span = f"from {law.lowest:g} to {law.highest:g} K ({degrees}) for {name}"
         raise InputError("temperature", temperature, span)
-    here, there = temperature - CELSIUS, REFERENCE - CELSIUS
-    thinner = law.density(here) / law.density(there)
-    runnier = law.viscosity(here) / law.viscosity(there)
-    return replace(liquid, density=liquid.density * thinner, viscosity=liquid.viscosity * runnier / thinner)
+    thinner, runnier = law.relative(temperature)
+    density, viscosity = liquid.density * thinner, liquid.viscosity * runnier
+    return replace(liquid, density=density, viscosity=viscosity, law=None)
 
 
 def expansion(liquid: Liquid, temperature: float) -> float:
-    """Volume of a mass of liquid over that at 20 degrees Celsius [theory: optimum, eq. 9].
+    """Volume of a mass of liquid over that at the temperature of its values [theory: optimum, eq. 9].
 
     Parameters
     ----------

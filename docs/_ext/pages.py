@@ -95,6 +95,24 @@ def _interval(least: float, most: float) -> str:
     return f"at least {least:g}" if math.isinf(most) else f"{least:g} to {most:g}"
 
 
+class KnownLiquids(SphinxDirective):
+    """The liquids that a scene names, and from where to where they are known over temperature."""
+
+    def run(self) -> list[nodes.Node]:
+        """A table with one row for each."""
+        from fluid.liquid import KNOWN_LIQUIDS, law_of
+        from fluid.temperature import CELSIUS
+
+        rows = []
+        for name, liquid in KNOWN_LIQUIDS.items():
+            law = law_of(liquid)
+            span = "" if law is None else f"{law.lowest - CELSIUS:.4g} to {law.highest - CELSIUS:.4g}"
+            source = "" if law is None else law.source
+            rows.append((name, f"{liquid.density:.5g}", f"{liquid.viscosity * 1e6:.4g}", span, source))
+        head = ("name", "density at 20 degC (kg/m^3)", "viscosity (mm^2/s)", "law (degC)", "its source")
+        return [table(head, rows, code=(0,))]
+
+
 class KeptErrors(SphinxDirective):
     """Errors and times of a model in the kept comparison of all shipped scenes."""
 
@@ -181,5 +199,6 @@ def setup(app: Sphinx) -> dict[str, Any]:
     app.add_directive("all-commands", Commands)
     app.add_directive("model-ranges", Ranges)
     app.add_directive("kept-errors", KeptErrors)
+    app.add_directive("known-liquids", KnownLiquids)
     app.add_directive("cold-starts", ColdStarts)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

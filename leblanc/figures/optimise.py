@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from fluid.temperature import CELSIUS
 from leblanc.figures.page import (
     RIGHT,
     WIDTH,
@@ -21,14 +22,16 @@ from leblanc.figures.page import (
     style,
 )
 from leblanc.results.base import one_line, texts
-from leblanc.results.optimum import OptimumResult
-from leblanc.units import LENGTH, MM, VOLUME, in_rpm, with_unit
+from leblanc.results.optimum import ConditionTable, OptimumResult
+from leblanc.text.optimum import load_words, worst_condition
+from leblanc.units import DEGREE, LENGTH, MM, UNBALANCE, VOLUME, in_rpm, unit_for, with_unit
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 
 ML, GRAM = 1e6, 1e3  # millilitres in one cubic metre, grams in one kilogram
 FRAME = Frame(left=0.72, top=0.14, between=0.55, below=0.42)
+LOW = 1.1  # inches: of a panel that stands below another
 HEIGHT, BAR, ROOM = 2.7, 0.13, 0.85  # inches: of a panel, width of a colour bar, room for it
 LINES = 9  # of the caption
 LINE, DRY, BEST, FULL = "#0072B2", "#D55E00", "#009E73", "0.15"
@@ -54,7 +57,90 @@ def write_figures(result: OptimumResult, directory: Path) -> tuple[FigureFiles, 
     if result.front is not None and result.front.mass.size > 1:
         title = "Vibration, liquid and stability"
         files.append(save(front_figure(result), directory, "front", title))
+    if result.robust is not None and result.robust.amplitude.size > 1:
+        title = "Amplitude over the conditions"
+        files.append(save(conditions_figure(result), directory, "conditions", title))
     return tuple(files)
+
+
+def conditions_figure(result: OptimumResult) -> Figure:
+    """Amplitude with the best volumes over temperature, or over the unbalance where no temperature varies."""
+    table = result.robust
+    assert table is not None
+    with style():
+        figure = Figure()
+        axes = figure.add_axes((0, 0, 1, 1), label="amplitude")
+        panels, heights = [[axes]], [HEIGHT]
+        if table.temperature.size > 1:
+            _draw_over_temperature(axes, table)
+            below = figure.add_axes((0, 0, 1, 1), label="margin")
+            _draw_margin(below, table)
+            panels, heights = [[axes], [below]], [HEIGHT, LOW]
+        else:
+            _draw_over_unbalance(axes, table)
+        axes.xaxis.set_major_formatter(number)
+        axes.yaxis.set_major_formatter(number)
+        axes.set_ylabel("Vibration (mm)")
+        axes.set_ylim(0.0, 1.12 * MM * float(max(table.amplitude_dry.max(), table.amplitude.max())))
+        text = (
+            "Solid with marks: with the best volumes; dotted: without liquid, at the same unbalances. "
+            f"Star: the condition that decides. {worst_condition(table)}. "
+            f"{_MARGIN if len(panels) > 1 else ''}"
+        )
+        lay_out(figure, panels, heights, FRAME, _caption(result, text, False), LINES)
+        figure.alt = (
+            f"Vibration with the best volumes and without liquid over "
+            f"{'temperature' if table.temperature.size > 1 else 'unbalance'}. {worst_condition(table)}."
+        )
+    return figure
+
+
+_MARGIN = (
+    "Margin: decay of the small whirl that dies out slowest at the operating speeds, by the viscosity there; "
+    "below 0 one grows. "
+)
+_MARKS = ("o", "s", "^")  # of the least, middle and largest unbalance
+_STAR = {"color": BEST, "marker": "*", "markersize": 12.0, "linestyle": "none", "zorder": 4}
+
+
+def _draw_over_temperature(axes: Axes, table: ConditionTable) -> None:
+    """A curve for each unbalance, the dry amplitude beside it."""
+    celsius = table.temperature - CELSIUS
+    for j, size in enumerate(table.unbalance.tolist()):
+        label = load_words(size)
+        look = {"color": LINE, "marker": _MARKS[j % len(_MARKS)], "markersize": 3.5, "markevery": 6}
+        axes.plot(celsius, table.amplitude[:, j] * MM, label=label, linewidth=1.2, zorder=2, **look)
+        dry = {"label": "without liquid"} if j == 0 else {}
+        axes.plot(celsius[[0, -1]], [table.amplitude_dry[j] * MM] * 2, **BARE, **dry)
+    k = table.decisive
+    at = [table.condition_temperature[k] - CELSIUS], [table.condition_amplitude[k] * MM]
+    axes.plot(*at, label="decides", markeredgecolor="black", clip_on=False, **_STAR)
+    axes.set_xlabel(f"Temperature ({DEGREE}C)")
+
+
+def _draw_margin(axes: Axes, table: ConditionTable) -> None:
+    """Stability margin over temperature; below 0 a whirl grows."""
+    axes.plot(table.temperature - CELSIUS, table.stability_margin, color=LINE, linewidth=1.2, zorder=2)
+    axes.axhline(0.0, color=FULL, linewidth=0.8, zorder=1)
+    axes.xaxis.set_major_formatter(number)
+    axes.yaxis.set_major_formatter(number)
+    axes.set_xlabel(f"Temperature ({DEGREE}C)")
+    axes.set_ylabel("Margin (1/s)")
+
+
+def _draw_over_unbalance(axes: Axes, table: ConditionTable) -> None:
+    """One curve over the largest of the unbalances, the dry amplitude beside it."""
+    load = table.unbalance.max(axis=1)
+    weight = unit_for(UNBALANCE, *load.tolist())
+    unit, name = weight.count, weight.name
+    look = {"color": LINE, "marker": "o", "markersize": 3.5, "markevery": 6}
+    axes.plot(load * unit, table.amplitude[0] * MM, label="best volumes", linewidth=1.2, zorder=2, **look)
+    axes.plot(load * unit, table.amplitude_dry * MM, **BARE, label="without liquid")
+    k = table.decisive
+    at = [table.condition_unbalance[k].max() * unit], [table.condition_amplitude[k] * MM]
+    axes.plot(*at, label="decides", markeredgecolor="black", clip_on=False, **_STAR)
+    several = table.unbalance.shape[1] > 1
+    axes.set_xlabel(f"{'Largest unbalance' if several else 'Unbalance'} ({name})")
 
 
 def objective_figure(result: OptimumResult) -> Figure:

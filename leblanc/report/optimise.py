@@ -15,7 +15,7 @@ from leblanc.report.run import response_checks as response_checks
 from leblanc.results.base import texts
 from leblanc.results.optimum import OptimumResult
 from leblanc.text.numbers import number
-from leblanc.text.optimum import amplitude_plane, answer, shown
+from leblanc.text.optimum import amplitude_plane, answer, over_conditions, quality, shown, worst_condition
 from leblanc.units import LENGTH, MASS, ML, VOLUME, in_rpm, unit_for, with_unit
 
 if TYPE_CHECKING:
@@ -87,8 +87,14 @@ def facts(result: OptimumResult) -> list[tuple[str, str]]:
         ("Working speed", in_rpm(result.working_speed)),
         ("Mass of the liquid", with_unit(result.mass, MASS)),
         ("Stability margin at the operating speeds", f"{number(result.stability_margin)} 1/s"),
+        *(() if (said := quality(result)) is None else (said,)),
         ("Sets of volumes judged", f"{result.evaluations}"),
     ]
+
+
+def conditions(result: OptimumResult) -> Table:
+    """Amplitudes over temperature and unbalance, for the objective robust."""
+    return table("", (), ()) if result.robust is None else table("", *over_conditions(result.robust))
 
 
 def constraints(result: OptimumResult) -> Table:
@@ -177,6 +183,8 @@ def write_optimise_report(
         "volumes": volumes(result),
         "constraints": constraints(result),
         "front": front(result),
+        "conditions": conditions(result),
+        "worst": None if result.robust is None else worst_condition(result.robust),
         "checks": checks(result),
         "paste": paste,
         "pictures": [picture(files) for files in figures],

@@ -12,7 +12,7 @@ import numpy as np
 from fluid.friction import Friction
 from leblanc.results.base import Note, NoteCode, Result, attributes, texts
 from leblanc.results.choice import ModelSpan
-from leblanc.results.netcdf import NamedArrays, flags
+from leblanc.results.netcdf import NamedArrays, Variable, flags
 from leblanc.results.netcdf import variable as var
 from leblanc.results.response import RunResult
 from leblanc.results.sweep import EmulatorError
@@ -208,6 +208,78 @@ class EmulatedAnswer:
 
 
 @dataclass(frozen=True)
+class ConditionTable:
+    """Amplitudes with the best volumes over temperature and unbalance; n conditions were judged.
+
+    t temperatures and u steps of the unbalances from least to most, of p unbalances each.
+
+    Parameters
+    ----------
+    temperature : K; a single nan where no range was given; shape (t,)
+    unbalance : size of each of the rotor's unbalances, kg m, shape (u, p)
+    amplitude : m, shape (t, u)
+    stability_margin : decay of the small whirl that dies out slowest at the operating speeds, 1/s, which no
+        unbalance changes; below 0 it grows; shape (t,)
+    amplitude_dry : without liquid, which no temperature changes, m, shape (u,)
+    condition_temperature, condition_unbalance : of the conditions that the volumes were chosen for, K and
+        kg m, shape (n,) and (n, p)
+    condition_amplitude, condition_amplitude_dry : m, shape (n,)
+    quantile : of the amplitudes that was to be small; 1 is the worst case
+    decisive : the condition that has this amplitude
+    """
+
+    temperature: Array
+    unbalance: Array
+    amplitude: Array
+    amplitude_dry: Array
+    stability_margin: Array
+    condition_temperature: Array
+    condition_unbalance: Array
+    condition_amplitude: Array
+    condition_amplitude_dry: Array
+    quantile: float
+    decisive: int
+
+    @property
+    def heated(self) -> bool:
+        """Temperatures were given."""
+        return not bool(np.isnan(self.temperature).any())
+
+    def to_json(self) -> dict[str, Any]:
+        """As `optimise` prints it; null for a temperature that was not given."""
+        rows = {name: getattr(self, name).tolist() for name in _ROBUST_ARRAYS}
+        known = (margin if math.isfinite(margin) else None for margin in rows["stability_margin"])
+        rows["stability_margin"] = list(known)
+        if not self.heated:
+            rows |= {name: [None] * len(rows[name]) for name in ("temperature", "condition_temperature")}
+        worst = self.decisive
+        case = {name: rows[f"condition_{name}"][worst] for name in _OF_CONDITION}
+        return rows | {"quantile": self.quantile, "worst": case}
+
+    def variables(self) -> dict[str, Variable]:
+        """For a data file."""
+        table, along = ("temperature_step", "unbalance_step"), ("unbalance_step",)
+        of, each = ("condition",), ("condition", "rotor_unbalance")
+        mass = "size of each of the rotor's unbalances"
+        dry = "without liquid"
+        return {
+            "robust_temperature": var(table[:1], self.temperature, "K", "temperature"),
+            "robust_unbalance": var((*along, "rotor_unbalance"), self.unbalance, "kg m", "unbalance", mass),
+            "robust_amplitude": var(table, self.amplitude, "m", "amplitude", "with the best volumes"),
+            "robust_amplitude_dry": var(along, self.amplitude_dry, "m", "amplitude", dry),
+            "robust_stability_margin": var(table[:1], self.stability_margin, "s-1", "stability margin"),
+            "condition_temperature": var(of, self.condition_temperature, "K", "temperature"),
+            "condition_unbalance": var(each, self.condition_unbalance, "kg m", "unbalance", mass),
+            "condition_amplitude": var(of, self.condition_amplitude, "m", "amplitude", "in a condition"),
+            "condition_amplitude_dry": var(of, self.condition_amplitude_dry, "m", "amplitude", dry),
+        }
+
+
+_OF_CONDITION = ("temperature", "unbalance", "amplitude", "amplitude_dry")
+_ROBUST_ARRAYS = (*_OF_CONDITION, "stability_margin", *(f"condition_{name}" for name in _OF_CONDITION))
+
+
+@dataclass(frozen=True)
 class CandidateChamber:
     """A chamber of the scene whose volume was looked for.
 
@@ -219,6 +291,18 @@ class CandidateChamber:
 
     capacity: float
     liquid_name: str
+
+
+def _quality_json(result: OptimumResult) -> dict[str, float | None]:
+    """Balance quality; null where it has no bound."""
+    names = "balance_quality", "balance_quality_dry"
+    found: list[float | None] = [getattr(result, name) for name in names]
+    if None in found:
+        return {}
+    return {
+        name: value if value is not None and math.isfinite(value) else None
+        for name, value in zip(names, found, strict=True)
+    }
 
 
 @dataclass(frozen=True)
@@ -250,6 +334,10 @@ class OptimumResult(Result):
     response : of the machine with these volumes over the scene's speeds; None where the liquid model of the
         search gives no steady answer, or where it was not computed; its models are those of the search
     emulator : what the emulator that the search asked says of the answer; None without one
+    robust : amplitudes over temperature and unbalance, for the objective of that name; None for any other
+    balance_quality, balance_quality_dry : unbalance of rotor and liquid together over the rotor's mass times
+        the working speed, and that of the rotor alone, m/s [theory: balance_quality, eq. 1]; None where this
+        is not known
 
     Examples
     --------
@@ -288,6 +376,9 @@ class OptimumResult(Result):
     notes: tuple[Note, ...]
     response: RunResult | None = None
     emulator: EmulatedAnswer | None = None
+    robust: ConditionTable | None = None
+    balance_quality: float | None = None
+    balance_quality_dry: float | None = None
 
     figure = "leblanc.figures.optimise:objective_figure"
     summary = "leblanc.text.optimum:summary"
@@ -320,6 +411,8 @@ class OptimumResult(Result):
         return (
             found
             | ({} if self.emulator is None else {"emulator": asdict(self.emulator)})
+            | _quality_json(self)
+            | ({} if self.robust is None else {"robust": self.robust.to_json()})
             | {
                 "constraints": {name: asdict(value) for name, value in self.constraints.items()},
                 "closed_form": [form.to_json() for form in self.closed_form],
@@ -354,6 +447,8 @@ class OptimumResult(Result):
                 "front_mass": var(along, front.mass, "kg", "mass of liquid on the front"),
                 "front_margin": var(along, margin, "s-1", "stability margin on the front"),
             }
+        if self.robust is not None:
+            columns |= self.robust.variables()
         tries, chambers = np.arange(tried.volume.shape[0]), np.arange(1, self.volume.size + 1)
         coords = {
             "candidate": var(over, tries.astype(np.int32), "1", "candidate"),

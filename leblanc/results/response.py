@@ -16,6 +16,7 @@ from leblanc.results.netcdf import NamedArrays, Variable, flags
 from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
+from solvers.rotor.balance_quality import GRADES, grade_name, grade_of
 from solvers.rotor.campbell import Campbell
 from solvers.synchronous.peaks import highest
 from solvers.synchronous.response import Response, by_speed
@@ -114,6 +115,22 @@ class SelfExcited:
         return found
 
 
+def grade_words(quality: float) -> str:
+    """The finest grade of ISO 21940-11 that a balance quality keeps, in words.
+
+    Parameters
+    ----------
+    quality : m/s
+
+    Examples
+    --------
+    >>> grade_words(0.005), grade_words(5.0)
+    ('G 6.3', 'above G 4000')
+    """
+    grade = grade_of(quality)
+    return f"above {grade_name(GRADES[-1])}" if grade is None else grade_name(grade)
+
+
 SCALARS = ("liquid_mass", "critical_speed_dry", "critical_speed_wet", "capture_speed")
 STATES = ("dry_patch", "stable", "model", "in_range", "converged")  # over speed
 
@@ -172,6 +189,9 @@ class RunResult(Result):
     tolerance : relative error that the scene allows; None where nothing was estimated
     refined : the answer between these speeds as well, where it takes that to find the largest amplitudes, by
         rising speed; None where nobody looked
+    balance_quality, balance_quality_dry : unbalance of rotor and liquid together over the rotor's mass times
+        the speed, and that of the rotor alone, m/s [theory: balance_quality, eq. 1]; infinite where the
+        motion is; shape (n,); None where no mass spins
 
     Raises
     ------
@@ -207,6 +227,8 @@ class RunResult(Result):
     models: tuple[ModelSpan, ...] = ()
     tolerance: float | None = None
     refined: Response | None = None
+    balance_quality: Array | None = None
+    balance_quality_dry: Array | None = None
 
     def __post_init__(self) -> None:
         if self.axis not in ("horizontal", "vertical"):
@@ -377,6 +399,7 @@ class RunResult(Result):
             "assumed": list(self.assumed),
             "notes": list(texts(self.notes)),
             **({} if self.error_estimate is None else {"error_estimate": _finite(self.error_estimate)}),
+            **_quality_json(self),
             **_motion_json(self.motion),
             **_whirl_json(self.whirl),
             **_refined_json(self.refined),
@@ -428,6 +451,12 @@ def _refined_json(refined: Response | None) -> dict[str, Any]:
         return {}
     names = ("speed", "amplitude", "amplitude_dry")
     return {"refined": {name: _finite(getattr(refined, name)) for name in names}}
+def _quality_json(result: RunResult) -> dict[str, Any]:
+    """Balance quality over speed."""
+    if result.balance_quality is None or result.balance_quality_dry is None:
+        return {}
+    names = "balance_quality", "balance_quality_dry"
+    return {name: _finite(getattr(result, name)) for name in names}
 
 
 def _whirl_json(whirl: SelfExcited | None) -> dict[str, Any]:
@@ -492,6 +521,7 @@ def _variables(result: RunResult) -> dict[str, Variable]:
         "critical_speed_wet": var((), wet, rate, "critical speed with liquid", "undamped, wall wet"),
         "capture_speed": var((), capture, rate, "capture speed", "the liquid rides with the drum above it"),
         **_peak_variables(result),
+        **_quality_variables(result),
         **_error_variables(result),
         **_motion_variables(result),
         **_whirl_variables(result),
@@ -519,6 +549,16 @@ def _peak_variables(result: RunResult) -> dict[str, Variable]:
         found["refined_amplitude"] = var(over, wet, "m", "amplitude", text)
         found["refined_amplitude_dry"] = var(over, dry, "m", "amplitude", f"{text}, without liquid")
     return found
+def _quality_variables(result: RunResult) -> dict[str, Variable]:
+    """Balance quality over speed."""
+    if result.balance_quality is None or result.balance_quality_dry is None:
+        return {}
+    both, text = "of rotor and liquid together", "unbalance over the rotor's mass, times the speed"
+    wet, dry = result.balance_quality, result.balance_quality_dry
+    return {
+        "balance_quality": var(("speed",), wet, "m s-1", "balance quality", f"{text}; {both}"),
+        "balance_quality_dry": var(("speed",), dry, "m s-1", "balance quality", f"{text}; without liquid"),
+    }
 
 
 def _error_variables(result: RunResult) -> dict[str, Variable]:

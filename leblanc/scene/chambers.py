@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import asdict
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import asdict, dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Annotated, Any
@@ -13,11 +13,33 @@ import numpy as np
 from pydantic import Field, PlainValidator
 
 from fluid.fill import Fill
-from fluid.liquid import KNOWN_LIQUIDS, Liquid
+from fluid.liquid import KNOWN_LIQUIDS, SALTS, BrineLaw, Liquid, brine
+from fluid.temperature import (
+    REFERENCE,
+    Constant,
+    Expansion,
+    GivenLaw,
+    PropertyLaw,
+    Tabulated,
+    Vogel,
+    Walther,
+)
 from leblanc import units
 from leblanc.scene.schema.load import meant
 from leblanc.scene.schema.part import Conflict, Part, allowed_at
-from leblanc.scene.schema.rules import LENGTH, Length, Position, Refused, quantity, whole
+from leblanc.scene.schema.rules import (
+    LENGTH,
+    Length,
+    Position,
+    Quantity,
+    Refused,
+    Span,
+    Text,
+    entries,
+    one_of,
+    quantity,
+    whole,
+)
 from meshes.baffles import Baffles as Plates
 from meshes.chamber import Chamber as Walls
 from meshes.chamber_section import ChamberSection, chamber_section
@@ -86,35 +108,233 @@ MAX_BAFFLES = 360
 _ROUNDING = 1e-9  # relative; a chamber filled to the brim may be written with nine digits
 
 
-class LiquidProperties(Part):
-    """A liquid by its properties."""
+MAX_TABLE = 1000  # points of a property over temperature
 
-    density: Annotated[float, quantity(units.DENSITY, 1e-3, 1e6)] = Field(description="rho")
-    viscosity: Annotated[float, quantity(units.VISCOSITY, 0.0, 1e3)] = Field(
-        description="kinematic viscosity nu"
+_Temperature = Annotated[float, quantity(units.TEMPERATURE, 1.0, 2000.0)]
+_TEMPERATURES = Span(Quantity(units.TEMPERATURE, 1.0, 2000.0))
+_Range = Annotated[tuple[float, float] | None, PlainValidator(_TEMPERATURES)]
+_Temperatures = Annotated[tuple[_Temperature, ...], entries(2, MAX_TABLE, "rising temperatures")]
+_Densities = Annotated[
+    tuple[Annotated[float, quantity(units.DENSITY, 1e-3, 1e6)], ...],
+    entries(2, MAX_TABLE, "densities, one a temperature"),
+]
+_Viscosities = Annotated[
+    tuple[Annotated[float, quantity(units.VISCOSITY, 1e-12, 1e3)], ...],
+    entries(2, MAX_TABLE, "kinematic viscosities, one a temperature"),
+]
+
+
+def _given_and_absent(
+    given: Mapping[str, Any], needed: tuple[str, ...], fields: Mapping[str, Any], why: str
+) -> Iterator[Conflict]:
+    """Keys that a law needs stand there, and no others."""
+    for key in needed:
+        if key not in given:
+            yield Conflict((key,), f"given {why}: {allowed_at(fields[key])}")
+    for key in given:
+        if key in fields and key not in (*needed, "law"):
+            yield Conflict((key,), f"left out {why}")
+
+
+def _broken(make: Callable[[], PropertyLaw]) -> Iterator[Conflict]:
+    """What the law itself finds wrong with its numbers."""
+    try:
+        make()
+    except InputError as fault:
+        yield Conflict((fault.field,), fault.allowed)
+
+
+class DensityLaw(Part):
+    """A density over temperature: a table, or a value at one temperature and the expansion of the volume."""
+
+    temperatures: _Temperatures = Field((), description="of the table; or value")
+    values: _Densities = Field((), description="of the table")
+    value: Annotated[float | None, quantity(units.DENSITY, 1e-3, 1e6)] = Field(
+        None, description="at the temperature that follows; or temperatures and values"
     )
+    temperature: Annotated[float | None, quantity(units.TEMPERATURE, 1.0, 2000.0)] = Field(
+        None, description="of that value"
+    )
+    expansion: Annotated[float | None, quantity(units.EXPANSION, -0.1, 0.1)] = Field(
+        None, description="of the volume over that at this temperature"
+    )
+    range: _Range = Field(None, description="temperatures between which the expansion holds")
+
+    @classmethod
+    def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """A table or an expansion, and its numbers fit."""
+        table = "temperatures" in given or "values" in given
+        needed = ("temperatures", "values") if table else ("value", "temperature", "expansion", "range")
+        why = "with a table" if table else "with an expansion"
+        found = list(_given_and_absent(given, needed, cls.model_fields, why))
+        yield from found
+        if not found and set(needed) <= values.keys():
+            yield from _broken(lambda: _density_law(values))
+
+    def made(self) -> PropertyLaw:
+        """As the liquids take it."""
+        return _density_law(self.__dict__)
+
+
+def _density_law(values: Mapping[str, Any]) -> PropertyLaw:
+    if values["temperatures"]:
+        return Tabulated(tuple(values["temperatures"]), tuple(values["values"]))
+    return Expansion(values["value"], values["temperature"], values["expansion"], *values["range"])
+
+
+class ViscosityLaw(Part):
+    """A kinematic viscosity over temperature: a table, or a named law with its coefficients."""
+
+    law: Annotated[str, one_of("table", "walther", "vogel", "andrade")] = Field(
+        "table",
+        description="table; walther: an oil through two points, ASTM D341; vogel: a exp(b / (T - c)); "
+        "andrade: a exp(b / T)",
+    )
+    temperatures: _Temperatures = Field((), description="of the table, or two for walther")
+    values: _Viscosities = Field((), description="at those temperatures")
+    a: Annotated[float | None, quantity(units.VISCOSITY, 1e-30, 1e3)] = Field(
+        None, description="for vogel and andrade"
+    )
+    b: Annotated[float | None, quantity(units.TEMPERATURE_STEP, 0.0, 1e6)] = Field(
+        None, description="for vogel and andrade"
+    )
+    c: Annotated[float | None, quantity(units.TEMPERATURE, 0.0, 2000.0)] = Field(
+        None, description="for vogel"
+    )
+    range: _Range = Field(None, description="temperatures between which the law holds; a table has its own")
+
+    @classmethod
+    def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """Each law has its own keys, and its numbers fit."""
+        if "law" not in values:
+            return
+        needed = _VISCOSITY_KEYS[values["law"]]
+        why = f"with the law {values['law']}"
+        found = list(_given_and_absent(given, needed, cls.model_fields, why))
+        yield from found
+        if not found and set(needed) <= values.keys():
+            yield from _broken(lambda: _viscosity_law(values))
+
+    def made(self) -> PropertyLaw:
+        """As the liquids take it."""
+        return _viscosity_law(self.__dict__)
+
+
+_VISCOSITY_KEYS = {
+    "table": ("temperatures", "values"),
+    "walther": ("temperatures", "values", "range"),
+    "vogel": ("a", "b", "c", "range"),
+    "andrade": ("a", "b", "range"),
+}
+
+
+def _viscosity_law(values: Mapping[str, Any]) -> PropertyLaw:
+    points = tuple(values["temperatures"]), tuple(values["values"])
+    if values["law"] == "table":
+        return Tabulated(*points)
+    if values["law"] == "walther":
+        return Walther(*points, *values["range"])
+    return Vogel(values["a"], values["b"], values["c"] or 0.0, *values["range"])
+
+
+@dataclass(frozen=True)
+class Property(Quantity):
+    """A property of a liquid: its value, or a table or law of its change with temperature."""
+
+    table: type[Part] | None = None
+
+    @property
+    def allowed(self) -> str:
+        """What is allowed, as a text."""
+        return f"{super().allowed}; or a table of its change with temperature"
+
+    def __call__(self, value: object) -> Any:
+        """Value in SI units, or the law."""
+        if isinstance(value, Tabulated | Expansion | Walther | Vogel):
+            return value
+        if isinstance(value, dict) and self.table is not None:
+            return self.table.model_validate(value).made()  # type: ignore[attr-defined]
+        return super().__call__(value)
+
+
+class LiquidProperties(Part):
+    """A liquid by its properties, each a value or a law of the temperature; or a salt in water."""
+
+    density: Annotated[Any, PlainValidator(Property(units.DENSITY, 1e-3, 1e6, False, DensityLaw))] = Field(
+        None, description="rho, or a table of its change with temperature; or salt"
+    )
+    viscosity: Annotated[Any, PlainValidator(Property(units.VISCOSITY, 0.0, 1e3, False, ViscosityLaw))] = (
+        Field(None, description="kinematic viscosity nu, or a table of its change with temperature")
+    )
+    temperature: Annotated[float, quantity(units.TEMPERATURE, 1.0, 2000.0)] = Field(
+        REFERENCE, description="at which the scene's volumes and a command without temperatures hold"
+    )
+    salt: Annotated[str | None, one_of(*SALTS)] = Field(None, description="of a brine; or density")
+    mass_fraction: Annotated[float | None, quantity(units.NUMBER, 0.0, 1.0)] = Field(
+        None, description="of that salt in the brine"
+    )
+    name: Annotated[str, PlainValidator(Text(100))] = Field("liquid", description="for reports, free text")
+
+    @classmethod
+    def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """Density and viscosity, or a salt and its share; laws that have temperatures in common."""
+        brine = "salt" in given or "mass_fraction" in given
+        needed = ("salt", "mass_fraction") if brine else ("density", "viscosity")
+        for key in needed:
+            if key not in given:
+                yield Conflict((key,), f"given: {allowed_at(cls.model_fields[key])}")
+        for key in ("density", "viscosity", "temperature", "name") if brine else ():
+            if key in given:
+                yield Conflict((key,), "left out where salt is given")
+        known = {*needed, "temperature"} <= values.keys() and all(values[key] is not None for key in needed)
+        if not known or not set(needed) <= given.keys():
+            return
+        try:
+            _liquid(values)
+        except InputError as fault:
+            key = {"range": "density"}.get(fault.field, fault.field)
+            if key == "temperature" and "temperature" not in given:
+                text = f"given, where density and viscosity do not hold at 20 degC: {fault.allowed}"
+                yield Conflict((key,), text)
+            else:
+                yield Conflict((key,), fault.allowed)
+
+
+def _liquid(values: Mapping[str, Any]) -> Liquid:
+    """The liquid that a table describes."""
+    if values["salt"] is not None:
+        return brine(values["salt"], values["mass_fraction"])
+    properties = values["density"], values["viscosity"]
+    name, temperature = values.get("name", "liquid"), values["temperature"]
+    density, viscosity = (Constant(value) if isinstance(value, float) else value for value in properties)
+    if isinstance(density, Constant) and isinstance(viscosity, Constant):
+        return Liquid(name, density.value, viscosity.value)
+    law = GivenLaw(density, viscosity, temperature)
+    return Liquid(name, density.at(temperature), viscosity.at(temperature), law)
 
 
 class LiquidRule:
     """A known liquid by its name, or any by its properties."""
 
     table = LiquidProperties
-    allowed = f"one of: {', '.join(KNOWN_LIQUIDS)}; or a table {{ density = ..., viscosity = ... }}"
+    allowed = (
+        f"one of: {', '.join(KNOWN_LIQUIDS)}; or a table {{ density = ..., viscosity = ... }} or "
+        "{ salt = ..., mass_fraction = ... }"
+    )
 
     def __call__(self, value: object) -> Liquid:
         """The liquid."""
         if isinstance(value, Liquid):
             return value
         if isinstance(value, dict):
-            table = LiquidProperties.model_validate(value)
-            return Liquid("liquid", table.density, table.viscosity)
+            return _liquid(LiquidProperties.model_validate(value).__dict__)
         if isinstance(value, str) and value in KNOWN_LIQUIDS:
             return KNOWN_LIQUIDS[value]
         raise Refused(self.allowed + meant(value, KNOWN_LIQUIDS))
 
     @staticmethod
     def written(value: Liquid) -> object:
-        """As a file says it; a liquid with a name of its own stays what it is.
+        """As a file says it; a liquid with a name of its own and no law stays what it is.
 
         Parameters
         ----------
@@ -122,9 +342,35 @@ class LiquidRule:
         """
         if KNOWN_LIQUIDS.get(value.name) == value:
             return value.name
-        if value.name == "liquid":
+        law, name = value.law, {} if value.name == "liquid" else {"name": value.name}
+        if isinstance(law, BrineLaw) and value == brine(law.salt, law.mass_fraction):
+            return {"salt": law.salt, "mass_fraction": law.mass_fraction}
+        if isinstance(law, GivenLaw) and value.density == law.density.at(law.reference):
+            both = {"density": _law_table(law.density), "viscosity": _law_table(law.viscosity)}
+            return both | name | {"temperature": law.reference}
+        if value.name == "liquid" and law is None:
             return {"density": value.density, "viscosity": value.viscosity}
         return value
+
+
+def _law_table(law: PropertyLaw) -> object:
+    """A law as a file says it."""
+    if isinstance(law, Constant):
+        return law.value
+    if isinstance(law, Tabulated):
+        return {"temperatures": list(law.temperatures), "values": list(law.values)}
+    span = {"range": [law.lowest, law.highest]}
+    if isinstance(law, Expansion):
+        point = {"value": law.value, "temperature": law.temperature}
+        return point | {"expansion": law.expansion} | span
+    if isinstance(law, Walther):
+        points = {"temperatures": list(law.temperatures), "values": list(law.values)}
+        return {"law": "walther"} | points | span
+    assert isinstance(law, Vogel)
+    coefficients = {"a": law.a, "b": law.b}
+    if law.c == 0.0:
+        return {"law": "andrade"} | coefficients | span
+    return {"law": "vogel"} | coefficients | {"c": law.c} | span
 
 
 class Baffles(Part):

@@ -6,12 +6,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from fluid.fill import Fill
-from fluid.liquid import KNOWN_LIQUIDS
+from fluid.liquid import KNOWN_LIQUIDS, Liquid
+from fluid.temperature import Expansion, GivenLaw, PropertyLaw, Tabulated, Vogel, Walther
 from leblanc.scene.rotors import JeffcottRotor
 from leblanc.scene.rows import Row, RowTable, Value, degrees, mm, row, rpm
 from leblanc.scene.scene import Scene
 from leblanc.scene.schema.load import escaped
-from leblanc.scene.tasks import Optimisation, Runup
+from leblanc.scene.tasks import Optimisation, Runup, pairs_of
 from leblanc.units import (
     ANGULAR_SPEED,
     LENGTH,
@@ -138,7 +139,7 @@ def _chamber(fill: Fill, k: int, length: Unit, volume: Unit) -> tuple[Value, ...
     chamber, at, name = fill.chamber, f"chambers.{k}", fill.liquid.name
     if KNOWN_LIQUIDS.get(name) != fill.liquid:
         density, viscosity = number(fill.liquid.density), number(fill.liquid.viscosity * 1e6)
-        name = f"{name}, {density} kg/m³, {viscosity} mm²/s"
+        name = f"{name}, {density} kg/m³, {viscosity} mm²/s{_over_temperature(fill.liquid)}"
     wall = (
         Value(length.number(chamber.radius), (f"{at}.radius",)),
         Value(length.number(chamber.inner_radius), (f"{at}.inner_radius",)),
@@ -153,6 +154,37 @@ def _chamber(fill: Fill, k: int, length: Unit, volume: Unit) -> tuple[Value, ...
         Value(volume.number(fill.volume), (f"{at}.volume",)),
         Value(name, (f"{at}.liquid",)),
     )
+
+
+def _over_temperature(liquid: Liquid) -> str:
+    """The laws that the scene gives; a brine says by its name what it is."""
+    law = liquid.law
+    if not isinstance(law, GivenLaw):
+        return ""
+    parts = [
+        f"{name} {words}"
+        for name, words in (("density", _law(law.density)), ("viscosity", _law(law.viscosity)))
+        if words
+    ]
+    span = f"from {celsius(law.lowest)} to {celsius(law.highest)}"
+    return f" at {celsius(law.reference)}; {'; '.join(parts)}; {span}"
+
+
+def _law(law: PropertyLaw) -> str:
+    """One law with its numbers; nothing of a property that does not change."""
+    if isinstance(law, Tabulated):
+        return f"from a table of {len(law.values)}"
+    if isinstance(law, Expansion):
+        at = f"{number(law.value)} kg/m³ at {celsius(law.temperature)}"
+        return f"{at}, expansion {number(law.expansion)} 1/K"
+    if isinstance(law, Walther):
+        pairs = zip(law.values, law.temperatures, strict=True)
+        points = (f"{number(value * 1e6)} mm²/s at {celsius(heat)}" for value, heat in pairs)
+        return f"{' and '.join(points)} by Walther"
+    if isinstance(law, Vogel):
+        shift = f", c = {number(law.c)} K by Vogel" if law.c else " by Andrade"
+        return f"a = {number(law.a * 1e6)} mm²/s, b = {number(law.b)} K{shift}"
+    return ""
 
 
 def _section(section: ChamberSection, k: int) -> tuple[Value, ...]:
@@ -246,7 +278,7 @@ def optimise_rows(wanted: Optimisation) -> list[Row]:
         ("vibration_limit", "Vibration limit", _length(wanted.vibration_limit)),
         ("limit_at", "Limit holds at", f"{wanted.limit_at.replace('_', ' ')} speeds"),
         ("deflection", "Deflection given", _length(wanted.deflection)),
-        ("unbalance", "Unbalance range", _span(wanted.unbalance, UNBALANCE)),
+        ("unbalance", "Unbalance range", _unbalances(wanted)),
         ("temperature", "Temperature range", _temperatures(wanted.temperature)),
         ("quantile", "Quantile", number(wanted.quantile)),
         ("samples", "Samples of the ranges", f"{wanted.samples}"),
@@ -255,6 +287,7 @@ def optimise_rows(wanted: Optimisation) -> list[Row]:
         ("stability_margin", "Stability margin", _rate(wanted.stability_margin)),
         ("operating", "Operating speeds", _span(wanted.operating, ANGULAR_SPEED)),
         ("clearance", "Clearance", _length(wanted.clearance)),
+        ("balance_quality", "Balance quality", _grade(wanted.balance_quality)),
         ("volumes", "Volumes", _volumes(wanted)),
     ):
         if getattr(wanted, name) != getattr(_DEFAULT, name):
@@ -281,6 +314,10 @@ def _length(value: float | None) -> str:
     return "" if value is None else mm(value)
 
 
+def _grade(value: float | None) -> str:
+    return "" if value is None else f"at most {number(value * 1e3)} mm/s (G {number(value * 1e3)})"
+
+
 def _rate(value: float | None) -> str:
     return "" if value is None else f"at least {number(value)} 1/s"
 
@@ -294,6 +331,14 @@ def _span(ends: tuple[float, float] | None, dimension: Dimension) -> str:
 
 def _temperatures(ends: tuple[float, float] | None) -> str:
     return "" if ends is None else " to ".join(map(celsius, ends))
+
+
+def _unbalances(wanted: Optimisation) -> str:
+    """One range, or one for each unbalance."""
+    ranges = wanted.unbalance
+    if ranges is None:
+        return ""
+    return "; ".join(_span(ends, UNBALANCE) for ends in pairs_of(ranges))
 
 
 def _duty(wanted: Optimisation) -> str:

@@ -510,3 +510,30 @@ class Exciter(Part):
 
 
 AnyRotor = JeffcottRotor | TwoPlaneRotor | TubRotor | Exciter
+
+
+def unbalances_of(rotor: AnyRotor) -> tuple[float, ...]:
+    """Size of each unbalance of a rotor, kg m.
+
+    Parameters
+    ----------
+    rotor : of a scene
+    """
+    if isinstance(rotor, TwoPlaneRotor):
+        return tuple(part.size for part in rotor.unbalances)
+    return (rotor.unbalance,)
+
+
+def with_unbalances(rotor: AnyRotor, sizes: Sequence[float]) -> AnyRotor:
+    """The same rotor with unbalances of other sizes at the same places and angles.
+
+    Parameters
+    ----------
+    rotor : of a scene
+    sizes : of its unbalances, in their order, kg m
+    """
+    if isinstance(rotor, TwoPlaneRotor):
+        parts = zip(rotor.unbalances, sizes, strict=True)
+        return rotor.altered(unbalances=tuple(part.altered(size=size) for part, size in parts))
+    (size,) = sizes
+    return rotor.altered(unbalance=size)

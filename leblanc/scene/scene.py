@@ -423,7 +423,18 @@ def chamber_content(fill: Fill) -> dict[str, Any]:
         walls["baffles"] = asdict(chamber.baffles)
     if chamber.section is not None:
         walls["section"] = chamber.section.digest
-    return {"chamber": walls, "liquid": asdict(fill.liquid), "volume": fill.volume}
+    liquid = asdict(fill.liquid)
+    if fill.liquid.law is None:
+        del liquid["law"]
+    else:
+        liquid["law"]["kinds"] = _kinds(fill.liquid.law)
+    return {"chamber": walls, "liquid": liquid, "volume": fill.volume}
+
+
+def _kinds(law: object) -> list[str]:
+    """Which laws these are, where their numbers may be alike."""
+    inside = [getattr(law, name, None) for name in ("density", "viscosity")]
+    return [type(part).__name__ for part in (law, *inside)]
 
 
 def optimise_content(wanted: Optimisation) -> dict[str, Any]:
@@ -434,7 +445,8 @@ def optimise_content(wanted: Optimisation) -> dict[str, Any]:
     wanted : of a scene
     """
     duty = [(stage.speed, stage.weight) for stage in wanted.duty]
-    return wanted.model_dump(exclude={"duty"}) | {"duty": duty}
+    later = {"balance_quality"} if wanted.balance_quality is None else set()
+    return wanted.model_dump(exclude={"duty", *later}) | {"duty": duty}
 
 
 def _rounded(value: Any) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any
 
@@ -14,7 +15,9 @@ from leblanc.scene.schema.rules import (
     SPEED,
     Inertia,
     Quantity,
+    Refused,
     Span,
+    Spans,
     Speed,
     Truth,
     entries,
@@ -22,6 +25,25 @@ from leblanc.scene.schema.rules import (
     quantity,
     whole,
 )
+
+_GRADE = re.compile(r"\s*G\s*(\d+\.?\d*|\.\d+)\s*", re.ASCII)
+
+
+class GradeRule:
+    """A balance quality as a grade of ISO 21940-11, or as a velocity."""
+
+    _velocity = Quantity(units.VELOCITY, 1e-6, 1e2)
+    allowed = f'a grade such as "G 6.3", or {_velocity.allowed}'
+
+    def __call__(self, value: object) -> float:
+        """The velocity, m/s."""
+        if isinstance(value, str) and (grade := _GRADE.fullmatch(value)):
+            value = 1e-3 * float(grade[1])
+        try:
+            return self._velocity(value)
+        except Refused as refused:
+            raise Refused(self.allowed) from refused
+
 
 OBJECTIVES = ("working_speed", "peak", "mean", "least_mass", "robust")
 MAX_DUTY = 1000
@@ -73,8 +95,12 @@ class Optimisation(Part):
     deflection: Annotated[float | None, _LENGTH] = Field(
         None, description="of the axis at the working speed, given; the rotor's own if left out"
     )
-    unbalance: Annotated[_Pair | None, PlainValidator(Span(Quantity(units.UNBALANCE, 0.0, 1e9)))] = Field(
-        None, description="range of unbalances for the objective robust"
+    unbalance: Annotated[
+        _Pair | tuple[_Pair, ...] | None, PlainValidator(Spans(Quantity(units.UNBALANCE, 0.0, 1e9)))
+    ] = Field(
+        None,
+        description="range for the objective robust: of the rotor's largest unbalance, with which all others "
+        "grow by one factor; or a list of ranges, one for each, from which they are taken independently",
     )
     temperature: Annotated[_Pair | None, PlainValidator(Span(Quantity(units.TEMPERATURE, 150.0, 1000.0)))] = (
         Field(None, description="range of temperatures for the objective robust")
@@ -96,9 +122,31 @@ class Optimisation(Part):
     clearance: Annotated[float | None, _LENGTH] = Field(
         None, description="largest amplitude at the operating speeds; no limit if left out"
     )
+    balance_quality: Annotated[float | None, PlainValidator(GradeRule())] = Field(
+        None,
+        description="grade that the unbalance of rotor and liquid together keeps at the working speed; no "
+        "limit if left out",
+    )
     volumes: Annotated[tuple[_Volumes, ...], entries(1, 1000, "pairs of volumes, one for each chamber")] = (
         Field((), description="least and most of each chamber; from nothing to what it holds if left out")
     )
+
+
+def pairs_of(ranges: _Pair | tuple[_Pair, ...]) -> tuple[_Pair, ...]:
+    """Ranges of unbalance one by one; a single one is the first of one.
+
+    Parameters
+    ----------
+    ranges : as in `Optimisation.unbalance`
+    """
+    found: list[_Pair] = []
+    for entry in ranges:
+        if not isinstance(entry, tuple):
+            low, high = ranges
+            assert isinstance(low, float) and isinstance(high, float)
+            return ((low, high),)
+        found.append(entry)
+    return tuple(found)
 
 
 class Motor(Part):

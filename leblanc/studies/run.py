@@ -19,8 +19,9 @@ from leblanc.studies.liquid import synchronous_model
 from leblanc.studies.peaks import responses_between
 from leblanc.studies.plausible import doubts
 from leblanc.studies.whirl_map import small_whirl_friction
-from meshes.arrays import Complex
+from meshes.arrays import Array, Complex
 from meshes.chamber_section import liquid_of
+from solvers.rotor.balance_quality import balance_quality, tolerance_planes
 from solvers.rotor.campbell import campbell
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
@@ -222,7 +223,17 @@ def run_scene(scene: Scene) -> RunResult:
         models=model_spans(choice, machine.speed),
         tolerance=choice.tolerance,
         refined=refined,
+        **_balance(machine, answer),
     )
+
+
+def _balance(machine: Prepared, answer: Response) -> dict[str, Array]:
+    """Balance quality with the liquid and without; nothing where no mass spins."""
+    if not tolerance_planes(machine.rotor):
+        return {}
+    wet = balance_quality(machine.rotor, answer.speed, answer.coordinates)
+    dry = balance_quality(machine.rotor, answer.speed)
+    return {"balance_quality": wet, "balance_quality_dry": dry}
 
 
 def _chamber(fill: Fill, motion: Motion | None) -> FilledChamber:

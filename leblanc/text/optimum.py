@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from leblanc.results.base import texts
-from leblanc.results.optimum import OptimumResult
+from leblanc.results.optimum import ConditionTable, OptimumResult
 from leblanc.text.numbers import number
-from leblanc.text.run import amplitude_place
-from leblanc.units import LENGTH, MASS, ML, UNBALANCE, VOLUME, in_rpm, with_unit
+from leblanc.text.run import amplitude_place, quality_words
+from leblanc.units import LENGTH, MASS, ML, UNBALANCE, VOLUME, celsius, in_rpm, unit_for, with_unit
 
 _DIMENSIONS = {dimension.unit.replace("*", " "): dimension for dimension in (LENGTH, MASS, UNBALANCE)}
 
@@ -26,6 +28,8 @@ def describe_optimum(result: OptimumResult) -> list[str]:
         *_closed_forms(result),
         f"Stability margin over the operating speeds: {number(result.stability_margin)} 1/s"
         + (" (a small whirl grows)" if result.growth > 0.0 else ""),
+        *_quality(result),
+        *_over_conditions(result),
         *([f"Amplitudes are those {place}."] if (place := amplitude_plane(result)) else []),
         *texts(result.notes),
         *_to_paste(result),
@@ -80,6 +84,8 @@ def shown(value: float, unit: str) -> str:
     dimension = _DIMENSIONS.get(unit)
     if dimension is not None:
         return with_unit(value, dimension)
+    if unit == "m/s":
+        return f"{number(value * 1e3)} mm/s"
     return f"{number(value)} {unit}" if unit != "1" else number(value)
 
 
@@ -104,6 +110,87 @@ def _baseline(result: OptimumResult) -> str:
         return shown(result.baseline, result.unit)
     both = f"{shown(result.vibration, 'm')} instead of {shown(result.vibration_baseline, 'm')}"
     return f"{shown(result.baseline, result.unit)}; amplitude {both}"
+
+
+def quality(result: OptimumResult) -> tuple[str, str] | None:
+    """Balance quality at the working speed as label and value; None where it is not known."""
+    if result.balance_quality is None or result.balance_quality_dry is None:
+        return None
+    wet, dry = quality_words(result.balance_quality), quality_words(result.balance_quality_dry)
+    return f"Balance quality at {in_rpm(result.working_speed)}", f"{wet}; without liquid {dry}"
+
+
+def _quality(result: OptimumResult) -> list[str]:
+    said = quality(result)
+    return [] if said is None else [": ".join(said)]
+
+
+LISTED = 7  # temperatures, or unbalances, of a table on the terminal
+
+
+def over_conditions(table: ConditionTable) -> tuple[list[str], list[list[str]]]:
+    """Amplitudes, mm, over some of the temperatures and unbalances: head and rows.
+
+    Parameters
+    ----------
+    table : of an optimum for the objective robust
+    """
+    length = unit_for(LENGTH, *table.amplitude.ravel().tolist(), *table.amplitude_dry.tolist())
+    loads = [load_words(size) for size in table.unbalance.tolist()]
+    dry = [length.number(size) for size in table.amplitude_dry.tolist()]
+    if table.heated:
+        rows = [
+            [
+                celsius(float(table.temperature[k])),
+                *(length.number(size) for size in table.amplitude[k].tolist()),
+                number(float(table.stability_margin[k])),
+            ]
+            for k in _some(table.temperature.size)
+        ]
+        head = [f"Amplitude ({length.name})", *loads, "stability margin (1/s)"]
+        return head, [*rows, ["without liquid", *dry, ""]]
+    rows = [[loads[k], length.number(float(table.amplitude[0, k])), dry[k]] for k in _some(len(loads))]
+    return ["Unbalance", f"amplitude ({length.name})", f"without liquid ({length.name})"], rows
+
+
+def _some(count: int) -> list[int]:
+    """Places of a few lines of a long table, its ends among them."""
+    return sorted(set(np.linspace(0, count - 1, LISTED).round().astype(int).tolist()))
+
+
+def worst_condition(table: ConditionTable) -> str:
+    """The condition that decides, in words."""
+    k = table.decisive
+    heat = f" and {celsius(float(table.condition_temperature[k]))}" if table.heated else ""
+    what = "Worst" if table.quantile == 1.0 else f"{number(table.quantile)} quantile"
+    both = table.condition_amplitude, table.condition_amplitude_dry
+    wet, dry = (with_unit(float(amplitude[k]), LENGTH) for amplitude in both)
+    load, count = load_words(table.condition_unbalance[k].tolist()), table.condition_amplitude.size
+    return f"{what} of {count} conditions: {wet} at {load}{heat} ({dry} without liquid)"
+
+
+def load_words(sizes: list[float]) -> str:
+    """Unbalances in one unit.
+
+    Parameters
+    ----------
+    sizes : kg m
+    """
+    unit = unit_for(UNBALANCE, *sizes)
+    return f"{', '.join(map(unit.number, sizes))} {unit.name}"
+
+
+def _over_conditions(result: OptimumResult) -> list[str]:
+    """The table over temperature and unbalance, and the condition that decides."""
+    if result.robust is None:
+        return []
+    head, rows = over_conditions(result.robust)
+    widths = [max(len(line[k]) for line in (head, *rows)) for k in range(len(head))]
+    padded = (
+        [cell.rjust(widths[k]) if k else cell.ljust(widths[k]) for k, cell in enumerate(line)]
+        for line in (head, *rows)
+    )
+    return [*("  ".join(line) for line in padded), worst_condition(result.robust)]
 
 
 def _constraints(result: OptimumResult) -> list[str]:

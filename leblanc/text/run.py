@@ -11,7 +11,7 @@ import numpy as np
 from leblanc.results.base import one_line, percent
 from leblanc.results.choice import ModelSpan
 from leblanc.results.notes import plane_words
-from leblanc.results.response import RunResult
+from leblanc.results.response import RunResult, grade_words
 from leblanc.text.numbers import NOT_FOUND, number, ranges
 from leblanc.units import LENGTH, MASS, RPM, VOLUME, in_rpm, rpm_bands, rpm_range, unit_for, with_unit
 from meshes.arrays import Array, Flags
@@ -130,7 +130,7 @@ class Comparison:
 
 
 def comparisons(result: RunResult) -> list[Comparison]:
-    """Largest and last amplitude, and the critical speed of a planar rotor, with and without liquid.
+    """Largest and last amplitude, critical speed of a planar rotor, balance quality: with and without liquid.
 
     Parameters
     ----------
@@ -148,7 +148,23 @@ def comparisons(result: RunResult) -> list[Comparison]:
         with_liquid, without = result.critical_speed_wet, result.critical_speed_dry
         values = number(with_liquid * RPM), number(without * RPM), number(with_liquid / without)
         found.append(Comparison("Critical speed (rpm)", *values, "rpm"))
+    if result.balance_quality is not None and result.balance_quality_dry is not None:
+        both = float(result.balance_quality[-1]), float(result.balance_quality_dry[-1])
+        ratio = number(both[0] / both[1]) if both[1] > 0.0 and math.isfinite(both[0]) else ""
+        label = f"Balance quality at {in_rpm(float(r.speed[-1]))}"
+        wet_words, dry_words = map(quality_words, both)
+        found.append(Comparison(label, wet_words, dry_words, ratio))
     return found
+
+
+def quality_words(quality: float) -> str:
+    """A balance quality with the grade of ISO 21940-11 that it keeps.
+
+    Parameters
+    ----------
+    quality : m/s
+    """
+    return f"{number(quality * 1e3)} mm/s ({grade_words(quality)})"
 
 
 def _compared(label: str, result: RunResult, wet: int | None, dry: int | None) -> Comparison:

@@ -193,6 +193,28 @@ class Span:
         return low, high
 
 
+@dataclass(frozen=True)
+class Spans:
+    """Two values of one quantity, the lower first; or a list of such pairs."""
+
+    each: Quantity
+
+    @property
+    def allowed(self) -> str:
+        """What is allowed, as a text."""
+        return f"{Span(self.each).allowed}; or a list of such pairs"
+
+    def __call__(self, value: object) -> tuple[float, float] | tuple[tuple[float, float], ...]:
+        """The pair, or the pairs, in SI units."""
+        span = Span(self.each)
+        if isinstance(value, list | tuple) and value and all(isinstance(x, list | tuple) for x in value):
+            return tuple(map(span, value))
+        try:
+            return span(value)
+        except Refused as refused:
+            raise Refused(self.allowed) from refused
+
+
 def quantity(dimension: Dimension, low: float, high: float) -> PlainValidator:
     """Rule of a number with a unit, for an annotation.
 

@@ -6,6 +6,7 @@ met by the way.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -30,9 +31,18 @@ from leblanc.scene.tasks import Optimisation
 from leblanc.studies.choose import axial_gravity
 from leblanc.studies.liquid import SYNCHRONOUS_MODELS
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
+from leblanc.studies.optimise.balance import QualityAtSpeed
 from leblanc.studies.optimise.emulated import EmulatedVibration
 from leblanc.studies.optimise.objectives import RunupPeak
-from leblanc.studies.optimise.problem import Problem, growth, growth_speeds, problem_of, working_speed
+from leblanc.studies.optimise.problem import (
+    Problem,
+    growth,
+    growth_speeds,
+    problem_of,
+    unbalances,
+    working_speed,
+)
+from leblanc.studies.optimise.robust import Robust, condition_table
 from leblanc.studies.optimise.search import best_volumes, bounds_of, evaluated_again, on_all_cells
 from leblanc.studies.optimise.wetting import WettedWalls, wet_walls, wetting_volumes
 from leblanc.studies.plausible import doubts
@@ -112,6 +122,17 @@ def optimise_scene(
     if front:
         edge, sweep = front_around(scene, problem, chosen, result.vibration, growth_speeds(scene, task))
         result = replace(result, front=edge, sweep=sweep)
+    if isinstance(exact.evaluate.vibration, Robust):
+        speeds, around = growth_speeds(scene, task), unbalances(scene, task)
+        table = condition_table(
+            scene,
+            task,
+            exact.evaluate.vibration,
+            result.volume,
+            around,
+            lambda warm, held: float(growth(warm, held[None], speeds)[0]),
+        )
+        result = replace(result, robust=table)
     return _with_response(result, scene, machine) if response else result
 
 
@@ -146,6 +167,7 @@ def _result(
         constraints=constraints,
         mass=mass,
         growth=float(growth(scene, volume[None], growth_speeds(scene, task))[0]),
+        **_quality(machine, volume, problem.working_speed),
         closed_form=_closed_forms(machine, volume, problem.working_speed),
         evaluations=int(np.unique(found.points, axis=0).shape[0]),
         candidates=Candidates(
@@ -264,6 +286,15 @@ def _closed_forms(machine: FilledMachine, volume: Array, speed: float) -> tuple[
         wetting_volumes(fill.chamber, deflection, speed, gravity)
         for fill, deflection in zip(scene.fills, moved.tolist(), strict=True)
     )
+
+
+def _quality(machine: FilledMachine, volume: Array, speed: float) -> dict[str, float]:
+    """Balance quality with the best volumes and without liquid; nothing where no steady model answers."""
+    if machine.scene.model.liquid not in SYNCHRONOUS_MODELS:
+        return {}
+    quality = QualityAtSpeed(machine, speed)
+    both = {"balance_quality": float(quality.of(volume[None])[0]), "balance_quality_dry": quality.dry()}
+    return {} if any(map(math.isnan, both.values())) else both
 
 
 def not_dominated(values: Array) -> Flags:

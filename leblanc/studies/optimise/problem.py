@@ -12,16 +12,24 @@ from fluid.fill import Fill
 from leblanc.results import optimum
 from leblanc.results.base import Note
 from leblanc.results.optimum import ConstraintValue
+from leblanc.scene.rotors import unbalances_of
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, dry_rotor
 from leblanc.scene.tasks import OBJECTIVES, Optimisation
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
+from leblanc.studies.optimise.balance import QualityAtSpeed
 from leblanc.studies.optimise.objectives import (
     AtSpeed,
     PeakOver,
-    Robust,
     RunupPeak,
     Vibration,
+)
+from leblanc.studies.optimise.robust import (
+    DOUBLE,
+    Robust,
+    UnbalanceRange,
+    filled_scenes,
     operating_conditions,
+    unbalance_range,
 )
 from leblanc.units import LENGTH, in_rpm, rpm_range, with_unit
 from meshes.arrays import Array
@@ -33,7 +41,6 @@ _BEYOND = 1.3  # of a limit, up to which a vibration above it must be known exac
 _COARSE_CELLS = 64  # of a run-up while the search goes on
 _GROWTH_SPEEDS = 65  # at which the growth of small whirls is looked at
 _SLACK = 1.01  # default limit of the vibration over the least that is possible
-_DOUBLE = (0.5, 2.0)  # default range of unbalances over the scene's
 
 
 class Constraint:
@@ -97,6 +104,16 @@ def clearance(over: PeakOver, limit: float) -> Constraint:
     return limited("clearance", "largest amplitude at the operating speeds", over, limit)
 
 
+def balanced(quality: QualityAtSpeed, grade: float) -> Constraint:
+    """Unbalance of rotor and liquid together up to a grade of ISO 21940-11, m/s."""
+
+    def value(volumes: Array, _: float) -> Array:
+        return quality.of(volumes)
+
+    text = "unbalance of rotor and liquid over the rotor's mass, times the working speed"
+    return Constraint("balance_quality", text, "m/s", grade, grade, value)
+
+
 def growth(scene: Scene, volumes: Array, speed: Array) -> Array:
     """Growth of the small whirl that grows most at any of some speeds [theory: optimum, eq. 5].
 
@@ -131,7 +148,7 @@ def room_when_warm(robust: Robust) -> Constraint:
     """The liquid fits its chamber at every temperature."""
 
     def value(volumes: Array, _: float) -> Array:
-        return robust.fullest(volumes)
+        return robust.around.fullest(volumes)
 
     text = "share of a chamber that its liquid takes when warmest"
     return Constraint("room_when_warm", text, "1", 1.0, 1.0, value)
@@ -259,6 +276,8 @@ def _constraints(
         found.append(stability(scene, growth_speeds(scene, task), task.stability_margin))
     if task.clearance is not None:
         found.append(clearance(PeakOver(machine, operating_speeds(scene, task)), task.clearance))
+    if task.balance_quality is not None:
+        found.append(balanced(QualityAtSpeed(machine, speed), task.balance_quality))
     return tuple(found)
 
 
@@ -336,27 +355,47 @@ def _least_mass(
     return replace(problem, evaluate=evaluate, meaning=text, notes=notes)
 
 
+def unbalances(scene: Scene, task: Optimisation) -> UnbalanceRange:
+    """Over which the objective robust is taken: as given, or half to twice the scene's where nothing is."""
+    default = DOUBLE if task.temperature is None else (1.0, 1.0)
+    return unbalance_range(unbalances_of(scene.rotor), task.unbalance, default)
+
+
 def _robust(scene: Scene, task: Optimisation, machine: FilledMachine, problem: Problem, _: object) -> Problem:
-    if not isinstance(scene.rotor, JeffcottRotor):
-        raise InputError("rotor.kind", scene.rotor.kind, "jeffcott for the objective robust")
-    notes, unbalance = problem.notes, task.unbalance
-    if unbalance is None and task.temperature is None:
-        low, high = _DOUBLE
-        unbalance = low * scene.rotor.unbalance, high * scene.rotor.unbalance
+    notes, sizes = problem.notes, unbalances(scene, task)
+    if task.unbalance is None and task.temperature is None:
         notes = (*notes, optimum.no_range())
-    around = operating_conditions(scene.rotor.unbalance, unbalance, task.temperature, task.samples, task.seed)
+    around = operating_conditions(sizes, task.temperature, task.samples, task.seed)
     vibration = Robust(scene, problem.working_speed, around, task.quantile)
     constraints = problem.evaluate.constraints
     if task.temperature is not None:
+        constraints = (
+            *(_at_any_temperature(constraint, scene, task, vibration) for constraint in constraints),
+        )
         constraints = (*constraints, room_when_warm(vibration))
     kind = "worst" if task.quantile == 1.0 else f"{task.quantile:.4g} quantile of the"
-    ranges = [name for name, span in (("unbalance", unbalance), ("temperature", task.temperature)) if span]
-    text = (
-        f"{kind} amplitude at {in_rpm(problem.working_speed)} over {len(around)} circumstances of "
-        + " and ".join(ranges)
-    )
+    given = ("unbalance", sizes.least != sizes.most), ("temperature", task.temperature is not None)
+    ranges = [name for name, varies in given if varies]
+    over = f" over {len(around)} conditions of {' and '.join(ranges)}" if ranges else ""
+    text = f"{kind} amplitude at {in_rpm(problem.working_speed)}{over}"
     evaluate = replace(problem.evaluate, vibration=vibration, constraints=constraints)
     return replace(problem, evaluate=evaluate, meaning=text, notes=notes)
+
+
+def _at_any_temperature(
+    constraint: Constraint, scene: Scene, task: Optimisation, robust: Robust
+) -> Constraint:
+    """The constraint on whirls, which the viscosity damps, at every temperature; any other as it is."""
+    if constraint.name != "stability":
+        return constraint
+    speeds = growth_speeds(scene, task)
+
+    def value(volumes: Array, _: float) -> Array:
+        rows = filled_scenes(robust.around, volumes)
+        return np.asarray(np.max([growth(warm, held, speeds) for warm, held in rows], axis=0))
+
+    text = f"{constraint.meaning}, at any temperature"
+    return Constraint(constraint.name, text, constraint.unit, constraint.limit, constraint.scale, value)
 
 
 _MAKERS: dict[str, _Make] = {

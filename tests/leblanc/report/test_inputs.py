@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from leblanc.report.parts import Inputs, scene_inputs
-from leblanc.scene.chambers import Chamber
+from leblanc.scene.chambers import Chamber, DensityLaw, ViscosityLaw
 from leblanc.scene.inputs import optimise_rows
 from leblanc.scene.rows import row
 from leblanc.scene.scene import Scene, scene_from_table
@@ -40,6 +40,7 @@ REST = {
         "deflection": "0.7 mm", "unbalance": ["1 kg*mm", "2 kg*mm"], "temperature": ["5 degC", "35 degC"],
         "quantile": 0.9, "samples": 12, "seed": 4, "dry_patch": False, "stability_margin": "0.25 1/s",
         "operating": ["500 rpm", "800 rpm"], "clearance": "4 mm", "volumes": [["1 ml", "20 ml"]],
+        "balance_quality": "G 6.3",
     },
 }  # fmt: skip
 MOTOR = {"inertia": "0.3 kg*m^2", "speeds": [0.0, "1200 rpm"], "torques": ["2 N*m", 0.0]}
@@ -75,10 +76,13 @@ OTHER_WAY = {
     "rotor.damping": "rotor.damping_ratio",
     "rotor.balls.pendulum_inertia": "rotor.balls.kind",
 }
+LAWS = {"density": DensityLaw, "viscosity": ViscosityLaw}
 # Checked in a test of their own.
 OTHERS = {
     "assumed", "model.friction.quadratic", "chambers.*.section", "chambers.*.section_unit",
     "chambers.*.section_size",
+    *(f"chambers.*.liquid.{key}" for key in ("temperature", "salt", "mass_fraction", "name")),
+    *(f"chambers.*.liquid.{part}.{key}" for part, law in LAWS.items() for key in law.model_fields),
 }  # fmt: skip
 # What stands above the inputs, is their mark, or is told by the cell of another path.
 ELSEWHERE = {"name", "source", "assumed"}
@@ -182,6 +186,46 @@ def test_a_section_of_its_own_is_named_and_measured() -> None:
         far = printed(math.sqrt(32.0) * 10.0)
         assert [cell.text for cell in row] == ["1", "square <1>.msh", "64", far, "as in the file"]
         assert sum(cell.assumed for cell in row) >= marked and any(cell.assumed for cell in inputs.cells)
+
+
+@pytest.mark.parametrize(
+    ("liquid", "said"),
+    [
+        (
+            {"salt": "sodium_chloride", "mass_fraction": 0.2},
+            "20 % sodium chloride brine, 1148 kg/m³, 1.36 mm²/s",
+        ),
+        (
+            {
+                "name": "oil",
+                "temperature": "40 degC",
+                "density": {"value": 870, "temperature": "15 degC", "expansion": 7e-4, "range": [280, 350]},
+                "viscosity": {
+                    "law": "walther",
+                    "temperatures": ["40 degC", "100 degC"],
+                    "values": ["46 mm^2/s", "6.8 mm^2/s"],
+                    "range": [270, 350],
+                },
+            },
+            "oil, 855 kg/m³, 46 mm²/s at 40 degC; density 870 kg/m³ at 15 degC, expansion 0.0007 1/K; "
+            "viscosity 46 mm²/s at 40 degC and 6.8 mm²/s at 100 degC by Walther; "
+            "from 6.85 degC to 76.85 degC",
+        ),
+        (
+            {
+                "density": {"temperatures": [280, 300, 320], "values": [1000, 998, 990]},
+                "viscosity": {"law": "vogel", "a": "0.05 mm^2/s", "b": 900, "c": 150, "range": [270, 370]},
+            },
+            "liquid, 999 kg/m³, 26.88 mm²/s at 20 degC; density from a table of 3; viscosity a = 0.05 mm²/s, "
+            "b = 900 K, c = 150 K by Vogel; from 6.85 degC to 46.85 degC",
+        ),
+    ],
+)
+def test_a_law_of_temperature_is_told(liquid: dict[str, Any], said: str) -> None:
+    table = full("jeffcott")
+    table["chambers"][0]["liquid"] = liquid
+    found = told(scene_inputs(scene_from_table(table)))["chambers.0.liquid"]
+    assert found == said
 
 
 def told(inputs: Inputs) -> dict[str, str]:

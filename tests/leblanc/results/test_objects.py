@@ -24,6 +24,7 @@ from leblanc.results.base import Result
 from leblanc.results.liquid import Coverage
 from leblanc.results.response import RunResult
 from leblanc.scene.scene import Scene, load_scene
+from leblanc.scene.tasks import Optimisation
 from leblanc.studies.choose import choose_all, prepare
 from leblanc.studies.compare import compare_models
 from leblanc.studies.exciter import run_exciter
@@ -46,6 +47,9 @@ def scene(name: str) -> Scene:
 RUNUP = scene("runup").replace({"runup.duration": "1 s", "runup.cells": 16})
 
 
+WARM = Optimisation(objective="robust", temperature=(280.0, 330.0), volumes=((0.0, 1e-5),))
+
+
 @cache
 def run() -> RunResult:
     return run_scene(scene("tub"))
@@ -54,6 +58,7 @@ def run() -> RunResult:
 RESULTS = {
     "runup": lambda: run_up(RUNUP, samples=50, check=False),
     "optimise": lambda: optimise(scene("horizontal_rig")),
+    "optimise robust": lambda: optimise(scene("runup").altered(optimise=WARM), front=False),
     "run": run,
     "map": lambda: map_scene(scene("horizontal_rig"), 5, 21),
     "compare": lambda: compare_models(scene("horizontal_rig"), ["kdv", "linear", "statics"]),

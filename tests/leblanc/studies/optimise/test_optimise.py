@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,9 +16,10 @@ from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.choose import prepare
 from leblanc.studies.optimise.answers import FilledMachine
-from leblanc.studies.optimise.objectives import AtSpeed, PeakOver, Robust, operating_conditions
+from leblanc.studies.optimise.objectives import AtSpeed, PeakOver
 from leblanc.studies.optimise.optimise import not_dominated, optimise_scene
 from leblanc.studies.optimise.problem import growth, stability
+from leblanc.studies.optimise.robust import operating_conditions, unbalance_range
 from leblanc.studies.optimise.wetting import (
     full_volume,
     optimal_volume_by_search,
@@ -212,45 +212,6 @@ def test_peak() -> None:
 
 
 @kills(
-    "leblanc.studies.optimise.objectives:_in_condition",
-    "liquid=liquid_at(chamber.liquid, condition.temperature), volume",
-    "liquid=chamber.liquid, volume",
-)
-@kills(
-    "leblanc.studies.optimise.objectives:Robust.exact", "self.quantile, axis=0", "1.0 - self.quantile, axis=0"
-)
-@kills(
-    "leblanc.studies.optimise.objectives:operating_conditions",
-    "low + (high - low) * share[:, 0]",
-    "low + (high + low) * share[:, 0]",
-)
-def test_robust() -> None:
-    """Worst case and median over a grid, from the machine itself with those unbalances and densities."""
-    scene = load_scene(EXAMPLES / "runup.toml")
-    volume = np.array([[4e-4]])
-    around = operating_conditions(0.1, (0.05, 0.2), (283.15, 333.15))
-    assert len(around) == 9
-    np.testing.assert_allclose(sorted({one.unbalance for one in around}), (0.05, 0.125, 0.2), rtol=1e-12)
-    density = {283.15: 999.70, 308.15: 994.03, 333.15: 983.20}  # handbook
-    found = []
-    for one in around:
-        assert one.temperature is not None
-        liquid = replace(WATER, name="other", density=density[one.temperature])
-        held = 4e-4 * WATER.density / liquid.density
-        rotor = scene.rotor.altered(unbalance=one.unbalance)
-        fills = (scene.chambers[0].altered(liquid=liquid, volume=held),)
-        speeds = Speeds.at(100.0)
-        own = scene.altered(rotor=rotor, chambers=fills, speeds=speeds, model=_statics(scene))
-        found.append(float(run_scene(own).amplitude[0]))
-    worst = Robust(scene, 100.0, around, 1.0)
-    # The densities are given with five digits; the amplitude depends on them through the added mass.
-    assert worst.exact(volume)[0] == pytest.approx(max(found), rel=1e-4)
-    assert Robust(scene, 100.0, around, 0.5).exact(volume)[0] == pytest.approx(sorted(found)[4], rel=1e-4)
-    full = scene.fills[0].chamber.capacity
-    assert worst.fullest(np.array([[full]]))[0] == pytest.approx(WATER.density / 983.20, rel=1e-4)
-
-
-@kills(
     "leblanc.studies.optimise.problem:growth",
     "growth_map(rotor, rows, speed, friction)[0].max(axis=1)",
     "growth_map(rotor, rows, speed, friction)[0].min(axis=1)",
@@ -388,7 +349,8 @@ def test_the_same_question_has_the_same_answer() -> None:
     one, other = (optimise_scene(scene, "robust", front=False) for _ in range(2))
     np.testing.assert_array_equal(one.volume, other.volume)
     assert one.value == other.value
-    drawn = [operating_conditions(0.1, (0.05, 0.2), None, 40, seed) for seed in (3, 3, 4)]
+    spread = unbalance_range((0.1,), (0.05, 0.2))
+    drawn = [operating_conditions(spread, None, 40, seed) for seed in (3, 3, 4)]
     assert drawn[0] == drawn[1] != drawn[2]
 
 
@@ -404,14 +366,12 @@ def test_no_point_of_the_front_beats_the_answer() -> None:
 
 def test_what_does_not_fit_is_refused() -> None:
     scene = load_scene(EXAMPLES / "runup.toml")
-    tub = load_scene(EXAMPLES / "tub.toml")
     table = load_scene(EXAMPLES / "vibratory_table.toml")
     for one, task, field in (
         (scene, Optimisation().altered(objective="best"), "objective"),
         (scene, Optimisation(volumes=((0.0, 1.0), (0.0, 1.0))), "optimise.volumes"),
         (scene, Optimisation(volumes=((1.0, 2.0),)), "optimise.volumes.0"),
         (scene.altered(chambers=()), Optimisation(), "chambers"),
-        (tub, Optimisation(objective="robust"), "rotor.kind"),
         (table, Optimisation(), "chambers"),
     ):
         with pytest.raises(InputError, match=field):

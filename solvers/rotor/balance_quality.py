@@ -1,0 +1,207 @@
+"""Balance quality: residual unbalance over mass times the service speed, and the grades of ISO 21940-11.
+
+The standard speaks of a rigid rotor without liquid: G is the speed e_per Omega at which the centre of mass of
+a rotor with the permissible residual unbalance e_per m goes round. It is not a measured vibration velocity.
+The analogue for a machine with liquid is the total unbalance that turns with the rotor, its own and the
+liquid's about the rotation axis, over the mass of the dry rotor: what a dry rotor would need to move as the
+machine does [theory: balance_quality, eq. 1-3].
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from meshes.arrays import Array, Complex
+from meshes.errors import InputError, require_positive
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.system import Rotor, RotorSystem
+from solvers.rotor.tub import Tub
+from solvers.rotor.two_plane import TwoPlane
+from solvers.rotor.vibration import dynamic_stiffness
+
+# Grades of the standard, m/s; each about two and a half times the one before [ISO16].
+GRADES = tuple(
+    1e-3 * millimetres
+    for millimetres in (0.4, 1.0, 2.5, 6.3, 16.0, 40.0, 100.0, 250.0, 630.0, 1600.0, 4000.0)
+)
+_LEAST_SHARE, _MOST_SHARE = 0.3, 0.7  # of the permissible unbalance that a plane may have [ISO16]
+_ROUNDING = 1e-9  # relative; a quality that is a grade to rounding has that grade
+
+
+def grade_of(quality: float) -> float | None:
+    """The finest grade of ISO 21940-11 that a balance quality keeps.
+
+    Parameters
+    ----------
+    quality : residual unbalance over mass times angular speed, m/s
+
+    Returns
+    -------
+    m/s; None above the coarsest grade, or where the quality is not finite
+
+    Examples
+    --------
+    >>> grade_of(5e-3), grade_of(5.0)
+    (0.0063, None)
+    """
+    if not math.isfinite(quality):
+        return None
+    return next((grade for grade in GRADES if quality <= grade * (1.0 + _ROUNDING)), None)
+
+
+def grade_name(grade: float) -> str:
+    """A grade as the standard writes it.
+
+    Parameters
+    ----------
+    grade : m/s
+
+    Examples
+    --------
+    >>> grade_name(0.0063)
+    'G 6.3'
+    """
+    return f"G {grade * 1e3:.6g}"
+
+
+def permissible_unbalance(grade: float, mass: float, speed: ArrayLike) -> Array:
+    """Residual unbalance that a grade permits, U_per = G m/Omega [ISO16; theory: balance_quality, eq. 1].
+
+    Parameters
+    ----------
+    grade : G, m/s
+    mass : m of the rotor, kg
+    speed : Omega, rad/s, shape (...,)
+
+    Returns
+    -------
+    kg m, shape (...,)
+
+    Raises
+    ------
+    InputError : a grade, mass or speed that is not above 0
+
+    Examples
+    --------
+    >>> round(float(permissible_unbalance(0.0063, 40.0, 314.159)) * 1e6)
+    802
+    """
+    require_positive("grade", grade)
+    require_positive("mass", mass)
+    spin = np.asarray(speed, dtype=float)
+    if not np.all(np.isfinite(spin) & (spin > 0.0)):
+        raise InputError("speed", speed, "finite numbers above 0")
+    return np.asarray(grade * mass / spin)
+
+
+@dataclass(frozen=True)
+class TolerancePlane:
+    """A plane across the axis in which an unbalance is compared with its share of the permissible one.
+
+    Parameters
+    ----------
+    position : along the axis, m
+    mass : share of the rotor's mass, kg
+    """
+
+    position: float
+    mass: float
+
+
+def tolerance_planes(rotor: Rotor) -> tuple[TolerancePlane, ...]:
+    """Planes in which the unbalance of a rotor is judged [theory: balance_quality, eq. 3].
+
+    Two for a rigid rotor in supports at two places and more, the outermost ones: each has the share of the
+    mass that rests on it, from 0.3 to 0.7. One for a Jeffcott rotor, for a tub, whose drum bearings a scene
+    does not say, and where all supports are at one place: then only the resultant is judged, no couple.
+
+    Parameters
+    ----------
+    rotor : of any kind
+
+    Returns
+    -------
+    One or two; none where the mass that spins is 0
+
+    Raises
+    ------
+    InputError : a kind of rotor that is not known
+    """
+    if isinstance(rotor, Tub):
+        return (TolerancePlane(0.0, rotor.drum_mass),) if rotor.drum_mass > 0.0 else ()
+    if not isinstance(rotor, Jeffcott | TwoPlane):
+        raise InputError("rotor", type(rotor).__name__, "a Jeffcott rotor, a two-plane rotor or a tub")
+    places = [support.position for support in rotor.supports] if isinstance(rotor, TwoPlane) else [0.0]
+    first, last = min(places), max(places)
+    if last == first:
+        return (TolerancePlane(first, rotor.mass),)
+    share = min(max(last / (last - first), _LEAST_SHARE), _MOST_SHARE)
+    return TolerancePlane(first, share * rotor.mass), TolerancePlane(last, (1.0 - share) * rotor.mass)
+
+
+def residual_unbalance(system: RotorSystem, generalised: Complex, positions: ArrayLike) -> Complex:
+    """Unbalances in one or two planes that act as a generalised one does [theory: balance_quality, eq. 2].
+
+    Parameters
+    ----------
+    system : the dry rotor
+    generalised : unbalance on its coordinates, kg m, shape (s, n)
+    positions : of the planes, m; of a single one the resultant is returned
+
+    Returns
+    -------
+    Turning with the spin, kg m, shape (s, planes)
+    """
+    wanted = np.atleast_1d(np.asarray(positions, dtype=float))
+    places = wanted if wanted.size == 2 else np.array([wanted[0], wanted[0] + 1.0])
+    turning = np.array([1.0, -1j])
+    p = np.stack([system.at(place).T @ turning for place in places.tolist()], axis=1)
+    # Forces against the spin are there too, of layers that hardly follow; they are not the rotor's.
+    columns = np.hstack((p, np.conj(p)))
+    found, *_ = np.linalg.lstsq(columns, generalised.T, rcond=1e-10)
+    planes = found[:2].T
+    return np.asarray(planes if wanted.size == 2 else planes.sum(axis=1, keepdims=True))
+
+
+def balance_quality(rotor: Rotor, speed: ArrayLike, coordinates: Complex | None = None) -> Array:
+    """Balance quality of a machine, m/s [theory: balance_quality, eq. 1-3].
+
+    Parameters
+    ----------
+    rotor : the dry rotor
+    speed : Omega, rad/s, above 0, shape (s,)
+    coordinates : complex amplitudes of the machine with its liquid, shape (s, n); the dry rotor by itself if
+        None
+
+    Returns
+    -------
+    Of the plane that is worst; infinite where the motion is, nan where no mass spins, shape (s,)
+
+    Raises
+    ------
+    InputError : a kind of rotor that is not known
+
+    Examples
+    --------
+    >>> rotor = Jeffcott(mass=4.0, stiffness=4.4e4, damping=84.0, unbalance=6e-4)
+    >>> [round(1e3 * quality, 3) for quality in balance_quality(rotor, [100.0, 200.0]).tolist()]
+    [15.0, 30.0]
+    """
+    omega, system = np.atleast_1d(np.asarray(speed, dtype=float)), rotor.system()
+    planes = tolerance_planes(rotor)
+    if not planes:
+        return np.full(omega.shape, np.nan)
+    bounded = np.ones(omega.size, dtype=bool)
+    total = np.broadcast_to(system.unbalance, (omega.size, system.unbalance.size))
+    if coordinates is not None:
+        bounded = np.asarray(np.isfinite(coordinates).all(axis=1))
+        moved = np.where(bounded[:, None], coordinates, 0.0)
+        held = np.einsum("sij,sj->si", dynamic_stiffness(system, omega), moved)
+        total = held / np.square(omega)[:, None]
+    sizes = np.abs(residual_unbalance(system, total, [plane.position for plane in planes]))
+    each = sizes * omega[:, None] / np.array([plane.mass for plane in planes])
+    return np.where(bounded, each.max(axis=1), np.inf)
