@@ -1,9 +1,17 @@
 """`python -m leblanc` and the command `leblanc`: hears Ctrl-C before anything heavy is imported."""
 
-import signal
+import os
 import sys
 
-from leblanc.interrupts import Terminated, heard, leave, said
+# Python has put the current folder first, from which nothing is taken unless this package itself is. Of
+# modules only those are named before that Python itself has loaded by then, which pathlib is not.
+_FIRST, _HOME = os.getcwd(), os.path.dirname(os.path.dirname(__file__))  # noqa: PTH109, PTH120
+if __name__ == "__main__" and not sys.flags.safe_path and sys.path[:1] == [_FIRST] != [_HOME]:
+    del sys.path[0]
+
+import signal  # noqa: E402
+
+from leblanc.interrupts import Terminated, heard, leave, said  # noqa: E402
 
 
 def main() -> int:

@@ -5,13 +5,15 @@ from __future__ import annotations
 import os
 import re
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import partial
 from pathlib import Path
 
 from leblanc.interrupts import at_forced_end
 
+_WATCHES: ContextVar[tuple[Callable[[Path], None], ...]] = ContextVar("watches", default=())
 _LONGEST_NAME = 200  # bytes; file systems allow 255
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)  # on Windows
 
@@ -28,7 +30,7 @@ def out_dir(scene_name: str, out: Path | None) -> Path:
     ------
     OSError : it cannot be made or written; carries the path
     """
-    folder = Path("out") / safe_name(scene_name) if out is None else out
+    folder = Path("out") / native(safe_name(scene_name)) if out is None else out
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with _naming(folder), tempfile.TemporaryFile(dir=folder):
@@ -45,6 +47,28 @@ def safe_name(name: str) -> str:
     kept = "".join("_" if letter in '/\\:*?"<>|' or not letter.isprintable() else letter for letter in name)
     short = kept.encode()[:_LONGEST_NAME].decode(errors="ignore").strip(". ")
     return f"_{short}" if not short or _RESERVED.fullmatch(short) else short
+
+
+def native(path: str) -> str:
+    """A path from a text, as this process names the file whose name is that text in UTF-8.
+
+    They differ where the locale has no such letters, as the locale C of batch jobs.
+
+    Parameters
+    ----------
+    path : as a scene or a study says it
+    """
+    return os.fsdecode(path.encode("utf-8", "surrogateescape"))
+
+
+def path_text(path: str | Path) -> str:
+    """The text of a path, the inverse of `native`; bytes that are no UTF-8 are written as escapes.
+
+    Parameters
+    ----------
+    path : as this process names the file
+    """
+    return os.fsencode(path).decode("utf-8", "backslashreplace")
 
 
 @contextmanager
@@ -70,9 +94,26 @@ def writing(path: Path) -> Iterator[Path]:
             path.parent.mkdir(parents=True, exist_ok=True)
             yield part
             part.replace(path)
+        for watch in _WATCHES.get():
+            watch(path)
     finally:
         remove()
         at_forced_end.remove(remove)
+
+
+@contextmanager
+def watched(watch: Callable[[Path], None]) -> Iterator[None]:
+    """Tell of each file that is written within the block.
+
+    Parameters
+    ----------
+    watch : called with the path of a file that is whole
+    """
+    token = _WATCHES.set((*_WATCHES.get(), watch))
+    try:
+        yield
+    finally:
+        _WATCHES.reset(token)
 
 
 @contextmanager

@@ -133,7 +133,7 @@ def execute(path: Path, out: Path) -> str:
 def _settings() -> dict[str, str]:
     """Environment of a kernel: small matrices on one thread, modules from where this process takes them."""
     threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-    path = os.pathsep.join(str(Path(entry).absolute()) for entry in sys.path)
+    path = os.pathsep.join(str(Path(entry).absolute()) for entry in sys.path if entry)
     return os.environ | threads | {"PYTHONPATH": path}
 
 

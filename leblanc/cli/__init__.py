@@ -11,7 +11,7 @@ import os
 import sys
 from collections.abc import Callable, Sequence
 from functools import wraps
-from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, version
+from importlib.metadata import EntryPoint, PackageNotFoundError, distributions, version
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -19,7 +19,8 @@ import typer
 from typer.main import get_command
 
 from leblanc.cli import compare, explain, layer, map, modes, new, optimise, run, runup, sweep, view, volume
-from leblanc.cli.output import say
+from leblanc.cli.output import drop, ready_streams, say
+from leblanc.contents import recording
 from leblanc.interrupts import INTERRUPTED, TERMINATED, Terminated, heard, leave, said
 from leblanc.scene.schema.load import NotConverged, SceneError, escaped
 from meshes.errors import InputError
@@ -28,6 +29,10 @@ DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED = 0, 1, 2, 3
 
 # Modules with one command each, a function of the module's name, in the order of the help.
 COMMANDS = (new, explain, run, compare, volume, layer, modes, map, runup, optimise, sweep, view)
+
+# The current folder may hold a stranger's files: a pickle.py is not for the processes that are started from
+# here, nor is the .numba_config.yaml to say where compiled code is kept, which numba would unpickle.
+SAFE = {"PYTHONSAFEPATH": "1", "NUMBA_CACHE_DIR": "", "NUMBA_CACHE_LOCATOR_CLASSES": ""}
 
 # What typer raises for a wrong command line; its home moved between versions.
 _UsageError: type[Exception] = typer.BadParameter.__mro__[1]
@@ -45,10 +50,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     exit code: 0 done, 1 the reader of the output is gone, 2 wrong input, 3 a solver did not converge,
     130 interrupted by Ctrl-C, 143 ended by SIGTERM
     """
-    # A user's own pickle.py in the current folder is not for the processes that are started from here.
-    os.environ.setdefault("PYTHONSAFEPATH", "1")
+    for name, value in SAFE.items():
+        os.environ.setdefault(name, value)
     given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
     if arguments is None:
+        ready_streams()
         # By default a fifth of a short command is a search for cyclic garbage, of which imports leave none.
         gc.set_threshold(50_000)
         # Nor has a command any use of plugins of pydantic, for which it looks in every installed package.
@@ -56,15 +62,37 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     def command() -> object:
         commands = get_command(application(given[0]))
-        return commands.main(given, prog_name="leblanc", standalone_mode=False)
+        return _recorded(given[0], lambda: _run(commands, given))
 
     if arguments is not None:
         return exit_code(command)
     with heard():
         code = exit_code(command)
+    drop(sys.stderr)
     gc.freeze()  # nor is there any to look for as the process ends
     leave(code)
     return code
+
+
+def _run(commands: Any, given: Sequence[str]) -> object:
+    return commands.main(given, prog_name="leblanc", standalone_mode=False)
+
+
+def _recorded(command: str, action: Callable[[], object]) -> object:
+    """Do it, and take down in the folder of its results which files it wrote."""
+    with recording(command) as record:
+        try:
+            code = action()
+        except NotConverged:  # what did converge is written
+            _tell(record.close())
+            raise
+        _tell(record.close())
+    return code
+
+
+def _tell(lines: Sequence[str]) -> None:
+    for line in lines:
+        say(escaped(line))
 
 
 def exit_code(action: Callable[[], object]) -> int:
@@ -82,11 +110,11 @@ def exit_code(action: Callable[[], object]) -> int:
         say(_usage(error))
         return WRONG_INPUT
     except BrokenPipeError:  # whoever read the output has enough of it
-        _drop_stdout()
+        drop(sys.stdout)
         return UNREAD
     except OSError as error:
         say(escaped(f"{error.filename or 'leblanc'}: {error.strerror or error}"))
-        _drop_stdout()
+        drop(sys.stdout)
         return WRONG_INPUT
     except KeyboardInterrupt:
         code = INTERRUPTED
@@ -102,14 +130,6 @@ def _usage(error: BaseException) -> str:
     context = getattr(error, "ctx", None)
     message = " ".join(str(getattr(error, "format_message", error.__str__)()).split())
     return escaped(f"leblanc: {message} See: {context.command_path if context else 'leblanc'} --help")
-
-
-def _drop_stdout() -> None:
-    """Let the interpreter's last flush of a broken stdout go nowhere."""
-    try:
-        sys.stdout.flush()
-    except OSError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _version(wanted: bool) -> None:
@@ -144,8 +164,9 @@ def application(wanted: str = "") -> typer.Typer:
     for name in [wanted] if wanted in own else own:
         found.command(name)(_as_typed(getattr(own[name], name)))
     if wanted not in own:
-        for entry in sorted(entry_points(group="leblanc.commands")):
-            _announced(found, entry)
+        others = {name: entry for name, entry in _announcements().items() if name not in own}
+        for name in [wanted] if wanted in others else sorted(others):
+            _add_announced(found, others[name])
     return found
 
 
@@ -171,14 +192,40 @@ def _as_typed(command: Callable[..., None]) -> Callable[..., None]:
     return asked
 
 
-def _announced(application: typer.Typer, entry: EntryPoint) -> None:
+def _announcements() -> dict[str, EntryPoint]:
+    """Commands that installed packages announce, by name; a package that cannot be read announces none."""
+    found: dict[str, EntryPoint] = {}
+    for package in distributions():
+        try:
+            entries = [entry for entry in package.entry_points if entry.group == "leblanc.commands"]
+        except Exception as error:
+            say(escaped(f"leblanc: the entry points of a package cannot be read: {_words(error)}"))
+            continue
+        for entry in entries:
+            found.setdefault(entry.name, entry)  # of two versions on the path the first is the one imported
+    return found
+
+
+def _words(error: BaseException) -> str:
+    """What an error says, or what it is."""
+    return str(error) or type(error).__name__
+
+
+def _add_announced(application: typer.Typer, entry: EntryPoint) -> None:
     """Add a command of another package; one that does not load says so when it is called."""
     try:
-        application.command(entry.name)(_as_typed(entry.load()))
-    except (ImportError, AttributeError) as error:
-        reason = f"{entry.value} cannot be loaded: {error}"
+        function = _as_typed(entry.load())
+        alone = typer.Typer()
+        alone.command(entry.name)(function)
+        get_command(alone)  # whatever is wrong with it shows here, not in the help of all commands
+    except Terminated:
+        raise
+    except (Exception, SystemExit) as error:
+        reason = f"{entry.value} cannot be loaded: {_words(error)}"
         anything = {"allow_extra_args": True, "ignore_unknown_options": True}
 
         @application.command(entry.name, help="Not available.", context_settings=anything)
         def unavailable() -> None:
             raise InputError("command", entry.name, f"one that is installed; {reason}")
+    else:
+        application.command(entry.name)(function)

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from leblanc.cli.output import load, print_json, print_table, say
-from leblanc.files import out_dir
+from leblanc.contents import results_dir
 
 
 def compare(
@@ -26,7 +26,7 @@ def compare(
 
     machine = load(scene)
     found = compare_models(machine, [name.strip() for name in models.split(",")])
-    folder = out_dir(machine.name, out)
+    folder = results_dir(machine.name, out, scene, machine.digest)
 
     from leblanc.figures.comparison import comparison_figure, save
     from leblanc.results.netcdf import write_netcdf

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from leblanc.cli.output import load, print_json, print_table, say
-from leblanc.files import out_dir
+from leblanc.contents import results_dir
 
 
 def map(
@@ -45,7 +45,7 @@ def map(
             *(machine, volumes, speeds, most, law),
             progress=lambda done, total: bar.update(task, completed=done, total=total),
         )
-    folder = out_dir(machine.name, out)
+    folder = results_dir(machine.name, out, scene, machine.digest)
 
     from leblanc.figures.whirl_map import map_figure, save
     from leblanc.report.page import about, command_line

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from leblanc.cli.output import load, print_json, say
-from leblanc.files import out_dir
+from leblanc.contents import results_dir
 
 if TYPE_CHECKING:
     from leblanc.results.optimum import OptimumResult
@@ -52,7 +52,7 @@ def optimise(
 
     machine = load(scene)
     task = optimisation_of(machine, objective, deflection, limit, steady, seed)
-    folder = out_dir(machine.name, out)
+    folder = results_dir(machine.name, out, scene, machine.digest)
     result = _run(machine, task, not no_front, emulator)
 
     from leblanc.figures.optimise import write_figures

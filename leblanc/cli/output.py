@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import sys
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import fields, is_dataclass
+from io import TextIOWrapper
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TextIO
 
 if TYPE_CHECKING:
     from leblanc.scene.scene import Scene
@@ -16,9 +19,41 @@ if TYPE_CHECKING:
 _WIDTH = 110  # characters of a line where there is no terminal
 
 
+def ready_streams() -> None:
+    """Let every text be printed, whatever the terminal.
+
+    A stream that is closed becomes the void: the next file that is opened would take its number, and what a
+    library prints would end up in that file. What an encoding lacks is printed as an escape.
+    """
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)  # the lowest number that is free
+    for name, number in (("stdout", 1), ("stderr", 2)):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(number, "w", encoding="utf-8", closefd=False))  # noqa: SIM115
+        if isinstance(stream := getattr(sys, name), TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def drop(stream: TextIO) -> None:
+    """Let the interpreter's last flush of a stream that nobody reads go nowhere.
+
+    Parameters
+    ----------
+    stream : stdout or stderr
+    """
+    try:
+        stream.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
 def say(text: str) -> None:
-    """Print a line of progress or a fault on stderr."""
-    print(text, file=sys.stderr, flush=True)
+    """Print a line of progress or a fault on stderr, if anybody reads that."""
+    with suppress(OSError):
+        print(text, file=sys.stderr, flush=True)
 
 
 def load(path: Path) -> Scene:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from leblanc.cli.output import load, print_json, print_table, say
-from leblanc.files import out_dir
+from leblanc.contents import results_dir
 
 if TYPE_CHECKING:
     from leblanc.scene.scene import Scene
@@ -24,7 +24,7 @@ def run(
     """Answer of the machine at each speed. Figures, data file, report."""
 
     machine = load(scene)
-    folder = out_dir(machine.name, out)
+    folder = results_dir(machine.name, out, scene, machine.digest)
 
     if machine.rotor.kind == "exciter":
         _run_exciter(machine, scene, folder, json)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from leblanc.cli.output import load, print_json, print_table, say
-from leblanc.files import out_dir
+from leblanc.contents import results_dir
 
 if TYPE_CHECKING:
     from leblanc.results.runup import RunupResult
@@ -46,7 +46,7 @@ def runup(
 
         require_film(animate)
         require_layers(machine)
-    folder = out_dir(machine.name, out)
+    folder = results_dir(machine.name, out, scene, machine.digest)
     result = _run(machine, cells, samples, not no_check, animate is not None)
 
     from leblanc.figures.runup import write_figures

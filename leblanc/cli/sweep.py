@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from leblanc.cli.output import print_json, say
-from leblanc.files import out_dir
+from leblanc.contents import results_dir
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -47,7 +47,7 @@ def sweep(
     plan = load_sweep(study)
     for doubt in doubts(plan.scene, plan.table):
         say(f"{plan.scene_path}: warning: {doubt.text}")
-    folder = out_dir(plan.name, out)
+    folder = results_dir(plan.name, out, study, plan.scene.digest)
     note = sampling_note(plan)
     if note is not None:
         say(f"{plan.name}: {note}")

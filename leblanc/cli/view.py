@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from leblanc.cli.output import load, print_json, say
-from leblanc.files import out_dir
+from leblanc.contents import results_dir
 
 if TYPE_CHECKING:
     from leblanc.results.drawn import ModeView
@@ -68,7 +68,7 @@ def view(
 
         open_window(picture)
         return
-    made = _files(machine, picture, wave, screenshot, animate, frames, factor, out)
+    made = _files(machine, scene, picture, wave, screenshot, animate, frames, factor, out)
     if json:
         print_json({"scene": machine.name} | numbers | made)
     else:
@@ -146,6 +146,7 @@ def _still(machine: Scene, speed: float | None, factor: float | None) -> tuple[P
 
 def _files(
     machine: Scene,
+    source: Path,
     picture: Picture,
     wave: ModeView | None,
     screenshot: Path | None,
@@ -159,7 +160,7 @@ def _files(
 
     made: dict[str, Path | None] = {"screenshot": None, "animation": None}
     if screenshot is not None or animate is None:
-        path = screenshot or out_dir(machine.name, out) / "view.png"
+        path = screenshot or results_dir(machine.name, out, source, machine.digest) / "view.png"
         write_picture(picture, path)
         made["screenshot"] = path
     if animate is not None:
@@ -212,6 +213,7 @@ def _serve(machine: Scene, speed: float | None, factor: float | None, host: str,
     from leblanc.studies.shapes.machine import drawn_liquid, dry_walls, machine_motion
     from leblanc.studies.shapes.scale import scale_at, scale_of
     from leblanc.view.files import frames_of_speeds, require_trame, serve
+    from leblanc.view.gate import HERE
 
     require_trame()
     motion = machine_motion(machine)
@@ -224,4 +226,6 @@ def _serve(machine: Scene, speed: float | None, factor: float | None, host: str,
         speed,
     )
     say(f"{machine.name}: {frames.count} speeds solved; the page stays until Ctrl-C")
+    if host.lower() not in HERE:
+        say(f"{host} is not this machine alone: who reads the address below on its way can open the page")
     serve(machine.name, frames, host, port, lambda address: print(f"Open {address}", flush=True))

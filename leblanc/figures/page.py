@@ -319,9 +319,9 @@ def write_film(
     from matplotlib.animation import FFMpegWriter, PillowWriter
 
     kind = require_film(path)
-    if kind == ".mp4" and not FFMpegWriter.isAvailable():
+    player = _player()
+    if kind == ".mp4" and shutil.which(player) is None:
         raise InputError("--animate", str(path), "a .gif, since no ffmpeg was found to write an .mp4")
-    player = matplotlib.rcParams["animation.ffmpeg_path"]
     with style(), writing(path) as part, TemporaryDirectory() as folder:
         matplotlib.rcParams["animation.ffmpeg_path"] = player
         writer = (PillowWriter if kind == ".gif" else FFMpegWriter)(fps=rate)
@@ -336,6 +336,12 @@ def write_film(
                     drawn(count, len(frames))
         shutil.copyfile(whole, part)
     return len(frames)
+
+
+def _player() -> str:
+    """The ffmpeg of the user's settings, not that of a file in the current folder: it may be a stranger's."""
+    own = matplotlib.matplotlib_fname() != "matplotlibrc"
+    return str(matplotlib.rcParams["animation.ffmpeg_path"]) if own else "ffmpeg"
 
 
 def caption(result: RunResult, text: str) -> Caption:

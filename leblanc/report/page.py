@@ -12,7 +12,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from leblanc.files import writing
+from leblanc.files import path_text, writing
 from leblanc.report.parts import Inputs, Table, scene_inputs, table
 from leblanc.results import base as provenance
 from leblanc.results.base import Note, NoteCode, one_line
@@ -86,7 +86,7 @@ def command_line(name: str, scene: Path, *options: tuple[str, object, object]) -
     scene : the file, as it was given
     options : name, value and default of each; those at their default are left out, a flag stands alone
     """
-    parts = ["leblanc", name, str(scene)]
+    parts = ["leblanc", name, path_text(scene)]
     for option, value, default in options:
         if value != default:
             parts += [option] if value is True else [option, str(value)]

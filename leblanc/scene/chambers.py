@@ -25,6 +25,7 @@ from fluid.temperature import (
     Walther,
 )
 from leblanc import units
+from leblanc.files import path_text
 from leblanc.scene.schema.load import meant
 from leblanc.scene.schema.part import Conflict, Part, allowed_at
 from leblanc.scene.schema.rules import (
@@ -419,7 +420,7 @@ def section_from_file(path: str, unit: float | None, size: float | None = None) 
     mesh = section_of_any_file(path, unit, size, ("section_unit", "section_size"))
     if size is None and is_outline(path):
         size = 0.01 * float(np.ptp(mesh.points, axis=0).max())
-    return chamber_section(Path(path).name, mesh, size)
+    return chamber_section(path_text(Path(path).name), mesh, size)
 
 
 class Chamber(Part):

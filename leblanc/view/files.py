@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import math
 import re
+import secrets
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -22,6 +23,7 @@ import numpy as np
 
 from leblanc.files import writing
 from leblanc.results.drawn import DrawnLiquid, MachineMotion, Scale
+from leblanc.view.gate import address_of, gate
 from leblanc.view.parts import Picture
 from leblanc.view.picture import (
     VIEWS,
@@ -234,7 +236,7 @@ def serve(name: str, frames: Frames, host: str, port: int, ready: Callable[[str]
     name : of the machine
     frames : its pictures
     host, port : where to listen; port 0 takes a free one
-    ready : called with the address once the page can be opened
+    ready : called with the address, which carries a token, once the page can be opened
 
     Raises
     ------
@@ -259,9 +261,15 @@ async def _serve(
         server = get_server(f"leblanc view {name}", client_type="vue3")
         _page(server, plot, name, frames)
 
+        token = secrets.token_urlsafe(24)
+
+        @server.controller.add("on_server_bind")  # type: ignore[untyped-decorator]
+        def _bound(wslink: Any) -> None:
+            wslink.app.middlewares.append(gate(host, token))
+
         @server.controller.add("on_server_ready")  # type: ignore[untyped-decorator]
         def _ready(**_: object) -> None:
-            ready(f"http://{host}:{server.port}/")
+            ready(address_of(host, server.port, token))
 
         running = server.start(
             port=port,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,9 @@ from scipy.spatial import cKDTree
 
 from meshes.arrays import Array, Indices
 from meshes.errors import InputError
+from meshes.files.foreign import limited_memory
+
+_MOST = 20_000  # curves; blocks within blocks make many of a few lines
 
 # Ends of curves nearer than this part of the drawing meet.
 _MEET = 1e-6
@@ -128,10 +132,20 @@ def read_drawing(path: str | Path) -> tuple[list[Curve], float | None]:
         raise InputError("path", str(path), allowed) from missing
 
     try:
-        document = ezdxf.readfile(path)
-    except (OSError, ezdxf.DXFError, UnicodeError, ValueError) as fault:
-        raise InputError("path", str(path), f"a DXF drawing that can be read ({fault})") from fault
-    entities = list(_opened(document.modelspace()))
+        with limited_memory(path):
+            document = ezdxf.readfile(path)
+            entities = list(islice(_opened(document.modelspace()), _MOST + 1))
+    except InputError:
+        raise
+    except RecursionError as fault:
+        raise InputError("path", str(path), "a drawing whose blocks do not hold themselves") from fault
+    except Exception as fault:  # ezdxf raises whatever a wrong tag leads to
+        reason = " ".join(str(fault).split()) or type(fault).__name__
+        raise InputError("path", str(path), f"a DXF drawing that can be read ({reason})") from fault
+    if len(entities) > _MOST:
+        raise InputError(
+            "path", str(path), f"a drawing of at most {_MOST} curves, those of its blocks counted"
+        )
     pieces = [(entity, points) for entity in entities for points in _pieces(path, entity)]
     if not pieces:
         kinds = ", ".join(sorted({entity.dxftype() for entity in document.modelspace()})) or "nothing"

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from meshes.arrays import Array, Indices
 from meshes.bodies.body import Body
 from meshes.errors import InputError, require_positive
+from meshes.files.foreign import limited_memory, require_file, require_harmless_xml
 from meshes.liquid_section import LiquidSection, free_sides, liquid_section
 from meshes.quality import cell_areas
 from meshes.rings.triangles import open_slits
@@ -422,6 +423,8 @@ def _guarded(path: str | Path, allowed: str) -> Iterator[Any]:
         ):
             warnings.simplefilter("ignore")
             yield meshio
+    except InputError:
+        raise
     except (Exception, SystemExit) as fault:
         reason = " ".join(chatter.getvalue().split()) or f"{type(fault).__name__}: {fault}"
         raise InputError("path", str(path), f"{allowed} ({reason})") from fault
@@ -430,9 +433,13 @@ def _guarded(path: str | Path, allowed: str) -> Iterator[Any]:
 def _contents(path: str | Path, scale: float) -> FileContents:
     require_positive("scale", scale)
     file = _known(path)
-    if not file.is_file():
-        raise InputError("path", str(path), "an existing mesh file")
-    with _guarded(path, "a mesh file that can be read, " + " or ".join(SUFFIXES)) as meshio:
+    require_file(file, "mesh file")
+    if file.suffix.lower() != ".msh":
+        require_harmless_xml(file)
+    with (
+        _guarded(path, "a mesh file that can be read, " + " or ".join(SUFFIXES)) as meshio,
+        limited_memory(file),
+    ):
         mesh = meshio.read(file)
         blocks = [(str(block.type), np.asarray(block.data)) for block in mesh.cells]
         tags = mesh.cell_data.get("gmsh:physical", [np.zeros(len(data)) for _, data in blocks])

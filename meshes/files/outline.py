@@ -16,6 +16,7 @@ import numpy as np
 from meshes.arrays import Array, Indices
 from meshes.errors import InputError, require_positive
 from meshes.files.drawing import Curve, closed_loops, extent, meet, read_drawing
+from meshes.files.foreign import require_file
 from meshes.quality import cell_areas
 from meshes.rings.triangles import open_slits
 from meshes.section import Section
@@ -130,8 +131,7 @@ def _check(path: str | Path, wall_size: float | None, inside_size: float, growth
     file = Path(path)
     if file.suffix.lower() not in SUFFIXES:
         raise InputError("path", str(path), "an outline, " + " or ".join(SUFFIXES))
-    if not file.is_file():
-        raise InputError("path", str(path), "an existing file")
+    require_file(file)
     if wall_size is not None:
         require_positive("wall_size", wall_size)
     if not inside_size >= (wall_size or 0.0):

@@ -86,14 +86,14 @@ def _field(line: str) -> str:
 
 
 def _files(folder: Path) -> list[str]:
-    """Names below a folder, sorted; a zarr store counts as one file."""
+    """Names below a folder, sorted; a zarr store counts as one file, the folder's own record as none."""
     names = set()
     for path in folder.rglob("*"):
         parts = path.relative_to(folder).parts
         store = next((k for k, part in enumerate(parts) if part.endswith(".zarr")), None)
         if store is not None:
             names.add("/".join(parts[: store + 1]) + "/")
-        elif not path.is_dir():
+        elif not path.is_dir() and path.name != "contents.json":
             names.add("/".join(parts))
     return sorted(names)
 

@@ -9,7 +9,8 @@ from typing import Annotated
 import typer
 
 from leblanc.cli.output import print_json, say
-from leblanc.files import out_dir, writing
+from leblanc.contents import results_dir
+from leblanc.files import writing
 
 
 def trade(
@@ -25,7 +26,7 @@ def trade(
     from leblanc.cli.output import load
 
     machine = load(scene)
-    folder = out_dir(machine.name, out)
+    folder = results_dir(machine.name, out, scene, machine.digest)
 
     from rich.progress import Progress
 

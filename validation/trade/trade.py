@@ -127,7 +127,7 @@ def alone(scene: Scene, case: Case) -> Run:
     ------
     RuntimeError : that process failed
     """
-    path = os.pathsep.join(entry or "." for entry in sys.path)
+    path = os.pathsep.join(filter(None, sys.path))
     done = subprocess.run(
         [sys.executable, "-P", "-m", "validation.trade.child"],
         input=pickle.dumps((scene, case)),

@@ -13,7 +13,9 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from leblanc.files import native
 from leblanc.scene.schema.lines import Place, line_of, places
+from meshes.files.foreign import open_regular
 
 _LONGEST = 60  # characters of a value that are shown
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
@@ -128,6 +130,12 @@ def escaped(text: str) -> str:
 
 MAX_BYTES = 10_000_000
 
+# The time and memory of a dotted key grow with the square of its parts; a scene needs four.
+_DEEPEST = 30
+_DEEP = re.compile(
+    r"""(?m)(?:^|[\[{,])[ \t]*+(?:(?>[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*+\.[ \t]*+){%d}""" % _DEEPEST  # noqa: UP031
+)
+
 _LONGEST_LINE = 60  # characters of a line that are shown
 _LINE = re.compile(r"line (\d+)")
 # Slips of the pen, each excluding the others, and the remedy.
@@ -158,7 +166,7 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
         return SceneError([SceneFault(str(path), "", None, allowed)])
 
     try:
-        with Path(path).open("rb") as stream:
+        with open_regular(path) as stream:
             content = stream.read(MAX_BYTES + 1)
     except OSError as error:
         raise fault(f"a file that can be read: {error.strerror or error}") from error
@@ -168,7 +176,8 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
         raise fault(f"at most {MAX_BYTES // 1_000_000} MB long")
     try:
         text = content.decode("utf-8-sig")
-        return tomllib.loads(text)
+        deep = _DEEP.search(text)
+        found = {} if deep else tomllib.loads(text)
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         raise fault(f"UTF-8 text: byte {error.start + 1}, at line {line}, is not") from error
@@ -178,6 +187,10 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
         raise fault(f"valid TOML: {_toml_fault(text, str(error))}") from error
     except ValueError as error:
         raise fault("valid TOML without numbers of thousands of digits") from error
+    if deep:
+        line = text.count("\n", 0, deep.start()) + 1
+        raise fault(f"TOML whose keys have at most {_DEEPEST} parts; one at line {line} has more")
+    return found
 
 
 @contextmanager
@@ -264,5 +277,5 @@ def read_scene(path: str | PathLike[str]) -> dict[str, Any]:
     chambers = table.get("chambers")
     for chamber in chambers if isinstance(chambers, list) else ():
         if isinstance(chamber, dict) and isinstance(chamber.get("section"), str) and chamber["section"]:
-            chamber["section"] = str(Path(path).parent / chamber["section"])
+            chamber["section"] = str(Path(path).parent / native(chamber["section"]))
     return table

@@ -22,6 +22,7 @@ from leblanc.scene.schema.rules import OneOf, Refused
 from leblanc.units import allowed_as_typed
 from meshes.errors import InputError
 
+MAX_FAULTS = 100  # that are told; a file of another kind has millions
 _TOGETHER, _ABSENT = "together", "absent"  # names of faults that no single value has
 
 
@@ -244,7 +245,7 @@ def allowed_at(field: FieldInfo) -> str:
 
 
 def faults_of(error: ValidationError, file: str, root: type[Part]) -> list[SceneFault]:
-    """What pydantic found, in words for a user.
+    """What pydantic found, in words for a user, at most `MAX_FAULTS` of it.
 
     Parameters
     ----------
@@ -252,7 +253,11 @@ def faults_of(error: ValidationError, file: str, root: type[Part]) -> list[Scene
     file : name of the file, for the messages
     root : of the table that it checked
     """
-    return [_fault(item, file, root) for item in error.errors(include_url=False)]
+    found = error.errors(include_url=False)
+    faults = [_fault(item, file, root) for item in found[:MAX_FAULTS]]
+    if len(found) > MAX_FAULTS:
+        faults.append(SceneFault(file, "", None, f"free of {len(found) - MAX_FAULTS} more faults"))
+    return faults
 
 
 def _fault(item: ErrorDetails, file: str, root: type[Part]) -> SceneFault:

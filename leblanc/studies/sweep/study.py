@@ -15,6 +15,7 @@ import numpy as np
 from pydantic import Field, PlainValidator, ValidationError
 
 from leblanc import units
+from leblanc.files import native, path_text
 from leblanc.scene.scene import Exciter, Scene, scene_from_table
 from leblanc.scene.schema.load import (
     SceneError,
@@ -390,7 +391,7 @@ def _sweep_of(given: Mapping[str, Any], path: str | PathLike[str]) -> Sweep:
     """Sweep from the content of a study file."""
     file = str(path)
     table = check_study(given, file)
-    scene_path = Path(path).parent / table.scene
+    scene_path = Path(path).parent / native(table.scene)
     scene_table = read_scene(scene_path)
     with with_lines(scene_path):
         scene = scene_from_table(scene_table, str(scene_path))
@@ -402,7 +403,7 @@ def _sweep_of(given: Mapping[str, Any], path: str | PathLike[str]) -> Sweep:
     if points is None:
         points = math.prod(_levels(field.distribution) for field in fields)
     sweep = Sweep(
-        name=Path(path).stem,
+        name=path_text(Path(path).stem),
         scene_path=table.scene,
         table=scene_table,
         scene=scene,

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import FrameType
 from typing import Any
 
@@ -31,7 +32,7 @@ _AHEAD = 2  # blocks in flight for each thread: one at work, one waiting
 # time goes into page faults.
 _ENVIRONMENT = {
     f"distributed.nanny.pre-spawn-environ.MALLOC_{kind}_THRESHOLD_": 2**28 for kind in ("TRIM", "MMAP")
-}
+} | {"distributed.nanny.pre-spawn-environ.PYTHONSAFEPATH": 1}  # nothing from the current folder
 _PATIENCE = 30.0  # seconds for a cluster to answer and to have a worker
 
 
@@ -74,17 +75,20 @@ def _client(workers: int, scheduler: str | None) -> Iterator[Any]:
         with _connected(scheduler) as client:
             yield client
         return
-    with _without_interrupts(), dask.config.set(_ENVIRONMENT):
-        cluster = LocalCluster(
-            n_workers=workers,
-            threads_per_worker=1,
-            processes=True,
-            dashboard_address=":0",  # any free port, so that a second sweep finds one as well
-            scheduler_kwargs={"dashboard": False},
-            silence_logs=logging.CRITICAL,
-        )
-    with cluster, Client(cluster) as client:
-        yield client
+    # Dask's own choice of a folder is shared by all users of the machine, and what it keeps is unpickled.
+    with TemporaryDirectory(prefix="leblanc-", ignore_cleanup_errors=True) as folder:
+        with _without_interrupts(), dask.config.set(_ENVIRONMENT):
+            cluster = LocalCluster(
+                local_directory=folder,
+                n_workers=workers,
+                threads_per_worker=1,
+                processes=True,
+                dashboard_address=":0",  # any free port, so that a second sweep finds one as well
+                scheduler_kwargs={"dashboard": False},
+                silence_logs=logging.CRITICAL,
+            )
+        with cluster, Client(cluster) as client:
+            yield client
 
 
 def require_scheduler(address: str) -> None:

@@ -11,7 +11,22 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[3]
-NAMES = ("study", "fluid", "meshes", "solvers", "validation", "leblanc", "numpy", "pickle", "tokenize")
+NAMES = (
+    "study",
+    "fluid",
+    "meshes",
+    "solvers",
+    "validation",
+    "leblanc",
+    "numpy",
+    "pickle",
+    "tokenize",
+    "json",
+)
+
+
+SIZES = ("--radius", "0.1", "--volume", "2e-4", "--height", "0.05", "--speed", "40")
+LAYER = (*SIZES, "--whirl-speed", "30", "--whirl-amplitude", "1e-5")
 
 
 @pytest.fixture
@@ -27,21 +42,30 @@ def folder(tmp_path: Path) -> Path:
         'scene = "horizontal_rig.toml"\nmethod = "random"\nsamples = 8\nseed = 1\n'
         '[vary]\n"rotor.mass" = { uniform = [3.0, 5.0] }\n'
     )
+    # Settings that libraries look for in the current folder.
+    (work / ".numba_config.yaml").write_text("cache_dir: planted\n")
+    (work / "matplotlibrc").write_text("animation.ffmpeg_path: ./planted.sh\n")
+    (work / "planted.sh").write_text("#!/bin/sh\ntouch planted\n")
+    (work / "planted.sh").chmod(0o755)
     imported = "".join(f"import {name}\n" for name in NAMES if name != "study")
     (work / "own.py").write_text(f"# %%\n{imported}")
     return work
 
 
-def leblanc(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """The command as it is installed: a script in a folder of its own, run from the folder of work."""
+def leblanc(folder: Path, *arguments: str, module: bool = False) -> subprocess.CompletedProcess[str]:
+    """The command as it is installed: a script in a folder of its own, run from the folder of work.
+
+    With `module` it is `python -m leblanc`, for which Python itself puts the current folder first.
+    """
     script = folder.parent / "bin" / "leblanc"
     script.parent.mkdir(exist_ok=True)
     script.write_text(
         "import sys\nfrom leblanc.cli import main\n\nif __name__ == '__main__':\n    sys.exit(main())\n"
     )
-    environment = {key: value for key, value in os.environ.items() if key != "PYTHONSAFEPATH"}
+    own = ("PYTHONSAFEPATH", "NUMBA_CACHE_DIR")
+    environment = {key: value for key, value in os.environ.items() if key not in own}
     return subprocess.run(
-        [sys.executable, str(script), *arguments],
+        [sys.executable, *(["-m", "leblanc"] if module else [str(script)]), *arguments],
         cwd=folder,
         env=environment | {"PYTHONPATH": str(ROOT)},
         capture_output=True,
@@ -54,6 +78,7 @@ def leblanc(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     "arguments",
     [
         ("run", "horizontal_rig.toml"),
+        ("layer", *LAYER, "--cells", "16", "--model", "long_wave", "--animate", "layer.mp4"),
         ("sweep", "sweep.toml", "--workers", "2"),
         ("trade", "vibratory_table.toml", "--quick", "--repeats", "2"),
         ("validate", "vector_model"),
@@ -66,5 +91,16 @@ def test_modules_of_the_current_folder_are_not_taken(folder: Path, arguments: tu
         for name in ("jupytext", "nbclient", "nbconvert", "ipykernel"):
             pytest.importorskip(name)
     done = leblanc(folder, *arguments)
+    # Without an ffmpeg of the system there is no .mp4, and least of all by one that lies about.
+    wanted = 2 if "layer.mp4" in arguments and shutil.which("ffmpeg") is None else 0
+    assert done.returncode == wanted, done.stderr
+    assert "was taken" not in done.stdout + done.stderr
+    assert not (folder / "planted").exists()
+
+
+def test_nor_are_they_by_the_name_of_the_package(folder: Path) -> None:
+    """Of modules that Python loads before ours, such as one called leblanc, it alone can decide."""
+    (folder / "leblanc.py").unlink()
+    done = leblanc(folder, "run", "horizontal_rig.toml", module=True)
     assert done.returncode == 0, done.stderr
     assert "was taken" not in done.stdout + done.stderr

@@ -138,7 +138,15 @@ def test_json_and_files(scene_file: Path, tmp_path: Path, capsys: pytest.Capture
     for one in constraints.values():
         assert one["satisfied"] == (one["value"] <= one["limit"] * (1.0 + 1e-12))
     assert {one.name for one in tmp_path.iterdir()} == {
-        *("optimum.nc", "objective.png", "objective.svg", "front.png", "front.svg", "optimise.html")
+        *(
+            "contents.json",
+            "optimum.nc",
+            "objective.png",
+            "objective.svg",
+            "front.png",
+            "front.svg",
+            "optimise.html",
+        )
     }
     with h5py.File(tmp_path / "optimum.nc") as file:
         judged = file["objective"][...]

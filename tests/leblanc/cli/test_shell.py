@@ -179,12 +179,62 @@ def test_a_mistake_of_the_program_is_not_hidden() -> None:
         exit_code(lambda: 1 / 0)
 
 
+class Package:
+    """An installed package with these entry points; None if its description is damaged."""
+
+    def __init__(self, entries: list[EntryPoint] | None) -> None:
+        self.entries = entries
+
+    @property
+    def entry_points(self) -> list[EntryPoint]:
+        if self.entries is None:
+            raise TypeError("Pair.__new__() missing 1 required positional argument: 'value'")
+        return self.entries
+
+
+def announce(monkeypatch: pytest.MonkeyPatch, *packages: list[EntryPoint] | None) -> None:
+    """Let these be the installed packages."""
+    monkeypatch.setattr(cli, "distributions", lambda: [Package(entries) for entries in packages])
+
+
+def test_broken_packages_do_not_end_the_others(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture
+) -> None:
+    (tmp_path / "plugs.py").write_text(
+        "def odd(it: 'nosuch') -> None: ...\n"
+        "def good() -> None: print('well')\n"
+        "def __getattr__(name):\n"
+        "    raise {'ends': SystemExit(7), 'fails': ZeroDivisionError('line\\nbreak')}[name]\n",
+        encoding="utf-8",
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    names = ("good", "odd", "ends", "fails")
+    plugs = [EntryPoint(name, f"plugs:{name}", "leblanc.commands") for name in names]
+    taken = EntryPoint("run", "plugs:fails", "leblanc.commands")
+    announce(monkeypatch, None, [*plugs, taken], [EntryPoint("good", "plugs:fails", "leblanc.commands")])
+
+    assert main(["--help"]) == 0
+    printed = capsys.readouterr()
+    assert printed.out.count("Not available.") == 3
+    (line,) = printed.err.splitlines()
+    assert "entry points of a package cannot be read" in line
+
+    assert main(["good"]) == 0
+    assert capsys.readouterr().out == "well\n"
+    for name in names[1:]:
+        assert main([name]) == 2
+        *_, last = capsys.readouterr().err.splitlines()
+        assert f"plugs:{name} cannot be loaded" in last
+    assert main(["run", "nosuch.toml"]) == 2
+    assert "nosuch.toml" in capsys.readouterr().err
+
+
 def test_a_command_of_another_package(monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
     entries = [
         EntryPoint("measure", "leblanc.cli.new:new", "leblanc.commands"),
         EntryPoint("broken", "no_such_package.command:broken", "leblanc.commands"),
     ]
-    monkeypatch.setattr(cli, "entry_points", lambda **_: entries)
+    announce(monkeypatch, entries)
     assert main(["--help"]) == 0
     assert "measure" in capsys.readouterr().out
     assert main(["broken", "anything", "--at-all"]) == 2

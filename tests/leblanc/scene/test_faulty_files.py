@@ -9,6 +9,7 @@ import pytest
 
 from leblanc.cli import main
 from leblanc.scene.scene import load_scene
+from leblanc.scene.schema import load
 from leblanc.scene.schema.load import MAX_BYTES, SceneError
 from tests.leblanc.scene.test_faulty_scenes import CHAMBER, GOOD, shell
 
@@ -33,6 +34,8 @@ FILES = {
     "zeros": (bytes(100), "valid TOML", "line 1"),
     "too many digits": (b"name = " + b"1" * 5000, "valid TOML", "digits"),
     "deep brackets": (b"name = " + b"[" * 100_000, "less deeply nested"),
+    "a key of a million parts": (b"a" + b".a" * 1_000_000 + b" = 1", "at most 30 parts; one at line 1"),
+    "a table of a million parts": (b"\n[a" + b".'a'" * 1_000_000 + b"]", "at most 30 parts; one at line 2"),
     "too long": (b"#" * (MAX_BYTES + 1), "at most 10 MB"),
 }
 
@@ -75,7 +78,7 @@ def test_a_file_that_may_not_be_read(
         def refuse(*_: object) -> None:
             raise PermissionError(13, "Permission denied", str(path))
 
-        monkeypatch.setattr(Path, "open", refuse)
+        monkeypatch.setattr(load, "open_regular", refuse)
     assert shell(path, capsys) == f"{path}: must be a file that can be read: Permission denied\n"
 
 
@@ -175,3 +178,31 @@ def test_names_and_values_stay_on_their_line(tmp_path: Path, capsys: pytest.Capt
     printed = shell(path, capsys)
     assert len(printed.splitlines()) == 3  # the mass, the count that is missing, the key that is not known
     assert all(line.isprintable() for line in printed.splitlines())
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs pipes with names")
+@pytest.mark.parametrize("what", ["pipe", "device", "loop"])
+def test_what_never_ends_is_not_read(what: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "scene.toml"
+    if what == "pipe":
+        os.mkfifo(path)
+    else:
+        path.symlink_to("/dev/zero" if what == "device" else path.name)
+    for command in ("run", "sweep"):
+        assert main([command, str(path)]) == 2
+        (said,) = capsys.readouterr().err.splitlines()
+        assert said.startswith(f"{path}: must be a file that can be read: ")
+
+
+def test_dots_within_values_are_no_keys(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text(f'source = "{"a. " * 100}{"." * 100}"\n{GOOD}', encoding="utf-8")
+    assert load_scene(path).source.startswith("a. a. ")
+
+
+def test_only_some_of_a_million_faults_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text("".join(f"k{k} = 1\n" for k in range(20_000)) + GOOD, encoding="utf-8")
+    said = shell(path, capsys).splitlines()
+    assert len(said) == 101
+    assert said[-1] == f"{path}: must be free of 19900 more faults"

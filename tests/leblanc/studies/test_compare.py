@@ -100,6 +100,7 @@ def test_the_command_writes_what_it_prints(tmp_path: Path, capsys: Capture) -> N
         "compare.nc",
         "compare.png",
         "compare.svg",
+        "contents.json",
     }
     assert main(command) == 0
     printed = capsys.readouterr().out

@@ -15,8 +15,10 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from http.client import HTTPConnection
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
@@ -146,7 +148,7 @@ def test_the_slider_moves_the_liquid() -> None:
         )
 
         # Nothing is asked for elsewhere, and nothing goes wrong on the page.
-        own = (address, "blob:", "data:", "about:")
+        own = (address.partition("?")[0], "blob:", "data:", "about:")
         assert all(one.startswith(own) for one in tab.requests()), tab.requests()
         assert not [one for one in tab.complaints() if "exception" in one.lower()]
 
@@ -173,6 +175,53 @@ def test_a_page_without_a_server(tmp_path: Path) -> None:
         wait_for(drawn, "blue liquid")
         assert "dry in part" in tab.value("document.querySelector('#words').textContent")
         assert all(one.startswith(("file:", "blob:")) for one in tab.requests()), tab.requests()
+
+
+def status(address: str, **headers: str) -> tuple[int, dict[str, str]]:
+    """Status and headers of the answer to one request, redirections not followed."""
+    place = urlsplit(address)
+    connection = HTTPConnection("localhost", place.port, timeout=PATIENCE)
+    try:
+        connection.request("GET", f"{place.path}?{place.query}".rstrip("?"), headers=headers)
+        answer = connection.getresponse()
+        return answer.status, dict(answer.getheaders())
+    finally:
+        connection.close()
+
+
+def test_who_has_no_token_sees_nothing() -> None:
+    try:
+        prepare_off_screen()
+    except InputError as error:
+        pytest.skip(str(error))
+    upgrade = {
+        "Connection": "Upgrade",
+        "Upgrade": "websocket",
+        "Sec-WebSocket-Version": "13",
+        "Sec-WebSocket-Key": base64.b64encode(bytes(16)).decode(),
+    }
+    with served() as (address, _):
+        page, _, token = address.partition("?token=")
+        socket = f"{page}ws"
+        assert len(token) >= 32
+        for asked in (page, f"{page}index.html", socket, f"{page}?token=", f"{page}?token={token[:-1]}"):
+            assert status(asked)[0] == 403, asked
+        assert status(socket, **upgrade)[0] == 403
+
+        code, headers = status(address)
+        assert (code, headers["Location"]) == (302, "/index.html")
+        assert {"HttpOnly", "SameSite=Lax"} <= set(headers["Set-Cookie"].split("; "))
+        cookie = headers["Set-Cookie"].partition(";")[0]
+        own = page.rstrip("/")
+        assert status(f"{page}index.html", Cookie=cookie)[0] == 200
+        assert status(socket, Cookie=cookie, Origin=own, **upgrade)[0] == 101
+
+        # With the token, but from another page, or by a name that came to mean this machine.
+        assert status(socket, Cookie=cookie, Origin="http://evil.example", **upgrade)[0] == 403
+        assert status(socket, Cookie=cookie, Origin="null", **upgrade)[0] == 403
+        port = urlsplit(page).port
+        for host in (f"evil.example:{port}", f"localhost.evil.example:{port}", "[", ""):
+            assert status(f"{page}index.html", Cookie=cookie, Host=host)[0] in (400, 403), host
 
 
 def test_ctrl_c_ends_the_page_quietly() -> None:
