@@ -26,8 +26,8 @@ def compare(
     from leblanc.studies.compare import compare_models
 
     machine = load_scene(scene)
+    folder = out_dir(machine.name, out, "compare.nc")
     found = compare_models(machine, [name.strip() for name in models.split(",")])
-    folder = out_dir(machine.name, out)
 
     from leblanc.figures.comparison import comparison_figure, save
     from leblanc.results.netcdf import write_netcdf

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from leblanc.cli.output import print_json, say
-from leblanc.files import out_dir
+from leblanc.files import out_dir, require_writable
 
 if TYPE_CHECKING:
     from leblanc.questions import LayerQuestion
@@ -57,13 +57,19 @@ def layer(
     from leblanc.studies.layer import answer_layer, layer_history
 
     question = ask(layer_question, given)
+    folder = None if out is None or question.duration is not None else out_dir("layer", out)
+    if animate is not None:
+        from leblanc.figures.page import require_film
+
+        require_film(animate)
+        require_writable(animate)
     result: LayerResult | LayerPeriodsResult
     if question.duration is not None:
         result = layer_history(**question.whirl, duration=question.duration, ramp=question.ramp)
     else:
         result = answer_layer(**question.whirl)
-        if out is not None:
-            _draw(result, out_dir("layer", out))
+        if folder is not None:
+            _draw(result, folder)
     if animate is not None:
         _film(question, animate)
     shown = result.to_json(profile)

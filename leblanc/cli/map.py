@@ -35,6 +35,7 @@ def map(
     machine = load_scene(scene)
     law = None if friction is None else parse_friction(friction, "--friction")
     most = None if max_volume is None else parse_option(max_volume, VOLUME, "--max-volume")
+    folder = out_dir(machine.name, out, "map.nc", "map.html")
 
     from rich.progress import Progress
 
@@ -46,7 +47,6 @@ def map(
             *(machine, volumes, speeds, most, law),
             progress=lambda done, total: bar.update(task, completed=done, total=total),
         )
-    folder = out_dir(machine.name, out)
 
     from leblanc.figures.whirl_map import map_figure, save
     from leblanc.report.page import about, command_line

@@ -52,6 +52,7 @@ def modes(
     from leblanc.text.liquid import modes_table
 
     question = ask(modes_question, given)
+    folder = None if out is None else out_dir("modes", out)
     result = answer_modes(**question)
     if json:
         print_json(result.to_json())
@@ -61,8 +62,8 @@ def modes(
         print(f"force ratio of a synchronous whirl {result.synchronous_force_ratio:.6g}")
         for note in result.notes:
             print(f"note: {note.text}")
-    if out is not None:
-        _draw(result, out_dir("modes", out))
+    if folder is not None:
+        _draw(result, folder)
     if not result.converged:
         reason = "the eigenproblem was not solved to rounding; a coarser mesh may help"
         raise NotConverged([f"leblanc modes: {reason}"])

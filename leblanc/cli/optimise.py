@@ -53,7 +53,7 @@ def optimise(
 
     machine = load_scene(scene)
     task = optimisation_of(machine, objective, deflection, limit, steady, seed)
-    folder = out_dir(machine.name, out)
+    folder = out_dir(machine.name, out, "optimum.nc", "optimise.html")
     result = _run(machine, task, not no_front, emulator)
 
     from leblanc.figures.optimise import write_figures

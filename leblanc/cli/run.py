@@ -25,9 +25,10 @@ def run(
     from leblanc.scene.scene import load_scene
 
     machine = load_scene(scene)
-    folder = out_dir(machine.name, out)
+    exciter = machine.rotor.kind == "exciter"
+    folder = out_dir(machine.name, out, "summary.html", *([] if exciter else ["response.nc"]))
 
-    if machine.rotor.kind == "exciter":
+    if exciter:
         _run_exciter(machine, scene, folder, json)
         return
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from leblanc.cli.output import print_json, say
-from leblanc.files import out_dir
+from leblanc.files import out_dir, require_writable
 
 if TYPE_CHECKING:
     from leblanc.results.runup import RunupResult
@@ -47,7 +47,8 @@ def runup(
 
         require_film(animate)
         require_layers(machine)
-    folder = out_dir(machine.name, out)
+        require_writable(animate)
+    folder = out_dir(machine.name, out, "runup.nc", "runup.html")
     result = _run(machine, cells, samples, not no_check, animate is not None)
 
     from leblanc.figures.runup import write_figures

@@ -44,7 +44,7 @@ def sweep(
     from leblanc.studies.sweep.study import load_sweep
 
     plan = load_sweep(study)
-    folder = out_dir(plan.name, out)
+    folder = out_dir(plan.name, out, *(["sweep.nc"] if netcdf else []))
     note = sampling_note(plan)
     if note is not None:
         say(f"{plan.name}: {note}")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from leblanc.cli.output import print_json, say
-from leblanc.files import out_dir
+from leblanc.files import out_dir, require_writable
 
 if TYPE_CHECKING:
     from leblanc.results.drawn import ModeView
@@ -62,6 +62,8 @@ def view(
     if browser:
         _serve(machine, spin, factor, host, port)
         return
+    if not window:
+        screenshot = _target(machine, screenshot, animate, out)
     wave = None if mode is None else _mode(machine, mode, spin, chamber)
     picture, numbers = _still(machine, spin, factor) if wave is None else _of_mode(wave)
     if window:
@@ -69,7 +71,7 @@ def view(
 
         open_window(picture)
         return
-    made = _files(machine, picture, wave, screenshot, animate, frames, factor, out)
+    made = _files(machine, picture, wave, screenshot, animate, frames, factor)
     if json:
         print_json({"scene": machine.name} | numbers | made)
     else:
@@ -116,6 +118,17 @@ def _check_choices(
         raise InputError("--port", port, "from 0 to 65535")
 
 
+def _target(machine: Scene, screenshot: Path | None, animate: Path | None, out: Path | None) -> Path | None:
+    """Where the picture goes, if there is one; whatever is to be written is tried."""
+    if screenshot is None and animate is None:
+        screenshot = out_dir(machine.name, out) / "view.png"
+    if screenshot is not None:
+        require_writable(screenshot)
+    if animate is not None:
+        require_writable(animate if animate.suffix else animate / "frame_0001.png")
+    return screenshot
+
+
 def _mode(machine: Scene, number: int, speed: float | None, chamber: int) -> ModeView:
     """A sloshing mode as drawn."""
     from leblanc.studies.shapes.machine import mode_view
@@ -153,16 +166,14 @@ def _files(
     animate: Path | None,
     frames: int | None,
     factor: float | None,
-    out: Path | None,
 ) -> dict[str, Path | None]:
-    """Write what the options name; without any a picture in the folder."""
+    """Write what the options name."""
     from leblanc.view.files import write_picture
 
     made: dict[str, Path | None] = {"screenshot": None, "animation": None}
-    if screenshot is not None or animate is None:
-        path = screenshot or out_dir(machine.name, out) / "view.png"
-        write_picture(picture, path)
-        made["screenshot"] = path
+    if screenshot is not None:
+        write_picture(picture, screenshot)
+        made["screenshot"] = screenshot
     if animate is not None:
         made["animation"] = animate
         _film(machine, wave, animate, frames, factor)

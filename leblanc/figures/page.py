@@ -257,11 +257,15 @@ def require_film(path: Path) -> str:
 
     Raises
     ------
-    InputError : it is neither .gif nor .mp4
+    InputError : it is neither .gif nor .mp4; an .mp4 without an ffmpeg
     """
+    from matplotlib.animation import FFMpegWriter
+
     kind = path.suffix.lower()
     if kind not in (".gif", ".mp4"):
         raise InputError("--animate", str(path), "a file that ends in .gif or .mp4")
+    if kind == ".mp4" and not FFMpegWriter.isAvailable():
+        raise InputError("--animate", str(path), "a .gif, since no ffmpeg was found to write an .mp4")
     return kind
 
 
@@ -293,8 +297,6 @@ def write_film(
     from matplotlib.animation import FFMpegWriter, PillowWriter
 
     kind = require_film(path)
-    if kind == ".mp4" and not FFMpegWriter.isAvailable():
-        raise InputError("--animate", str(path), "a .gif, since no ffmpeg was found to write an .mp4")
     player = matplotlib.rcParams["animation.ffmpeg_path"]
     with style(), writing(path) as part, TemporaryDirectory() as folder:
         matplotlib.rcParams["animation.ffmpeg_path"] = player

@@ -25,7 +25,7 @@ def trade(
     from leblanc.scene.scene import load_scene
 
     machine = load_scene(scene)
-    folder = out_dir(machine.name, out)
+    folder = out_dir(machine.name, out, "trade.json")
 
     from rich.progress import Progress
 
