@@ -148,7 +148,7 @@ def write_netcdf(found: NamedArrays, path: Path) -> None:
 
 
 def _content(found: NamedArrays) -> bytes:
-    """The file in memory: where a disk is full, HDF5 does not come back from closing one that stands there."""
+    """The file, in memory: on a full disk HDF5 does not come back from closing a file."""
     import h5netcdf
     import h5py
 
