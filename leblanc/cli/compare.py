@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from leblanc.cli.output import print_json, print_table, say
+from leblanc.cli.progress import working
 from leblanc.files import out_dir
 
 
@@ -27,7 +28,8 @@ def compare(
 
     machine = load_scene(scene)
     folder = out_dir(machine.name, out, "compare.nc")
-    found = compare_models(machine, [name.strip() for name in models.split(",")])
+    with working("response by several models"):
+        found = compare_models(machine, [name.strip() for name in models.split(",")])
 
     from leblanc.figures.comparison import comparison_figure, save
     from leblanc.results.netcdf import write_netcdf

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from leblanc.cli.output import print_json, say
+from leblanc.cli.progress import working
 from leblanc.files import out_dir
 
 if TYPE_CHECKING:
@@ -53,7 +54,8 @@ def modes(
 
     question = ask(modes_question, given)
     folder = None if out is None else out_dir("modes", out)
-    result = answer_modes(**question)
+    with working("waves by finite elements") as update:
+        result = answer_modes(**question, progress=lambda what: update(what=what))
     if json:
         print_json(result.to_json())
     else:

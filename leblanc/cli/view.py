@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from leblanc.cli.output import print_json, say
+from leblanc.cli.progress import working
 from leblanc.files import out_dir, require_writable
 
 if TYPE_CHECKING:
@@ -65,7 +65,8 @@ def view(
     if not window:
         screenshot = _target(machine, screenshot, animate, out)
     wave = None if mode is None else _mode(machine, mode, spin, chamber)
-    picture, numbers = _still(machine, spin, factor) if wave is None else _of_mode(wave)
+    with working("solving"):
+        picture, numbers = _still(machine, spin, factor) if wave is None else _of_mode(wave)
     if window:
         from leblanc.view.files import open_window
 
@@ -184,22 +185,19 @@ def _film(
     machine: Scene, wave: ModeView | None, path: Path, frames: int | None, factor: float | None
 ) -> None:
     """Write a film, with a bar on a terminal."""
-    from rich.progress import Progress
-
     from leblanc.view.film import FRAMES, require_frames, write_film
 
     if wave is None:
         require_frames(frames or FRAMES)
-    with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
-        task = bar.add_task("solving", total=1.0)
+    with working("solving") as update:
         if wave is not None:
             from leblanc.view.film import ROUND, mode_film
 
             film = mode_film(wave, frames or ROUND)
         else:
-            film = _film_of(machine, frames or FRAMES, factor, lambda done: bar.update(task, completed=done))
-        bar.update(task, description="drawing", completed=0.0)
-        count = write_film(film, path, lambda done, total: bar.update(task, completed=done / total))
+            film = _film_of(machine, frames or FRAMES, factor, lambda done: update(done, 1.0))
+        update(0.0, film.count, "drawing")
+        count = write_film(film, path, update)
     say(f"wrote {path}, {count} frames")
 
 
