@@ -138,7 +138,7 @@ def recording(command: str) -> Iterator[Record]:
         _RECORD.reset(token)
 
 
-def results_dir(name: str, out: Path | None, source: Path, state: str) -> Path:
+def results_dir(name: str, out: Path | None, source: Path, state: str, *files: str) -> Path:
     """Folder for what a command makes of a scene, as `leblanc.files.out_dir`.
 
     Parameters
@@ -146,13 +146,14 @@ def results_dir(name: str, out: Path | None, source: Path, state: str) -> Path:
     name, out : as there
     source : the scene or study file
     state : fingerprint of the scene
+    files : names of files that will be written there, tried before the work
 
     Raises
     ------
     InputError : `out` is not given, and the folder holds what another scene gave, whose file is still there
     OSError : the folder cannot be made or written
     """
-    folder = out_dir(name, out)
+    folder = out_dir(name, out, *files)
     other = _read(folder).get("scene")
     if out is None and isinstance(other, str) and other != _seen_from(folder, source):
         file = _file(folder, other)

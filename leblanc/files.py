@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import tempfile
@@ -18,13 +19,14 @@ _LONGEST_NAME = 200  # bytes; file systems allow 255
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)  # on Windows
 
 
-def out_dir(scene_name: str, out: Path | None) -> Path:
+def out_dir(scene_name: str, out: Path | None, *names: str) -> Path:
     """Folder for the files of a command, made if need be and tried for writing.
 
     Parameters
     ----------
     scene_name : names the folder out/<scene name> where the user chose none
     out : the user's choice
+    names : of files that will be written there, tried as well
 
     Raises
     ------
@@ -39,7 +41,39 @@ def out_dir(scene_name: str, out: Path | None) -> Path:
         if out is None:
             error.strerror = f"{error.strerror}; --out DIR chooses another folder"
         raise
+    for name in names:
+        require_writable(folder / name)
     return folder
+
+
+def require_writable(path: Path) -> None:
+    """Raise unless a file can be written or replaced there: better now than after the work.
+
+    Parameters
+    ----------
+    path : of the file; its folder is made if it is missing
+
+    Raises
+    ------
+    OSError : it cannot be written, or is one that its owner has protected; carries the path
+    """
+    with _naming(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        _require_free(path)
+        with tempfile.TemporaryFile(dir=path.parent):
+            pass
+
+
+def _require_free(path: Path) -> None:
+    """Raise where a name is too long, or stands for a folder or a protected file."""
+    try:
+        path.lstat()
+    except FileNotFoundError:
+        return
+    if path.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    if not os.access(path, os.W_OK) and path.exists():
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
 
 
 def safe_name(name: str) -> str:
@@ -86,12 +120,15 @@ def writing(path: Path) -> Iterator[Path]:
     ------
     OSError : it cannot be written; carries the path
     """
-    part = path.with_name(f".{path.stem[:100]}.{os.getpid()}.part{path.suffix}")
+    stem, suffix = path.stem.encode()[:100].decode(errors="ignore"), path.suffix
+    # The ending tells libraries what to write; one as long as a name is none that they know.
+    part = path.with_name(f".{stem}.{os.getpid()}.part{suffix if len(suffix) < 20 else ''}")
     remove = partial(part.unlink, missing_ok=True)
     at_forced_end.append(remove)
     try:
         with _naming(path):
             path.parent.mkdir(parents=True, exist_ok=True)
+            _require_free(path)
             yield part
             part.replace(path)
         for watch in _WATCHES.get():

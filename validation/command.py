@@ -25,8 +25,10 @@ def validate(
 ) -> None:
     """Published cases beside what the package computes."""
     from leblanc.cli.output import print_json
+    from leblanc.cli.progress import working
 
-    found = all_cases(case)
+    with working("cases") as update:
+        found = all_cases(case, update)
     if json:
         print_json({"cases": [result.record() for result in found]})
         return
@@ -44,8 +46,15 @@ def validate(
 _VERDICTS = ("agrees", "erratum", "trend", "differs")
 
 
-def all_cases(group: str | None = None) -> list[Case]:
+def all_cases(
+    group: str | None = None, progress: Callable[[int, int, str], object] = lambda *_: None
+) -> list[Case]:
     """Cases of one group, or of all.
+
+    Parameters
+    ----------
+    group : its name; all if None
+    progress : called with the number of groups done and of all, and the name of the next
 
     Raises
     ------
@@ -56,7 +65,11 @@ def all_cases(group: str | None = None) -> list[Case]:
     if group is not None and group not in GROUPS:
         raise InputError("case", group, "one of " + ", ".join(GROUPS))
     chosen = GROUPS if group is None else (group,)
-    return [case for name in chosen for case in _group(name)()]
+    found: list[Case] = []
+    for done, name in enumerate(chosen):
+        progress(done, len(chosen), name.replace("_", " "))
+        found += _group(name)()
+    return found
 
 
 def _group(name: str) -> Callable[[], list[Case]]:

@@ -158,8 +158,12 @@ def _write(book: Any, stem: str, out: Path) -> None:
     import nbformat
     from nbconvert import HTMLExporter
 
+    from leblanc.files import writing
+
     out.mkdir(parents=True, exist_ok=True)
-    nbformat.write(book, out / f"{stem}.ipynb")
+    with writing(out / f"{stem}.ipynb") as part:
+        nbformat.write(book, part)
     page, _ = HTMLExporter().from_notebook_node(book, {"metadata": {"name": stem}})
     page = page.replace("</head>", _PRINT, 1)
-    (out / f"{stem}.html").write_text(page, encoding="utf-8")
+    with writing(out / f"{stem}.html") as part:
+        part.write_text(page, encoding="utf-8")

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from leblanc.cli.output import load, print_json, print_table, say
+from leblanc.cli.progress import working
 from leblanc.contents import results_dir
 
 
@@ -25,8 +26,9 @@ def compare(
     from leblanc.studies.compare import compare_models
 
     machine = load(scene)
-    found = compare_models(machine, [name.strip() for name in models.split(",")])
-    folder = results_dir(machine.name, out, scene, machine.digest)
+    folder = results_dir(machine.name, out, scene, machine.digest, "compare.nc")
+    with working("response by several models"):
+        found = compare_models(machine, [name.strip() for name in models.split(",")])
 
     from leblanc.figures.comparison import comparison_figure, save
     from leblanc.results.netcdf import write_netcdf

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from leblanc.cli.output import print_json, print_table, say
-from leblanc.files import out_dir
+from leblanc.cli.progress import working
+from leblanc.files import out_dir, require_writable
 
 if TYPE_CHECKING:
     from leblanc.questions import LayerQuestion
@@ -57,13 +57,20 @@ def layer(
     from leblanc.studies.layer import answer_layer, layer_history
 
     question = ask(layer_question, given)
+    folder = None if out is None or question.duration is not None else out_dir("layer", out)
+    if animate is not None:
+        from leblanc.figures.page import require_film
+
+        require_film(animate)
+        require_writable(animate)
     result: LayerResult | LayerPeriodsResult
-    if question.duration is not None:
-        result = layer_history(**question.whirl, duration=question.duration, ramp=question.ramp)
-    else:
-        result = answer_layer(**question.whirl)
-        if out is not None:
-            _draw(result, out_dir("layer", out))
+    with working("waves under the whirl"):
+        if question.duration is not None:
+            result = layer_history(**question.whirl, duration=question.duration, ramp=question.ramp)
+        else:
+            result = answer_layer(**question.whirl)
+            if folder is not None:
+                _draw(result, folder)
     if animate is not None:
         _film(question, animate)
     shown = result.to_json(profile)
@@ -128,13 +135,11 @@ def _draw(result: LayerResult, folder: Path) -> None:
 
 def _film(question: LayerQuestion, path: Path) -> None:
     """The wave in the drum frame: long_wave from rest, by default six whirl periods; others two, steady."""
-    from rich.progress import Progress
-
     from leblanc.figures.wave import animate
     from leblanc.studies.layer import layer_film
 
-    wave, film = layer_film(**question.whirl, duration=question.duration, ramp=question.ramp)
-    with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
-        task = bar.add_task("drawing", total=None)
-        frames = animate(wave, film, path, lambda done, total: bar.update(task, completed=done, total=total))
+    with working("waves through time") as update:
+        wave, film = layer_film(**question.whirl, duration=question.duration, ramp=question.ramp)
+        update(what="drawing")
+        frames = animate(wave, film, path, update)
     say(f"wrote {path}, {frames} frames")

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from leblanc.cli.output import load, print_json, print_table, say
+from leblanc.cli.progress import working
 from leblanc.contents import results_dir
 
 
@@ -34,18 +34,15 @@ def map(
     machine = load(scene)
     law = None if friction is None else parse_friction(friction, "--friction")
     most = None if max_volume is None else parse_option(max_volume, VOLUME, "--max-volume")
+    folder = results_dir(machine.name, out, scene, machine.digest, "map.nc", "map.html")
 
-    from rich.progress import Progress
+    with working("preparing") as update:
+        from leblanc.studies.whirl_map import map_scene
 
-    from leblanc.studies.whirl_map import map_scene
+        def progress(done: int, total: int) -> None:
+            update(done, total, "volumes" if done < total else "edges of the bands")
 
-    with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
-        task = bar.add_task("volumes", total=None)
-        found = map_scene(
-            *(machine, volumes, speeds, most, law),
-            progress=lambda done, total: bar.update(task, completed=done, total=total),
-        )
-    folder = results_dir(machine.name, out, scene, machine.digest)
+        found = map_scene(machine, volumes, speeds, most, law, progress)
 
     from leblanc.figures.whirl_map import map_figure, save
     from leblanc.report.page import about, command_line

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from leblanc.cli.output import print_json, say
+from leblanc.cli.progress import working
 from leblanc.files import out_dir
 
 if TYPE_CHECKING:
@@ -53,7 +54,9 @@ def modes(
     from leblanc.units import LENGTH, with_unit
 
     question = ask(modes_question, given)
-    result = answer_modes(**question)
+    folder = None if out is None else out_dir("modes", out)
+    with working("waves by finite elements") as update:
+        result = answer_modes(**question, progress=lambda what: update(what=what))
     if json:
         print_json(result.to_json())
     else:
@@ -62,8 +65,8 @@ def modes(
         print(f"force ratio of a synchronous whirl {result.synchronous_force_ratio:.6g}")
         for note in result.notes:
             print(f"note: {note.text}")
-    if out is not None:
-        _draw(result, out_dir("modes", out))
+    if folder is not None:
+        _draw(result, folder)
     if not result.converged:
         reason = "the eigenproblem was not solved to rounding; a coarser mesh may help"
         raise NotConverged([f"leblanc modes: {reason}"])

@@ -52,7 +52,7 @@ def optimise(
 
     machine = load(scene)
     task = optimisation_of(machine, objective, deflection, limit, steady, seed)
-    folder = results_dir(machine.name, out, scene, machine.digest)
+    folder = results_dir(machine.name, out, scene, machine.digest, "optimum.nc", "optimise.html")
     result = _run(machine, task, not no_front, emulator)
 
     from leblanc.figures.optimise import write_figures

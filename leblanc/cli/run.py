@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from leblanc.cli.output import load, print_json, print_table, say
+from leblanc.cli.progress import working
 from leblanc.contents import results_dir
 
 if TYPE_CHECKING:
@@ -24,15 +25,18 @@ def run(
     """Answer of the machine at each speed. Figures, data file, report."""
 
     machine = load(scene)
-    folder = results_dir(machine.name, out, scene, machine.digest)
+    exciter = machine.rotor.kind == "exciter"
+    files = ["summary.html", *([] if exciter else ["response.nc"])]
+    folder = results_dir(machine.name, out, scene, machine.digest, *files)
 
-    if machine.rotor.kind == "exciter":
+    if exciter:
         _run_exciter(machine, scene, folder, json)
         return
 
-    from leblanc.studies.run import run_scene
+    with working("preparing") as update:
+        from leblanc.studies.run import run_scene
 
-    result = run_scene(machine)
+        result = run_scene(machine, lambda what: update(what=what))
 
     from leblanc.figures.response import write_figures
     from leblanc.report.page import about, command_line
@@ -77,7 +81,8 @@ def _run_exciter(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
     from leblanc.studies.exciter import run_exciter
     from leblanc.text.exciter import limits, lines
 
-    result = run_exciter(machine)
+    with working("motion in time"):
+        result = run_exciter(machine)
     figure = write_exciter_figure(result, folder)
     what = about(machine, command_line("run", scene), unused=("model", "runup", "optimise"))
     write_exciter_report(result, what, figure, folder / "summary.html")

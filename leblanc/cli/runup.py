@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from leblanc.cli.output import load, print_json, print_table, say
+from leblanc.cli.progress import working
 from leblanc.contents import results_dir
+from leblanc.files import require_writable
 
 if TYPE_CHECKING:
     from leblanc.results.runup import RunupResult
@@ -46,7 +47,8 @@ def runup(
 
         require_film(animate)
         require_layers(machine)
-    folder = results_dir(machine.name, out, scene, machine.digest)
+        require_writable(animate)
+    folder = results_dir(machine.name, out, scene, machine.digest, "runup.nc", "runup.html")
     result = _run(machine, cells, samples, not no_check, animate is not None)
 
     from leblanc.figures.runup import write_figures
@@ -71,30 +73,20 @@ def runup(
 
 def _run(machine: Scene, cells: int | None, samples: int | None, check: bool, film: bool) -> RunupResult:
     """The run itself, with a bar on a terminal."""
-    from rich.progress import Progress
+    with working("running up") as update:
+        from leblanc.studies.runup import FRAMES, runup_scene
 
-    from leblanc.studies.runup import FRAMES, runup_scene
-
-    frames = FRAMES if film else None
-    with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
-        task = bar.add_task("running up", total=1.0)
-        return runup_scene(
-            machine, cells, samples, check, lambda done: bar.update(task, completed=done), frames
-        )
+        frames = FRAMES if film else None
+        return runup_scene(machine, cells, samples, check, lambda done: update(done, 1.0), frames)
 
 
 def _film(result: RunupResult, path: Path) -> None:
     """The film of the layers that the run kept."""
-    from rich.progress import Progress
-
     from leblanc.figures.films import animate
 
     assert result.frames is not None
-    with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
-        task = bar.add_task("drawing", total=None)
-        frames = animate(
-            result, result.frames, path, lambda done, total: bar.update(task, completed=done, total=total)
-        )
+    with working("drawing") as update:
+        frames = animate(result, result.frames, path, update)
     say(f"wrote {path}, {frames} frames")
 
 

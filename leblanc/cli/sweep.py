@@ -47,7 +47,7 @@ def sweep(
     plan = load_sweep(study)
     for doubt in doubts(plan.scene, plan.table):
         say(f"{plan.scene_path}: warning: {doubt.text}")
-    folder = results_dir(plan.name, out, study, plan.scene.digest)
+    folder = results_dir(plan.name, out, study, plan.scene.digest, *(["sweep.nc"] if netcdf else []))
     note = sampling_note(plan)
     if note is not None:
         say(f"{plan.name}: {note}")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,7 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from leblanc.cli.output import load, print_json, say
+from leblanc.cli.progress import working
 from leblanc.contents import results_dir
+from leblanc.files import require_writable
 
 if TYPE_CHECKING:
     from leblanc.results.drawn import ModeView
@@ -61,14 +62,17 @@ def view(
     if browser:
         _serve(machine, spin, factor, host, port)
         return
+    if not window:
+        screenshot = _target(machine, scene, screenshot, animate, out)
     wave = None if mode is None else _mode(machine, mode, spin, chamber)
-    picture, numbers = _still(machine, spin, factor) if wave is None else _of_mode(wave)
+    with working("solving"):
+        picture, numbers = _still(machine, spin, factor) if wave is None else _of_mode(wave)
     if window:
         from leblanc.view.files import open_window
 
         open_window(picture)
         return
-    made = _files(machine, scene, picture, wave, screenshot, animate, frames, factor, out)
+    made = _files(machine, picture, wave, screenshot, animate, frames, factor)
     if json:
         print_json({"scene": machine.name} | numbers | made)
     else:
@@ -115,6 +119,19 @@ def _check_choices(
         raise InputError("--port", port, "from 0 to 65535")
 
 
+def _target(
+    machine: Scene, source: Path, screenshot: Path | None, animate: Path | None, out: Path | None
+) -> Path | None:
+    """Where the picture goes, if there is one; whatever is to be written is tried."""
+    if screenshot is None and animate is None:
+        screenshot = results_dir(machine.name, out, source, machine.digest) / "view.png"
+    if screenshot is not None:
+        require_writable(screenshot)
+    if animate is not None:
+        require_writable(animate if animate.suffix else animate / "frame_0001.png")
+    return screenshot
+
+
 def _mode(machine: Scene, number: int, speed: float | None, chamber: int) -> ModeView:
     """A sloshing mode as drawn."""
     from leblanc.studies.shapes.machine import mode_view
@@ -153,16 +170,14 @@ def _files(
     animate: Path | None,
     frames: int | None,
     factor: float | None,
-    out: Path | None,
 ) -> dict[str, Path | None]:
-    """Write what the options name; without any a picture in the folder."""
+    """Write what the options name."""
     from leblanc.view.files import write_picture
 
     made: dict[str, Path | None] = {"screenshot": None, "animation": None}
-    if screenshot is not None or animate is None:
-        path = screenshot or results_dir(machine.name, out, source, machine.digest) / "view.png"
-        write_picture(picture, path)
-        made["screenshot"] = path
+    if screenshot is not None:
+        write_picture(picture, screenshot)
+        made["screenshot"] = screenshot
     if animate is not None:
         made["animation"] = animate
         _film(machine, wave, animate, frames, factor)
@@ -173,22 +188,19 @@ def _film(
     machine: Scene, wave: ModeView | None, path: Path, frames: int | None, factor: float | None
 ) -> None:
     """Write a film, with a bar on a terminal."""
-    from rich.progress import Progress
-
     from leblanc.view.film import FRAMES, require_frames, write_film
 
     if wave is None:
         require_frames(frames or FRAMES)
-    with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
-        task = bar.add_task("solving", total=1.0)
+    with working("solving") as update:
         if wave is not None:
             from leblanc.view.film import ROUND, mode_film
 
             film = mode_film(wave, frames or ROUND)
         else:
-            film = _film_of(machine, frames or FRAMES, factor, lambda done: bar.update(task, completed=done))
-        bar.update(task, description="drawing", completed=0.0)
-        count = write_film(film, path, lambda done, total: bar.update(task, completed=done / total))
+            film = _film_of(machine, frames or FRAMES, factor, lambda done: update(done, 1.0))
+        update(0.0, film.count, "drawing")
+        count = write_film(film, path, update)
     say(f"wrote {path}, {count} frames")
 
 

@@ -283,11 +283,13 @@ def require_film(path: Path) -> str:
 
     Raises
     ------
-    InputError : it is neither .gif nor .mp4
+    InputError : it is neither .gif nor .mp4; an .mp4 without an ffmpeg
     """
     kind = path.suffix.lower()
     if kind not in (".gif", ".mp4"):
         raise InputError("--animate", str(path), "a file that ends in .gif or .mp4")
+    if kind == ".mp4" and shutil.which(_player()) is None:
+        raise InputError("--animate", str(path), "a .gif, since no ffmpeg was found to write an .mp4")
     return kind
 
 
@@ -320,8 +322,6 @@ def write_film(
 
     kind = require_film(path)
     player = _player()
-    if kind == ".mp4" and shutil.which(player) is None:
-        raise InputError("--animate", str(path), "a .gif, since no ffmpeg was found to write an .mp4")
     with style(), writing(path) as part, TemporaryDirectory() as folder:
         matplotlib.rcParams["animation.ffmpeg_path"] = player
         writer = (PillowWriter if kind == ".gif" else FFMpegWriter)(fps=rate)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -135,13 +136,24 @@ def write_netcdf(found: NamedArrays, path: Path) -> None:
     Parameters
     ----------
     found : what to write
-    path : the file to write or replace; an interrupted run leaves the old one whole
+    path : the file to write or replace; an interrupted run and a full disk leave the old one whole
+
+    Raises
+    ------
+    OSError : it cannot be written; carries the path
     """
+    content = _content(found)
+    with writing(path) as temporary:
+        temporary.write_bytes(content)
+
+
+def _content(found: NamedArrays) -> bytes:
+    """The file, in memory: on a full disk HDF5 does not come back from closing a file."""
     import h5netcdf
     import h5py
 
-    held = _held_by(found)
-    with writing(path) as temporary, h5netcdf.File(temporary, "w") as file:
+    held, memory = _held_by(found), BytesIO()
+    with h5netcdf.File(memory, "w") as file:
         file.attrs.update({**found.attrs, **held.get("", {})})
         file.dimensions = found.sizes
         for name, entry in found.arrays.items():
@@ -154,6 +166,7 @@ def write_netcdf(found: NamedArrays, path: Path) -> None:
                 fillvalue=np.nan if missing else None,
             )
             stored.attrs.update({**entry.attrs, **held.get(name, {})})
+    return memory.getvalue()
 
 
 def _held_by(found: NamedArrays) -> dict[str, dict[str, str]]:

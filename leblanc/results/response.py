@@ -451,6 +451,8 @@ def _refined_json(refined: Response | None) -> dict[str, Any]:
         return {}
     names = ("speed", "amplitude", "amplitude_dry")
     return {"refined": {name: _finite(getattr(refined, name)) for name in names}}
+
+
 def _quality_json(result: RunResult) -> dict[str, Any]:
     """Balance quality over speed."""
     if result.balance_quality is None or result.balance_quality_dry is None:
@@ -549,6 +551,8 @@ def _peak_variables(result: RunResult) -> dict[str, Variable]:
         found["refined_amplitude"] = var(over, wet, "m", "amplitude", text)
         found["refined_amplitude_dry"] = var(over, dry, "m", "amplitude", f"{text}, without liquid")
     return found
+
+
 def _quality_variables(result: RunResult) -> dict[str, Variable]:
     """Balance quality over speed."""
     if result.balance_quality is None or result.balance_quality_dry is None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -198,6 +199,7 @@ def answer_modes(
     count: int = 12,
     resolution: Resolution | None = None,
     source: SectionSource | None = None,
+    progress: Callable[[str], object] = lambda _: None,
 ) -> ModesResult:
     """Modes of the liquid in one chamber.
 
@@ -210,6 +212,7 @@ def answer_modes(
     count : how many modes
     resolution : of the mesh; with `source` the longest side at the surface, as cells around
     source : file with the section of the chamber
+    progress : called with what is done next
 
     Raises
     ------
@@ -221,15 +224,19 @@ def answer_modes(
     if not 1 <= count <= 500:
         raise InputError("--count", count, "from 1 to 500")
     fineness = resolution or Resolution()
+    progress("mesh of the liquid")
     if source is None:
         sections, notes, title = round_sections(chamber, volume, liquid, fineness)
     else:
         sections, notes, title = section_of_file(chamber, volume, fineness, source)
+    progress("waves by finite elements")
     system = condense(sections[-1])
     known = spectrum(system)
     modes = sloshing_modes(system, speed, count, known)
+    progress("damping")
     damping = mode_damping(system, modes, liquid.viscosity, chamber.height)
     size = np.abs(modes.frequency)
+    progress("the same on a coarser mesh")
     estimate = _error(condense(sections[0]), size / speed, fineness.order)
     if source is not None:
         crests = int(modes.crests.max())

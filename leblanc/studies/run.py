@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -163,12 +164,13 @@ def main_critical_speeds(
     return chosen[0], chosen[1]
 
 
-def run_scene(scene: Scene) -> RunResult:
+def run_scene(scene: Scene, progress: Callable[[str], object] = lambda _: None) -> RunResult:
     """Response to the unbalance and the liquid's centre of mass at each speed of a scene.
 
     Parameters
     ----------
     scene : the machine
+    progress : called with what is done next
 
     Returns
     -------
@@ -186,7 +188,9 @@ def run_scene(scene: Scene) -> RunResult:
     201
     """
     machine = prepare(scene)
+    progress("choosing the liquid model")
     (choice,) = choose_all([machine])
+    progress("response to the unbalance")
     motion: Motion | None = None
     if isinstance(machine.rotor, Jeffcott):
         gravity, rotor = machine.axial_gravity, machine.rotor
@@ -195,7 +199,9 @@ def run_scene(scene: Scene) -> RunResult:
         wet = critical_speed(rotor, scene.fills, gravity, synchronous_model(choice.model))
     else:
         answer, motion, (dry, wet) = motion_response(machine, choice)
+    progress("peaks between the speeds")
     (refined,) = responses_between([machine], [answer], drawn=True)
+    progress("self-excited whirl")
     whirl = self_excited(machine)
     answer = replace(
         answer, in_range=answer.in_range & choice.in_range, stable=whirl.leaves_stable(answer.stable)

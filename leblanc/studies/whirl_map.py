@@ -59,10 +59,12 @@ def map_scene(
     rotor, speed = machine.rotor, np.linspace(scene.speeds.start, scene.speeds.stop, speeds)
     rows = fills_over_volume(scene.fills, volumes, max_volume)
     parts = []
-    for first in range(0, volumes, _AT_ONCE):
-        parts.append(growth_map(rotor, rows[first : first + _AT_ONCE], speed, law))
+    # In the plane all are solved together; a rotor that tilts takes them one by one, each for a while.
+    together = _AT_ONCE if isinstance(rotor, Jeffcott) else 1
+    for first in range(0, volumes, together):
+        parts.append(growth_map(rotor, rows[first : first + together], speed, law))
         if progress is not None:
-            progress(min(first + _AT_ONCE, volumes), volumes)
+            progress(min(first + together, volumes), volumes)
     growth, whirl_speed = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
     edges = unstable_bands(rotor, rows, speed, law, growth)
     (own,) = unstable_bands(rotor, [scene.fills], speed, law)

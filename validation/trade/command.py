@@ -26,7 +26,7 @@ def trade(
     from leblanc.cli.output import load
 
     machine = load(scene)
-    folder = results_dir(machine.name, out, scene, machine.digest)
+    folder = results_dir(machine.name, out, scene, machine.digest, "trade.json")
 
     from rich.progress import Progress
 

@@ -3,6 +3,9 @@
 A block's chunks are written and brought to the disk before its part of `status`, which marks it as finished:
 whatever is killed in between, `status` never promises what is not there. Each file is written whole under
 another name and then takes its own. Nothing in the store depends on when, where or by whom it was written.
+
+Every chunk ends with its checksum (the codec crc32c), the attributes of the whole hold those of all metadata.
+A store is opened only after all of it was read: a damaged file is refused, a block that lacks one is pending.
 """
 
 from __future__ import annotations
@@ -10,10 +13,11 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import zlib
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +37,9 @@ _FEW, _MANY = 64, 4096  # samples of a block
 _BLOCKS = 50  # of a sweep, as long as they are neither too small nor too large
 _ANSWERS = 16_384  # samples times speeds of a block at most
 _UNFINISHED = "*.partial"  # what zarr calls a file before it is whole
+_METADATA = "zarr.json"
+# Attributes of the whole: checksums of the arrays' metadata by name, and that of all other attributes.
+_CHECKSUMS, _SEAL = "checksums", "checksum"
 
 
 @dataclass(frozen=True)
@@ -46,6 +53,7 @@ class Store:
     arrays : of the group by name
     samples : in all
     block : samples of a block, which are those of a chunk
+    pending : numbers of the blocks that are not finished, or of which a file is missing
     """
 
     path: Path
@@ -53,14 +61,16 @@ class Store:
     arrays: Mapping[str, Any]
     samples: int
     block: int
+    pending: tuple[int, ...] = ()
 
     def bounds(self, number: int) -> tuple[int, int]:
         """First sample of a block and the one behind its last."""
         return number * self.block, min((number + 1) * self.block, self.samples)
 
     def attributes(self, name: str | None = None) -> dict[str, Any]:
-        """Attributes of a variable, or of the whole."""
-        return dict((self.group if name is None else self.arrays[name]).attrs)
+        """Attributes of a variable, or of the whole, without the store's own checksums."""
+        said = dict((self.group if name is None else self.arrays[name]).attrs)
+        return {key: value for key, value in said.items() if key not in (_CHECKSUMS, _SEAL)}
 
     def read(self, name: str, rows: slice = slice(None), columns: slice | None = None) -> NDArray[Any]:
         """Values of a variable, or some rows or columns of them; texts as Python's own."""
@@ -117,7 +127,7 @@ def open_store(folder: Path, sweep: Sweep, fresh: bool = False) -> Store:
 
     Raises
     ------
-    InputError : there is a store of another sweep or of other versions of the packages
+    InputError : there is a store of another sweep or of other versions of the packages, or a damaged one
     """
     path, part = folder / STORE, folder / f".{STORE}.part"
     shutil.rmtree(part, ignore_errors=True)
@@ -132,11 +142,11 @@ def open_store(folder: Path, sweep: Sweep, fresh: bool = False) -> Store:
         left.unlink()
     group = _open(path, "r+")
     _same(path, dict(group.attrs), _attributes(sweep))
-    return _store(path, group)
+    return _verified(_store(path, group))
 
 
 def read_store(path: Path) -> Store:
-    """A store for reading.
+    """A store for reading; blocks of which a file is missing count as pending.
 
     Parameters
     ----------
@@ -144,32 +154,99 @@ def read_store(path: Path) -> Store:
 
     Raises
     ------
-    InputError : there is none
+    InputError : there is none, or a damaged one
     """
-    return _store(path, _open(path, "r"))
+    return _verified(_store(path, _open(path, "r")))
 
 
 def _store(path: Path, group: Any) -> Store:
     import zarr
 
     with zarr.config.set({"array.write_empty_chunks": True}):  # a missing chunk is always a missing answer
-        arrays = dict(sorted(group.arrays()))
+        arrays = {name: group[name] for name in sorted(group.attrs[_CHECKSUMS])}
     status = arrays["status"]
     return Store(path, group, arrays, int(status.shape[0]), int(status.chunks[0]))
 
 
 def _open(path: Path, mode: str) -> Any:
+    """The group of a store whose attributes and metadata are as they were written."""
     import zarr
 
+    if not path.is_dir():
+        raise InputError("store", str(path), "the store of a sweep")
     try:
-        return zarr.open_group(path, mode=mode, zarr_format=3)
-    except (FileNotFoundError, KeyError, ValueError) as error:
+        group = zarr.open_group(path, mode=mode, zarr_format=3)
+        said = dict(group.attrs)
+    except OSError:
+        if (path / _METADATA).is_file():
+            raise  # the disk, or a file that may not be read
+        raise InputError("store", str(path), "the store of a sweep") from None
+    except Exception as error:  # whatever zarr makes of what is no metadata
         raise InputError("store", str(path), "the store of a sweep") from error
+    if "digest" in said and _CHECKSUMS not in said:
+        allowed = "one with checksums, which older versions did not write; --fresh starts anew"
+        raise InputError("store", str(path), allowed)
+    if said.get(_SEAL) != _seal(said):
+        raise InputError("store", str(path), "the store of a sweep, undamaged; --fresh starts anew")
+    for name, checksum in said[_CHECKSUMS].items():
+        file = path / name / _METADATA
+        if not file.is_file() or _checksum(file.read_bytes()) != checksum:
+            raise InputError("store", str(file), "there and undamaged; --fresh starts anew")
+    return group
+
+
+def _checksum(content: bytes) -> str:
+    return f"{zlib.crc32(content):08x}"
+
+
+def _seal(said: Mapping[str, Any]) -> str:
+    """Checksum of all attributes but itself."""
+    kept = {key: value for key, value in said.items() if key != _SEAL}
+    return _checksum(json.dumps(kept, sort_keys=True).encode())
+
+
+def _verified(store: Store) -> Store:
+    """The store with its pending blocks, after every chunk of the others was read.
+
+    Raises
+    ------
+    InputError : a chunk is not what was written
+    """
+    blocks = range(-(-store.samples // store.block))
+    status = {number: _chunk(store, "status", number) for number in blocks}
+    pending = [number for number in blocks if status[number] is None or PENDING in status[number]]
+    pending += [
+        number
+        for number in sorted(set(blocks).difference(pending))
+        if any(_chunk(store, name, number) is None for name in store.arrays)
+    ]
+    return replace(store, pending=tuple(sorted(pending)))
+
+
+def _chunk(store: Store, name: str, number: int) -> NDArray[Any] | None:
+    """Values of a variable in a block, read from the disk; None where the file is missing."""
+    file = _chunk_file(store, name, number)
+    if not file.exists():
+        return None
+    try:
+        return store.read(name, slice(*store.bounds(number)))
+    except OSError:
+        raise
+    except Exception as error:  # whatever the codecs make of other bytes than were written
+        allowed = "undamaged; without the file its block is answered again, --fresh starts anew"
+        raise InputError("store", str(file), allowed) from error
+
+
+def _chunk_file(store: Store, name: str, number: int) -> Path:
+    """Where the values of a variable in a block stand."""
+    path = store.path / name / "c" / str(number)
+    return path / "0" if len(store.arrays[name].shape) > 1 else path
 
 
 def _create(path: Path, sweep: Sweep) -> None:
     """A store without any answer."""
     import zarr
+    from zarr.codecs import Crc32cCodec, ZstdCodec
 
     samples, speeds = sweep.samples, sweep.scene.speeds.count
     block = block_size(samples, speeds)
@@ -182,6 +259,7 @@ def _create(path: Path, sweep: Sweep) -> None:
             chunks=(block, speeds) if over_speed else (block,),
             dtype=kind,
             fill_value=fill,
+            compressors=(ZstdCodec(), Crc32cCodec()),
             dimension_names=("sample", "speed") if over_speed else ("sample",),
             attributes=attributes,
         )
@@ -196,6 +274,10 @@ def _create(path: Path, sweep: Sweep) -> None:
     states = {"flag_values": list(range(len(STATUS))), "flag_meanings": " ".join(STATUS)}
     array("status", FLAG, False, PENDING, {"units": "1", "long_name": "state of the sample"} | states)
     array("reason", TEXT, False, "", {"units": "1", "long_name": "why the sample is not done"})
+    names = sorted(file.parent.name for file in path.glob(f"*/{_METADATA}"))
+    found = {name: _checksum((path / name / _METADATA).read_bytes()) for name in names}
+    said = dict(group.attrs) | {_CHECKSUMS: found}
+    group.attrs.put(said | {_SEAL: _seal(said)})
 
 
 def _output_attributes(output: Output) -> dict[str, Any]:
@@ -264,10 +346,9 @@ def write_block(
         store.arrays[name][start:stop] = values
     # Files that are asked for together go to the disk together.
     with ThreadPoolExecutor(len(variables)) as pool:
-        paths = [store.path / name / "c" / str(number) for name in variables]
-        list(pool.map(_to_disk, (path / "0" if path.is_dir() else path for path in paths)))
+        list(pool.map(_to_disk, (_chunk_file(store, name, number) for name in variables)))
     store.arrays["status"][start:stop] = status
-    _to_disk(store.path / "status" / "c" / str(number))
+    _to_disk(_chunk_file(store, "status", number))
 
 
 def _to_disk(path: Path) -> None:
@@ -312,6 +393,9 @@ def read_arrays(path: Path) -> NamedArrays:
     InputError : there is no store
     """
     store, found = read_store(path), {}
+    if store.pending:
+        allowed = f"one with all blocks; {len(store.pending)} are pending: run the same sweep again"
+        raise InputError("store", str(path), allowed)
     for name in store.arrays:
         values, said = store.read(name), store.attributes(name)
         entry = variable(store.dims(name), values, *(str(said.pop(key)) for key in _SINGLE))

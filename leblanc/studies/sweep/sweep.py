@@ -12,6 +12,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -21,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from leblanc.scene.schema.load import NotConverged, SceneError, SceneFault, shown
-from leblanc.studies.sweep.block import PENDING, Block, BlockAnswer, answer_block, own_versions, reason_of
+from leblanc.studies.sweep.block import Block, BlockAnswer, answer_block, own_versions, reason_of
 from leblanc.studies.sweep.sampling import Rows, sample_rows
 from leblanc.studies.sweep.store import Store, field_values, locked, open_store, write_block
 from leblanc.studies.sweep.study import Sweep
@@ -229,7 +230,7 @@ def run_sweep(
         require_scheduler(scheduler)  # before the old store is gone
     with locked(folder):
         store = open_store(folder, sweep, fresh)
-        missing = _missing(store)
+        missing = store.pending
         finished = sweep.samples - sum(stop - start for start, stop in map(store.bounds, missing))
         if progress is not None:
             progress(finished, sweep.samples)
@@ -247,7 +248,7 @@ def run_sweep(
                     progress(finished, sweep.samples)
                 if interrupted.is_set():
                     raise KeyboardInterrupt
-    return store
+    return replace(store, pending=())
 
 
 @contextmanager
@@ -279,11 +280,6 @@ def _interrupts() -> Iterator[threading.Event]:
     finally:
         signal.signal(signal.SIGINT, before)
         sys.unraisablehook = complain
-
-
-def _missing(store: Store) -> list[int]:
-    """Numbers of the blocks that are not finished."""
-    return np.flatnonzero(store.read("status")[:: store.block] == PENDING).tolist()
 
 
 def _workers(wanted: int | None, blocks: int) -> int:
