@@ -138,20 +138,25 @@ def against_spin(share: float, speed: float) -> Note:
 def self_excited(whirl: SelfExcited) -> Note:
     """Whether a whirl grows by itself, where, and how fast at most."""
     theory = f"linear theory of an even layer, liquid friction: {whirl.friction}"
-    data: dict[str, object] = {"bands": whirl.bands}
-    if np.isnan(whirl.growth).any():
-        text = f"Whether a whirl grows by itself was not found at every speed ({theory})."
-        return Note(RunCode.SELF_EXCITED, data, text)
+    data: dict[str, object] = {"bands": whirl.bands, "not_known": whirl.not_known}
+    lost, unknown = int(np.count_nonzero(np.isnan(whirl.growth))), ""
+    if lost:
+        between = ", ".join(f"{low * RPM:.5g} to {high * RPM:.5g} rpm" for low, high in whirl.not_known)
+        where = f", from {between}" if between else ""
+        unknown = f" Not known at {lost} of {whirl.growth.size} speeds{where}: do not take it for stable."
     if not whirl.bands:
-        text = f"No whirl grows by itself at these speeds ({theory})."
+        elsewhere = "at the other speeds" if lost else "at these speeds"
+        text = f"No whirl grows by itself {elsewhere} ({theory}).{unknown}"
+        if lost == whirl.growth.size:
+            text = f"Whether a whirl grows by itself is not known ({theory}): do not take it for stable."
         return Note(RunCode.SELF_EXCITED, data, text)
     listed = ", ".join(f"{low * RPM:.5g} to {high * RPM:.5g} rpm" for low, high in whirl.bands)
-    most, fastest = int(np.argmax(whirl.growth)), ""
+    most, fastest = int(np.nanargmax(whirl.growth)), ""
     if whirl.growth[most] > 0.0:
         growth, turning = float(whirl.growth[most]), float(whirl.whirl_speed[most])
         data |= {"growth": growth, "whirl_speed": turning}
         fastest = f", fastest at {growth:.3g} 1/s, whirling at {turning * RPM:.4g} rpm"
-    text = f"A whirl grows by itself from {listed}{fastest}: unstable there ({theory})."
+    text = f"A whirl grows by itself from {listed}{fastest}: unstable there ({theory}).{unknown}"
     return Note(RunCode.SELF_EXCITED, data, text)
 
 

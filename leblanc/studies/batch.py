@@ -122,7 +122,8 @@ def _planar(scenes: Sequence[Scene]) -> Answers:
         copied = ("liquid_offset", "liquid_angle", "dry_patch", "stable", "in_range", "converged")
         for key, value in (values | {key: getattr(answer, key) for key in copied}).items():
             found.setdefault(key, np.empty(speed.shape, value.dtype))[rows] = value
-    found["stable"] = found["stable"] & ~(growth > 0.0)
+    # What is not known is not stable.
+    found["stable"] = found["stable"] & (growth <= 0.0)
     found["in_range"] = found["in_range"] & np.stack([choice.in_range for choice in choices]).ravel()
     return Answers(**{name: values.reshape(shape) for name, values in found.items()})
 

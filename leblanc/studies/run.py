@@ -32,7 +32,7 @@ from solvers.rotor.vibration import (
 from solvers.statics.hydrostatics import optimal_volume
 from solvers.synchronous.models import LINEAR
 from solvers.synchronous.response import Response, critical_speed, response, wet_critical_speeds
-from solvers.whirl.edges import unstable_bands
+from solvers.whirl.edges import bands_not_known, unstable_bands
 from solvers.whirl.growth import asynchronous_growth
 
 _DIAGRAM = 121  # speeds of a Campbell diagram
@@ -61,7 +61,8 @@ def self_excited(machine: Prepared) -> SelfExcited:
     if speed[-1] > speed[0]:
         filled, known = [scene.fills], growth[None]
         bands = unstable_bands(machine.rotor, filled, speed, machine.friction, known)[0]
-    return SelfExcited(growth, whirl_speed, bands, small_whirl_friction(scene.model.friction))
+    friction = small_whirl_friction(scene.model.friction)
+    return SelfExcited(growth, whirl_speed, bands, friction, bands_not_known(speed, growth))
 
 
 def motion_response(machine: Prepared, choice: Choice) -> tuple[Response, Motion, tuple[float, float]]:

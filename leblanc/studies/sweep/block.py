@@ -125,6 +125,9 @@ def values_of(answers: Answers) -> dict[str, NDArray[Any]]:
     # fmax takes the other of two where one is not a number; a whole row without numbers gives none.
     for name in ("amplitude", "amplitude_dry", "growth"):
         values[f"peak_{name}"] = np.fmax.reduce(values[name], axis=1)
+    # Where no whirl is known to grow and some are not known, whether one grows is not known either.
+    unknown = np.isnan(values["growth"]).any(axis=1) & ~(values["peak_growth"] > 0.0)
+    values["peak_growth"] = np.where(unknown, np.nan, values["peak_growth"])
     for name in ("amplitude", "amplitude_dry"):
         values[f"last_{name}"] = values[name][:, -1]
     return values
