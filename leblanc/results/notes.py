@@ -354,6 +354,18 @@ class MapCode(NoteCode):
     COMMON_FACTOR = "common_factor"
     NOT_HELD = "not_held"
     THICK_WALL_LAYER = "thick_wall_layer"
+    NOT_KNOWN = "not_known"
+
+
+def growth_not_known(lost: int, points: int) -> Note:
+    """Points at which the modes were not found.
+
+    Parameters
+    ----------
+    lost, points : how many, of how many
+    """
+    text = f"At {lost} of {points} points the growth is not known: crosses; do not take them for stable."
+    return Note(MapCode.NOT_KNOWN, {"lost": lost, "points": points}, text)
 
 
 def own_volume(volume: float, bands: Bands) -> Note:
