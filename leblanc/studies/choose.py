@@ -210,7 +210,8 @@ def _choice(machine: Prepared, linear: LinearError, gravity: Array) -> Choice:
         in_range = in_range & (speed > max(_covers(fill, machine.axial_gravity) for fill in scene.fills))
         error = np.full(speed.shape, np.nan)
     return Choice(
-        model=small if enough.all() else "statics",
+        # Of the machine alone: the exact equilibrium, unless another is named, or there is none.
+        model=small if cut else "statics" if liquid == "auto" else liquid,
         models=models,
         prescribed=liquid != "auto",
         in_range=in_range,
