@@ -151,6 +151,17 @@ def _outline(axes: Axes, result: WhirlMap, hatched: bool) -> None:
         axes.contourf(x, y, out, levels=[0.5, 1.5], colors="none", hatches=[".."])
         axes.contour(x, y, out, levels=[0.5], colors=["0.45"], linewidths=0.8, linestyles=":")
         axes.fill([], [], hatch="...", label="model out of range", **key)
+    lost = np.isnan(result.growth)
+    if lost.any():
+        style = {
+            "color": OUTLINE,
+            "markersize": 3.5,
+            "linestyle": "none",
+            "marker": "x",
+            "markeredgewidth": 0.8,
+        }
+        rows, columns = np.nonzero(lost)
+        axes.plot(x[columns], y[rows], label="growth not known", **style)
     narrow = [
         (0.5 * (low + high) * RPM, volume * ML)
         for bands, volume in zip(result.edges, result.volume, strict=True)

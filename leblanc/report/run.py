@@ -170,7 +170,7 @@ def map_checks(result: WhirlMap) -> Table:
     rows = [
         (label, Cell(_share(mask), warning=bool(mask.any())))
         for label, mask in (
-            ("Modes not found", lost),
+            ("Growth not known", lost),
             ("Model out of range", out),
             ("Grows where out of range", out & (result.growth > 0.0)),
         )

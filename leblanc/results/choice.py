@@ -21,7 +21,7 @@ class Choice:
 
     Parameters
     ----------
-    model : the most exact of the models taken
+    model : of small deflections, by which the critical speeds are; it does not depend on the speeds asked for
     models : name of the model taken at each speed
     prescribed : the scene names the model itself
     in_range : the liquid rides with the drum

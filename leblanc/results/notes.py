@@ -160,20 +160,25 @@ def against_spin(share: float, speed: float) -> Note:
 def self_excited(whirl: SelfExcited) -> Note:
     """Whether a whirl grows by itself, where, and how fast at most."""
     theory = f"linear theory of an even layer, liquid friction: {whirl.friction}"
-    data: dict[str, object] = {"bands": whirl.bands}
-    if np.isnan(whirl.growth).any():
-        text = f"Whether a whirl grows by itself was not found at every speed ({theory})."
-        return Note(RunCode.SELF_EXCITED, data, text)
+    data: dict[str, object] = {"bands": whirl.bands, "not_known": whirl.not_known}
+    lost, unknown = int(np.count_nonzero(np.isnan(whirl.growth))), ""
+    if lost:
+        between = ", ".join(rpm_range(low, high) for low, high in whirl.not_known)
+        where = f", from {between}" if between else ""
+        unknown = f" Not known at {lost} of {whirl.growth.size} speeds{where}: do not take it for stable."
     if not whirl.bands:
-        text = f"No whirl grows by itself at these speeds ({theory})."
+        elsewhere = "at the other speeds" if lost else "at these speeds"
+        text = f"No whirl grows by itself {elsewhere} ({theory}).{unknown}"
+        if lost == whirl.growth.size:
+            text = f"Whether a whirl grows by itself is not known ({theory}): do not take it for stable."
         return Note(RunCode.SELF_EXCITED, data, text)
     listed = ", ".join(rpm_range(low, high) for low, high in whirl.bands)
-    most, fastest = int(np.argmax(whirl.growth)), ""
+    most, fastest = int(np.nanargmax(whirl.growth)), ""
     if whirl.growth[most] > 0.0:
         growth, turning = float(whirl.growth[most]), float(whirl.whirl_speed[most])
         data |= {"growth": growth, "whirl_speed": turning}
         fastest = f", fastest at {growth:.3g} 1/s, whirling at {in_rpm(turning)}"
-    text = f"A whirl grows by itself from {listed}{fastest}: unstable there ({theory})."
+    text = f"A whirl grows by itself from {listed}{fastest}: unstable there ({theory}).{unknown}"
     return Note(RunCode.SELF_EXCITED, data, text)
 
 
@@ -415,6 +420,18 @@ class MapCode(NoteCode):
     COMMON_FACTOR = "common_factor"
     NOT_HELD = "not_held"
     THICK_WALL_LAYER = "thick_wall_layer"
+    NOT_KNOWN = "not_known"
+
+
+def growth_not_known(lost: int, points: int) -> Note:
+    """Points at which the modes were not found.
+
+    Parameters
+    ----------
+    lost, points : how many, of how many
+    """
+    text = f"At {lost} of {points} points the growth is not known: crosses; do not take them for stable."
+    return Note(MapCode.NOT_KNOWN, {"lost": lost, "points": points}, text)
 
 
 def own_volume(volume: float, bands: Bands) -> Note:

@@ -91,21 +91,24 @@ class SelfExcited:
     whirl_speed : of that whirl in the standing frame, rad/s, shape (n,)
     bands : of speed in which some whirl grows, rad/s; the ends of the range of speeds count as edges
     friction : of the liquid, in words
+    not_known : bands of speed in which the modes were not found, between the nearest speeds where they were,
+        rad/s
     """
 
     growth: Array
     whirl_speed: Array
     bands: tuple[tuple[float, float], ...]
     friction: str
+    not_known: tuple[tuple[float, float], ...] = ()
 
     def leaves_stable(self, stable: Flags) -> Flags:
-        """Stability against slow disturbances and against whirls that grow by themselves, shape (n,).
+        """Stable against slow disturbances, and no whirl grows; what is not known is not stable, shape (n,).
 
         Parameters
         ----------
         stable : against slow disturbances, shape (n,)
         """
-        return np.asarray(stable & ~(self.growth > 0.0))
+        return np.asarray(stable & (self.growth <= 0.0))
 
     def inside(self, speed: Array) -> Flags:
         """Whether speeds lie inside a band in which a whirl grows, shape (n,)."""
@@ -132,6 +135,7 @@ def grade_words(quality: float) -> str:
 
 
 SCALARS = ("liquid_mass", "critical_speed_dry", "critical_speed_wet", "capture_speed")
+STABILITY = ("not_known", "unstable", "stable")
 STATES = ("dry_patch", "stable", "model", "in_range", "converged")  # over speed
 
 
@@ -325,8 +329,20 @@ class RunResult(Result):
 
     @property
     def stable(self) -> Flags:
-        """The branch reported is stable, shape (n,)."""
+        """The branch reported is known to be stable; False where that is not known, shape (n,)."""
         return self.response.stable
+
+    @property
+    def stability(self) -> NDArray[np.str_]:
+        """Of the branch reported, one of `STABILITY`, shape (n,).
+
+        Not known where no branch was found or the modes of the whirls were not.
+        """
+        held = self.response.branch_stable.any(axis=1)
+        growth = np.zeros(self.speed.shape) if self.growth is None else self.growth
+        lost = ~np.isfinite(self.response.deflection) | (held & np.isnan(growth))
+        state = np.where(lost & ~(growth > 0.0), 0, np.where(self.stable, 2, 1))
+        return np.asarray(np.array(STABILITY)[state])
 
     @property
     def model(self) -> NDArray[np.str_]:
@@ -362,6 +378,7 @@ class RunResult(Result):
     branches = carried("response.branch_deflection")
     branch_stable = carried("response.branch_stable")
     whirl_bands = carried("whirl.bands")
+    whirl_bands_not_known = carried("whirl.not_known")
     position = carried("motion.position")
     backward = carried("motion.backward")
     chamber_deflection = carried("motion.chamber_forward")
@@ -392,6 +409,7 @@ class RunResult(Result):
             "liquid_offset": _finite(r.liquid_offset),
             "liquid_angle": _finite(r.liquid_angle),
             **{name: getattr(r, name).tolist() for name in STATES},
+            "stability": self.stability.tolist(),
             "deflection": _finite(r.deflection),
             "branches": [branches[row] for row in rows],
             "branch_stable": [branch_stable[row] for row in rows],
@@ -469,6 +487,7 @@ def _whirl_json(whirl: SelfExcited | None) -> dict[str, Any]:
         "growth": _finite(whirl.growth),
         "whirl_speed": _finite(whirl.whirl_speed),
         "whirl_bands": [list(band) for band in whirl.bands],
+        "whirl_bands_not_known": [list(band) for band in whirl.not_known],
     }
 
 
@@ -500,6 +519,8 @@ def _variables(result: RunResult) -> dict[str, Variable]:
     """Variables of the dataset by name."""
     r, over, each, rate = result.response, ("speed",), ("speed", "branch"), "rad s-1"
     states = np.where(np.isnan(r.branch_deflection), -1, r.branch_stable)
+    # The last one has the value 1.
+    stability = np.array([STABILITY.index(state) - 1 for state in result.stability.tolist()])
     mass, dry, wet, capture = (np.array(getattr(result, name), dtype=np.float64) for name in SCALARS)
     lag, slow = "from the unbalance, positive with the spin, a lag is negative", "against slow disturbances"
     return {
@@ -513,6 +534,9 @@ def _variables(result: RunResult) -> dict[str, Variable]:
         "liquid_angle": var(over, r.liquid_angle, "rad", "angle of the liquid's centre of mass", lag),
         "dry_patch": flags(over, r.dry_patch, "no yes", "dry patch", "the wall is dry somewhere"),
         "stable": flags(over, r.stable, "no yes", "the branch reported is stable", f"{slow} and whirls"),
+        "stability": flags(
+            *(over, stability, " ".join(STABILITY), "stability of the branch reported"), f"{slow} and whirls"
+        ),
         "model": var(over, r.model, "1", "liquid model", "used at this speed"),
         "in_range": flags(over, r.in_range, "no yes", "in range", "the liquid model holds there"),
         "converged": flags(over, r.converged, "no yes", "converged", "every branch was found"),

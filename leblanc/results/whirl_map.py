@@ -32,6 +32,8 @@ class WhirlMap(Result):
         speed is where the range ends
     friction, damping : of the liquid, of the support, in words
     scene_volume, scene_edges : of the scene as it stands, m^3 and as in `edges`
+    edges_not_known : for each volume the bands of speed in which the growth is not known, between the nearest
+        speeds where it is, rad/s
     notes : limits of validity and findings
 
     Examples
@@ -60,11 +62,17 @@ class WhirlMap(Result):
     scene_volume: float
     scene_edges: Bands
     notes: tuple[Note, ...]
+    edges_not_known: tuple[Bands, ...] = ()
+
+    @property
+    def not_known(self) -> int:
+        """How many points have no known growth."""
+        return int(np.count_nonzero(np.isnan(self.growth)))
 
     def to_json(self) -> dict[str, Any]:
         """What `map` prints for scripts, SI: rows of `growth`, `whirl_speed`, `in_range` follow `volume`."""
         names = ["speed", "volume", "growth", "whirl_speed", "edges", "in_range", "friction", "damping"]
-        names += ["scene_volume", "scene_edges", "name", "digest", "assumed"]
+        names += ["scene_volume", "scene_edges", "edges_not_known", "not_known", "name", "digest", "assumed"]
         return {name: getattr(self, name) for name in names} | {"notes": texts(self.notes)}
 
     def named_arrays(self) -> NamedArrays:

@@ -125,7 +125,8 @@ def _planar(scenes: Sequence[Scene]) -> Answers:
     found["phase"] = phase(answer.deflection)
     copied = ("amplitude", "amplitude_dry", "liquid_offset", "liquid_angle", "dry_patch", "converged")
     found |= {name: getattr(answer, name) for name in copied}
-    found["stable"] = answer.stable & ~(growth > 0.0)
+    # What is not known is not stable.
+    found["stable"] = answer.stable & (growth <= 0.0)
     found["in_range"] = answer.in_range & np.stack([choice.in_range for choice in choices]).ravel()
     each = [answer.at(np.flatnonzero(owner == k)) for k in range(len(scenes))]
     peaks = _peaks(each, responses_between(prepared, each))

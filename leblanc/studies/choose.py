@@ -249,7 +249,8 @@ def _choice(machine: Prepared, linear: LinearError, gravity: Array) -> Choice:
         # The exact equilibrium of compartments, which would judge small disturbances, is not computed.
         error = np.full(speed.shape, np.nan)
     return Choice(
-        model=small if enough.all() else "statics",
+        # Of the machine alone: the exact equilibrium, unless another is named, or there is none.
+        model=small if cut else "statics" if liquid == "auto" else liquid,
         models=models,
         prescribed=liquid != "auto",
         in_range=_carried(machine),

@@ -18,13 +18,13 @@ from leblanc.scene.scene import Scene
 from leblanc.studies.choose import Prepared, choose_all, prepare
 from leblanc.studies.exciter import printed_critical
 from leblanc.studies.liquid import synchronous_model
-from leblanc.studies.run import main_critical_speeds, rest_modes
+from leblanc.studies.run import rest_modes
 from meshes.errors import InputError
 from solvers.rotor.exciter.machine import characteristic_speeds
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import critical_speeds, modes, orbit, unbalance_response
 from solvers.statics.hydrostatics import optimal_volume
-from solvers.synchronous.response import critical_speed, wet_critical_speeds
+from solvers.synchronous.response import critical_speed, main_critical_speeds, wet_critical_speeds
 
 
 def explain_exciter(scene: Scene) -> ExciterExplanation:
@@ -148,10 +148,8 @@ def _bare(machine: Prepared, model: str) -> _Bare:
     if isinstance(rotor, Jeffcott):
         wet = critical_speed(rotor, fills, gravity, synchronous_model(model))
         return _Bare(rotor.mass, rotor.natural_frequency, wet, rotor.damping_ratio, deflection)
-    liquid = wet_critical_speeds(system, fills, gravity, synchronous_model(model))[0]
-    speeds = critical_speeds(system)[0], liquid
-    position = fills[0].chamber.plane if fills else 0.0
-    dry, wet = main_critical_speeds(system, fills, position, *speeds)
+    liquid = wet_critical_speeds(system, fills, gravity, synchronous_model(model))
+    dry, wet = main_critical_speeds(system, fills, critical_speeds(system), liquid)
     turning = modes(system, dry if np.isfinite(dry) else 0.0)
     nearest = int(np.argmin(np.abs(turning.frequency[0] - dry))) if np.isfinite(dry) else 0
     ratio = float(turning.damping_ratio[0, nearest])

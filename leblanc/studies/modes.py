@@ -32,13 +32,14 @@ from meshes.chamber import Chamber
 from meshes.errors import InputError, require_positive
 from meshes.findings import wave_findings
 from meshes.liquid_section import LiquidSection
-from solvers.sloshing.forced import ModeDamping, forced_response, mode_damping
-from solvers.sloshing.modes import SloshingModes, first_largest, sloshing_modes, spectrum
-from solvers.sloshing.system import LiquidSystem, condense
+from solvers.sloshing.forced import ModeDamping, mode_damping
+from solvers.sloshing.modes import SloshingModes, first_largest, sloshing_modes
+from solvers.sloshing.slowest import slowest_modes, synchronous_force_ratio
+from solvers.sloshing.system import SurfaceSystem, surface_system
 
 # A radius of the section that differs by more from the one given.
 _OTHER = 1e-3
-_MOST_SEGMENTS = 1200  # the cost goes with the cube
+_MOST_SEGMENTS = 1200
 
 
 @dataclass(frozen=True)
@@ -230,14 +231,14 @@ def answer_modes(
     else:
         sections, notes, title = section_of_file(chamber, volume, fineness, source)
     progress("waves by finite elements")
-    system = condense(sections[-1])
-    known = spectrum(system)
-    modes = sloshing_modes(system, speed, count, known)
+    system = surface_system(sections[-1])
+    slow = slowest_modes(system, count)
+    modes = sloshing_modes(system, speed, count, slow.spectrum)
     progress("damping")
     damping = mode_damping(system, modes, liquid.viscosity, chamber.height)
     size = np.abs(modes.frequency)
     progress("the same on a coarser mesh")
-    estimate = _error(condense(sections[0]), size / speed, fineness.order)
+    estimate = _error(surface_system(sections[0]), size / speed, fineness.order)
     if source is not None:
         crests = int(modes.crests.max())
         notes += [mesh_finding(finding) for finding in wave_findings(sections[-1], crests)]
@@ -257,12 +258,12 @@ def answer_modes(
         travelling=modes.travelling,
         multiplicity=modes.multiplicity,
         error_estimate=estimate,
-        synchronous_force_ratio=float(forced_response(system, speed, speed, known).force_ratio.real),
+        synchronous_force_ratio=synchronous_force_ratio(system),
         surface_radius=system.section.surface_radius,
         circulations=modes.circulations,
         unknowns=system.unknowns,
-        surface_unknowns=len(system.inertia),
-        converged=modes.converged,
+        surface_unknowns=len(system.steady) - system.steady.shape[1],
+        converged=modes.converged and slow.converged,
         wall_time=time.perf_counter() - begin,
         notes=tuple(notes),
         section=sections[-1],
@@ -282,9 +283,9 @@ def _depth(section: LiquidSection) -> float:
     return float(np.hypot(*section.points[section.wall[:, 0]].T).max()) - section.surface_radius
 
 
-def _error(coarse: LiquidSystem, size: Array, order: int) -> Array:
+def _error(coarse: SurfaceSystem, size: Array, order: int) -> Array:
     """Relative error of the finer frequencies by Richardson's extrapolation, order 2 p."""
-    other = spectrum(coarse).frequency[: len(size)]
+    other = slowest_modes(coarse, len(size)).spectrum.frequency[: len(size)]
     other = np.append(other, np.full(len(size) - len(other), np.nan))
     found: Array = np.abs(other / size - 1.0) / (4.0**order - 1.0)
     return found

@@ -30,19 +30,18 @@ from solvers.rotor.vibration import (
     critical_speeds,
     modes,
     orbit,
-    unbalance_response,
     whirl_direction,
 )
 from solvers.statics.hydrostatics import optimal_volume
-from solvers.synchronous.models import LINEAR
 from solvers.synchronous.response import (
     Response,
     by_speed,
     critical_speed,
+    main_critical_speeds,
     response,
     wet_critical_speeds,
 )
-from solvers.whirl.edges import unstable_bands
+from solvers.whirl.edges import bands_not_known, unstable_bands
 from solvers.whirl.growth import asynchronous_growth
 
 _DIAGRAM = 121  # speeds of a Campbell diagram
@@ -71,7 +70,8 @@ def self_excited(machine: Prepared) -> SelfExcited:
     if speed[-1] > speed[0]:
         filled, known = [scene.fills], growth[None]
         bands = unstable_bands(machine.rotor, filled, speed, machine.friction, known)[0]
-    return SelfExcited(growth, whirl_speed, bands, small_whirl_friction(scene.model.friction))
+    friction = small_whirl_friction(scene.model.friction)
+    return SelfExcited(growth, whirl_speed, bands, friction, bands_not_known(speed, growth))
 
 
 def motion_response(machine: Prepared, choice: Choice) -> tuple[Response, Motion, tuple[float, float]]:
@@ -91,6 +91,7 @@ def motion_response(machine: Prepared, choice: Choice) -> tuple[Response, Motion
     found = response(machine.rotor, scene.fills, machine.speed, gravity, liquid_models(choice))
     dry, dry_shape = critical_speeds(system)
     wet, wet_shape = wet_critical_speeds(system, scene.fills, gravity, synchronous_model(choice.model))
+    main = main_critical_speeds(system, scene.fills, (dry, dry_shape), (wet, wet_shape))
     motion = Motion(
         position=found.position,
         backward=found.backward,
@@ -103,7 +104,7 @@ def motion_response(machine: Prepared, choice: Choice) -> tuple[Response, Motion
         critical_speeds_wet=_directed(system, wet, wet_shape),
         zero="unbalance" if isinstance(scene.rotor, TubRotor) else "angle 0 of the unbalances",
     )
-    return found, motion, main_critical_speeds(system, scene.fills, found.position, dry, wet)
+    return found, motion, main
 
 
 def _at_chambers(system: RotorSystem, fills: tuple[Fill, ...], found: Response) -> Complex:
@@ -128,40 +129,6 @@ def _directed(
 ) -> tuple[tuple[float, float], ...]:
     sense = whirl_direction(system, shape)
     return tuple((float(critical), float(way)) for critical, way in zip(speed, sense, strict=True))
-
-
-def main_critical_speeds(
-    system: RotorSystem,
-    fills: tuple[Fill, ...],
-    position: float,
-    dry: NDArray[np.float64],
-    wet: NDArray[np.float64],
-) -> tuple[float, float]:
-    """Of the critical speeds without and with liquid those at which the unbalance moves the axis most.
-
-    Parameters
-    ----------
-    system : the dry rotor
-    fills : its chambers
-    position : where the axis is looked at, m
-    dry, wet : critical speeds, rad/s, at least one each
-
-    Returns
-    -------
-    rad/s, without and with liquid
-    """
-    chosen = []
-    for speeds, liquid in ((dry, ()), (wet, fills)):
-        if speeds.size == 0:
-            chosen.append(float("nan"))
-            continue
-        if liquid:
-            found = response(system, liquid, speeds, 0.0, LINEAR, position)
-            size = np.abs(found.deflection) + np.abs(found.backward)
-        else:
-            size = orbit(system, unbalance_response(system, speeds), position).amplitude
-        chosen.append(float(speeds[int(np.argmax(size))]))
-    return chosen[0], chosen[1]
 
 
 def run_scene(scene: Scene, progress: Callable[[str], object] = lambda _: None) -> RunResult:

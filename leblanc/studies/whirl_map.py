@@ -22,7 +22,7 @@ from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.liquid_model import THIN_LAYERS
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.whirl.edges import Bands, unstable_bands
+from solvers.whirl.edges import Bands, bands_not_known, unstable_bands
 from solvers.whirl.growth import growth_map
 
 VOLUMES, SPEEDS = 101, 201
@@ -86,7 +86,11 @@ def map_scene(
         damping=_damping(machine),
         scene_volume=sum(fill.volume for fill in scene.fills),
         scene_edges=own,
-        notes=(*_notes(machine, law, own, carried, thin), *doubts(scene)),
+        notes=(
+            *_notes(machine, law, own, carried, thin, int(np.count_nonzero(np.isnan(growth)))),
+            *doubts(scene),
+        ),
+        edges_not_known=tuple(bands_not_known(speed, found) for found in growth),
     )
 
 
@@ -170,10 +174,14 @@ def _damping(machine: Prepared) -> str:
     return "damping as in the scene"
 
 
-def _notes(machine: Prepared, law: Friction, own: Bands, carried: Flags, thin: Flags) -> tuple[Note, ...]:
+def _notes(
+    machine: Prepared, law: Friction, own: Bands, carried: Flags, thin: Flags, lost: int
+) -> tuple[Note, ...]:
     """Limits of validity and findings."""
     scene = machine.scene
     found = [notes.own_volume(sum(fill.volume for fill in scene.chambers), own)]
+    if lost:
+        found.append(notes.growth_not_known(lost, thin.size))
     if law.law == "quadratic":
         found.append(notes.quadratic())
     if law.law in ("none", "quadratic") and np.any(machine.system.damping):

@@ -27,7 +27,8 @@ def describe_optimum(result: OptimumResult) -> list[str]:
         *_constraints(result),
         *_closed_forms(result),
         f"Stability margin over the operating speeds: {number(result.stability_margin)} 1/s"
-        + (" (a small whirl grows)" if result.growth > 0.0 else ""),
+        + (" (a small whirl grows)" if result.growth > 0.0 else "")
+        + (" (whether a small whirl grows is not known)" if math.isnan(result.growth) else ""),
         *_quality(result),
         *_over_conditions(result),
         *([f"Amplitudes are those {place}."] if (place := amplitude_plane(result)) else []),

@@ -254,11 +254,14 @@ def limits(result: RunResult) -> list[Limit]:
         missed = ~(result.error_estimate <= tolerance)
         found.append(_limit(f"Error above {number(100.0 * tolerance)} % or unknown", r.speed, missed))
     found.append(_limit("Wall dry in part", r.speed, r.dry_patch))
-    found.append(_limit("Answer unstable", r.speed, ~r.stable))
+    found.append(_limit("Answer unstable", r.speed, result.stability == "unstable"))
+    lost = result.stability == "not_known"
+    if lost.any():
+        found.append(_limit("Stability not known", r.speed, lost))
     if result.whirl is not None:
         parts = [rpm_bands(result.whirl.bands)] if result.whirl.bands else []
         lost = np.isnan(result.whirl.growth)
-        parts += [f"not found at {ranges(r.speed, lost)}"] if lost.any() else []
+        parts += [f"not known at {ranges(r.speed, lost)}"] if lost.any() else []
         found.append(Limit("Self-excited whirl", ", ".join(parts) or "none", bool(parts)))
     infinite = np.isinf(result.amplitude)
     if infinite.any():

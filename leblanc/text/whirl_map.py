@@ -25,7 +25,12 @@ def answer(found: WhirlMap) -> str:
     """
     values = dict(facts(found))
     if not (found.growth > 0.0).any():
-        return "No whirl grows by itself at any speed with any volume of liquid."
+        if found.not_known == found.growth.size:
+            return "Whether a whirl grows by itself is not known at any speed with any volume of liquid."
+        where = (
+            "where it is known, which is not everywhere" if found.not_known else "with any volume of liquid"
+        )
+        return f"No whirl grows by itself at any speed {where}."
     own = f"with the scene's {with_unit(found.scene_volume, VOLUME)}"
     bands = f"from {band_words(found.scene_edges)} rpm" if found.scene_edges else "nowhere"
     return (
@@ -62,6 +67,7 @@ def facts(found: WhirlMap) -> list[tuple[str, str]]:
         ("Volumes by speeds", f"{found.volume.size} by {found.speed.size}"),
         ("Most liquid, all chambers", with_unit(float(found.volume[-1]), VOLUME)),
         ("A whirl grows at", f"{number(100.0 * float(np.count_nonzero(unstable)) / size)} % of the points"),
+        *([("Growth not known at", f"{found.not_known} of {size} points")] if found.not_known else []),
         ("Fastest growth", fastest),
         ("That whirl's speed in space", turning),
         (

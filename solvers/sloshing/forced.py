@@ -18,7 +18,7 @@ from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative, require_positive
 from meshes.liquid_section import LiquidSection
 from solvers.sloshing.modes import SloshingModes, Spectrum, spectrum, surface_displacement
-from solvers.sloshing.system import LiquidSystem, wall_points
+from solvers.sloshing.system import Condensed, LiquidSystem, wall_points
 
 # A wall that turns back on itself so sharply has an edge in the liquid.
 _BACK = -0.99
@@ -45,7 +45,7 @@ class ModeDamping:
     thickness: Array
 
 
-def mode_damping(system: LiquidSystem, modes: SloshingModes, viscosity: float, height: float) -> ModeDamping:
+def mode_damping(system: Condensed, modes: SloshingModes, viscosity: float, height: float) -> ModeDamping:
     """Damping of each mode, to first order in the thickness of the layers [theory: sloshing, eq. 18-23].
 
     Parameters
@@ -66,9 +66,8 @@ def mode_damping(system: LiquidSystem, modes: SloshingModes, viscosity: float, h
     if height != np.inf:
         require_positive("height", height)
     psi = -1j * modes.frequency[:, None] * modes.amplitude
-    kinetic = np.einsum("ki,ij,kj->k", psi.conj(), system.inertia, psi).real
-    sense = np.einsum("ki,ij,kj->k", psi.conj(), system.gyration, psi).imag
-    tension = np.einsum("ki,ij,kj->k", psi.conj(), system.surface, psi).real
+    inertia, turned, raised = ((psi.conj() * product).sum(axis=1) for product in system.products(psi))
+    kinetic, sense, tension = inertia.real, turned.imag, raised.real
     potential = np.square(modes.spin / modes.frequency) * tension
     thickness = layer_thickness(viscosity, modes.frequency)
     half, once, twice = (wall_loss(system.section, modes.psi, part * thickness) for part in (0.5, 1.0, 2.0))

@@ -17,7 +17,7 @@ from scipy.sparse.linalg import splu
 from meshes.arrays import Array, Complex, Indices
 from meshes.errors import InputError, require_positive
 from meshes.liquid_section import LiquidSection
-from solvers.sloshing.system import LiquidSystem, surface_forms
+from solvers.sloshing.system import Condensed, LiquidSystem, surface_forms
 
 _GAUSS = np.polynomial.legendre.leggauss(8)
 HARMONICS = 32  # crests round the drum that are looked for
@@ -31,12 +31,12 @@ _TIE = 1e-5
 
 @dataclass(frozen=True, eq=False)
 class Spectrum:
-    """All modes of a liquid at unit spin, of each pair the one above 0.
+    """Modes of a liquid at unit spin, of each pair the one above 0, the slowest ones or all.
 
     Parameters
     ----------
     frequency : sigma/Omega, rising, shape (n,)
-    amplitude : eta in the condensed unknowns, eta* (B + sigma^2 K) eta = 1, shape (n, n), mode by mode
+    amplitude : eta in the condensed unknowns, eta* (B + sigma^2 K) eta = 1, mode by mode, shape (n, unknowns)
     """
 
     frequency: Array
@@ -99,16 +99,17 @@ def spectrum(system: LiquidSystem) -> Spectrum:
 
 
 def sloshing_modes(
-    system: LiquidSystem, spin: float, count: int = 12, modes: Spectrum | None = None
+    system: Condensed, spin: float, count: int = 12, modes: Spectrum | None = None
 ) -> SloshingModes:
     """Slowest modes of the liquid in the drum's frame [theory: sloshing, eq. 10-12].
 
     Parameters
     ----------
-    system : the liquid, from `condense`
+    system : the liquid, from `condense` or `surface_system`
     spin : Omega, rad/s
     count : how many, at least 1; fewer are returned if the mesh has fewer
-    modes : `spectrum` of the system, if it is known already
+    modes : of the system, at least the first one beyond those counted and all with its frequency; all of them
+        if None, for which the system has to be dense
 
     Returns
     -------
@@ -121,13 +122,17 @@ def sloshing_modes(
     require_positive("spin", spin)
     if count < 1 or count != int(count):
         raise InputError("count", count, "a whole number, 1 or more")
-    known = spectrum(system) if modes is None else modes
+    if modes is None:
+        assert isinstance(system, LiquidSystem)
+        modes = spectrum(system)
+    known = modes
     sigma = known.frequency[:count]
     group = _groups(known.frequency)
     kept = np.flatnonzero(group <= group[min(count, len(group)) - 1])
     eta = _told_apart(system, known.amplitude[kept], group[kept])[:count]
-    travel = np.einsum("ki,ij,kj->k", eta.conj(), system.gyration, eta).imag
-    residual = _residual(system, sigma, eta, travel)
+    inertia, turned, tension = system.products(eta)
+    travel = _with(eta, turned).imag
+    residual = _residual(sigma, _with(eta, inertia).real, travel, _with(eta, tension).real)
     sense = np.where(travel < 0.0, -1.0, 1.0)
     eta = np.where(sense[:, None] > 0.0, eta, eta.conj())
     frequency = sense * sigma * spin
@@ -174,7 +179,12 @@ def _groups(frequency: Array) -> Indices:
     return np.concatenate([[0], np.cumsum(apart)]).astype(np.int64)
 
 
-def _told_apart(system: LiquidSystem, eta: Complex, group: Indices) -> Complex:
+def _with(eta: Complex, product: Complex) -> Complex:
+    """Scalar products of rows, shape (k,)."""
+    return np.asarray((eta.conj() * product).sum(axis=1))
+
+
+def _told_apart(system: Condensed, eta: Complex, group: Indices) -> Complex:
     """Within each cluster of equal frequencies the combinations that differ most in their harmonics.
 
     Any combination of them is a mode. Those given have their first harmonics, one after the other, in one
@@ -188,17 +198,14 @@ def _told_apart(system: LiquidSystem, eta: Complex, group: Indices) -> Complex:
         weight = np.empty(17)
         weight[order] = 3.0 ** -np.arange(17)
         weight[8] = 0.0
-        energy = eta[here].conj() @ system.surface @ eta[here].T
+        energy = eta[here].conj() @ system.products(eta[here])[2].T
         _, mix = eigh((shares.conj() * weight) @ shares.T, 0.5 * (energy + energy.conj().T))
         found[here] = mix[:, ::-1].T @ eta[here]
     return found
 
 
-def _residual(system: LiquidSystem, sigma: Array, eta: Complex, travel: Array) -> Array:
+def _residual(sigma: Array, kinetic: Array, travel: Array, tension: Array) -> Array:
     """Imbalance of the energies, |sigma^2 k - 2 sigma c - b|/(sigma^2 k + b) [theory: sloshing, eq. 12]."""
-    kinetic, tension = (
-        np.einsum("ki,ij,kj->k", eta.conj(), form, eta).real for form in (system.inertia, system.surface)
-    )
     left = np.square(sigma) * kinetic
     return np.asarray(np.abs(left - 2.0 * sigma * travel - tension) / (left + tension))
 

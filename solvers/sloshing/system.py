@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -230,10 +230,93 @@ class LiquidSystem:
         -------
         shape (k, N), in their units
         """
-        real, imag = (
-            self.interior.expand(np.atleast_2d(part)) for part in (amplitudes.real, amplitudes.imag)
-        )
-        return np.asarray(real + 1j * imag)
+        return self.interior.on_nodes(amplitudes)
+
+    def products(self, amplitudes: Complex) -> tuple[Complex, Complex, Complex]:
+        """K, C and B times amplitudes, shape (k, n) each."""
+        inertia, gyration, surface = self.inertia, self.gyration, self.surface
+        return amplitudes @ inertia.T, amplitudes @ gyration.T, amplitudes @ surface.T
+
+
+class Condensed(Protocol):
+    """Liquid of a section in unknowns on its free surface: as dense matrices, or as what they do."""
+
+    @property
+    def section(self) -> LiquidSection:
+        """The liquid at rest."""
+        ...
+
+    @property
+    def circulations(self) -> int:
+        """Steady flows left out."""
+        ...
+
+    def on_nodes(self, amplitudes: Array | Complex) -> Complex:
+        """Stream function on the nodes, shape (k, n) to (k, N)."""
+        ...
+
+    def products(self, amplitudes: Complex) -> tuple[Complex, Complex, Complex]:
+        """K, C and B times amplitudes, shape (k, n) each."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceSystem:
+    """The same liquid without dense matrices; made by `surface_system`.
+
+    Unknowns are the values on the surface and on walls that pierce it, of motions without circulation.
+
+    Parameters
+    ----------
+    section, liquid_area, enclosed_area, circulations, unknowns : as in `LiquidSystem`
+    gyration : C, sparse, shape (n, n)
+    rise, bend : D and W, sparse, B = D^T W D of differences along the sides, which cells of very unlike
+        width do not spoil by rounding, shape (r, n) and (r, r)
+    give : the inverse of W, sparse
+    whole : stiffness of the surface with the inside held, sparse, shape (n, n)
+    moment : P, shape (2, n), m
+    steady : 1 on each closed part of the surface, shape (n, p)
+    interior : what gives the values on all nodes
+    pieces : stretches of the surface that no path along it joins
+    """
+
+    section: LiquidSection
+    gyration: csr_array
+    rise: csr_array
+    bend: csr_array
+    give: csr_array
+    whole: csr_array
+    moment: Array
+    steady: Array
+    liquid_area: float
+    enclosed_area: float
+    circulations: int
+    unknowns: int
+    interior: Interior
+    pieces: int
+
+    def on_nodes(self, amplitudes: Array | Complex) -> Complex:
+        """As `LiquidSystem.on_nodes`."""
+        return self.interior.on_nodes(amplitudes)
+
+    def inertia_times(self, values: Any) -> Any:
+        """K times columns, shape (n, k), by one solution inside for each."""
+        if np.iscomplexobj(values):
+            return self.inertia_times(values.real) + 1j * self.inertia_times(values.imag)
+        if self.interior.factors is None:
+            return self.whole @ values
+        coupling = self.interior.coupling
+        return self.whole @ values - coupling.T @ self.interior.factors.solve(coupling @ values)
+
+    def surface_times(self, values: Any) -> Any:
+        """B times columns, shape (n, k)."""
+        return self.rise.T @ (self.bend @ (self.rise @ values))
+
+    def products(self, amplitudes: Complex) -> tuple[Complex, Complex, Complex]:
+        """As `LiquidSystem.products`."""
+        columns = amplitudes.T
+        found = self.inertia_times(columns), self.gyration @ columns, self.surface_times(columns)
+        return np.asarray(found[0].T), np.asarray(found[1].T), np.asarray(found[2].T)
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,22 +325,28 @@ class Interior:
 
     Parameters
     ----------
-    basis : columns span what the condensed unknowns mean on the surface, shape (surface unknowns, n)
+    basis : columns span what the condensed unknowns mean on the surface, shape (surface unknowns, n); None if
+        they are the values there
     factors : of the stiffness inside
     coupling : stiffness between inside and surface
     unknown : of each node, -1 where psi = 0, shape (N,)
     place : of the unknowns in the vector of inside, then surface, shape (unknowns,)
     """
 
-    basis: Array
+    basis: Array | None
     factors: Any
     coupling: csr_array
     unknown: Indices
     place: Indices
 
+    def on_nodes(self, amplitudes: Array | Complex) -> Complex:
+        """Values on all nodes, shape (k, n) to (k, N)."""
+        real, imag = (self.expand(np.atleast_2d(part)) for part in (amplitudes.real, amplitudes.imag))
+        return np.asarray(real + 1j * imag)
+
     def expand(self, amplitudes: Array) -> Array:
         """Values on all nodes of real amplitudes, shape (k, n) to (k, N)."""
-        at_surface = self.basis @ amplitudes.T
+        at_surface = amplitudes.T if self.basis is None else self.basis @ amplitudes.T
         inside = at_surface[:0] if self.factors is None else -self.factors.solve(self.coupling @ at_surface)
         values = np.concatenate([inside, at_surface, np.zeros((1, len(amplitudes)))])
         place = np.append(self.place, len(values) - 1)  # the last one for unknown -1
@@ -275,34 +364,137 @@ def condense(section: LiquidSection) -> LiquidSystem:
     -------
     The system; its size is that of the nodes on the free surface, and its cost the cube of that.
     """
-    unknown, count = _unknowns(section)
-    reduce = _selection(unknown, count)
-    k, c, b = (reduce.T @ form @ reduce for form in (stiffness(section), *surface_forms(section)))
-    on_surface = np.zeros(count, dtype=bool)
-    touched = unknown[section.surface.ravel()]
-    on_surface[touched[touched >= 0]] = True
-    inside, outside = np.flatnonzero(~on_surface), np.flatnonzero(on_surface)
-    place = np.empty(count, dtype=np.int64)
-    place[np.concatenate([inside, outside])] = np.arange(count)
-    factors, coupling, schur = _schur(csr_array(k), inside, outside)
-    basis, circulations = _without_circulation(section, unknown, outside, schur)
-    moment = _moment(section) @ reduce
-    submerged = np.count_nonzero(~section.fixed_piece) - np.count_nonzero(_piercing(section))
+    parts = _parts(section)
+    schur = parts.schur()
+    constants, outside = parts.steady, parts.outside
+    basis = np.eye(len(outside)) if constants.shape[1] == 0 else qr(schur @ constants)[0]
+    basis = np.asarray(basis[:, constants.shape[1] :])
     inertia, gyration, surface = (
-        basis.T @ matrix @ basis
-        for matrix in (schur, *(m[outside][:, outside].toarray() for m in map(csr_array, (c, b))))
+        basis.T @ matrix @ basis for matrix in (schur, parts.gyration.toarray(), parts.surface.toarray())
     )
     return LiquidSystem(
         section=section,
         inertia=0.5 * (inertia + inertia.T),
         gyration=0.5 * (gyration - gyration.T),
         surface=0.5 * (surface + surface.T),
-        moment=np.asarray(moment[:, outside] @ basis),
+        moment=np.asarray(parts.moment @ basis),
         liquid_area=_area(section.points, np.concatenate([section.surface, section.wall])),
         enclosed_area=_enclosed_area(section),
-        circulations=circulations + int(submerged),
-        unknowns=count,
-        interior=Interior(basis, factors, coupling, unknown, place),
+        circulations=constants.shape[1] + parts.submerged,
+        unknowns=parts.count,
+        interior=Interior(basis, parts.factors, parts.coupling, parts.unknown, parts.place),
+    )
+
+
+def surface_system(section: LiquidSection) -> SurfaceSystem:
+    """The liquid's motion on the free surface without dense matrices [theory: sloshing, eq. 9].
+
+    Parameters
+    ----------
+    section : the liquid at rest
+
+    Returns
+    -------
+    The system; its cost is that of the factors of the inside.
+    """
+    parts = _parts(section)
+    place = np.full(parts.count + 1, -1, dtype=np.int64)
+    place[parts.outside] = np.arange(len(parts.outside))
+    rise, bend, give = _differences(section, place[parts.unknown], len(parts.outside))
+    return SurfaceSystem(
+        section=section,
+        gyration=parts.gyration,
+        rise=rise,
+        bend=bend,
+        give=give,
+        whole=parts.whole,
+        moment=parts.moment,
+        steady=parts.steady,
+        liquid_area=_area(section.points, np.concatenate([section.surface, section.wall])),
+        enclosed_area=_enclosed_area(section),
+        circulations=parts.steady.shape[1] + parts.submerged,
+        unknowns=parts.count,
+        interior=Interior(None, parts.factors, parts.coupling, parts.unknown, parts.place),
+        pieces=parts.pieces,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Parts:
+    """What both systems are made of; outside: unknowns of the surface, inside: the others.
+
+    Parameters
+    ----------
+    unknown, count : of each node, -1 where psi = 0, and their number
+    outside : unknowns on the surface, shape (n,)
+    place : of the unknowns in the vector of inside, then surface
+    factors, coupling, whole : of the stiffness inside, None without any; between inside and surface; surface
+    gyration, surface : C and B on the surface
+    moment : P
+    steady : 1 on each closed part of the surface, shape (n, p)
+    pieces : stretches of the surface that no path along it joins
+    submerged : free-standing walls in the liquid
+    """
+
+    unknown: Indices
+    count: int
+    outside: Indices
+    place: Indices
+    factors: Any
+    coupling: csr_array
+    whole: csr_array
+    gyration: csr_array
+    surface: csr_array
+    moment: Array
+    steady: Array
+    pieces: int
+    submerged: int
+
+    def schur(self) -> Array:
+        """The stiffness that the surface feels, shape (n, n)."""
+        whole = self.whole.toarray()
+        if self.factors is None:
+            return np.asarray(whole)
+        for start in range(0, len(whole), _CHUNK):
+            part = slice(start, start + _CHUNK)
+            whole[:, part] -= self.coupling.T @ self.factors.solve(self.coupling[:, part].toarray())
+        return np.asarray(0.5 * (whole + whole.T))
+
+
+def _parts(section: LiquidSection) -> _Parts:
+    """Forms of the liquid, the inside factored."""
+    unknown, count = _unknowns(section)
+    reduce = _selection(unknown, count)
+    k, c, b = (csr_array(reduce.T @ form @ reduce) for form in (stiffness(section), *surface_forms(section)))
+    on_surface = np.zeros(count, dtype=bool)
+    touched = unknown[section.surface.ravel()]
+    on_surface[touched[touched >= 0]] = True
+    inside, outside = np.flatnonzero(~on_surface), np.flatnonzero(on_surface)
+    place = np.empty(count, dtype=np.int64)
+    place[np.concatenate([inside, outside])] = np.arange(count)
+    factors = None
+    if len(inside):
+        factors = splu(
+            csc_array(k[inside][:, inside]),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+    steady, pieces = _closed_parts(section, unknown, outside)
+    return _Parts(
+        unknown=unknown,
+        count=count,
+        outside=outside,
+        place=place,
+        factors=factors,
+        coupling=csr_array(k[inside][:, outside]),
+        whole=csr_array(k[outside][:, outside]),
+        gyration=csr_array(c[outside][:, outside]),
+        surface=csr_array(b[outside][:, outside]),
+        moment=np.asarray((_moment(section) @ reduce)[:, outside]),
+        steady=steady,
+        pieces=pieces,
+        submerged=int(np.count_nonzero(~section.fixed_piece) - np.count_nonzero(_piercing(section))),
     )
 
 
@@ -340,6 +532,48 @@ def surface_forms(section: LiquidSection) -> tuple[csr_array, csr_array]:
     return c, b
 
 
+def _differences(
+    section: LiquidSection, unknown: Indices, count: int
+) -> tuple[csr_array, csr_array, csr_array]:
+    """D, W and its inverse with B = D^T W D: differences from node to node along the sides of the surface.
+
+    Parameters
+    ----------
+    section : the liquid at rest
+    unknown : on the surface, of each node, -1 for those held at 0, shape (N,)
+    count : of those unknowns
+    """
+    sides = section.surface
+    x, y = section.points[sides[:, 0]].T
+    u, v = section.points[sides[:, 1]].T
+    turn = np.abs(np.arctan2(x * v - y * u, x * u + y * v))
+    if section.order == 1:
+        steps, unit = [(0, 1)], np.ones((1, 1))
+    else:
+        steps, unit = [(0, 2), (2, 1)], np.array([[7.0, -1.0], [-1.0, 7.0]]) / 3.0
+    row = np.arange(len(steps) * len(sides)).reshape(len(sides), len(steps))
+    entries, rows, columns = [], [], []
+    for k, ends in enumerate(steps):
+        for end, sign in zip(ends, (-1.0, 1.0), strict=True):
+            own = unknown[sides[:, end]]
+            held = own >= 0
+            entries.append(np.full(int(held.sum()), sign))
+            rows.append(row[held, k])
+            columns.append(own[held])
+    places = (np.concatenate(rows), np.concatenate(columns))
+    rise = csr_array(coo_array((np.concatenate(entries), places), shape=(row.size, count)))
+    width = len(steps)
+    at = (np.repeat(row, width, axis=1).ravel(), np.tile(row, (1, width)).ravel())
+    bend, give = (
+        csr_array(coo_array((values.ravel(), at), shape=(row.size, row.size)))
+        for values in (
+            unit / turn[:, None, None],
+            np.linalg.inv(unit) * turn[:, None, None],
+        )
+    )
+    return rise, bend, give
+
+
 def _moment(section: LiquidSection) -> Array:
     """P = oint (x, y) v_theta dtheta, from the gyration matrix and the nodes' positions, shape (2, N)."""
     gyration, _ = surface_forms(section)
@@ -368,31 +602,11 @@ def _selection(unknown: Indices, count: int) -> csr_array:
     return csr_array(coo_array(entries, shape=(len(unknown), count)))
 
 
-def _schur(k: csr_array, inside: Indices, outside: Indices) -> tuple[Any, csr_array, Array]:
-    """Factors of the inside, its coupling, and the stiffness that the surface feels."""
-    coupling = csr_array(k[inside][:, outside])
-    whole = k[outside][:, outside].toarray()
-    if len(inside) == 0:
-        return None, coupling, whole
-    factors = splu(
-        csc_array(k[inside][:, inside]),
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
-    for start in range(0, len(outside), _CHUNK):
-        part = slice(start, start + _CHUNK)
-        whole[:, part] -= coupling.T @ factors.solve(coupling[:, part].toarray())
-    return factors, coupling, 0.5 * (whole + whole.T)
-
-
-def _without_circulation(
-    section: LiquidSection, unknown: Indices, outside: Indices, schur: Array
-) -> tuple[Array, int]:
-    """Surface values with no circulation round closed parts of the free surface, and how many such parts.
+def _closed_parts(section: LiquidSection, unknown: Indices, outside: Indices) -> tuple[Array, int]:
+    """1 on each closed part of the free surface, shape (n, p), and the stretches of it that nothing joins.
 
     A part is closed if no side of it leads to a fixed wall. Where psi is one constant on all of it, the
-    surface stays a circle and the flow is a steady vortex.
+    surface stays a circle and the flow is a steady vortex, which the condensation leaves out.
     """
     ends = unknown[section.surface[:, :2]]
     count = int(unknown.max()) + 1
@@ -400,16 +614,16 @@ def _without_circulation(
     links = coo_array((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), shape=(count + 1, count + 1))
     label = connected_components(links, directed=False)[1]
     closed = np.setdiff1d(label[ends[:, 0]], label[[count]])
+    free = (ends < count).all(axis=1)
+    links = coo_array((np.ones(free.sum()), tuple(ends[free].T)), shape=(count, count))
+    stretch = connected_components(links, directed=False)[1]
+    touched = ends[ends < count]
     # A node between the ends of a curved side belongs to the part of its side.
     part = label.copy()
     if section.order == 2:
         middle = unknown[section.surface[:, 2]]
         part[middle] = label[ends[:, 0]]
-    if len(closed) == 0:
-        return np.eye(len(outside)), 0
-    constants = (part[outside][:, None] == closed).astype(float)
-    basis = qr(schur @ constants)[0][:, len(closed) :]
-    return np.asarray(basis), len(closed)
+    return (part[outside][:, None] == closed).astype(float), len(np.unique(stretch[touched]))
 
 
 def _piercing(section: LiquidSection) -> NDArray[np.bool_]:

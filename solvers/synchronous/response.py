@@ -25,7 +25,7 @@ from solvers.rotor.system import Rotor, RotorSystem
 from solvers.rotor.vibration import critical_speeds, orbit, unbalance_response
 from solvers.synchronous.balance import Balance, Liquid, backward_mass, directions, harmonic_balance
 from solvers.synchronous.coupled import solutions
-from solvers.synchronous.models import STATICS
+from solvers.synchronous.models import LINEAR, STATICS
 from solvers.synchronous.pairs import Pairs, pair_machines
 from solvers.synchronous.planar import all_deflections, divide, is_stable, liquid_offset, with_phase
 
@@ -84,6 +84,63 @@ def wet_critical_speeds(
                 break
             speed[k], shape[k] = again[k], shapes[k]
     return speed, shape
+
+
+_ALIKE = 1e-6  # relative; amplitudes nearer than that are equally large
+_FREE = 1e-9  # loss factor below which a mode counts as undamped, share below which it counts as not driven
+
+
+def main_critical_speeds(
+    system: RotorSystem,
+    fills: Sequence[Fill],
+    dry: tuple[Array, Complex],
+    wet: tuple[Array, Complex],
+) -> tuple[float, float]:
+    """Of the critical speeds without and with liquid those at which the unbalance moves the chambers most.
+
+    The largest amplitude at any chamber counts, or at position 0 without chambers, by linear theory with the
+    dampers; without bound where the unbalance drives a mode that has none. Of equal ones it is the lowest
+    [theory: rotor, eq. 31].
+
+    Parameters
+    ----------
+    system : the dry rotor
+    fills : its chambers
+    dry, wet : critical speeds, rad/s, rising, shape (k,), and shapes, (k, n), as from `critical_speeds` and
+        `wet_critical_speeds`
+
+    Returns
+    -------
+    rad/s, without and with liquid; nan where there is none
+    """
+    planes = sorted({fill.chamber.plane for fill in fills}) or [0.0]
+    chosen = []
+    for (speed, shape), liquid in ((dry, ()), (wet, fills)):
+        if speed.size == 0:
+            chosen.append(float("nan"))
+            continue
+        answer = unbalance_response(system, speed)
+        if liquid:
+            answer = response(system, liquid, speed, 0.0, LINEAR).coordinates
+        size = np.max([orbit(system, answer, plane).amplitude for plane in planes], axis=0)
+        lossless, driven = _undamped(system, speed, shape)
+        size = np.where(lossless, np.where(driven, np.inf, 0.0), size)
+        largest = size.max()
+        chosen.append(float(speed[np.argmax(size >= largest * (1.0 - _ALIKE))]))
+    return chosen[0], chosen[1]
+
+
+def _undamped(system: RotorSystem, speed: Array, shape: Complex) -> tuple[Flags, Flags]:
+    """Which modes have no damping, and which the unbalance drives, shape (k,)."""
+
+    def form(matrix: Array) -> Array:
+        return np.asarray(np.einsum("ki,ij,kj->k", shape.conj(), matrix, shape).real)
+
+    energy = form(system.mass)
+    push = np.square(np.abs(shape.conj() @ system.unbalance))
+    most = float((system.unbalance.conj() @ np.linalg.solve(system.mass, system.unbalance)).real)
+    lossless = form(system.damping) <= _FREE * speed * energy
+    return np.asarray(lossless), np.asarray(push > _FREE**2 * energy * most)
 
 
 def _added_mass(

@@ -9,23 +9,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from meshes.arrays import Array, Complex, Flags, Index
 
-_STEP = (
-    1.2  # of |h f'/f| and of the phase between two points: no zero lies close beside the line between them
-)
+_STEP = 1.2  # most change of log f from the middle of a step to its ends
+_BEND = 0.6  # most difference between both: no zeros, not two alike either, are close to the step
 _ROUNDS = 48
 _FAR = 1e5  # over the highest frequency: where the phase is that at infinity
 _WHOLE = 0.2  # distance of a count from a whole number
-_LIP = 1e-9  # over the spin: how far the path stays off a cut
-_FIRST = np.geomspace(1e-3, 1.0, 7)  # over a frequency, of the first points below and above it
+_LIP, _END = 1e-9, 1e-8  # over the spin: how far the path stays off a cut and its end
+_FIRST = np.geomspace(1e-2, 1.0, 4)  # over a frequency, of the first points below and above it
 
-# Takes points, shape (k,), and which of the n problems each belongs to, (k,); returns f over its size, log of
-# its size, and f'/f, each (k,).
-Characteristic = Callable[[Complex, Index], tuple[Complex, Array, Complex]]
+# Takes points, shape (k,), and which of the n problems each belongs to, (k,); returns log f, (k,).
+Characteristic = Callable[[Complex, Index], Complex]
 
 
 @dataclass(frozen=True)
@@ -90,22 +89,23 @@ def _path(pairs: Complex, region: Region) -> tuple[Complex, Index]:
     paths, owners = [], []
     for k in range(region.line.size):
         left, tip, size = (float(part[k]) for part in (region.line, region.tip, region.scale))
-        own = np.unique(pairs[k].imag[np.isfinite(pairs[k])])
-        far = _FAR * max(float(region.far[k]), size, float(own[-1]) if own.size else 0.0)
-        around = [size * (1.0 + _FIRST), size * (1.0 - _FIRST), [size], own]
-        height = np.concatenate([*around, np.geomspace(1e-3 * size, far, 24)])
+        fastest = np.nanmax(pairs[k].imag, initial=size, where=np.isfinite(pairs[k]))
+        far = _FAR * max(float(region.far[k]), float(fastest))
+        around = [size * (1.0 + _FIRST), size * (1.0 - _FIRST), [size]]
+        height = np.concatenate([*around, np.geomspace(1e-2 * size, far, 12)])
         height = np.unique(height[height > 0.0])
-        lip, end = _LIP * size, 1j * tip
+        lip, end, past = _LIP * size, 1j * tip, _END * size
         back = left * (1.0 - _FIRST)
-        if left >= 0.0:
-            parts = [[left], left + 1j * height]
+        if left >= past:
+            parts: list[Any] = [[left], left + 1j * height]
         elif tip == 0.0:
-            parts = [[0.0], back[::-1] + 1j * lip, left + 1j * height[height > lip]]
+            parts = [[past], [past + 1j * lip], back[::-1] + 1j * lip, left + 1j * height[height > lip]]
         else:
             below, above = height[height < tip - lip], height[height > tip + lip]
             parts = [
                 *([left], left + 1j * below, [left + end - 1j * lip], back + end - 1j * lip),
-                *([end], back[::-1] + end + 1j * lip, [left + end + 1j * lip], left + 1j * above),
+                *([past + end - 1j * lip, past + end + 1j * lip], back[::-1] + end + 1j * lip),
+                *([left + end + 1j * lip], left + 1j * above),
             ]
         points = np.concatenate(parts).astype(complex)
         paths.append(points)
@@ -121,51 +121,49 @@ class _Deflated:
     pairs: Complex
     alone: Complex
 
-    def at(self, points: Complex, owner: Index) -> tuple[Array, Array, Complex]:
-        """Phase, log of the size, and f'/f, at points of problems, each of shape (k,)."""
-        unit, size, slope = self.function(points, owner)
-        phase, slope = np.angle(unit), slope.copy()
-        size = size.copy()
+    def at(self, points: Complex, owner: Index) -> Complex:
+        """log f at points of problems, shape (k,)."""
+        found = self.function(points, owner)
         for known in (self.pairs, self.pairs.conj(), self.alone):
             gap = points[:, None] - known[owner]
-            there = np.isfinite(gap)
-            gap = np.where(there, gap, 1.0)
-            phase = phase - np.angle(gap).sum(axis=1)
-            size = size - np.log(np.abs(gap)).sum(axis=1)
-            slope = slope - np.where(there, 1.0 / gap, 0.0).sum(axis=1)
-        return phase, size, slope
+            found = found - np.log(np.where(np.isfinite(gap), gap, 1.0)).sum(axis=1)
+        return found
 
 
 def _phase(function: _Deflated, points: Complex, own: Index, scale: Array) -> tuple[Array, Flags]:
-    """Rise of the phase along each path, and whether it could be followed, shape (n,)."""
-    values = function.at(points, own)
+    """Rise of the phase along each path, and whether it could be followed, shape (n,).
+
+    A step counts where log f changes little and evenly from its start to its middle to its end; others are
+    halved. Zeros between two of the points would make the changes on either side of them differ.
+    """
+    value = function.at(points, own)
     joined = np.flatnonzero(own[1:] == own[:-1])
     start, end, which = points[joined], points[joined + 1], own[joined]
-    at_start, at_end = ([part[joined + k] for part in values] for k in (0, 1))
+    at_start, at_end = value[joined], value[joined + 1]
     rise, sure = np.zeros(scale.size), np.ones(scale.size, dtype=bool)
     for _ in range(_ROUNDS):
-        step = np.abs(end - start)
-        turn = np.remainder(at_end[0] - at_start[0] + np.pi, 2.0 * np.pi) - np.pi
-        steep = np.maximum(np.abs(at_start[2]), np.abs(at_end[2])) * step
-        change = np.abs(at_end[1] - at_start[1])
-        smooth = (steep <= _STEP) & (np.abs(turn) <= _STEP) & (change <= _STEP)
-        np.add.at(rise, which[smooth], turn[smooth])
-        left = ~smooth
-        # Where the path comes so close to a zero that rounding decides, nothing is known.
-        tiny = left & ~(step > 1e-12 * (scale[which] + np.abs(start)))
-        sure[which[tiny]] = False
-        left &= sure[which]
-        if not left.any():
-            return rise, sure
-        start, end, which = start[left], end[left], which[left]
-        at_start, at_end = ([part[left] for part in values] for values in (at_start, at_end))
         middle = 0.5 * (start + end)
         at_middle = function.at(middle, which)
-        start, end = np.concatenate([start, middle]), np.concatenate([middle, end])
-        which = np.concatenate([which, which])
+        first, second = _change(at_start, at_middle), _change(at_middle, at_end)
+        even = (np.abs(first) <= _STEP) & (np.abs(second) <= _STEP) & (np.abs(first - second) <= _BEND)
+        np.add.at(rise, which[even], (first + second).imag[even])
+        # Where the path comes so close to a zero that rounding decides, nothing is known.
+        tiny = ~even & ~(np.abs(end - start) > 1e-12 * (scale[which] + np.abs(start)))
+        sure[which[tiny]] = False
+        left = ~even & sure[which]
+        if not left.any():
+            return rise, sure
+        start, end = np.concatenate([start[left], middle[left]]), np.concatenate([middle[left], end[left]])
         at_start, at_end = (
-            [np.concatenate(pair) for pair in zip(*both, strict=True)]
-            for both in ((at_start, at_middle), (at_middle, at_end))
+            np.concatenate(pair)
+            for pair in ((at_start[left], at_middle[left]), (at_middle[left], at_end[left]))
         )
+        which = np.concatenate([which[left], which[left]])
     sure[which] = False
     return rise, sure
+
+
+def _change(first: Complex, second: Complex) -> Complex:
+    """Change of a logarithm by the shorter way round."""
+    change = second - first
+    return np.asarray(change.real + 1j * (np.remainder(change.imag + np.pi, 2.0 * np.pi) - np.pi))

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
 from fluid.friction import NO_FRICTION, Friction
@@ -44,7 +44,8 @@ def unstable_bands(
 
     Returns
     -------
-    For each row its bands (low, high), rad/s; an end that is the first or last speed is where the range ends
+    For each row its bands (low, high), rad/s; an end that is the first or last speed is where the range ends.
+    Next to a speed at which the growth is not known a band ends at the last one at which it is
     """
     grid = np.asarray(speed, dtype=float)
     row, points = np.repeat(np.arange(len(rows)), grid.size), np.tile(grid, len(rows))
@@ -55,24 +56,53 @@ def unstable_bands(
     added = growth_at(rotor, rows, more, between, friction)[0]
     row, points = np.concatenate([row, more]), np.concatenate([points, between])
     rate = np.concatenate([known, added])
-    grows = rate > 0.0
     order = np.lexsort((points, row))
-    row, points, rate, grows = row[order], points[order], rate[order], grows[order]
-    change = np.flatnonzero((row[1:] == row[:-1]) & (grows[1:] != grows[:-1]))
-    low, high = (np.stack([points[change + i], rate[change + i]]) for i in (0, 1))
-    edge = _refine(rotor, rows, row[change], low, high, friction)
-    return tuple(_bands(k, row, points, grows, row[change], edge) for k in range(len(rows)))
+    row, points, rate = row[order], points[order], rate[order]
+    grows, known_there = rate > 0.0, ~np.isnan(rate)
+    # Where growth begins, after a point, and where it ceases, likewise; the ends of the rows count.
+    inner = row[1:] == row[:-1]
+    begins = grows & ~np.concatenate([[False], inner & grows[:-1]])
+    ceases = grows & ~np.concatenate([inner & grows[1:], [False]])
+    edge = points.copy(), points.copy()
+    for side, ends in enumerate((begins, ceases)):
+        # The neighbour on the other side of the edge, if there is one whose growth is known.
+        here = np.flatnonzero(ends)
+        other = here + (1 if side else -1)
+        other = np.clip(other, 0, row.size - 1)
+        kept = (row[other] == row[here]) & (other != here) & known_there[other]
+        here, other = here[kept], other[kept]
+        low, high = (np.minimum(here, other), np.maximum(here, other))
+        ends_of = (np.stack([points[at], rate[at]]) for at in (low, high))
+        edge[side][here] = _refine(rotor, rows, row[here], *ends_of, friction)
+    bands = zip(row[begins].tolist(), edge[0][begins].tolist(), edge[1][ceases].tolist(), strict=True)
+    found: list[list[tuple[float, float]]] = [[] for _ in rows]
+    for k, first, last in bands:
+        found[k].append((first, last))
+    return tuple(tuple(own) for own in found)
 
 
-def _bands(k: int, row: Index, points: Array, grows: NDArray[np.bool_], owner: Index, edge: Array) -> Bands:
-    """Edges of one row in pairs, with the ends of the range where it is unstable there."""
-    own = np.flatnonzero(row == k)
-    ends = edge[owner == k].tolist()
-    if own.size and grows[own[0]]:
-        ends = [float(points[own[0]]), *ends]
-    if own.size and grows[own[-1]]:
-        ends = [*ends, float(points[own[-1]])]
-    return tuple(zip(ends[::2], ends[1::2], strict=True))
+def bands_not_known(speed: Array, growth: Array) -> Bands:
+    """Bands of speed in which the growth is not known.
+
+    Parameters
+    ----------
+    speed : rising, rad/s, shape (n,)
+    growth : 1/s, nan where it is not known, shape (n,)
+
+    Returns
+    -------
+    (low, high), rad/s, the nearest speeds at which it is known, or the ends of the range
+
+    Examples
+    --------
+    >>> nan = float("nan")
+    >>> bands_not_known(np.arange(1.0, 6.0), np.array([nan, nan, 1.0, nan, -1.0]))
+    ((1.0, 3.0), (3.0, 5.0))
+    """
+    lost = np.concatenate([[False], np.isnan(growth), [False]])
+    first, past = np.flatnonzero(~lost[:-1] & lost[1:]), np.flatnonzero(lost[:-1] & ~lost[1:])
+    low, high = speed[np.maximum(first - 1, 0)], speed[np.minimum(past, speed.size - 1)]
+    return tuple(zip(low.tolist(), high.tolist(), strict=True))
 
 
 def _refine(

@@ -13,9 +13,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fluid.whirl import Layer, stokes_rate
-from meshes.arrays import Array, Complex
+from meshes.arrays import Array, Complex, Index
 from solvers.rotor.system import RotorSystem
 from solvers.whirl.count import Region, missed_modes
+from solvers.whirl.sheets import standing_roots
 from solvers.whirl.system import (
     SystemModes,
     circles_of,
@@ -33,7 +34,7 @@ _SWEEPS = 60
 _STEP = 1e-13  # relative, at which a root counts as found
 _GONE = -1e300  # lambda of what has no wave, 1/s
 _LEAST = 1e-7  # relative, which noise of the determinant may hide
-_BESIDE = 1e-7  # of the spin: how far left of the mode that grows most the others are counted
+_BESIDE = (1e-7, 1e-5, 1e-3)  # of the spin: how far left of the mode that grows most the others are counted
 _MOST = 40  # coordinates of a rotor with its layers, for which all modes are computed where some were missed
 # Complex displacements along and against the spin from the two real ones, and back.
 _CIRCLES = np.array([[1.0, 1.0j], [1.0, -1.0j]], dtype=complex)
@@ -75,9 +76,9 @@ def laminar_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -
         weights[members] = rank / len(members)
     degree = 2 * len(system.coordinates) + 4 * sum(rank for _, rank in groups)
     problem = _Problem(system, layers, weights, degree)
-    parts = []
-    for first in range(0, speed.size, _BLOCK):
-        parts.append(_certain(problem, groups, speed[first : first + _BLOCK]))
+    parts = [
+        _certain(problem, groups, speed[first : first + _BLOCK]) for first in range(0, speed.size, _BLOCK)
+    ]
     width = max((part.root.shape[1] for part in parts), default=0)
     return joined([part.widened(width, _GONE) for part in parts])
 
@@ -85,12 +86,15 @@ def laminar_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -
 def _certain(problem: _Problem, groups: Sequence[tuple[list[int], int]], speed: Array) -> SystemModes:
     """Modes of a block of speeds; where some were missed, from all of them at once."""
     start = _starts(problem, groups, speed)
-    modes = _counted(problem, _aberth(problem, start, speed), speed)
+    # Of the rotor alone, and where the drag of a layer, stokes lambda^1.5, equals lambda^2.
+    fastest = np.nanmax(np.abs(start), axis=1)
+    fastest = np.maximum(fastest, max(layer.stokes for _, layer in problem.layers) ** 2)
+    modes = _counted(problem, _aberth(problem, start, speed), speed, fastest)
     missed = np.flatnonzero(~modes.complete)
     size = len(problem.system.coordinates) + 2 * len(problem.layers)
     if missed.size and size <= _MOST:
         again = all_modes(problem.system, problem.layers, speed[missed])
-        others = _counted(problem, _aberth(problem, again, speed[missed]), speed[missed])
+        others = _counted(problem, _aberth(problem, again, speed[missed]), speed[missed], fastest[missed])
         modes = modes.replaced(missed, others, _GONE)
     waves = [
         _layer_waves(problem.layers[members[0]][1], speed) for members, rank in groups if rank < len(members)
@@ -118,23 +122,31 @@ def _starts(problem: _Problem, groups: Sequence[tuple[list[int], int]], speed: A
     return np.concatenate(started, axis=1)
 
 
-def _counted(problem: _Problem, modes: SystemModes, speed: Array) -> SystemModes:
+def _counted(problem: _Problem, modes: SystemModes, speed: Array, fastest: Array) -> SystemModes:
     """The modes, complete where no other grows more than the one of those found that grows most."""
 
-    def determinant(points: Complex, owner: Index) -> tuple[Complex, Array, Complex]:
+    def determinant(points: Complex, owner: Index) -> Complex:
         here = _eliminate(problem, points, speed[owner])
         unit, size = np.linalg.slogdet(here.matrix)
-        inner = np.trace(_solve(here.matrix, here.slope), axis1=-2, axis2=-1)
-        return unit * np.exp(1j * here.waves.imag), size + here.waves.real, inner + here.poles
+        return np.asarray(size + 1j * np.angle(unit) + here.waves)
 
     known = np.where(modes.found, modes.root, complex(np.nan, np.nan))
-    best = np.where(modes.found, modes.root.real, -np.inf).max(axis=1, initial=-np.inf)
-    told = np.isfinite(best)
-    line = np.where(told, best, 0.0) - _BESIDE * speed
-    # The drag of a layer, stokes lambda^1.5, beside lambda^2.
-    far = np.full(speed.shape, max(layer.stokes for _, layer in problem.layers) ** 2)
-    count = missed_modes(determinant, problem.degree, known, Region(line, speed, speed, far))
-    return replace(modes, complete=told & (count == 0.0))
+    rate = np.where(modes.found, modes.root.real, -np.inf)
+    best, complete = rate.max(axis=1, initial=-np.inf), np.zeros(speed.shape, dtype=bool)
+    unsure = np.flatnonzero(np.isfinite(best))
+    # Where rounding hides the phase so close to the modes found, farther from them; that claims more.
+    for beside in _BESIDE:
+        spin = speed[unsure]
+        region = Region(best[unsure] - beside * spin, spin, spin, fastest[unsure])
+        count = missed_modes(
+            lambda points, owner, own=unsure: determinant(points, own[owner]),
+            *(problem.degree, known[unsure], region),
+        )
+        complete[unsure] = count == 0.0
+        unsure = unsure[np.isnan(count)]
+        if unsure.size == 0:
+            break
+    return replace(modes, complete=complete)
 
 
 def _with_waves(modes: SystemModes, waves: Sequence[Complex], speed: Array) -> SystemModes:
@@ -285,10 +297,9 @@ def _eliminate(problem: _Problem, root: Complex, spin: Array) -> _Eliminated:
             shape = np.outer(place.T @ _AXES[:, side], _CIRCLES[side] @ place)
             turned = root - 1j * sense * spin
             friction = stokes_rate(layer.stokes, -1j * turned)
-            # W and its slope, W d = -(1 - T)/2 lambda^2 w.
-            wave = root * (root - 2j * sense * (1.0 + t) * spin) - (1.0 + t) * np.square(spin)
-            wave = wave + (layer.rate + friction) * turned
-            bend = 2.0 * root - 2j * sense * (1.0 + t) * spin + layer.rate + 1.5 * friction
+            # W, in the slip, where films keep their digits, and its slope; W d = -(1 - T)/2 lambda^2 w.
+            wave = turned * (turned - 2j * sense * t * spin + layer.rate + friction) + t * np.square(spin)
+            bend = 2.0 * turned - 2j * sense * t * spin + layer.rate + 1.5 * friction
             wave = np.where(wave == 0.0, _EPS * np.square(spin), wave)
             share = 0.5 * (1.0 - t) * np.square(root) / wave
             force = layer.mass * np.square(root) * (1.0 - share)
@@ -302,10 +313,7 @@ def _eliminate(problem: _Problem, root: Complex, spin: Array) -> _Eliminated:
 
 
 def all_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> Complex:
-    """All modes at once, as eigenvalues of a polynomial: slow, and none is missed [theory: whirl, eq. 20].
-
-    With z in place of lambda, lambda = i Omega (z^2 + z^-2)/2, both roots of the drag are polynomials; those
-    zeros count for which both have a positive real part.
+    """All modes at once: slower, and none is missed [theory: whirl, eq. 20].
 
     Parameters
     ----------
@@ -316,35 +324,11 @@ def all_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> Co
     lambda, 1/s, nan in place of those on other sheets, shape (n, 8 N) with N coordinates of rotor and layers
     """
     linear = coupled_matrices(system, layers, speed)
-    inverse = np.linalg.inv(np.linalg.cholesky(linear.mass))
-    size, count = len(inverse), len(system.coordinates)
+    size, count = len(linear.mass), len(system.coordinates)
     drags = np.zeros((2, size, size), dtype=complex)
     for j, (_, layer) in enumerate(layers):
         own = slice(count + 2 * j, count + 2 * j + 2)
         drag = layer.stokes * layer.mass / (0.5 * (1.0 - layer.layer_tanh))
         for side in (0, 1):
             drags[side, own, own] = drag * np.outer(_AXES[:, side], _CIRCLES[side])
-    along, against, damping, stiffness = (
-        inverse @ matrix @ inverse.T for matrix in (*drags, linear.damping, linear.stiffness)
-    )
-    # Frequencies over the spin: lambda = i (z^2 + z^-2)/2, the roots of the slips c (z -+ 1/z)/2, c^2 = 2 i.
-    spin = speed[:, None, None]
-    damping, stiffness, drag = damping / spin, stiffness / np.square(spin), 1.0 / np.sqrt(spin)
-    cube = (2j) ** 1.5 / 8.0 * drag
-    both, apart = cube * (along + against), cube * (against - along)
-    unit = np.eye(size)
-    # Coefficients of z^0 to z^8, times z^4.
-    parts = np.zeros((9, speed.size, size, size), dtype=complex)
-    parts[0], parts[8] = -0.25 * unit, -0.25 * unit
-    parts[2], parts[6] = 0.5j * damping, 0.5j * damping
-    parts[4] = stiffness - 0.5 * unit
-    parts[7], parts[5], parts[3], parts[1] = both, 3.0 * apart, 3.0 * both, apart
-    state = np.zeros((speed.size, 8 * size, 8 * size), dtype=complex)
-    state[:, : 7 * size, size:] = np.eye(7 * size)
-    state[:, 7 * size :] = np.concatenate(list(4.0 * parts[:8]), axis=2)
-    z = np.linalg.eigvals(state)
-    roots = 0.5 * np.sqrt(2j) * (z - 1.0 / z), 0.5 * np.sqrt(2j) * (z + 1.0 / z)
-    shown = (roots[0].real > 0.0) & (roots[1].real > 0.0)
-    return np.where(
-        shown, 0.5j * (np.square(z) + 1.0 / np.square(z)) * speed[:, None], complex(np.nan, np.nan)
-    )
+    return standing_roots(linear, drags, speed)

@@ -14,13 +14,14 @@ from typing import Any
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
-from meshes.arrays import Array, Complex
+from meshes.arrays import Array, Complex, Flags, Index
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.sloshing.reduced import KEPT, ReducedLiquid, SectionLayer, spanned
+from solvers.whirl.count import Region, missed_modes
+from solvers.whirl.sheets import drum_roots, standing_roots
 from solvers.whirl.system import CoupledMatrices, SystemModes, linear_modes
 
 Placed = tuple[float, SectionLayer]
@@ -33,6 +34,10 @@ _FOLLOWED = 6  # modes at a speed whose laminar friction is computed at their ow
 _STEPS = 30
 _BESIDE = 3e-14 * (1.0 + 1.0j)
 _SETTLED = 1e-12  # relative step at which a mode is found
+_SHARE = 1e-7  # of the spin: how far left of the mode that grows most the others are counted
+_ASIDE = 1e-4  # of the spin: how far left of that the others start at least
+_SAME = 1e-9  # of the spin: modes as near as that are one
+_GONE = -1e300  # lambda of a mode that there is not, 1/s
 _RESOLVED = 1e-11  # of the frequencies, below which growth is rounding
 
 
@@ -107,16 +112,23 @@ def drum_modes(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) ->
         return linear_modes(CoupledMatrices(system.mass, system.damping, system.stiffness), circles)
     first = system.damping + np.sqrt(0.5 * _SLOW * speed)[:, None, None] * system.laminar
     started = roots(CoupledMatrices(system.mass, first, system.stiffness))
-    damping, stiffness = system.damping[:, None], system.stiffness[:, None]
+    plain = CoupledMatrices(system.mass, system.damping, system.stiffness)
 
-    def terms(root: Complex) -> tuple[Complex, Complex]:
-        at = root[..., None, None]
+    def terms(root: Complex, owner: Index) -> tuple[Complex, Complex]:
+        at, damping = root[:, None, None], system.damping[owner]
         # Of both roots the one whose layer dies out away from the wall.
         drag = np.sqrt(at) * system.laminar
-        matrix = at * (at * system.mass + damping + drag) + stiffness
+        matrix = at * (at * system.mass + damping + drag) + system.stiffness[owner]
         return matrix, 2.0 * at * system.mass + damping + 1.5 * drag
 
-    return most_growing(MostGrowing(started, np.abs(started.imag), circles, terms), speed)
+    def every(owner: Index) -> Complex:
+        return drum_roots(plain.at(owner), system.laminar, speed[owner])
+
+    fastest = _fastest(started, system.mass, system.laminar)
+    slip = np.abs(started.imag)
+    return most_growing(
+        MostGrowing(started, slip, circles, terms, every, np.zeros(speed.shape), fastest), speed
+    )
 
 
 def roots(matrices: CoupledMatrices) -> Complex:
@@ -138,13 +150,19 @@ class MostGrowing:
     started : lambda with friction at the frequency of slow waves, `_SLOW` of the spin, shape (n, m)
     slip : frequency of each over the drum, rad/s, 0 or above, shape (n, m)
     circles : displacements that tell the sense of a whirl, in pairs across the axis, shape (2 c, N)
-    terms : T(lambda) and its derivative at points of shape (n, f), shape (n, f, N, N)
+    terms : T(lambda) and its derivative, shape (k, N, N), at points, (k,), of the speeds they belong to, (k,)
+    every : all lambda at some of the speeds, nan in place of some, shape (k, m) from (k,)
+    tip : imaginary part of the end of the cut of T, rad/s, shape (n,)
+    fastest : rate beyond which the masses alone count, 1/s, shape (n,)
     """
 
     started: Complex
     slip: Array
     circles: Array
-    terms: Callable[[Complex], tuple[Complex, Complex]]
+    terms: Callable[[Complex, Index], tuple[Complex, Complex]]
+    every: Callable[[Index], Complex]
+    tip: Array
+    fastest: Array
 
 
 def most_growing(search: MostGrowing, speed: Array) -> SystemModes:
@@ -161,14 +179,59 @@ def most_growing(search: MostGrowing, speed: Array) -> SystemModes:
     rate = np.where(root.real < 0.0, root.real * more, root.real)
     oscillating = np.where(root.imag > 1e-9 * speed[:, None], rate, -np.inf)
     most = np.argsort(-oscillating, axis=1)[:, :_FOLLOWED]
-    root, shape, found = _followed(
-        search.terms, np.take_along_axis(root, most, axis=1), len(search.circles.T)
-    )
+    everywhere = np.arange(speed.size)
+    modes = _told(search, _split(root, most), everywhere, speed)
+    missed = np.flatnonzero(~modes.complete)
+    if missed.size == 0:
+        return modes
+    again = search.every(missed)
+    rate = np.where(again.imag > 1e-9 * speed[missed][:, None], again.real, -np.inf)
+    most = np.argsort(-rate, axis=1)[:, : 2 * _FOLLOWED]
+    start, others = _split(again, most)
+    start = np.where(np.isfinite(start), start, complex(-1.0, 1.0) * speed[missed][:, None])
+    return modes.replaced(missed, _told(search, (start, others), missed, speed), _GONE)
+
+
+def _split(root: Complex, which: Index) -> tuple[Complex, Complex]:
+    """Those at the places given, shape (n, f), and the others above the real axis, nan in place of some."""
+    others = np.where(root.imag > 0.0, root, complex(np.nan, np.nan))
+    np.put_along_axis(others, which, complex(np.nan, np.nan), axis=1)
+    return np.take_along_axis(root, which, axis=1), others
+
+
+def _told(search: MostGrowing, starts: tuple[Complex, Complex], at: Index, speed: Array) -> SystemModes:
+    """Modes followed from starting values at some speeds, complete where no other grows more.
+
+    The starting values of the others serve as well to make smooth what is followed, as no zero is lost or won
+    by a factor whose own zero is left of the line.
+    """
+    start, others = starts
+    root, shape, found = _followed(search.terms, start, at, len(search.circles.T))
     along, against = _sizes(search.circles, shape)
-    scale = np.abs(root) + speed[:, None]
-    return SystemModes(
-        root, np.where(along >= against, 1.0, -1.0), _RESOLVED * scale, found, found.all(axis=1)
-    )
+    spin = speed[at]
+    rate = np.where(found, root.real, -np.inf).max(axis=1)
+    told = np.isfinite(rate)
+    region = Region(np.where(told, rate, 0.0) - _SHARE * spin, search.tip[at], spin, search.fastest[at])
+
+    def determinant(points: Complex, owner: Index) -> Complex:
+        unit, size = np.linalg.slogdet(search.terms(points, at[owner])[0])
+        return np.asarray(size + 1j * np.angle(unit))
+
+    # Two starts may lead to one mode.
+    twice = np.tril(np.abs(root[:, :, None] - root[:, None, :]) <= _SAME * spin[:, None, None], -1)
+    kept = found & ~(twice & found[:, None, :]).any(axis=2)
+    left = others.real < (region.line - _ASIDE * spin)[:, None]
+    known = np.where(np.hstack([kept, left]), np.hstack([root, others]), complex(np.nan, np.nan))
+    count = missed_modes(determinant, 2 * len(search.circles.T), known, region)
+    scale = np.abs(root) + spin[:, None]
+    sense = np.where(along >= against, 1.0, -1.0)
+    return SystemModes(root, sense, _RESOLVED * scale, found, told & (count == 0.0))
+
+
+def _fastest(started: Complex, mass: Array, laminar: Array) -> Array:
+    """Rate of the fastest mode, and where the drag equals the inertia, 1/s, shape (n,)."""
+    drag = float(np.abs(np.linalg.eigvals(np.linalg.solve(mass, laminar))).max())
+    return np.maximum(np.abs(started).max(axis=1), drag**2)
 
 
 def _circles(layers: Sequence[SectionLayer]) -> Array:
@@ -186,38 +249,41 @@ def _sizes(circles: Array, shape: Complex) -> tuple[Array, Array]:
 
 
 def _followed(
-    terms: Callable[[Complex], tuple[Complex, Complex]], start: Complex, size: int
-) -> tuple[Complex, Complex, NDArray[np.bool_]]:
+    terms: Callable[[Complex, Index], tuple[Complex, Complex]], start: Complex, at: Index, size: int
+) -> tuple[Complex, Complex, Flags]:
     """Newton's method on each mode with its own laminar friction.
 
     Parameters
     ----------
     terms : of `MostGrowing`
     start : first values of f modes at each of n speeds, above the real axis, shape (n, f)
+    at : which speeds, shape (n,)
     size : N of the matrices
 
     Returns
     -------
     Modes, shape (n, f); their shapes, (n, f, N); whether they settled, (n, f)
     """
-    root = start.astype(complex)
-    shape = np.broadcast_to(np.ones(size, dtype=complex) + 0.1j * np.arange(size), (*root.shape, size)).copy()
-    found = np.zeros(root.shape, dtype=bool)
+    root, owner = start.astype(complex).ravel(), np.repeat(at, start.shape[1])
+    shape = np.broadcast_to(np.ones(size, dtype=complex) + 0.1j * np.arange(size), (root.size, size)).copy()
+    on, found = np.arange(root.size), np.zeros(root.shape, dtype=bool)
     for _ in range(_STEPS):
         # A mode met to rounding makes the matrix singular to rounding, which is wanted; so little away it is
         # never exactly so.
-        near = root * (1.0 + _BESIDE)
-        matrix, slope = terms(near)
-        solved = np.linalg.solve(matrix, slope @ shape[..., None])[..., 0]
-        anchor = np.argmax(np.abs(solved), axis=-1)[..., None]
+        near = root[on] * (1.0 + _BESIDE)
+        matrix, slope = terms(near, owner[on])
+        solved = np.linalg.solve(matrix, slope @ shape[on][..., None])[..., 0]
+        anchor = np.argmax(np.abs(solved), axis=-1)[:, None]
         largest = np.take_along_axis(solved, anchor, -1)
-        step = (np.take_along_axis(shape, anchor, -1) / largest)[..., 0]
-        root = np.where(found, root, near - step)
-        shape = solved / largest
-        found = found | (np.abs(step) <= _SETTLED * np.abs(root))
-        if found.all():
+        step = (np.take_along_axis(shape[on], anchor, -1) / largest)[:, 0]
+        root[on] = near - step
+        shape[on] = solved / largest
+        settled = np.abs(step) <= _SETTLED * np.abs(root[on])
+        found[on[settled]] = True
+        on = on[~settled]
+        if on.size == 0:
             break
-    return root, shape, found
+    return root.reshape(start.shape), shape.reshape(*start.shape, size), found.reshape(start.shape)
 
 
 @dataclass(frozen=True, eq=False)
@@ -378,14 +444,15 @@ def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) 
     started = roots(CoupledMatrices(found.mass, found.damping + drag, found.stiffness + slipping))
     # Of the two circles of a mode the one with the spin, which slips less.
     slip = np.abs(np.abs(started.imag) - speed[:, None])
-    spin = speed[:, None, None, None]
+    turned = found.quarter @ found.laminar
+    plain = CoupledMatrices(found.mass, found.damping, found.stiffness)
 
-    def terms(root: Complex) -> tuple[Complex, Complex]:
-        at = root[..., None, None]
+    def terms(root: Complex, owner: Index) -> tuple[Complex, Complex]:
+        at, damping = root[:, None, None], found.damping[owner]
         # Either sense of circle slips by its own frequency over the drum.
         power, slope = [], []
         for way in (-1j, 1j):
-            slip = at + way * spin
+            slip = at + way * speed[owner][:, None, None]
             root_slip = np.sqrt(slip)
             power.append(slip * root_slip)
             slope.append(1.5 * root_slip)
@@ -393,13 +460,16 @@ def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) 
             (0.5 * (pair[0] + pair[1]) for pair in (power, slope)),
             (-0.5j * (pair[0] - pair[1]) for pair in (power, slope)),
         )
-        turned = found.quarter @ found.laminar
         shear, change = (u * found.laminar + v * turned for u, v in zip(mean, half, strict=True))
-        damping, stiffness = found.damping[:, None], found.stiffness[:, None]
-        matrix = at * (at * found.mass + damping) + stiffness + shear
+        matrix = at * (at * found.mass + damping) + found.stiffness[owner] + shear
         return matrix, 2.0 * at * found.mass + damping + change
 
-    return most_growing(MostGrowing(started, slip, circles, terms), speed)
+    def every(owner: Index) -> Complex:
+        drags = 0.5 * np.stack([found.laminar - 1j * turned, found.laminar + 1j * turned])
+        return standing_roots(plain.at(owner), drags, speed[owner])
+
+    fastest = _fastest(started, found.mass, found.laminar)
+    return most_growing(MostGrowing(started, slip, circles, terms, every, speed, fastest), speed)
 
 
 def _real(matrix: Any) -> Array:

@@ -32,6 +32,10 @@ class CoupledMatrices:
     damping: Array
     stiffness: Array
 
+    def at(self, which: Index) -> CoupledMatrices:
+        """Those of some speeds, shape (k,)."""
+        return CoupledMatrices(self.mass, self.damping[which], self.stiffness[which])
+
 
 def coupled_matrices(
     system: RotorSystem, layers: Sequence[tuple[float, Layer]], speed: Array

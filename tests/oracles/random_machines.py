@@ -66,7 +66,7 @@ def _even(rng: np.random.Generator):  # type: ignore[no-untyped-def]
 
 
 def _fill(table: Table, rng: np.random.Generator) -> None:
-    """Chambers from a film to nearly full, of mercury's or of petrol's density, thinner and thicker than any."""
+    """Chambers from a film to nearly full, of petrol or of mercury, from as good as inviscid to thick."""
     even = _even(rng)
     for chamber in table["chambers"]:
         radius, height = even(0.02, 0.5), even(0.005, 0.2)

@@ -131,6 +131,9 @@ def values_of(answers: Answers) -> dict[str, NDArray[Any]]:
     }
     # fmax takes the other of two where one is not a number; a whole row without numbers gives none.
     values["peak_growth"] = np.fmax.reduce(values["growth"], axis=1)
+    # Where no whirl is known to grow and some are not known, whether one grows is not known either.
+    unknown = np.isnan(values["growth"]).any(axis=1) & ~(values["peak_growth"] > 0.0)
+    values["peak_growth"] = np.where(unknown, np.nan, values["peak_growth"])
     for name in ("peak_amplitude", "peak_amplitude_dry"):
         values[name] = getattr(answers, name)
     for name in ("amplitude", "amplitude_dry"):

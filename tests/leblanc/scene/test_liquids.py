@@ -35,9 +35,7 @@ temperature = "40 degC"
 density = { temperatures = ["0 degC", "40 degC", "80 degC"], values = ["0.9 g/cm^3", "870 kg/m^3", 840] }
 viscosity = { temperatures = ["10 degC", "30 degC", "70 degC"], values = ["90 cSt", "40 cSt", "12 cSt"] }
 """
-VOGEL = (
-    'density = 900\nviscosity = { law = "vogel", a = 5e-8, b = 900, c = 150, range = [270, 370] }'
-)
+VOGEL = 'density = 900\nviscosity = { law = "vogel", a = 5e-8, b = 900, c = 150, range = [270, 370] }'
 ANDRADE = (
     'density = 900\nviscosity = { law = "andrade", a = 1e-9, b = "2000 K", range = ["0 degC", "90 degC"] }'
 )

@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from fluid.fill import Fill
+from fluid.liquid import known_liquid
 from leblanc.cli import main
 from leblanc.figures.chambers import chamber_figure, side_by_side
 from leblanc.figures.response import amplitude_figure, campbell_figure
@@ -18,7 +20,10 @@ from leblanc.report.run import comparisons, facts
 from leblanc.scene.scene import Scene, dry_rotor, load_scene, scene_from_table
 from leblanc.studies.explain import explain_scene
 from leblanc.studies.run import run_scene
-from solvers.rotor.vibration import orbit, unbalance_response
+from meshes.chamber import Chamber
+from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
+from solvers.rotor.vibration import critical_speeds, orbit, unbalance_response
+from solvers.synchronous.response import main_critical_speeds
 from tests.leblanc.studies.test_run import KEYS
 from tests.mutants import kills
 
@@ -55,7 +60,6 @@ def read(rotor: str) -> Scene:
     return scene_from_table(tomllib.loads(SAME.format(rotor=rotor)))
 
 
-@kills("leblanc.studies.run:main_critical_speeds", "int(np.argmax(size))", "int(np.argmin(size))")
 def test_one_rotor_two_ways() -> None:
     """All in the middle plane: the record of the planar rotor, dry patches and branches included."""
     one, other = run_scene(read(JEFFCOTT)), run_scene(read(AS_TWO_PLANE))
@@ -74,6 +78,60 @@ def test_one_rotor_two_ways() -> None:
     assert layers[0] is not None and layers[1] is not None
     assert layers[1].added_mass_ratio == pytest.approx(layers[0].added_mass_ratio, rel=1e-12)
     assert layers[1].optimal_volume == pytest.approx(layers[0].optimal_volume, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "name", ["horizontal_rig", "vertical_rig", "washing_machine", "two_plane_rig", "tub"]
+)
+def test_critical_speeds_are_the_machine_s(name: str) -> None:
+    """The same number for other speeds, as many or as few, for chambers in any order, and in `explain`."""
+    scene = load_scene(f"examples/{name}.toml").altered(runup=None)
+    stop = scene.speeds.stop
+    asked = [
+        (0.1 * stop, stop, 7),
+        (0.5 * stop, 0.55 * stop, 3),
+        (3.0 * stop, 4.0 * stop, 5),
+        (stop, stop, 1),
+    ]
+    found = []
+    for start, last, count in asked:
+        other = scene.altered(speeds=scene.speeds.altered(start=start, stop=last, count=count))
+        found += [run_scene(other), explain_scene(other)]
+    swapped = scene.altered(chambers=scene.chambers[::-1])
+    found.append(explain_scene(swapped))
+    for answer in found:
+        assert answer.critical_speed_dry == pytest.approx(found[0].critical_speed_dry, rel=1e-12)
+        assert answer.critical_speed_wet == pytest.approx(found[0].critical_speed_wet, rel=1e-12)
+
+
+@kills("solvers.synchronous.response:main_critical_speeds", "np.argmax(size >=", "np.argmin(size >=")
+@kills(
+    "solvers.synchronous.response:main_critical_speeds", "np.where(driven, np.inf, 0.0), size", "0.0, size"
+)
+@kills("solvers.synchronous.response:_undamped", "push > _FREE**2", "push >= 0.0 * _FREE**2")
+def test_which_critical_speed() -> None:
+    """Most motion wins; undamped modes that are driven win over all, the lowest of equal ones."""
+    supports = [Support(-0.3, 4e4, 40.0), Support(0.3, 4e4, 40.0)]
+
+    def chosen(
+        unbalances: list[PlaneUnbalance], supports: list[Support] = supports
+    ) -> tuple[float, np.ndarray]:
+        system = TwoPlane(10.0, 0.5, 0.1, tuple(supports), tuple(unbalances)).system()
+        speeds = critical_speeds(system)
+        fills = [Fill(Chamber(0.05, 0.02, plane=z), known_liquid("water"), 1e-12) for z in (-0.2, 0.2)]
+        return main_critical_speeds(system, fills, speeds, speeds)[0], speeds[0]
+
+    # Symmetric: a static unbalance shifts, a couple tilts; of both the larger amplitude at the chambers.
+    shift, every = chosen([PlaneUnbalance(0.0, 1e-3)])
+    tilt, _ = chosen([PlaneUnbalance(-0.2, 1e-3), PlaneUnbalance(0.2, 1e-3, math.pi)])
+    low = math.sqrt(8e4 / 10.0)
+    assert shift == pytest.approx(low, rel=1e-9) and tilt == pytest.approx(
+        math.sqrt(8e4 * 0.09 / (0.5 - 0.1)), rel=1e-9
+    )
+    assert {round(shift, 6), round(tilt, 6)} < set(np.round(every, 6).tolist())
+    undamped = [Support(-0.3, 4e4, 0.0), Support(0.3, 4e4, 0.0)]
+    assert chosen([PlaneUnbalance(-0.2, 1e-3), PlaneUnbalance(0.2, 1e-3, math.pi)], undamped)[0] == tilt
+    assert chosen([PlaneUnbalance(0.2, 1e-3)], undamped)[0] == min(shift, tilt)
 
 
 @kills("leblanc.studies.explain:explain_scene", "fill.added_mass / bare.mass", "fill.mass / bare.mass")

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+import pytest
 
 from fluid.friction import Friction
 from leblanc.results.notes import self_excited as note_of
 from leblanc.results.response import SelfExcited
 from leblanc.scene.scene import dry_rotor, load_scene
 from leblanc.studies.choose import prepare
-from leblanc.studies.run import self_excited
+from leblanc.studies.run import run_scene, self_excited
+from leblanc.text.run import limits
+from meshes.arrays import Array
+from solvers.whirl import laminar
 from solvers.whirl.growth import asynchronous_growth
+from solvers.whirl.system import SystemModes
 from tests.mutants import kills
 
 
@@ -18,8 +25,8 @@ def found(growth: list[float], bands: tuple[tuple[float, float], ...]) -> SelfEx
     return SelfExcited(np.array(growth), np.array([50.0, 60.0, 70.0]), bands, "none")
 
 
-@kills("leblanc.results.response:SelfExcited.leaves_stable", "self.growth > 0.0)", "self.growth >= 0.0)")
-@kills("leblanc.results.response:SelfExcited.leaves_stable", "stable & ~(self", "stable | ~(self")
+@kills("leblanc.results.response:SelfExcited.leaves_stable", "self.growth <= 0.0)", "self.growth < 0.0)")
+@kills("leblanc.results.response:SelfExcited.leaves_stable", "stable & (self", "stable | (self")
 def test_stability() -> None:
     """Growing whirls take stability away, and give none back."""
     whirl = found([-1.0, 0.0, 0.5], ((80.0, 90.0),))
@@ -28,13 +35,51 @@ def test_stability() -> None:
     np.testing.assert_array_equal(whirl.leaves_stable(np.ones(3, dtype=bool)), [True, True, False])
 
 
-@kills("leblanc.results.notes:self_excited", "np.argmax(whirl", "np.argmin(whirl")
+@kills("leblanc.results.response:SelfExcited.leaves_stable", "(self.growth <= 0.0)", "~(self.growth > 0.0)")
+@kills("leblanc.results.response:RunResult.stability", "(held & np.isnan(growth))", "False")
+@kills("leblanc.studies.run:self_excited", "bands_not_known(speed, growth)", "()")
+def test_what_is_not_known_is_not_stable(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A search that fails is told apart from a stable machine in every way out, and its bands are listed."""
+    scene = load_scene("examples/two_plane_rig.toml").replace({"speeds.count": 31})
+    whole = run_scene(scene)
+    assert set(whole.stability.tolist()) == {"stable", "unstable"} and whole.whirl_bands_not_known == ()
+    np.testing.assert_array_equal(whole.stability == "stable", whole.stable)
+    # Every third search finds nothing.
+    search = laminar._counted
+
+    def lost(problem: object, modes: SystemModes, speed: Array, fastest: Array) -> SystemModes:
+        found = search(problem, modes, speed, fastest)  # type: ignore[arg-type]
+        return replace(found, complete=found.complete & (np.round(speed * 30.0 / np.pi).astype(int) % 3 > 0))
+
+    monkeypatch.setattr(laminar, "_counted", lost)
+    result = run_scene(scene)
+    unknown = np.isnan(result.growth)
+    assert unknown.any() and not unknown.all()
+    assert np.all(result.stability[unknown] == "not_known") and not result.stable[unknown].any()
+    np.testing.assert_array_equal(result.stability[~unknown], whole.stability[~unknown])
+    answer = result.to_json()
+    assert all(state == "not_known" for state in np.array(answer["stability"])[unknown])
+    assert not any(np.array(answer["stable"])[unknown])
+    told = np.zeros(unknown.shape, dtype=bool)
+    for low, high in answer["whirl_bands_not_known"]:
+        told |= (result.speed > low) & (result.speed < high)
+        assert not any(low < b and high > a for a, b in answer["whirl_bands"])
+    np.testing.assert_array_equal(told[1:-1], unknown[1:-1])
+    assert "do not take it for stable" in note_of(result.whirl).text
+    assert "Stability not known" in [limit.label for limit in limits(result)]
+    flag = result.to_dataset()["stability"]
+    meaning = dict(zip(flag.attrs["flag_values"].tolist(), flag.attrs["flag_meanings"].split(), strict=True))
+    assert [meaning[value] for value in flag.values.tolist()] == result.stability.tolist()
+
+
+@kills("leblanc.results.notes:self_excited", "np.nanargmax(whirl", "np.nanargmin(whirl")
 def test_words() -> None:
     """Edges and the fastest whirl in rpm."""
     text = note_of(found([-1.0, 0.25, 0.5], ((20.0 * np.pi, 30.0 * np.pi),))).text
     assert "600 to 900 rpm" in text and "668.5 rpm" in text and "0.5 1/s" in text
     assert note_of(found([-1.0, -1.0, 0.0], ())).text.startswith("No whirl")
-    assert "not found" in note_of(found([np.nan, 0.0, 0.0], ())).text
+    assert "Not known at 1 of 3 speeds" in note_of(found([np.nan, 0.0, 0.0], ())).text
+    assert "is not known" in note_of(found([np.nan] * 3, ())).text
 
 
 @kills(

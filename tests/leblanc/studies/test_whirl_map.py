@@ -22,9 +22,10 @@ from leblanc.results.netcdf import write_netcdf
 from leblanc.results.notes import MapCode
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import Scene, dry_rotor, load_scene
+from leblanc.studies import whirl_map as whirl_map_study
 from leblanc.studies.whirl_map import SPEEDS, VOLUMES, fills_over_volume, map_scene
 from meshes.errors import InputError
-from solvers.whirl.growth import asynchronous_growth
+from solvers.whirl.growth import asynchronous_growth, growth_map
 from tests.mutants import kills
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
@@ -163,6 +164,41 @@ def test_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     printed = capsys.readouterr()
     assert "laminar" in printed.out and "grows by itself" in printed.out
     assert "3 volumes by 10 speeds" in printed.err
+
+
+@pytest.mark.parametrize("lost", [1, 3])
+@kills("leblanc.results.whirl_map:WhirlMap.not_known", "np.isnan(self.growth)", "np.isinf(self.growth)")
+@kills(
+    "leblanc.studies.whirl_map:map_scene",
+    "bands_not_known(speed, found)",
+    "bands_not_known(speed, 0 * speed)",
+)
+def test_points_not_known(
+    lost: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A point in a hundred is marked and the map stands; with more the command says so by its exit code."""
+
+    def losing(*given: object) -> tuple[np.ndarray, np.ndarray]:
+        growth, whirl = growth_map(*given)  # type: ignore[arg-type]
+        growth[2, 5 : 5 + lost] = np.nan
+        return growth, whirl
+
+    monkeypatch.setattr(whirl_map_study, "growth_map", losing)
+    command = ["map", str(EXAMPLES / "washing_machine.toml"), "--volumes", "10", "--speeds", "20"]
+    code = main([*command, "--out", str(tmp_path), "--json"])
+    said = capsys.readouterr()
+    found = json.loads(said.out)
+    assert [column for column in range(20) if found["growth"][2][column] is None] == list(range(5, 5 + lost))
+    assert found["not_known"] == lost
+    assert found["edges_not_known"][2] == [[found["speed"][4], found["speed"][5 + lost]]]
+    assert not any(found["edges_not_known"][:2] + found["edges_not_known"][3:])
+    assert f"At {lost} of 200 points" in " ".join(found["notes"])
+    assert code == (0 if lost <= 2 else 3)
+    assert code == 0 or "growth not known at 3 of 200 points" in said.err
+    assert "growth not known" in (tmp_path / "map.svg").read_text()
+    # No band that grows reaches into what is not known.
+    for low, high in found["edges"][2]:
+        assert high <= found["speed"][4] or low >= found["speed"][5 + lost]
 
 
 @pytest.mark.parametrize(

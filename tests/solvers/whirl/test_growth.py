@@ -363,7 +363,7 @@ def test_laminar() -> None:
     "turned = root + 1j * sense * spin",
 )
 @kills("solvers.whirl.laminar:_eliminate", "share = 0.5 * (1.0 - t) * np", "share = 0.5 * (1.0 + t) * np")
-@kills("solvers.whirl.laminar:_eliminate", "- (1.0 + t) * np.square(spin)", "- (1.0 - t) * np.square(spin)")
+@kills("solvers.whirl.laminar:_eliminate", "+ t * np.square(spin)", "- t * np.square(spin)")
 def test_any_rotor() -> None:
     """The solver of any rotor with laminar friction finds what the one for one plane does."""
     speeds = np.array([50.0, 118.0, 130.0, 250.0])
