@@ -2,7 +2,7 @@ VENV ?= .venv
 PYTHON ?= python3
 BIN := $(VENV)/bin
 
-.PHONY: study test net test-slow test-ross lint clean figures docs trade notebooks
+.PHONY: study test net test-slow metamorphic test-ross lint clean figures docs trade notebooks
 
 study: $(BIN)/.installed
 	$(BIN)/leblanc run examples/horizontal_rig.toml
@@ -16,6 +16,13 @@ net: $(BIN)/.installed-test
 
 test-slow: $(BIN)/.installed-test
 	$(BIN)/python -m pytest -m slow
+
+# A thousand random machines, each asked again in other units, scaled, split, permuted, turned and mirrored: an hour
+# or two in one process. COUNT and JOBS change that.
+COUNT ?= 1000
+JOBS ?= 1
+metamorphic: $(BIN)/.installed-test
+	$(BIN)/python -m tests.leblanc.metamorphic.random_scenes --count $(COUNT) --jobs $(JOBS) --command run
 
 # ROSS brings some sixty packages of its own: an environment apart.
 test-ross:

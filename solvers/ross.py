@@ -9,6 +9,7 @@ ROSS's x, y and its sense of rotation are this package's first and second direct
 
 from __future__ import annotations
 
+import inspect
 import warnings
 from dataclasses import dataclass
 from types import ModuleType
@@ -229,10 +230,10 @@ def liquid_bearing(
     ------
     InputError : see `liquid_coefficients`; an axis too short or not rising; ImportError without ROSS
     """
-    field, axis = ("spin", spin) if whirl_speed is None or np.ndim(spin) else ("whirl_speed", whirl_speed)
-    table = _table(field, axis)
+    spins = whirl_speed is None or np.ndim(spin) > 0
+    table = _table("spin", spin) if spins else _table("whirl_speed", whirl_speed)
     found = liquid_coefficients(fill, spin, whirl_speed, friction)
-    return _bearing(_ross(), node, table, _named(found), tag)
+    return _bearing(_ross(), node, table, _named(found), tag, over="speed" if spins else "frequency")
 
 
 def _ross() -> ModuleType:
@@ -250,13 +251,30 @@ def _ross() -> ModuleType:
 
 
 def _bearing(
-    ross: ModuleType, node: int, axis: Array, table: dict[str, Array], tag: str, link: int | None = None
+    ross: ModuleType,
+    node: int,
+    axis: Array,
+    table: dict[str, Array],
+    tag: str,
+    link: int | None = None,
+    over: str = "speed",
 ) -> BearingElement:
-    """Bearing of ROSS with coefficients over an axis, interpolated through every entry."""
-    element = ross.BearingElement(n=node, n_link=link, frequency=axis, tag=tag, **table)
-    # ROSS's own splines smooth over a residual of the order of one unit: small coefficients would vanish.
+    """Bearing of ROSS with coefficients over the spin or the whirl's frequency, through every entry.
+
+    ROSS 2 has one axis, which it calls `frequency` and which is the spin in its runs; ROSS 3 has both.
+    """
+    both = "speed" in inspect.signature(ross.BearingElement).parameters
+    given = {over if both else "frequency": axis}
+    element = ross.BearingElement(n=node, n_link=link, tag=tag, **given, **table)
     for name, values in table.items():
-        setattr(element, f"{name}_interpolated", make_interp_spline(axis, values, k=3))
+        spline, own = make_interp_spline(axis, values, k=3), f"{name}_interpolated"
+        if both:
+            # ROSS 3 passes through the entries, but with slopes of second order between them: a link's
+            # coefficients, polynomials of the spin, would not be exact there.
+            getattr(element, own)._interpolated = spline
+        else:
+            # The splines of ROSS 2 smooth over a residual of the order of one unit: small ones would vanish.
+            setattr(element, own, spline)
     return element
 
 

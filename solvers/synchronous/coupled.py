@@ -215,7 +215,17 @@ def newton(balance: Balance, begin: Complex, which: Index) -> tuple[Complex, Fla
         # Where no step helps there is a least distance from balance, or rounding is reached.
         going = (np.linalg.norm(left, axis=1) < size) | (size <= 1e3 * _ROUNDING * scale)
         active, left, matrix, scale = active[going], left[going], matrix[going], scale[going]
+    rest = np.flatnonzero(~converged)
+    converged[rest] = _at_rounding(balance, x[rest], which[rest])
     return x, converged
+
+
+def _at_rounding(balance: Balance, x: Complex, which: Index) -> Flags:
+    """Nothing is left of the balance but rounding of its terms, of which the largest may cancel."""
+    terms = np.einsum("kij,kj->ki", np.abs(balance.stiffness[which]), np.abs(x))
+    largest = np.linalg.norm(terms, axis=1) + np.linalg.norm(balance.force[which], axis=1)
+    left, _, _ = _linearised(balance, x, which)
+    return np.asarray(np.linalg.norm(left, axis=1) <= _ROUNDING * largest)
 
 
 def _linearised(balance: Balance, x: Complex, which: Index) -> tuple[Complex, Array, Array]:

@@ -1,13 +1,166 @@
-"""Machines drawn at random over decades of every field, and their mirror images along the axis."""
+"""Machines drawn at random, every field over six decades, and what a change of them must not change.
+
+Fields of `machine` are drawn one without regard to another, so most machines are absurd: a drum of a tenth of
+a millimetre beside a rotor of ten tonnes. What must not change the answer must not change theirs either.
+`two_plane` and `tub` draw machines that could be built, around one that was.
+"""
 
 from __future__ import annotations
 
 import math
 from copy import deepcopy
+from typing import Any
 
 import numpy as np
 
-from tests.oracles.machines import TUB, TWO_PLANE, Table
+from tests.oracles.machines import TUB, TWO_PLANE, Table, changed, reordered
+
+Scales = tuple[float, float, float]
+
+KINDS = ("jeffcott", "two_plane", "tub")
+
+
+def drawn(rng: np.random.Generator, low: float, decades: float = 6.0) -> float:
+    """A number between `low` and so many decades above it, evenly in its logarithm."""
+    return float(low * 10.0 ** (decades * rng.random()))
+
+
+def machine(seed: int, kind: str | None = None) -> Table:
+    """The machine of a seed, in plain SI numbers.
+
+    Parameters
+    ----------
+    seed : of the draw
+    kind : of rotor; drawn as well if None
+    """
+    rng = np.random.default_rng(seed)
+    kind = kind or str(rng.choice(KINDS))
+    rotor = {"jeffcott": _jeffcott, "two_plane": _two_plane, "tub": _tub}[kind](rng)
+    rotor |= {"kind": kind, "axis": str(rng.choice(["horizontal", "vertical"]))}
+    start = drawn(rng, 1e-3)
+    return {
+        "name": f"random {seed}",
+        "gravity": drawn(rng, 1e-2),
+        "rotor": rotor,
+        "chambers": [_chamber(rng, kind) for _ in range(int(rng.integers(1, 4)))],
+        "speeds": {"start": start, "stop": start * drawn(rng, 1.2, 1.5), "count": 3},
+        "model": {"liquid": "auto", "friction": _friction(rng)},
+    }
+
+
+def _jeffcott(rng: np.random.Generator) -> Table:
+    return {
+        "mass": drawn(rng, 1e-2),
+        "stiffness": drawn(rng, 1e1),
+        "damping": drawn(rng, 1e-2),
+        "unbalance": drawn(rng, 1e-7),
+    }
+
+
+def _place(rng: np.random.Generator) -> float:
+    return float(rng.choice([-1.0, 1.0])) * drawn(rng, 1e-4)
+
+
+def _two_plane(rng: np.random.Generator) -> Table:
+    transverse = drawn(rng, 1e-4)
+    supports = [
+        {"position": _place(rng), "stiffness": drawn(rng, 1e1), "damping": drawn(rng, 1e-2)} for _ in range(2)
+    ]
+    unbalances = [
+        {"position": _place(rng), "size": drawn(rng, 1e-7), "angle": float(rng.uniform(-3.0, 3.0))}
+        for _ in range(2)
+    ]
+    return {
+        "mass": drawn(rng, 1e-2),
+        "transverse_inertia": transverse,
+        "polar_inertia": 2.0 * transverse * drawn(rng, 1e-6),
+        "supports": supports,
+        "unbalances": unbalances,
+    }
+
+
+def _tub(rng: np.random.Generator) -> Table:
+    def places() -> list[float]:
+        return [_place(rng) for _ in range(3)]
+
+    def three(low: float) -> list[float]:
+        return [drawn(rng, low) for _ in range(3)]
+
+    return {
+        "tub_mass": drawn(rng, 1e-2),
+        "drum_mass": drawn(rng, 1e-2),
+        "tub_inertia": three(1e-4),
+        "drum_polar_inertia": drawn(rng, 1e-4),
+        "drum_transverse_inertia": drawn(rng, 1e-4),
+        "drum_position": places(),
+        "unbalance": drawn(rng, 1e-7),
+        "springs": [{"position": places(), "stiffness": three(1e1)} for _ in range(3)],
+        "dampers": [{"position": places(), "damping": three(1e-2)} for _ in range(2)],
+    }
+
+
+def _chamber(rng: np.random.Generator, kind: str) -> Table:
+    radius, height = drawn(rng, 1e-4), drawn(rng, 1e-4)
+    inner = radius * (1.0 - drawn(rng, 1e-6)) if rng.random() < 0.5 else 0.0
+    capacity = np.pi * (radius - inner) * (radius + inner) * height
+    liquid = {"density": drawn(rng, 1e-2), "viscosity": drawn(rng, 1e-9)}
+    found = {"radius": radius, "inner_radius": inner, "height": height, "liquid": liquid}
+    found["volume"] = capacity * drawn(rng, 1e-6) * (1.0 - 1e-9)
+    if kind != "jeffcott":
+        found["plane"] = _place(rng)
+    return found
+
+
+def _friction(rng: np.random.Generator) -> Any:
+    laws = ["none", "stokes", {"linear": drawn(rng, 1e-3)}, {"quadratic": drawn(rng, 1e-4)}]
+    return laws[int(rng.integers(len(laws)))]
+
+
+def mirrored(table: Table) -> Table:
+    """The machine seen in a mirror across its axis, which leaves the sense of the spin."""
+    found = deepcopy(table)
+    rotor = found["rotor"]
+    for place in [*rotor.get("supports", ()), *rotor.get("unbalances", ())]:
+        place["position"] *= -1.0
+    for place in [*rotor.get("springs", ()), *rotor.get("dampers", ())]:
+        place["position"][1] *= -1.0
+    if "drum_position" in rotor:
+        rotor["drum_position"][1] *= -1.0
+    for chamber in found["chambers"]:
+        if "plane" in chamber:
+            chamber["plane"] *= -1.0
+    return found
+
+
+def nudged(table: Table, seed: int, size: float = 2.0**-40) -> Table:
+    """The machine with every number that has a unit off by `size` of itself, up or down at random."""
+    rng = np.random.default_rng(seed)
+
+    def nudge(key: str, value: Any) -> Any:
+        return value * (1.0 + size * float(rng.choice([-1.0, 1.0])))
+
+    found = changed(table, nudge)
+    for chamber in found["chambers"]:
+        # No more than it holds.
+        radius, inner = chamber["radius"], chamber["inner_radius"]
+        capacity = np.pi * (radius - inner) * (radius + inner) * chamber["height"]
+        chamber["volume"] = min(chamber["volume"], capacity)
+    return found
+
+
+def random_scales(seed: int) -> Scales:
+    """Powers of two, of length, mass and time: rounding is all they change; the density changes little."""
+    rng = np.random.default_rng(seed)
+    length, denser, time = (2.0 ** int(rng.integers(-3, 4)) for _ in range(3))
+    return length, denser * length**3, time
+
+
+def permuted(table: Table) -> Table:
+    """All parts in the opposite order but the first chamber, at which a rotor that tilts is looked at."""
+    first, *others = table["chambers"]
+    found = reordered(table)
+    found["chambers"] = deepcopy([first, *reversed(others)])
+    return found
 
 
 def two_plane(rng: np.random.Generator) -> Table:
@@ -36,27 +189,6 @@ def tub(rng: np.random.Generator) -> Table:
     _fill(found, rng)
     if rng.random() < 0.5:
         found["chambers"].append(deepcopy(found["chambers"][0]) | {"plane": -0.1})
-    return found
-
-
-def mirrored(table: Table) -> Table:
-    """The machine seen from behind a mirror across its axis, front for back; its spin stays what it is."""
-    found = deepcopy(table)
-    rotor = found["rotor"]
-    for part in ("supports", "unbalances"):
-        for own in rotor.get(part, ()):
-            own["position"] = -own["position"]
-    for part in ("springs", "dampers"):
-        for own in rotor.get(part, ()):
-            own["position"] = [own["position"][0], -own["position"][1], own["position"][2]]
-    if "drum_position" in rotor:
-        rotor["drum_position"] = [
-            rotor["drum_position"][0],
-            -rotor["drum_position"][1],
-            rotor["drum_position"][2],
-        ]
-    for chamber in found["chambers"]:
-        chamber["plane"] = -chamber["plane"]
     return found
 
 
