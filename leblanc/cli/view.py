@@ -163,7 +163,6 @@ def _still(machine: Scene, speed: float | None, factor: float | None) -> tuple[P
 
 def _files(
     machine: Scene,
-    source: Path,
     picture: Picture,
     wave: ModeView | None,
     screenshot: Path | None,

@@ -52,10 +52,10 @@ def machine() -> Scene:
 def model_curves() -> tuple[Array, Array, Array, Array]:
     """Volumes, ml; peak of the run-up, steady resonance peak, steady amplitude at cruise, m."""
     volume = np.array(data("fill_sweep.json")["added_ml"], dtype=float)
-    scene = machine()
-    amplitude = FilledMachine(scene).over(volume[:, None] * _ML, scene.speeds)
-    runup = RunupPeak(scene).exact(volume[:, None] * _ML)
-    return volume, runup, amplitude.max(axis=1), amplitude[:, -1]
+    scene, fills = machine(), volume[:, None] * _ML
+    filled = FilledMachine(scene)
+    cruise = filled.at(fills, np.full(volume.size, CRUISE)).amplitude
+    return volume, RunupPeak(scene).exact(fills), filled.peaks(fills, scene.speeds), cruise
 
 
 def cases() -> list[Case]:
