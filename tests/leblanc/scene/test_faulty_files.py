@@ -135,6 +135,9 @@ def test_each_fault_has_its_line(tmp_path: Path, capsys: pytest.CaptureFixture[s
     }
     found = [line.removeprefix(f"{path}:").split(": ") for line in shell(path, capsys).splitlines()]
     assert {rest[0].split(" = ")[0]: lines[int(number) - 1] for number, *rest in found} == expected
+    with pytest.raises(SceneError) as caught:  # in Python as on the command line
+        load_scene(path)
+    assert [lines[fault.line - 1] for fault in caught.value.faults if fault.line] == [*expected.values()]
 
 
 def test_what_a_study_refuses_is_told_where_it_stands(
