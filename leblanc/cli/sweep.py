@@ -40,9 +40,9 @@ def sweep(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Answers of many scenes that differ in a few values. The same command goes on after a stop."""
-    from leblanc.studies.plausible import doubts
     from leblanc.studies.sweep.sampling import sampling_note
     from leblanc.studies.sweep.study import load_sweep
+    from leblanc.studies.validity import doubts
 
     plan = load_sweep(study)
     for doubt in doubts(plan.scene, plan.table):

@@ -18,7 +18,7 @@ from leblanc.scene.scene import Scene, TubRotor
 from leblanc.studies.choose import Prepared, choose_all, liquid_models, prepare
 from leblanc.studies.liquid import synchronous_model
 from leblanc.studies.peaks import responses_between
-from leblanc.studies.plausible import doubts
+from leblanc.studies.validity import doubts
 from leblanc.studies.whirl_map import small_whirl_friction
 from meshes.arrays import Array, Complex
 from meshes.chamber_section import liquid_of

@@ -22,7 +22,7 @@ from leblanc.studies.choose import across_gravity as across_gravity  # of a run-
 from leblanc.studies.choose import axial_gravity, is_cut, prepare
 from leblanc.studies.liquid import RUNUP_MODELS, runup_model
 from leblanc.studies.peaks import responses_between
-from leblanc.studies.plausible import doubts
+from leblanc.studies.validity import doubts
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.liquid_model import LONG

@@ -1,9 +1,225 @@
-"""The numbers a layer's answer rests on, and whether they are inside its model's range."""
+"""Whether a question and its answer are to be believed.
+
+Values of a scene that are allowed but hardly meant: what each looks like, and the slip that it may be. The
+bounds lie well outside what is built, from the spindle of a hard disc to a gas turbine: a doubt is to be
+looked at, and nothing is refused. And the numbers a layer's answer rests on, with the range of its model.
+"""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from leblanc.results.base import Note
 from leblanc.results.layer import Number
+from leblanc.results.notes import DoubtCode, doubt
+from leblanc.scene.rotors import JeffcottRotor, TubRotor, TwoPlaneRotor
+from leblanc.scene.scene import Exciter, Scene
+from leblanc.units import DENSITY, LENGTH, MASS, UNBALANCE, VISCOSITY, in_rpm, number, rpm_range, with_unit
 from solvers.liquid_model import LiquidWave
+
+SMALLEST, LARGEST = 2e-4, 10.0  # of a wall, m
+THINNEST = 1e-6  # of a layer all round its wall, m
+LIQUID = 1.0  # mass of the liquid over that of the rotor
+OVERDAMPED = 1.0  # damping ratio of a support
+ECCENTRICITY = {"tub": 0.25}  # of the largest wall: the centre of mass from the axis; of a drum with laundry
+_ECCENTRICITY = 0.1  # of other rotors
+FARTHEST = 10.0  # radii of gyration from the centre of mass; the ends of a rod lie at 1.7
+FREE = 1e-9  # square of a natural frequency over the largest one
+LIGHTEST, HEAVIEST = 50.0, 25e3  # density of a liquid, kg/m^3
+THICKEST = 0.5  # kinematic viscosity, m^2/s
+GRAVITY = 100.0  # m/s^2
+NEAR = 4.0  # speeds and critical speeds are within this factor of one another
+_TURN = 2.0 * math.pi / 60.0  # rad/s in one rpm
+
+_WAYS = {
+    "x": "along x",
+    "y": "along y",
+    "z": "along z",
+    "alpha": "about x",
+    "beta": "about y",
+    "gamma": "about z",
+}
+
+
+def doubts(scene: Scene, given: Mapping[str, Any] | None = None) -> tuple[Note, ...]:
+    """What is hardly meant in a scene, a note for each value, its field in the data of the note.
+
+    Parameters
+    ----------
+    scene : the machine
+    given : content of its file, which tells speeds without a unit from others; None if there is none
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> rig = lb.example("vertical_rig")
+    >>> doubts(rig)
+    ()
+    >>> (note,) = doubts(rig.replace({"rotor.damping_ratio": 6.0}))
+    >>> note.data["field"], note.data["likely"]
+    ('rotor.damping_ratio', '0.06')
+    """
+    return (
+        *_rotor(scene),
+        *_chambers(scene),
+        *_gravity(scene),
+        *(() if given is None else _speeds(scene, given)),
+    )
+
+
+def _rotor(scene: Scene) -> Iterator[Note]:
+    rotor = scene.rotor
+    if isinstance(rotor, JeffcottRotor):
+        ratio = rotor.machine().damping_ratio
+        if ratio > OVERDAMPED:
+            given = rotor.damping is None
+            text = f"the support is overdamped, {number(ratio)} times the critical damping"
+            field = f"rotor.damping{'_ratio' if given else ''}"
+            yield doubt(DoubtCode.DAMPING, field, text, number(0.01 * ratio) if given else "")
+        yield from _eccentricity(scene, "rotor.unbalance", rotor.unbalance, rotor.mass)
+    elif isinstance(rotor, TwoPlaneRotor):
+        for k, part in enumerate(rotor.unbalances):
+            yield from _eccentricity(scene, f"rotor.unbalances.{k}.size", part.size, rotor.mass)
+        gyration = math.sqrt(rotor.transverse_inertia / rotor.mass)
+        places = [(f"rotor.supports.{k}.position", part.position) for k, part in enumerate(rotor.supports)]
+        places += [(f"rotor.unbalances.{k}.position", p.position) for k, p in enumerate(rotor.unbalances)]
+        yield from _far(scene, places, gyration)
+        yield from _free(scene)
+    elif isinstance(rotor, TubRotor):
+        yield from _eccentricity(scene, "rotor.unbalance", rotor.unbalance, rotor.drum_mass)
+        gyration = math.sqrt(max(rotor.tub_inertia) / rotor.tub_mass)
+        places = [
+            (f"rotor.{name}.{k}.position", float(np.linalg.norm(part.position)))
+            for name, parts in (("springs", rotor.springs), ("dampers", rotor.dampers))
+            for k, part in enumerate(parts)
+        ]
+        if rotor.unbalance_position is not None:
+            places.append(("rotor.unbalance_position", rotor.unbalance_position))
+        yield from _far(scene, places, gyration)
+        yield from _free(scene)
+    else:
+        yield from _eccentricity(scene, "rotor.unbalance", rotor.unbalance, rotor.platform_mass)
+
+
+def _eccentricity(scene: Scene, field: str, unbalance: float, mass: float) -> Iterator[Note]:
+    """An unbalance puts the centre of mass far from the axis."""
+    size = unbalance / mass
+    walls = [fill.chamber.radius for fill in scene.fills]
+    if isinstance(scene.rotor, Exciter):
+        walls = [scene.rotor.balls.track_radius]
+    most = ECCENTRICITY.get(scene.rotor.kind, _ECCENTRICITY) * max(walls, default=1.0)
+    if size > most:
+        text = f"{with_unit(unbalance, UNBALANCE)} put the centre of mass of {with_unit(mass, MASS)} "
+        text += f"{with_unit(size, LENGTH)} off its axis"
+        likely = with_unit(1e-3 * unbalance, UNBALANCE) if 1e-3 * size <= most else ""
+        yield doubt(DoubtCode.UNBALANCE, field, text, likely)
+
+
+def _far(scene: Scene, places: list[tuple[str, float]], gyration: float) -> Iterator[Note]:
+    """Places far outside the body whose inertia is given."""
+    planes = [(f"chambers.{k}.plane", fill.chamber.plane) for k, fill in enumerate(scene.fills)]
+    most = FARTHEST * gyration
+    for field, place in (*places, *planes):
+        if abs(place) > most:
+            text = f"{with_unit(abs(place), LENGTH)} from the centre of mass, of a body whose radius of "
+            text += f"gyration is {with_unit(gyration, LENGTH)}"
+            likely = with_unit(1e-3 * place, LENGTH) if 1e-3 * abs(place) <= most else ""
+            yield doubt(DoubtCode.PLACE, field, text, likely)
+
+
+def _free(scene: Scene) -> Iterator[Note]:
+    """Directions in which nothing holds the machine."""
+    from scipy.linalg import eigh
+
+    assert isinstance(scene.rotor, TwoPlaneRotor | TubRotor)
+    system = scene.rotor.machine().system()
+    square, shapes = eigh(system.stiffness, system.mass)
+    loose = square < FREE * square.max() if square.max() > 0.0 else np.ones(square.size, dtype=bool)
+    if not loose.any():
+        return
+    energy = (np.abs(shapes[:, loose]) ** 2 * np.diag(system.mass)[:, None]).sum(axis=1)
+    most = np.argsort(energy)[::-1][: int(loose.sum())]
+    ways = [_WAYS[system.coordinates[k]] for k in sorted(most.tolist())]
+    parts = "springs" if isinstance(scene.rotor, TubRotor) else "supports"
+    text = f"nothing holds the machine {' and '.join(ways)}"
+    yield doubt(DoubtCode.FREE, f"rotor.{parts}", text, "")
+
+
+def _chambers(scene: Scene) -> Iterator[Note]:
+    for k, (chamber, fill) in enumerate(zip(scene.chambers, scene.fills, strict=True)):
+        at = f"chambers.{k}"
+        sizes = (("radius", chamber.radius), ("height", chamber.height))
+        odd = [note for name, size in sizes if size for note in _size(f"{at}.{name}", name, size)]
+        yield from odd
+        area = 2.0 * math.pi * fill.chamber.radius * fill.chamber.height
+        if not odd and 0.0 < fill.volume < THINNEST * area:
+            text = f"all round the wall it is a film of {with_unit(fill.volume / area, LENGTH)}"
+            yield doubt(DoubtCode.FILM, f"{at}.volume", text, "")
+        liquid = fill.liquid
+        if not LIGHTEST <= liquid.density <= HEAVIEST:
+            text = f"no liquid has a density of {number(liquid.density)} {DENSITY.unit}"
+            likely = f"{number(1e3 * liquid.density)} {DENSITY.unit}" if liquid.density < LIGHTEST else ""
+            yield doubt(DoubtCode.LIQUID, f"{at}.liquid.density", text, likely)
+        if liquid.viscosity > THICKEST:
+            text = f"a kinematic viscosity of {number(liquid.viscosity)} {VISCOSITY.unit} hardly flows"
+            likely = f"{number(liquid.viscosity)} mm^2/s"
+            yield doubt(DoubtCode.LIQUID, f"{at}.liquid.viscosity", text, likely)
+    yield from _mass(scene)
+
+
+def _size(field: str, name: str, size: float) -> Iterator[Note]:
+    if SMALLEST <= size <= LARGEST:
+        return
+    factor = 1e-3 if size > LARGEST else 1e3
+    likely = with_unit(factor * size, LENGTH) if SMALLEST <= factor * size <= LARGEST else ""
+    yield doubt(DoubtCode.SIZE, field, f"a {name} of {with_unit(size, LENGTH)} is hardly built", likely)
+
+
+def _mass(scene: Scene) -> Iterator[Note]:
+    rotor, liquid = scene.rotor, sum(fill.mass for fill in scene.fills)
+    if isinstance(rotor, Exciter) or not scene.fills:
+        return
+    mass, field = (rotor.drum_mass, "drum_mass") if isinstance(rotor, TubRotor) else (rotor.mass, "mass")
+    if liquid > LIQUID * mass:
+        text = f"the liquid, {with_unit(liquid, MASS)}, is heavier than the rotor, {with_unit(mass, MASS)}"
+        yield doubt(DoubtCode.LIQUID_MASS, f"rotor.{field}", text, "")
+
+
+def _gravity(scene: Scene) -> Iterator[Note]:
+    if scene.gravity > GRAVITY:
+        likely = f"{number(1e-3 * scene.gravity)} m/s^2" if scene.gravity <= 1e3 * GRAVITY else ""
+        yield doubt(DoubtCode.GRAVITY, "gravity", f"{number(scene.gravity)} m/s^2", likely)
+
+
+def _speeds(scene: Scene, given: Mapping[str, Any]) -> Iterator[Note]:
+    """A speed without a unit, in rad/s, that would suit the others if it were in rpm."""
+    rotor, speeds = scene.rotor, scene.speeds
+    if not isinstance(rotor, JeffcottRotor):
+        return
+    critical = rotor.machine().natural_frequency
+    if _suits(speeds.start, speeds.stop, critical):
+        return
+    plain = {
+        path: isinstance(given.get(path[0], {}).get(path[1]), int | float)
+        for path in (("rotor", "critical_speed"), ("speeds", "start"), ("speeds", "stop"))
+    }
+    where = f"{rpm_range(speeds.start, speeds.stop)} beside a critical speed of {in_rpm(critical)}"
+    own, first, last = plain.values()
+    if own and not last and _suits(speeds.start, speeds.stop, critical * _TURN):
+        likely = in_rpm(critical * _TURN)
+        yield doubt(DoubtCode.SPEED, "rotor.critical_speed", where, likely)
+    elif last and not own and _suits(speeds.start * (_TURN if first else 1.0), speeds.stop * _TURN, critical):
+        yield doubt(DoubtCode.SPEED, "speeds.stop", where, in_rpm(speeds.stop * _TURN))
+
+
+def _suits(start: float, stop: float, critical: float) -> bool:
+    """The range comes near the critical speed."""
+    return stop * NEAR >= critical and start <= NEAR * critical
+
 
 MEANING = {
     "relative_depth": "mean depth over radius",

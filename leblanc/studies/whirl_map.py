@@ -16,7 +16,7 @@ from leblanc.results.base import Note
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import Scene
 from leblanc.studies.choose import Prepared, prepare
-from leblanc.studies.plausible import doubts
+from leblanc.studies.validity import doubts
 from leblanc.units import friction_words
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError

@@ -45,8 +45,8 @@ from leblanc.studies.optimise.problem import (
 from leblanc.studies.optimise.robust import Robust, condition_table
 from leblanc.studies.optimise.search import best_volumes, bounds_of, evaluated_again, on_all_cells
 from leblanc.studies.optimise.wetting import WettedWalls, wet_walls, wetting_volumes
-from leblanc.studies.plausible import doubts
 from leblanc.studies.run import run_scene
+from leblanc.studies.validity import doubts
 from leblanc.units import in_rpm
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError

@@ -57,10 +57,11 @@ def test_run_prints_every_limit_below_its_table(tmp_path: Path, capsys: pytest.C
 def test_a_headline_that_does_not_hold_says_so(name: str) -> None:
     """At the largest amplitude: out of range, unstable, or neither; in the sentence and in the table."""
     result = lb.run(lb.example(name).replace({"speeds.count": 60}))
-    k = int(np.nanargmax(result.amplitude))
+    curve = result.curve  # with the speeds between, where the peak is
+    k = int(np.nanargmax(curve.amplitude))
     largest = text.comparisons(result)[0].label
     headline = text.answer(result).partition(" and ")[0]
-    for words, holds in (("out of range", result.in_range[k]), ("unstable", result.stable[k])):
+    for words, holds in (("out of range", curve.in_range[k]), ("unstable", curve.stable[k])):
         assert (words in largest) != holds
         assert (words in headline) != holds
 
@@ -75,7 +76,7 @@ def test_console_chamber_figure_and_view_show_one_amplitude(name: str) -> None:
     place = text.amplitude_place(result)
     assert place == f"in the plane of chamber 1 at {with_unit(scene.chambers[0].plane, LENGTH)}"
     assert text.comparisons(result)[2].wet_text == size
-    assert chamber_state(result, last).startswith(f"amplitude {size} at chamber 1,")
+    assert chamber_state(result, result.curve.speed.size - 1).startswith(f"amplitude {size} at chamber 1,")
     assert view_state(motion, last, [False] * len(scene.chambers))[0] == f"amplitude {place}: {size}"
     assert place in text.answer(result) and place in text.alts(result)["amplitude"]
     assert dict(text.summary(result))["Amplitudes"] == place

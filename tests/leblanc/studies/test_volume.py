@@ -32,9 +32,7 @@ def test_optimal_volume(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_what_was_understood_is_said_first(capsys: pytest.CaptureFixture[str]) -> None:
-    assert (
-        main([*CHAMBER, "--inner-radius", "150 mm", "--eccentricity", "1 mm", "--speed", "9.549 rpm"]) == 0
-    )
+    assert main([*CHAMBER, "--inner-radius", "150 mm", "--eccentricity", "1 mm", "--speed", "9.549 rpm"]) == 0
     assert capsys.readouterr().out.startswith(
         "Chamber of radius 200 mm, inner radius 150 mm, height 50 mm; deflection 1 mm at 9.549 rpm\n"
     )
