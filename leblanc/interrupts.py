@@ -140,6 +140,10 @@ def leave(code: int) -> None:
                 signal.signal(number, signal.SIG_DFL)
     if code in (INTERRUPTED, TERMINATED):
         # Python itself would end by SIGINT if the interrupt came through an `exec`, though it was caught.
+        # Libraries complain of what they were not let finish.
+        sys.unraisablehook = lambda _: None
+        if "logging" in sys.modules:
+            sys.modules["logging"].disable()
         atexit._run_exitfuncs()
         for stream in (sys.stdout, sys.stderr):
             with suppress(OSError, ValueError):

@@ -169,6 +169,26 @@ def _content(found: NamedArrays) -> bytes:
     return memory.getvalue()
 
 
+def read_values(path: Path) -> dict[str, NDArray[Any]]:
+    """Values of all variables of a file, by name.
+
+    Parameters
+    ----------
+    path : of the file
+
+    Raises
+    ------
+    InputError : it is no netCDF 4, or was cut or damaged in what HDF5 checks
+    """
+    import h5netcdf
+
+    try:
+        with h5netcdf.File(path, "r") as file:
+            return {name: np.asarray(entry[...]) for name, entry in file.variables.items()}
+    except Exception as error:  # whatever HDF5 and h5netcdf make of other bytes than were written
+        raise InputError("file", str(path), "a netCDF 4 file, undamaged") from error
+
+
 def _held_by(found: NamedArrays) -> dict[str, dict[str, str]]:
     """Attributes that name the coordinates which are no dimensions: of the whole under ""."""
     others = {

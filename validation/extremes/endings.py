@@ -25,6 +25,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from leblanc.results.netcdf import read_values
+
 _EXAMPLES = Path(__file__).parents[2] / "examples"
 _RIG = _EXAMPLES / "vertical_rig.toml"
 _STUDY = """
@@ -51,6 +53,9 @@ COMMANDS: dict[str, tuple[str, ...]] = {
 SIGNALS = {"kill -9": signal.SIGKILL, "SIGINT": signal.SIGINT, "SIGTERM": signal.SIGTERM}
 _PROMISED = {signal.SIGKILL: -signal.SIGKILL, signal.SIGINT: 130, signal.SIGTERM: 143}
 _DEADLINE = 600.0  # s
+_BEGINNING = (
+    0.5  # s, in which Python starts and answers a Ctrl-C with a traceback, and in which nothing is written
+)
 
 
 @dataclass(frozen=True)
@@ -148,10 +153,7 @@ def _read(path: Path) -> Any:
         with Image.open(path) as image:
             return [frame.load() for frame in ImageSequence.Iterator(image)]
     if path.suffix == ".nc":
-        import h5netcdf
-
-        with h5netcdf.File(path, "r") as file:
-            return [variable[...] for variable in file.variables.values()]
+        return read_values(path)
     if path.suffix == ".svg":
         return ElementTree.parse(path)
     if path.suffix == ".html" and not path.read_text(encoding="utf-8").rstrip().endswith("</html>"):
@@ -213,7 +215,7 @@ def by_signal(command: str, name: str, trials: int, seed: int) -> tuple[Counter[
         for trial in range(trials):
             folder = Path(scratch) / str(trial)
             folder.mkdir()
-            after = float(rng.uniform(0.0, lasted))
+            after = float(rng.uniform(_BEGINNING, lasted))
             ending = ended(command, folder, after, SIGNALS[name])
             wrong = faults(command, folder, ending, SIGNALS[name], whole)
             counts["done before" if ending.code == 0 else "ended"] += 1

@@ -214,7 +214,7 @@ def _verified(store: Store) -> Store:
     """
     blocks = range(-(-store.samples // store.block))
     status = {number: _chunk(store, "status", number) for number in blocks}
-    pending = [number for number in blocks if status[number] is None or PENDING in status[number]]
+    pending = [number for number, states in status.items() if states is None or PENDING in states]
     pending += [
         number
         for number in sorted(set(blocks).difference(pending))

@@ -77,17 +77,21 @@ def _client(workers: int, scheduler: str | None) -> Iterator[Any]:
             yield client
         return
     # Dask's own choice of a folder is shared by all users of the machine, and what it keeps is unpickled.
-    with TemporaryDirectory(prefix="leblanc-", ignore_cleanup_errors=True) as folder:
-        with _without_interrupts(), dask.config.set(_ENVIRONMENT):
-            cluster = LocalCluster(
-                local_directory=folder,
-                n_workers=workers,
-                threads_per_worker=1,
-                processes=True,
-                dashboard_address=":0",  # any free port, so that a second sweep finds one as well
-                scheduler_kwargs={"dashboard": False},
-                silence_logs=logging.CRITICAL,
-            )
+    with (
+        TemporaryDirectory(prefix="leblanc-", ignore_cleanup_errors=True) as folder,
+        _deaf_loop() as loop,
+        dask.config.set(_ENVIRONMENT),
+    ):
+        cluster = LocalCluster(
+            loop=loop,
+            local_directory=folder,
+            n_workers=workers,
+            threads_per_worker=1,
+            processes=True,
+            dashboard_address=":0",  # any free port, so that a second sweep finds one as well
+            scheduler_kwargs={"dashboard": False},
+            silence_logs=logging.CRITICAL,
+        )
         with cluster, Client(cluster) as client:
             yield client
 
@@ -126,16 +130,26 @@ def _connected(address: str) -> Iterator[Any]:
 
 
 @contextmanager
-def _without_interrupts() -> Iterator[None]:
-    """Processes that start here do not see a Ctrl-C, which goes to all of a terminal; this one ends them."""
-    if threading.current_thread() is not threading.main_thread():
-        yield  # only the main thread may set handlers
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+def _deaf_loop() -> Iterator[Any]:
+    """A loop whose processes do not see a Ctrl-C, which goes to all of a terminal; this one ends them.
+
+    They inherit from its thread that it is held back. This thread hears it at once, as they start too.
+    """
+    from multiprocessing.resource_tracker import ensure_running
+
+    from distributed.utils import LoopRunner
+
+    ensure_running()  # which would let it through again to what starts after it
+    runner = LoopRunner(asynchronous=False)
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
     try:
-        yield
+        runner.start()
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    try:
+        yield runner.loop
+    finally:
+        runner.stop()
 
 
 def _answers(client: Any, blocks: Iterable[Block]) -> Iterator[BlockAnswer]:

@@ -155,4 +155,4 @@ def advance(
         if stopped:
             return int(stopped)
         begin = end
-    return blocks
+    return int(blocks)

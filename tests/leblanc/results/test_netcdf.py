@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import leblanc as lb
-from leblanc.results.netcdf import NamedArrays, Variable, variable
+from leblanc.results.netcdf import NamedArrays, Variable, read_values, variable, write_netcdf
 from meshes.errors import InputError
 from tests.oracles.data_files import assert_read_back
 
@@ -94,3 +94,17 @@ RESULTS = {
 @pytest.mark.parametrize("name", RESULTS)
 def test_a_result_is_read_back(name: str, tmp_path: Path) -> None:
     assert_read_back(RESULTS[name]().named_arrays(), tmp_path)
+
+
+def test_a_file_that_is_none_is_refused(tmp_path: Path) -> None:
+    """Half a file, and one of another kind, in one line."""
+    path = tmp_path / "data.nc"
+    values = np.arange(1000.0)
+    write_netcdf(NamedArrays({"x": variable(("k",), values, "m", "x")}, {}, {}), path)
+    assert np.array_equal(read_values(path)["x"], values)
+    content = path.read_bytes()
+    for changed in (b"", b"no netCDF", content[: len(content) // 2], content[:-1]):
+        path.write_bytes(changed)
+        with pytest.raises(InputError, match="a netCDF 4 file") as caught:
+            read_values(path)
+        assert "\n" not in str(caught.value)

@@ -1,0 +1,26 @@
+"""Commands that are killed, interrupted or run out of room leave nothing half written."""
+
+from __future__ import annotations
+
+import pytest
+
+from validation.extremes.endings import COMMANDS, SIGNALS, by_signal, on_a_full_disk
+
+TRIALS = 2  # `python -m validation.extremes.endings --trials N` makes as many as wanted
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SIGNALS)
+@pytest.mark.parametrize("command", COMMANDS)
+def test_ended_by_a_signal(command: str, name: str) -> None:
+    counts, found = by_signal(command, name, TRIALS, seed=5)
+    assert not found
+    assert counts.total() == TRIALS
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", [name for name in COMMANDS if "workers" not in name])
+def test_on_a_full_disk(command: str) -> None:
+    counts, found = on_a_full_disk(command, TRIALS, seed=5)
+    assert not found
+    assert counts.total() == TRIALS
