@@ -159,6 +159,28 @@ def test_one_condition_is_one_speed(name: str) -> None:
     np.testing.assert_array_equal(Robust(machine, speed, [single], 1.0).exact(volumes), plain.exact(volumes))
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "levels"), [("tub", 41), ("two_plane_rig", 9)])
+def test_the_best_volumes_against_a_grid(name: str, levels: int) -> None:
+    """No volumes of a grid are better in their worst condition, by more than what counts as equal."""
+    machine = scene(name)
+    sizes = unbalances_of(machine.rotor)
+    task = Optimisation(objective="robust", temperature=(283.15, 333.15), unbalance=(0.0, 2.0 * max(sizes)))
+    best = optimise_scene(machine, task=task, front=False, response=False)
+    around = operating_conditions(unbalance_range(sizes, task.unbalance), task.temperature)
+    worst = [condition for condition in around if condition.unbalance[0] == 2.0 * sizes[0]]
+    assert len(worst) == 3
+    axes = [
+        np.concatenate(([0.0], np.geomspace(1e-3, 1.0, levels - 1))) * fill.chamber.capacity / 1.02
+        for fill in machine.fills
+    ]
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
+    robust = Robust(machine, machine.speeds.stop, worst, 1.0)
+    assert best.value == pytest.approx(robust.exact(best.volume[None])[0], rel=1e-12)
+    # Where an answer is costly the search counts a thousandth as equal, and takes the least liquid.
+    assert best.feasible and best.value <= robust.exact(grid).min() * (1.0 + 1e-3)
+
+
 @pytest.fixture(scope="module")
 def best() -> OptimumResult:
     task = Optimisation(objective="robust", unbalance=(0.05, 0.2), temperature=(278.15, 333.15))
