@@ -213,7 +213,8 @@ def optimise(
     with _keywords():
         task = optimisation_of(machine, objective, deflection, limit, steady, seed)
         surrogate = None if emulator is None else emulated_vibration(Path(emulator), machine, task)
-        return optimise_scene(machine, task=task, front=front, progress=progress, emulator=surrogate)
+        told = None if progress is None else lambda count, _: progress(count)
+        return optimise_scene(machine, task=task, front=front, progress=told, emulator=surrogate)
 
 
 def compare(scene: SceneOrPath, models: Sequence[str]) -> Comparison:

@@ -253,6 +253,14 @@ class LiquidModel(Protocol):
         """
         ...
 
+    def pull(self, fills: Fills, whirls: Whirls) -> Array:
+        """Unbalance of liquid that pulls along the deflection alone, kg m, shape (n,).
+
+        A model that need not find the whole answer for it saves time; parameters and errors as of `answer`
+        and `LiquidAnswer.real_unbalance`.
+        """
+        return self.answer(fills, whirls).real_unbalance()
+
     def linear_limit(self, fills: Fills, speed: Array, gravity: Array) -> Array:
         """Deflection up to which the unbalance is exactly the full mass times the deflection, m, shape (n,).
 

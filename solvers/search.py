@@ -1,7 +1,7 @@
 """Search for the best point of a box whose constraints and plateaus a judge knows [theory: optimum, eq. 6-8].
 
 A grid, then steps downhill from its best valleys, along axes, exchanges and rays, then along the floor of a
-bent valley or an edge of what is allowed, and at last the least cost among equals.
+bent valley or an edge of what is allowed, and at last the least cost among equals, by the same steps.
 """
 
 from __future__ import annotations
@@ -24,6 +24,11 @@ _RAY_ROUNDS = 2
 # Of the distance of levels: steps of one coordinate, and of more, that have looked closely.
 _FINE = (4e-2, 0.3)
 _EQUAL = 1e-12  # relative; on the way down only rounding makes values equal
+_ROUNDS = 3  # of the search for the least cost, if it finds a better objective by the way
+_NOTHING = 1e-300
+# Shares of a search that are done after its stages, as they come on average.
+_GRID, _DOWN, _ALONG, _POLISH = 0.15, 0.35, 0.5, 0.6
+_BASES, _POLISHED = 2, 1e-4  # sets of directions tried at once; shortest step over the gap of the levels
 # Lengths at which steps end, over the distance of the levels around the point, for one coordinate and more.
 _SHORTEST = (1e-5, 1e-2)
 
@@ -44,6 +49,15 @@ class Judgement:
     details: dict[str, Array] = field(default_factory=dict)
 
 
+def joined(parts: Sequence[Judgement]) -> Judgement:
+    """Judgements of several sets of points as one, one set after the other; at least one."""
+    return Judgement(
+        np.concatenate([said.objective for said in parts]),
+        np.concatenate([said.excess for said in parts]),
+        {name: np.concatenate([said.details[name] for said in parts]) for name in parts[0].details},
+    )
+
+
 Judge = Callable[[Array], Judgement]  # takes points, shape (m, n)
 
 
@@ -62,6 +76,7 @@ class SearchPlan:
     margin : values that differ by less, relative, count as equal in the end
     edge : distance at which the edge of a plateau or of what is allowed counts as found, over its place
     sections : into which such an edge is closed in at once
+    polish : sweeps in changing directions, at most
     """
 
     levels: tuple[int, ...] = (24, 11, 5)
@@ -73,9 +88,10 @@ class SearchPlan:
     margin: float = 1e-6
     edge: float = 1e-6
     sections: int = 32
+    polish: int = 20
 
 
-def best_of(judged: Judgement, cost: Array, margin: float = 1e-6) -> int:
+def best_of(judged: Judgement, cost: Array, margin: float = 1e-6, tie: float | None = None) -> int:
     """Index of the best of the points judged [theory: optimum, eq. 6].
 
     Those that exceed their constraints least, of these the least objective, of those within a margin of
@@ -86,13 +102,15 @@ def best_of(judged: Judgement, cost: Array, margin: float = 1e-6) -> int:
     judged : m points
     cost : of each, shape (m,)
     margin : relative
+    tie : the same of cost and of the room to the limits; the margin if None
     """
     over = np.maximum(judged.excess, 0.0)
     left = np.flatnonzero(over <= over.min() * (1.0 + margin))
-    for values in (judged.objective, cost, judged.excess):
+    tie = margin if tie is None else tie
+    for values, within in ((judged.objective, margin), (cost, tie), (judged.excess, tie)):
         here = values[left]
         least = here.min()
-        near = here <= least + margin * abs(least) if np.isfinite(least) else here == least
+        near = here <= least + within * abs(least) if np.isfinite(least) else here == least
         left = left[near]
     return int(left[0])
 
@@ -107,6 +125,7 @@ class Found:
     objective, excess : its value; 0 or below if the point is allowed
     points : all that were judged, shape (m, n)
     judged : what was said of them
+    interrupted : from the keyboard: the best of what was judged until then
     """
 
     point: Array
@@ -114,6 +133,7 @@ class Found:
     excess: float
     points: Array
     judged: Judgement
+    interrupted: bool = False
 
     @property
     def feasible(self) -> bool:
@@ -129,6 +149,7 @@ def search(
     starts: Array | None = None,
     alike: Sequence[Sequence[int]] = (),
     plan: SearchPlan | None = None,
+    stage: Callable[[float], None] | None = None,
 ) -> Found:
     """Best point of a box; the same answer to the same question.
 
@@ -140,10 +161,12 @@ def search(
     starts : points where an edge or a kink is expected, shape (k, n); their coordinates become levels
     alike : groups of coordinates that may be exchanged without a change; they are ordered by falling value
     plan : how much is tried
+    stage : called with the share of the search that is done, as far as that can be foreseen
 
     Returns
     -------
-    Found; the one that exceeds its constraints least where none satisfies them
+    Found; the one that exceeds its constraints least where none satisfies them. No point that was judged
+    beats it in the order of `best_of`. An interrupt from the keyboard ends the search with what it has
 
     Raises
     ------
@@ -152,20 +175,45 @@ def search(
     plan = plan or SearchPlan()
     if not (np.all(np.isfinite(low)) and np.all(np.isfinite(high)) and np.all(low <= high)):
         raise InputError("bounds", [low.tolist(), high.tolist()], "finite, low at most high")
-    ask = _Log(judge)
+    ask, interrupted = _Log(judge), False
+    try:
+        _searched(ask, low, high, cost, starts, alike, plan, stage or (lambda _: None))
+        k = _answer(ask, cost, alike, plan)
+    except KeyboardInterrupt:
+        if not ask.kept:
+            raise
+        points, said = ask.all()
+        k, interrupted = best_of(said, points @ cost, plan.margin, _EQUAL), True
+    every, judged = ask.all()
+    return Found(every[k], float(judged.objective[k]), float(judged.excess[k]), every, judged, interrupted)
+
+
+def _searched(
+    ask: _Log,
+    low: Array,
+    high: Array,
+    cost: Array,
+    starts: Array | None,
+    alike: Sequence[Sequence[int]],
+    plan: SearchPlan,
+    stage: Callable[[float], None],
+) -> None:
+    """Ask for all points that it takes to find the best."""
     expected = np.empty((0, low.size)) if starts is None else np.clip(starts, low, high)
     crossing = expected if plan.crossed or low.size < 3 else expected[:0]
     levels = [_levels(low[i], high[i], crossing[:, i], low.size, plan) for i in range(low.size)]
     points = _grid(levels, expected, alike, plan)
     said = ask(points)
     kept = _valleys(points, said, cost, levels, plan)
+    stage(_GRID)
     point, gap = _descend(ask, points[kept], low, high, cost, levels, plan)
+    stage(_DOWN)
     if low.size > 1:
         point = _follow(ask, point, low, high, cost, gap, plan)
-    point = _ordered(_least_cost(ask, point, low, cost, plan)[None], alike)[0]
-    last = ask(point[None])
-    every, judged = ask.all()
-    return Found(point, float(last.objective[0]), float(last.excess[0]), every, judged)
+        stage(_ALONG)
+        _polished(ask, point, low, high, cost, gap, plan)
+    stage(_POLISH)
+    _least_cost(ask, low, high, cost, levels, plan)
 
 
 class _Log:
@@ -173,26 +221,20 @@ class _Log:
 
     def __init__(self, judge: Judge) -> None:
         self.judge = judge
-        self.points: list[Array] = []
-        self.said: list[Judgement] = []
+        self.kept: list[tuple[Array, Judgement]] = []
 
     def __call__(self, points: Array) -> Judgement:
         """Judgement of points, shape (m, n); what is not a number counts as infinite."""
         said = self.judge(points)
         objective = np.where(np.isnan(said.objective), np.inf, said.objective)
         said = Judgement(objective, np.where(np.isnan(said.excess), np.inf, said.excess), said.details)
-        self.points.append(points)
-        self.said.append(said)
+        # Whoever asks may change them afterwards.
+        self.kept.append((points.copy(), Judgement(objective.copy(), said.excess.copy(), said.details)))
         return said
 
     def all(self) -> tuple[Array, Judgement]:
         """Every point and what was said of it."""
-        names = self.said[0].details
-        return np.concatenate(self.points), Judgement(
-            np.concatenate([said.objective for said in self.said]),
-            np.concatenate([said.excess for said in self.said]),
-            {name: np.concatenate([said.details[name] for said in self.said]) for name in names},
-        )
+        return np.concatenate([points for points, _ in self.kept]), joined([said for _, said in self.kept])
 
 
 def _directions(point: Array, low: Array, cost: Array, gap: Array) -> Array:
@@ -217,7 +259,7 @@ def _exchanges(cost: Array, gap: Array) -> list[Array]:
 
 
 def _descend(
-    ask: _Log,
+    ask: Judge,
     points: Array,
     low: Array,
     high: Array,
@@ -262,7 +304,7 @@ def _descend(
 
 
 def _follow(
-    ask: _Log, point: Array, low: Array, high: Array, cost: Array, gap: Array, plan: SearchPlan
+    ask: Judge, point: Array, low: Array, high: Array, cost: Array, gap: Array, plan: SearchPlan
 ) -> Array:
     """Along the floor of a bent valley or along an edge of what is allowed [theory: optimum, eq. 8].
 
@@ -290,8 +332,35 @@ def _follow(
     return point
 
 
+def _polished(
+    ask: Judge, point: Array, low: Array, high: Array, cost: Array, gap: Array, plan: SearchPlan
+) -> Array:
+    """Steps in directions that change from sweep to sweep [theory: optimum].
+
+    Where a curved edge of what is allowed crosses a valley, no step of a fixed set need go down along it.
+    """
+    chance, said, factor = np.random.default_rng(0), ask(point[None]), 0.3
+    reach = np.maximum(gap, 1e-3 * (high - low))
+    for _ in range(plan.polish):
+        # As far in every direction at equal cost as the least of the gaps.
+        size = np.min((cost * reach)[reach > 0.0], initial=np.inf) * factor / cost
+        bases = [np.linalg.qr(chance.normal(size=(point.size, point.size)))[0] for _ in range(_BASES)]
+        steps = np.concatenate([sign * basis for basis in bases for sign in (1.0, -1.0)])
+        steps = np.concatenate((steps, 0.2 * steps)) * np.where(reach > 0.0, size, 0.0)
+        tried = np.clip(point + steps, low, high)
+        (heard,) = _ask_apart(ask, [np.concatenate((point[None], tried))], said)
+        best = best_of(heard, np.concatenate((point[None], tried)) @ cost, _EQUAL)
+        if best > 0:
+            point = tried[best - 1]
+            said = Judgement(heard.objective[best : best + 1], heard.excess[best : best + 1])
+        factor *= 2.0 if best > 0 else 0.4
+        if factor < _POLISHED:
+            break
+    return point
+
+
 def _along_rays(
-    ask: _Log, points: Array, low: Array, high: Array, cost: Array, reach: float
+    ask: Judge, points: Array, low: Array, high: Array, cost: Array, reach: float
 ) -> tuple[Array, Judgement]:
     """The best point near each of several on its ray from the lower corner, and what was said of it."""
     away = points - low
@@ -347,7 +416,7 @@ def _gap(levels: Array, value: float) -> float:
     return float(levels[min(k + 1, levels.size - 1)] - levels[max(k - 1, 0)]) / 2.0
 
 
-def _ask_apart(ask: _Log, rows: list[Array], said: Judgement) -> list[Judgement]:
+def _ask_apart(ask: Judge, rows: list[Array], said: Judgement) -> list[Judgement]:
     """Judgements of several sets of points, asked for at once; the first of each set is known already."""
     fresh = ask(np.concatenate([tried[1:] for tried in rows]))
     found, begin = [], 0
@@ -439,23 +508,77 @@ def _valleys(points: Array, said: Judgement, cost: Array, levels: list[Array], p
     return kept
 
 
-def _least_cost(ask: _Log, point: Array, low: Array, cost: Array, plan: SearchPlan) -> Array:
-    """The point drawn towards the lower corner, axis by axis, as far as its value stays within the margin."""
-    start = ask(point[None])
-    limit = float(start.objective[0]) + plan.margin * abs(float(start.objective[0]))
-    most = max(float(start.excess[0]), 0.0)
+def _equals(said: Judgement, margin: float) -> tuple[float, float]:
+    """Objective up to which points count as equal to the best, and excess up to which they are allowed."""
+    over = np.maximum(said.excess, 0.0)
+    most = float(over.min())
+    least = float(said.objective[over <= most * (1.0 + margin)].min())
+    return least + margin * abs(least), most * (1.0 + margin)
+
+
+def _least_cost(
+    ask: _Log,
+    low: Array,
+    high: Array,
+    cost: Array,
+    levels: list[Array],
+    plan: SearchPlan,
+) -> None:
+    """Search for the least cost among points that count as equal to the best one, all of which are kept.
+
+    A problem of its own: the cost is to be least, the best objective is a limit. Its search starts at the
+    cheapest of the points that are known to be as good, which may be far from the best one.
+    """
+    for _ in range(_ROUNDS):
+        points, said = ask.all()
+        limit, most = _equals(said, plan.margin)
+        if not math.isfinite(limit):
+            return
+
+        def cheap(tried: Array, limit: float = limit, most: float = most) -> Judgement:
+            heard = ask(tried)
+            beyond = (heard.objective - limit) / max(abs(limit), _NOTHING)
+            return Judgement(tried @ cost, np.maximum(heard.excess - most, beyond))
+
+        good = (np.maximum(said.excess, 0.0) <= most) & (said.objective <= limit)
+        equal = points[good]
+        kept = _valleys(equal, Judgement(equal @ cost, np.full(equal.shape[0], -1.0)), cost, levels, plan)
+        best = equal[kept[0]]
+        is_cost = bool(np.all(np.abs(said.objective - points @ cost) <= _EQUAL * np.abs(said.objective)))
+        if low.size > 1 and not is_cost:
+            best, gap = _descend(cheap, equal[kept].copy(), low, high, cost, levels, plan)
+            best = _follow(cheap, best, low, high, cost, gap, plan)
+            best = _polished(cheap, best, low, high, cost, gap, plan)
+        _to_edges(cheap, best, low, cost, plan)
+        points, said = ask.all()
+        if _equals(said, plan.margin) == (limit, most):
+            return
+
+
+def _answer(ask: _Log, cost: Array, alike: Sequence[Sequence[int]], plan: SearchPlan) -> int:
+    """Index of the best of all points judged."""
+    points, said = ask.all()
+    k = best_of(said, points @ cost, plan.margin, _EQUAL)
+    in_order = _ordered(points[k][None], alike)
+    if np.array_equal(in_order[0], points[k]):
+        return k
+    same, (limit, most) = ask(in_order), _equals(said, plan.margin)
+    # An exchange changes the last digit of a sum, which may be one too many at an edge.
+    as_good = same.objective[0] <= limit and max(same.excess[0], 0.0) <= most
+    return points.shape[0] if as_good else k
+
+
+def _to_edges(ask: Judge, point: Array, low: Array, cost: Array, plan: SearchPlan) -> None:
+    """The point drawn towards the lower corner, axis by axis, as far as it is allowed."""
     point = point.copy()
     order = np.argsort(-(cost * (point - low)), kind="stable")
     for i in order.tolist():
         if point[i] > low[i]:
-            point[i] = _least_on_axis(ask, point, i, low[i], limit, most, plan)
-    return point
+            point[i] = _least_on_axis(ask, point, i, low[i], plan)
 
 
-def _least_on_axis(
-    ask: _Log, point: Array, axis: int, low: float, limit: float, most: float, plan: SearchPlan
-) -> float:
-    """Least value of one coordinate at which the point is as good; the edge is closed in by many at once."""
+def _least_on_axis(ask: Judge, point: Array, axis: int, low: float, plan: SearchPlan) -> float:
+    """Least value of one coordinate at which the point is allowed; the edge is closed in by many at once."""
     bad, good, first = low, float(point[axis]), True
     while good - bad > plan.edge * (good - low):
         inner = np.linspace(bad, good, plan.sections + 1)[1:-1]
@@ -464,8 +587,7 @@ def _least_on_axis(
             inner, first = np.concatenate(([low], near[:-1], inner)), False
         tried = np.tile(point, (inner.size, 1))
         tried[:, axis] = inner
-        said = ask(tried)
-        holds = (said.objective <= limit) & (np.maximum(said.excess, 0.0) <= most)
+        holds = ask(tried).excess <= 0.0
         k = int(np.argmax(holds)) if holds.any() else inner.size
         if k == 0 and inner[0] == low:
             return low

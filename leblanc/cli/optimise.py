@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -83,24 +84,38 @@ def optimise(
 
         print("\n".join(describe_optimum(result)))
         print(f"Read {folder / 'optimise.html'}; the data are in {folder / 'optimum.nc'}")
+    _finish(result, scene)
+
+
+def _finish(result: OptimumResult, scene: Path) -> None:
+    """Say what the answer is not, after all that was found is written."""
+    from leblanc.scene.schema.load import NotConverged
+    from leblanc.text.optimum import nearest
+
+    if result.interrupted:
+        raise KeyboardInterrupt
+    if not result.feasible:
+        raise NotConverged([f"{scene}: {nearest(result)}"])
     say(f"{result.name}: {result.evaluations} sets of volumes judged")
 
 
 def _run(machine: Scene, task: Optimisation, front: bool, store: Path | None) -> OptimumResult:
-    """The search itself, with a count on a terminal."""
-    from rich.progress import Progress, SpinnerColumn, TextColumn
+    """The search itself, with a bar on a terminal that says what is left."""
+    from rich.progress import BarColumn, Progress, TextColumn
 
     from leblanc.studies.optimise.emulated import emulated_vibration
     from leblanc.studies.optimise.optimise import optimise_scene
 
     emulator = None if store is None else emulated_vibration(store, machine, task)
-    columns = SpinnerColumn(), TextColumn("{task.completed} sets of volumes judged")
+    begin = monotonic()
+    columns = BarColumn(), TextColumn("{task.description}")
     with Progress(*columns, transient=True, disable=not sys.stderr.isatty()) as bar:
-        counter = bar.add_task("judging", total=None)
-        return optimise_scene(
-            machine,
-            task=task,
-            front=front,
-            progress=lambda count: bar.update(counter, completed=count),
-            emulator=emulator,
-        )
+        task_of_bar = bar.add_task("judging", total=1.0)
+
+        def told(count: int, share: float) -> None:
+            left = (
+                f", about {(monotonic() - begin) * (1.0 - share) / share:.0f} s left" if share > 0.0 else ""
+            )
+            bar.update(task_of_bar, completed=share, description=f"{count} sets of volumes judged{left}")
+
+        return optimise_scene(machine, task=task, front=front, progress=told, emulator=emulator)

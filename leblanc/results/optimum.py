@@ -37,6 +37,9 @@ class OptimumCode(NoteCode):
     NO_RANGE = "no_range"
     TOO_DEEP = "too_deep"
     EMULATED = "emulated"
+    LAMINAR = "laminar"
+    NO_LIQUID = "no_liquid"
+    INTERRUPTED = "interrupted"
 
 
 def given_deflection(deflection: float, speed: float, gap: float) -> Note:
@@ -88,6 +91,42 @@ def too_deep(chamber: int, limit: float) -> Note:
     """The layer of a chamber, counted from 0, is deeper than a share of its radius."""
     text = f"Out of range: the layer in chamber {chamber + 1} is deeper than {limit:g} of its radius."
     return Note(OptimumCode.TOO_DEEP, {"chamber": chamber + 1, "limit": limit}, text)
+
+
+def laminar() -> Note:
+    """Small whirls are judged with a friction that the scene leaves out."""
+    text = (
+        "The scene has no friction, without which every layer makes some small whirl grow: small whirls are "
+        "judged with the laminar friction of the liquid."
+    )
+    return Note(OptimumCode.LAMINAR, {}, text)
+
+
+def no_liquid(by_mass: bool, forbidden: tuple[str, ...]) -> Note:
+    """The answer is no liquid at all.
+
+    Parameters
+    ----------
+    by_mass : the least liquid for a limit was asked for
+    forbidden : constraints that forbid volumes with a smaller vibration; none where there are no such volumes
+    """
+    if by_mass:
+        text = "The limit is met without liquid."
+    elif forbidden:
+        names = ", ".join(name.replace("_", " ") for name in forbidden)
+        text = f"No liquid is allowed that would help: {names} is exceeded by all volumes that vibrate less."
+    else:
+        text = "No liquid is best: whatever was tried vibrates as much or more with it."
+    return Note(OptimumCode.NO_LIQUID, {"by_mass": by_mass, "forbidden": list(forbidden)}, text)
+
+
+def interrupted(evaluations: int) -> Note:
+    """The search was interrupted after so many sets of volumes."""
+    text = (
+        f"INTERRUPTED after {evaluations} sets of volumes: these are the best of them, not of all that would "
+        "have been tried."
+    )
+    return Note(OptimumCode.INTERRUPTED, {"evaluations": evaluations}, text)
 
 
 def emulated(answer: EmulatedAnswer) -> Note:
@@ -326,6 +365,8 @@ class OptimumResult(Result):
     mass : of the liquid, kg
     growth : of the small whirl that grows most at the operating speeds, 1/s
     closed_form : for each chamber, at the deflection that the answer itself has; empty where it has none
+    equal_within : relative difference below which values count as equal; of their volumes those with the
+        least liquid are the answer
     evaluations : sets of volumes evaluated
     candidates : all of them
     front : what must be given up for what; None if it was not computed
@@ -338,6 +379,7 @@ class OptimumResult(Result):
     balance_quality, balance_quality_dry : unbalance of rotor and liquid together over the rotor's mass times
         the working speed, and that of the rotor alone, m/s [theory: balance_quality, eq. 1]; None where this
         is not known
+    interrupted : from the keyboard; the answer is the best of what was tried until then
 
     Examples
     --------
@@ -369,6 +411,7 @@ class OptimumResult(Result):
     mass: float
     growth: float
     closed_form: tuple[WettingVolumes, ...]
+    equal_within: float
     evaluations: int
     candidates: Candidates
     front: ParetoFront | None
@@ -379,6 +422,7 @@ class OptimumResult(Result):
     robust: ConditionTable | None = None
     balance_quality: float | None = None
     balance_quality_dry: float | None = None
+    interrupted: bool = False
 
     figure = "leblanc.figures.optimise:objective_figure"
     summary = "leblanc.text.optimum:summary"
@@ -387,6 +431,11 @@ class OptimumResult(Result):
     def feasible(self) -> bool:
         """Every constraint is met."""
         return self.feasibility is Feasibility.FEASIBLE
+
+    @property
+    def exceeded(self) -> dict[str, ConstraintValue]:
+        """Constraints that are not met, by name."""
+        return {name: own for name, own in self.constraints.items() if not own.satisfied}
 
     @property
     def models(self) -> tuple[ModelSpan, ...]:
@@ -406,6 +455,7 @@ class OptimumResult(Result):
     def to_json(self) -> dict[str, Any]:
         """What `optimise` prints for scripts, SI."""
         names = ("objective", "volume", "value", "baseline", "feasible", "evaluations", "unit", "meaning")
+        names = (*names, "equal_within", "interrupted")
         more = ("working_speed", "vibration", "vibration_baseline", "mass", "stability_margin")
         found: dict[str, Any] = {name: getattr(self, name) for name in (*names, *more)}
         return (
@@ -464,5 +514,6 @@ class OptimumResult(Result):
             "value": self.value,
             "baseline": self.baseline,
             "feasible": "yes" if self.feasible else "no",
+            "interrupted": "yes" if self.interrupted else "no",
         }
         return attributes(self, "optimise", own, self.notes)

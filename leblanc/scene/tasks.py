@@ -113,8 +113,21 @@ class Optimisation(Part):
     )
     seed: Annotated[int, whole(0, 2**63)] = Field(0, description="of the random samples")
     dry_patch: Truth = Field(True, description="whether the wall may be dry somewhere at the working speed")
+    stable: Truth = Field(
+        True,
+        description="whether every small whirl must die out where the machine stays: at the working speed "
+        "and those of the duty cycle, or at all operating speeds where a margin or a range of them is given",
+    )
     stability_margin: Annotated[float | None, quantity(units.RATE, 0.0, 1e6)] = Field(
-        None, description="least decay of every small whirl at the operating speeds; no limit if left out"
+        None, description="least decay of every small whirl, at all operating speeds; 0 if left out"
+    )
+    least_film: Annotated[float, quantity(units.LENGTH, 0.0, 1e3)] = Field(
+        5e-5,
+        description="thinnest film that forms on a wall, by its mean depth: a chamber holds none or at least "
+        "as much; 0 for no limit",
+    )
+    spill: Truth = Field(
+        False, description="whether the liquid may reach a chamber's inner edge at the working speed"
     )
     operating: Annotated[_Pair | None, PlainValidator(Span(Quantity(units.ANGULAR_SPEED, 1e-6, 1e6)))] = (
         Field(None, description="range of operating speeds; the scene's if left out")

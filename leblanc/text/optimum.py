@@ -80,6 +80,16 @@ def amplitude_plane(result: OptimumResult) -> str:
     return "" if result.response is None else amplitude_place(result.response)
 
 
+def nearest(result: OptimumResult) -> str:
+    """What is exceeded where no volumes meet every constraint, and by how much."""
+    exceeded = [
+        f"{name.replace('_', ' ')}: {own.meaning} {shown(own.value, own.unit)}, at most "
+        f"{shown(own.limit, own.unit)}"
+        for name, own in result.exceeded.items()
+    ]
+    return f"{result.feasibility.value} ({'; '.join(exceeded)})"
+
+
 def shown(value: float, unit: str) -> str:
     """A value in the unit that engineers use."""
     dimension = _DIMENSIONS.get(unit)
@@ -93,8 +103,10 @@ def shown(value: float, unit: str) -> str:
 def _answer(result: OptimumResult) -> list[str]:
     """Volumes, value, what it is without liquid."""
     lines = [f"Objective: {result.objective}, the {result.meaning}"]
+    if result.interrupted:
+        lines.append("INTERRUPTED: the best of what was tried until then.")
     if not result.feasible:
-        lines.append(f"NOT FEASIBLE: {result.feasibility.value}.")
+        lines.append(f"NOT FEASIBLE: {nearest(result)}.")
     for k, (chamber, volume) in enumerate(zip(result.chambers, result.volume.tolist(), strict=True)):
         share = volume / chamber.capacity
         lines.append(
@@ -103,6 +115,11 @@ def _answer(result: OptimumResult) -> list[str]:
         )
     lines.append(f"Value: {shown(result.value, result.unit)}; without liquid {_baseline(result)}")
     lines.append(f"Liquid: {with_unit(result.mass, MASS)}; {result.evaluations} sets of volumes judged")
+    if result.unit == "m":
+        lines.append(
+            f"Values that differ by less than {result.equal_within:.0e} of the best count as equal: this is "
+            "the least liquid for them"
+        )
     return lines
 
 

@@ -18,59 +18,26 @@ from fluid.paraboloid import Moments, steepness
 from meshes.arrays import Array
 from meshes.chamber import Chamber, Chambers
 from meshes.errors import InputError
-from solvers.statics import wall
 
 AnyChamber = Chamber | Chambers  # one for all states, or one for each
 
-_CHUNK = 256
+# Kernels that fill their last argument, of so many rows, with integrals of some states.
+_Kernel = Callable[..., None]
 
 
-@dataclass(frozen=True)
-class _Wall:
-    """A cylindrical wall in its own units: the liquid inside the outer one less that inside the inner one."""
-
-    sign: float
-    radius: float | Array
-    height: float | Array
-    eps: Array
-    steep: Array
-    zeta: Array
+def _sizes(chamber: AnyChamber, count: int) -> tuple[Array, ...]:
+    """Radius, inner radius and height for each of some states, shape (n,)."""
+    sizes = chamber.radius, chamber.inner_radius, chamber.height
+    return tuple(np.ascontiguousarray(np.broadcast_to(np.asarray(x, dtype=float), count)) for x in sizes)
 
 
-def _walls(chamber: AnyChamber, e: Array, steep: Array, zeta: Array) -> list[_Wall]:
-    eps = e / chamber.radius
-    walls = [_Wall(1.0, chamber.radius, chamber.height, eps, steep, zeta)]
-    if np.any(np.asarray(chamber.inner_radius) > 0.0):
-        # An inner wall of no size holds nothing: any other size does for its shape.
-        ratio = np.maximum(np.asarray(chamber.inner_radius) / chamber.radius, 1e-60)
-        # How far the surface falls from the outer wall's farthest point to the inner one's.
-        fall = steep * (1.0 - ratio) * (1.0 + ratio + 2.0 * eps)
-        inner = np.maximum(zeta - fall, 0.0)
-        walls.append(_Wall(-1.0, chamber.inner_radius, chamber.height, eps / ratio, steep * ratio**2, inner))
-    return walls
-
-
-def _over_walls(
-    integrals: Callable[[Array, Array, Array], tuple[Array, ...]], powers: tuple[int, ...], *walls: _Wall
+def _integrals(
+    kernel: _Kernel, rows: int, chamber: AnyChamber, e: Array, steep: Array, zeta: Array
 ) -> tuple[Array, ...]:
-    """Integrals of the outer wall less those of the inner one, scaled by R^power h."""
-    shape = walls[0].eps.shape
-    total = np.zeros((len(powers), walls[0].eps.size))
-    for cylinder in walls:
-        radius, height = np.asarray(cylinder.radius, dtype=float), cylinder.height
-        sizes = [cylinder.sign * radius**power * height for power in powers]
-        scales = np.stack([np.broadcast_to(scale, shape).ravel() for scale in sizes])
-        eps, steep, zeta = cylinder.eps.ravel(), cylinder.steep.ravel(), cylinder.zeta.ravel()
-        # Some hundred nodes a state: a few hundred states at once stay in the processor's cache.
-        for start in range(0, eps.size, _CHUNK):
-            part = slice(start, start + _CHUNK)
-            total[:, part] += scales[:, part] * np.stack(integrals(eps[part], steep[part], zeta[part]))
-    return tuple(row.reshape(shape) for row in total)
-
-
-def _all_moments(eps: Array, steep: Array, zeta: Array) -> tuple[Array, ...]:
-    m = wall.integrate(eps, steep, zeta)
-    return m.volume, m.x, m.z, m.xx, m.yy, m.zz, m.xz
+    """What a kernel of `solvers.statics.kernel` finds, shape (...,) each."""
+    found = np.zeros((rows, e.size))
+    kernel(*_sizes(chamber, e.size), e.ravel(), steep.ravel(), zeta.ravel(), found)
+    return tuple(row.reshape(e.shape) for row in found)
 
 
 def moments(
@@ -90,7 +57,9 @@ def moments(
     Moments about the rotation axis and the chamber's floor, over the density, shape (...,)
     """
     e, b, zeta = same_shape(eccentricity, steep, wetted_height)
-    v, x, z, xx, yy, zz, xz = _over_walls(_all_moments, (2, 3, 2, 4, 4, 2, 3), *_walls(chamber, e, b, zeta))
+    from solvers.statics import kernel
+
+    v, x, z, xx, yy, zz, xz = _integrals(kernel.moments, 7, chamber, e, b, zeta)
     h = chamber.height
     none = np.zeros_like(v)
     return Moments(volume=v, x=x, y=none, z=z * h, xx=xx, yy=yy, zz=zz * h**2, xy=none, xz=xz * h, yz=none)
@@ -106,7 +75,9 @@ def volume_and_plan(chamber: AnyChamber, e: Array, steep: Array, zeta: Array) ->
 
     Parameters and shapes as for `moments`.
     """
-    volume, plan = _over_walls(wall.volume_and_plan, (2, 2), *_walls(chamber, e, steep, zeta))
+    from solvers.statics import kernel
+
+    volume, plan = _integrals(kernel.volumes, 2, chamber, e, steep, zeta)
     return volume, plan
 
 
@@ -116,16 +87,14 @@ def plan_moments(chamber: AnyChamber, e: Array, steep: Array, zeta: Array) -> tu
     Parameters and shapes as for `moments`; the plan's area, first and second moment along the deflection are
     beta-fold, so that they stay finite as the surface becomes a cylinder [theory: statics, eq. 17].
     """
-    return _over_walls(wall.unbalance, (3, 0, 1, 2), *_walls(chamber, e, steep, zeta))
+    from solvers.statics import kernel
+
+    return _integrals(kernel.plan_moments, 4, chamber, e, steep, zeta)
 
 
 def same_shape(*values: ArrayLike) -> tuple[Array, ...]:
     """Copies of some values, broadcast to one shape."""
     return tuple(np.array(x) for x in np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in values)))
-
-
-_ITERATIONS = 200
-_ROUNDING = 8.0 * np.finfo(float).eps
 
 
 @dataclass(frozen=True)
@@ -164,9 +133,29 @@ class Equilibrium:
         constant = h * (self.wetted_height - self.steepness * farthest)
         return np.where(np.isfinite(self.steepness) & (self.steepness < 1e29), constant, -np.inf)
 
+    @property
+    def farthest_depth(self) -> Array:
+        """Depth of the liquid on the floor at the farthest wall point, m, shape (...,).
+
+        There it reaches farthest from the wall [theory: optimum, eq. 12]; where it covers the floor, to the
+        rotation axis.
+        """
+        farthest = self.chamber.radius + self.eccentricity
+        fall = np.full(farthest.shape, np.inf)
+        np.divide(self.wetted_height, self.steepness, out=fall, where=self.steepness > 0.0)
+        fall = np.minimum(fall * np.square(self.chamber.radius), np.square(farthest))
+        return np.asarray(fall / (farthest + np.sqrt(np.square(farthest) - fall)))
+
     def moments(self) -> Moments:
         """Moments of the liquid about the rotation axis and the floor, over the density."""
         return moments(self.chamber, self.eccentricity, self.steepness, self.wetted_height)
+
+    def first_moment(self) -> Array:
+        """First moment of the liquid about the rotation axis, m^4, shape (...,)."""
+        from solvers.statics import kernel
+
+        state = self.eccentricity, self.steepness, self.wetted_height
+        return _integrals(kernel.first_moments, 1, self.chamber, *state)[0]
 
     def unbalance(self) -> tuple[Array, Array]:
         """First moment of the liquid about the rotation axis and its slope in e at fixed volume.
@@ -272,59 +261,14 @@ def _solve(
     chamber: AnyChamber, volume: Array, e: Array, steep: Array
 ) -> tuple[Array, Array, NDArray[np.bool_]]:
     """Wetted height for a volume, the volume reached, and whether it is the one asked for."""
-    shape = volume.shape
-    capacity = np.broadcast_to(np.asarray(chamber.capacity), shape).ravel()
-    eps = (e / chamber.radius).ravel()
-    volume, e, steep = volume.ravel(), e.ravel(), steep.ravel()
-    nearest = np.where(eps < 1.0, 0.0, eps - 1.0)
-    full = 1.0 + steep * (1.0 + eps - nearest) * (1.0 + eps + nearest)
-    fill = volume / capacity
-    zeta = np.where(fill >= 1.0, full, 0.0)
-    reached = np.where(fill >= 1.0, capacity, 0.0)
-    converged = (fill <= 0.0) | (fill >= 1.0)
-    # The depth nowhere exceeds the wetted height, so the fill is a lower bound of it.
-    low, high = np.minimum(fill, full), full.copy()
-    # A surface clear of the walls is known [theory: statics, eq. 3]; a nearly flat one is near the bound.
-    disc = np.pi * np.square(chamber.radius) * chamber.height
-    clear = 0.5 + steep * (volume / disc + eps * (2.0 + eps))
-    guess = np.where(full < 2.0, low, np.sqrt(low * high))
-    guess = np.where((clear > low) & (clear < high), clear, guess)
-    for _ in range(_ITERATIONS):
-        todo = np.flatnonzero(~converged)
-        if todo.size == 0:
-            break
-        z, v, most = guess[todo], volume[todo], capacity[todo]
-        here = chamber.at(todo) if isinstance(chamber, Chambers) else chamber
-        wet, plan = volume_and_plan(here, e[todo], steep[todo], z)
-        off = wet - v
-        low[todo] = np.where(off <= 0.0, z, low[todo])
-        high[todo] = np.where(off >= 0.0, z, high[todo])
-        bottom, top = low[todo], high[todo]
-        zeta[todo], reached[todo] = z, wet
-        # Rounding of zeta alone moves the volume by plan * zeta units in the last place.
-        converged[todo] = (np.abs(off) <= _ROUNDING * np.maximum(v, plan * z)) | (
-            top - bottom <= _ROUNDING * top
-        )
-        step = _logit_step(z, full[todo], wet, v, most, plan)
-        converged[todo] |= (np.abs(step - z) <= _ROUNDING * z) & (np.abs(off) <= 1e-12 * v)
-        middle = np.where(top > 4.0 * bottom, np.sqrt(bottom * top), 0.5 * (bottom + top))
-        guess[todo] = np.where((step > bottom) & (step < top), step, middle)
+    from solvers.statics import kernel
+
+    shape, count = volume.shape, volume.size
+    capacity = np.ascontiguousarray(np.broadcast_to(np.asarray(chamber.capacity, dtype=float), count))
+    zeta, reached, converged = np.empty(count), np.empty(count), np.empty(count, dtype=bool)
+    states = volume.ravel(), e.ravel(), steep.ravel()
+    kernel.wetted_heights(*_sizes(chamber, count), capacity, *states, zeta, reached, converged)
     return zeta.reshape(shape), reached.reshape(shape), converged.reshape(shape)
-
-
-def _logit_step(
-    zeta: Array, full: Array, reached: Array, volume: Array, capacity: Array, plan: Array
-) -> Array:
-    """Newton step on log(wet/dry) as a function of log(zeta/(full - zeta)); nan-free, may be outside."""
-    tiny = np.finfo(float).tiny
-    wet, dry = np.maximum(reached, tiny), np.maximum(capacity - reached, _ROUNDING * capacity)
-    left = np.maximum(full - zeta, _ROUNDING * full)
-    target = np.log(np.maximum(volume, tiny)) - np.log(np.maximum(capacity - volume, _ROUNDING * capacity))
-    off = np.log(wet) - np.log(dry) - target
-    slope = plan * (capacity / (wet * dry)) * (zeta * left / full)
-    shift = np.clip(np.divide(off, slope, out=np.zeros_like(off), where=slope > 0.0), -50.0, 50.0)
-    odds = zeta / left * np.exp(-shift)
-    return np.asarray(full * odds / (1.0 + odds))
 
 
 def _check(field: str, value: Array) -> None:

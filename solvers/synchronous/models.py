@@ -69,6 +69,11 @@ class Statics(WaveModel):
             error=ROUNDING,
         )
 
+    def pull(self, fills: Fills, whirls: Whirls) -> Array:
+        """See `LiquidModel`."""
+        state = equilibrium(fills.chamber, fills.volume, whirls.amplitude, whirls.spin, whirls.axial_gravity)
+        return np.asarray(fills.density * state.first_moment())
+
     def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
         """See `WaveModel`; no friction acts on liquid that is at rest in the drum.
 

@@ -119,7 +119,7 @@ class Pairs:
         if bent.size:
             k = which[rows[bent]]
             whirls = Whirls.synchronous(self.speed[k], e[bent], self.gravity[k])
-            moment[bent] = self.model.answer(fills.at(bent), whirls).real_unbalance()
+            moment[bent] = self.model.pull(fills.at(bent), whirls)
         total = _summed(rows, np.maximum(moment - fills.mass * e, 0.0), deflection.size)
         return np.asarray(np.square(self.speed[which]) * total)
 

@@ -188,8 +188,8 @@ class _Liquid:
         if chamber.size == 0:
             return np.zeros(rows.size)
         spin, own = speed[place], self.gravity[rows][place]
-        answer = self.model.answer(self.fills.at(chamber), Whirls.synchronous(spin, deflection[place], own))
-        return np.asarray(np.bincount(place, answer.real_unbalance(), minlength=rows.size) / deflection)
+        pull = self.model.pull(self.fills.at(chamber), Whirls.synchronous(spin, deflection[place], own))
+        return np.asarray(np.bincount(place, pull, minlength=rows.size) / deflection)
 
     def limit(self, rows: Index, speed: Array) -> Array:
         """Deflection up to which every chamber of some machines adds its full mass, m."""

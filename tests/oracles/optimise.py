@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -11,9 +12,10 @@ from leblanc.scene.chambers import Chamber
 from leblanc.scene.scene import JeffcottRotor, Model, Scene, Speeds
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.batch import answer_scenes
-from leblanc.studies.optimise.answers import with_volumes
+from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from meshes.arrays import Array
 
+FREE: dict[str, Any] = {"stable": False, "least_film": 0.0, "spill": True}  # nothing but the objective
 MANY = 3000  # pairs of a scene and a speed at once
 
 
@@ -53,7 +55,7 @@ def random_task(seed: int, scene: Scene) -> Optimisation:
     if objective == "mean":
         speeds = chance.uniform(scene.speeds.start, scene.speeds.stop, 3)
         duty = [{"speed": float(one), "weight": float(chance.uniform(0.1, 1.0))} for one in speeds]
-        return Optimisation(objective=objective, duty=duty)
+        return Optimisation(objective=objective, duty=duty, **FREE)
     if objective == "least_mass":
         none, full = (
             float(amplitudes(scene, np.array([row]), at=scene.speeds.stop)[0, 0])
@@ -61,8 +63,8 @@ def random_task(seed: int, scene: Scene) -> Optimisation:
         )
         low, high = sorted((none, full))
         limit = low + float(chance.uniform(0.05, 0.9)) * (high - low) + 1e-9
-        return Optimisation(objective=objective, vibration_limit=limit)
-    return Optimisation(objective=objective)
+        return Optimisation(objective=objective, vibration_limit=limit, **FREE)
+    return Optimisation(objective=objective, **FREE)
 
 
 def _capacity(scene: Scene) -> Array:
@@ -86,7 +88,7 @@ def values(scene: Scene, task: Optimisation, volumes: Array) -> Array:
     if task.objective == "working_speed":
         return amplitudes(scene, volumes, stop)[:, 0]
     if task.objective == "peak":
-        return amplitudes(scene, volumes).max(axis=1)
+        return FilledMachine(scene).peaks(volumes, scene.speeds)  # which has a test of its own
     if task.objective == "mean":
         speeds, weights = np.array([(one.speed, one.weight) for one in task.duty]).T
         each = np.stack([amplitudes(scene, volumes, float(one))[:, 0] for one in speeds])

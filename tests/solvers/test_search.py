@@ -25,7 +25,7 @@ def solve(judge: Judge, count: int, **more: object):  # type: ignore[no-untyped-
 
 
 @kills(
-    "solvers.search:_least_on_axis", "holds = (said.objective <= limit)", "holds = (said.objective >= limit)"
+    "solvers.search:_least_cost", "beyond = (heard.objective - limit)", "beyond = (limit - heard.objective)"
 )
 def test_plateau() -> None:
     """Of a plateau the edge with the least liquid; a margin m of its value is 0.2 m of its place."""
@@ -71,7 +71,7 @@ def test_edge() -> None:
 
     for count in (2, 3):
         w = weights[:count]
-        found = solve(judge, count)
+        found = solve(judge, count, plan=SearchPlan(polish=0))
         exact = 1.5**2 / float(w @ w)
         assert found.feasible
         assert (
@@ -99,8 +99,8 @@ def test_infeasible() -> None:
 
 @kills(
     "solvers.search:best_of",
-    "(judged.objective, cost, judged.excess)",
-    "(judged.objective, judged.excess, cost)",
+    "(cost, tie), (judged.excess, tie)",
+    "(judged.excess, tie), (cost, tie)",
 )
 def test_order() -> None:
     """Less excess before a smaller objective, that before less cost, that before more room to the limits."""
@@ -160,3 +160,56 @@ def test_a_box_that_is_none_is_refused() -> None:
 def test_a_box_of_no_width() -> None:
     found = search(free(lambda x: x.sum(axis=1)), np.array([0.3, 0.0]), np.array([0.3, 1.0]), np.ones(2))
     np.testing.assert_array_equal(found.point, (0.3, 0.0))
+
+
+@kills(
+    "solvers.search:_answer",
+    "best_of(said, points @ cost, plan.margin, _EQUAL)",
+    "int(np.argmin(said.objective))",
+)
+@pytest.mark.parametrize("count", [1, 2])
+def test_the_least_cost_among_equals_may_be_far_away(count: int) -> None:
+    """Two valleys: the wide one is better by less than the margin, the narrow one costs a tenth of it."""
+    near, far = np.full(count, 0.06), np.full(count, 0.6)
+
+    def function(x: Array) -> Array:
+        first = 1.0 + 4e-4 + 1e3 * np.square(x - near).sum(axis=1)
+        second = 1.0 + 10.0 * np.square(x - far).sum(axis=1)
+        return np.minimum(first, second)
+
+    found = solve(free(function), count, plan=SearchPlan(margin=1e-3))
+    assert found.objective <= found.judged.objective.min() * (1.0 + 1e-3)
+    # What is left of the margin is worth sqrt(6e-7) of the place.
+    np.testing.assert_allclose(found.point, near, atol=1e-3)
+    fine = solve(free(function), count, plan=SearchPlan(margin=1e-5))
+    np.testing.assert_allclose(fine.point, far, atol=3e-3)
+
+
+def test_an_interrupt_ends_the_search_with_what_it_has() -> None:
+    asked = 0
+
+    def judge(x: Array) -> Judgement:
+        nonlocal asked
+        asked += 1
+        if asked == 3:
+            raise KeyboardInterrupt
+        return Judgement(np.abs(x[:, 0] - 0.3), np.full(x.shape[0], -1.0))
+
+    found = solve(judge, 1)
+    assert found.interrupted and found.objective == found.judged.objective.min()
+    with pytest.raises(KeyboardInterrupt):
+        asked = 2
+        solve(judge, 1)
+
+
+@kills("solvers.search:_Log.__call__", "(points.copy(), ", "(points, ")
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_what_is_kept_is_what_was_judged(count: int) -> None:
+    """Every point with its own value: steps go on from arrays that were judged before."""
+
+    def function(x: Array) -> Array:
+        return 1.0 + np.square(x - 0.3).sum(axis=1)
+
+    found = solve(free(function), count)
+    np.testing.assert_array_equal(found.judged.objective, function(found.points))
+    assert found.objective == function(found.point[None])[0]

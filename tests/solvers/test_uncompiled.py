@@ -13,7 +13,11 @@ ROOT = Path(__file__).parents[2]
 
 
 @pytest.mark.parametrize(
-    "name", ["layer/uncompiled_layer", "runup/uncompiled_long_wave", "runup/uncompiled_linear"]
+    "name",
+    [
+        *("layer/uncompiled_layer", "runup/uncompiled_long_wave", "runup/uncompiled_linear"),
+        "statics/uncompiled_statics",
+    ],
 )
 def test_compiled_lines_are_held_by_oracles(name: str) -> None:
     chosen = [f"tests/solvers/{name}.py", "-q", "-n", "0", "-p", "no:cacheprovider"]

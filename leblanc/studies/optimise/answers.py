@@ -7,12 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, jeffcott
-from leblanc.studies.batch import answer_scenes
+from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, dry_rotor, jeffcott
 from leblanc.studies.choose import axial_gravity, models_at, prepare
 from leblanc.studies.liquid import synchronous_model
 from leblanc.studies.peaks import responses_between
 from meshes.arrays import Array, Flags
+from solvers.rotor.vibration import orbit
+from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.peaks import highest
 from solvers.synchronous.resonances import planar_tops
 from solvers.synchronous.response import by_speed, machine_responses, response
@@ -23,16 +24,19 @@ FEW = 24  # speeds from which the peak of a rotor that tilts is refined
 
 @dataclass(frozen=True)
 class FillAnswers:
-    """Amplitude and dry wall at pairs of volumes and speed, shape (m,).
+    """Amplitude and liquid at pairs of volumes and speed, shape (m,).
 
     Parameters
     ----------
     amplitude : m; infinite where it has no bound or was not found
     dry_patch : 1 where the wall is dry somewhere, else 0
+    reach : largest share of the way from a wall to its chamber's inner edge that the liquid reaches; 0
+        without such edges [theory: optimum, eq. 12]
     """
 
     amplitude: Array
     dry_patch: Array
+    reach: Array
 
 
 class FilledMachine:
@@ -47,7 +51,8 @@ class FilledMachine:
         # One model for all volumes: a change of model within its tolerance would look like a better volume.
         liquid = "statics" if scene.model.liquid == "auto" else scene.model.liquid
         self.scene = scene.altered(optimise=None, runup=None, model=scene.model.altered(liquid=liquid))
-        self._known: dict[tuple[bytes, float], tuple[float, float]] = {}
+        self._rotor = dry_rotor(self.scene)
+        self._known: dict[tuple[bytes, float], tuple[float, float, float]] = {}
         self._peaks: dict[tuple[bytes, float, float], float] = {}
 
     @property
@@ -73,12 +78,15 @@ class FilledMachine:
         for first in range(0, len(new), AT_ONCE):
             part = new[first : first + AT_ONCE]
             which = np.array([k for _, k in part], dtype=np.intp)
-            amplitude, dry = (self._planar if self.planar else self._one_by_one)(rows[which], speed[which])
+            answer = self._planar if self.planar else self._one_by_one
+            amplitude, dry, moved = answer(rows[which], speed[which])
             amplitude = np.where(np.isnan(amplitude), math.inf, amplitude)
-            for (key, _), size, dried in zip(part, amplitude.tolist(), dry.tolist(), strict=True):
-                self._known[key] = size, float(dried)
-        found = np.array([self._known[key] for key in keys]).reshape(-1, 2)
-        return FillAnswers(found[:, 0], found[:, 1])
+            reach = self._reach(rows[which], speed[which], moved)
+            for (key, _), *values in zip(part, amplitude.tolist(), dry.tolist(), reach.tolist(), strict=True):
+                size, dried, reached = values
+                self._known[key] = size, float(dried), reached
+        found = np.array([self._known[key] for key in keys]).reshape(-1, 3)
+        return FillAnswers(*found.T)
 
     def peaks(self, volumes: Array, speeds: Speeds) -> Array:
         """Largest amplitudes over a range of speeds, found between them as well, m, shape (m,).
@@ -128,22 +136,53 @@ class FilledMachine:
             found.append(highest(every.speed, every.amplitude).amplitude)
         return np.array(found)
 
-    def _planar(self, volumes: Array, speed: Array) -> tuple[Array, Flags]:
-        """Amplitude and dry wall at m pairs; whirls that grow by themselves are judged apart."""
+    def _reach(self, volumes: Array, speed: Array, moved: Array) -> Array:
+        """See `FillAnswers`, at deflections of the chambers, m, shape (m, c)."""
+        reach, gravity = np.zeros(speed.size), axial_gravity(self.scene)
+        for j, fill in enumerate(self.scene.fills):
+            chamber = fill.chamber
+            if chamber.inner_radius > 0.0:
+                wet = np.flatnonzero(volumes[:, j] > 0.0)
+                bounded = wet[np.isfinite(moved[wet, j])]
+                state = equilibrium(chamber, volumes[bounded, j], moved[bounded, j], speed[bounded], gravity)
+                own = np.where(volumes[:, j] > 0.0, math.inf, 0.0)
+                own[bounded] = state.farthest_depth / (chamber.radius - chamber.inner_radius)
+                reach = np.maximum(reach, own)
+        return reach
+
+    def _planar(self, volumes: Array, speed: Array) -> tuple[Array, Flags, Array]:
+        """Amplitude, dry wall and deflections at m pairs; whirls that grow by themselves are judged apart."""
         different, owner = np.unique(volumes, axis=0, return_inverse=True)
         rotor = jeffcott(self.scene)
         machines = [(rotor, with_volumes(self.scene, row).fills) for row in different]
         gravity = np.full(len(machines), axial_gravity(self.scene))
         model = synchronous_model(self.scene.model.liquid)
         found = machine_responses(machines, owner.reshape(-1), speed, gravity, model)
-        return np.abs(found.deflection), found.dry_patch
+        amplitude = np.abs(found.deflection)
+        return amplitude, found.dry_patch, np.repeat(amplitude[:, None], volumes.shape[1], axis=1)
 
-    def _one_by_one(self, volumes: Array, speed: Array) -> tuple[Array, Flags]:
-        """The same of rotors that tilt."""
-        pairs = zip(volumes, speed.tolist(), strict=True)
-        scenes = [with_volumes(self.scene, row).altered(speeds=Speeds.at(spin)) for row, spin in pairs]
-        found = answer_scenes(scenes)
-        return found.amplitude[:, 0], found.dry_patch[:, 0]
+    def _one_by_one(self, volumes: Array, speed: Array) -> tuple[Array, Flags, Array]:
+        """The same of rotors that tilt; with chambers in one plane all speeds of the same volumes at once."""
+        amplitude, dry = np.empty(speed.size), np.empty(speed.size, dtype=bool)
+        moved = np.empty(volumes.shape)
+        different, owner = np.unique(volumes, axis=0, return_inverse=True)
+        alone = len({fill.chamber.plane for fill in self.scene.fills}) > 1
+        for k, row in enumerate(different):
+            rows = np.flatnonzero(owner.reshape(-1) == k)
+            # Chambers in several planes: a speed's answer must not depend on which others are asked for.
+            for part in rows[:, None] if alone else (rows,):
+                amplitude[part], dry[part], moved[part] = self._answer(row, speed[part])
+        return amplitude, dry, moved
+
+    def _answer(self, volumes: Array, speed: Array) -> tuple[Array, Flags, Array]:
+        """The same of one set of volumes at several speeds, as `run` reports them."""
+        fills, gravity = with_volumes(self.scene, volumes).fills, axial_gravity(self.scene)
+        model = synchronous_model(self.scene.model.liquid)
+        found = response(self._rotor, fills, speed, gravity, model)
+        amplitude = np.abs(found.deflection) + np.abs(found.backward)
+        system = self._rotor.system()
+        moved = [np.abs(orbit(system, found.coordinates, fill.chamber.plane).forward) for fill in fills]
+        return np.where(np.isnan(amplitude), math.inf, amplitude), found.dry_patch, np.stack(moved, axis=1)
 
 
 def with_volumes(scene: Scene, volumes: Array) -> Scene:

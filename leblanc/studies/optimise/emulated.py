@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import math
 import re
 from pathlib import Path
-
-import numpy as np
-from numpy.typing import NDArray
 
 from leblanc.results.optimum import EmulatedAnswer
 from leblanc.scene.scene import Scene
@@ -21,7 +17,7 @@ _VOLUME = re.compile(r"chambers\.(\d+)\.volume")
 
 
 class EmulatedVibration:
-    """Vibration of a machine by an emulator over the volumes of some of its chambers; never sure.
+    """Vibration of a machine by an emulator over the volumes of some of its chambers.
 
     Parameters
     ----------
@@ -32,13 +28,9 @@ class EmulatedVibration:
     def __init__(self, emulator: Emulator, chambers: tuple[int, ...]) -> None:
         self.emulator, self.chambers = emulator, chambers
 
-    def exact(self, volumes: Array, bound: float = math.inf) -> Array:
+    def exact(self, volumes: Array) -> Array:
         """See `leblanc.studies.optimise.objectives.Vibration`; as exact as the emulator is."""
         return self.emulator.output(volumes[:, self.chambers])
-
-    def least(self, volumes: Array, bound: float = math.inf) -> tuple[Array, NDArray[np.bool_]]:
-        """See `leblanc.studies.optimise.objectives.Vibration`."""
-        return self.exact(volumes), np.zeros(volumes.shape[0], dtype=bool)
 
     def answer(self, volume: Array) -> EmulatedAnswer:
         """What it says of one set of volumes, shape (c,)."""

@@ -7,7 +7,6 @@ a run-up in time; `robust` has the quantile over operating conditions.
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
 from typing import Protocol
 
 import numpy as np
@@ -15,44 +14,18 @@ import numpy as np
 from leblanc.scene.scene import Scene, Speeds
 from leblanc.studies.liquid import runup_model
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
-from meshes.arrays import Array, Flags
+from meshes.arrays import Array
 
 
 class Vibration(Protocol):
     """A vibration that depends on the volumes of m sets, m^3, shape (m, c)."""
 
-    def exact(self, volumes: Array, bound: float = math.inf) -> Array:
-        """Vibration, m, shape (m,); above the bound an estimate from below will do."""
-        ...
-
-    def least(self, volumes: Array, bound: float = math.inf) -> tuple[Array, Flags]:
-        """The same, known for sure where it is least; elsewhere estimates from below.
-
-        Parameters
-        ----------
-        volumes : m^3, shape (m, c)
-        bound : what is above it need not be known for sure even if it is least
-
-        Returns
-        -------
-        vibration, m, and where that is sure, shape (m,) each
-        """
+    def exact(self, volumes: Array) -> Array:
+        """Vibration, m, shape (m,)."""
         ...
 
 
-class AlwaysExact(ABC):
-    """A vibration that costs the same to know for sure."""
-
-    @abstractmethod
-    def exact(self, volumes: Array, bound: float = math.inf) -> Array:
-        """See `Vibration`."""
-
-    def least(self, volumes: Array, bound: float = math.inf) -> tuple[Array, Flags]:
-        """See `Vibration`; sure everywhere."""
-        return self.exact(volumes, bound), np.ones(volumes.shape[0], dtype=bool)
-
-
-class AtSpeed(AlwaysExact):
+class AtSpeed:
     """Amplitude at one speed, or the weighted mean over several [theory: optimum, eq. 2].
 
     Parameters
@@ -64,14 +37,14 @@ class AtSpeed(AlwaysExact):
     def __init__(self, machine: FilledMachine, speeds: Array, weights: Array) -> None:
         self.machine, self.speeds, self.weights = machine, speeds, weights / weights.sum()
 
-    def exact(self, volumes: Array, bound: float = math.inf) -> Array:
+    def exact(self, volumes: Array) -> Array:
         """See `Vibration`."""
         count = self.speeds.size
         pairs = self.machine.at(np.repeat(volumes, count, axis=0), np.tile(self.speeds, volumes.shape[0]))
         return np.asarray(pairs.amplitude.reshape(-1, count) @ self.weights)
 
 
-class RunupPeak(AlwaysExact):
+class RunupPeak:
     """Largest amplitude of a run-up in time.
 
     Parameters
@@ -89,7 +62,7 @@ class RunupPeak(AlwaysExact):
         self.model = runup_model(liquid_model(scene))
         self._known: dict[bytes, float] = {}
 
-    def exact(self, volumes: Array, bound: float = math.inf) -> Array:
+    def exact(self, volumes: Array) -> Array:
         """See `Vibration`; infinite for a run that did not come to its end."""
         return np.array([self._one(np.ascontiguousarray(row)) for row in volumes])
 
@@ -107,7 +80,7 @@ class RunupPeak(AlwaysExact):
         return self._known[key]
 
 
-class PeakOver(AlwaysExact):
+class PeakOver:
     """Largest amplitude over a range of speeds, found between them as well [theory: optimum, eq. 3].
 
     Parameters
@@ -119,6 +92,6 @@ class PeakOver(AlwaysExact):
     def __init__(self, machine: FilledMachine, speeds: Speeds) -> None:
         self.machine, self.speeds = machine, speeds
 
-    def exact(self, volumes: Array, bound: float = math.inf) -> Array:
+    def exact(self, volumes: Array) -> Array:
         """See `Vibration`."""
         return self.machine.peaks(volumes, self.speeds)

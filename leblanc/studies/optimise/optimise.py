@@ -7,7 +7,6 @@ met by the way.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -32,18 +31,19 @@ from leblanc.studies.choose import axial_gravity
 from leblanc.studies.liquid import SYNCHRONOUS_MODELS
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.balance import QualityAtSpeed
+from leblanc.studies.optimise.constraints import growth
 from leblanc.studies.optimise.emulated import EmulatedVibration
 from leblanc.studies.optimise.objectives import RunupPeak
-from leblanc.studies.optimise.problem import (
-    Problem,
-    growth,
-    growth_speeds,
-    problem_of,
-    unbalances,
-    working_speed,
-)
+from leblanc.studies.optimise.problem import Problem, growth_speeds, problem_of, unbalances, working_speed
 from leblanc.studies.optimise.robust import Robust, condition_table
-from leblanc.studies.optimise.search import best_volumes, bounds_of, evaluated_again, on_all_cells
+from leblanc.studies.optimise.search import (
+    Progress,
+    best_volumes,
+    bounds_of,
+    evaluated_again,
+    on_all_cells,
+    plan_of,
+)
 from leblanc.studies.optimise.wetting import WettedWalls, wet_walls, wetting_volumes
 from leblanc.studies.run import run_scene
 from leblanc.studies.validity import doubts
@@ -51,7 +51,7 @@ from leblanc.units import in_rpm
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.liquid_model import LONG
-from solvers.search import Found
+from solvers.search import Found, SearchPlan
 
 _ASKED = "the scene asks for it; "
 
@@ -61,7 +61,7 @@ def optimise_scene(
     objective: str | None = None,
     task: Optimisation | None = None,
     front: bool = True,
-    progress: Callable[[int], None] | None = None,
+    progress: Progress | None = None,
     emulator: EmulatedVibration | None = None,
     response: bool = True,
 ) -> OptimumResult:
@@ -73,14 +73,14 @@ def optimise_scene(
     objective : in place of the task's
     task : in place of the scene's
     front : find out as well what must be given up for what
-    progress : called with the number of sets of volumes evaluated so far
+    progress : called with the number of sets of volumes evaluated so far and the share of the search done
     emulator : asked by the search in place of the solvers, which then evaluate the best that it found
     response : answer the machine with the best volumes over the scene's speeds as well
 
     Returns
     -------
     OptimumResult; not feasible where no volumes meet the constraints, and those are given then that exceed
-    them least
+    them least; the best of those tried so far where the search is interrupted from the keyboard
 
     Raises
     ------
@@ -104,22 +104,28 @@ def optimise_scene(
         result = _at_deflection(scene, task, wet_walls(scene, task.deflection, working_speed(scene, task)))
         return _with_response(result, scene, machine) if response else result
 
+    stopped: list[Found] = []
+
     def solve(problem: Problem) -> Found:
-        return best_volumes(scene, problem, low, high, progress)
+        found = best_volumes(scene, problem, low, high, progress)
+        stopped.extend([found] if found.interrupted else [])
+        return found
 
     problem = problem_of(scene, task, machine, solve)
     exact, quick = on_all_cells(scene, problem), problem
     if emulator is not None:
         low, high = emulator.inside(low, high, np.array([fill.volume for fill in scene.fills]))
-        quick = replace(problem, evaluate=replace(problem.evaluate, vibration=emulator), costly=False)
-    chosen = best_volumes(scene, quick, low, high, progress)
-    if quick is not exact:
+        quick = replace(
+            problem, evaluate=replace(problem.evaluate, vibration=emulator, estimated=True), costly=False
+        )
+    chosen = stopped[0] if stopped else best_volumes(scene, quick, low, high, progress)
+    if quick is not exact or stopped:
         chosen = evaluated_again(exact, chosen)
     result = _result(scene, task, exact, machine, chosen)
     if emulator is not None:
         answer = emulator.answer(chosen.point)
         result = replace(result, emulator=answer, notes=(optimum.emulated(answer), *result.notes))
-    if front:
+    if front and not result.interrupted:
         edge, sweep = front_around(scene, problem, chosen, result.vibration, growth_speeds(scene, task))
         result = replace(result, front=edge, sweep=sweep)
     if isinstance(exact.evaluate.vibration, Robust):
@@ -169,6 +175,7 @@ def _result(
         growth=float(growth(scene, volume[None], growth_speeds(scene, task))[0]),
         **_quality(machine, volume, problem.working_speed),
         closed_form=_closed_forms(machine, volume, problem.working_speed),
+        equal_within=plan_of(problem).margin,
         evaluations=int(np.unique(found.points, axis=0).shape[0]),
         candidates=Candidates(
             volume=found.points,
@@ -178,8 +185,25 @@ def _result(
             mass=said.details["mass"],
             exact=said.details["sure"] == 1.0,
         ),
-        notes=(*problem.notes, *_limits(scene, problem, volume), *doubts(scene)),
+        notes=(*_findings(problem, found), *problem.notes, *_limits(scene, problem, volume), *doubts(scene)),
+        interrupted=found.interrupted,
     )
+
+
+def _findings(problem: Problem, found: Found) -> tuple[Note, ...]:
+    """What must be known of the answer: it was interrupted, or it is no liquid."""
+    evaluate, said = problem.evaluate, found.judged
+    notes = [optimum.interrupted(found.points.shape[0])] if found.interrupted else []
+    if found.point.max() > 0.0 or not found.feasible:
+        return tuple(notes)
+    better = said.details["vibration"] < found.objective * (1.0 - plan_of(problem).margin)
+    forbidden = [
+        own.name
+        for own in evaluate.constraints
+        if np.any(own.excess(said.details[own.name])[better & (said.excess > 0.0)] > 0.0)
+    ]
+    notes.append(optimum.no_liquid(evaluate.by_mass, tuple(forbidden)))
+    return tuple(notes)
 
 
 def _at_deflection(scene: Scene, task: Optimisation, found: WettedWalls) -> OptimumResult:
@@ -202,6 +226,7 @@ def _at_deflection(scene: Scene, task: Optimisation, found: WettedWalls) -> Opti
         mass=found.mass,
         growth=float(growth(scene, volume[None], growth_speeds(scene, task))[0]),
         closed_form=found.closed_form,
+        equal_within=SearchPlan().margin,
         evaluations=found.evaluations,
         candidates=Candidates(
             volume=volume[None],

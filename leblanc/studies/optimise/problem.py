@@ -3,20 +3,31 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fluid.fill import Fill
 from leblanc.results import optimum
 from leblanc.results.base import Note
-from leblanc.results.optimum import ConstraintValue
 from leblanc.scene.rotors import unbalances_of
-from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, dry_rotor
+from leblanc.scene.scene import JeffcottRotor, Scene, Speeds
 from leblanc.scene.tasks import OBJECTIVES, Optimisation
-from leblanc.studies.optimise.answers import FilledMachine, with_volumes
+from leblanc.studies.optimise.answers import FilledMachine
 from leblanc.studies.optimise.balance import QualityAtSpeed
+from leblanc.studies.optimise.constraints import (
+    Constraint,
+    balanced,
+    clearance,
+    dry_wall,
+    growth,
+    limited,
+    room_when_warm,
+    spill,
+    stability,
+    wetting,
+    whirl_friction,
+)
 from leblanc.studies.optimise.objectives import (
     AtSpeed,
     PeakOver,
@@ -35,126 +46,13 @@ from leblanc.units import LENGTH, in_rpm, rpm_range, with_unit
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.search import Found, Judgement
-from solvers.whirl.growth import growth_map
 
-_BEYOND = 1.3  # of a limit, up to which a vibration above it must be known exactly
 _COARSE_CELLS = 64  # of a run-up while the search goes on
 _GROWTH_SPEEDS = 65  # at which the growth of small whirls is looked at
 _SLACK = 1.01  # default limit of the vibration over the least that is possible
 
 
-class Constraint:
-    """A value that must not be above its limit.
-
-    Parameters
-    ----------
-    name, meaning, unit : for reports
-    limit : in the unit
-    scale : what an excess is measured by, above 0
-    value : of volumes, shape (m, c), and of the limit beyond which a lower estimate will do; shape (m,)
-    """
-
-    def __init__(
-        self,
-        name: str,
-        meaning: str,
-        unit: str,
-        limit: float,
-        scale: float,
-        value: Callable[[Array, float], Array],
-    ) -> None:
-        self.name, self.meaning, self.unit = name, meaning, unit
-        self.limit, self.scale, self._value = limit, scale, value
-
-    def value(self, volumes: Array) -> Array:
-        """Value with volumes, shape (m, c); infinite where it was not found, shape (m,)."""
-        found = self._value(volumes, self.limit)
-        return np.where(np.isnan(found), math.inf, found)
-
-    def excess(self, value: Array) -> Array:
-        """By how much a value is above its limit, over the scale; 0 or below if it is not."""
-        return np.asarray((value - self.limit) / self.scale)
-
-    def at(self, value: float) -> ConstraintValue:
-        """The constraint where it has a value."""
-        return ConstraintValue(self.limit, value, value <= self.limit, self.unit, self.meaning)
-
-
-def dry_wall(machine: FilledMachine, speed: float) -> Constraint:
-    """No wall dry over its whole height at a speed, rad/s."""
-
-    def value(volumes: Array, _: float) -> Array:
-        return machine.at(volumes, np.full(volumes.shape[0], speed)).dry_patch
-
-    text = "wall dry somewhere at the working speed (1) or nowhere (0)"
-    return Constraint("dry_patch", text, "1", 0.0, 1.0, value)
-
-
-def limited(name: str, meaning: str, vibration: Vibration, limit: float) -> Constraint:
-    """A vibration up to a limit, m."""
-
-    def value(volumes: Array, most: float) -> Array:
-        return vibration.exact(volumes, _BEYOND * most)
-
-    return Constraint(name, meaning, "m", limit, limit, value)
-
-
-def clearance(over: PeakOver, limit: float) -> Constraint:
-    """Amplitude at all operating speeds up to the room that there is, m."""
-    return limited("clearance", "largest amplitude at the operating speeds", over, limit)
-
-
-def balanced(quality: QualityAtSpeed, grade: float) -> Constraint:
-    """Unbalance of rotor and liquid together up to a grade of ISO 21940-11, m/s."""
-
-    def value(volumes: Array, _: float) -> Array:
-        return quality.of(volumes)
-
-    text = "unbalance of rotor and liquid over the rotor's mass, times the working speed"
-    return Constraint("balance_quality", text, "m/s", grade, grade, value)
-
-
-def growth(scene: Scene, volumes: Array, speed: Array) -> Array:
-    """Growth of the small whirl that grows most at any of some speeds [theory: optimum, eq. 5].
-
-    Parameters
-    ----------
-    scene : the machine
-    volumes : m^3, shape (m, c)
-    speed : rad/s, shape (n,)
-
-    Returns
-    -------
-    1/s, below 0 where every whirl dies out, nan where the whirls were not found, shape (m,)
-    """
-    rows: list[Sequence[Fill]] = [with_volumes(scene, row).fills for row in volumes]
-    rotor, friction = dry_rotor(scene), scene.model.friction
-    return np.asarray(growth_map(rotor, rows, speed, friction)[0].max(axis=1))
-
-
-def stability(scene: Scene, speed: Array, margin: float) -> Constraint:
-    """Every small whirl dies out at the operating speeds, rad/s, at least at the rate of a margin, 1/s."""
-
-    def value(volumes: Array, _: float) -> Array:
-        return growth(scene, volumes, speed)
-
-    # A growth of a thousandth of the spin speed is a good measure where no margin is asked for.
-    scale = max(margin, 1e-3 * float(speed.max()))
-    text = "largest growth of a small whirl at the operating speeds"
-    return Constraint("stability", text, "1/s", -margin, scale, value)
-
-
-def room_when_warm(robust: Robust) -> Constraint:
-    """The liquid fits its chamber at every temperature."""
-
-    def value(volumes: Array, _: float) -> Array:
-        return robust.around.fullest(volumes)
-
-    text = "share of a chamber that its liquid takes when warmest"
-    return Constraint("room_when_warm", text, "1", 1.0, 1.0, value)
-
-
-@dataclass
+@dataclass(frozen=True)
 class Evaluator:
     """Evaluates sets of volumes: a vibration, or their mass, and constraints.
 
@@ -164,38 +62,29 @@ class Evaluator:
     density : of each chamber's liquid, kg/m^3, shape (c,)
     constraints : to keep to
     by_mass : the liquid's mass is to be small; the vibration is then one of the constraints
-    best : least objective of any allowed volumes so far, above which an estimate will do
+    estimated : the vibration is an estimate, by an emulator
     """
 
     vibration: Vibration
     density: Array
     constraints: tuple[Constraint, ...]
     by_mass: bool = False
-    best: float = field(default=math.inf)
+    estimated: bool = False
 
     def __call__(self, volumes: Array) -> Judgement:
         """Evaluate m sets of volumes, m^3, shape (m, c).
 
-        Its details are the values of the constraints, the mass, the vibration, and whether that is sure (1)
-        or an estimate from below (0).
+        The details are the values of the constraints, the mass, the vibration, and whether that is sure (1)
+        or an estimate (0).
         """
-        found = {constraint.name: constraint.value(volumes) for constraint in self.constraints}
-        over = np.full(volumes.shape[0], -1.0)
-        for constraint in self.constraints:
-            over = np.maximum(over, constraint.excess(found[constraint.name]))
+        found = {own.name: own.value(volumes) for own in self.constraints}
+        excesses = [own.excess(found[own.name]) for own in self.constraints]
+        over = np.max([np.full(volumes.shape[0], -1.0), *excesses], axis=0)
         mass = volumes @ self.density
-        if self.by_mass:
-            objective, vibration = mass, found["vibration"]
-            limit = next(
-                constraint.limit for constraint in self.constraints if constraint.name == "vibration"
-            )
-            sure = vibration <= _BEYOND * limit
-        else:
-            vibration, sure = self.vibration.least(volumes, self.best)
-            objective = vibration
-        self.best = min(self.best, float(objective[sure & (over <= 0.0)].min(initial=math.inf)))
-        extra = {"mass": mass, "vibration": vibration, "sure": sure.astype(float)}
-        return Judgement(objective, over, found | extra)
+        vibration = found["vibration"] if self.by_mass else self.vibration.exact(volumes)
+        sure = np.full(over.shape, 0.0 if self.estimated else 1.0)
+        details = found | {"mass": mass, "vibration": vibration, "sure": sure}
+        return Judgement(mass if self.by_mass else vibration, over, details)
 
 
 @dataclass(frozen=True)
@@ -263,7 +152,8 @@ def problem_of(
     constraints = _constraints(scene, task, machine, speed)
     rpm = in_rpm(speed)
     evaluate = Evaluator(at_work, density, constraints)
-    problem = Problem(evaluate, f"amplitude at {rpm}", speed, (speed,), not planar)
+    notes = (optimum.laminar(),) if whirl_friction(scene) != scene.model.friction else ()
+    problem = Problem(evaluate, f"amplitude at {rpm}", speed, (speed,), not planar, notes)
     return _MAKERS[task.objective](scene, task, machine, problem, solve)
 
 
@@ -272,13 +162,36 @@ def _constraints(
 ) -> tuple[Constraint, ...]:
     """The constraints of the task."""
     found = [] if task.dry_patch else [dry_wall(machine, speed)]
-    if task.stability_margin is not None:
-        found.append(stability(scene, growth_speeds(scene, task), task.stability_margin))
+    if task.stable:
+        found.append(_stability(scene, task, speed))
+    if task.least_film > 0.0:
+        found.append(wetting(scene, task.least_film))
+    if not task.spill and any(fill.chamber.inner_radius > 0.0 for fill in scene.fills):
+        found.append(spill(machine, speed))
     if task.clearance is not None:
         found.append(clearance(PeakOver(machine, operating_speeds(scene, task)), task.clearance))
     if task.balance_quality is not None:
         found.append(balanced(QualityAtSpeed(machine, speed), task.balance_quality))
     return tuple(found)
+
+
+def _stability(scene: Scene, task: Optimisation, speed: float) -> Constraint:
+    """Where the machine stays; with a margin, if one is given."""
+    speeds, where = _whirl_speeds(scene, task, speed)
+    return stability(scene, speeds, task.stability_margin or 0.0, where)
+
+
+def _whirl_speeds(scene: Scene, task: Optimisation, speed: float) -> tuple[Array, str]:
+    """Speeds at which small whirls must die out, rad/s, and their name.
+
+    Those of operation where a margin or a range is given, else those at which the machine stays.
+    """
+    if task.stability_margin is not None or task.operating is not None:
+        return growth_speeds(scene, task), "at the operating speeds"
+    if task.objective == "mean" and task.duty:
+        speeds = np.unique([speed, *(stage.speed for stage in task.duty)])
+        return speeds, "at the working speed and those of the duty cycle"
+    return np.array([speed]), "at the working speed"
 
 
 _Make = Callable[[Scene, Optimisation, FilledMachine, Problem, Callable[[Problem], Found]], Problem]
@@ -296,7 +209,7 @@ def _peak(scene: Scene, task: Optimisation, machine: FilledMachine, problem: Pro
         text = "largest amplitude of the run-up in time"
         evaluate = replace(problem.evaluate, vibration=RunupPeak(scene, few))
         fewer = optimum.few_cells(few, scene.runup.cells)
-        notes = (fewer,) if few < scene.runup.cells else ()
+        notes = (*problem.notes, *((fewer,) if few < scene.runup.cells else ()))
         return replace(problem, evaluate=evaluate, meaning=text, costly=True, notes=notes)
     speeds = scene.speeds
     text = f"largest steady amplitude from {rpm_range(speeds.start, speeds.stop)}"
@@ -349,7 +262,6 @@ def _least_mass(
         vibration=vibration,
         constraints=(*problem.evaluate.constraints, bound),
         by_mass=True,
-        best=math.inf,
     )
     text = f"liquid's mass for an amplitude of at most {with_unit(limit, LENGTH)} {where}"
     return replace(problem, evaluate=evaluate, meaning=text, notes=notes)
@@ -388,9 +300,9 @@ def _at_any_temperature(
     """The constraint on whirls, which the viscosity damps, at every temperature; any other as it is."""
     if constraint.name != "stability":
         return constraint
-    speeds = growth_speeds(scene, task)
+    speeds, _ = _whirl_speeds(scene, task, robust.speed)
 
-    def value(volumes: Array, _: float) -> Array:
+    def value(volumes: Array) -> Array:
         rows = filled_scenes(robust.around, volumes)
         return np.asarray(np.max([growth(warm, held, speeds) for warm, held in rows], axis=0))
 

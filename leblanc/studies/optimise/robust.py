@@ -16,7 +16,6 @@ from leblanc.scene.rotors import with_unbalances
 from leblanc.scene.scene import Exciter, Scene
 from leblanc.scene.tasks import Optimisation, pairs_of
 from leblanc.studies.optimise.answers import FilledMachine
-from leblanc.studies.optimise.objectives import AlwaysExact
 from meshes.arrays import Array
 from meshes.errors import InputError
 
@@ -209,7 +208,7 @@ def in_condition(scene: Scene, condition: OperatingCondition) -> tuple[Scene, li
     return scene.altered(rotor=rotor, chambers=tuple(warm)), growth
 
 
-class Robust(AlwaysExact):
+class Robust:
     """A quantile of the amplitudes at one speed over conditions [theory: optimum, eq. 4].
 
     Parameters
@@ -229,7 +228,7 @@ class Robust(AlwaysExact):
     ) -> None:
         self.around, self.quantile = Conditions(scene, speed, conditions), quantile
 
-    def exact(self, volumes: Array, bound: float = math.inf) -> Array:
+    def exact(self, volumes: Array) -> Array:
         """See `leblanc.studies.optimise.objectives.Vibration`."""
         rows = self.around.amplitudes(volumes)
         return np.asarray(np.quantile(rows, self.quantile, axis=0, method="higher"))

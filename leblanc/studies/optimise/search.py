@@ -16,17 +16,25 @@ from leblanc.studies.optimise.problem import Problem
 from leblanc.studies.optimise.wetting import wetting_volumes
 from meshes.arrays import Array
 from meshes.errors import InputError
-from solvers.search import Found, Judgement, SearchPlan, search
+from solvers.search import Found, Judgement, SearchPlan, best_of, joined, search
 
 # Where an answer costs tens of milliseconds and more.
 _SPARING = SearchPlan(
-    levels=(16, 6, 4), finest=2e-3, valleys=2, sweeps=3, settled=1e-2, margin=1e-3, edge=3e-2, sections=4
+    levels=(16, 6, 4),
+    finest=2e-3,
+    valleys=2,
+    sweeps=3,
+    settled=1e-2,
+    margin=1e-3,
+    edge=3e-2,
+    sections=4,
+    polish=4,
 )
 # Where it takes some speeds to know a value.
 _FEW = SearchPlan(
     levels=(14, 9, 5), crossed=False, finest=1e-3, sweeps=6, settled=5e-4, margin=2e-5, edge=1e-3, sections=10
 )
-_AGAIN = 3  # searches at most, if a peak turns out to have been hidden between the speeds looked at
+_AT_ONCE = 4  # sets of volumes at once where an answer costs much
 _CLOSER = 6  # of the best that a cheaper vibration found are evaluated again
 
 
@@ -52,30 +60,57 @@ def bounds_of(scene: Scene, task: Optimisation) -> tuple[Array, Array]:
     return low, np.minimum(high, capacity)
 
 
-def best_volumes(
-    scene: Scene, problem: Problem, low: Array, high: Array, progress: Callable[[int], None] | None
-) -> Found:
+# Called with the number of sets of volumes evaluated, and the share of the search that is done.
+Progress = Callable[[int, float], None]
+
+
+def best_volumes(scene: Scene, problem: Problem, low: Array, high: Array, progress: Progress | None) -> Found:
     """Best volumes for a problem."""
-    count = 0
+    counter = _Counter(progress)
+    few = _AT_ONCE if problem.costly else None
 
     def judge(volumes: Array) -> Judgement:
-        nonlocal count
-        count += volumes.shape[0]
-        if progress is not None:
-            progress(count)
-        return problem.evaluate(volumes)
+        return counter.judged(volumes, problem.evaluate, few)
 
-    over_speeds = isinstance(problem.evaluate.vibration, PeakOver)
-    plan = _SPARING if problem.costly else _FEW if over_speeds else SearchPlan()
+    plan = plan_of(problem)
     starts, alike = _starts(scene, problem, low.size), _alike(scene, low, high)
-    for _ in range(_AGAIN):
-        found = search(judge, low, high, problem.evaluate.density, starts, alike, plan)
-        if found.excess <= 0.0 and not problem.evaluate.by_mass:
-            value = float(problem.evaluate.vibration.exact(found.point[None])[0])
-            if value > found.objective * (1.0 + plan.margin):
-                continue  # what was hidden is known by now
-        break
-    return found
+    return search(judge, low, high, problem.evaluate.density, starts, alike, plan, counter.stage)
+
+
+def plan_of(problem: Problem) -> SearchPlan:
+    """How much the search for a problem tries; its margin is what values differ by that are not equal.
+
+    That is what the objective can tell [theory: optimum, eq. 13].
+    """
+    if problem.costly:
+        return _SPARING
+    return _FEW if isinstance(problem.evaluate.vibration, PeakOver) else SearchPlan()
+
+
+class _Counter:
+    """Counts sets of volumes for those who wait."""
+
+    def __init__(self, progress: Progress | None) -> None:
+        self.progress, self.count, self.share = progress, 0, 0.0
+
+    def stage(self, share: float) -> None:
+        """So much of the search is done."""
+        self.share = share
+        self._tell(0)
+
+    def judged(self, volumes: Array, judge: Callable[[Array], Judgement], few: int | None) -> Judgement:
+        """Judgement of volumes, a few of them at once where each takes its time."""
+        parts = []
+        for first in range(0, volumes.shape[0], few or volumes.shape[0]):
+            rows = volumes[first : first + (few or volumes.shape[0])]
+            parts.append(judge(rows))
+            self._tell(rows.shape[0])
+        return joined(parts)
+
+    def _tell(self, more: int) -> None:
+        self.count += more
+        if self.progress is not None:
+            self.progress(self.count, self.share)
 
 
 def _starts(scene: Scene, problem: Problem, count: int) -> Array:
@@ -120,7 +155,7 @@ def on_all_cells(scene: Scene, problem: Problem) -> Problem:
     coarse = problem.evaluate.vibration
     if scene.runup is None or not isinstance(coarse, RunupPeak) or coarse.numerics.cells >= scene.runup.cells:
         return problem
-    return replace(problem, evaluate=replace(problem.evaluate, vibration=RunupPeak(scene), best=math.inf))
+    return replace(problem, evaluate=replace(problem.evaluate, vibration=RunupPeak(scene)))
 
 
 def evaluated_again(fine: Problem, found: Found) -> Found:
@@ -135,6 +170,6 @@ def evaluated_again(fine: Problem, found: Found) -> Found:
     order = np.flatnonzero(allowed)[np.argsort(found.judged.objective[allowed], kind="stable")]
     tried = np.unique(np.concatenate((found.point[None], found.points[order[:_CLOSER]])), axis=0)
     again = fine.evaluate(tried)
-    best = int(np.argmin(np.where(again.excess <= max(found.excess, 0.0), again.objective, math.inf)))
+    best = best_of(again, tried @ fine.evaluate.density, plan_of(fine).margin)
     objective, excess = float(again.objective[best]), float(again.excess[best])
     return replace(found, point=tried[best], objective=objective, excess=excess)

@@ -134,7 +134,7 @@ def test_json_and_files(scene_file: Path, tmp_path: Path, capsys: pytest.Capture
     assert found["objective"] == "working_speed" and found["feasible"] is True
     assert found["value"] < found["baseline"]  # type: ignore[operator]
     constraints = found["constraints"]
-    assert isinstance(constraints, dict) and set(constraints) == {"capacity", "stability"}
+    assert isinstance(constraints, dict) and set(constraints) == {"capacity", "stability", "wetting", "spill"}
     for one in constraints.values():
         assert one["satisfied"] == (one["value"] <= one["limit"] * (1.0 + 1e-12))
     assert {one.name for one in tmp_path.iterdir()} == {

@@ -67,9 +67,9 @@ RIG = "examples/horizontal_rig.toml"
 @pytest.mark.parametrize(
     ("arguments", "unused"),
     [
-        (["run", RIG], ["numba", "scipy.linalg", "scipy.sparse"]),
+        (["run", RIG], ["scipy.linalg", "scipy.sparse"]),
         (["map", RIG, "--volumes", "5", "--speeds", "11"], ["numba", "scipy.linalg", "scipy.sparse"]),
-        (["optimise", RIG, "--no-front"], ["numba"]),
+        (["optimise", RIG, "--no-front"], []),
         (["explain", RIG], ["numba", "scipy.linalg", "matplotlib", "h5py", "jinja2"]),
         (["runup", "examples/runup.toml", "--cells", "16", "--samples", "50", "--no-check"], []),
     ],

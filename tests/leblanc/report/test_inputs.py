@@ -39,6 +39,7 @@ REST = {
         "duty": [{"speed": "300 rpm", "weight": 2}], "vibration_limit": "1.5 mm", "limit_at": "operating",
         "deflection": "0.7 mm", "unbalance": ["1 kg*mm", "2 kg*mm"], "temperature": ["5 degC", "35 degC"],
         "quantile": 0.9, "samples": 12, "seed": 4, "dry_patch": False, "stability_margin": "0.25 1/s",
+        "stable": False, "least_film": "20 um", "spill": True,
         "operating": ["500 rpm", "800 rpm"], "clearance": "4 mm", "volumes": [["1 ml", "20 ml"]],
         "balance_quality": "G 6.3",
     },
@@ -251,6 +252,7 @@ def test_units() -> None:
         "runup.rate": 2.0, "runup.duration": 9.0, "runup.cells": 32.0, "runup.samples": 77.0,
         "optimise.working_speed": 600.0, "optimise.vibration_limit": 1.5, "optimise.deflection": 0.7,
         "optimise.unbalance": 1.0, "optimise.temperature": 5.0, "optimise.quantile": 0.9,
+        "optimise.least_film": 0.02,
         "optimise.operating": 500.0, "optimise.clearance": 4.0, "optimise.duty": 300.0,
     }  # fmt: skip
     for path, value in expected.items():

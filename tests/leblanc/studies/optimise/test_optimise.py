@@ -16,9 +16,9 @@ from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.choose import prepare
 from leblanc.studies.optimise.answers import FilledMachine
+from leblanc.studies.optimise.constraints import growth, stability
 from leblanc.studies.optimise.objectives import AtSpeed, PeakOver
 from leblanc.studies.optimise.optimise import not_dominated, optimise_scene
-from leblanc.studies.optimise.problem import growth, stability
 from leblanc.studies.optimise.robust import operating_conditions, unbalance_range
 from leblanc.studies.optimise.wetting import (
     full_volume,
@@ -176,14 +176,14 @@ def test_mean_of_several() -> None:
 
 
 @kills(
-    "leblanc.studies.optimise.problem:Constraint.excess",
+    "leblanc.studies.optimise.constraints:Constraint.excess",
     "(value - self.limit) / self.scale",
     "(self.limit - value) / self.scale",
 )
-@kills("leblanc.studies.optimise.problem:stability", '"1/s", -margin, scale', '"1/s", margin, scale')
+@kills("leblanc.studies.optimise.constraints:stability", '"1/s", 0.0 - margin', '"1/s", 0.0 + margin')
 def test_excess() -> None:
     """A decay of 0.7 1/s meets a margin of 0.5, one of 0.3 does not."""
-    one = stability(rig(), np.array([100.0, 200.0]), 0.5)
+    one = stability(rig(), np.array([100.0, 200.0]), 0.5, "there")
     np.testing.assert_allclose(one.excess(np.array([-0.7, -0.5, -0.3])), (-0.4, 0.0, 0.4), atol=1e-12)
     assert one.at(-0.7).satisfied and not one.at(-0.3).satisfied
 
@@ -193,26 +193,20 @@ def _statics(scene: Scene):  # type: ignore[no-untyped-def]
 
 
 def test_peak() -> None:
-    """The peak found among a few speeds is that of all of them, and so is the best of several volumes."""
+    """The peak of each of several volumes is above every amplitude of a fine grid, and hardly above it."""
     for seed in (3, 8, 13):
         scene = random_scene(seed, 1, 61)
-        capacity = scene.fills[0].chamber.capacity
-        volumes = np.array([[0.0], [3e-4], [3e-3], [0.03], [0.3], [0.99]]) * capacity
-        every = amplitudes(scene, volumes).max(axis=1)
-        peak = PeakOver(FilledMachine(scene), scene.speeds)
-        np.testing.assert_allclose(peak.exact(volumes), every, rtol=1e-12)
-        again = PeakOver(FilledMachine(scene), scene.speeds)
-        for _ in range(2):
-            value, sure = again.least(volumes)
-            best = int(np.argmin(np.where(sure, value, np.inf)))
-            # What is equal to the best may be left unsure, so any of the equal ones will do.
-            assert every[best] == pytest.approx(every.min(), rel=1e-8)
-            np.testing.assert_allclose(value[sure], every[sure], rtol=1e-12)
-            assert np.all(value <= every * (1.0 + 1e-12))
+        fine = scene.replace({"speeds.count": 2001})
+        volumes = np.array([[0.0], [3e-4], [3e-3], [0.03], [0.3], [0.99]]) * scene.fills[0].chamber.capacity
+        every = amplitudes(fine, volumes).max(axis=1)
+        peak = PeakOver(FilledMachine(scene), scene.speeds).exact(volumes)
+        assert np.all(peak >= every * (1.0 - 1e-9))
+        # Half a step of 2001 speeds off a top of damping ratio 0.01 and more.
+        np.testing.assert_allclose(peak, every, rtol=5e-3)
 
 
 @kills(
-    "leblanc.studies.optimise.problem:growth",
+    "leblanc.studies.optimise.constraints:growth",
     "growth_map(rotor, rows, speed, friction)[0].max(axis=1)",
     "growth_map(rotor, rows, speed, friction)[0].min(axis=1)",
 )
