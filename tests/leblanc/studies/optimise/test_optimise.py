@@ -193,22 +193,16 @@ def _statics(scene: Scene):  # type: ignore[no-untyped-def]
 
 
 def test_peak() -> None:
-    """The peak found among a few speeds is that of all of them, and so is the best of several volumes."""
+    """The peak of each of several volumes is above every amplitude of a fine grid, and hardly above it."""
     for seed in (3, 8, 13):
         scene = random_scene(seed, 1, 61)
-        capacity = scene.fills[0].chamber.capacity
-        volumes = np.array([[0.0], [3e-4], [3e-3], [0.03], [0.3], [0.99]]) * capacity
-        every = amplitudes(scene, volumes).max(axis=1)
-        peak = PeakOver(FilledMachine(scene), scene.speeds)
-        np.testing.assert_allclose(peak.exact(volumes), every, rtol=1e-12)
-        again = PeakOver(FilledMachine(scene), scene.speeds)
-        for _ in range(2):
-            value, sure = again.least(volumes)
-            best = int(np.argmin(np.where(sure, value, np.inf)))
-            # What is equal to the best may be left unsure, so any of the equal ones will do.
-            assert every[best] == pytest.approx(every.min(), rel=1e-8)
-            np.testing.assert_allclose(value[sure], every[sure], rtol=1e-12)
-            assert np.all(value <= every * (1.0 + 1e-12))
+        fine = scene.replace({"speeds.count": 2001})
+        volumes = np.array([[0.0], [3e-4], [3e-3], [0.03], [0.3], [0.99]]) * scene.fills[0].chamber.capacity
+        every = amplitudes(fine, volumes).max(axis=1)
+        peak, sure = PeakOver(FilledMachine(scene), scene.speeds).least(volumes)
+        assert sure.all() and np.all(peak >= every * (1.0 - 1e-9))
+        # Half a step of 2001 speeds off a top of damping ratio 0.01 and more.
+        np.testing.assert_allclose(peak, every, rtol=5e-3)
 
 
 @kills(
