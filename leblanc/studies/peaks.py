@@ -25,8 +25,8 @@ from solvers.synchronous.resonances import Tops, planar_tops, resonances
 from solvers.synchronous.response import Response, by_speed, joined, machine_responses, response
 
 _UNDAMPED = 1e-8  # half width over speed of a resonance that nothing damps
-_NEAR, _NEARER = 1e-6, 1e-9  # relative distances over which its amplitude grows as one over the distance
-_GROWN = 100.0  # times, at least
+_NEAR, _NEARER = 1e-4, 1e-6  # relative distances over which its amplitude grows as one over the distance
+_GROWN = 30.0  # times, at least
 _ASIDE = 3e-9  # relative distance of a speed that is taken for the resonance
 _THOROUGH = 4  # rounds in which chambers in several planes are searched from scratch
 
