@@ -155,7 +155,7 @@ def test_no_damping_no_bound() -> None:
 
 @kills("leblanc.studies.peaks:_without_bound", ">= _GROWN *", "< _GROWN *")
 def test_no_damping_of_a_tilting_rotor() -> None:
-    """Of a rotor whose resonances are found as roots, to rounding; near them it is that of one over the distance."""
+    """Of a rotor whose resonances are found as roots: the amplitude goes as one over the distance."""
     own = scene("two_plane_rig", 9, **{f"rotor__supports__{k}__damping": 0.0 for k in range(2)})
     speed = assert_unbounded(own).peak["speed"]
     near = response(own.rotor.machine(), own.fills, speed * (1.0 - np.array([1e-3, 1e-5])), 0.0)
