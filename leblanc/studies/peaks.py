@@ -25,8 +25,9 @@ from solvers.synchronous.resonances import Tops, planar_tops, resonances
 from solvers.synchronous.response import Response, by_speed, joined, machine_responses, response
 
 _UNDAMPED = 1e-8  # half width over speed of a resonance that nothing damps
-_NEAR, _NEARER = 1e-6, 1e-9  # relative distances over which its amplitude grows as one over the distance
-_GROWN = 100.0  # times, at least
+_NEAR, _NEARER = 1e-4, 1e-6  # relative distances over which its amplitude grows as one over the distance
+_GROWN = 30.0  # times, at least
+_ASIDE = 3e-9  # relative distance of a speed that is taken for the resonance
 _THOROUGH = 4  # rounds in which chambers in several planes are searched from scratch
 
 
@@ -229,18 +230,24 @@ def _at_tops(tops: Sequence[Tops]) -> list[Resonances]:
     return found
 
 
+def _beside(speed: Array, half_width: Array) -> Resonances:
+    """Resonances, those that nothing damps moved a little: at the very speed no answer can be computed."""
+    sharp = half_width <= _UNDAMPED * speed
+    return Resonances(np.where(sharp, speed * (1.0 + _ASIDE), speed), half_width)
+
+
 class _Other:
     """A single rotor that is not planar."""
 
     def __init__(self, machine: Prepared, answer: Response) -> None:
         self.machine, self.position = machine, answer.position
         fills = machine.scene.fills
-        self.dry = [Resonances(*resonances(machine.system, []))]
+        self.dry = [_beside(*resonances(machine.system, []))]
         # Wet all over, and with a wall so dry that the liquid is a dead mass.
         whole = sum(fill.added_mass for fill in fills)
         shares = (1.0, sum(fill.mass for fill in fills) / whole) if whole > 0.0 else (1.0,)
         near = [resonances(machine.system, fills, share) for share in shares]
-        self.wet = [Resonances(*(np.concatenate(values) for values in zip(*near, strict=True)))]
+        self.wet = [_beside(*(np.concatenate(values) for values in zip(*near, strict=True)))]
         self._known, self._rounds = answer, 0
 
     def without_liquid(self, owner: Index, speed: Array) -> Complex:

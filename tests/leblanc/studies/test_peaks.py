@@ -1,0 +1,232 @@
+"""The largest amplitude of a machine does not depend on the speeds that are asked for."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from leblanc.results.notes import RunCode
+from leblanc.results.response import RunResult
+from leblanc.scene.scene import Scene, load_scene
+from leblanc.scene.tasks import Optimisation
+from leblanc.studies.batch import answer_scenes
+from leblanc.studies.choose import choose_all, liquid_models, prepare
+from leblanc.studies.compare import compare_models
+from leblanc.studies.optimise.answers import FilledMachine, with_volumes
+from leblanc.studies.optimise.objectives import PeakOver
+from leblanc.studies.optimise.optimise import optimise_scene
+from leblanc.studies.peaks import responses_between
+from leblanc.studies.run import run_scene
+from leblanc.text.run import answer, remarks, summary
+from leblanc.units import RPM
+from meshes.arrays import Array
+from solvers.synchronous.response import Response, by_speed, response
+from tests.mutants import kills
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+
+
+def scene(name: str, count: int, **changes: Any) -> Scene:
+    """An example at so many speeds, with other values; two underscores stand for a dot."""
+    values = {path.replace("__", "."): value for path, value in changes.items()}
+    return load_scene(EXAMPLES / f"{name}.toml").replace({"speeds.count": count, **values})
+
+
+@cache
+def run(name: str, count: int) -> RunResult:
+    return run_scene(scene(name, count))
+
+
+def both(own: Scene) -> Response:
+    """The response of a scene at its speeds and between them, without a search for whirls."""
+    machine = prepare(own)
+    (choice,) = choose_all([machine])
+    fills, gravity = own.fills, machine.axial_gravity
+    found = response(machine.rotor, fills, machine.speed, gravity, liquid_models(choice))
+    return by_speed([found, *responses_between([machine], [found])])
+
+
+def sampled(own: Scene, count: int) -> Response:
+    """The response at so many speeds, and no others."""
+    machine = replace(prepare(own), speed=np.linspace(own.speeds.start, own.speeds.stop, count))
+    (choice,) = choose_all([machine])
+    return response(machine.rotor, own.fills, machine.speed, machine.axial_gravity, liquid_models(choice))
+
+
+@pytest.mark.parametrize("name", ["tub", "centrifuge", "two_plane_rig"])
+def test_peak_does_not_depend_on_the_speeds(name: str) -> None:
+    """One machine at 30, 60, 241 and 4001 speeds has one peak, with liquid and without, to 1e-9."""
+    found = [both(scene(name, count)) for count in (30, 60, 241, 4001)]
+    for size in ("amplitude", "amplitude_dry"):
+        largest = [float(getattr(each, size).max()) for each in found]
+        np.testing.assert_allclose(largest, largest[-1], rtol=1e-9)
+
+
+def test_closed_form() -> None:
+    """e/(2 zeta sqrt(1 - zeta^2)) at omega/sqrt(1 - 2 zeta^2) without liquid, from 12 speeds."""
+    ratio, rate = 1e-4, 1000.0 / RPM
+    own = scene("horizontal_rig", 12, rotor__damping_ratio=ratio, rotor__critical_speed="1000 rpm")
+    found = run_scene(own)
+    eccentricity = own.rotor.machine().unbalance / own.rotor.machine().mass
+    left = 2.0 * ratio * math.sqrt(1.0 - ratio**2)
+    # Near the top, stiffness and inertia cancel to 1e-4 of them, and rounding counts 1e4 times.
+    assert found.peak_dry["amplitude"] == pytest.approx(eccentricity / left, rel=1e-11)
+    assert found.peak_dry["speed"] == pytest.approx(rate / math.sqrt(1.0 - 2.0 * ratio**2), rel=1e-12)
+    assert found.amplitude.max() < 1e-2 * found.peak["amplitude"]  # what the speeds themselves see
+
+
+def random_machine(seed: int) -> Scene:
+    """A tub or a rotor in two bearings, with other dampers, unbalance, volumes and liquid model."""
+    rng = np.random.default_rng(seed)
+    own = load_scene(EXAMPLES / f"{'tub' if seed % 2 else 'two_plane_rig'}.toml")
+    damping, size = 10.0 ** rng.uniform(-3, 0), 10.0 ** rng.uniform(-2, 0.3)
+    if seed % 2:
+        values = {"rotor.unbalance": own.rotor.unbalance * size * damping}
+        for k, damper in enumerate(own.rotor.dampers):
+            along = np.asarray(damper.damping) * damping
+            values[f"rotor.dampers.{k}.damping"] = along.tolist()
+    else:
+        values = {f"rotor.supports.{k}.damping": 80.0 * damping * rng.uniform(0.3, 2.0) for k in range(2)}
+        values |= {f"rotor.supports.{k}.stiffness": 4e4 * rng.uniform(0.5, 2.0) for k in range(2)}
+        values |= {f"rotor.unbalances.{k}.size": 1e-3 * damping * size for k in range(2)}
+    for k, fill in enumerate(own.fills):
+        values[f"chambers.{k}.volume"] = fill.chamber.capacity * 10.0 ** rng.uniform(-2, -0.1)
+    return own.replace(values | {"model.liquid": str(rng.choice(["auto", "linear"]))})
+
+
+def assert_peaks(seed: int, fine: int) -> None:
+    """No amplitude at so many speeds is above a peak that was found from 30 or 97."""
+    own = random_machine(seed)
+    found = [both(own.replace({"speeds.count": count})) for count in (30, 97)]
+    dense = sampled(own, fine)
+    for size in ("amplitude", "amplitude_dry"):
+        largest = [float(getattr(each, size).max()) for each in found]
+        assert largest[0] == pytest.approx(largest[1], rel=1e-9)
+        assert min(largest) >= float(getattr(dense, size).max()) * (1.0 - 1e-9)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_random_machines(seed: int) -> None:
+    """At 2001 speeds."""
+    assert_peaks(seed, 2001)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(6, 20))
+def test_random_machines_at_many_speeds(seed: int) -> None:
+    """At 20 001 speeds."""
+    assert_peaks(seed, 20001)
+
+
+def test_peak_at_an_end() -> None:
+    """Below the resonance the largest amplitude is that of the last speed, above it that of the first."""
+    below = run_scene(scene("horizontal_rig", 20, speeds__start="200 rpm", speeds__stop="700 rpm"))
+    above = run_scene(scene("horizontal_rig", 20, speeds__start="1400 rpm", speeds__stop="2000 rpm"))
+    assert below.peak == {"speed": below.speed[-1], "amplitude": below.amplitude[-1]}
+    assert above.peak == {"speed": above.speed[0], "amplitude": above.amplitude[0]}
+    assert "The largest amplitude lies at an end of the range of speeds." in remarks(below)
+
+
+def assert_unbounded(own: Scene) -> RunResult:
+    """A resonance that nothing damps has no peak that could be named, and everyone says so."""
+    found = run_scene(own)
+    assert math.isinf(found.peak["amplitude"]) and math.isinf(found.peak_dry["amplitude"])
+    assert found.to_json()["peak"]["amplitude"] is None and found.to_json()["peak"]["speed"] > 0.0
+    assert np.isfinite(found.amplitude).all()  # at the speeds asked for
+    assert [note.data["speed"] for note in found.notes if note.code == RunCode.UNBOUNDED] == [
+        found.peak["speed"]
+    ]
+    assert "infinite at" in answer(found)
+    return found
+
+
+def test_no_damping_no_bound() -> None:
+    """Of a planar rotor; one with damping has a bound."""
+    assert_unbounded(scene("horizontal_rig", 33, rotor__damping_ratio=0.0))
+    damped = run("horizontal_rig", 33)
+    assert not [note for note in damped.notes if note.code == RunCode.UNBOUNDED]
+
+
+@kills("leblanc.studies.peaks:_without_bound", ">= _GROWN *", "< _GROWN *")
+def test_no_damping_of_a_tilting_rotor() -> None:
+    """Of a rotor whose resonances are found as roots: the amplitude goes as one over the distance."""
+    own = scene("two_plane_rig", 9, **{f"rotor__supports__{k}__damping": 0.0 for k in range(2)})
+    speed = assert_unbounded(own).peak["speed"]
+    near = response(own.rotor.machine(), own.fills, speed * (1.0 - np.array([1e-3, 1e-5])), 0.0)
+    assert near.amplitude[1] > 50.0 * near.amplitude[0]
+
+
+def test_a_result_keeps_the_speeds_asked_for() -> None:
+    """The lists over speed are those of the scene; what was looked at besides is a part of its own."""
+    found = run("tub", 60)
+    written, data = found.to_json(), found.to_dataset()
+    assert len(written["speed"]) == len(written["amplitude"]) == 60
+    assert written["peak"] == found.peak and written["peak_dry"] == found.peak_dry
+    assert found.refined is not None and len(written["refined"]["speed"]) == found.refined.speed.size > 0
+    assert written["peak"]["amplitude"] in written["refined"]["amplitude"]
+    assert float(data["peak_amplitude"]) == found.peak["amplitude"]
+    assert float(data["peak_dry_speed"]) == found.peak_dry["speed"]
+    np.testing.assert_array_equal(data["refined_amplitude"], found.refined.amplitude)
+    assert data["refined_amplitude"].dims == ("refined_speed",) and data["amplitude"].size == 60
+    assert not np.isin(found.refined.speed, found.speed).any()
+    assert (
+        np.all(np.diff(found.curve.speed) > 0.0) and found.curve.speed.size == 60 + found.refined.speed.size
+    )
+    assert found.chamber_curve.shape == (found.curve.speed.size, 1)
+    assert dict(summary(found))["at the speed (rpm)"].startswith(f"{found.peak['speed'] * RPM:.4g} ")
+
+
+def test_one_speed_has_no_range() -> None:
+    """At a single speed the peak is the answer there."""
+    found = run_scene(scene("tub", 1, speeds__start="100 rpm", speeds__stop="100 rpm"))
+    assert found.peak == {"speed": found.speed[0], "amplitude": found.amplitude[0]}
+    assert found.refined is not None and found.refined.speed.size == 0
+
+
+def test_sweeps_and_comparisons() -> None:
+    """Scenes at once, and models side by side, have the peaks of `run`."""
+    scenes = [scene(name, 31) for name in ("centrifuge", "horizontal_rig", "tub")]
+    answers = answer_scenes(scenes)
+    for k, own in enumerate(scenes):
+        alone = run_scene(own)
+        assert answers.peak_amplitude[k] == pytest.approx(alone.peak["amplitude"], rel=1e-9)
+        assert answers.peak_amplitude_dry[k] == pytest.approx(alone.peak_dry["amplitude"], rel=1e-9)
+    models = compare_models(scenes[0], ["linear", "statics"])
+    assert models.answers[1].peak_amplitude == pytest.approx(
+        run("centrifuge", 241).peak["amplitude"], rel=1e-3
+    )
+
+
+def over(own: Scene, volume: Array, count: int) -> float:
+    """Largest amplitude that `run` finds with some volumes, by the model of the optimiser."""
+    fine = with_volumes(own.replace({"speeds.count": count, "model.liquid": "statics"}), volume)
+    return run_scene(fine).peak["amplitude"]
+
+
+@pytest.mark.parametrize(("name", "counts"), [("horizontal_rig", (9, 60)), ("centrifuge", (9,))])
+def test_the_optimiser_promises_what_run_finds(name: str, counts: tuple[int, ...]) -> None:
+    """The value of the best volumes is the peak at 2001 speeds, and no grid is there to profit from."""
+    task = Optimisation(objective="peak", steady=True)
+    for count in counts:
+        own = scene(name, count)
+        best = optimise_scene(own, task=task, front=False)
+        assert best.value == pytest.approx(over(own, best.volume, 2001), rel=1e-9)
+        assert best.response is not None and best.response.peak["amplitude"] == pytest.approx(
+            best.value, rel=1e-9
+        )
+
+
+@kills("leblanc.studies.optimise.answers:FilledMachine._planar_peaks", "found[outside] = (", "outside = (")
+def test_peaks_over_a_range() -> None:
+    """With many volumes at once, in ranges that hold the resonance and that do not, as `run` finds them."""
+    for changes in ({}, {"speeds__stop": "900 rpm"}, {"speeds__start": "1300 rpm"}):
+        own = scene("horizontal_rig", 25, **changes)
+        volumes = np.array([[0.0, 0.0], [2e-6, 1e-6], [1e-5, 2e-5]])
+        found = PeakOver(FilledMachine(own), own.speeds).exact(volumes)
+        np.testing.assert_allclose(found, [over(own, volume, 25) for volume in volumes], rtol=1e-9)
