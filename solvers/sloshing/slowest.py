@@ -27,6 +27,7 @@ from solvers.sloshing.system import SurfaceSystem
 
 _BLOCK = 8  # vectors at once, at least
 _SETTLED = 1e-10  # residual over theta of a mode that is found
+_ROUGH, _WAIT = 1e-6, 4  # residual that is left as it is where that many blocks more have not halved it
 _MOST = 1500  # vectors of a basis
 _ALIKE = 1e-6  # relative; frequencies nearer than that may be equal
 _SMALL = 1e-9  # part of a vector that must stand across the others
@@ -91,6 +92,7 @@ def slowest_modes(system: SurfaceSystem, count: int) -> SlowModes:
     block = min(max(_BLOCK, system.pieces + 2), size)
     krylov = _Krylov(system, block)
     wanted = min(count + 1, size)
+    left: list[float] = []
     while True:
         krylov.extend()
         theta, vectors, residual = krylov.pairs()
@@ -100,12 +102,15 @@ def slowest_modes(system: SurfaceSystem, count: int) -> SlowModes:
             # All as fast as the last one wanted, and the next one after them.
             last = theta[wanted - 1] * (1.0 - _ALIKE)
             alike = int(np.count_nonzero(theta >= last))
-            settled = residual[: min(alike + 1, near)] <= _SETTLED * theta[: min(alike + 1, near)]
-            if settled.all() and (alike < near or done):
+            kept = min(alike + 1, near)
+            left.append(float((residual[:kept] / theta[:kept]).max()))
+            # Frequencies are right to the square of it; on very uneven meshes rounding leaves more.
+            stuck = len(left) > _WAIT and left[-1] <= _ROUGH and left[-1] > 0.5 * left[-1 - _WAIT]
+            if (left[-1] <= _SETTLED or stuck) and (alike < near or done):
                 return SlowModes(krylov.spectrum(theta[:alike], vectors[:, :alike]), True)
         if done:
             kept = int(np.count_nonzero(theta > 0.0))
-            settled = residual[:kept] <= np.sqrt(_SETTLED) * theta[:kept]
+            settled = residual[:kept] <= _ROUGH * theta[:kept]
             return SlowModes(krylov.spectrum(theta[:kept], vectors[:, :kept]), bool(settled.all()))
 
 

@@ -72,12 +72,12 @@ def unstable_bands(
         kept = (row[other] == row[here]) & (other != here) & known_there[other]
         here, other = here[kept], other[kept]
         low, high = (np.minimum(here, other), np.maximum(here, other))
-        ends_of = (np.stack([points[at], rate[at]]) for at in (low, high))
-        edge[side][here] = _refine(rotor, rows, row[here], *ends_of, friction)
+        first, last = (np.stack([points[at], rate[at]]) for at in (low, high))
+        edge[side][here] = _refine(rotor, rows, row[here], first, last, friction)
     bands = zip(row[begins].tolist(), edge[0][begins].tolist(), edge[1][ceases].tolist(), strict=True)
     found: list[list[tuple[float, float]]] = [[] for _ in rows]
-    for k, first, last in bands:
-        found[k].append((first, last))
+    for k, start, stop in bands:
+        found[k].append((start, stop))
     return tuple(tuple(own) for own in found)
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from fluid.whirl import Layer, stokes_rate
 from meshes.arrays import Array, Complex, Index
 from solvers.rotor.system import RotorSystem
-from solvers.whirl.count import Region, missed_modes
+from solvers.whirl.count import Characteristic, Region, missed_modes
 from solvers.whirl.sheets import standing_roots
 from solvers.whirl.system import (
     SystemModes,
@@ -125,10 +125,13 @@ def _starts(problem: _Problem, groups: Sequence[tuple[list[int], int]], speed: A
 def _counted(problem: _Problem, modes: SystemModes, speed: Array, fastest: Array) -> SystemModes:
     """The modes, complete where no other grows more than the one of those found that grows most."""
 
-    def determinant(points: Complex, owner: Index) -> Complex:
-        here = _eliminate(problem, points, speed[owner])
-        unit, size = np.linalg.slogdet(here.matrix)
-        return np.asarray(size + 1j * np.angle(unit) + here.waves)
+    def determinant(own: Index) -> Characteristic:
+        def at(points: Complex, owner: Index) -> Complex:
+            here = _eliminate(problem, points, speed[own[owner]])
+            unit, size = np.linalg.slogdet(here.matrix)
+            return np.asarray(size + 1j * np.angle(unit) + here.waves)
+
+        return at
 
     known = np.where(modes.found, modes.root, complex(np.nan, np.nan))
     rate = np.where(modes.found, modes.root.real, -np.inf)
@@ -138,10 +141,7 @@ def _counted(problem: _Problem, modes: SystemModes, speed: Array, fastest: Array
     for beside in _BESIDE:
         spin = speed[unsure]
         region = Region(best[unsure] - beside * spin, spin, spin, fastest[unsure])
-        count = missed_modes(
-            lambda points, owner, own=unsure: determinant(points, own[owner]),
-            *(problem.degree, known[unsure], region),
-        )
+        count = missed_modes(determinant(unsure), problem.degree, known[unsure], region)
         complete[unsure] = count == 0.0
         unsure = unsure[np.isnan(count)]
         if unsure.size == 0:
@@ -308,7 +308,7 @@ def _eliminate(problem: _Problem, root: Complex, spin: Array) -> _Eliminated:
             slope = slope + change[:, None, None] * shape
             waves = waves + weight * np.log(wave)
             poles = poles + weight * bend / wave
-            shares[side].append(share)
+            shares[side].append(np.asarray(share, dtype=complex))
     return _Eliminated(matrix, slope, waves, poles, shares)
 
 

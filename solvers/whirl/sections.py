@@ -231,7 +231,7 @@ def _told(search: MostGrowing, starts: tuple[Complex, Complex], at: Index, speed
 def _fastest(started: Complex, mass: Array, laminar: Array) -> Array:
     """Rate of the fastest mode, and where the drag equals the inertia, 1/s, shape (n,)."""
     drag = float(np.abs(np.linalg.eigvals(np.linalg.solve(mass, laminar))).max())
-    return np.maximum(np.abs(started).max(axis=1), drag**2)
+    return np.asarray(np.maximum(np.abs(started).max(axis=1), drag**2))
 
 
 def _circles(layers: Sequence[SectionLayer]) -> Array:
@@ -466,7 +466,7 @@ def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) 
 
     def every(owner: Index) -> Complex:
         drags = 0.5 * np.stack([found.laminar - 1j * turned, found.laminar + 1j * turned])
-        return standing_roots(plain.at(owner), drags, speed[owner])
+        return standing_roots(plain.at(owner), np.asarray(drags, dtype=complex), speed[owner])
 
     fastest = _fastest(started, found.mass, found.laminar)
     return most_growing(MostGrowing(started, slip, circles, terms, every, speed, fastest), speed)

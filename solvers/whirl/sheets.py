@@ -40,11 +40,11 @@ def standing_roots(matrices: CoupledMatrices, drags: Complex, speed: Array) -> C
     both, apart = cube * (along + against), cube * (against - along)
     unit = np.eye(len(inverse))
     # Coefficients of z^0 to z^8, times z^4; the last one is -1/4.
-    parts = np.zeros((8, speed.size, *unit.shape), dtype=complex)
+    parts: Complex = np.zeros((8, speed.size, *unit.shape), dtype=complex)
     parts[0], parts[2], parts[6] = -0.25 * unit, 0.5j * damping, 0.5j * damping
     parts[4] = stiffness - 0.5 * unit
     parts[7], parts[5], parts[3], parts[1] = both, 3.0 * apart, 3.0 * both, apart
-    z = _zeros(4.0 * parts)
+    z = _zeros(np.asarray(4.0 * parts, dtype=complex))
     roots = 0.5 * np.sqrt(2j) * (z - 1.0 / z), 0.5 * np.sqrt(2j) * (z + 1.0 / z)
     shown = (roots[0].real > 0.0) & (roots[1].real > 0.0)
     found = 0.5j * (np.square(z) + 1.0 / np.square(z)) * speed[:, None]
@@ -68,7 +68,7 @@ def drum_roots(matrices: CoupledMatrices, laminar: Array, speed: Array) -> Compl
     drag, damping, stiffness = (
         inverse @ matrix @ inverse.T for matrix in (laminar, matrices.damping, matrices.stiffness)
     )
-    parts = np.zeros((4, *damping.shape), dtype=complex)
+    parts: Complex = np.zeros((4, *damping.shape), dtype=complex)
     parts[0], parts[2], parts[3] = stiffness / np.square(spin), damping / spin, drag / np.sqrt(spin)
     z = _zeros(-parts)
     return np.where(z.real > 0.0, np.square(z) * speed[:, None], _NONE)
