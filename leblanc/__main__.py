@@ -14,8 +14,12 @@ import signal  # noqa: E402
 from leblanc.interrupts import Terminated, heard, leave, said  # noqa: E402
 
 
-def main() -> int:
+def main(arguments: list[str] | None = None) -> int:
     """Run one command.
+
+    Parameters
+    ----------
+    arguments : those of the process if None
 
     Returns
     -------
@@ -24,7 +28,7 @@ def main() -> int:
     try:
         with heard():
             from leblanc.cli import main as command
-        return command()
+        return command(arguments)
     except (KeyboardInterrupt, Terminated) as error:  # as libraries were imported
         number = signal.SIGINT if isinstance(error, KeyboardInterrupt) else signal.SIGTERM
         print(said(number), file=sys.stderr)
