@@ -230,10 +230,12 @@ def liquid_bearing(
     ------
     InputError : see `liquid_coefficients`; an axis too short or not rising; ImportError without ROSS
     """
-    spins = whirl_speed is None or np.ndim(spin) > 0
-    table = _table("spin", spin) if spins else _table("whirl_speed", whirl_speed)
+    if whirl_speed is None or np.ndim(spin) > 0:
+        over, table = "speed", _table("spin", spin)
+    else:
+        over, table = "frequency", _table("whirl_speed", whirl_speed)
     found = liquid_coefficients(fill, spin, whirl_speed, friction)
-    return _bearing(_ross(), node, table, _named(found), tag, over="speed" if spins else "frequency")
+    return _bearing(_ross(), node, table, _named(found), tag, over=over)
 
 
 def _ross() -> ModuleType:

@@ -19,6 +19,7 @@ ANSWERED: dict[str, tuple[int, int, int]] = {
     "critical_speed_dry": SPEED, "critical_speed_wet": SPEED, "capture_speed": SPEED, "error_estimate": RATIO,
     "growth": SPEED, "whirl_speed": SPEED, "whirl_bands": SPEED, "position": LENGTH, "backward": LENGTH,
     "chamber_deflection": LENGTH, "natural_frequency": SPEED, "natural_damping_ratio": RATIO,
+    "peak.speed": SPEED, "peak.amplitude": LENGTH, "peak_dry.speed": SPEED, "peak_dry.amplitude": LENGTH,
     # map
     "volume": (3, 0, 0), "edges": SPEED, "scene_volume": (3, 0, 0), "scene_edges": SPEED,
     # volume
@@ -47,6 +48,15 @@ _ANGLES = {"phase": "amplitude", "liquid_angle": "liquid_offset", "liquid_angle_
 _ROUNDING = ("mass_error",)
 
 
+def flat(answer: dict[str, Any]) -> dict[str, Any]:
+    """An answer whose parts that have names of their own stand beside the others, as `part.name`."""
+    found = dict(answer)
+    for name, part in answer.items():
+        if isinstance(part, dict):
+            found |= {f"{name}.{key}": value for key, value in part.items()}
+    return found
+
+
 def assert_alike(
     found: dict[str, Any],
     answer: dict[str, Any],
@@ -55,6 +65,7 @@ def assert_alike(
     without: Collection[str] = (),
 ) -> None:
     """Every number of `answer`, scaled, stands in `found`, within `tolerance` of the largest of its kind."""
+    found, answer = flat(found), flat(answer)
     compared = [key for key in ANSWERED if key not in without and not isinstance(answer.get(key, ""), str)]
     assert compared
     for key in compared:
@@ -92,6 +103,7 @@ def differences(
     Infinite where they differ in more than numbers: in shape, in what was found at all, in a state.
     """
     far: dict[str, float] = {}
+    found, answer = flat(found), flat(answer)
     near = _BESIDE | _COMPLEX
     for key in ANSWERED:
         if key in without or key not in answer or isinstance(answer[key], str):

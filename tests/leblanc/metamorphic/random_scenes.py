@@ -38,7 +38,7 @@ ROOTS = 1e-6
 NOISE = 1e-3  # growth over whirl speed below which the edges of a band are rounding's as well
 SEARCHED = (
     "growth", "whirl_speed", "whirl_bands", "edges", "scene_edges", "natural_frequency",
-    "natural_damping_ratio", "critical_speed_dry", "critical_speed_wet",
+    "natural_damping_ratio", "critical_speed_dry", "critical_speed_wet", "peak.speed", "peak_dry.speed",
 )  # fmt: skip
 # Deflections and the like, which turn with the unbalance, and where tilting rotors have them.
 TURNING = ("phase", "liquid_angle", "deflection", "branches", "backward", "chamber_deflection")
