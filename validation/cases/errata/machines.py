@@ -211,4 +211,4 @@ def first_stable_speed(rotor: TwoPlane, low: float = 40.0, high: float = 150.0) 
     for _ in range(30):
         middle = 0.5 * (left + right)
         left, right = (left, middle) if stable(middle) else (middle, right)
-    return right
+    return float(right)
