@@ -53,9 +53,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
 SIGNALS = {"kill -9": signal.SIGKILL, "SIGINT": signal.SIGINT, "SIGTERM": signal.SIGTERM}
 _PROMISED = {signal.SIGKILL: -signal.SIGKILL, signal.SIGINT: 130, signal.SIGTERM: 143}
 _DEADLINE = 600.0  # s
-_BEGINNING = (
-    0.5  # s, in which Python starts and answers a Ctrl-C with a traceback, and in which nothing is written
-)
+_BEGINNING = 0.5  # s, in which Python starts: nothing of this package hears a signal yet
 
 
 @dataclass(frozen=True)
