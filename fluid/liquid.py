@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from fluid.temperature import CELSIUS, REFERENCE, Expansion, GivenLaw, Vogel
+from fluid.temperature import AS_GIVEN, CELSIUS, REFERENCE, Expansion, GivenLaw, Vogel
 from meshes.errors import InputError, require_not_negative, require_positive
 
 
@@ -319,7 +319,7 @@ def silicone_law(grade: float, density: float) -> GivenLaw:
     """
     span = CELSIUS - 25.0, CELSIUS + 250.0
     thickness = Vogel(grade * math.exp(-SILICONE_SLOPE / _GRADED), SILICONE_SLOPE, 0.0, *span)
-    return GivenLaw(Expansion(density, _GRADED, SILICONE_EXPANSION, *span), thickness)
+    return GivenLaw(Expansion(density, _GRADED, SILICONE_EXPANSION, *span), thickness, source="KF96")
 
 
 _SILICONES = {
@@ -388,10 +388,11 @@ def liquid_at(liquid: Liquid, temperature: float) -> Liquid:
         text = f"one of {known}, or given over temperature itself, where temperatures matter"
         raise InputError("liquid", liquid.name, text)
     if not law.lowest <= temperature <= law.highest:
-        name = liquid.name if law.source == "as given" else f"{liquid.name} [{law.source}]"
+        name = liquid.name if law.source == AS_GIVEN else f"{liquid.name} [{law.source}]"
         degrees = f"{law.lowest - CELSIUS:g} to {law.highest - CELSIUS:g} degC"
         span = f"from {law.lowest:g} to {law.highest:g} K ({degrees}) for {name}"
-        raise InputError("temperature", temperature, span)
+        asked = f"{temperature:g} K ({temperature - CELSIUS:g} degC)"
+        raise InputError("temperature", asked, span)
     thinner, runnier = law.relative(temperature)
     density, viscosity = liquid.density * thinner, liquid.viscosity * runnier
     return replace(liquid, density=density, viscosity=viscosity, law=None)

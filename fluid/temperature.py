@@ -14,6 +14,7 @@ from meshes.errors import InputError, require_not_negative, require_positive
 
 CELSIUS = 273.15  # K at 0 degrees Celsius
 REFERENCE = CELSIUS + 20.0  # K, to which a liquid's values belong where nothing else is said
+AS_GIVEN = "as given"  # source of a law that a scene gives
 _WALTHER = 0.7  # mm^2/s, added to a viscosity above 2 mm^2/s [ASTM17]
 _LEAST_WALTHER = 2.0  # mm^2/s, below which that constant is another one
 
@@ -253,13 +254,14 @@ def _require_range(lowest: float, highest: float) -> None:
 
 @dataclass(frozen=True)
 class GivenLaw:
-    """Density and viscosity of a liquid over temperature, as a user gives them.
+    """Density and viscosity of a liquid over temperature, each by a law of its own.
 
     Parameters
     ----------
     density : kg/m^3
     viscosity : kinematic, m^2/s
     reference : temperature to which the liquid's own values belong, K
+    source : keys of the references
 
     Raises
     ------
@@ -269,8 +271,7 @@ class GivenLaw:
     density: PropertyLaw
     viscosity: PropertyLaw
     reference: float = REFERENCE
-
-    source = "as given"
+    source: str = AS_GIVEN
 
     def __post_init__(self) -> None:
         if not self.lowest < self.highest:

@@ -300,7 +300,7 @@ def _at_any_temperature(
     """The constraint on whirls, which the viscosity damps, at every temperature; any other as it is."""
     if constraint.name != "stability":
         return constraint
-    speeds, _ = _whirl_speeds(scene, task, robust.speed)
+    speeds, _ = _whirl_speeds(scene, task, robust.around.speed)
 
     def value(volumes: Array) -> Array:
         rows = filled_scenes(robust.around, volumes)

@@ -177,8 +177,9 @@ def test_the_best_volumes_against_a_grid(name: str, levels: int) -> None:
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
     robust = Robust(machine, machine.speeds.stop, worst, 1.0)
     assert best.value == pytest.approx(robust.exact(best.volume[None])[0], rel=1e-12)
-    # Where an answer is costly the search counts a thousandth as equal, and takes the least liquid.
-    assert best.feasible and best.value <= robust.exact(grid).min() * (1.0 + 1e-3)
+    # Where an answer is costly the search counts a thousandth of the least that it found as equal and takes
+    # the least liquid; what it found may be above the grid's, since it ends where a round gains too little.
+    assert best.feasible and best.value <= robust.exact(grid).min() * (1.0 + 2e-3)
 
 
 @pytest.fixture(scope="module")
