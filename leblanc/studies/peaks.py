@@ -37,7 +37,7 @@ class Resonances:
 
     Parameters
     ----------
-    speed, half_width : rad/s, shape (k,)
+    speed, half_width : rad/s; the latter nan where another one shows the shape, shape (k,)
     bound : what no amplitude exceeds, m; infinite where that is not known
     """
 
