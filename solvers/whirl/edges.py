@@ -63,18 +63,16 @@ def unstable_bands(
     inner = row[1:] == row[:-1]
     begins = grows & ~np.concatenate([[False], inner & grows[:-1]])
     ceases = grows & ~np.concatenate([inner & grows[1:], [False]])
-    edge = points.copy(), points.copy()
-    for side, ends in enumerate((begins, ceases)):
-        # The neighbour on the other side of the edge, if there is one whose growth is known.
-        here = np.flatnonzero(ends)
-        other = here + (1 if side else -1)
-        other = np.clip(other, 0, row.size - 1)
-        kept = (row[other] == row[here]) & (other != here) & known_there[other]
-        here, other = here[kept], other[kept]
-        low, high = (np.minimum(here, other), np.maximum(here, other))
-        first, last = (np.stack([points[at], rate[at]]) for at in (low, high))
-        edge[side][here] = _refine(rotor, rows, row[here], first, last, friction)
-    bands = zip(row[begins].tolist(), edge[0][begins].tolist(), edge[1][ceases].tolist(), strict=True)
+    # Each with its neighbour on the other side of the edge, if there is one whose growth is known.
+    here = np.concatenate([np.flatnonzero(begins), np.flatnonzero(ceases)])
+    after = np.arange(here.size) >= np.count_nonzero(begins)
+    other = np.clip(here + np.where(after, 1, -1), 0, row.size - 1)
+    edge = points[here]
+    kept = (row[other] == row[here]) & (other != here) & known_there[other]
+    low, high = np.minimum(here, other)[kept], np.maximum(here, other)[kept]
+    first, last = (np.stack([points[at], rate[at]]) for at in (low, high))
+    edge[kept] = _refine(rotor, rows, row[low], first, last, friction)
+    bands = zip(row[begins].tolist(), edge[~after].tolist(), edge[after].tolist(), strict=True)
     found: list[list[tuple[float, float]]] = [[] for _ in rows]
     for k, start, stop in bands:
         found[k].append((start, stop))

@@ -20,7 +20,7 @@ from meshes.chamber import Chamber
 from meshes.files.exchange import write_section
 from meshes.section import Section, disc
 from solvers.sloshing.forced import mode_damping
-from solvers.sloshing.system import condense
+from solvers.sloshing.system import surface_system
 from tests.mutants import kills
 from tests.oracles.sloshing import ring_decay, sector_frequencies
 from validation.figures.baffle_table import RADIUS, SPIN, SURFACE, baffle_row, markdown
@@ -232,5 +232,5 @@ def test_baffle_table() -> None:
 def test_plates_of_a_high_chamber_do_not_count() -> None:
     chamber = Chamber(R, 1e6)
     record = answer_modes(chamber, VOLUME / H * 1e6, WATER, 40.0, 2, Resolution(32, 2))
-    damping = mode_damping(condense(record.section), record.shapes, WATER.viscosity, 1e6)
+    damping = mode_damping(surface_system(record.section), record.shapes, WATER.viscosity, 1e6)
     assert np.allclose(damping.rate, damping.wall_rate, rtol=1e-5)
