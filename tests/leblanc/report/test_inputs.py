@@ -252,7 +252,7 @@ def test_units() -> None:
         "runup.rate": 2.0, "runup.duration": 9.0, "runup.cells": 32.0, "runup.samples": 77.0,
         "optimise.working_speed": 600.0, "optimise.vibration_limit": 1.5, "optimise.deflection": 0.7,
         "optimise.unbalance": 1.0, "optimise.temperature": 5.0, "optimise.quantile": 0.9,
-        "optimise.least_film": 0.02,
+        "optimise.least_film": 20.0,
         "optimise.operating": 500.0, "optimise.clearance": 4.0, "optimise.duty": 300.0,
     }  # fmt: skip
     for path, value in expected.items():
