@@ -113,8 +113,8 @@ def no_liquid(by_mass: bool, forbidden: tuple[str, ...]) -> Note:
     if by_mass:
         text = "The limit is met without liquid."
     elif forbidden:
-        names = ", ".join(name.replace("_", " ") for name in forbidden)
-        text = f"No liquid is allowed that would help: {names} is exceeded by all volumes that vibrate less."
+        names = " or ".join(name.replace("_", " ") for name in forbidden)
+        text = f"No liquid is allowed that would help: whatever vibrates less exceeds {names}."
     else:
         text = "No liquid is best: whatever was tried vibrates as much or more with it."
     return Note(OptimumCode.NO_LIQUID, {"by_mass": by_mass, "forbidden": list(forbidden)}, text)

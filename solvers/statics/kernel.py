@@ -187,5 +187,5 @@ def _logit_step(
     off = np.log(wet) - np.log(dry) - target
     slope = plan * (capacity / (wet * dry)) * (zeta * left / full)
     shift = min(max(off / slope, -50.0), 50.0) if slope > 0.0 else 0.0
-    odds = zeta / left * np.exp(-shift)
+    odds: float = zeta / left * np.exp(-shift)
     return full * odds / (1.0 + odds)

@@ -223,11 +223,14 @@ def _disc_node(k: int, panel: _Panel, cut: _Cuts) -> _Node:
 
 @_jit
 def _node(number: int, k: int, panel: _Panel, cut: _Cuts) -> _Node:
+    found: _Node
     if number < 2:
-        return _far_node(k, panel, cut)
-    if number < 4:
-        return _near_node(k, panel, cut)
-    return _disc_node(k, panel, cut)
+        found = _far_node(k, panel, cut)
+    elif number < 4:
+        found = _near_node(k, panel, cut)
+    else:
+        found = _disc_node(k, panel, cut)
+    return found
 
 
 @_jit
@@ -239,8 +242,9 @@ def _second_moment(node: _Node) -> float:
 @_jit
 def _sine_excess(phi: float) -> float:
     """phi - sin(phi) cos(phi) without cancellation for thin slivers."""
+    excess: float = phi - np.sin(phi) * np.cos(phi)
     if phi >= 0.2:
-        return phi - np.sin(phi) * np.cos(phi)
+        return excess
     squared, term, total = (2.0 * phi) ** 2, 1.0, 1.0
     for n in range(2, 8):
         term *= -squared / ((2 * n) * (2 * n + 1))

@@ -15,7 +15,7 @@ from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.balance import QualityAtSpeed
 from leblanc.studies.optimise.objectives import PeakOver, Vibration
 from leblanc.studies.optimise.robust import Robust
-from leblanc.units import MM
+from leblanc.units import LENGTH, with_unit
 from meshes.arrays import Array
 from solvers.whirl.growth import growth_map
 
@@ -141,7 +141,7 @@ def wetting(scene: Scene, least: float) -> Constraint:
         thin = np.divide(least, depth, out=np.zeros_like(depth), where=depth > 0.0)
         return np.asarray(thin.max(axis=1))
 
-    text = f"least depth of a film, {least * MM * 1e3:.4g} µm, over that of the thinnest film"
+    text = f"least depth of a film, {with_unit(least, LENGTH)}, over that of the thinnest film"
     return Constraint("wetting", text, "1", 1.0, 1.0, value)
 
 

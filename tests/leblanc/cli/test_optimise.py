@@ -18,6 +18,7 @@ from leblanc.results.optimum import OptimumResult
 from leblanc.scene.scene import load_scene, scene_from_table
 from leblanc.scene.schema.load import SceneError
 from leblanc.scene.tasks import Optimisation
+from leblanc.studies.optimise.objectives import AtSpeed
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.text.optimum import describe_optimum
 
@@ -218,3 +219,29 @@ def test_figures_without_liquid_or_front(tmp_path: Path) -> None:
     assert best.value == best.baseline
     assert len(write_figures(best, tmp_path)) >= 1
     assert len(write_figures(replace(best, front=None, sweep=None), tmp_path)) == 1
+
+
+def test_what_is_not_allowed_and_what_is_interrupted_have_their_codes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Both write and print what comes nearest or what was best so far."""
+    rig = str(EXAMPLES / "horizontal_rig.toml")
+    limit = ["--objective", "least_mass", "--limit", "1 um", "--no-front", "--out", str(tmp_path / "a")]
+    assert main(["optimise", rig, *limit]) == 3
+    captured = capsys.readouterr()
+    assert "no volumes meet every constraint" in captured.err and "vibration" in captured.err
+    assert "NOT FEASIBLE" in captured.out and (tmp_path / "a" / "optimum.nc").exists()
+    asked, whole = 0, AtSpeed.exact
+
+    def exact(vibration: AtSpeed, volumes: np.ndarray) -> np.ndarray:
+        nonlocal asked
+        asked += 1
+        if asked == 5:
+            raise KeyboardInterrupt
+        return whole(vibration, volumes)
+
+    monkeypatch.setattr(AtSpeed, "exact", exact)
+    assert main(["optimise", rig, "--json", "--out", str(tmp_path / "b")]) == 130
+    captured = capsys.readouterr()
+    assert json.loads(captured.out)["interrupted"] is True and "interrupted" in captured.err
+    assert (tmp_path / "b" / "optimise.html").exists()
