@@ -129,11 +129,11 @@ def _planar(scenes: Sequence[Scene]) -> Answers:
     found["stable"] = answer.stable & (growth <= 0.0)
     found["in_range"] = answer.in_range & np.stack([choice.in_range for choice in choices]).ravel()
     each = [answer.at(np.flatnonzero(owner == k)) for k in range(len(scenes))]
-    peaks = _peaks(each, responses_between(prepared, each))
-    return Answers(**{name: values.reshape(shape) for name, values in found.items()}, **peaks)
+    found = {name: values.reshape(shape) for name, values in found.items()}
+    return Answers(**found, **_peaks(each, responses_between(prepared, each)))
 
 
-def _peaks(answers: Sequence[Response], between: Sequence[Response]) -> dict[str, Array]:
+def _peaks(answers: Sequence[Response], between: Sequence[Response]) -> dict[str, Any]:
     """Largest amplitudes of each scene at its speeds and between them."""
     every = [joined(pair) for pair in zip(answers, between, strict=True)]
     return {

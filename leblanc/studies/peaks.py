@@ -47,15 +47,17 @@ class Resonances:
 
 
 class Asked(Protocol):
-    """Machines that answer at any speed, each by its index.
+    """Machines that answer at any speed, each by its index."""
 
-    Parameters
-    ----------
-    dry, wet : resonances of each machine without and with liquid
-    """
+    @property
+    def dry(self) -> Sequence[Resonances]:
+        """Resonances of each machine without liquid."""
+        ...
 
-    dry: Sequence[Resonances]
-    wet: Sequence[Resonances]
+    @property
+    def wet(self) -> Sequence[Resonances]:
+        """The same with its liquid."""
+        ...
 
     def without_liquid(self, owner: Index, speed: Array) -> Complex:
         """Parts of the deflections of the dry rotors, m, shape (m, 2)."""

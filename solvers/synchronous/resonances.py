@@ -179,8 +179,11 @@ class _Liquid:
         """That of some machines."""
         wet = [(k, fill) for k, (_, fills) in enumerate(machines) for fill in fills if fill.volume > 0.0]
         owner, fills = np.array([k for k, _ in wet], dtype=np.intp), Fills.of([fill for _, fill in wet])
-        sums = [np.bincount(owner, x, minlength=len(machines)) for x in (fills.mass, fills.added_mass)]
-        return cls(fills, owner, gravity, *sums, model)
+        mass, added_mass = (
+            np.bincount(owner, x, minlength=len(machines)).astype(float)
+            for x in (fills.mass, fills.added_mass)
+        )
+        return cls(fills, owner, gravity, mass, added_mass, model)
 
     def share(self, rows: Index, deflection: Array, speed: Array) -> Array:
         """What the liquid adds to the mass of some machines: its unbalance over the deflection, kg."""
