@@ -173,7 +173,9 @@ def run_scene(scene: Scene, progress: Callable[[str], object] = lambda _: None) 
     answer = replace(
         answer, in_range=answer.in_range & choice.in_range, stable=whirl.leaves_stable(answer.stable)
     )
-    refined = replace(refined, stable=refined.stable & ~whirl.inside(refined.speed))
+    # Next to a speed at which it is not known whether a whirl grows, it is not known either.
+    calm = np.interp(refined.speed, machine.speed, np.isnan(whirl.growth)) == 0.0
+    refined = replace(refined, stable=refined.stable & calm & ~whirl.inside(refined.speed))
     if motion is not None:
         motion = replace(motion, refined_forward=_at_chambers(machine.system, scene.fills, refined))
     return RunResult(

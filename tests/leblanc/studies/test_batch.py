@@ -48,6 +48,8 @@ def outputs(record: RunResult) -> dict[str, np.ndarray]:
         "growth": whirl.growth,
         "whirl_speed": whirl.whirl_speed,
         "error_estimate": record.error_estimate,
+        "peak_amplitude": np.array(record.peak["amplitude"]),
+        "peak_amplitude_dry": np.array(record.peak_dry["amplitude"]),
     }
 
 
@@ -71,7 +73,7 @@ def mixed() -> list[Scene]:
     "gravity = np.array([machine.axial_gravity for machine in prepared])",
     "gravity = np.zeros(len(prepared))",
 )
-@kills("leblanc.studies.batch:_planar", "~(growth > 0.0)", "(growth == growth)")
+@kills("leblanc.studies.batch:_planar", "(growth <= 0.0)", "(growth == growth)")
 @kills("leblanc.studies.batch:_planar", "phase(answer.deflection)", "-phase(answer.deflection)")
 @kills(
     "leblanc.studies.batch:_peaks", "zip(answers, between, strict=True)", "zip(answers, answers, strict=True)"
