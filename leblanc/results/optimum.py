@@ -386,7 +386,7 @@ class OptimumResult(Result):
     >>> import leblanc as lb
     >>> best = lb.optimise(lb.example("horizontal_rig"), front=False)
     >>> best.feasible, sorted(best.constraints), best.volume.shape
-    (True, ['capacity'], (2,))
+    (True, ['capacity', 'stability', 'wetting'], (2,))
     """
 
     name: str
@@ -455,9 +455,9 @@ class OptimumResult(Result):
     def to_json(self) -> dict[str, Any]:
         """What `optimise` prints for scripts, SI."""
         names = ("objective", "volume", "value", "baseline", "feasible", "evaluations", "unit", "meaning")
-        names = (*names, "equal_within", "interrupted")
         more = ("working_speed", "vibration", "vibration_baseline", "mass", "stability_margin")
-        found: dict[str, Any] = {name: getattr(self, name) for name in (*names, *more)}
+        search = ("equal_within", "interrupted")
+        found: dict[str, Any] = {name: getattr(self, name) for name in (*names, *more, *search)}
         return (
             found
             | ({} if self.emulator is None else {"emulator": asdict(self.emulator)})
