@@ -120,7 +120,7 @@ def writing(path: Path) -> Iterator[Path]:
     ------
     OSError : it cannot be written; carries the path
     """
-    stem, suffix = path.stem.encode()[:100].decode(errors="ignore"), path.suffix
+    stem, suffix = native(path_text(path.stem).encode()[:100].decode(errors="ignore")), path.suffix
     # The ending tells libraries what to write; one as long as a name is none that they know.
     part = path.with_name(f".{stem}.{os.getpid()}.part{suffix if len(suffix) < 20 else ''}")
     remove = partial(part.unlink, missing_ok=True)

@@ -170,13 +170,13 @@ def application(wanted: str = "") -> typer.Typer:
     return found
 
 
-def _as_typed(command: Callable[..., None]) -> Callable[..., None]:
+def _as_typed(command: Callable[..., object]) -> Callable[..., object]:
     """The command, telling what it refuses as a user has typed it: in the scene's file or as an option."""
 
     @wraps(command)
-    def asked(**options: Any) -> None:
+    def asked(**options: Any) -> object:
         try:
-            command(**options)
+            return command(**options)
         except InputError as error:
             scene, fault = options.get("scene"), None
             if isinstance(scene, Path):

@@ -56,7 +56,8 @@ def working(what: str) -> Iterator[Update]:
             def update(
                 done: float | None = None, total: float | None = None, what: str | None = None
             ) -> None:
-                bar.update(task, completed=done, total=total, description=what)
+                # Something new is shown at once, however short it is.
+                bar.update(task, completed=done, total=total, description=what, refresh=what is not None)
 
             yield update
     finally:
