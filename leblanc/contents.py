@@ -10,14 +10,14 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from leblanc.files import native, out_dir, path_text, watched, writing
+from leblanc.files import chosen_dir, native, out_dir, path_text, watched, writing
 from meshes.errors import InputError
 from meshes.files.foreign import open_regular
 
@@ -38,6 +38,7 @@ class Record:
     state : fingerprint of the scene
     written : files, in their order
     previous : what the record said before
+    fresh : the folder and those above it that were not there before, the innermost first
     """
 
     command: str
@@ -46,23 +47,24 @@ class Record:
     state: str = ""
     written: list[Path] = field(default_factory=list)
     previous: dict[str, Any] = field(default_factory=dict)
+    fresh: Sequence[Path] = ()
 
-    def open(self, folder: Path, source: Path, state: str) -> None:
+    def open(self, folder: Path, source: Path, state: str, fresh: Sequence[Path] = ()) -> None:
         """Take a folder; from now on its record says that this command has not finished there.
 
         Parameters
         ----------
         folder : exists
-        source, state : as in the class, the former as the user gave it
+        source, state, fresh : as in the class, the first as the user gave it
         """
-        self.folder, self.state = folder, state
+        self.folder, self.state, self.fresh = folder, state, fresh
         self.source = _seen_from(folder, source)
         self.previous, made = _read(folder), _made(folder)
         before = made.get(self.command, {})
         self._write(made, before.get("files", {}), finished=False)
 
     def abandon(self) -> None:
-        """After a failure: take down what was written; where that is nothing, the record is as it was."""
+        """After a failure: take down what was written; where that is nothing, all is as it was before."""
         if self.folder is None:
             return
         if files := self._files():
@@ -72,6 +74,9 @@ class Record:
             self._say(self.previous)
         else:
             (self.folder / NAME).unlink(missing_ok=True)
+            with suppress(OSError):  # one that holds something stays, and those above it
+                for folder in self.fresh:
+                    folder.rmdir()
 
     def close(self) -> list[str]:
         """Take down what was written; what of it is no longer true is removed.
@@ -153,7 +158,9 @@ def results_dir(name: str, out: Path | None, source: Path, state: str, *files: s
     InputError : `out` is not given, and the folder holds what another scene gave, whose file is still there
     OSError : the folder cannot be made or written
     """
-    folder = out_dir(name, out, *files)
+    folder = chosen_dir(name, out)
+    fresh = [path for path in (folder, *folder.parents) if not path.exists()]
+    out_dir(name, out, *files)
     other = _read(folder).get("scene")
     if out is None and isinstance(other, str) and other != _seen_from(folder, source):
         file = _file(folder, other)
@@ -165,7 +172,7 @@ def results_dir(name: str, out: Path | None, source: Path, state: str, *files: s
             )
     record = _RECORD.get()
     if record is not None:
-        record.open(folder, source, state)
+        record.open(folder, source, state, fresh)
     return folder
 
 

@@ -19,6 +19,16 @@ _LONGEST_NAME = 200  # bytes; file systems allow 255
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)  # on Windows
 
 
+def chosen_dir(scene_name: str, out: Path | None) -> Path:
+    """Folder for the files of a command: the user's choice, or out/<scene name>.
+
+    Parameters
+    ----------
+    scene_name, out : as for `out_dir`
+    """
+    return Path("out") / native(safe_name(scene_name)) if out is None else out
+
+
 def out_dir(scene_name: str, out: Path | None, *names: str) -> Path:
     """Folder for the files of a command, made if need be and tried for writing.
 
@@ -32,7 +42,7 @@ def out_dir(scene_name: str, out: Path | None, *names: str) -> Path:
     ------
     OSError : it cannot be made or written; carries the path
     """
-    folder = Path("out") / native(safe_name(scene_name)) if out is None else out
+    folder = chosen_dir(scene_name, out)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with _naming(folder), tempfile.TemporaryFile(dir=folder):

@@ -59,6 +59,8 @@ def missed_modes(function: Characteristic, degree: int, known: Complex, region: 
     -------
     Their number, a conjugate pair counts as two, shape (n,); nan where the phase could not be followed
     """
+    if region.line.size == 0:
+        return np.zeros(0)
     pairs, alone = _upper(known, region.scale)
     path, owner = _path(pairs, region)
     rise, sure = _phase(_Deflated(function, pairs, alone), path, owner, region.scale)

@@ -190,7 +190,7 @@ def machines_growth(
     """
     growth, whirl_speed = np.full((2, speed.size), np.nan)
     uneven = np.array([any(fill.uneven for fill in fills) for _, fills in machines], dtype=bool)
-    for i in np.flatnonzero(uneven).tolist():
+    for i in np.intersect1d(np.flatnonzero(uneven), owner).tolist():
         here = np.flatnonzero(owner == i)
         growth[here], whirl_speed[here] = _uneven_growth(machines[i], frictions[i], speed[here])
     tables = [

@@ -134,11 +134,12 @@ def test_a_command_that_fails_at_once_leaves_no_mark(folder: Path) -> None:
     for before in ({}, {"run.txt": "1"}):
         if before:
             does("run", "a.toml", "1", before)
-        there = sorted(folder.iterdir()) if folder.exists() else []
+        there = sorted(folder.iterdir()) if folder.exists() else None
         with pytest.raises(OSError, match="full"), recording("run"):
             results_dir("Rig", None, Path("a.toml"), "2")
             raise OSError("full")
-        assert sorted(folder.iterdir()) == there
+        assert (sorted(folder.iterdir()) if folder.exists() else None) == there
+        assert folder.parent.exists() == (there is not None)
     assert made(folder)["run"]["finished"] is True
 
 

@@ -128,6 +128,8 @@ def added_mass_answers(scenes: Sequence[Scene]) -> Answers:
         converged=yes,
         model=np.full(speed.shape, "statics"),
         error_estimate=np.full(speed.shape, 1e-3),
+        peak_amplitude=np.abs(wet).max(axis=1),
+        peak_amplitude_dry=np.abs(dry).max(axis=1),
     )
 
 

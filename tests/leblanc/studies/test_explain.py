@@ -72,7 +72,7 @@ def test_numbers() -> None:
     np.testing.assert_allclose(n.skin, np.sqrt([4e-3, 4e-4]) / 0.8)
 
 
-@kills("leblanc.studies.choose:_choice", "speed > captured_from", "speed < captured_from")
+@kills("leblanc.studies.choose:_carried", "speed > captured_from", "speed < captured_from")
 def test_a_horizontal_axis_needs_capture() -> None:
     """The liquid of a horizontal axis is captured where Omega^2 a exceeds g; a vertical axis needs none."""
     lying = choose(scene())

@@ -682,7 +682,7 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert {path.name for path in (tmp_path / "out").iterdir()} == FILES | {"runup.nc", "runup.html"}
     runup(file, cells=8, samples=20, out=tmp_path / "out")
     text = capsys.readouterr()
-    assert "largest amplitude" in text.out
+    assert "Largest amplitude" in text.out
     assert "energy closed" in text.err
 
 

@@ -30,6 +30,13 @@ def polynomial(roots: np.ndarray) -> Any:
     return at
 
 
+def test_at_no_speed_nothing_is_missed() -> None:
+    nowhere = np.zeros(0)
+    region = Region(nowhere, nowhere, nowhere, nowhere)
+    found = missed_modes(polynomial(np.zeros((0, 6))), 6, np.zeros((0, 6), dtype=complex), region)
+    assert found.shape == (0,)
+
+
 @kills("solvers.whirl.count:missed_modes", "0.5 * (degree - held)", "0.5 * degree")
 @kills("solvers.whirl.count:_upper", "known.imag < -near, np.abs", "known.imag < -1e9, np.abs")
 def test_zeros_of_polynomials_are_counted() -> None:
