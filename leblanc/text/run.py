@@ -68,8 +68,20 @@ def _doubted(result: RunResult, index: int) -> str:
 def _wrong(result: RunResult, index: int) -> list[str]:
     """What keeps an amplitude from being believed."""
     r = result.curve
-    checks = (("out of range", r.in_range), ("unstable", r.stable))
-    return [text for text, holds in checks if not holds[index]]
+    found = [] if r.in_range[index] else ["out of range"]
+    if not r.stable[index]:
+        found.append("stability not known" if _unknown(result, index) else "unstable")
+    return found
+
+
+def _unknown(result: RunResult, index: int) -> bool:
+    """Nothing tells whether the answer at a place of the curve is stable."""
+    r, whirl = result.curve, result.whirl
+    if whirl is None or not r.branch_stable[index].any():
+        return False
+    speed = r.speed[[index]]
+    lost = np.interp(speed, result.speed, np.isnan(whirl.growth)) > 0.0
+    return bool((lost & ~whirl.inside(speed))[0])
 
 
 def amplitude_place(result: RunResult) -> str:

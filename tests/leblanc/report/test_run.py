@@ -171,6 +171,23 @@ def test_whirl_that_was_not_found_is_a_warning() -> None:
     ]
 
 
+def test_what_is_not_known_of_the_peak_is_not_called_unstable() -> None:
+    record = quiet()
+    assert record.whirl is not None
+    at = int(np.argmax(record.amplitude))
+    whirl = replace(record.whirl, growth=np.where(some(at, at), np.nan, -1.0))
+    r = replace(record.response, stable=~some(at, at))
+    lost = replace(record, response=r, whirl=whirl)
+    assert words.comparisons(lost)[0].label == "Largest amplitude (mm, stability not known)"
+    grows = replace(lost, whirl=record.whirl)
+    assert words.comparisons(grows)[0].label == "Largest amplitude (mm, unstable)"
+    # What is unstable against slow disturbances is known, and so is a whirl that grows.
+    fails = replace(lost, response=replace(r, branch_stable=~np.ones_like(r.branch_stable)))
+    inside = replace(lost, whirl=replace(whirl, bands=((0.0, 1e3),)))
+    for known in (fails, inside):
+        assert words.comparisons(known)[0].label == "Largest amplitude (mm, unstable)"
+
+
 @pytest.mark.parametrize(
     "name",
     [
