@@ -40,10 +40,12 @@ def answer(result: RunResult) -> str:
         )
     highest = largest(result.curve.amplitude)
     assert highest is not None
+    at_last = f"it is {last.wet_text}{_doubted(result, -1)} instead of {last.dry_text}"
+    if last.wet == NOT_FOUND:
+        at_last = f"no answer was found with the liquid; without it is {last.dry_text}"
     return (
         f"The largest amplitude{where} is {most.wet_text} at {at.wet} rpm with the liquid"
-        f"{_doubted(result, highest)} and {most.dry_text} at {at.dry} rpm without; at {speed} it is "
-        f"{last.wet_text}{_doubted(result, -1)} instead of {last.dry_text}."
+        f"{_doubted(result, highest)} and {most.dry_text} at {at.dry} rpm without; at {speed} {at_last}."
     )
 
 
@@ -66,8 +68,20 @@ def _doubted(result: RunResult, index: int) -> str:
 def _wrong(result: RunResult, index: int) -> list[str]:
     """What keeps an amplitude from being believed."""
     r = result.curve
-    checks = (("out of range", r.in_range), ("unstable", r.stable))
-    return [text for text, holds in checks if not holds[index]]
+    found = [] if r.in_range[index] else ["out of range"]
+    if not r.stable[index]:
+        found.append("stability not known" if _unknown(result, index) else "unstable")
+    return found
+
+
+def _unknown(result: RunResult, index: int) -> bool:
+    """Nothing tells whether the answer at a place of the curve is stable."""
+    r, whirl = result.curve, result.whirl
+    if whirl is None or not r.branch_stable[index].any():
+        return False
+    speed = r.speed[[index]]
+    lost = np.interp(speed, result.speed, np.isnan(whirl.growth)) > 0.0
+    return bool((lost & ~whirl.inside(speed))[0])
 
 
 def amplitude_place(result: RunResult) -> str:
@@ -263,9 +277,9 @@ def limits(result: RunResult) -> list[Limit]:
         lost = np.isnan(result.whirl.growth)
         parts += [f"not known at {ranges(r.speed, lost)}"] if lost.any() else []
         found.append(Limit("Self-excited whirl", ", ".join(parts) or "none", bool(parts)))
-    infinite = np.isinf(result.amplitude)
+    infinite = np.isinf(result.curve.amplitude)
     if infinite.any():
-        found.append(_limit("Amplitude infinite", r.speed, infinite))
+        found.append(_limit("Amplitude infinite", result.curve.speed, infinite))
     return found
 
 

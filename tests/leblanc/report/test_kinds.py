@@ -132,7 +132,7 @@ def test_map_warnings() -> None:
     lost = np.where(some, np.nan, -1.0)
     every = record.growth.size
     for heading, text, troubled in (
-        ("Modes not found", f"7 of {every} points (2.5 %)", replace(calm, growth=lost)),
+        ("Growth not known", f"7 of {every} points (2.5 %)", replace(calm, growth=lost)),
         ("Model out of range", f"7 of {every} points (2.5 %)", replace(calm, in_range=~some)),
         (
             "Unstable with the scene's volume (rpm)",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -70,14 +71,22 @@ def test_no_doubt_where_nothing_is_passed() -> None:
 
 def test_a_result_without_an_answer_says_so() -> None:
     result = lb.run(lb.example("horizontal_rig").replace({"speeds.count": 3}))
-    lost = replace(
-        result, response=replace(result.response, deflection=result.response.deflection * float("nan"))
+    assert result.refined is not None
+    given, between = (
+        replace(r, deflection=r.deflection * float("nan")) for r in (result.response, result.refined)
     )
-    assert answer(lost) == "No answer was found at any speed."
+    assert answer(replace(result, response=given, refined=between)) == "No answer was found at any speed."
+    # Without an answer at the speeds of the scene the largest amplitude, between them, is still told.
+    told = answer(replace(result, response=given))
+    assert "largest amplitude is 0.7166 mm at 1009 rpm with the liquid" in told
+    assert told.endswith("without; at 2000 rpm no answer was found with the liquid; without it is 0.2051 mm.")
 
 
 def test_data_and_figures_do_not_know_the_day(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The same scene on two days: every file but the report is the same, byte for byte."""
+    """The same scene on two days: every file but the report is the same, byte for byte.
+
+    So is what the record of the folder says of every other file.
+    """
     path, files = scene("centrifuge", tmp_path), []
     for seconds in ("1600000000", "1700000000"):
         monkeypatch.setenv("SOURCE_DATE_EPOCH", seconds)
@@ -85,9 +94,13 @@ def test_data_and_figures_do_not_know_the_day(tmp_path: Path, monkeypatch: pytes
         assert main(["run", path, "--out", str(out)]) == 0
         files.append({file.name: file.read_bytes() for file in out.iterdir()})
     first, second = files
-    assert {name for name in first if first[name] != second[name]} == {"summary.html"}
+    assert {name for name in first if first[name] != second[name]} == {"summary.html", "contents.json"}
     changed = second["summary.html"].replace(b"2023-11-14", b"2020-09-13")
     assert changed == first["summary.html"]
+    # The record holds the checksum of the report.
+    records = [json.loads(each["contents.json"]) for each in files]
+    sums = [record["made"]["run"]["files"].pop("summary.html") for record in records]
+    assert records[0] == records[1] and sums[0] != sums[1]
 
 
 @pytest.mark.parametrize("given", ["", "today", "-1", "9" * 30])

@@ -105,12 +105,14 @@ def some(first: int, last: int) -> np.ndarray:
 
 
 def troubled() -> dict[str, tuple[RunResult, str]]:
-    """One trouble each: heading of the check, record, speeds that it must name."""
+    """One trouble each: heading of the check, record, speeds that it must name; see `WITH`."""
     record = quiet()
     r, whirl = record.response, record.whirl
     assert whirl is not None and record.error_estimate is not None
     part, where = some(20, 40), "290 to 480 rpm"  # the speeds lie 9.5 rpm apart, from 100 rpm
     infinite = np.where(some(30, 30), complex(np.inf, 0.0), r.deflection)
+    lost = np.where(part, np.nan, whirl.growth)
+    hidden = replace(r.at(np.array([30])), speed=r.speed[30:31] + RPM, deflection=infinite[30:31])
     return {
         "Not converged": (replace(record, response=replace(r, converged=~part)), where),
         "Liquid model out of range": (replace(record, response=replace(r, in_range=~part)), where),
@@ -125,36 +127,65 @@ def troubled() -> dict[str, tuple[RunResult, str]]:
         "Self-excited whirl": (
             replace(record, whirl=replace(whirl, bands=((290.0 * RPM, 480.0 * RPM),))), where
         ),
+        "Stability not known": (replace(record, whirl=replace(whirl, growth=lost)), where),
         "Amplitude infinite": (replace(record, response=replace(r, deflection=infinite)), "385 rpm"),
+        # Between the speeds of the scene, where no other check looks.
+        "Amplitude infinite ": (replace(record, refined=hidden), "386 rpm"),
     }  # fmt: skip
+
+
+# Where no whirl's growth is known, and where no motion lasts, nothing is known of stability either.
+WITH = {"Stability not known": {"Self-excited whirl"}, "Amplitude infinite": {"Stability not known"}}
 
 
 def test_warnings() -> None:
     calm = report_run.response_checks(replace(quiet(), tolerance=1e-3))
     assert not any(cell.warning for row in calm.rows for cell in row)
-    for heading, (record, where) in troubled().items():
+    for name, (record, where) in troubled().items():
+        heading, marked = name.strip(), {name.strip()} | WITH.get(name, set())
         rows = report_run.response_checks(replace(record, tolerance=1e-3)).rows
-        assert [row[0].text for row in rows if row[1].warning] == [heading]
+        assert {row[0].text for row in rows if row[1].warning} == marked
         (text,) = [row[1].text for row in rows if row[0].text == heading]
         assert text == where, heading
-        assert all(row[1].text == "none" for row in rows if row[0].text != heading)
+        assert all(row[1].text == "none" for row in rows if row[0].text not in marked)
 
 
 def test_warnings_stand_on_the_page_where_the_flags_say_so(tmp_path: Path) -> None:
     assert page_of(quiet(), tmp_path, tolerance=1e-3).warnings() == set()
     assert WARNING not in page_of(quiet(), tmp_path).all_text
-    for heading, (record, where) in troubled().items():
+    for name, (record, where) in troubled().items():
         page = page_of(record, tmp_path, tolerance=1e-3)
-        assert page.warnings() == {heading}
-        assert page.row(heading) == [f"{WARNING} {where}"]
+        assert page.warnings() == {name.strip()} | WITH.get(name, set())
+        assert page.row(name.strip()) == [f"{WARNING} {where}"]
 
 
 def test_whirl_that_was_not_found_is_a_warning() -> None:
+    """Nor is it known there whether the answer is stable."""
     record = quiet()
     assert record.whirl is not None
     lost = replace(record, whirl=replace(record.whirl, growth=np.where(some(0, 1), np.nan, -1.0)))
-    (row,) = [row for row in report_run.response_checks(lost).rows if row[1].warning]
-    assert row[1].text == "not found at 100 to 109.5 rpm"
+    rows = [row for row in report_run.response_checks(lost).rows if row[1].warning]
+    assert [(row[0].text, row[1].text) for row in rows] == [
+        ("Stability not known", "100 to 109.5 rpm"),
+        ("Self-excited whirl", "not known at 100 to 109.5 rpm"),
+    ]
+
+
+def test_what_is_not_known_of_the_peak_is_not_called_unstable() -> None:
+    record = quiet()
+    assert record.whirl is not None
+    at = int(np.argmax(record.amplitude))
+    whirl = replace(record.whirl, growth=np.where(some(at, at), np.nan, -1.0))
+    r = replace(record.response, stable=~some(at, at))
+    lost = replace(record, response=r, whirl=whirl)
+    assert words.comparisons(lost)[0].label == "Largest amplitude (mm, stability not known)"
+    grows = replace(lost, whirl=record.whirl)
+    assert words.comparisons(grows)[0].label == "Largest amplitude (mm, unstable)"
+    # What is unstable against slow disturbances is known, and so is a whirl that grows.
+    fails = replace(lost, response=replace(r, branch_stable=~np.ones_like(r.branch_stable)))
+    inside = replace(lost, whirl=replace(whirl, bands=((0.0, 1e3),)))
+    for known in (fails, inside):
+        assert words.comparisons(known)[0].label == "Largest amplitude (mm, unstable)"
 
 
 @pytest.mark.parametrize(
@@ -174,16 +205,18 @@ def test_numbers_are_those_of_the_json(name: str, tmp_path: Path, capsys) -> Non
     page = read_page(tmp_path / "summary.html")
     rpm = [speed * 30.0 / math.pi for speed in answer["speed"]]
     wet, dry = answer["amplitude"], answer["amplitude_dry"]
-    k, j = wet.index(max(wet)), dry.index(max(dry))
-    wrong = [
-        text
-        for text, holds in (("out of range", answer["in_range"]), ("unstable", answer["stable"]))
-        if not holds[int(np.argmax([x or 0.0 for x in answer["amplitude"]]))]
-    ]
-    assert page.row(f"Largest amplitude ({', '.join(['mm', *wrong])})") == [
-        printed(x) for x in (wet[k] * 1e3, dry[j] * 1e3, wet[k] / dry[j])
-    ]
-    assert page.row("at the speed (rpm)") == [printed(rpm[k]), printed(rpm[j]), ""]
+    most, most_dry, between = answer["peak"], answer["peak_dry"], answer["refined"]
+    # The peaks are those of all speeds: of the scene, and between them.
+    assert most["amplitude"] == max(wet + between["amplitude"])
+    assert most_dry["amplitude"] == max(dry + between["amplitude_dry"])
+    sizes = most["amplitude"], most_dry["amplitude"]
+    (label,) = (row[0] for row in page.rows if row and row[0].startswith("Largest amplitude (mm"))
+    assert page.row(label) == [printed(x) for x in (sizes[0] * 1e3, sizes[1] * 1e3, sizes[0] / sizes[1])]
+    loose = most["speed"] <= (answer["capture_speed"] or 0.0)
+    grows = any(low <= most["speed"] <= high for low, high in answer["whirl_bands"])
+    assert ("out of range" in label, "unstable" in label) == (loose, grows)
+    at = [printed(peak["speed"] * 30.0 / math.pi) for peak in (most, most_dry)]
+    assert page.row("at the speed (rpm)") == [*at, ""]
     last = [printed(x) for x in (wet[-1] * 1e3, dry[-1] * 1e3, wet[-1] / dry[-1])]
     (label,) = (
         row[0] for row in page.rows if row and row[0].startswith(f"Amplitude at {printed(rpm[-1])} rpm")
@@ -191,7 +224,9 @@ def test_numbers_are_those_of_the_json(name: str, tmp_path: Path, capsys) -> Non
     assert page.row(label) == last
     assert ("unstable" in label) != answer["stable"][-1]
     assert ("out of range" in label) != answer["in_range"][-1]
-    assert page.row("Mass of the liquid") == [f"{printed(answer['liquid_mass'] * 1e3)} g"]
+    ((_, unit),) = (text.split() for text in page.row("Mass of the liquid"))
+    mass = answer["liquid_mass"] * {"g": 1e3, "kg": 1.0}[unit]
+    assert page.row("Mass of the liquid") == [f"{printed(mass)} {unit}"] and 1.0 <= mass < 1e3
     angle, offset = math.degrees(answer["liquid_angle"][-1]), answer["liquid_offset"][-1] * 1e3
     place = f"{printed(offset)} mm off the axis at {printed(angle)} deg"
     assert page.row(f"Its centre of mass at {printed(rpm[-1])} rpm") == [place]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import pickle
 import sys
-from collections import Counter
 from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
@@ -140,13 +139,13 @@ def test_notes_say_what_their_numbers_are() -> None:
             assert note.data["below"] == run().capture_speed
 
 
-def calls(action: object, *counted: CodeType) -> Counter[CodeType]:
-    """How often each of some functions is called while something is done."""
-    found: Counter[CodeType] = Counter()
+def calls(action: object, *counted: CodeType) -> dict[CodeType, list[dict[str, Any]]]:
+    """What some functions are given each time that they are called while something is done."""
+    found: dict[CodeType, list[dict[str, Any]]] = {code: [] for code in counted}
 
     def note(frame: FrameType, event: str, _: object) -> None:
-        if event == "call" and frame.f_code in counted:
-            found[frame.f_code] += 1
+        if event == "call" and frame.f_code in found:
+            found[frame.f_code].append(dict(frame.f_locals))
 
     assert callable(action)
     sys.setprofile(note)
@@ -159,11 +158,22 @@ def calls(action: object, *counted: CodeType) -> Counter[CodeType]:
 
 @pytest.mark.parametrize("command", ["run", "explain"])
 def test_models_are_chosen_once_a_command(command: str, tmp_path: Path) -> None:
-    """So are the machine and its speeds made once: text, figures and report take them from the result."""
+    """Once at each speed: text, figures and report take them, the machine and its speeds from the result.
+
+    `run` chooses again only at the speeds between those of the scene, which it finds as it goes: no speed is
+    chosen for twice.
+    """
     counted = (choose_all.__code__, prepare.__code__, Scene.speed_array.__code__)
     options = ["--out", str(tmp_path)] if command == "run" else []
-    found = calls(lambda: main([command, str(ROOT / "examples/centrifuge.toml"), *options]), *counted)
-    assert found == dict.fromkeys(counted, 1)
+    path = ROOT / "examples/centrifuge.toml"
+    found = calls(lambda: main([command, str(path), *options]), *counted)
+    chosen, *once = (found[code] for code in counted)
+    assert [len(given) for given in once] == [1, 1]
+    given, *between = ([machine.speed for machine in each["machines"]] for each in chosen)
+    np.testing.assert_array_equal(np.concatenate(given), load_scene(path).speed_array())
+    assert bool(between) == (command == "run")
+    every = np.concatenate([*given, *(speed for speeds in between for speed in speeds)])
+    assert np.unique(every).size == every.size
 
 
 def test_the_optimal_surface_touches_the_near_wall_at_the_floor() -> None:
