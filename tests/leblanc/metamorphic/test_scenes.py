@@ -124,7 +124,7 @@ def test_order_of_the_parts(command: str, machine: str) -> None:
 
 
 def test_order_of_supports_and_unbalances() -> None:
-    """With its chambers in their places a rotor that tilts is told at the same one: peaks are alike as well."""
+    """With its chambers in their places a rotor that tilts is told at the same one, and so are its peaks."""
     table = reordered(TWO_PLANE)
     table["chambers"].reverse()
     assert_alike(run(table), run(TWO_PLANE), ROUNDING)
