@@ -14,11 +14,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, field
+from itertools import count
 from pathlib import Path
 from typing import Any
 
 from leblanc.files import chosen_dir, native, out_dir, path_text, watched, writing
-from meshes.errors import InputError
 from meshes.files.foreign import open_regular
 
 NAME = "contents.json"
@@ -39,6 +39,7 @@ class Record:
     written : files, in their order
     previous : what the record said before
     fresh : the folder and those above it that were not there before, the innermost first
+    aside : folder to which the results of another scene of the same name were moved; None if there were none
     """
 
     command: str
@@ -48,16 +49,19 @@ class Record:
     written: list[Path] = field(default_factory=list)
     previous: dict[str, Any] = field(default_factory=dict)
     fresh: Sequence[Path] = ()
+    aside: Path | None = None
 
-    def open(self, folder: Path, source: Path, state: str, fresh: Sequence[Path] = ()) -> None:
+    def open(
+        self, folder: Path, source: Path, state: str, fresh: Sequence[Path] = (), aside: Path | None = None
+    ) -> None:
         """Take a folder; from now on its record says that this command has not finished there.
 
         Parameters
         ----------
         folder : exists
-        source, state, fresh : as in the class, the first as the user gave it
+        source, state, fresh, aside : as in the class, the first as the user gave it
         """
-        self.folder, self.state, self.fresh = folder, state, fresh
+        self.folder, self.state, self.fresh, self.aside = folder, state, fresh, aside
         self.source = _seen_from(folder, source)
         self.previous, made = _read(folder), _made(folder)
         before = made.get(self.command, {})
@@ -77,6 +81,8 @@ class Record:
             with suppress(OSError):  # one that holds something stays, and those above it
                 for folder in self.fresh:
                     folder.rmdir()
+                if self.aside is not None:
+                    self.aside.rename(self.folder)
 
     def close(self) -> list[str]:
         """Take down what was written; what of it is no longer true is removed.
@@ -93,6 +99,9 @@ class Record:
         removed = [name for name in before if name not in files and _removed(folder, name, before[name])]
         self._write(made, files, finished=True)
         lines = [f"{folder}: removed {_some(removed)}, of an earlier {self.command}"] if removed else []
+        if self.aside is not None:
+            other = _read(self.aside).get("scene")
+            lines.append(f"{folder}: what {other} gave, a scene of the same name, is now in {self.aside}")
         for command, entry in made.items():
             there = [name for name in entry["files"] if name not in files and _file(folder, name)]
             if there and not entry["current"]:
@@ -146,6 +155,9 @@ def recording(command: str) -> Iterator[Record]:
 def results_dir(name: str, out: Path | None, source: Path, state: str, *files: str) -> Path:
     """Folder for what a command makes of a scene, as `leblanc.files.out_dir`.
 
+    Where `out` is not given and the folder holds what another scene of the same name gave, whose file is
+    still there, that folder is moved aside first: to its name with the next free number behind it.
+
     Parameters
     ----------
     name, out : as there
@@ -155,25 +167,33 @@ def results_dir(name: str, out: Path | None, source: Path, state: str, *files: s
 
     Raises
     ------
-    InputError : `out` is not given, and the folder holds what another scene gave, whose file is still there
     OSError : the folder cannot be made or written
     """
     folder = chosen_dir(name, out)
+    aside = _free_beside(folder) if out is None and _is_of_another(folder, source) else None
+    if aside is not None:
+        folder.rename(aside)
     fresh = [path for path in (folder, *folder.parents) if not path.exists()]
     out_dir(name, out, *files)
-    other = _read(folder).get("scene")
-    if out is None and isinstance(other, str) and other != _seen_from(folder, source):
-        file = _file(folder, other)
-        if file is not None and not (source.exists() and file.samefile(source)):
-            raise InputError(
-                "name",
-                name,
-                f"another, since {path_text(folder)} holds what {other} gave; or --out DIR chooses a folder",
-            )
     record = _RECORD.get()
     if record is not None:
-        record.open(folder, source, state, fresh)
+        record.open(folder, source, state, fresh, aside)
     return folder
+
+
+def _is_of_another(folder: Path, source: Path) -> bool:
+    """Whether a folder holds what another scene gave, whose file is still there."""
+    other = _read(folder).get("scene")
+    if not isinstance(other, str) or other == _seen_from(folder, source):
+        return False
+    file = _file(folder, other)
+    return file is not None and not (source.exists() and file.samefile(source))
+
+
+def _free_beside(folder: Path) -> Path:
+    """The folder's name with the first number behind it that is free."""
+    names = (folder.with_name(f"{folder.name} ({number})") for number in count(2))
+    return next(path for path in names if not path.exists())
 
 
 def _read(folder: Path) -> dict[str, Any]:

@@ -12,7 +12,6 @@ import pytest
 from leblanc import files
 from leblanc.cli import main
 from leblanc.contents import NAME, recording, results_dir
-from meshes.errors import InputError
 
 Capture = pytest.CaptureFixture[str]
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -50,7 +49,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 # -- two scenes of one name ----------------------------------------------------------------------------------
 
 
-def test_commands_refuse_the_folder_of_another_scene(
+def test_commands_keep_what_another_scene_gave(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -64,22 +63,35 @@ def test_commands_refuse_the_folder_of_another_scene(
     before = report.stat().st_mtime_ns
     capsys.readouterr()
 
-    assert main(["run", "b.toml"]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert "must be another, since out/Vibratory table holds what ../../a.toml gave" in line
-    assert report.stat().st_mtime_ns == before
+    assert main(["run", "b.toml"]) == 0
+    aside = "out/Vibratory table (2)"
+    told = f"out/Vibratory table: what ../../a.toml gave, a scene of the same name, is now in {aside}"
+    assert told in capsys.readouterr().err.splitlines()
+    assert (Path(aside) / report.name).stat().st_mtime_ns == before
+    assert made(report.parent)["run"]["scene"] == "../../b.toml"
 
-    assert main(["run", "b.toml", "--out", "elsewhere"]) == 0
-    assert main(["run", "a.toml"]) == 0  # the same again
-    shutil.move("a.toml", "c.toml")
+    assert main(["run", "a.toml", "--out", "elsewhere"]) == 0
+    assert main(["run", "b.toml"]) == 0  # the same again
+    shutil.move("b.toml", "c.toml")
     assert main(["run", "c.toml"]) == 0  # the same file by another name: nothing else could be overwritten
+    assert {path.name for path in Path("out").iterdir()} == {"Vibratory table", "Vibratory table (2)"}
+
+
+def test_what_another_scene_gave_comes_back_from_a_command_that_fails_at_once(folder: Path) -> None:
+    does("run", "a.toml", "1", {"run.txt": "a"})
+    with pytest.raises(ValueError, match="at once"), recording("run"):
+        results_dir("Rig", None, Path("b.toml"), "2")
+        raise ValueError("at once")
+    assert (folder / "run.txt").read_text(encoding="utf-8") == "a"
+    assert [path.name for path in folder.parent.iterdir()] == ["Rig"]
 
 
 def test_names_that_differ_only_where_file_systems_do_not(folder: Path) -> None:
     with recording("run"):
-        results_dir("a/b", None, Path("a.toml"), "1")
-        with pytest.raises(InputError, match="another"):
-            results_dir("a:b", None, Path("b.toml"), "1")
+        first = results_dir("a/b", None, Path("a.toml"), "1")
+    with recording("run") as record:
+        assert results_dir("a:b", None, Path("b.toml"), "1") == first
+        assert record.aside == first.with_name(f"{first.name} (2)")
 
 
 def test_a_link_to_a_scene_is_that_scene(folder: Path) -> None:
