@@ -6,7 +6,6 @@ for longer, a thread ends the process in its place.
 
 from __future__ import annotations
 
-import _thread
 import atexit
 import math
 import os
@@ -76,7 +75,8 @@ def heard() -> Iterator[None]:
             complain(what)
             return
         number = signal.SIGTERM if issubclass(what.exc_type, Terminated) else signal.SIGINT
-        timer = threading.Timer(_AGAIN, _thread.interrupt_main, [number])
+        # A true signal, since it ends the wait for a lock as well.
+        timer = threading.Timer(_AGAIN, signal.pthread_kill, [threading.main_thread().ident, number])
         timer.daemon = True
         timer.start()
 

@@ -105,11 +105,15 @@ class Noisy:
     ("number", "raised"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, Terminated)]
 )
 def test_what_python_drops_is_raised_again(number: int, raised: type[BaseException]) -> None:
-    before = signal.getsignal(number)
+    before, given_up = signal.getsignal(number), threading.Event()
+    patience = threading.Timer(20.0, given_up.set)
+    patience.start()
     with pytest.raises(raised), heard():
         Noisy(number)
-        threading.Event().wait(60.0)
+        given_up.wait()
         pytest.fail("dropped")
+    patience.cancel()
+    assert not given_up.is_set()  # it ended the wait
     assert signal.getsignal(number) is before
     assert signal.set_wakeup_fd(-1) == -1
 
