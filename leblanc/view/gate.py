@@ -46,7 +46,6 @@ def gate(host: str, token: str) -> Any:
     def ours(given: str | None) -> bool:
         return given is not None and hmac.compare_digest(given.encode(errors="replace"), token.encode())
 
-    @web.middleware
     async def check(request: Any, handler: Handler) -> Any:
         named = request.headers.get("Host", "")
         if host not in ANYWHERE and _name(named) not in names:
@@ -62,7 +61,7 @@ def gate(host: str, token: str) -> Any:
             raise web.HTTPForbidden(text="the address has no token, or that of another run\n")
         return await handler(request)
 
-    return check
+    return web.middleware(check)
 
 
 def _name(host: str) -> str | None:
