@@ -334,6 +334,7 @@ class ModeView:
     angle : of the rays, rising, rad, shape (n,); two at a baffle
     displacement : of the surface along the radius, its largest size 1, shape (n,)
     lift : largest displacement as drawn, m; the true one is any small number
+    depth_factor : of the layer's depth as drawn
     fill : the chamber with its liquid
     speed : of the spin, rad/s
     converged : of the solver
@@ -350,6 +351,7 @@ class ModeView:
     angle: Array
     displacement: Complex
     lift: float
+    depth_factor: float
     fill: Fill
     speed: float
     converged: bool
@@ -359,6 +361,11 @@ class ModeView:
     def to_json(self) -> dict[str, object]:
         """What `leblanc view --mode --json` prints, SI."""
         return {"speed": self.speed, "frequency": self.frequency, "crests": self.crests}
+
+    @property
+    def drawn_depth(self) -> float:
+        """Of the layer at rest as drawn, the least in a section of its own, m."""
+        return self.depth_factor * self.fill.depth
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import math
 import shutil
 import subprocess
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -258,7 +258,7 @@ def shape_of(mode: ModeView, phase: float, lift: float) -> LiquidShape | LiquidB
     """
     if mode.section is not None:
         return _body_of(mode, phase, lift)
-    chamber, size = mode.fill.chamber, mode.fill.surface_radius
+    chamber, size = mode.fill.chamber, mode.fill.chamber.radius - mode.drawn_depth
     moved = _moment(mode.displacement, phase, lift)
     free = np.sqrt(np.maximum(size**2 + 2.0 * size * moved, chamber.inner_radius**2))
     free = np.minimum(free, chamber.radius)[:, None]
@@ -276,7 +276,8 @@ def mode_picture(mode: ModeView, phase: float = 0.0) -> Picture:
     mode : the oscillation
     phase : sigma t, rad
     """
-    stage = Stage((mode.fill,), (0.0,), mode.lying, Scale(), 0.0, zero="", gravity=not mode.lying)
+    scale = Scale(depth=mode.depth_factor)
+    stage = Stage((mode.fill,), (0.0,), mode.lying, scale, 0.0, zero="", gravity=not mode.lying)
     sense = "with the spin" if mode.frequency > 0.0 else "against the spin"
     crests = f"{mode.crests} crest{'s' if mode.crests > 1 else ''}"
     if mode.fill.chamber.section is not None:
@@ -284,9 +285,12 @@ def mode_picture(mode: ModeView, phase: float = 0.0) -> Picture:
     if mode.fill.chamber.baffles is not None:
         crests = f"between baffles; of its harmonics the strongest has {crests}"
     caption = [
-        "The wave is drawn much higher than it is; its true height is any small one.",
+        "The height of the wave is arbitrary, as linear theory has it; it is drawn "
+        f"{100.0 * mode.lift / mode.drawn_depth:.0f} % of the layer's depth high.",
         "Seen from the drum.",
     ]
+    if mode.depth_factor > 1.0:
+        caption.insert(1, f"The layer is drawn {mode.depth_factor:g} times as deep as it is, walls to scale.")
     if mode.gravity > 0.0:
         caption.append("Gravity across the axis is left out.")
     instant = Instant(
@@ -297,7 +301,7 @@ def mode_picture(mode: ModeView, phase: float = 0.0) -> Picture:
         state=f"{crests} around, {sense}\n{abs(mode.frequency):.4g} rad/s seen from the drum",
         caption=" ".join(caption),
     )
-    return compose(stage, instant)
+    return replace(compose(stage, instant), above=True)
 
 
 def mode_film(mode: ModeView, frames: int = ROUND) -> Film:

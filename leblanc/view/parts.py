@@ -54,6 +54,7 @@ class Picture:
     lying : the axis is horizontal
     long : it is longer than wide
     frame : points that the camera keeps in sight, mm, shape (n, 3)
+    above : a standing machine is seen from high above, so that the layer's depth shows all round
     """
 
     pieces: tuple[Piece, ...]
@@ -64,6 +65,7 @@ class Picture:
     lying: bool
     long: bool
     frame: Array
+    above: bool = False
 
     def piece(self, name: str) -> Piece:
         """The piece of that name."""

@@ -27,10 +27,12 @@ HEAD, FOOT, HIGH, WIDE = 0.15, 0.11, 0.94, 0.82
 LETTER = 1.0 / 52.0  # size of the letters over the height of the picture
 FONT = "DejaVuSans.ttf"  # matplotlib's, which knows more characters than VTK's own
 INK = "#262626"
+ROUNDS = 3  # of moving the few colours of a file to where the many of the picture are
 
 # Directions from which the camera looks, and what is up: standing, lying, lying and long; and other views.
 FRONT = {
     "standing": ((0.35, -1.0, 0.75), (0.0, 0.0, 1.0)),
+    "above": ((0.35, -1.0, 1.6), (0.0, 0.0, 1.0)),
     "lying": ((1.0, -0.55, 0.42), (0.0, 0.0, 1.0)),
     "long": ((1.0, -1.15, 0.55), (0.0, 0.0, 1.0)),
 }
@@ -45,6 +47,7 @@ class Look:
     opacity: float = 1.0
     width: float = 0.0
     tip: bool = False  # an arrow's head at the end
+    gloss: float = 0.0  # share of the light that a face reflects like a mirror
 
 
 LOOKS = {
@@ -52,8 +55,8 @@ LOOKS = {
     "floor": Look("#9AA5AE", 0.28),
     "lid": Look("#9AA5AE", 0.06),
     "rim": Look("#4D4D4D", 1.0, 2.5),
-    "liquid": Look("#56B4E9", 0.55),
-    "surface": Look("#0072B2", 0.85),
+    "liquid": Look("#74C6F5", 1.0, gloss=0.25),
+    "surface": Look("#1282C8", 1.0, gloss=0.7),
     "waterline": Look("#003F66", 1.0, 4.0),
     "axis at rest": Look("#000000", 1.0, 4.0),
     "axis of the drum": Look("#D55E00", 1.0, 6.0),
@@ -187,7 +190,8 @@ def _add(plot: Plotter, piece: Piece, pyvista: Any) -> None:
         return
     mesh = pyvista.PolyData(piece.points, faces=cells.ravel())
     mesh.point_data.active_normals = normals(piece)
-    plot.add_mesh(mesh, smooth_shading=True, ambient=0.25, diffuse=0.75, **options)
+    light = {"ambient": 0.3, "diffuse": 0.72, "specular": look.gloss, "specular_power": 18.0}
+    plot.add_mesh(mesh, smooth_shading=True, **light, **options)
 
 
 def normals(piece: Piece) -> NDArray[np.float64]:
@@ -265,7 +269,9 @@ def _direction(picture: Picture, view: str) -> tuple[tuple[float, ...], tuple[fl
         return ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)) if picture.lying else ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
     if view == VIEWS[2]:
         return (0.0, -1.0, 0.0), (0.0, 0.0, 1.0)
-    return FRONT["standing" if not picture.lying else "long" if picture.long else "lying"]
+    if not picture.lying:
+        return FRONT["above" if picture.above else "standing"]
+    return FRONT["long" if picture.long else "lying"]
 
 
 def pixels(plot: Plotter) -> Pixels:
@@ -291,6 +297,6 @@ def write_png(shown: Pixels, path: Path) -> None:
 
     with writing(path) as part:
         few = Image.fromarray(shown).quantize(
-            256, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE
+            256, method=Image.Quantize.MAXCOVERAGE, kmeans=ROUNDS, dither=Image.Dither.NONE
         )
         few.save(part, format="png", optimize=True)

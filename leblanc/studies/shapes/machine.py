@@ -30,7 +30,7 @@ from leblanc.studies.run import run_scene
 from leblanc.studies.runup import runup_scene
 from leblanc.studies.shapes.bodies import bodies_at_rest, is_cut, wall_is_dry
 from leblanc.studies.shapes.layer import body_at_rest, body_of_layer, body_of_pool
-from leblanc.studies.shapes.scale import SHOWN, THIN, drawn_volume, given_scale, inner_room, scale_of
+from leblanc.studies.shapes.scale import SHOWN, THIN, drawn_volume, given_scale, scale_of, wave_scale
 from meshes.arrays import Complex
 from meshes.chamber_section import surface_is_whole
 from meshes.errors import InputError
@@ -52,7 +52,6 @@ VISIBLE = 0.04  # a largest deflection smaller than this over the radius is draw
 
 MOST_MODES = 40
 AROUND_MODE, ACROSS = 120, 4  # elements around and across the layer
-LIFT = 0.6  # of the layer's depth, or of the room inside it: displacement as drawn
 
 
 def machine_motion(scene: Scene, speed: float | None = None) -> MachineMotion:
@@ -350,6 +349,7 @@ def mode_view(scene: Scene, number: int, speed: float | None = None, chamber: in
     # Counted from the first side, so that the seam does not fall within a side.
     angle = np.unwrap(np.arctan2(points[:, 1], points[:, 0]))
     walled = fill.chamber.section is not None
+    deeper, lift = wave_scale(fill)
     return ModeView(
         name=scene.name,
         lying=scene.rotor.axis == "horizontal",
@@ -359,7 +359,8 @@ def mode_view(scene: Scene, number: int, speed: float | None = None, chamber: in
         crests=int(modes.crests[number - 1]),
         angle=angle,
         displacement=modes.displacement[number - 1][nodes],
-        lift=LIFT * min(fill.depth, inner_room(fill)),
+        lift=lift,
+        depth_factor=deeper,
         fill=fill,
         speed=spin,
         converged=bool(modes.converged),

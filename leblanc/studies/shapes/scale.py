@@ -23,6 +23,8 @@ DEEP = 0.12  # and then at most so deep
 FILLED = 0.5  # of the room between the walls
 MOST = 100.0  # beyond it a deflection is too small for a picture
 CLEAR = 0.9  # of the deflection at which the wall falls dry, where it is wet
+WAVE_DEPTH = 0.25  # of a layer in a mode, over the chamber's radius: less is drawn deeper, if there is room
+WAVE = 0.75  # of the area that the layer has there, or that is free inside it: what a mode's wave moves
 INNER = 0.9  # of an inner wall's radius, inside which the axis at rest stays
 _HALVINGS = 60
 
@@ -143,6 +145,28 @@ def _deeper(fills: tuple[Fill, ...], span: float) -> float:
     return _two_digits(
         min(min(DEEP * f.chamber.radius, FILLED * (f.depth + inner_room(f))) / f.depth for f in layers)
     )
+
+
+def wave_scale(fill: Fill) -> tuple[float, float]:
+    """How a mode of the liquid is drawn, whose true height is any small one.
+
+    Parameters
+    ----------
+    fill : the chamber with its liquid
+
+    Returns
+    -------
+    Factor of the layer's depth; largest displacement, m. The area of the liquid swings, m a per angle, and
+    neither comes up with the area from the surface to the nearest wall on either side
+    """
+    room = fill.depth + inner_room(fill)
+    depth = fill.depth
+    if fill.chamber.section is None:
+        depth = max(depth, min(WAVE_DEPTH * fill.chamber.radius, FILLED * room))
+    factor = 1.0 if depth == fill.depth else _two_digits(depth / fill.depth)
+    outer = fill.surface_radius + fill.depth
+    rest, inner = outer - factor * fill.depth, outer - room
+    return factor, WAVE * min(outer**2 - rest**2, rest**2 - inner**2) / (2.0 * rest)
 
 
 def inner_room(fill: Fill) -> float:
