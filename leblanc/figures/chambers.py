@@ -5,11 +5,22 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from leblanc.figures.page import MOST_LINES, RIGHT, WIDTH, Figure, Frame, caption, fill, lay_out, style
+from leblanc.figures.page import (
+    MOST_LINES,
+    RIGHT,
+    WIDTH,
+    Figure,
+    Frame,
+    caption,
+    fill_loops,
+    lay_out,
+    style,
+)
 from leblanc.results.base import FilledChamber
 from leblanc.results.drawn import chord, rounded_down
 from leblanc.results.response import RunResult, peak, phase
@@ -17,17 +28,21 @@ from leblanc.text.run import alts, amplitude_place
 from leblanc.units import DEGREE, LENGTH, MINUS, MM, TIMES, in_rpm, number, with_unit
 from meshes.arrays import Array, Complex
 from meshes.baffles import Baffles
-from meshes.chamber_section import ChamberSection
-from meshes.liquid_section import free_sides
+from meshes.clip import Remainder, area_within, outside_circle, radius_for, wall_loops
+from meshes.rings.sectors import compartment
 
 RAYS = 361  # one degree apart, closed
 BISECTIONS = 60  # from the radius down to rounding
 
 UNEVEN_RAYS = 721
+SIDES = 96  # curved ones around a chamber that baffles cut into compartments
+SHARES = 21  # of the exponent with which factors that do not fit are tried again
+OUTSIDE = 1.07  # place of the unbalance over the wall's radius, where it covers no liquid
+SEEN = 0.02  # of the radius: a deflection drawn smaller than this gets a factor of its own
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 
-WALL, LIQUID, CENTRE, UNBALANCE = "0.15", "#56B4E9", "#D55E00", "0.15"
+WALL, LIQUID, SURFACE, CENTRE, UNBALANCE = "0.15", "#56B4E9", "#0072B2", "#D55E00", "0.15"
 MOST_DRAWINGS = 3  # side by side
 FRAME = Frame(left=0.15, top=0.26, between=0.6, below=0.36)
 HEADING_ROW = 0.14  # inches
@@ -76,14 +91,32 @@ def liquid_outline(chamber: FilledChamber, centre: complex, depth: float) -> tup
     return angle, np.clip(0.5 * (low + high), floor, outer), outer
 
 
-def exaggeration(chambers: tuple[FilledChamber, ...], deflections: tuple[float, ...]) -> Exaggeration:
-    """Factors that make deflection and layer visible and keep wet walls wet and dry patches dry.
+def exaggeration(chambers: tuple[FilledChamber, ...], deflections: tuple[complex, ...]) -> Exaggeration:
+    """Factors that make deflection and layer visible and leave what the liquid touches as it is.
+
+    Wet walls stay wet, dry patches dry, and a surface that meets no inner wall meets none as drawn. Where it
+    does meet one nothing is enlarged.
 
     Parameters
     ----------
     chambers : those that are drawn
-    deflections : amplitudes that are drawn, m, 0 or above
+    deflections : that are drawn, complex or their sizes, m
     """
+    found = _visible(chambers, tuple(abs(w) for w in deflections))
+    for share in np.linspace(1.0, 0.0, SHARES):
+        scale = Exaggeration(_part(found.deflection, share), _part(found.depth, share))
+        if all(_as_it_is(chamber, w, scale) for chamber in chambers for w in deflections or (0j,)):
+            break
+    return scale
+
+
+def _part(factor: float, share: float) -> float:
+    """Power of a factor above 1; smaller ones are needed for the deflection to fit at all."""
+    return factor if factor <= 1.0 or share == 1.0 else max(1.0, rounded_down(factor**share))
+
+
+def _visible(chambers: tuple[FilledChamber, ...], deflections: tuple[float, ...]) -> Exaggeration:
+    """Factors that make deflection and layer visible and keep wet walls wet and dry patches dry."""
     layers = [(c.least_depth, c) for c in chambers]
     layers = [(depth, c) for depth, c in layers if depth > 0.0]
     depth_factor = 1.0
@@ -101,6 +134,33 @@ def exaggeration(chambers: tuple[FilledChamber, ...], deflections: tuple[float, 
     dry = [factor * w / depth for depth, _ in layers for w in sizes if w >= depth]
     # Equal factors keep what is dry dry; with unequal ones a thick layer would cover it.
     return Exaggeration(factor, factor if dry and min(dry) < depth_factor else depth_factor)
+
+
+def _as_it_is(chamber: FilledChamber, moved: complex, scale: Exaggeration) -> bool:
+    """Nothing is enlarged, or the surface meets no inner wall, as drawn and in truth."""
+    if scale.deflection <= 1.0 and scale.depth == 1.0:
+        return True
+    if meets_inner_wall(chamber, scale.deflection * moved, scale.depth):
+        return False
+    return not meets_inner_wall(chamber, moved, 1.0)
+
+
+def meets_inner_wall(chamber: FilledChamber, centre: complex, depth_factor: float) -> bool:
+    """The liquid reaches an inner wall, a core, or past the inner edges of closed baffles.
+
+    Parameters
+    ----------
+    chamber : its walls are to scale
+    centre : geometric centre from the rotation axis, m
+    depth_factor : by which the layer is deeper
+    """
+    if chamber.volume == 0.0 or chamber.least_depth <= 0.0:
+        return False
+    found = bodies(chamber, centre, depth_factor)
+    for inside, body in zip(_inside(chamber, depth_factor), found, strict=True):
+        if inside.size and float(np.abs(inside + centre).max()) > body.level * (1.0 + 1e-9):
+            return True
+    return False
 
 
 def side_by_side(chambers: tuple[FilledChamber, ...]) -> list[tuple[FilledChamber, ...]]:
@@ -121,49 +181,85 @@ def side_by_side(chambers: tuple[FilledChamber, ...]) -> list[tuple[FilledChambe
     return [tuple(drawing) for drawing in drawings]
 
 
-def is_uneven(chamber: FilledChamber) -> bool:
-    """Baffles or a section of its own."""
-    return chamber.baffles is not None or chamber.section is not None
-
-
-def wall_line(section: ChamberSection) -> list[Array]:
-    """Walls of a section as closed or open lines of points, m.
+@dataclass(frozen=True)
+class LiquidOutline:
+    """A body of liquid seen along the axis, about the rotation axis.
 
     Parameters
     ----------
-    section : of the chamber
+    level : distance of the free surface, m
+    liquid : what lies outside of it
     """
-    sides = free_sides(section.mesh.triangles)
-    ordered = sides[:, [0, 2, 1]] if sides.shape[1] == 3 else sides
-    return [section.mesh.points[corners] for corners in ordered]
+
+    level: float
+    liquid: Remainder
 
 
-def bodies(chamber: FilledChamber, centre: complex, depth: float) -> list[Array]:
-    """Outline of each body of liquid, m, as closed lines of points, shape (k, 2).
+@lru_cache(maxsize=64)
+def walls(chamber: FilledChamber) -> tuple[tuple[Complex, ...], ...]:
+    """Walls of each body of liquid that cannot mix with the others, about the geometric centre.
+
+    Parameters
+    ----------
+    chamber : with circular walls, baffles, or a section of its own
+
+    Returns
+    -------
+    Closed lines with the inside of the chamber on their left, m
+    """
+    if chamber.section is not None:
+        return (wall_loops(chamber.section.mesh),)
+    baffles = chamber.baffles
+    if baffles is not None and _closed(chamber, baffles):
+        count = baffles.count
+        sides = max(4, math.ceil(SIDES / count))
+        both = chamber.radius, chamber.inner_radius
+        return tuple(wall_loops(compartment(baffles, k, *both, sides)) for k in range(count))
+    turn = np.exp(1j * np.linspace(0.0, 2.0 * math.pi, UNEVEN_RAYS)[:-1])
+    inner = (chamber.inner_radius * turn.conj(),) if chamber.inner_radius > 0.0 else ()
+    return ((chamber.radius * turn, *inner),)
+
+
+def _closed(chamber: FilledChamber, baffles: Baffles) -> bool:
+    """Baffles run from the wall through the free surface."""
+    rest = chamber.mean_surface_radius
+    return baffles.wetted_span(chamber.radius, rest) == (rest, chamber.radius)
+
+
+def bodies(chamber: FilledChamber, centre: complex, depth_factor: float) -> list[LiquidOutline]:
+    """Each body of liquid in its walls, outside the circle about the rotation axis that leaves its area.
 
     Parameters
     ----------
     chamber : its walls are drawn to scale
     centre : geometric centre as drawn, from the rotation axis, m
-    depth : of the undisturbed layer as drawn, m
+    depth_factor : by which the layer is drawn deeper, everywhere as much as where it is thinnest
     """
+    rest = chamber.mean_surface_radius - (depth_factor - 1.0) * chamber.least_depth
     found = []
-    for angle in _sectors(chamber):
-        wall = _wall(chamber, angle)
-        rest = np.minimum(chamber.radius - depth, wall)
-        wanted = np.trapezoid(wall**2 - rest**2, angle)
-        low, high = 0.0, float(wall.max()) + abs(centre)
-        for _ in range(BISECTIONS):
-            level = 0.5 * (low + high)
-            inner = np.clip(_surface(level, centre, angle), chamber.inner_radius, wall)
-            enough = np.trapezoid(wall**2 - inner**2, angle) > wanted
-            low, high = (level, high) if enough else (low, level)
-        around = np.concatenate([wall * np.exp(1j * angle), (inner * np.exp(1j * angle))[::-1]]) + centre
-        found.append(np.stack([around.real, around.imag], axis=1))
+    for loops in walls(chamber):
+        wanted = Remainder(loops, ()).area - area_within(loops, max(rest, 0.0))
+        moved = tuple(loop + centre for loop in loops)
+        level = radius_for(moved, wanted)
+        found.append(LiquidOutline(level, outside_circle(moved, level)))
     return found
 
 
-def plates(baffles: Baffles, radius: float, depth_factor: float) -> list[tuple[complex, complex]]:
+def _inside(chamber: FilledChamber, depth_factor: float) -> list[Complex]:
+    """Points of walls of each body that the liquid at rest leaves dry as a whole: inner walls, cores."""
+    if chamber.section is None and chamber.baffles is not None and _closed(chamber, chamber.baffles):
+        edge = abs(plates(chamber.baffles, chamber.radius, depth_factor, chamber.inner_radius)[0][0])
+        width = 2.0 * math.pi / chamber.baffles.count
+        turn = np.linspace(0.0, width, UNEVEN_RAYS // chamber.baffles.count)
+        return [edge * np.exp(1j * (start + turn)) for start in chamber.baffles.angles]
+    reach = chamber.mean_surface_radius * (1.0 + 1e-9)
+    dry = [loop for loop in walls(chamber)[0] if float(np.abs(loop).max()) <= reach]
+    return [np.concatenate([np.zeros(0, dtype=complex), *dry])]
+
+
+def plates(
+    baffles: Baffles, radius: float, depth_factor: float, inner_radius: float = 0.0
+) -> list[tuple[complex, complex]]:
     """Ends of each baffle from the geometric centre, m; distances from the wall grow as the layer does.
 
     Parameters
@@ -171,49 +267,11 @@ def plates(baffles: Baffles, radius: float, depth_factor: float) -> list[tuple[c
     baffles : of the chamber
     radius : of its wall, m
     depth_factor : by which layers are drawn deeper
+    inner_radius : of its inner wall, m, 0 without one
     """
-    inner = max(radius - (radius - baffles.tip_radius) * depth_factor, 0.0)
+    inner = max(radius - (radius - baffles.tip_radius) * depth_factor, inner_radius)
     outer = max(radius - baffles.wall_gap * depth_factor, inner)
     return [(inner * complex(turn), outer * complex(turn)) for turn in np.exp(1j * baffles.angles)]
-
-
-def _sectors(chamber: FilledChamber) -> list[Array]:
-    """Angles of each body of liquid that cannot mix with the others."""
-    baffles = chamber.baffles
-    whole = np.linspace(-math.pi, math.pi, UNEVEN_RAYS)
-    if baffles is None:
-        return [whole]
-    span = baffles.wetted_span(chamber.radius, chamber.mean_surface_radius)
-    if span != (chamber.mean_surface_radius, chamber.radius):
-        return [whole]
-    width = 2.0 * math.pi / baffles.count
-    return [start + np.linspace(0.0, width, UNEVEN_RAYS) for start in baffles.angles]
-
-
-def _wall(chamber: FilledChamber, angle: Array) -> Array:
-    """Distance of the outermost wall in each direction, m."""
-    if chamber.section is None:
-        return np.full(angle.shape, chamber.radius)
-    lines = np.stack(wall_line(chamber.section))
-    nodes = lines[..., 0] + 1j * lines[..., 1]
-    return _outermost(nodes[:, :-1].ravel(), nodes[:, 1:].ravel(), angle)
-
-
-def _outermost(start: Complex, stop: Complex, angle: Array) -> Array:
-    """Distance along each ray of the outermost of many straight sides, given by their ends x + i y, m."""
-    turn = np.exp(-1j * angle)[:, None]
-    low, other = start * turn, stop * turn
-    meets = (low.imag * other.imag <= 0.0) & (low.imag != other.imag)
-    share = np.divide(low.imag, low.imag - other.imag, where=meets, out=np.zeros(meets.shape))
-    away = np.where(meets, low.real + share * (other.real - low.real), 0.0)
-    return np.asarray(away.max(axis=1))
-
-
-def _surface(level: float, centre: complex, angle: Array) -> Array:
-    """Distance from the geometric centre to a circle about the rotation axis; 0 where a ray misses it, m."""
-    toward = -centre * np.exp(-1j * angle)
-    square = level**2 - toward.imag**2
-    return np.asarray(np.maximum(toward.real + np.sqrt(np.maximum(square, 0.0)), 0.0))
 
 
 @dataclass(frozen=True)
@@ -224,15 +282,18 @@ class Views:
     ----------
     drawings : chambers of each column
     instants : index of each view over the speeds of the curve
-    scale : exaggeration, common to all views so that they can be compared
-    largest : deflection of all views, m
+    scales : exaggeration of each view; alike, so that views can be compared, if the smaller deflection can be
+        seen so
+    largest : deflection of all views as drawn, m
+    inner : index of the views in which liquid reaches an inner wall
     left_out : number of chambers that found no room
     """
 
     drawings: list[tuple[FilledChamber, ...]]
     instants: list[int]
-    scale: Exaggeration
+    scales: list[Exaggeration]
     largest: float
+    inner: list[int]
     left_out: int
 
 
@@ -251,9 +312,10 @@ def chamber_figure(result: RunResult) -> Figure:
             return figure
         drawn = []
         for i, (chambers, index) in enumerate(cells):
+            scale = views.scales[views.instants.index(index)]
             axes = figure.add_axes((0, 0, 1, 1), label=str(i))
             at = moved(result, chambers, index)
-            draw_chambers(axes, chambers, at, views, zero)
+            draw_chambers(axes, chambers, at, views, scale, zero)
             if i % len(views.drawings) == 0:
                 write_numbers(axes, result, views, index)
             drawn.append(axes)
@@ -265,7 +327,7 @@ def chamber_figure(result: RunResult) -> Figure:
         if result.motion is not None:
             place = amplitude_place(result)
             part = f" Amplitudes are those {place}; drawn is the part of the motion that turns with the spin."
-        text = caption(result, f"Chamber seen along the axis. {describe_scale(views)}{part}")
+        text = caption(result, f"Chamber seen along the axis. {describe_scale(result, views)}{part}")
         more = HEADING_ROW * more_heading_rows(result, views)
         below = 0.0 if result.motion is None else HEADING_ROW
         frame = replace(
@@ -290,11 +352,31 @@ def choose_views(result: RunResult) -> Views:
         instants = instants[-1:]
     drawings = side_by_side(result.chambers)
     drawn = drawings[:MOST_DRAWINGS]
-    amplitudes = tuple(abs(moved(result, drawing, i)) for drawing in drawn for i in instants)
-    chambers = tuple(chamber for drawing in drawn for chamber in drawing)
-    scale = exaggeration(chambers, amplitudes) if chambers else Exaggeration(1.0, 1.0)
+    at = [
+        [(chamber, moved(result, drawing, i)) for drawing in drawn for chamber in drawing] for i in instants
+    ]
+    scales = _scales(at)
+    largest = max(
+        (s.deflection * abs(w) for s, here in zip(scales, at, strict=True) for _, w in here), default=0.0
+    )
+    inner = [
+        i for i, here in zip(instants, at, strict=True) if any(meets_inner_wall(c, w, 1.0) for c, w in here)
+    ]
     left_out = sum(map(len, drawings[MOST_DRAWINGS:]))
-    return Views(drawn, instants, scale, max(amplitudes, default=0.0), left_out)
+    return Views(drawn, instants, scales, largest, inner, left_out)
+
+
+def _scales(at: list[list[tuple[FilledChamber, complex]]]) -> list[Exaggeration]:
+    """Of each view, given its chambers and their deflections."""
+    if not at or not at[0]:
+        return [Exaggeration(1.0, 1.0)] * len(at)
+    radius = max(chamber.radius for chamber, _ in at[0])
+    chambers = tuple(chamber for chamber, _ in at[0])
+    common = exaggeration(chambers, tuple(dict.fromkeys(w for here in at for _, w in here)))
+    sizes = [max(abs(w) for _, w in here) for here in at]
+    if all(common.deflection * size >= SEEN * radius for size in sizes if size > 0.0):
+        return [common] * len(at)
+    return [exaggeration(chambers, tuple(dict.fromkeys(w for _, w in here))) for here in at]
 
 
 def moved(result: RunResult, chambers: tuple[FilledChamber, ...], index: int) -> complex:
@@ -302,13 +384,26 @@ def moved(result: RunResult, chambers: tuple[FilledChamber, ...], index: int) ->
     return complex(result.chamber_curve[index, result.chambers.index(chambers[0])])
 
 
-def describe_scale(views: Views) -> str:
+def describe_scale(result: RunResult, views: Views) -> str:
     """The exaggeration as text."""
-    deflection, depth = f"{TIMES} {views.scale.deflection:g}", f"{TIMES} {views.scale.depth:g}"
-    if views.scale.depth == 1.0:
-        depth = "to scale"
+    scales = views.scales[:1] if len(set(views.scales)) <= 1 else views.scales
+    names = [_at_speed(result, i) if len(scales) > 1 else "" for i in views.instants]
+    deflection = " and ".join(
+        f"{_times(scale.deflection)}{name}" for scale, name in zip(scales, names, strict=False)
+    )
+    depth = " and ".join(dict.fromkeys(_times(scale.depth) for scale in scales))
     text = f"Deflection drawn {deflection}, mean depth of the layer {depth}; walls to scale."
+    if views.inner:
+        text += f" The liquid reaches an inner wall{' and'.join(_at_speed(result, i) for i in views.inner)}."
     return f"{text} {views.left_out} more chambers are not drawn." if views.left_out else text
+
+
+def _times(factor: float) -> str:
+    return "to scale" if factor == 1.0 else f"{TIMES} {factor:g}"
+
+
+def _at_speed(result: RunResult, index: int) -> str:
+    return f" at {in_rpm(result.curve.speed[index])}"
 
 
 def describe_view(result: RunResult, index: int) -> str:
@@ -350,6 +445,7 @@ def draw_chambers(
     chambers: tuple[FilledChamber, ...],
     deflection: complex,
     views: Views,
+    scale: Exaggeration,
     zero: str = "unbalance",
 ) -> None:
     """Walls, liquid, axes, unbalance and spin.
@@ -359,27 +455,15 @@ def draw_chambers(
     axes : an empty drawing
     chambers : that lie inside one another, the widest first
     deflection : complex, the unbalance along the real axis, m
-    views : how much deflection and layer are exaggerated
+    views, scale : of all drawings; how much deflection and layer are exaggerated in this one
     zero : what the real axis points to
     """
-    centre = deflection * views.scale.deflection * MM
+    centre = deflection * scale.deflection * MM
     widest = chambers[0].radius * MM
-    reach = 1.18 * widest + views.largest * views.scale.deflection * MM
+    reach = 1.18 * widest + views.largest * MM
     for chamber in chambers:
-        depth = (chamber.radius - chamber.mean_surface_radius) * views.scale.depth
-        if is_uneven(chamber):
-            _draw_uneven(axes, chamber, centre, depth, views.scale.depth)
-            continue
-        angle, inner, outer = liquid_outline(chamber, centre / MM, depth)
-        if depth > 0.0:
-            x = np.concatenate([outer * np.cos(angle), (inner * np.cos(angle))[::-1]]) * MM
-            y = np.concatenate([outer * np.sin(angle), (inner * np.sin(angle))[::-1]]) * MM
-            fill(axes, x, y, facecolor=LIQUID, edgecolor="none", label="liquid")
-            surface = np.where(inner < outer * (1.0 - 1e-9), inner, np.nan) * MM
-            axes.plot(surface * np.cos(angle), surface * np.sin(angle), color="#0072B2", linewidth=0.7)
-        for radius in (chamber.radius, chamber.inner_radius):
-            if radius > 0.0:
-                axes.plot(*_circle(centre, radius * MM), color=WALL, linewidth=1.4)
+        _draw_liquid(axes, chamber, centre, scale.depth)
+        _draw_walls(axes, chamber, centre, scale.depth)
     _unbalance(axes, centre, widest, zero)
     axes.plot([0.0, centre.real], [0.0, centre.imag], color=CENTRE, linewidth=1.2)
     axes.plot([0.0], [0.0], "+", color="black", markersize=9, markeredgewidth=1.2, label="rotation axis")
@@ -403,27 +487,31 @@ def draw_chambers(
     axes.axis("off")
 
 
-def _draw_uneven(
-    axes: Axes, chamber: FilledChamber, centre: complex, depth: float, depth_factor: float
-) -> None:
-    """Walls, baffles and each body of liquid of a chamber that is no clear ring."""
-    if depth > 0.0:
-        for points in bodies(chamber, centre / MM, depth):
-            fill(axes, *(points.T * MM), facecolor=LIQUID, edgecolor="none", label="liquid")
-            wall, surface = np.split(points * MM, 2)
-            wet = np.hypot(*(wall[::-1] - surface).T) > 1e-9 * chamber.radius * MM
-            axes.plot(*np.where(wet[:, None], surface, np.nan).T, color="#0072B2", linewidth=0.7)
+def _draw_liquid(axes: Axes, chamber: FilledChamber, centre: complex, depth_factor: float) -> None:
+    """Each body of liquid and its free surface."""
+    if chamber.volume == 0.0 or chamber.radius <= chamber.mean_surface_radius:
+        return
+    for body in bodies(chamber, centre / MM, depth_factor):
+        fill_loops(axes, [loop * MM for loop in body.liquid.loops], facecolor=LIQUID, label="liquid")
+        for arc in body.liquid.arcs:
+            axes.plot(arc.real * MM, arc.imag * MM, color=SURFACE, linewidth=0.9)
+
+
+def _draw_walls(axes: Axes, chamber: FilledChamber, centre: complex, depth_factor: float) -> None:
+    """Walls and baffles."""
+    look = {"color": WALL, "linewidth": 1.4}
     if chamber.section is not None:
-        for line in wall_line(chamber.section):
-            axes.plot(line[:, 0] * MM + centre.real, line[:, 1] * MM + centre.imag, color=WALL, linewidth=1.4)
+        for loop in walls(chamber)[0]:
+            closed = np.append(loop, loop[0]) * MM + centre
+            axes.plot(closed.real, closed.imag, **look)
         return
     for radius in (chamber.radius, chamber.inner_radius):
         if radius > 0.0:
-            axes.plot(*_circle(centre, radius * MM), color=WALL, linewidth=1.4)
+            axes.plot(*_circle(centre, radius * MM), **look)
     if chamber.baffles is not None:
-        for ends in plates(chamber.baffles, chamber.radius, depth_factor):
+        for ends in plates(chamber.baffles, chamber.radius, depth_factor, chamber.inner_radius):
             x, y = np.array([centre + end * MM for end in ends]).view(float).reshape(-1, 2).T
-            axes.plot(x, y, color=WALL, linewidth=1.4)
+            axes.plot(x, y, **look)
 
 
 def write_numbers(axes: Axes, result: RunResult, views: Views, index: int) -> None:
@@ -444,10 +532,9 @@ def write_numbers(axes: Axes, result: RunResult, views: Views, index: int) -> No
 
 
 def _unbalance(axes: Axes, centre: complex, radius: float, label: str) -> None:
-    """A heavy spot on the wall along the unbalance, and an arrow for the sense of the spin."""
-    spot = centre + radius
-    arm = {"linewidth": 0.8, "linestyle": (0, (5, 2)), "color": UNBALANCE}
-    axes.plot([centre.real, spot.real], [centre.imag, spot.imag], **arm)
+    """A heavy spot outside the wall along the unbalance, and an arrow for the sense of the spin."""
+    spot = centre + OUTSIDE * radius
+    axes.plot([centre.real + radius, spot.real], [centre.imag, spot.imag], linewidth=1.4, color=UNBALANCE)
     axes.plot([spot.real], [spot.imag], "s", color=UNBALANCE, markersize=6, label=label, zorder=4)
     sweep = np.linspace(math.radians(115.0), math.radians(155.0), 30)
     arc: Array = centre + 1.13 * radius * np.exp(1j * sweep)

@@ -19,7 +19,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.font_manager import findfont, get_font
-from matplotlib.patches import Polygon
+from matplotlib.patches import PathPatch, Polygon
+from matplotlib.path import Path as Lines
 from matplotlib.ticker import MultipleLocator as MultipleLocator  # handed on: this is the only door
 from numpy.typing import ArrayLike
 
@@ -27,6 +28,7 @@ from leblanc.files import writing
 from leblanc.results.base import one_line
 from leblanc.results.response import RunResult
 from leblanc.units import LENGTH, MASS, RPM, VOLUME, unit_for, units_of
+from meshes.arrays import Complex
 from meshes.errors import InputError
 
 # Lengths in inches.
@@ -182,6 +184,25 @@ def fill(axes: Axes, x: ArrayLike, y: ArrayLike, **look: Any) -> None:
     look : of matplotlib's polygon
     """
     axes.add_artist(Polygon(np.column_stack([x, y]), **look))
+
+
+def fill_loops(axes: Axes, loops: Sequence[Complex], **look: Any) -> None:
+    """Fill what lies inside closed outlines, with holes in it, on axes whose limits are set.
+
+    Parameters
+    ----------
+    axes : to draw on
+    loops : corners x + i y with the inside on their left, in the units of the axes, shape (n,) each
+    look : of matplotlib's patch
+    """
+    corners, codes = [], []
+    for loop in loops:
+        closed = np.append(loop, loop[0])
+        corners.append(np.column_stack([closed.real, closed.imag]))
+        codes.append([Lines.MOVETO, *[Lines.LINETO] * (loop.size - 1), Lines.CLOSEPOLY])
+    if corners:
+        path = Lines(np.concatenate(corners), np.concatenate(codes))
+        axes.add_artist(PathPatch(path, edgecolor="none", **look))
 
 
 def add_rate_axis(axes: Axes, label: str = "Speed (rad/s)") -> None:

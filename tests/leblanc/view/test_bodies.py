@@ -284,7 +284,7 @@ def check_modes_of_a_section(folder: Path) -> None:
         both = free_wave_frequencies(mode.crests, math.log(RADIUS / fill.surface_radius), mode.speed)
         assert mode.frequency == pytest.approx(float(both[0 if mode.frequency > 0.0 else 1]), rel=1e-4)
         lift = mode.lift
-        # The wave moves three quarters of the area outside the surface, the smaller one: per angle a times it.
+        # The wave moves three quarters of the area outside the surface: per angle a times its height.
         rest = fill.surface_radius
         assert lift == pytest.approx(0.75 * (RADIUS**2 - rest**2) / (2.0 * rest), rel=1e-4)
         volumes = []
