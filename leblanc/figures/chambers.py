@@ -29,15 +29,14 @@ from leblanc.units import DEGREE, LENGTH, MINUS, MM, TIMES, in_rpm, number, with
 from meshes.arrays import Array, Complex
 from meshes.baffles import Baffles
 from meshes.clip import Remainder, area_within, outside_circle, radius_for, wall_loops
-from meshes.rings.sectors import compartment
 
 RAYS = 361  # one degree apart, closed
 BISECTIONS = 60  # from the radius down to rounding
 
 UNEVEN_RAYS = 721
-SIDES = 96  # curved ones around a chamber that baffles cut into compartments
 SHARES = 21  # of the exponent with which factors that do not fit are tried again
 OUTSIDE = 1.07  # place of the unbalance over the wall's radius, where it covers no liquid
+GAP = 0.015  # over the radius, between an inner wall and a surface drawn larger that does not meet it
 SEEN = 0.02  # of the radius: a deflection drawn smaller than this gets a factor of its own
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -140,12 +139,12 @@ def _as_it_is(chamber: FilledChamber, moved: complex, scale: Exaggeration) -> bo
     """Nothing is enlarged, or the surface meets no inner wall, as drawn and in truth."""
     if scale.deflection <= 1.0 and scale.depth == 1.0:
         return True
-    if meets_inner_wall(chamber, scale.deflection * moved, scale.depth):
+    if meets_inner_wall(chamber, scale.deflection * moved, scale.depth, GAP):
         return False
     return not meets_inner_wall(chamber, moved, 1.0)
 
 
-def meets_inner_wall(chamber: FilledChamber, centre: complex, depth_factor: float) -> bool:
+def meets_inner_wall(chamber: FilledChamber, centre: complex, depth_factor: float, gap: float = 0.0) -> bool:
     """The liquid reaches an inner wall, a core, or past the inner edges of closed baffles.
 
     Parameters
@@ -153,12 +152,13 @@ def meets_inner_wall(chamber: FilledChamber, centre: complex, depth_factor: floa
     chamber : its walls are to scale
     centre : geometric centre from the rotation axis, m
     depth_factor : by which the layer is deeper
+    gap : it comes as near as this to one, over the chamber's radius
     """
     if chamber.volume == 0.0 or chamber.least_depth <= 0.0:
         return False
     found = bodies(chamber, centre, depth_factor)
     for inside, body in zip(_inside(chamber, depth_factor), found, strict=True):
-        if inside.size and float(np.abs(inside + centre).max()) > body.level * (1.0 + 1e-9):
+        if inside.size and float(np.abs(inside + centre).max()) > body.level - (gap - 1e-9) * chamber.radius:
             return True
     return False
 
@@ -211,13 +211,16 @@ def walls(chamber: FilledChamber) -> tuple[tuple[Complex, ...], ...]:
         return (wall_loops(chamber.section.mesh),)
     baffles = chamber.baffles
     if baffles is not None and _closed(chamber, baffles):
-        count = baffles.count
-        sides = max(4, math.ceil(SIDES / count))
-        both = chamber.radius, chamber.inner_radius
-        return tuple(wall_loops(compartment(baffles, k, *both, sides)) for k in range(count))
-    turn = np.exp(1j * np.linspace(0.0, 2.0 * math.pi, UNEVEN_RAYS)[:-1])
-    inner = (chamber.inner_radius * turn.conj(),) if chamber.inner_radius > 0.0 else ()
-    return ((chamber.radius * turn, *inner),)
+        width = 2.0 * math.pi / baffles.count
+        turn = np.exp(1j * np.linspace(0.0, width, UNEVEN_RAYS // baffles.count + 2))
+        inner = (
+            chamber.inner_radius * turn[::-1] if chamber.inner_radius > 0.0 else np.zeros(1, dtype=complex)
+        )
+        sector = np.concatenate([chamber.radius * turn, inner])
+        return tuple((sector * complex(start),) for start in np.exp(1j * baffles.angles))
+    round_it = np.exp(1j * np.linspace(0.0, 2.0 * math.pi, UNEVEN_RAYS)[:-1])
+    hole = (chamber.inner_radius * round_it.conj(),) if chamber.inner_radius > 0.0 else ()
+    return ((chamber.radius * round_it, *hole),)
 
 
 def _closed(chamber: FilledChamber, baffles: Baffles) -> bool:
@@ -399,7 +402,7 @@ def describe_scale(result: RunResult, views: Views) -> str:
 
 
 def _times(factor: float) -> str:
-    return "to scale" if factor == 1.0 else f"{TIMES} {factor:g}"
+    return "to scale" if factor == 1.0 else f"{TIMES}\N{NO-BREAK SPACE}{factor:g}"
 
 
 def _at_speed(result: RunResult, index: int) -> str:
@@ -494,12 +497,12 @@ def _draw_liquid(axes: Axes, chamber: FilledChamber, centre: complex, depth_fact
     for body in bodies(chamber, centre / MM, depth_factor):
         fill_loops(axes, [loop * MM for loop in body.liquid.loops], facecolor=LIQUID, label="liquid")
         for arc in body.liquid.arcs:
-            axes.plot(arc.real * MM, arc.imag * MM, color=SURFACE, linewidth=0.9)
+            axes.plot(arc.real * MM, arc.imag * MM, color=SURFACE, linewidth=0.9, solid_capstyle="butt")
 
 
 def _draw_walls(axes: Axes, chamber: FilledChamber, centre: complex, depth_factor: float) -> None:
     """Walls and baffles."""
-    look = {"color": WALL, "linewidth": 1.4}
+    look = {"color": WALL, "linewidth": 1.4, "solid_capstyle": "butt"}
     if chamber.section is not None:
         for loop in walls(chamber)[0]:
             closed = np.append(loop, loop[0]) * MM + centre

@@ -155,9 +155,10 @@ def test_chamber_at_the_peak_and_at_the_working_speed():
     highest = int(np.argmax(np.abs(r.deflection)))
     headings = [axes.texts[-2].get_text() for axes in figure.axes]
     assert headings == [f"Largest deflection, {r.speed[highest] / RPM:.4g} rpm", "Working speed, 2000 rpm"]
-    factor = chamber.choose_views(record).scale.deflection
+    factor = chamber.choose_views(record).scales[0].deflection
     assert any(
-        f"Deflection drawn \N{MULTIPLICATION SIGN} {factor:g}," in text.get_text() for text in figure.texts
+        f"Deflection drawn \N{MULTIPLICATION SIGN}\N{NO-BREAK SPACE}{factor:g}," in text.get_text()
+        for text in figure.texts
     )
     for axes, index in zip(figure.axes, (highest, -1), strict=True):
         marks = {drawn.get_label(): drawn for drawn in axes.lines}
@@ -165,7 +166,8 @@ def test_chamber_at_the_peak_and_at_the_working_speed():
         assert centre == pytest.approx(r.deflection[index] * factor * 1e3)
         assert [float(value[0]) for value in marks["rotation axis"].get_data()] == [0.0, 0.0]
         spot = complex(*(marks["unbalance"].get_data()[i][0] for i in (0, 1)))
-        assert spot - centre == pytest.approx(65.0)
+        # Outside the wall, where it covers no liquid.
+        assert spot - centre == pytest.approx(65.0 * chamber.OUTSIDE)
         assert axes.get_aspect() == 1.0
 
 

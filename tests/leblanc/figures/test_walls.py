@@ -1,0 +1,252 @@
+"""What a chamber figure draws of the liquid lies between the walls that it draws, whatever is enlarged.
+
+The coordinates are read off the artists. Walls are those of the machine about the deflection that the caption
+names the factor of: nothing of the drawing's own code is used to judge it.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from matplotlib.path import Path as Lines
+
+from leblanc import figures
+from leblanc.results.base import FilledChamber
+from leblanc.results.response import RunResult
+from meshes.baffles import Baffles
+from meshes.chamber_section import ChamberSection, chamber_section, level
+from meshes.section import Section, annulus, disc
+from tests.oracles.records import record_of, response_of, rig
+
+HEIGHT = 0.04
+ROUNDING = 1e-6  # of the radius
+
+
+@cache
+def sections() -> dict[str, ChamberSection]:
+    """A disc, lobes round a core, a core away from the axis."""
+    lobes = annulus(0.1, 0.04, 48, order=2)
+    angle, away = np.arctan2(*lobes.points.T[::-1]), np.hypot(*lobes.points.T)
+    stretch = 1.0 + 0.06 * np.cos(4.0 * angle) * ((away - 0.04) / 0.06) ** 2
+    moved = annulus(0.1, 0.03, 48, order=2)
+    away = np.hypot(*moved.points.T)
+    shifted = moved.points + np.outer((0.1 - away) / 0.07, [0.025, -0.01])
+    found = {
+        "disc": disc(0.1, 48, order=2),
+        "lobes": Section(lobes.points * stretch[:, None], lobes.triangles),
+        "core": Section(shifted, moved.triangles),
+    }
+    return {name: chamber_section(name, section) for name, section in found.items()}
+
+
+def chamber(kind: str, share: float, inner: float) -> FilledChamber:
+    """A chamber so much of which is full."""
+    if kind in sections():
+        section = sections()[kind]
+        volume = share * section.area * HEIGHT
+        rest = level(section, volume / HEIGHT)[0]
+        return FilledChamber(section.farthest, 0.0, HEIGHT, volume, "water", rest, section=section)
+    radius = 0.1
+    area = math.pi * radius**2 * (1.0 - inner**2)
+    rest = math.sqrt(radius**2 - share * area / math.pi)
+    found = FilledChamber(radius, inner * radius, HEIGHT, share * area * HEIGHT, "water", rest)
+    if kind == "closed":
+        return replace(found, baffles=Baffles(5, 0.5 * (rest + inner * radius)))
+    if kind == "open":
+        return replace(found, baffles=Baffles(4, 0.5 * (rest + radius)))
+    return found
+
+
+def machine(chambers: tuple[FilledChamber, ...], *deflections: complex) -> RunResult:
+    """An answer at as many speeds."""
+    record = rig(len(deflections))
+    response = replace(record.response, deflection=np.array(deflections, dtype=complex))
+    return replace(record, chambers=chambers, response=response)
+
+
+def factors(figure: figures.Figure) -> list[float]:
+    """Of the deflection of each view, as the caption says."""
+    said = re.search(r"Deflection drawn (.*?), mean depth", figure.caption.shown)
+    assert said is not None
+    parts = said[1].split(" and ")
+    return [1.0 if part.startswith("to scale") else float(part.split()[1]) for part in parts]
+
+
+def walls_of(chamber: FilledChamber) -> list[np.ndarray]:
+    """Lines around and inside a chamber, m."""
+    if chamber.section is None:
+        turn = np.exp(1j * np.linspace(0.0, 2.0 * math.pi, 7201))
+        return [radius * turn for radius in (chamber.radius, chamber.inner_radius) if radius > 0.0]
+    mesh = chamber.section.mesh
+    count: dict[tuple[int, ...], list[int]] = {}
+    for nodes in mesh.triangles.tolist():
+        for a, b, middle in ((0, 1, 3), (1, 2, 4), (2, 0, 5)):
+            count.setdefault(tuple(sorted((nodes[a], nodes[b]))), []).append(nodes[middle])
+    sides = [(*pair, middle[0]) for pair, middle in count.items() if len(middle) == 1]
+    t = np.linspace(0.0, 1.0, 9)[:, None]
+    weights = np.hstack([(1 - t) * (1 - 2 * t), t * (2 * t - 1), 4 * t * (1 - t)])
+    points = mesh.points[:, 0] + 1j * mesh.points[:, 1]
+    return [weights @ points[list(side)] for side in sides]
+
+
+def outside(chamber: FilledChamber, points: np.ndarray) -> float:
+    """How far the farthest point is on the wrong side of a wall, m; points about the geometric centre."""
+    if chamber.section is None:
+        away = np.abs(points)
+        return float(max((away - chamber.radius).max(), (chamber.inner_radius - away).max()))
+    lines = np.concatenate([np.append(line, np.nan) for line in walls_of(chamber)])
+    start, end = lines[:-1], lines[1:]
+    ok = np.isfinite(start) & np.isfinite(end)
+    start, end = start[ok][None], end[ok][None]
+    # By the number of walls that a ray crosses to the right.
+    z = points[:, None]
+    crossed = (start.imag > z.imag) != (end.imag > z.imag)
+    at = start.real + (z.imag - start.imag) * np.divide(
+        end.real - start.real, end.imag - start.imag, where=crossed, out=np.zeros(crossed.shape)
+    )
+    inside = np.sum(crossed & (at > z.real), axis=1) % 2 == 1
+    along = end - start
+    share = np.clip(((z - start) * along.conj()).real / np.abs(along) ** 2, 0.0, 1.0)
+    near = np.abs(z - start - share * along).min(axis=1)
+    return float(near[~inside].max(initial=0.0))
+
+
+def check(chambers: tuple[FilledChamber, ...], *deflections: complex) -> None:
+    """Every drawn point of liquid and surface lies in its chamber; the drawn area is that of the liquid."""
+    result = machine(chambers, *deflections)
+    figure = figures.chamber_figure(result)
+    said = factors(figure)
+    for axes in figure.axes:
+        marks = {line.get_label(): line for line in axes.lines}
+        centre = complex(*(marks["geometric centre"].get_data()[i][0] for i in (0, 1)))
+        # What stands in the caption is what is drawn.
+        assert any(
+            abs(centre - factor * w * 1e3) < 1e-5 * abs(centre) + 1e-9 for factor in said for w in deflections
+        )
+        liquid = [patch for patch in axes.patches if patch.get_label() == "liquid"]
+        surface = [line for line in axes.lines if line.get_color() == "#0072B2"]
+        assert liquid or all(c.volume == 0.0 for c in chambers)
+        drawn = [Lines(patch.get_path().vertices) for patch in liquid]
+        drawn = [patch.get_path() for patch in liquid]
+        points = [path.vertices[path.codes != Lines.CLOSEPOLY] for path in drawn]
+        points += [np.column_stack(line.get_data()) for line in surface]
+        for found in points:
+            z = (found[:, 0] + 1j * found[:, 1] - centre) * 1e-3
+            z = z[np.isfinite(z)]
+            assert min(outside(c, z) for c in chambers) <= tolerance(chambers), (said, chambers, deflections)
+
+
+def tolerance(chambers: tuple[FilledChamber, ...]) -> float:
+    """Curved sides are drawn as four straight pieces: a quarter of a side's sagitta over sixteen, m."""
+    radius = max(c.radius for c in chambers)
+    return radius * (ROUNDING + (2.0 * math.pi / 48 / 4) ** 2 / 8.0)
+
+
+KINDS = ("ring", "closed", "open", "disc", "lobes", "core")
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_liquid_stays_between_the_walls(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    kind = KINDS[seed % len(KINDS)]
+    share = float(rng.choice([rng.uniform(0.001, 0.1), rng.uniform(0.1, 0.9), rng.uniform(0.9, 0.999)]))
+    inner = float(rng.choice([0.0, rng.uniform(0.2, 0.95)])) if kind in ("ring", "closed", "open") else 0.0
+    here = chamber(kind, share, inner)
+    sizes = 10.0 ** rng.uniform(-6.0, -1.2, 2)
+    turns = np.exp(1j * rng.uniform(-math.pi, math.pi, 2))
+    check((here,), *(sizes * turns).tolist())
+
+
+# A deflection of a tenth of the radius in a ring whose layer is a tenth of the room: the starter at resonance.
+@pytest.mark.parametrize(
+    ("kind", "share", "inner", "size"),
+    [
+        ("ring", 0.22, 0.8, 0.0104),
+        ("ring", 0.5, 0.8, 0.0001),
+        ("closed", 0.5, 0.9, 0.0004),
+        ("core", 0.55, 0.0, 0.02),
+        ("lobes", 0.5, 0.0, 0.03),
+    ],
+)
+def test_a_surface_that_meets_no_inner_wall_is_drawn_meeting_none(
+    kind: str, share: float, inner: float, size: float
+) -> None:
+    here = chamber(kind, share, inner)
+    check((here,), size * np.exp(-1.6j), 0.1 * size)
+    figure = figures.chamber_figure(machine((here,), size * np.exp(-1.6j), 0.1 * size))
+    assert ("reaches an inner wall" in figure.caption.shown) == touches(here, size * np.exp(-1.6j), 1.0)
+    if "reaches an inner wall" in figure.caption.shown:
+        assert min(factors(figure)) <= 1.0
+        return
+    for axes in figure.axes:
+        marks = {line.get_label(): line for line in axes.lines}
+        centre = complex(*(marks["geometric centre"].get_data()[i][0] for i in (0, 1)))
+        for line in axes.lines:
+            if line.get_color() == "#0072B2":
+                z = (line.get_data()[0] + 1j * line.get_data()[1] - centre) * 1e-3
+                assert gap(here, z) > 0.005 * here.radius
+
+
+def gap(here: FilledChamber, z: np.ndarray) -> float:
+    """From a free surface to the nearest inner wall, m."""
+    if here.section is None:
+        return float(np.abs(z).min()) - here.inner_radius
+    inner = [line for line in walls_of(here) if np.abs(line).max() < here.mean_surface_radius]
+    if not inner:
+        return math.inf
+    return float(np.abs(z[:, None] - np.concatenate(inner)[None]).min())
+
+
+def touches(here: FilledChamber, moved: complex, _: float) -> bool:
+    """In truth: a circle about the axis of rotation, found by counting points of a grid."""
+    side = np.linspace(-1.05, 1.05, 1201) * here.radius
+    grid = (side[:, None] + 1j * side[None, :]).ravel()
+    if here.section is None:
+        inside = (np.abs(grid) < here.radius) & (np.abs(grid) > here.inner_radius)
+        wall = here.inner_radius * np.exp(1j * np.linspace(0.0, 6.3, 361))
+    else:
+        from matplotlib.path import Path
+
+        lines = walls_of(here)
+        ends = {complex(np.round(line[0], 9)): line for line in lines}
+        inside = np.zeros(grid.shape, dtype=bool)
+        while ends:
+            line = ends.pop(next(iter(ends)))
+            loop = [line]
+            while complex(np.round(loop[-1][-1], 9)) in ends:
+                loop.append(ends.pop(complex(np.round(loop[-1][-1], 9))))
+            path = np.concatenate(loop)
+            inside ^= Path(np.column_stack([path.real, path.imag])).contains_points(
+                np.column_stack([grid.real, grid.imag])
+            )
+        near = [line for line in lines if np.abs(line).max() < here.mean_surface_radius]
+        wall = np.concatenate(near) if near else np.zeros(0)
+    if wall.size == 0 or here.baffles is not None:
+        return False
+    away = np.sort(np.abs(grid[inside] + moved))[::-1]
+    cell = (side[1] - side[0]) ** 2
+    level_here = away[min(int(here.volume / HEIGHT / cell), away.size - 1)]
+    return bool(np.abs(wall + moved).max() > level_here)
+
+
+def test_chambers_inside_one_another_and_dry_ones() -> None:
+    outer, middle = chamber("ring", 0.3, 0.7), chamber("ring", 0.6, 0.5)
+    middle = replace(middle, radius=0.06, inner_radius=0.03, mean_surface_radius=0.045)
+    dry = replace(outer, volume=0.0, mean_surface_radius=outer.radius)
+    check((outer, middle), 0.004 - 0.002j, 1e-4j)
+    check((dry,), 0.004 - 0.002j, 1e-4j)
+
+
+def test_a_film_is_drawn_deep_enough_to_be_seen() -> None:
+    radius, film = 0.1, 50e-6
+    volume = math.pi * (radius**2 - (radius - film) ** 2) * HEIGHT
+    here = FilledChamber(radius, 0.08, HEIGHT, volume, "water", radius - film)
+    figure = figures.chamber_figure(machine((here,), 1e-5 + 0j, 1e-5j))
+    said = re.search(r"layer \S\N{NO-BREAK SPACE}([\d.]+)", figure.caption.shown)
+    assert said is not None
+    assert float(said[1]) * film > 0.05 * radius
