@@ -34,13 +34,22 @@ class Scale:
     ----------
     deflection : of the axis
     depth : of the mean layer; 1 draws as much liquid as there is
+    asked : factor of the deflection that the user gave, if walls leave no room for it; None otherwise
     """
 
     deflection: float = 1.0
     depth: float = 1.0
+    asked: float | None = None
 
     def in_words(self) -> str:
         """What is larger than it is, for the caption."""
+        if self.asked is None:
+            return self._drawn()
+        return (
+            f"{self._drawn()} Drawn {self.asked:g} times larger it would carry the liquid to an inner wall."
+        )
+
+    def _drawn(self) -> str:
         if self.deflection == self.depth == 1.0:
             return "Everything to scale."
         size = f"{self.deflection:g} times"

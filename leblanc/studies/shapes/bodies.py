@@ -17,6 +17,7 @@ from fluid.fill import Fill
 from leblanc.results.drawn import LiquidBodies
 from meshes.bodies.paraboloid import paraboloid_body
 from meshes.chamber_section import liquid_of
+from meshes.clip import wall_loops
 from meshes.rings.sectors import compartment
 from meshes.section import Section, section_area
 
@@ -139,6 +140,38 @@ def wall_is_dry(fill: Fill, volume: float, deflection: complex, speed: float, gr
         if float(np.abs(wall + deflection).min()) < surface.dry_radius:
             return True
     return False
+
+
+def meets_inner_wall(
+    fill: Fill, volume: float, deflection: complex, speed: float, gravity: float, depth: float, gap: float
+) -> bool:
+    """Liquid at rest comes as near as a gap to a core or an inner wall, or past the edges of closed baffles.
+
+    Parameters
+    ----------
+    fill, volume, deflection, speed, gravity : as for `surfaces`
+    depth : by which the layer is drawn deeper, and with it the baffles
+    gap : over the chamber's radius
+    """
+    wall = _dry_walls(fill, depth)
+    if wall.size == 0:
+        return False
+    found = surfaces(fill, volume, deflection, speed, gravity)
+    away = np.abs(wall + deflection).max(axis=1)
+    level = np.array([surface.dry_radius for surface in found])
+    return bool(np.any(away > level - gap * fill.chamber.radius))
+
+
+def _dry_walls(fill: Fill, depth: float) -> NDArray[np.complex128]:
+    """Points of walls that the layer at rest leaves dry as a whole, for each body, from the centre, m."""
+    chamber, count = fill.chamber, fill.compartments
+    if chamber.section is not None:
+        dry = [z for z in wall_loops(chamber.section.mesh) if np.abs(z).max() < fill.surface_radius]
+        return np.concatenate([np.zeros(0, dtype=complex), *dry])[None] if dry else np.zeros((0, 0), complex)
+    assert chamber.baffles is not None
+    edge = chamber.radius - (chamber.radius - chamber.baffles.tip_radius) * depth
+    turn = np.linspace(0.0, 2.0 * math.pi / count, AROUND // count + 2)
+    return np.asarray(max(edge, chamber.inner_radius) * np.exp(1j * (chamber.baffles.angles[:, None] + turn)))
 
 
 @lru_cache(maxsize=32)

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from leblanc.results.drawn import MachineMotion, Scale, rounded_down
-from leblanc.studies.shapes.bodies import is_cut
+from leblanc.studies.shapes.bodies import is_cut, meets_inner_wall
 from meshes.arrays import Array, Complex
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from meshes.liquid_section import free_sides
 from meshes.refine.waterline import area_outside
-from solvers.statics.hydrostatics import optimal_volume
+from solvers.statics.hydrostatics import equilibrium, optimal_volume
 
 SHOWN = 0.15  # deflection as drawn over the widest chamber's radius, if there is room
 SWING = 0.5  # the largest that a deflection drawn smaller than it is may be
@@ -26,6 +28,8 @@ CLEAR = 0.9  # of the deflection at which the wall falls dry, where it is wet
 WAVE_DEPTH = 0.25  # of a layer in a mode, over the chamber's radius: less is drawn deeper, if there is room
 WAVE = 0.75  # of the area that the layer has there, or that is free inside it: what a mode's wave moves
 INNER = 0.9  # of an inner wall's radius, inside which the axis at rest stays
+GAP = 0.015  # over the radius, between an inner wall and a surface drawn larger that does not meet it
+SHARES = 21  # of the exponent with which factors that do not fit are tried again
 _HALVINGS = 60
 
 
@@ -98,11 +102,12 @@ def drying_deflection(chamber: Chamber, volume: float, speed: Array, gravity: fl
 def choose_scale(
     fills: tuple[Fill, ...], deflection: Complex, speed: Array, gravity: float, length: float = 0.0
 ) -> Scale:
-    """Factors that make the deflection visible and keep wet walls wet and dry patches dry.
+    """Factors that make the deflection visible and leave what the liquid touches as it is.
 
     As much liquid as there is, unless its layer is too thin to be seen: then it is drawn deeper. The
     deflection grows until the wall is about to fall dry. If it is dry at one of the instants, the deflection
     is drawn as it is, or both grow by the same factor, which leaves wet what is wet and dry what is dry.
+    A surface that meets no inner wall meets none as drawn: both factors fall until there is room.
 
     Parameters
     ----------
@@ -112,6 +117,64 @@ def choose_scale(
     gravity : along the axis, m/s^2
     length : of the machine along its axis, m
     """
+    wanted = _visible(fills, deflection, speed, gravity, length)
+    return _with_room(wanted, fills, deflection, speed, gravity)
+
+
+def _with_room(
+    wanted: Scale, fills: tuple[Fill, ...], deflection: Complex, speed: Array, gravity: float
+) -> Scale:
+    """Lower factors, if liquid would meet an inner wall that it does not meet."""
+    if wanted.deflection <= 1.0 and wanted.depth == 1.0:
+        return wanted
+    found = np.where(np.isfinite(deflection), deflection, 0.0)
+    clear = [
+        ~_meets_inner_wall(fill, found[:, k], speed, gravity, Scale(), 0.0) for k, fill in enumerate(fills)
+    ]
+    for share in np.linspace(1.0, 0.0, SHARES):
+        scale = replace(
+            wanted,
+            deflection=_power(wanted.deflection, float(share)),
+            depth=_power(wanted.depth, float(share)),
+        )
+        if not any(
+            _meets_inner_wall(fill, found[free, k], speed[free], gravity, scale, GAP).any()
+            for k, (fill, free) in enumerate(zip(fills, clear, strict=True))
+        ):
+            break
+    return scale
+
+
+def _power(factor: float, share: float) -> float:
+    """Of a factor above 1; smaller ones are needed for the deflection to fit at all."""
+    return factor if factor <= 1.0 or share == 1.0 else _two_digits(factor**share)
+
+
+def _meets_inner_wall(
+    fill: Fill, deflection: Complex, speed: Array, gravity: float, scale: Scale, gap: float
+) -> NDArray[np.bool_]:
+    """Where liquid comes as near to an inner wall as the gap, over the chamber's radius, shape (s,)."""
+    chamber, volume = fill.chamber, drawn_volume(fill, scale.depth)
+    moved = scale.deflection * deflection
+    if fill.volume == 0.0 or fill.depth == 0.0 or moved.size == 0:
+        return np.zeros(moved.shape, dtype=bool)
+    if is_cut(fill):
+        # The widest deflection and the slowest speed, at which a bowl reaches farthest over the floor.
+        found = np.zeros(moved.shape, dtype=bool)
+        for k in {int(np.abs(moved).argmax()), int(speed.argmin())}:
+            here = complex(moved[k]), float(speed[k])
+            found[k] = meets_inner_wall(fill, volume, *here, gravity, scale.depth, gap)
+        return found
+    if chamber.inner_radius == 0.0:
+        return np.zeros(moved.shape, dtype=bool)
+    reach = equilibrium(chamber, volume, np.abs(moved), speed, gravity).farthest_depth
+    return np.asarray(reach > chamber.radius * (1.0 - gap) - chamber.inner_radius)
+
+
+def _visible(
+    fills: tuple[Fill, ...], deflection: Complex, speed: Array, gravity: float, length: float
+) -> Scale:
+    """Factors that make the deflection visible and keep wet walls wet and dry patches dry."""
     size = np.nan_to_num(np.abs(deflection))
     largest, radius = float(size.max(initial=0.0)), max((f.chamber.radius for f in fills), default=0.1)
     span = max(radius, 0.5 * length)
@@ -212,13 +275,20 @@ def _room(fills: tuple[Fill, ...], size: Array) -> float:
     return most
 
 
-def given_scale(factor: float, fills: tuple[Fill, ...], deflection: Complex) -> Scale:
-    """The factor that the user gives, of the deflection alone.
+def given_scale(
+    factor: float,
+    fills: tuple[Fill, ...],
+    deflection: Complex,
+    speed: Array | None = None,
+    gravity: float = 0.0,
+) -> Scale:
+    """The factor that the user gives, of the deflection alone; less where walls leave no room for it.
 
     Parameters
     ----------
     factor : above 0
-    fills, deflection : as for `choose_scale`
+    fills, deflection, speed, gravity : as for `choose_scale`; no speed where the layers do not depend on the
+        deflection as drawn
 
     Raises
     ------
@@ -228,7 +298,10 @@ def given_scale(factor: float, fills: tuple[Fill, ...], deflection: Complex) -> 
     if not (math.isfinite(factor) and 0.0 < factor <= most):
         allowed = "a finite number above 0" + ("" if math.isinf(most) else f", at most {most:.3g} here")
         raise InputError("--factor", factor, allowed)
-    return Scale(factor)
+    if speed is None:
+        return Scale(factor)
+    found = _with_room(Scale(factor), fills, deflection, speed, gravity)
+    return found if found.deflection == factor else replace(found, asked=factor)
 
 
 def scale_of(motion: MachineMotion, factor: float | None = None) -> Scale:
@@ -244,7 +317,7 @@ def scale_of(motion: MachineMotion, factor: float | None = None) -> Scale:
     InputError : a factor out of its range
     """
     if factor is not None:
-        return given_scale(factor, motion.fills, motion.deflection)
+        return given_scale(factor, motion.fills, motion.deflection, motion.speed, motion.gravity)
     return choose_scale(motion.fills, motion.deflection, motion.speed, motion.gravity, motion.length)
 
 

@@ -175,7 +175,7 @@ def test_liquid_stays_between_the_walls(seed: int) -> None:
     check((here,), *(sizes * turns).tolist())
 
 
-# A deflection of a tenth of the radius in a ring whose layer is a tenth of the room: the starter at resonance.
+# The first: a deflection of a tenth of the radius in a ring, the starter at resonance.
 @pytest.mark.parametrize(
     ("kind", "share", "inner", "size"),
     [
