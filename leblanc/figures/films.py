@@ -13,7 +13,7 @@ from leblanc.figures import wave
 from leblanc.figures.page import FILM_DPI, RIGHT, WIDTH, Figure, Frame, lay_out, number, style, write_film
 from leblanc.figures.runup import caption
 from leblanc.results.base import FilledChamber
-from leblanc.results.drawn import film_factor, half_angle
+from leblanc.results.drawn import film_factor, pool
 from leblanc.results.runup import RunupFrames, RunupResult
 from leblanc.units import LENGTH, MM, RPM, unit_for
 from meshes.arrays import Array
@@ -178,13 +178,16 @@ def liquid_shape(
     """
     radius, depth = chamber.radius * MM, frames.depth[index, j]
     if not np.isnan(depth).any():
-        angle, layer = wave.free_surface(radius, frames.theta, depth * MM, factor)
+        inner = chamber.inner_radius * MM
+        angle, layer = wave.free_surface(radius, frames.theta, depth * MM, factor, inner)
         x, y = wave.outline(radius, angle, layer)
         return x + 1j * y, layer * np.exp(1j * angle)
-    # An inner wall is left out.
-    half = half_angle(chamber.volume / (chamber.height * chamber.radius**2))
-    arc = radius * np.exp(1j * (frames.pool[index] + np.linspace(-half, half, 181)))
-    return arc, arc[[0, -1]]
+    area = chamber.volume / chamber.height
+    found, _ = pool(chamber.radius, chamber.inner_radius, area, float(frames.pool[index]))
+    # Where the liquid surrounds the inner wall, the outlines are joined by a line there and back.
+    edge = np.concatenate([np.append(loop, [loop[0], found.loops[0][0]]) for loop in found.loops])
+    gaps = [np.append(arc, np.nan) for arc in found.arcs]
+    return edge * MM, np.concatenate(gaps) * MM if gaps else np.zeros(0, dtype=complex)
 
 
 def _draw_curve(axes: Axes, result: RunupResult, frames: RunupFrames) -> Show:

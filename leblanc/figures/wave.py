@@ -86,7 +86,9 @@ def unrolled(theta: Array, depth: Array) -> tuple[Array, Array]:
     return angle[new], depth[new]
 
 
-def free_surface(radius: float, theta: Array, depth: Array, factor: float) -> tuple[Array, Array]:
+def free_surface(
+    radius: float, theta: Array, depth: Array, factor: float, inner_radius: float = 0.0
+) -> tuple[Array, Array]:
     """Free surface as drawn: the wall is to scale, depths grow by a factor.
 
     Parameters
@@ -94,6 +96,7 @@ def free_surface(radius: float, theta: Array, depth: Array, factor: float) -> tu
     radius : of the wall, m
     theta, depth : angles, rad, and depth there, m, shape (n,)
     factor : of the depth
+    inner_radius : of the inner wall, which cuts what is deeper than the room, m
 
     Returns
     -------
@@ -101,7 +104,7 @@ def free_surface(radius: float, theta: Array, depth: Array, factor: float) -> tu
     """
     angle, layer = unrolled(theta, depth)
     fine = np.union1d(angle, np.linspace(-math.pi, math.pi, RAYS))
-    return fine, np.maximum(radius - factor * np.interp(fine, angle, layer), 0.0)
+    return fine, np.maximum(radius - factor * np.interp(fine, angle, layer), inner_radius)
 
 
 def outline(radius: float, angle: Array, surface: Array) -> tuple[Array, Array]:
@@ -181,7 +184,9 @@ def draw_annulus(axes: Axes, wave: Wave, factor: float) -> None:
     factor : of the depth
     """
     walls(axes, wave)
-    angle, surface = free_surface(wave.radius * MM, wave.theta, wave.depth * MM, factor)
+    angle, surface = free_surface(
+        wave.radius * MM, wave.theta, wave.depth * MM, factor, wave.inner_radius * MM
+    )
     if np.any(wave.depth > 0.0):
         x, y = outline(wave.radius * MM, angle, surface)
         fill(axes, x, y, facecolor=LIQUID, edgecolor="none", label="liquid")
@@ -415,6 +420,13 @@ def describe_depths(factor: float) -> str:
     return f"Depth of the layer drawn {TIMES}{BOUND}{factor:g}, walls to scale"
 
 
+def describe_cut(wave: Wave, deepest: float) -> str:
+    """That the layer is deeper than the room for it, in words, empty if it is not."""
+    if deepest <= wave.radius - wave.inner_radius:
+        return ""
+    return ", cut at the inner wall, beyond which it would reach"
+
+
 def _length(length: float) -> str:
     """A length whose unit does not part from it."""
     return with_unit(length, LENGTH).replace(" ", BOUND)
@@ -504,7 +516,7 @@ def _annulus(axes: Axes, wave: Wave, history: WaveFrames, factor: float, dry: bo
 
     def show(index: int) -> None:
         depth = history.depth[index] * MM
-        angle, surface = free_surface(radius, history.theta, depth, factor)
+        angle, surface = free_surface(radius, history.theta, depth, factor, wave.inner_radius * MM)
         liquid.set_xy(np.stack(outline(radius, angle, surface), axis=1))
         wet = wet_surface(wave, angle, surface, factor)
         free.set_data(wet.real, wet.imag)
@@ -552,7 +564,7 @@ def describe_film(wave: Wave, history: WaveFrames) -> str:
     span = float(time[-1] - time[0])
     part = "" if span >= 0.9 * whole else f" (the last {span:.3g} s of {whole:.3g} s)"
     factor = depth_factor(wave, float(history.depth[chosen].max()))
-    drawn = describe_depths(factor)
+    drawn = f"{describe_depths(factor)}{describe_cut(wave, float(history.depth[chosen].max()))}"
     text = f"Seen from the drum{part}. {drawn}; the arrow grows with the deflection."
     if span > 0.0:
         text += f" One second of the film is {span / (time.size - 1) * FRAME_RATE:.3g} s."
@@ -572,8 +584,9 @@ def wave_figure(wave: Wave) -> Figure:
         draw_profile(right, wave)
         right.yaxis.set_major_formatter(number)
         text = (
-            f"{describe_depths(factor)}; arrows show directions, the place of the centre of mass "
-            "is not exaggerated. Force ratio: force over that of a full drum; angles from the deflection, "
+            f"{describe_depths(factor)}{describe_cut(wave, deepest)}; arrows show directions, "
+            "the place of the centre of mass is not exaggerated. "
+            "Force ratio: force over that of a full drum; angles from the deflection, "
             "positive with the spin. "
             f"{describe_case(wave)}{describe_notes(wave)}"
         )

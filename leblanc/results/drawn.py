@@ -14,6 +14,7 @@ from fluid.fill import Fill
 from leblanc.results.base import FilledChamber
 from meshes.arrays import Array, Complex, Indices
 from meshes.bodies.body import Body, body_integrals
+from meshes.clip import Remainder, outside_circle, radius_for
 from meshes.liquid_section import LiquidSection
 
 if TYPE_CHECKING:
@@ -24,6 +25,8 @@ LARGEST_FACTOR = 1e6  # of a depth as drawn
 FILLED = 0.55  # deepest place as drawn over the room between the walls
 SWING = 0.3  # largest deflection as drawn, over the smallest wall radius
 USUAL = 0.9  # of the frames of a film, whose depths its drawing is scaled to
+ROOM = 0.97  # deepest place of all frames, likewise
+FAR = 1e4  # of the radius: a circle as large as this stands for the level surface of a pool
 
 
 @dataclass(frozen=True)
@@ -103,6 +106,30 @@ def half_angle(share: float) -> float:
     return 0.5 * (low + high)
 
 
+def pool(radius: float, inner_radius: float, area: float, down: float) -> tuple[Remainder, float]:
+    """Liquid that lies at the bottom of a ring whose axis is horizontal, seen along the axis.
+
+    Parameters
+    ----------
+    radius, inner_radius : of the walls, m; 0 without an inner one
+    area : of the liquid, m^2
+    down : direction of gravity, rad
+
+    Returns
+    -------
+    The liquid about the centre of the walls, m; how far below the centre its surface is, m
+    """
+    # Seen from where it points down both halves are alike.
+    turn = np.exp(1j * (down + np.linspace(0.0, 2.0 * math.pi, 721)[:-1]))
+    loops = [radius * turn] + ([inner_radius * turn.conj()] if inner_radius > 0.0 else [])
+    away = FAR * radius * complex(math.cos(down), math.sin(down))
+    moved = tuple(np.asarray(loop + away, dtype=complex) for loop in loops)
+    distance = radius_for(moved, area)
+    found = outside_circle(moved, distance)
+    back = Remainder(tuple(loop - away for loop in found.loops), tuple(arc - away for arc in found.arcs))
+    return back, distance - FAR * radius
+
+
 def film_factor(chambers: Sequence[FilledChamber], depth: Array, deflection: Complex) -> float:
     """One factor for deflections and depths, so that a surface round the axis at rest stays so as drawn.
 
@@ -117,6 +144,9 @@ def film_factor(chambers: Sequence[FilledChamber], depth: Array, deflection: Com
         deepest = float(np.quantile(np.nan_to_num(depth[:, j]).max(axis=1), USUAL))
         if deepest > 0.0:
             fits.append(FILLED * (chamber.radius - chamber.inner_radius) / deepest)
+        highest = float(np.nan_to_num(depth[:, j]).max(initial=0.0))
+        if highest > 0.0:
+            fits.append(ROOM * (chamber.radius - chamber.inner_radius) / highest)
         largest = float(np.abs(deflection[:, j]).max())
         if largest > 0.0:
             fits.append(SWING * chamber.radius / largest)

@@ -439,8 +439,11 @@ def describe_state(motion: MachineMotion, index: int, dry: Sequence[bool]) -> li
     lines.append(f"{wall}; liquid model {answer.model[index]}")
     if not answer.in_range[index]:
         lines.append("out of the range in which the models hold")
-    if not answer.stable[index]:
+    stability = motion.response.stability[index]
+    if stability == "unstable":
         lines.append("not stable: this motion would not last")
+    elif stability == "not_known":
+        lines.append("stability not known")
     return lines
 
 

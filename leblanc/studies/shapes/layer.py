@@ -11,15 +11,19 @@ import math
 
 import numpy as np
 
-from leblanc.results.drawn import LiquidShape, chord, half_angle
+from leblanc.results.drawn import LiquidBodies, LiquidShape, chord, half_angle, pool
 from meshes.arrays import Array
+from meshes.bodies.paraboloid import paraboloid_body
 from meshes.chamber import Chamber
 from meshes.errors import InputError
+from meshes.section import annulus
 from solvers.statics.hydrostatics import Equilibrium, equilibrium
 
 RAYS = 240  # half-planes around a turn, besides those where a waterline meets a wall
 STEPS = 25  # points from one end of the free surface to the other
 DRY = 1e-6  # a film thinner than this over the radius is drawn as a dry wall
+LEVEL = 1e3  # of the radius: a circle as large as this stands for the level surface of a pool
+AROUND = 240  # sides of a ring in which a pool surrounds the inner wall
 _FLATTEST = 1e-12  # steepness that stands for a flat surface
 
 
@@ -125,8 +129,10 @@ def _upright(
     return LiquidShape(centre, angle, inner, outer, np.repeat(free[:, None], 2, axis=1), rows)
 
 
-def body_of_pool(chamber: Chamber, volume: float, deflection: complex, down: float) -> LiquidShape:
-    """Liquid that lies at the bottom of a chamber whose axis is horizontal; an inner wall is left out.
+def body_of_pool(
+    chamber: Chamber, volume: float, deflection: complex, down: float
+) -> LiquidShape | LiquidBodies:
+    """Liquid that lies at the bottom of a chamber whose axis is horizontal.
 
     Parameters
     ----------
@@ -135,6 +141,8 @@ def body_of_pool(chamber: Chamber, volume: float, deflection: complex, down: flo
     down : direction of gravity, rad
     """
     level = chamber.radius * math.cos(half_angle(volume / (chamber.height * chamber.radius**2)))
+    if level < chamber.inner_radius:
+        return _pool_round_wall(chamber, volume, deflection, down)
     # The rays start in the air, half way between its top and the level.
     start = 0.5 * (level - chamber.radius)
     angle = np.linspace(-math.pi, math.pi, 3 * RAYS, endpoint=False)
@@ -144,3 +152,20 @@ def body_of_pool(chamber: Chamber, volume: float, deflection: complex, down: flo
     free = np.divide(level - start, along, out=np.full(angle.shape, math.inf), where=along > 0.0)
     free = np.minimum(free, outer)
     return _upright(deflection - centre, angle, np.zeros_like(outer), outer, free, chamber.height)
+
+
+def _pool_round_wall(chamber: Chamber, volume: float, deflection: complex, down: float) -> LiquidBodies:
+    """A pool that reaches the inner wall: outside a circle so large that it is level."""
+    _, level = pool(chamber.radius, chamber.inner_radius, volume / chamber.height, down)
+    reach = LEVEL * chamber.radius
+    body = paraboloid_body(
+        annulus(chamber.radius, chamber.inner_radius, AROUND, order=2),
+        chamber.height,
+        math.inf,
+        dry_radius=reach + level,
+        axis=(-reach * math.cos(down), -reach * math.sin(down)),
+        size=2.0 * math.pi * chamber.radius / AROUND,
+        layers=1,
+        order=1,
+    )
+    return LiquidBodies(deflection, (body,))
