@@ -119,7 +119,7 @@ def pool(radius: float, inner_radius: float, area: float, down: float) -> tuple[
     -------
     The liquid about the centre of the walls, m; how far below the centre its surface is, m
     """
-    # Seen from where it points down both halves are alike.
+    # The same on both sides of the direction of gravity.
     turn = np.exp(1j * (down + np.linspace(0.0, 2.0 * math.pi, 721)[:-1]))
     loops = [radius * turn] + ([inner_radius * turn.conj()] if inner_radius > 0.0 else [])
     away = FAR * radius * complex(math.cos(down), math.sin(down))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 
 from fluid.waves import free_wave_frequencies
 from leblanc.results.drawn import LiquidShape, Scale
+from leblanc.results.response import SelfExcited
 from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.studies.run import run_scene
 from leblanc.studies.shapes.machine import machine_motion, mode_view, table_view
@@ -19,6 +21,7 @@ from leblanc.view.files import write_picture
 from leblanc.view.film import Film, mode_film, mode_picture, shape_of, write_film
 from leblanc.view.parts import Picture
 from leblanc.view.picture import SIZE, VIEWS, fill, pixels, plotter, point_camera, prepare_off_screen
+from leblanc.view.scene import describe_state
 from meshes.errors import InputError
 from tests.leblanc.view.test_surfaces import CHORD, centroid
 from tests.leblanc.view.views import Shown, film_over, picture_at, show
@@ -226,6 +229,16 @@ def test_a_dry_wall_is_said_and_drawn() -> None:
     assert "dry in part" in view.picture.state
     assert view.picture.caption.startswith("Everything to scale.")
     assert "wet all round" in show(scene("runup"), 90.0).picture.state
+
+
+def test_a_view_tells_unstable_from_not_known() -> None:
+    motion = show(scene("runup"), 90.0).motion
+    assert "stab" not in " ".join(describe_state(motion, 0, (False,)))
+    held = replace(motion.response.response, stable=np.array([False]))
+    for growth, said in ((0.3, "not stable: this motion would not last"), (math.nan, "stability not known")):
+        whirl = SelfExcited(np.array([growth]), np.array([70.0]), (), "Stokes")
+        view = replace(motion, response=replace(motion.response, response=held, whirl=whirl))
+        assert describe_state(view, 0, (False,))[-1] == said
 
 
 def test_a_factor_that_dries_the_wall_says_so() -> None:
