@@ -28,7 +28,7 @@ Axes = Any  # matplotlib's, which no module that only draws imports
 MODES_FRAME = Frame(left=0.25, top=0.42, between=0.5, below=0.02)
 PANEL, ACROSS, MOST = 1.93, 3, 6  # inches; drawings
 SHOWN = 0.3  # depth of the layer as drawn, over its outer radius
-RISE = 0.3  # of the largest displacement, over the depth as drawn
+RISE = 0.3  # of the largest displacement, over the depth as drawn where the layer is thinnest
 LEVELS = np.linspace(-1.0, 1.0, 12)  # of the stream function over its largest value; none of them 0
 # Triangles that a cell is cut into for drawing, by its number of nodes.
 CUTS = {
@@ -168,7 +168,7 @@ def _draw(axes: Axes, result: ModesResult, k: int, stretch: float) -> None:
         axes.tricontour(*points.T, cuts, share, levels=levels, colors="0.25", linewidths=0.5, linestyles=dash)
     rise = np.zeros(len(section.points))
     rise[modes.surface_nodes] = (modes.displacement[k] * phase).real
-    depth = stretch * (outer - section.surface_radius)
+    depth = stretch * least_depth(section)
     moved = _placed(section, section.points, stretch, -RISE * depth * rise)
     _lines(axes, points, section.surface, color="0.45", linewidth=0.7, linestyle=":")
     _lines(axes, moved, section.surface, color="#0072B2", linewidth=1.6)
@@ -180,6 +180,21 @@ def _draw(axes: Axes, result: ModesResult, k: int, stretch: float) -> None:
     axes.set_ylim(-limit, limit)
     axes.set_axis_off()
     axes.set_title(_title(result, k), fontsize=7.5, pad=2.0)
+
+
+def least_depth(section: LiquidSection) -> float:
+    """From the free surface to the nearest wall outside it, m; walls across the surface, as baffles, apart.
+
+    Parameters
+    ----------
+    section : the liquid at rest
+    """
+    plane = section.points[:, 0] + 1j * section.points[:, 1]
+    start, end = plane[section.wall[:, 0]], plane[section.wall[:, 1]]
+    along = ((end - start) * (0.5 * (start + end)).conj()) / np.abs(end - start)
+    around = np.abs(along.imag) > np.abs(along.real)
+    away = np.abs(plane[section.wall[around]]) - section.surface_radius
+    return float(away[away > 0.0].min(initial=float(np.abs(plane).max()) - section.surface_radius))
 
 
 def _lines(axes: Axes, points: Array, sides: NDArray[np.int64], **look: Any) -> None:

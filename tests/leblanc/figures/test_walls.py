@@ -10,19 +10,28 @@ import math
 import re
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from matplotlib.path import Path as Lines
 
+from fluid.liquid import known_liquid
 from leblanc import figures
 from leblanc.figures.chambers import SURFACE
+from leblanc.figures.films import film_figure
+from leblanc.figures.liquid import modes_figure
 from leblanc.results.base import FilledChamber
 from leblanc.results.response import RunResult
+from leblanc.results.runup import RunupFrames
+from leblanc.studies.modes import Resolution, SectionSource, answer_modes
 from meshes.baffles import Baffles
+from meshes.chamber import Chamber
 from meshes.chamber_section import ChamberSection, chamber_section, level
-from meshes.section import Section, annulus, disc
+from meshes.files.exchange import write_section
+from meshes.section import Section, annulus, disc, section_area
+from tests.leblanc.studies.test_runup import history_of, made_up
 from tests.oracles.records import circles, record_of, response_of
 
 HEIGHT = 0.04
@@ -260,3 +269,73 @@ def test_a_film_is_drawn_deep_enough_to_be_seen() -> None:
     said = re.search(r"layer \S\N{NO-BREAK SPACE}([\d.]+)", figure.caption.shown)
     assert said is not None
     assert float(said[1]) * film > 0.05 * radius
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_every_frame_of_a_run_up_stays_between_the_walls(seed: int) -> None:
+    """Layers with a bore in one frame of many, and pools round the inner wall."""
+    rng = np.random.default_rng(seed)
+    count, theta = 30, (np.arange(90) + 0.5) * 2.0 * math.pi / 90
+    inner = float(rng.uniform(0.05, 0.24))
+    record = made_up(history_of(2, 1))
+    volume = float(rng.uniform(0.01, 0.9)) * math.pi * (0.25**2 - inner**2) * HEIGHT
+    here = FilledChamber(0.25, inner, HEIGHT, volume, "water", math.sqrt(0.25**2 - volume / HEIGHT / math.pi))
+    room = 0.25 - inner
+    depth = room * rng.uniform(0.0, 0.05, (count, 1, 90))
+    depth[17] = room * rng.uniform(0.0, 0.9, (1, 90))
+    depth[20:25] = math.nan
+    reel = RunupFrames(
+        time=np.linspace(0.0, 1.0, count),
+        speed=np.full(count, 30.0),
+        deflection=1e-3 * np.exp(1j * rng.uniform(0.0, 6.0, (count, 1))),
+        amplitude=np.full(count, 1e-3),
+        theta=theta,
+        depth=depth,
+        pool=rng.uniform(0.0, 6.0, count),
+    )
+    figure, show = film_figure(replace(record, chambers=(here,)), reel)
+    axes = figure.axes[0]
+    (liquid,) = [patch for patch in axes.patches if patch.get_label() == "liquid"]
+    marks = {line.get_label(): line for line in axes.lines}
+    for k in range(count):
+        show(k)
+        centre = complex(*(marks["geometric centre"].get_data()[i][0] for i in (0, 1)))
+        x, y = liquid.get_path().vertices.T
+        away = np.abs(x + 1j * y - centre) * 1e-3
+        assert away.max() <= 0.25 * (1.0 + 1e-9)
+        # The inner wall is drawn by 360 sides, that of a pool by 720.
+        assert away.min() >= inner * (1.0 - math.radians(0.5) ** 2 / 8.0 - 1e-9), k
+
+
+@pytest.mark.parametrize("height", [0.02, 0.08])
+def test_the_surface_of_a_mode_stays_inside_a_wall_that_waves(height: float, tmp_path: Path) -> None:
+    base = disc(0.1, 96, order=2)
+    angle, away = np.arctan2(*base.points.T[::-1]), np.hypot(*base.points.T)
+    stretch = 1.0 + height * np.cos(4.0 * angle) * (away / 0.1) ** 4
+    write_section(Section(base.points * stretch[:, None], base.triangles), tmp_path / "waves.msh")
+    # The surface lies a little inside the nearest places of the wall.
+    rest = 0.1 * (1.0 - height) - 0.004
+    volume = (section_area(base) * (1.0 + 0.5 * height**2) - math.pi * rest**2) * HEIGHT
+    source = SectionSource(tmp_path / "waves.msh", 1.0)
+    answer = answer_modes(
+        Chamber(0.1, HEIGHT), volume, known_liquid("water"), 100.0, 6, Resolution(64, 4), source
+    )
+    outer = float(np.hypot(*answer.section.points.T).max())
+    for axes in modes_figure(answer).axes:
+        moved = [line for line in axes.lines if line.get_linewidth() == 1.6]
+        walls = [line for line in axes.lines if line.get_color() == "black" and line.get_linewidth() == 1.4]
+        if not moved:
+            continue
+        x, y = moved[0].get_data()
+        wx, wy = walls[0].get_data()
+        found = np.interp(
+            np.arctan2(y, x)[np.isfinite(x)],
+            *_around(np.arctan2(wy, wx)[np.isfinite(wx)], np.hypot(wx, wy)[np.isfinite(wx)]),
+            period=2.0 * math.pi,
+        )
+        assert np.all(np.hypot(x, y)[np.isfinite(x)] < found + 1e-4 * outer)
+
+
+def _around(angle: np.ndarray, away: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    order = np.argsort(angle)
+    return angle[order], away[order]

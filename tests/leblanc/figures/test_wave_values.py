@@ -242,3 +242,15 @@ def test_caption_converts() -> None:
 def caption(figure) -> str:
     lines = " ".join(text.get_text() for text in reversed(figure.texts))
     return lines.replace("\N{NO-BREAK SPACE}", " ")
+
+
+def test_a_layer_deeper_than_its_room_is_cut_at_the_inner_wall_and_said_to_be() -> None:
+    record = bore()
+    deepest = float(record.depth.max())
+    for inner in (R - 0.5 * (record.mean_depth + deepest), 0.5 * R):
+        figure = figures.wave_figure(replace(record, inner_radius=inner))
+        axes = figure.axes[0]
+        (liquid,) = [patch for patch in axes.patches if patch.get_label() == "liquid"]
+        away = np.hypot(*liquid.get_path().vertices.T) * 1e-3
+        assert inner * (1.0 - 1e-9) <= away.min() and away.max() <= R * (1.0 + 1e-9)
+        assert ("cut at the inner wall" in figure.caption.shown) == (deepest > R - inner)
