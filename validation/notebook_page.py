@@ -21,6 +21,15 @@ _PLAIN = 10.0  # relative differences below are told in per cent, larger ones as
 _PLURAL = {"agrees": "agree", "erratum": "errata", "trend": "trends", "differs": "differ"}
 
 _LEFT = 'style="text-align: left; vertical-align: top"'
+_SENTENCE = 40  # characters of a cell that is read, not compared with those above and below
+# On a telephone a row of words becomes a card, with the names of the columns in it; numbers scroll in their box.
+_CARDS = """<style>@media screen and (max-width: 40em) {
+.cards thead { display: none }
+.cards, .cards tbody, .cards tr, .cards td { display: block; width: auto }
+.cards tr { padding: 0.5em 0; border-bottom: 1px solid #8888 }
+.cards td { padding: 0.1em 0.3em; border: 0; white-space: normal }
+.cards td + td::before { content: attr(data-name) ": "; font-weight: bold }
+}</style>"""
 _BREAK = re.compile(r"(?<=[/_])(?=\w)")  # where a path or a name may go on in the next line
 
 
@@ -49,11 +58,18 @@ class Table:
         # The first column says what a row is about, mostly in the most words.
         head = f'<th {_LEFT[:-1]}; width: 42%">{first}</th>'
         head += "".join(f"<th {_LEFT}>{cell}</th>" for cell in others)
-        rows = ["".join(f"<td {_LEFT}>{_lines(cell)}</td>" for cell in row) for row in self.rows]
+        names = [f'data-name="{escape(name)}"' for name in self.header]
+        rows = [
+            "".join(f"<td {name} {_LEFT}>{_lines(cell)}</td>" for name, cell in zip(names, row, strict=True))
+            for row in self.rows
+        ]
         body = "".join(f'<tr style="break-inside: avoid">{row}</tr>' for row in rows)
         foot = f"<p>{escape(self.foot)}</p>" if self.foot else ""
+        wordy = any(len(cell) > _SENTENCE for row in self.rows for cell in row)
+        kind = f'{_CARDS}<table class="cards"' if wordy else "<table"
         inside = f"<thead><tr>{head}</tr></thead><tbody>{body}</tbody>"
-        return f'<table style="table-layout: auto">{inside}</table>{foot}'
+        table = f'{kind} style="table-layout: auto">{inside}</table>'
+        return f'<div style="overflow-x: auto">{table}</div>{foot}'
 
 
 @dataclass(frozen=True)

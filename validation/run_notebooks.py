@@ -19,8 +19,21 @@ import typer
 FOLDER = Path(__file__).parent / "notebooks"
 _SECONDS = 600  # of one cell
 _NEEDED = ("jupytext", "nbclient", "ipykernel", "nbconvert")
-# On paper nothing scrolls.
-_PRINT = "<style>pre { white-space: pre-wrap !important; overflow-wrap: anywhere; }</style></head>"
+# The page needs no script, so it asks the network for none. On paper nothing scrolls.
+_PAGE = """\
+{% extends "index.html.j2" %}
+{% block html_head_js %}{% endblock %}
+{% block html_head_js_mathjax %}{% endblock %}
+{% block html_head_js_mermaidjs %}{% endblock %}
+{% block html_head_css %}<style>
+pre { white-space: pre-wrap !important; overflow-wrap: anywhere; }
+@media screen and (max-width: 40em) {
+  body { padding: 8px !important; }
+  .jp-InputPrompt, .jp-OutputPrompt { display: none !important; }
+  .jp-RenderedHTMLCommon code { overflow-wrap: anywhere; }
+}
+</style>{% endblock %}
+"""
 # Run first in each kernel and not kept: the reader's own kernel is left as it is.
 _STRICT = """\
 import warnings
@@ -163,7 +176,6 @@ def _write(book: Any, stem: str, out: Path) -> None:
     out.mkdir(parents=True, exist_ok=True)
     with writing(out / f"{stem}.ipynb") as part:
         nbformat.write(book, part)
-    page, _ = HTMLExporter().from_notebook_node(book, {"metadata": {"name": stem}})
-    page = page.replace("</head>", _PRINT, 1)
+    page, _ = HTMLExporter(raw_template=_PAGE).from_notebook_node(book, {"metadata": {"name": stem}})
     with writing(out / f"{stem}.html") as part:
         part.write_text(page, encoding="utf-8")

@@ -8,6 +8,7 @@ parameters are the annotations as they are written in the source.
 from __future__ import annotations
 
 import ast
+import json
 import re
 from pathlib import Path
 from typing import Any
@@ -176,9 +177,10 @@ def setup(app: Sphinx) -> dict[str, Any]:
         types = written_types(thing) if what in {"function", "method", "class", "exception"} else {}
         lines[:] = converted(lines, types, names, known)
 
-    def citations(_app: Sphinx, _docname: str, source: list[str]) -> None:
+    def citations(app: Sphinx, docname: str, source: list[str]) -> None:
         """Keys of papers in the pages become links."""
-        source[0] = linked(source[0], known)
+        notebook = app.env.doc2path(docname).suffix == ".ipynb"
+        source[0] = (linked_notebook if notebook else linked)(source[0], known)
 
     app.connect("autodoc-process-docstring", process)
     app.connect("source-read", citations)
@@ -195,3 +197,12 @@ def linked(text: str, known: set[str]) -> str:
             parts[i],
         )
     return "".join(parts)
+
+
+def linked_notebook(content: str, known: set[str]) -> str:
+    """The same for the text of a notebook; what its code printed is no Markdown and stays as it is."""
+    book = json.loads(content)
+    for cell in book["cells"]:
+        if cell["cell_type"] == "markdown":
+            cell["source"] = linked("".join(cell["source"]), known)
+    return json.dumps(book)

@@ -13,9 +13,9 @@
 # %% [markdown]
 # # 1. The paraboloid and the optimal volume
 #
-# A chamber of radius $R$ and height $h$, partly filled, turns at $\Omega$ about an axis at the distance $e$
-# from its own. The liquid turns with it, and its free surface is the paraboloid $z = \beta r^2 + C$ about
-# the rotation axis, with $\beta = \Omega^2/(2g)$. The volume for which that surface just touches the near
+# A chamber of radius `R` and height `h`, partly filled, turns at `Omega` about an axis at the distance `e`
+# from its own. The liquid turns with it, and its free surface is the paraboloid `z = beta r^2 + C` about
+# the rotation axis, with `beta = Omega^2/(2 g)`. The volume for which that surface just touches the near
 # wall at the floor is called optimal in [DR18, section 5]: with less the near wall is dry all the way up.
 #
 # This page holds the closed forms of the package against an independent solution by finite elements, and
@@ -62,8 +62,8 @@ case_table(volumes)
 # ## What the volume does
 #
 # About the rotation axis the unbalance of the liquid grows with the deflection like that of a full chamber,
-# $\rho \pi R^2 h\, e$, whatever the volume is, until the near wall runs dry. From there on the law bends
-# over and tends to $\rho V (R + e)$. The marks are the deflections whose optimal volume is the one filled
+# `rho pi R^2 h e`, whatever the volume is, until the near wall runs dry. From there on the law bends
+# over and tends to `rho V (R + e)`. The marks are the deflections whose optimal volume is the one filled
 # in: the last cases of the table above.
 
 # %%

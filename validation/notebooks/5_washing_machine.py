@@ -51,7 +51,7 @@ Table(
 # %% [markdown]
 # ## The course of the figures
 #
-# Fig. 4 and 5: laundry off along the axis by $y_D$. It leaves the vertical motion's resonance nearly where
+# Fig. 4 and 5: laundry off along the axis by `y_D`. It leaves the vertical motion's resonance nearly where
 # it is and adds a second one, and the motion along the axis grows with it, as the source says.
 
 # %%
@@ -62,7 +62,7 @@ picture(draw(figures[0]))
 picture(draw(figures[1]))
 
 # %% [markdown]
-# Fig. 6 and 7: the springs' centre of rigidity off the centre of gravity by $l_c$.
+# Fig. 6 and 7: the springs' centre of rigidity off the centre of gravity by `l_c`.
 
 # %%
 picture(draw(figures[2]))

@@ -142,7 +142,7 @@ def _stiffness_cases(matrices: TubMatrices) -> list[Case]:
         printed = sp.sympify(_PRINTED_STIFFNESS.get((row, column), "0"))
         computed = matrices.stiffness[row - 1, column - 1]
         if sp.expand(printed - computed) != 0:
-            wrong.append((row, column, str(printed), str(computed)))
+            wrong.append((row, column, _written(printed), _written(computed)))
     return [
         Case(
             f"errata/dr-a{row}{column}",
@@ -219,7 +219,7 @@ def _row_cases(matrices: TubMatrices) -> list[Case]:
         if not term.rate and sp.expand(sp.sympify(term.printed) - computed) == 0:
             continue
         of = _NAMES[term.column] + ("'" if term.damping else "")
-        shown, derived = (_as_damping(str(text), term.damping) for text in (term.printed, computed))
+        shown, derived = (_as_damping(_written(text), term.damping) for text in (term.printed, computed))
         kind = "rate" if term.rate else "damping" if term.damping else "stiffness"
         found.append(
             Case(
@@ -236,6 +236,11 @@ def _row_cases(matrices: TubMatrices) -> list[Case]:
             )
         )
     return found
+
+
+def _written(expression: object) -> str:
+    """An expression as on paper: `2 x y^2`."""
+    return str(expression).replace("**", "^").replace("*", " ")
 
 
 def _as_damping(text: str, damping: bool) -> str:
@@ -258,7 +263,7 @@ def _energy_cases(matrices: TubMatrices) -> list[Case]:
         compare(
             f"errata/dr-eq-4-{_NAMES[first]}-{_NAMES[second]}",
             "DR18, eq. 4",
-            f"coefficient of {_NAMES[first]}' {_NAMES[second]}' in the kinetic energy, over {unit}",
+            f"coefficient of {_NAMES[first]}' {_NAMES[second]}' in the kinetic energy, over {_written(unit)}",
             printed,
             float(sp.simplify(matrices.mass[first, second] / sp.sympify(unit))),
             tolerance=0.0,
