@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -25,8 +26,10 @@ import figures  # noqa: E402
 import scene_keys  # noqa: E402
 
 NOTEBOOKS = ROOT / "validation" / "notebooks"
+_PATTERN = re.compile(r"[\w/]+\*$")  # an entry of the contents that stands for several pages
 # Pages whose commands are run.
 RUN = (
+    "index.md",
     "tour.md",
     *(f"howto/{name}.md" for name in ("machine", "chamber", "volume", "cluster", "results", "units")),
 )
@@ -59,7 +62,7 @@ def gather(source: Path, quick: bool) -> None:
 def _without_empty_patterns(index: Path) -> None:
     """Leave patterns out of the contents that no page matches: Sphinx would warn."""
     lines = index.read_text(encoding="utf-8").splitlines(keepends=True)
-    kept = [line for line in lines if not (line.endswith("*\n") and not [*index.parent.glob(line.strip())])]
+    kept = [line for line in lines if not _PATTERN.match(line) or [*index.parent.glob(line.strip())]]
     index.write_text("".join(kept), encoding="utf-8")
 
 

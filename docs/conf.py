@@ -26,6 +26,8 @@ extensions = [
     "equations",              # numbers of equations as the sources have them, and links to them
     "docstrings",             # docstrings of this house to reStructuredText
     "pages",                  # tables that the pages take from the code
+    "tables",                 # tables of words as cards on a telephone
+    "thumbnails",             # the gallery as a grid of cards
 ]  # fmt: skip
 
 exclude_patterns = ["_ext", "images", "examples"]

@@ -80,6 +80,7 @@ RECIPES = (
         horizontal_rig_amplitude="amplitude",
         horizontal_rig_chamber="chamber",
     ),
+    _example("run", "washing_machine", washing_machine_amplitude="amplitude"),
     _example("map", "horizontal_rig", whirl_map="map"),
     _example("runup", "runup", runup_example_speed="runup_speed"),
     _example(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,8 +14,6 @@ from pybtex.style.formatting.plain import Style
 from pybtex.style.labels import BaseLabelStyle
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
-
-_WIDTH = 100
 
 
 class KeyLabels(BaseLabelStyle):
@@ -37,18 +36,11 @@ class Keyed(Style):
 
 
 class Commands(SphinxDirective):
-    """A section for each command of `leblanc`: what its `--help` prints."""
+    """A section for each command of `leblanc`: what its `--help` says."""
 
     def run(self) -> list[nodes.Node]:
         """The sections, in the order of the command line."""
-        found: list[nodes.Node] = []
-        for name in command_names():
-            title = f"leblanc {name}"
-            text = command_help(name)
-            block = nodes.literal_block(text, text, language="text")
-            heading = nodes.title(title, title)
-            found.append(nodes.section("", heading, block, ids=[f"leblanc-{name}"], names=[title]))
-        return found
+        return [_command_section(name, command) for name, command in _commands().items()]
 
 
 def command_names() -> list[str]:
@@ -56,12 +48,28 @@ def command_names() -> list[str]:
     return list(_commands())
 
 
-def command_help(name: str) -> str:
-    """The help of one command, in lines of a fixed width."""
-    command = _commands()[name]
+def _command_section(name: str, command: Any) -> nodes.section:
+    """Usage, what a command does, and each argument and option with its meaning, at whatever width."""
     context = command.make_context(name, [], resilient_parsing=True)
-    context.info_name, context.terminal_width, context.max_content_width = f"leblanc {name}", _WIDTH, _WIDTH
-    return str(command.get_help(context))
+    title = f"leblanc {name}"
+    usage = " ".join((title, *command.collect_usage_pieces(context)))
+    said = [nodes.paragraph("", text) for text in inspect.cleandoc(command.help).split("\n\n")]
+    records = [param.get_help_record(context) for param in command.get_params(context)]
+    items = [
+        nodes.definition_list_item(
+            "", nodes.term("", "", nodes.literal(term, term)), nodes.definition("", nodes.paragraph("", text))
+        )
+        for term, text in filter(None, records)
+    ]
+    return nodes.section(
+        "",
+        nodes.title(title, title),
+        nodes.literal_block(usage, usage, language="text"),
+        *said,
+        nodes.definition_list("", *items, classes=["options"]),
+        ids=[f"leblanc-{name}"],
+        names=[title],
+    )
 
 
 def _commands() -> dict[str, Any]:

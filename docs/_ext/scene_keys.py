@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -91,14 +92,21 @@ def _section(title: str, text: str, part: type[Part]) -> str:
 
 
 def _table(head: tuple[str, ...], rows: list[Any]) -> str:
-    lines = [head, tuple("---" for _ in head), *rows]
+    lines = [head, tuple("---" for _ in head), *(map(_literal, row) for row in rows)]
     return "".join("| " + " | ".join(cells) + " |\n" for cells in lines)
+
+
+def _literal(cell: str) -> str:
+    """A cell whose asterisks, outside code, are products and no emphasis."""
+    parts = re.split(r"(`[^`]*`)", cell)
+    parts[::2] = (part.replace("*", "\\*") for part in parts[::2])
+    return "".join(parts)
 
 
 def _row(name: str, field: FieldInfo) -> tuple[str, str, str, str, str]:
     return (
         f"`{name}`",
-        _unit(field).replace("*", "\\*"),
+        _unit(field),
         _allowed(field),
         _default(field),
         field.description or "",
