@@ -1,7 +1,7 @@
 """Build the documentation site: `python docs/build.py --out out/docs`.
 
 The pages are gathered in one folder (the Markdown as it is, pictures drawn anew, notebooks executed, an API
-page for each package) and go through Sphinx, whose warnings are errors.
+page for each package) and go through Sphinx, whose warnings are errors. What comes out is proofread.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ sys.path[:0] = [str(_HERE), str(_HERE / "_ext")]
 import api_pages  # noqa: E402 - beside this file
 import console  # noqa: E402
 import figures  # noqa: E402
+import proofread  # noqa: E402
 import scene_keys  # noqa: E402
 
 NOTEBOOKS = ROOT / "validation" / "notebooks"
@@ -140,7 +141,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     source = out.parent / (out.name + ".source") / "docs"
     timed("pages, pictures, notebooks", lambda: gather(source, chosen.quick))
     wrong = 0 if chosen.quick else timed("commands of the pages", commands)
-    return timed("site", lambda: sphinx(source, out)) or wrong
+    wrong = timed("site", lambda: sphinx(source, out)) or wrong
+    return timed("proofreading", lambda: proofread.main([str(out)])) or wrong
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Read built pages as their readers do: `python docs/proofread.py out/docs`; exit code 1 if something is wrong.
+"""Read built pages as their readers do: `python docs/proofread.py out/docs`; exit code 1 if a page is wrong.
 
 Markup that shows as it was typed is found without a browser. Whether a page fits a telephone is asked of a
 Chromium, where there is one.

@@ -6,15 +6,21 @@ import ast
 import doctest
 import importlib
 import inspect
+import json
 import math
 import re
+import shutil
+import subprocess
 import sys
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
+
+from tests.oracles.browser import Browser, browser, found
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
@@ -243,6 +249,11 @@ def test_the_page_of_keys_is_up_to_date() -> None:
     assert (DOCS / keys.NAME).read_text(encoding="utf-8") == keys.page()
 
 
+def test_products_of_units_are_no_emphasis() -> None:
+    cells = re.sub(r"`[^`\n]*`", "", _module("scene_keys", "docs/_ext").page())
+    assert "kg\\*mm" in cells and not re.search(r"(?<!\\)\*", cells)
+
+
 def test_every_key_has_its_line_and_a_meaning() -> None:
     from leblanc.scene.scene import Scene
     from leblanc.scene.schema.paths import tables_of
@@ -392,6 +403,169 @@ class TestDocstrings:
     def test_keys_in_pages_become_links_but_not_in_code(self, texts: ModuleType) -> None:
         linked = texts.linked("see [DR18, eq. 8], `[DR18]` and [X99]", {"DR18"})
         assert linked == "see [{cite:label}`DR18`, eq. 8], `[DR18]` and [X99]"
+
+    def test_what_a_notebook_printed_stays_as_it_is(self, texts: ModuleType) -> None:
+        said, printed = "as [DR18, eq. 8] says", "<td>[DR18, eq. 18; case optimum]</td>"
+        cells = [
+            {"cell_type": "markdown", "source": [f"{said}\n", "and *more*"]},
+            {"cell_type": "code", "source": "table", "outputs": [{"data": {"text/html": printed}}]},
+        ]
+        found = json.loads(texts.linked_notebook(json.dumps({"cells": cells}), {"DR18"}))["cells"]
+        assert found[0]["source"] == "as [{cite:label}`DR18`, eq. 8] says\nand *more*"
+        assert found[1] == cells[1]
+
+
+@pytest.fixture(scope="module")
+def tab() -> Iterator[Browser]:
+    chromium = found()
+    if chromium is None:
+        pytest.skip("no Chromium on the path")
+    with browser(chromium) as tab:
+        yield tab
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """All that makes a page hard to set, by the configuration, extensions and styles of our site."""
+    for name in ("sphinx", "furo", "myst_nb", "sphinxcontrib.bibtex"):
+        pytest.importorskip(name)
+    source = tmp_path_factory.mktemp("site") / "docs"
+    for name in ("_ext", "_static"):
+        shutil.copytree(DOCS / name, source / name, ignore=shutil.ignore_patterns("__pycache__"))
+    (source / "images").mkdir()
+    shutil.copyfile(DOCS / "conf.py", source / "conf.py")
+    shutil.copyfile(ROOT / "references.bib", source.parent / "references.bib")
+    figures = _module("figures")
+    picture = figures.IMAGES / "horizontal_rig_amplitude.png"
+    for name in ("view_washing_machine", "trade_runup"):
+        shutil.copyfile(picture.with_stem(name), source / "images" / f"{name}.png")
+    words = " ".join(["words"] * 20)
+    numbers = "|".join(["123456.789"] * 12)
+    (source / "index.md").write_text(
+        "# Front\n\n```{toctree}\ngallery\ncommands\n```\n\n"
+        "| Key | Unit | Meaning |\n|---|---|---|\n"
+        f"| `a_long_name` | kg\\*m | {words} |\n| `b` |  | b |\n\n"
+        f"|{numbers}|\n{'|---' * 12}|\n|{numbers}|\n\n"
+        f"```text\n{words}\n```\n\n$$ {'+ x^2 ' * 60} \\tag{{1}} $$\n\n"
+        "[![wide](images/trade_runup.png)](images/trade_runup.png)\n",
+        encoding="utf-8",
+    )
+    cards = "".join(
+        f"![What {name} shows](images/{name}.png)\n\n"
+        f"What is seen ([page](index.md)): `leblanc view {name}`\n\n"
+        for name in ("view_washing_machine", "trade_runup")
+    )
+    (source / "gallery.md").write_text(f"# Gallery\n\nAll.\n\n## Views\n\n{cards}", encoding="utf-8")
+    (source / "commands.md").write_text("# Commands\n\n```{all-commands}\n```\n", encoding="utf-8")
+    out = source.parent / "site"
+    command = [sys.executable, "-m", "sphinx", "-W", "-q", "-b", "html", str(source), str(out)]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=False)
+    assert done.returncode == 0, done.stderr
+    return out
+
+
+class TestProofreading:
+    """What `docs/proofread.py` finds on built pages, and that it finds nothing on ours."""
+
+    @pytest.mark.parametrize(
+        "shown",
+        [
+            "<td>a ** b</td>",
+            "<p>a `name`</p>",
+            "<td>where $x$ is</td>",
+            r"<p>\(x\)</p>",
+            "<td>{cite:label}`DR18`</td>",
+            "<p>[page](page.md)</p>",
+            "<td>0.6 kg<em>mm (a plain number is in kg</em>m)</td>",
+        ],
+    )
+    def test_markup_that_shows_is_found(self, shown: str) -> None:
+        assert _module("proofread").leaks(f"<html><title>x</title><body>{shown}</body></html>")
+
+    @pytest.mark.parametrize(
+        "shown",
+        [
+            "<code>**kwargs</code>",
+            "<pre>cost $x</pre>",
+            r'<span class="math notranslate">\(x\)</span>',
+            '<dt class="sig sig-object">f(<span>**</span>kwargs)</dt>',
+            "<p>so <em>much</em> liquid, kg*m^2, c_x y^2</p>",
+            "<p>one<br>two <img alt='x'> three</p><script>$('`')</script>",
+        ],
+    )
+    def test_what_is_no_markup_is_passed_over(self, shown: str) -> None:
+        assert not _module("proofread").leaks(f"<html><title>x</title><body>{shown}</body></html>")
+
+    @pytest.mark.parametrize(
+        ("body", "wide"),
+        [
+            ("<p>short</p>", 390),
+            ("<div style='width: 500px'>x</div>", 500),
+            # The window stays, all that is in it moves: nobody scrolls a page of text sideways to read it.
+            ("<div class='content' style='overflow-x: auto'><div style='width: 500px'>x</div></div>", 500),
+            ("<div class='content' style='overflow-x: hidden'><div style='width: 500px'>x</div></div>", 500),
+            ("<div style='overflow-x: auto'><div style='width: 500px'>x</div></div>", 390),
+        ],
+    )
+    def test_a_page_that_is_too_wide_is_found(
+        self, body: str, wide: int, tab: Browser, tmp_path: Path
+    ) -> None:
+        page = tmp_path / "page.html"
+        page.write_text(f"<!DOCTYPE html><body style='margin: 0'>{body}</body>", encoding="utf-8")
+        assert _module("proofread").width(tab, page) == wide
+
+    def test_our_pages_fit_a_telephone_and_show_no_markup(self, site: Path) -> None:
+        if found() is None:
+            pytest.skip("no Chromium on the path")
+        assert _module("proofread").faults(site) == []
+
+    def test_words_of_a_table_become_cards_and_numbers_stay_a_table(self, site: Path, tab: Browser) -> None:
+        tables = "[...document.querySelectorAll('table.docutils')].map(t => getComputedStyle(t).display)"
+        _module("proofread").width(tab, site / "index.html")
+        assert tab.value(tables) == ["block", "table"]
+        cell = "document.querySelector('.cards tbody tr td:nth-child(%d)')"
+        assert tab.value(f"getComputedStyle({cell % 2}, '::before').content") == '"Unit: "'
+        empty = "getComputedStyle(document.querySelector('.cards td.empty')).display"
+        assert tab.value(empty) == "none"
+        tab.open((site / "index.html").as_uri(), 1280)
+        assert tab.value(tables) == ["table", "table"]
+
+    def test_gallery_is_a_grid_of_thumbnails(self, site: Path, tab: Browser) -> None:
+        from PIL import Image
+
+        _module("proofread").width(tab, site / "gallery.html")
+        columns = "getComputedStyle(document.querySelector('.gallery')).gridTemplateColumns.split(' ').length"
+        assert tab.value(columns) == 2
+        shown = "map(i => [i.getAttribute('src'), i.alt, i.loading])"
+        cards = tab.value(f"[...document.querySelectorAll('.gallery img')].{shown}")
+        assert [alt for _, alt, _ in cards] == ["What view_washing_machine shows", "What trade_runup shows"]
+        for place, _, loading in cards:
+            whole = site / "_images" / f"{Path(place).stem}.png"
+            assert loading == "lazy" and 10 * (site / place).stat().st_size < 9 * whole.stat().st_size
+            with Image.open(site / place) as small:
+                assert small.width <= 480 and small.height <= 360
+        links = "[...document.querySelectorAll('.gallery .card a')].map(a => a.getAttribute('href'))"
+        assert tab.value(links) == [
+            *("_images/view_washing_machine.png", "index.html"),
+            *("_images/trade_runup.png", "index.html"),
+        ]
+        commands = "[...document.querySelectorAll('.gallery .command')].map(p => p.textContent)"
+        assert tab.value(commands) == ["leblanc view view_washing_machine", "leblanc view trade_runup"]
+
+    def test_every_option_stands_in_the_reference(self, site: Path) -> None:
+        from html import unescape
+
+        from typer.main import get_command
+
+        from leblanc.cli import application
+
+        page = unescape(re.sub(r"<[^>]+>", "", (site / "commands.html").read_text(encoding="utf-8")))
+        commands = get_command(application()).commands  # type: ignore[attr-defined]
+        for name, command in commands.items():
+            assert f"leblanc {name}" in page
+            options = [param for param in command.params if param.opts[-1].startswith("-")]
+            assert options and not [option for option in options if option.opts[-1] not in page]
+            assert not [param.name for param in command.params if param.help and param.help not in page]
 
 
 class TestExamples:

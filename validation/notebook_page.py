@@ -22,7 +22,7 @@ _PLURAL = {"agrees": "agree", "erratum": "errata", "trend": "trends", "differs":
 
 _LEFT = 'style="text-align: left; vertical-align: top"'
 _SENTENCE = 40  # characters of a cell that is read, not compared with those above and below
-# On a telephone a row of words becomes a card, with the names of the columns in it; numbers scroll in their box.
+# On a telephone a row of words becomes a card with the names of the columns; numbers scroll in their box.
 _CARDS = """<style>@media screen and (max-width: 40em) {
 .cards thead { display: none }
 .cards, .cards tbody, .cards tr, .cards td { display: block; width: auto }

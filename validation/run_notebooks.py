@@ -139,7 +139,7 @@ def execute(path: Path, out: Path) -> str:
         except (CellExecutionError, CellTimeoutError, DeadKernelError) as error:
             wrong = str(error)
     _without_first(book)
-    _write(book, path.stem, out)
+    write_pages(book, path.stem, out)
     return wrong or _complaints(book)
 
 
@@ -167,7 +167,15 @@ def _complaints(book: Any) -> str:
     )
 
 
-def _write(book: Any, stem: str, out: Path) -> None:
+def write_pages(book: Any, stem: str, out: Path) -> None:
+    """Write a notebook as .ipynb and as a page that needs nothing else.
+
+    Parameters
+    ----------
+    book : with its outputs
+    stem : name of both files
+    out : their folder, made if it is missing
+    """
     import nbformat
     from nbconvert import HTMLExporter
 

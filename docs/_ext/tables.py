@@ -1,4 +1,4 @@
-"""Tables of words become cards on a telephone: their cells carry the names of their columns for the style sheet.
+"""Tables of words become cards on a telephone: a cell carries the name of its column for the style sheet.
 
 A table of numbers scrolls in its box instead, so that they stay below one another.
 """

@@ -1,5 +1,6 @@
 import json
 import math
+import re
 from functools import cache
 
 import numpy as np
@@ -222,3 +223,14 @@ def test_a_trend_tells_the_size_of_its_effect_unless_the_source_has_words_alone(
         with pytest.raises(InputError) as caught:
             Case("g/a", "s", "q", printed, 7.1, "near", "trend")
         assert caught.value.field == "effect"
+
+
+def test_expressions_stand_as_on_paper() -> None:
+    """`c_x y^2`, not `c_x*y**2`: where the words go through Markdown, asterisks would be emphasis."""
+    texts = [
+        text
+        for case in by_name().values()
+        for text in (case.quantity, case.note, case.source, case.printed, case.computed)
+        if isinstance(text, str)
+    ]
+    assert len(texts) > 100 and not [text for text in texts if re.search(r"[*`$\\]", text)]

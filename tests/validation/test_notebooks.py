@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import json
 import re
 import sys
@@ -13,6 +14,7 @@ import pytest
 
 from leblanc.cli import exit_code
 from validation import run_notebooks
+from validation.notebook_page import Table
 from validation.run_notebooks import texts
 
 ROOT = Path(__file__).parents[2]
@@ -133,6 +135,34 @@ def test_jupytext_reads_the_same_cells(path: Path) -> None:
     book = read(path)
     assert [one.source for one in cells if one.cell_type == "markdown"] == book.words
     assert len([one for one in cells if one.cell_type == "code"]) == len(book.code)
+
+
+def test_pages_show_no_markup_need_no_network_and_fit_a_telephone(tmp_path: Path) -> None:
+    """The text of each notebook, with tables and long code as cells have them; nothing is run."""
+    for module in ("jupytext", "nbconvert"):
+        pytest.importorskip(module)
+    import jupytext
+    from nbformat.v4 import new_code_cell, new_output
+
+    sys.path.insert(0, str(ROOT / "docs"))
+    try:
+        proofread = importlib.import_module("proofread")
+    finally:
+        sys.path.pop(0)
+    names = tuple(f"column {k}" for k in range(9))
+    tables = (
+        Table(("what", *names), (("words " * 20, *(["123456.789"] * 9)),), "a foot"),
+        Table(names, ((["123456.789"] * 9),)),
+    )
+    for path in NOTEBOOKS:
+        book = jupytext.read(path, fmt="py:percent")
+        shown = [new_output("display_data", {"text/html": table._repr_html_()}) for table in tables]
+        book.cells.append(new_code_cell("x = " + "1 + " * 60 + "1", outputs=shown))
+        run_notebooks.write_pages(book, path.stem, tmp_path)
+        page = (tmp_path / f"{path.stem}.html").read_text(encoding="utf-8")
+        assert "<script" not in page and not re.search(r"""(src|href)=["']https?:""", page)
+    assert len(list(tmp_path.glob("*.html"))) == len(NOTEBOOKS)
+    assert proofread.faults(tmp_path) == []
 
 
 def test_without_the_extra_its_name_is_said(

@@ -24,7 +24,7 @@ from validation.figures import rigs as rig_figures
 from validation.figures import volume as volume_figures
 from validation.figures import whirl as whirl_figures
 from validation.figures.layer import bore_summary
-from validation.notebook_page import case_table, from_markdown, picture, verdicts
+from validation.notebook_page import Table, case_table, from_markdown, picture, verdicts
 from validation.trade import again, kept, names
 from validation.trade.answers import Case as TradeCase
 from validation.trade.cases import Question, response_question
@@ -45,6 +45,15 @@ def test_table_of_cases() -> None:
     html = table._repr_html_()
     assert "a &lt; b &amp; c" in html and html.count("<tr") == 4 and "<br>a note" in html
     assert "group/two" not in html and "case two]" in html
+
+
+def test_rows_of_words_can_become_cards() -> None:
+    """A cell says which column it is in; a table of numbers alone stays one, in a box that scrolls."""
+    words = Table(("what", "a < b"), (("as long as a sentence that is read by itself", "2"),))._repr_html_()
+    numbers = Table(("speed", "angle"), (("600", "90"),))._repr_html_()
+    assert '<table class="cards"' in words and words.count('data-name="a &lt; b"') == 1
+    assert "cards" not in numbers
+    assert all(text.startswith('<div style="overflow-x: auto">') for text in (words, numbers))
 
 
 def test_verdicts_leave_out_what_none_has() -> None:

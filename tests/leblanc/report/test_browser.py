@@ -55,7 +55,7 @@ NAMES = ["centrifuge", "tub", "awkward", "many", "nothing"]
 
 
 @pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("width", [1280, 400])
+@pytest.mark.parametrize("width", [1280, 390])
 def test_opens_and_fits(name: str, width: int, tab: Browser, pages: dict[str, Path]) -> None:
     address = pages[name].as_uri()
     tab.open(address, width)
