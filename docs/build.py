@@ -68,10 +68,15 @@ def _without_empty_patterns(index: Path) -> None:
 
 
 def _notebooks(target: Path, quick: bool) -> None:
-    """Bring the executed notebooks; those that are older than their text are executed first."""
+    """Bring the executed notebooks; those older than their text or what they call are executed first."""
     executed = ROOT / "out" / "notebooks"
     texts = sorted(NOTEBOOKS.glob("[0-9]*.py"))
-    stale = [text for text in texts if _older(executed / f"{text.stem}.ipynb", text)]
+    called = [path for path in NOTEBOOKS.parent.rglob("*.py") if path.parent != NOTEBOOKS]
+    stale = [
+        text
+        for text in texts
+        if any(_older(executed / f"{text.stem}.ipynb", path) for path in (text, *called))
+    ]
     if stale and not quick:
         command = [sys.executable, "-m", "leblanc", "notebooks", *(text.stem for text in stale)]
         subprocess.run([*command, "--out", str(executed)], cwd=ROOT, check=True)

@@ -1,7 +1,7 @@
 """Read built pages as their readers do: `python docs/proofread.py out/docs`; exit code 1 if a page is wrong.
 
-Markup that shows as it was typed is found without a browser. Whether a page fits a telephone is asked of a
-Chromium, where there is one.
+Markup that shows as it was typed, and pictures without words, are found without a browser. Whether a page
+fits a telephone is asked of a Chromium, where there is one.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from tests.oracles.browser import Browser, browser, found  # noqa: E402 - of thi
 PHONE = 390, 844  # pixels
 # Markdown, TeX and the roles of Sphinx, as they look when nothing has read them.
 _MARKUP = re.compile(r"\*\*|`|\$|\\|\]\(|\{\w[\w:]*\}(?=`|$)")
+_NO_WORDS = re.compile(r"^$|\.(png|svg|webp)$|^No description")
 _AS_TYPED = {"code", "pre", "script", "style", "svg", "title"}
 _EMPTY = {"br", "col", "hr", "img", "input", "link", "meta", "source", "wbr"}
 # The frames of a page: one that is wider inside than outside moves the whole page, or cuts it off. Boxes in
@@ -45,6 +46,8 @@ class _Text(HTMLParser):
         """Go into an element."""
         names = (dict(attrs).get("class") or "").split()
         typed = tag in _AS_TYPED or bool({"math", "sig"} & set(names))
+        if tag == "img" and _NO_WORDS.search(dict(attrs).get("alt") or ""):
+            self.leaks.append("a picture without words for who cannot see it")
         if tag == "em" and self.last.isalnum() and not self._typed():
             self.leaks.append("emphasis within a word")
         if tag not in _EMPTY:

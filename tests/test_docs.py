@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import base64
 import doctest
 import importlib
 import inspect
@@ -16,6 +17,7 @@ import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
@@ -409,10 +411,12 @@ class TestDocstrings:
         cells = [
             {"cell_type": "markdown", "source": [f"{said}\n", "and *more*"]},
             {"cell_type": "code", "source": "table", "outputs": [{"data": {"text/html": printed}}]},
+            {"cell_type": "code", "metadata": {}, "outputs": [{"metadata": {"image/png": {"alt": "a"}}}]},
         ]
         found = json.loads(texts.linked_notebook(json.dumps({"cells": cells}), {"DR18"}))["cells"]
         assert found[0]["source"] == "as [{cite:label}`DR18`, eq. 8] says\nand *more*"
         assert found[1] == cells[1]
+        assert found[2]["metadata"] == {"mystnb": {"image": {"alt": "a"}}}
 
 
 @pytest.fixture(scope="module")
@@ -424,11 +428,36 @@ def tab() -> Iterator[Browser]:
         yield tab
 
 
+def _notebook() -> Any:
+    """A notebook with what ours show: cases with their sources, numbers, a picture."""
+    from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
+
+    from validation.notebook_page import Table, picture
+
+    long, numbers = "as many words as a sentence has " * 3, ("123456.789",) * 12
+    image, about = picture(DOCS / "images" / "exciter_table.png")._repr_png_()
+    shown = [
+        new_output("display_data", {"text/html": table._repr_html_()})
+        for table in (
+            Table(("What", "Printed"), ((f"{long}\n[DR18, eq. 18; case x]", "1"),)),
+            Table(numbers, (numbers,)),
+        )
+    ]
+    png = {"image/png": base64.b64encode(image).decode()}
+    shown.append(new_output("display_data", png, metadata={"image/png": about}))
+    cells = [new_markdown_cell("# Book\n\nAs [DR18, eq. 8] says."), new_code_cell("x", outputs=shown)]
+    return new_notebook(
+        cells=cells, metadata={"language_info": {"name": "python", "pygments_lexer": "python"}}
+    )
+
+
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """All that makes a page hard to set, by the configuration, extensions and styles of our site."""
     for name in ("sphinx", "furo", "myst_nb", "sphinxcontrib.bibtex"):
         pytest.importorskip(name)
+    import nbformat
+
     source = tmp_path_factory.mktemp("site") / "docs"
     for name in ("_ext", "_static"):
         shutil.copytree(DOCS / name, source / name, ignore=shutil.ignore_patterns("__pycache__"))
@@ -442,7 +471,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     words = " ".join(["words"] * 20)
     numbers = "|".join(["123456.789"] * 12)
     (source / "index.md").write_text(
-        "# Front\n\n```{toctree}\ngallery\ncommands\n```\n\n"
+        "# Front\n\n```{toctree}\ngallery\ncommands\nnotebook\n```\n\n"
         "| Key | Unit | Meaning |\n|---|---|---|\n"
         f"| `a_long_name` | kg\\*m | {words} |\n| `b` |  | b |\n\n"
         f"|{numbers}|\n{'|---' * 12}|\n|{numbers}|\n\n"
@@ -456,7 +485,12 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
         for name in ("view_washing_machine", "trade_runup")
     )
     (source / "gallery.md").write_text(f"# Gallery\n\nAll.\n\n## Views\n\n{cards}", encoding="utf-8")
-    (source / "commands.md").write_text("# Commands\n\n```{all-commands}\n```\n", encoding="utf-8")
+    # Names as long fill two columns of the index.
+    names = [f"```{{py:function}} a_name_of_a_function_as_long_as_any_{k}()\n```" for k in range(4)]
+    cited = "```{bibliography}\n:all:\n:style: keyed\n```"
+    text = "\n\n".join(["# Commands", "```{all-commands}\n```", "## Functions", *names, cited])
+    (source / "commands.md").write_text(text, encoding="utf-8")
+    nbformat.write(_notebook(), source / "notebook.ipynb")
     out = source.parent / "site"
     command = [sys.executable, "-m", "sphinx", "-W", "-q", "-b", "html", str(source), str(out)]
     done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=False)
@@ -477,6 +511,8 @@ class TestProofreading:
             "<td>{cite:label}`DR18`</td>",
             "<p>[page](page.md)</p>",
             "<td>0.6 kg<em>mm (a plain number is in kg</em>m)</td>",
+            "<img src='x.png'>",
+            "<img src='x.png' alt='../x.png'>",
         ],
     )
     def test_markup_that_shows_is_found(self, shown: str) -> None:

@@ -80,17 +80,19 @@ class Picture:
     ----------
     png : the file's content
     width : on the screen, pixels
+    alt : what it shows, for who cannot see it
     """
 
     png: bytes
     width: int
+    alt: str
 
     def __repr__(self) -> str:
         return "figure"
 
-    def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
+    def _repr_png_(self) -> tuple[bytes, dict[str, int | str]]:
         """For Jupyter."""
-        return self.png, {"width": self.width}
+        return self.png, {"width": self.width, "alt": self.alt}
 
 
 def case_table(cases: Sequence[Case]) -> Table:
@@ -135,17 +137,20 @@ def picture(figure: Figure | Path) -> Picture:
 
     Parameters
     ----------
-    figure : of the page's size, or a file
+    figure : of the page's size, or a file with its title
     """
+    from PIL import Image
+
     from leblanc.figures.page import WIDTH, style
 
     width = round(WIDTH * _WIDE)
     if isinstance(figure, Path):
-        return Picture(figure.read_bytes(), width)
+        with Image.open(figure) as image:
+            return Picture(figure.read_bytes(), width, image.info["Title"])
     content = io.BytesIO()
     with style():
         figure.savefig(content, format="png", dpi=_DPI, metadata={"Software": None})
-    return Picture(content.getvalue(), width)
+    return Picture(content.getvalue(), width, figure.alt or str(figure.caption))
 
 
 def drawn(draw: Callable[[Path], Path]) -> Picture:

@@ -200,9 +200,16 @@ def linked(text: str, known: set[str]) -> str:
 
 
 def linked_notebook(content: str, known: set[str]) -> str:
-    """The same for the text of a notebook; what its code printed is no Markdown and stays as it is."""
+    """The same for the text of a notebook; what its code printed is no Markdown and stays as it is.
+
+    Its pictures get the words that they bring, which MyST-NB takes from the cell alone.
+    """
     book = json.loads(content)
     for cell in book["cells"]:
         if cell["cell_type"] == "markdown":
             cell["source"] = linked("".join(cell["source"]), known)
+        for output in cell.get("outputs", ()):
+            alt = output.get("metadata", {}).get("image/png", {}).get("alt")
+            if alt:
+                cell["metadata"].setdefault("mystnb", {})["image"] = {"alt": alt}
     return json.dumps(book)
