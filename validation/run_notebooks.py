@@ -33,6 +33,11 @@ pre { white-space: pre-wrap !important; overflow-wrap: anywhere; }
   .jp-RenderedHTMLCommon code { overflow-wrap: anywhere; }
 }
 </style>{% endblock %}
+{% block data_png %}<div class="jp-RenderedImage jp-OutputArea-output {{ extra_class }}">
+<img src="data:image/png;base64,{{ output.data["image/png"] }}"
+width="{{ (output | get_metadata("width", "image/png")) or "" }}"
+alt="{{ ((output | get_metadata("alt", "image/png")) or "") | escape_html }}">
+</div>{% endblock %}
 """
 # Run first in each kernel and not kept: the reader's own kernel is left as it is.
 _STRICT = """\

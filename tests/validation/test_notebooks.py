@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import base64
 import importlib
 import json
 import re
@@ -14,7 +15,7 @@ import pytest
 
 from leblanc.cli import exit_code
 from validation import run_notebooks
-from validation.notebook_page import Table
+from validation.notebook_page import Table, picture
 from validation.run_notebooks import texts
 
 ROOT = Path(__file__).parents[2]
@@ -154,13 +155,17 @@ def test_pages_show_no_markup_need_no_network_and_fit_a_telephone(tmp_path: Path
         Table(("what", *names), (("words " * 20, *(["123456.789"] * 9)),), "a foot"),
         Table(names, ((["123456.789"] * 9),)),
     )
+    image, about = picture(ROOT / "docs" / "images" / "exciter_table.png")._repr_png_()
+    png = {"image/png": base64.b64encode(image).decode()}
     for path in NOTEBOOKS:
         book = jupytext.read(path, fmt="py:percent")
         shown = [new_output("display_data", {"text/html": table._repr_html_()}) for table in tables]
+        shown.append(new_output("display_data", png, metadata={"image/png": about}))
         book.cells.append(new_code_cell("x = " + "1 + " * 60 + "1", outputs=shown))
         run_notebooks.write_pages(book, path.stem, tmp_path)
         page = (tmp_path / f"{path.stem}.html").read_text(encoding="utf-8")
-        assert "<script" not in page and not re.search(r"""(src|href)=["']https?:""", page)
+        assert 'alt="Vibratory table"' in page and "<script" not in page
+        assert not re.search(r"""(src|href)=["']https?:""", page)
     assert len(list(tmp_path.glob("*.html"))) == len(NOTEBOOKS)
     assert proofread.faults(tmp_path) == []
 
