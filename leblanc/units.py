@@ -13,6 +13,7 @@ import math
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
+from decimal import Decimal
 from functools import partial
 from numbers import Real
 from typing import Any
@@ -64,7 +65,7 @@ VOLUME = Dimension("volume", "m^3", "10 ml")
 MASS = Dimension("mass", "kg", "4 kg")
 DENSITY = Dimension("density", "kg/m^3", "998 kg/m^3")
 VISCOSITY = Dimension("kinematic viscosity", "m^2/s", "1.0 mm^2/s")
-STIFFNESS = Dimension("stiffness", "N/m", "4.4e4 N/m")
+STIFFNESS = Dimension("stiffness", "N/m", "44000 N/m")
 DAMPING = Dimension("damping coefficient", "N*s/m", "84 N*s/m")
 UNBALANCE = Dimension("unbalance", "kg*m", "0.6 kg*mm")
 INERTIA = Dimension("moment of inertia", "kg*m^2", "0.5 kg*m^2")
@@ -75,7 +76,7 @@ RATE = Dimension("rate", "1/s", "0.5 1/s")
 ACCELERATION = Dimension("acceleration", "m/s^2", "9.81 m/s^2")
 TEMPERATURE = Dimension("temperature", "K", "20 degC")
 TEMPERATURE_STEP = Dimension("difference of temperatures", "K", "900 K")
-EXPANSION = Dimension("thermal expansion", "1/K", "7e-4 1/K")
+EXPANSION = Dimension("thermal expansion", "1/K", "0.0007 1/K")
 VELOCITY = Dimension("velocity", "m/s", "6.3 mm/s")
 ANGULAR_SPEED = Dimension("angular speed", "rad/s", "1000 rpm", also=("1/s",))
 ANGULAR_ACCELERATION = Dimension("angular acceleration", "rad/s^2", "8 rad/s^2", also=("1/s^2",))
@@ -331,11 +332,37 @@ def parse(value: object, dimension: Dimension, field: str = "value") -> float:
     return number
 
 
-_BOUND = r"-?(?:\d+\.?\d*)(?:e[+-]?\d+)?"
+_WHOLE = 1e6  # from here on a bound is a whole number
+
+
+def written_out(value: float) -> str:
+    """A bound for a message without a power of ten: six digits or whole, many of them in groups of three.
+
+    Parameters
+    ----------
+    value : in the unit that follows it
+
+    Examples
+    --------
+    >>> written_out(0.065), written_out(1e9), written_out(1e-12)
+    ('0.065', '1 000 000 000', '0.000 000 000 001')
+    """
+    if not math.isfinite(value):
+        return str(value)
+    digits = f"{value:.6g}" if abs(value) < _WHOLE else f"{round(value):.15g}"
+    whole, _, part = f"{Decimal(digits):f}".partition(".")
+    whole = f"{int(whole):,}".replace(",", " ") if len(whole.lstrip("-")) > _PLAIN else whole
+    if len(part) > _PLAIN:
+        part = " ".join(part[k : k + 3] for k in range(0, len(part), 3))
+    return f"{whole}.{part}" if part else whole
+
+
+_BOUND = r"-?(?:\d{1,3}(?: \d{3})+(?!\d)|\d+)(?:\.(?:\d{3} )+\d{1,3}|\.\d*)?(?:e[+-]?\d+)?"
+_POWERED = re.compile(r"(?<![\w.])-?\d+\.?\d*e[+-]?\d+(?![\w.])")
 
 
 def allowed_as_typed(allowed: str, typed: object) -> str:
-    """What is allowed with its bounds in the unit that the user typed instead of the SI unit.
+    """What is allowed, its bounds in the unit that the user typed, all of them written out.
 
     Parameters
     ----------
@@ -347,6 +374,11 @@ def allowed_as_typed(allowed: str, typed: object) -> str:
     >>> allowed_as_typed("below the radius, 0.065 m", "300 mm")
     'below the radius, 65 mm'
     """
+    return _POWERED.sub(lambda found: written_out(float(found[0])), _in_unit_typed(allowed, typed))
+
+
+def _in_unit_typed(allowed: str, typed: object) -> str:
+    """The bounds in the unit typed."""
     if isinstance(typed, list | tuple):
         typed = next((entry for entry in typed if isinstance(entry, str)), None)
     match = _QUANTITY.fullmatch(typed.translate(_SPELLINGS)) if isinstance(typed, str) else None
@@ -379,15 +411,14 @@ def _bounds_as_typed(found: re.Match[str], unit: str, scale: tuple[float, float]
     factor, zero = scale
 
     def written(bound: str) -> str:
-        return re.sub(_BOUND, lambda it: _digits((float(it[0]) - zero) / factor), bound, count=1)
+        return re.sub(_BOUND, lambda it: written_out((_read(it[0]) - zero) / factor), bound, count=1)
 
     return f"{written(found[1] or '')}{written(found[2])} {unit}"
 
 
-def _digits(value: float) -> str:
-    """Six digits, as a person would type them."""
-    text = f"{value:.6g}"
-    return f"{value:.0f}" if "e+" in text and abs(value) < 1e9 else text
+def _read(bound: str) -> float:
+    """A bound as it stands in a message."""
+    return float(bound.replace(" ", ""))
 
 
 def parse_option(text: str | float, dimension: Dimension, field: str) -> float:

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, PlainValidator
 
 from leblanc import units
 from leblanc.scene.schema.load import meant
-from leblanc.units import Dimension, parse
+from leblanc.units import Dimension, parse, written_out
 
 
 class Refused(ValueError):  # noqa: N818 - it says what became of the value
@@ -48,7 +48,9 @@ class Quantity:
         """What is allowed, as a text."""
         zero = "0, or " if self.or_zero and self.low > 0.0 else ""
         unit = f" {self.dimension.unit}" if self.dimension.unit else ""
-        return f"{self.dimension.allowed}, {zero}from {self.low:g} to {self.high:g}{unit}"
+        return (
+            f"{self.dimension.allowed}, {zero}from {written_out(self.low)} to {written_out(self.high)}{unit}"
+        )
 
     def __call__(self, value: object) -> float:
         """Value in SI units."""

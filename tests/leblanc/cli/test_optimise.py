@@ -79,7 +79,7 @@ def test_a_scene_without_the_table_keeps_its_digest() -> None:
         ({"samples": -1}, "optimise.samples", "a whole number"),
         ({"dry_patch": "no"}, "optimise.dry_patch", "true or false"),
         ({"stability_margin": "1 Hz"}, "optimise.stability_margin", "a rate"),
-        ({"clearance": 0}, "optimise.clearance", "from 1e-12"),
+        ({"clearance": 0}, "optimise.clearance", "from 0.000 000 000 001 to"),
         ({"limit_at": "never"}, "optimise.limit_at", "operating"),
     ],
 )

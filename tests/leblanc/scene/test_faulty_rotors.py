@@ -19,7 +19,7 @@ CASES: dict[str, tuple[Case, ...]] = {
         case('kind = "two_plane"', "", "rotor.kind", "jeffcott, two_plane, tub, exciter"),
         case('mass = "20 kg"', "", "rotor.mass", "must be given", "a mass"),
         case('transverse_inertia = "0.5 kg*m^2"', "", "rotor.transverse_inertia", "a moment of inertia"),
-        case('"0.5 kg*m^2"', "0", "rotor.transverse_inertia", "from 1e-12"),
+        case('"0.5 kg*m^2"', "0", "rotor.transverse_inertia", "from 0.000 000 000 001 to"),
         case(
             '"2000 kg*cm^2"',
             '"1.1 kg*m^2"',

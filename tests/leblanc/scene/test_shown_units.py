@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterator
+from typing import Annotated, Any, get_args, get_origin
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from leblanc import units
+from leblanc.scene.scene import Scene
+from leblanc.scene.schema.part import Part, allowed_at, parts_of, rule_of
+from leblanc.scene.schema.rules import Quantity
+from leblanc.studies.sweep.study import Study
 from leblanc.units import (
     ANGULAR_SPEED,
     LENGTH,
@@ -26,6 +32,7 @@ from leblanc.units import (
     rpm_range,
     unit_for,
     with_unit,
+    written_out,
 )
 
 # The bounds of what a scene may say, in SI.
@@ -121,3 +128,88 @@ def test_a_temperature_is_in_degrees() -> None:
 )
 def test_bounds_in_the_unit_typed(allowed: str, typed: object, said: str) -> None:
     assert allowed_as_typed(allowed, typed) == said
+
+
+def _parts(root: type[Part]) -> dict[str, type[Part]]:
+    """A table and all tables within it, by name."""
+    found = {root.__name__: root}
+    for field in root.model_fields.values():
+        for part in parts_of(field).values():
+            found |= {} if part.__name__ in found else _parts(part)
+    return found
+
+
+PARTS = _parts(Scene) | _parts(Study)
+
+
+def _quantities(thing: Any) -> Iterator[Quantity]:
+    """Rules with bounds, in a rule or an annotation."""
+    if isinstance(thing, Quantity):
+        yield thing
+    elif get_origin(thing) is Annotated:
+        for part in get_args(thing):
+            yield from _quantities(getattr(part, "func", part))
+    else:
+        inside = [] if isinstance(thing, type) else getattr(thing, "__dict__", {}).values()
+        for part in (*get_args(thing), *inside):
+            yield from _quantities(part)
+
+
+BOUNDED = sorted(
+    {
+        quantity
+        for part in PARTS.values()
+        for field in part.model_fields.values()
+        for thing in (rule_of(field), field.annotation)
+        for quantity in _quantities(thing)
+    },
+    key=lambda quantity: (quantity.dimension.name, quantity.low, quantity.high),
+)
+POWER = re.compile(r"\d[eE][+-]?\d")
+
+
+def test_every_bounded_field_is_looked_at() -> None:
+    assert {"Scene", "JeffcottRotor", "TubRotor", "Baffles", "Optimisation", "Study"} <= PARTS.keys()
+    kinds = {quantity.dimension for quantity in BOUNDED}
+    assert {UNBALANCE, units.STIFFNESS, units.INERTIA, units.EXPANSION, units.TORQUE} <= kinds
+    assert len(BOUNDED) > 30
+
+
+@pytest.mark.parametrize("name", PARTS)
+def test_what_a_field_allows_has_no_power_of_ten(name: str) -> None:
+    for key, field in PARTS[name].model_fields.items():
+        allowed = allowed_at(field) if rule_of(field) is not None or parts_of(field) else ""
+        assert not POWER.search(allowed), f"{key}: {allowed}"
+
+
+@pytest.mark.parametrize("quantity", BOUNDED, ids=lambda q: f"{q.dimension.name}-{q.low:g}-{q.high:g}")
+def test_bounds_have_no_power_of_ten_in_any_unit_and_read_back(quantity: Quantity) -> None:
+    """Six digits, which is what is written of them."""
+    dimension = quantity.dimension
+    for unit in [dimension.unit, *units._COMMON.get(dimension, {})]:
+        said = allowed_as_typed(quantity.allowed, f"1 {unit}" if unit else 1.0)
+        assert not POWER.search(said), said
+        found = re.search(rf"from (-?[\d. ]+) to (-?[\d. ]+?){re.escape(f' {unit}'.rstrip())}($|;)", said)
+        assert found, said
+        for text, bound in zip(found.groups()[:2], (quantity.low, quantity.high), strict=True):
+            read = parse(
+                f"{text.replace(' ', '')} {unit}".strip() if unit else float(text.replace(" ", "")), dimension
+            )
+            assert math.isclose(read, bound, rel_tol=5.001e-6, abs_tol=0.0), said
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (1e9, "1 000 000 000"), (-1e3, "-1000"), (9549296.6, "9549297"), (12345678.4, "12 345 678"),
+        (1e-6, "0.000001"), (1e-9, "0.000 000 001"), (9.5493e-6, "0.000 009 549 3"), (0.0, "0"),
+    ],
+)  # fmt: skip
+def test_bounds_are_written_out(value: float, text: str) -> None:
+    assert written_out(value) == text
+
+
+def test_a_bound_in_groups_is_told_in_the_unit_typed() -> None:
+    said = "from 0 to 1 000 000 000 kg*m, and below twice 0.000 000 001 5 kg*m"
+    wanted = "from 0 to 1 000 000 000 000 kg*mm, and below twice 0.0000015 kg*mm"
+    assert allowed_as_typed(said, "3 kg*mm") == wanted
