@@ -17,8 +17,8 @@ from leblanc.figures.response import DRY, SHADE, UNSTABLE, WET
 from leblanc.results.base import one_line
 from leblanc.results.notes import plane_label
 from leblanc.results.runup import RunupResult
-from leblanc.text.runup import describe_model, largest
-from leblanc.units import MM, RPM, friction_words
+from leblanc.text.runup import describe_model, largest, largest_dry
+from leblanc.units import LENGTH, MM, RPM, friction_words, with_unit
 from meshes.arrays import Array, Flags
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -29,10 +29,13 @@ TIME_FRAME = Frame(left=0.72, top=0.12, between=0.1, below=0.4)
 ENERGY_FRAME = Frame(left=1.75, top=0.12, between=0.0, below=0.42)
 ASIDE = 0.45  # inches, for a second axis on the right
 LINES = 7  # of a caption
-UP, BACK = WET, DRY
+UP, BACK, GAINED, USED = WET, "#56B4E9", WET, DRY
+DRY_BACK = "#E69F00"
 STEADY, WHIRL = "0.45", "#F0E442"
 BACK_DASHES = (0, (4.0, 1.2, 1.0, 1.2))
 ARROWS = 3  # along each way
+MARKS = 12  # along the run without liquid
+FAR = 2.5  # times the largest of the run: a steady peak above it is told in words and cut by the axes
 _RATES = (lambda rpm: rpm / RPM, lambda rate: rate * RPM)  # from rpm to rad/s and back
 LAYERS = ((WET, "-"), (DRY, (0, (3.5, 1.5))), ("#009E73", (0, (1, 1.2))))  # colour and line of a chamber
 
@@ -56,28 +59,24 @@ def write_figures(result: RunupResult, directory: Path) -> tuple[FigureFiles, ..
 
 
 def speed_figure(result: RunupResult) -> Figure:
-    """Amplitude over speed, up and back distinguished, with the steady branches behind."""
-    speed, amplitude = result.speed * RPM, result.amplitude * MM
-    low, high = float(speed.min()), float(speed.max())
+    """Amplitude over speed with and without liquid, up and back, with the steady branches behind."""
+    speed = result.speed * RPM
+    every = np.concatenate((speed, result.speed_dry[~np.isnan(result.speed_dry)] * RPM))
+    low, high = float(every.min()), float(every.max())
     room = 0.02 * (high - low) if high > low else 1.0
     with style():
         figure = Figure()
         axes: Axes = figure.add_axes((0, 0, 1, 1))
         _shade(axes, result, (low, high))
-        _steady(axes, result)
-        turn = result.turning
-        top = 1.15 * float(amplitude.max()) or 1.0
+        top = 1.1 * max(_steady(axes, result), largest_drawn(result) * MM) or 1.0
         scale = ((high - low) or 1.0, top)
-        name = "run-up" if turn + 1 < speed.size else "run-up and hold"
-        ways: list[tuple[str, slice, dict[str, Any]]] = [
-            (name, slice(0, turn + 1), {"color": UP, "linewidth": 1.5}),
-            ("run-down", slice(turn, None), {"color": BACK, "linewidth": 1.3, "linestyle": BACK_DASHES}),
-        ]
-        for label, part, look in ways:
-            x, y = speed[part], amplitude[part]
-            if x.size > 1:
-                axes.plot(x, y, label=label, **look)
-                _arrows(axes, x, y, scale, look["color"])
+        for (label, x, y), look in zip(_ways(result), _LOOKS, strict=True):
+            if np.count_nonzero(~np.isnan(y)) > 1:
+                dry = "markerfacecolor" in look
+                marks = {"markevery": max(1, x.size // MARKS)} if dry else {}
+                axes.plot(x, y, label=label, **look, **marks)
+                if not dry:
+                    _arrows(axes, x, y, scale, look["color"])
         axes.set_xlim(low - room, high + room)
         axes.set_ylim(0.0, top)
         axes.set_xlabel("Speed (rpm)")
@@ -90,9 +89,47 @@ def speed_figure(result: RunupResult) -> Figure:
         text = f"Deflection of the axis{where} while the speed changes; arrows point on in time."
         lay_out(figure, [[axes]], [2.9], SPEED_FRAME, caption(result, text), LINES)
         figure.alt = (
-            f"Curve of the amplitude over speed with the steady branches behind; largest {largest(result)}."
+            "Curves of the amplitude over speed with and without liquid, the steady branches behind; largest "
+            f"{largest(result)}{largest_dry(result)}."
         )
     return figure
+
+
+_LOOKS: tuple[dict[str, Any], ...] = (
+    {"color": UP, "linewidth": 1.6, "zorder": 3.0},
+    {"color": BACK, "linewidth": 1.4, "linestyle": BACK_DASHES, "zorder": 2.9},
+    {"color": DRY, "linewidth": 1.0, "zorder": 2.5, "marker": "o", "markerfacecolor": "white"},
+    {
+        **{"color": DRY_BACK, "linewidth": 1.0, "zorder": 2.4, "linestyle": BACK_DASHES},
+        **{"marker": "o", "markerfacecolor": "white"},
+    },
+)
+
+
+def _ways(result: RunupResult) -> list[tuple[str, Array, Array]]:
+    """Name, speed in rpm and amplitude in mm on the way up and back, then both without liquid."""
+    turn = result.turning
+    up = "run-up" if result.turns_back else "run-up and hold"
+    liquid = result.layer_mass.sum() > 0.0
+    runs = [(result.speed, result.amplitude, "" if liquid else ", without liquid")]
+    runs += [(result.speed_dry, result.amplitude_dry, ", without liquid")] if liquid else []
+    found = [
+        (f"{name}{what}", speed[part] * RPM, amplitude[part] * MM)
+        for speed, amplitude, what in runs
+        for name, part in ((up, slice(0, turn + 1)), ("run-down", slice(turn, None)))
+    ]
+    return found + [("", np.empty(0), np.empty(0))] * (len(_LOOKS) - len(found))
+
+
+def largest_drawn(result: RunupResult) -> float:
+    """Largest amplitude of the run, with liquid or without, m.
+
+    Parameters
+    ----------
+    result : the run-up
+    """
+    dry = result.amplitude_dry
+    return max(float(result.amplitude.max()), float(dry[~np.isnan(dry)].max(initial=0.0)))
 
 
 def _shade(axes: Axes, result: RunupResult, limits: tuple[float, float]) -> None:
@@ -108,19 +145,34 @@ def _shade(axes: Axes, result: RunupResult, limits: tuple[float, float]) -> None
         axes.axvspan(left * RPM, right * RPM, zorder=0.5, label=label, **look)
 
 
-def _steady(axes: Axes, result: RunupResult) -> None:
-    """Branches of the steady response, thin; the rotor without liquid as well."""
+def _steady(axes: Axes, result: RunupResult) -> float:
+    """Branches of the steady response, thin; the rotor without liquid as well.
+
+    Returns
+    -------
+    Largest value that the axes must hold for them, mm; a peak far above the run's is told in words instead
+    """
     answer = result.steady
     if answer is None:
-        return
+        return 0.0
+    most, tops = FAR * largest_drawn(result) * MM, [0.0]
+
+    def named(label: str, *lines: Array) -> str:
+        top = max(float(line[~np.isnan(line)].max(initial=0.0)) for line in lines)
+        if top > most:
+            return f"{label} (up to {with_unit(top / MM, LENGTH)})"
+        tops.append(top)
+        return label
+
     stable, unstable = steady_lines(answer.speed * RPM, answer.branch_deflection, answer.branch_stable)
     thin = {"color": STEADY, "linewidth": 1.0}
-    axes.plot(*stable, **thin, label="steady response")
+    axes.plot(*stable, **thin, label=named("steady response", stable[1], unstable[1]))
     if not np.isnan(unstable[1]).all():
         axes.plot(*unstable, **thin, linestyle=UNSTABLE, label="steady response, unstable")
     dry = np.abs(np.where(np.isfinite(answer.deflection_dry), answer.deflection_dry, np.nan)) * MM
     dotted = {"color": "0.25", "linewidth": 1.0, "linestyle": (0, (1, 1.5))}
-    axes.plot(answer.speed * RPM, dry, **dotted, label="steady, without liquid")
+    axes.plot(answer.speed * RPM, dry, **dotted, label=named("steady, without liquid", dry))
+    return max(tops)
 
 
 def steady_lines(rpm: Array, branches: Any, calm: Flags) -> tuple[Line, Line]:
@@ -204,17 +256,27 @@ def _mark_time(axes: Axes, result: RunupResult) -> None:
 
 def _draw_speed(axes: Axes, result: RunupResult) -> None:
     axes.plot(result.time, result.speed * RPM, color="0.15", linewidth=1.2)
-    axes.set_ylim(0.0, 1.1 * float(result.speed.max()) * RPM)
+    if np.nanmax(np.abs(result.speed_dry - result.speed), initial=0.0) > 1e-3 * float(result.speed.max()):
+        axes.plot(result.time, result.speed_dry * RPM, **_BARE)
+    axes.set_ylim(0.0, 1.1 * float(np.nanmax([result.speed, result.speed_dry])) * RPM)
     axes.set_ylabel("Speed (rpm)")
     beside = axes.secondary_yaxis("right", functions=_RATES)
     beside.set_ylabel("(rad/s)")
 
 
 def _draw_amplitude(axes: Axes, result: RunupResult) -> None:
-    amplitude = result.amplitude * MM
-    axes.plot(result.time, amplitude, color=UP, linewidth=1.2)
-    axes.set_ylim(0.0, 1.12 * float(amplitude.max()) or 1.0)
+    dry = result.layer_mass.sum() == 0.0
+    axes.plot(result.time, result.amplitude * MM, color=DRY if dry else UP, linewidth=1.2)
+    if not dry and not np.isnan(result.amplitude_dry).all():
+        axes.plot(result.time, result.amplitude_dry * MM, **_BARE)
+    axes.set_ylim(0.0, 1.12 * largest_drawn(result) * MM or 1.0)
     axes.set_ylabel(_label(result))
+
+
+_BARE: dict[str, Any] = {
+    **{"color": DRY, "linewidth": 0.9, "zorder": 1.9, "label": "without liquid"},
+    **{"marker": "o", "markersize": 3.0, "markerfacecolor": "white", "markevery": 0.11},
+}
 
 
 def _label(result: RunupResult) -> str:
@@ -280,7 +342,7 @@ def energy_figure(result: RunupResult) -> Figure:
         figure = Figure()
         axes: Axes = figure.add_axes((0, 0, 1, 1))
         for row, (_, value, gained) in enumerate(terms):
-            look = {"color": UP, "label": "brought in"} if gained else {"color": BACK, "label": "used"}
+            look = {"color": GAINED if gained else USED, "label": "brought in" if gained else "used"}
             hatch = None if gained else "//"
             axes.barh(row, value, height=0.62, hatch=hatch, edgecolor="white", linewidth=0.5, **look)
         largest = max(abs(value) for _, value, _ in terms) or 1.0

@@ -18,7 +18,7 @@ from leblanc.results.notes import CLOSURE, ERROR, IN_TABLES
 from leblanc.results.response import peak
 from leblanc.results.runup import RunupResult
 from leblanc.text.numbers import MOST_RANGES, number
-from leblanc.text.runup import answer, describe_model
+from leblanc.text.runup import answer, describe_model, largest_dry
 from leblanc.text.runup import moments as samples
 from leblanc.units import LENGTH, MASS, MINUS, RPM, rpm_bands, rpm_range, unit_for, with_unit
 
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 DRY = 1e-3  # of the layer's mean depth: a wall with less on it counts as dry
 MASS_CHANGE = 1e-6  # relative change of a layer's volume to speak of
+CURVE = "runup_speed"  # the figure above all tables
 BALANCE = "runup_energy"  # the figure beside the table of the energy
 TERMS = {
     "unbalance": "work of the unbalance",
@@ -68,6 +69,9 @@ def moments(result: RunupResult) -> Table:
         (label, float(result.amplitude[k]), float(result.speed[k]), number(float(result.time[k])))
         for label, k in samples(result)
     ]
+    bare = result.peak_dry
+    if largest_dry(result):
+        found.insert(1, ("Without liquid", bare["amplitude"], bare["speed"], number(bare["time"])))
     highest = None if result.steady is None else peak(result.steady.deflection)
     if result.steady is not None and highest is not None:
         size = float(abs(result.steady.deflection[highest]))
@@ -152,7 +156,7 @@ def checks(result: RunupResult) -> Table:
                 Cell(_share(result.error_estimate) if rough else "no", warning=rough),
             ),
             _size(f"Energy lost above {number(100.0 * CLOSURE)} %", result.energy.closure, CLOSURE),
-            _size(f"Mass changed above {number(MASS_CHANGE)}", result.mass_error, MASS_CHANGE),
+            _size(f"Mass changed above {number(100.0 * MASS_CHANGE)} %", result.mass_error, MASS_CHANGE),
         ],
     )
 
@@ -213,7 +217,8 @@ def write_runup_report(result: RunupResult, what: About, figures: Sequence[Figur
         "checks": checks(result),
         "events": events(result),
         "balance": [picture(files) for files in figures if files.name == BALANCE],
-        "pictures": [picture(files) for files in figures if files.name != BALANCE],
+        "curve": [picture(files) for files in figures if files.name == CURVE],
+        "pictures": [picture(files) for files in figures if files.name not in (CURVE, BALANCE)],
         "why": why(result),
         "models": models((result.model,)),
         "remarks": notes([note.text for note in result.notes if note.code not in IN_TABLES]),

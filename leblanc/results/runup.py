@@ -88,6 +88,7 @@ class RunupResult(Result):
     chambers, planes : one for each chamber; its position along the axis, m
     notes : limits of validity and findings
     frames : the layers at regular times; None if they were not kept
+    history_dry : of the same rotor on the same way without liquid; None if it was not run
 
     Examples
     --------
@@ -121,6 +122,7 @@ class RunupResult(Result):
     planes: tuple[float, ...]
     notes: tuple[Note, ...]
     frames: RunupFrames | None = None
+    history_dry: RunupHistory | None = None
 
     figure = "leblanc.figures.runup:speed_figure"
     summary = "leblanc.text.runup:summary"
@@ -154,6 +156,16 @@ class RunupResult(Result):
     def amplitude(self) -> Array:
         """Modulus of the first deflection, m, shape (k,)."""
         return self.history.amplitude
+
+    @property
+    def speed_dry(self) -> Array:
+        """Spin speed of the run without liquid, rad/s, nan where it was not run, shape (k,)."""
+        return self._dry("speed")
+
+    @property
+    def amplitude_dry(self) -> Array:
+        """Modulus of the first deflection without liquid, m, nan where it was not run, shape (k,)."""
+        return self._dry("amplitude")
 
     @property
     def plane(self) -> str:
@@ -268,6 +280,19 @@ class RunupResult(Result):
         return self._moment(self.peak_index(back=True))
 
     @property
+    def peak_dry(self) -> dict[str, float]:
+        """The largest amplitude on the way up without liquid; nan if that was not run."""
+        amplitude = self.amplitude_dry[: self.turning + 1]
+        if np.isnan(amplitude).all():
+            return dict.fromkeys(("amplitude", "speed", "time"), math.nan)
+        k = int(np.nanargmax(amplitude))
+        return {
+            "amplitude": float(amplitude[k]),
+            "speed": float(self.speed_dry[k]),
+            "time": float(self.time[k]),
+        }
+
+    @property
     def end(self) -> dict[str, float]:
         """Amplitude, speed, time and angles at the end."""
         last = self.time.size - 1
@@ -282,9 +307,10 @@ class RunupResult(Result):
 
     def to_json(self) -> dict[str, Any]:
         """What `runup` prints for scripts, SI and radians; of chambers a list in each list over time."""
-        over = ["time", "speed", "amplitude", "phase", "liquid_offset", "liquid_angle"]
+        over = ["time", "speed", "amplitude", "speed_dry", "amplitude_dry"]
+        over += ["phase", "liquid_offset", "liquid_angle"]
         over += ["liquid_offset_mean", "liquid_angle_mean", "mass_error", "captured", "in_range"]
-        over += ["depth_max", "depth_min", "mean_rotation", "peak", "end"]
+        over += ["depth_max", "depth_min", "mean_rotation", "peak", "peak_dry", "end"]
         over += ["peak_back"] if self.turns_back else []
         rest = ("error_estimate", "converged", "reason", "steps", "cells", "model", "model_reason")
         own = ("model_error", "name", "digest", "assumed", "bands")
@@ -292,6 +318,14 @@ class RunupResult(Result):
             "energy": self._energy(),
             "notes": texts(self.notes),
         }
+
+    def _dry(self, name: str) -> Array:
+        """What the run without liquid had at the times of the run, nan where it had not come so far."""
+        found = np.full(self.time.shape, np.nan)
+        if self.history_dry is not None:
+            known = getattr(self.history_dry, name)[: found.size]
+            found[: known.size] = known
+        return found
 
     def _moment(self, index: int) -> dict[str, float]:
         """Amplitude, speed and time of one sample."""
@@ -350,6 +384,8 @@ def _columns(result: RunupResult) -> dict[str, Any]:
         "speed": variable(over, h.speed, "rad s-1", "spin speed"),
         "angle": variable(over, h.angle, "rad", "angle of rotation"),
         "amplitude": variable(over, h.amplitude, "m", "deflection of the first chamber's axis, modulus"),
+        "speed_dry": variable(over, result.speed_dry, "rad s-1", "spin speed without liquid"),
+        "amplitude_dry": variable(over, result.amplitude_dry, "m", "that modulus without liquid"),
         "phase": variable(over, result.phase, "rad", f"angle of that deflection {drum}"),
         "liquid_offset": variable(over, np.abs(h.liquid_position), "m", here),
         "liquid_angle": variable(over, np.angle(h.liquid_position), "rad", f"angle of that place {drum}"),

@@ -25,6 +25,7 @@ from leblanc.studies.peaks import responses_between
 from leblanc.studies.validity import doubts
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
+from solvers.layer.records import Outcome
 from solvers.liquid_model import LONG
 from solvers.runup.machine import Drive, Motor, Ramp
 from solvers.runup.runup import (
@@ -308,6 +309,7 @@ def runup_scene(
     times = () if frames is None else np.linspace(0.0, float(drive.corners()[0, -1]), frames)
     taken = chosen_run(scene, drive, gravity, numerics, progress, times)
     history = taken.history
+    dry = dry_run(scene, history, drive, gravity, numerics)
     steady, bands = steady_response(scene, history.speed), whirl_bands(scene, history.speed)
     in_range, limits = judged(scene, history, taken.model)
     fastest = np.flatnonzero(history.speed == history.speed.max())
@@ -335,7 +337,33 @@ def runup_scene(
         planes=tuple(fill.chamber.plane for fill in scene.fills),
         notes=(*_notes(scene, taken, steady, bands), *limits, *doubts(scene)),
         frames=runup_frames(history),
+        history_dry=dry,
     )
+
+
+def dry_run(
+    scene: Scene, history: RunupHistory, drive: Drive, gravity: float, numerics: RunupNumerics
+) -> RunupHistory | None:
+    """The rotor of a scene on the same way without liquid, to be compared with.
+
+    Parameters
+    ----------
+    scene : the machine
+    history : of its run-up with liquid
+    drive, gravity, numerics : of that run
+
+    Returns
+    -------
+    None where the user has stopped the run with liquid
+    """
+    if history.outcome is Outcome.INTERRUPTED:
+        return None
+    if history.layer_mass.sum() == 0.0:
+        return history
+    # Without liquid both models step the rotor alike; this one is the quicker.
+    empty, model = [replace(fill, volume=0.0) for fill in scene.fills], runup_model("linear")
+    alone = replace(numerics, companion=False)
+    return run_up(dry_rotor(scene).system(), empty, drive, scene.model.friction, gravity, alone, None, model)
 
 
 def _notes(scene: Scene, taken: RunupChoice, steady: Response | None, bands: Bands) -> list[Note]:

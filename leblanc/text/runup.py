@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from leblanc.results.response import peak
 from leblanc.results.runup import RunupResult
 from leblanc.units import LENGTH, TIME, in_rpm, with_unit
@@ -38,6 +40,7 @@ def answer(result: RunupResult) -> str:
     result : the run-up
     """
     first, *rest = [index for _, index in moments(result)]
+    dry = largest_dry(result)
     steady, highest = "", None if result.steady is None else peak(result.steady.deflection)
     if result.steady is not None and highest is not None:
         size = with_unit(float(abs(result.steady.deflection[highest])), LENGTH)
@@ -45,7 +48,7 @@ def answer(result: RunupResult) -> str:
     place = f" {result.plane}" if result.plane else ""
     later = zip(["on the way down", "at the end"][-len(rest) :], rest, strict=True)
     return (
-        f"The largest amplitude{place} is {_amplitude(result, first)}{steady}; "
+        f"The largest amplitude{place} is {_amplitude(result, first)}{dry}{steady}; "
         + ", ".join(f"{when} it is {_amplitude(result, index)}" for when, index in later)
         + "."
     )
@@ -64,10 +67,15 @@ def answer_rows(result: RunupResult) -> list[tuple[str, str]]:
     ----------
     result : the run-up
     """
-    return [
+    rows = [
         (label, f"{_amplitude(result, k)}, after {with_unit(float(result.time[k]), TIME)}")
         for label, k in moments(result)
     ]
+    if largest_dry(result):
+        peak = result.peak_dry
+        size, when = with_unit(peak["amplitude"], LENGTH), with_unit(peak["time"], TIME)
+        rows.insert(1, ("Without liquid", f"{size} at {in_rpm(peak['speed'])}, after {when}"))
+    return rows
 
 
 def largest(result: RunupResult) -> str:
@@ -75,6 +83,19 @@ def largest(result: RunupResult) -> str:
     k = result.peak_index()
     where = f" {result.plane}" if result.plane else ""
     return f"{with_unit(float(result.amplitude[k]), LENGTH)} at {in_rpm(float(result.speed[k]))}{where}"
+
+
+def largest_dry(result: RunupResult) -> str:
+    """The largest amplitude on the way up without liquid, as it follows that with liquid; or nothing.
+
+    Parameters
+    ----------
+    result : the run-up
+    """
+    peak = result.peak_dry
+    if math.isnan(peak["amplitude"]) or result.layer_mass.sum() == 0.0:
+        return ""
+    return f", without liquid {with_unit(peak['amplitude'], LENGTH)} at {in_rpm(peak['speed'])}"
 
 
 def summary(result: RunupResult) -> list[tuple[str, str]]:

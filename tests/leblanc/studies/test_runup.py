@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -35,11 +36,12 @@ from leblanc.studies.runup import (
     steady_response,
     whirl_bands,
 )
+from leblanc.units import LENGTH, with_unit
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.layer.records import Outcome
 from solvers.runup.machine import Motor, Ramp
-from solvers.runup.runup import EnergyAudit, RunupHistory
+from solvers.runup.runup import EnergyAudit, RunupHistory, run_up
 from tests.mutants import kills
 from tests.oracles.data_files import assert_read_back
 
@@ -483,6 +485,68 @@ def test_figures(tmp_path: Path, record: RunupResult) -> None:
     assert "16 cells" in words
     assert "linear, 3 1/s" in words
     assert "Error of the amplitude" in words
+
+
+def test_dry_and_wet_are_drawn_in_the_same_axes(record: RunupResult) -> None:
+    """Every peak of the run, with liquid and without, and of the steady response is inside the axes."""
+    assert record.steady is not None
+    axes = figures.speed_figure(record).axes[0]
+    lines = {str(line.get_label()): line for line in axes.get_lines()}
+    for name in ("run-up", "run-down"):
+        wet, dry = lines[name], lines[f"{name}, without liquid"]
+        assert wet.get_linestyle() != dry.get_linestyle() or dry.get_marker() == "o"
+    drawn = np.concatenate([line.get_ydata() for line in lines.values()])
+    assert np.nanmax(lines["run-up, without liquid"].get_ydata()) == 1e3 * record.peak_dry["amplitude"]
+    assert axes.get_ylim()[1] > np.nanmax(drawn) >= 1e3 * np.nanmax(record.amplitude_dry)
+    below = figures.time_figure(record)
+    over_time = next(axes for axes in below.axes if "Amplitude" in axes.get_ylabel())
+    wet, dry = over_time.get_lines()[:2]
+    assert np.array_equal(dry.get_ydata(), 1e3 * record.amplitude_dry)
+    assert over_time.get_ylim()[1] > max(np.max(wet.get_ydata()), np.nanmax(dry.get_ydata()))
+
+
+def test_a_steady_peak_far_above_the_run_is_told_in_words(record: RunupResult) -> None:
+    """It would flatten the run; nothing of the run itself is ever cut."""
+    assert record.steady is not None
+    tall = replace(record.steady, deflection_dry=record.steady.deflection_dry.copy())
+    tall.deflection_dry[200] = 30.0 * record.amplitude.max()
+    axes = figures.speed_figure(replace(record, steady=tall)).axes[0]
+    names = [str(line.get_label()) for line in axes.get_lines()]
+    said = f"steady, without liquid (up to {with_unit(30.0 * float(record.amplitude.max()), LENGTH)})"
+    assert said in names
+    top = 1e3 * max(float(record.amplitude.max()), record.peak_dry["amplitude"])
+    assert top < axes.get_ylim()[1] < 1.2 * figures.FAR * top
+
+
+@kills("leblanc.studies.runup:dry_run", "replace(fill, volume=0.0)", "fill")
+def test_the_run_without_liquid_is_that_of_the_empty_machine(record: RunupResult) -> None:
+    """Both liquid models step the rotor alone by the same trapezium; the steps end at the same angles."""
+    empty = scene(runup={"back": True}, chambers=[_chamber(0.0)])
+    plan = planned(empty)
+    history = run_up(
+        runup_module.dry_rotor(empty).system(), empty.fills, drive_of(plan),
+        numerics=runup_module.numerics_of(plan, check=False),
+    )  # fmt: skip
+    largest = history.amplitude.max()
+    wet = scene(runup={"back": True})
+    own = runup_module.dry_run(wet, record.history, drive_of(plan), 0.0, runup_module.numerics_of(plan))
+    assert own is not None and own.layer_mass.sum() == 0.0
+    assert np.array_equal(own.amplitude, record.amplitude_dry)
+    # Second order in the step: both are within a hundredth of each other where steps differ by halves.
+    assert np.abs(record.amplitude_dry - history.amplitude).max() < 1e-2 * largest
+    assert abs(record.peak["amplitude"] - record.peak_dry["amplitude"]) > 1e-2 * largest
+    assert np.array_equal(record.speed_dry, record.speed)
+    told = record.to_json()
+    assert told["peak_dry"]["amplitude"] == np.max(record.amplitude_dry[: record.turning + 1])
+
+
+def test_a_run_that_stops_keeps_the_times_of_the_run_without_liquid(record: RunupResult) -> None:
+    short = replace(record, history_dry=replace(record.history, time=record.time[:5], speed=record.speed[:5]))
+    assert np.array_equal(short.speed_dry[:5], record.speed[:5]) and np.isnan(short.speed_dry[5:]).all()
+    alone = replace(record, history_dry=None)
+    assert np.isnan(alone.amplitude_dry).all() and math.isnan(alone.peak_dry["amplitude"])
+    names = labels(figures.speed_figure(alone))
+    assert "run-up" in names and not any("without liquid" in name for name in names if "run" in name)
 
 
 def test_capture_is_marked_over_time() -> None:
