@@ -87,7 +87,7 @@ def _draw_amplitude(axes: Axes, found: Comparison) -> None:
     marks = np.unique(np.clip(np.searchsorted(bare[0], even), 0, bare[0].size - 1)).tolist()
     looks = {"color": DRY, "linewidth": 0.8, "marker": "o", "markerfacecolor": "white", "markevery": marks}
     axes.plot(*bare, label="without liquid", zorder=1.9, **looks)
-    value_axis(axes, 0.0, [y for _, y in [*lines, bare]])
+    value_axis(axes, 0.0, [*lines, bare])
 
 
 def _draw_difference(axes: Axes, rpm: Array, names: list[str], lines: list[Array]) -> None:

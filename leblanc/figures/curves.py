@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 from itertools import combinations, pairwise
 
 import numpy as np
@@ -14,6 +15,12 @@ from meshes.arrays import Array, Complex, Flags, Index
 Span = tuple[float, float]
 
 COLUMNS = 1500  # more than a printed page resolves
+NARROW = 0.03  # of the speeds: a resonance of a narrower half-power band is drawn once more, wider
+_LOW = 0.25  # of the highest peak, below which a peak is no resonance to be drawn wider
+_ASIDE = 2.5  # half-power bands shown on either side of one
+_TOGETHER = 0.1  # of the speeds: narrow bands no farther apart share one picture
+_MOST_WIDE = 0.5  # of the speeds, above which nothing is gained by drawing them again
+_MOST_WINDOWS = 3
 
 
 @dataclass(frozen=True)
@@ -216,6 +223,114 @@ def prepare(result: RunResult) -> Curves:
         out_of_range=spans(rpm, ~r.in_range[order], limits),
         not_converged=spans(rpm, ~r.converged[order], limits),
     )
+
+
+def half_power_bands(x: Array, y: Array) -> list[tuple[float, float, float]]:
+    """Peaks of a line by the band in which it is above the peak over the root of 2.
+
+    Parameters
+    ----------
+    x, y : the line by rising x, nan where it is not known, shape (p,)
+
+    Returns
+    -------
+    Lower end, upper end and height of each, by rising ends; only of peaks that reach a quarter of the highest
+    and whose band has both its ends on the line
+    """
+    known = ~np.isnan(y)
+    x, y = x[known], y[known]
+    found: list[tuple[float, float, float]] = []
+    if y.size < 3:
+        return found
+    inside = np.arange(1, y.size - 1)
+    tops = inside[(y[1:-1] >= y[:-2]) & (y[1:-1] > y[2:]) & (y[1:-1] >= _LOW * y.max())]
+    for top in tops[np.argsort(-y[tops], kind="stable")].tolist():
+        level = y[top] / np.sqrt(2.0)
+        below = np.flatnonzero(y < level)
+        left, right = below[below < top], below[below > top]
+        if not left.size or not right.size:
+            continue
+        ends = [
+            np.interp(level, y[[k, n]], x[[k, n]])
+            for k, n in ((left[-1], left[-1] + 1), (right[0], right[0] - 1))
+        ]
+        if not any(low <= x[top] <= high for low, high, _ in found):
+            found.append((float(ends[0]), float(ends[1]), float(y[top])))
+    return sorted(found)
+
+
+def windows(lines: Sequence[tuple[Array, Array]], limits: Span) -> list[Span]:
+    """Spans of speed to draw once more, so that narrow resonances have their width on an axis.
+
+    A resonance is narrow where its half-power band takes less than `NARROW` of the axis. Narrow ones that lie
+    close to one another share a span.
+
+    Parameters
+    ----------
+    lines : x and y of each line
+    limits : of the axis
+
+    Returns
+    -------
+    At most three, those of the highest peaks, by rising speed; none where no resonance is narrow, or where
+    they are spread over more than half of the axis
+    """
+    whole = limits[1] - limits[0]
+    bands = [band for x, y in lines for band in half_power_bands(x, y) if band[1] - band[0] < NARROW * whole]
+    highest = max((height for _, _, height in bands), default=0.0)
+    groups: list[list[float]] = []
+    for low, high, height in sorted(band for band in bands if band[2] >= _LOW * highest):
+        room = _ASIDE * (high - low)
+        first, last = max(low - room, limits[0]), min(high + room, limits[1])
+        if groups and first - groups[-1][1] <= _TOGETHER * whole:
+            groups[-1] = [groups[-1][0], max(groups[-1][1], last), max(groups[-1][2], height)]
+        else:
+            groups.append([first, last, height])
+    kept = sorted(sorted(groups, key=lambda group: -group[2])[:_MOST_WINDOWS])
+    if sum(last - first for first, last, _ in kept) > _MOST_WIDE * whole:
+        return []
+    return [(first, last) for first, last, _ in kept]
+
+
+def cut(curves: Curves, window: Span) -> Curves:
+    """The curves within a span of speed, and one point beyond either end of it.
+
+    Parameters
+    ----------
+    curves : of the whole axis
+    window : rpm
+    """
+    first = max(int(np.searchsorted(curves.rpm, window[0], side="right")) - 1, 0)
+    last = int(np.searchsorted(curves.rpm, window[1], side="left")) + 1
+    inside = {
+        item.name: value[first:last]
+        for item in fields(curves)
+        if isinstance(value := getattr(curves, item.name), np.ndarray)
+    }
+    marked = {
+        name: [
+            (max(low, window[0]), min(high, window[1]))
+            for low, high in getattr(curves, name)
+            if low < window[1] and high > window[0]
+        ]
+        for name in ("dry_patch", "out_of_range", "not_converged")
+    }
+    return replace(curves, limits=window, **inside, **marked)
+
+
+def median_over(x: Array, y: Array) -> float:
+    """Value that a line exceeds over half of its extent, however its points are spread.
+
+    Parameters
+    ----------
+    x, y : the line by rising x, without nan, shape (p,)
+    """
+    if x[-1] <= x[0]:
+        return float(np.median(y))
+    weight = np.gradient(x) if x.size > 1 else np.ones(1)
+    order = np.argsort(y, kind="stable")
+    share = np.cumsum(weight[order])
+    return float(y[order][np.searchsorted(share, 0.5 * share[-1])])
 
 
 def gapped(x: Array, y: Array, breaks: Flags) -> tuple[Array, Array]:

@@ -19,8 +19,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.font_manager import findfont, get_font
-from matplotlib.patches import PathPatch, Polygon
+from matplotlib.patches import ConnectionPatch, PathPatch, Polygon
 from matplotlib.path import Path as Lines
+from matplotlib.ticker import MaxNLocator
 from matplotlib.ticker import MultipleLocator as MultipleLocator  # handed on: this is the only door
 from numpy.typing import ArrayLike
 
@@ -269,6 +270,51 @@ def lay_out(
     for i, line in enumerate(reversed(lines)):
         height = MARGIN + CAPTION_ROW * (i + 0.25)
         figure.text(RIGHT / WIDTH, height / total, line, fontsize=CAPTION_SIZE, color="0.25")
+
+
+def add_windows(
+    figure: Figure, whole: Axes, wide: Sequence[Axes], heights: tuple[float, float], caption: Caption
+) -> None:
+    """Lay out a panel over all speeds and a row of panels below it that show parts of them, linked by lines.
+
+    Parameters
+    ----------
+    figure : of the panels, which are drawn and have their limits
+    whole : over all speeds
+    wide : over parts of them
+    heights : of both rows, inches
+    caption : below the figure
+    """
+    whole.set_xlabel("")
+    for axes in wide:
+        axes.set_xlabel("Speed (rpm)")
+        axes.xaxis.set_major_formatter(number)
+        axes.xaxis.set_major_locator(MaxNLocator(nbins=8 // len(wide) + 1, steps=[1, 2, 2.5, 5, 10]))
+        axes.yaxis.set_major_formatter(number)
+        axes.yaxis.set_minor_formatter("")
+        for side in axes.spines.values():
+            side.set(color=_LINKED, linewidth=1.0)
+    for axes in wide[1:]:
+        axes.set_ylabel("")
+    frame = Frame(left=0.72, top=0.46, between=0.5, below=0.42)
+    lay_out(figure, [[whole], list(wide)], list(heights), frame, caption)
+    gap = 0.45 / WIDTH
+    for k, axes in enumerate(wide):
+        box = axes.get_position()
+        axes.set_position((box.x0 + (gap if k else 0.0), box.y0, box.width - (gap if k else 0.0), box.height))
+        low, high = axes.get_xlim()
+        whole.axvspan(low, high, facecolor="none", edgecolor=_LINKED, linewidth=1.0, zorder=1.2)
+        for x, corner in ((low, 0.0), (high, 1.0)):
+            link = ConnectionPatch(
+                *((x, 0.0), (corner, 1.0), whole.get_xaxis_transform(), axes.transAxes),
+                **{"color": _LINKED, "linewidth": 0.7, "zorder": 0.5},
+            )
+            figure.add_artist(link)
+    for label in whole.get_xticklabels():  # the lines between the panels pass behind them
+        label.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.8})
+
+
+_LINKED = "0.45"  # frames of the panels that are linked, and the lines between them
 
 
 @cache

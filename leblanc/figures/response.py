@@ -9,13 +9,26 @@ from typing import Any
 import numpy as np
 
 from leblanc.figures.chambers import chamber_figure
-from leblanc.figures.curves import Curves, gapped, joined, lonely, other_branches, prepare, widened
+from leblanc.figures.curves import (
+    NARROW,
+    Curves,
+    cut,
+    gapped,
+    joined,
+    lonely,
+    median_over,
+    other_branches,
+    prepare,
+    widened,
+    windows,
+)
 from leblanc.figures.page import (
     Figure,
     FigureFiles,
     Frame,
     MultipleLocator,
     add_rate_axis,
+    add_windows,
     caption,
     lay_out,
     number,
@@ -32,6 +45,7 @@ from meshes.arrays import Array, Flags
 Draw = Callable[[Any, Curves, RunResult], None]
 
 FRAME = Frame(left=0.72, top=0.46, between=0.12, below=0.42)
+WINDOWS = (1.75, 1.75)  # inches: heights of the whole range and of the resonances below it, drawn wider
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 
@@ -116,8 +130,23 @@ def _over_speed(result: RunResult, name: str, panels: Sequence[tuple[float, Draw
             axes.tick_params(labelbottom=False)
         rows[-1][0].set_xlabel("Speed (rpm)")
         add_rate_axis(rows[0][0])
-        lay_out(figure, rows, [height for height, _ in panels], FRAME, caption(result, text))
+        heights = [height for height, _ in panels]
+        spans = windows([(curves.rpm, curves.amplitude), (curves.rpm, curves.amplitude_dry)], curves.limits)
+        if not spans or len(panels) > 1:
+            lay_out(figure, rows, heights, FRAME, caption(result, text))
+            return figure
+        wide = []
+        for span in spans:
+            axes = figure.add_axes((0, 0, 1, 1), label=f"from {number(span[0])} rpm")
+            panels[0][1](axes, cut(curves, span), result)
+            wide.append(axes)
+        add_windows(figure, rows[0][0], wide, WINDOWS, caption(result, f"{text} {wider_words()}"))
     return figure
+
+
+def wider_words() -> str:
+    """What the panels below the whole range are, for the caption."""
+    return f"Below, wider: resonances whose half-power band takes less than {100.0 * NARROW:g} % of the axis."
 
 
 def draw_amplitude(axes: Axes, curves: Curves, result: RunResult) -> None:
@@ -129,7 +158,8 @@ def draw_amplitude(axes: Axes, curves: Curves, result: RunResult) -> None:
         stable, unstable = other_branches(curves)
         axes.plot(*stable, **thin, label="other branches, stable")
         axes.plot(*unstable, **thin, linestyle=UNSTABLE, label="other branches, unstable")
-    value_axis(axes, room_below(curves), [curves.amplitude, curves.amplitude_dry, curves.branches.ravel()])
+    lines = [(curves.rpm, curves.amplitude), (curves.rpm, curves.amplitude_dry)]
+    value_axis(axes, room_below(curves), lines, curves.branches.ravel())
     background(axes, curves, result, [curves.amplitude, curves.amplitude_dry])
     axes.set_ylabel(f"Amplitude{'' if result.motion is None else plane_label(bool(result.chambers))} (mm)")
 
@@ -137,7 +167,7 @@ def draw_amplitude(axes: Axes, curves: Curves, result: RunResult) -> None:
 def draw_offset(axes: Axes, curves: Curves, result: RunResult) -> None:
     """Distance of the liquid's centre of mass from the rotation axis."""
     reported(axes, curves, curves.offset, "liquid's centre of mass")
-    value_axis(axes, room_below(curves), [curves.offset])
+    value_axis(axes, room_below(curves), [(curves.rpm, curves.offset)])
     background(axes, curves, result, [curves.offset])
     axes.set_ylabel("Liquid offset (mm)")
 
@@ -281,26 +311,33 @@ def room_below(curves: Curves) -> float:
     return STRIP + 0.02 if curves.dry_patch else 0.0
 
 
-def value_axis(axes: Axes, room: float, lines: list[Array]) -> None:
+def value_axis(
+    axes: Axes, room: float, lines: Sequence[tuple[Array, Array]], others: Array | None = None
+) -> None:
     """Limits that hold all lines, from zero up; logarithmic where a linear axis would show a peak alone.
+
+    That is so where the highest peak is more than `FLAT` times the value which the lowest line exceeds over
+    half of the speeds. Points that crowd about a peak do not count for more than those of a coarse grid.
 
     Parameters
     ----------
     axes : whose values it sets
     room : left free below the lines, a share of the height
-    lines : their values, nan allowed
+    lines : speed, rising, and values of each, nan allowed
+    others : values that must have a place as well
     """
-    known = [line[line > 0.0] for line in lines]
-    known = [line for line in known if line.size]
+    every = np.concatenate([y for _, y in lines] + ([] if others is None else [others]))
+    known = [(x[y > 0.0], y[y > 0.0]) for x, y in lines if np.any(y > 0.0)]
     if not known:
         axes.set_ylim(-0.1, 1.0)  # a line of zeros stays clear of the frame
-        if not any(np.any(line == 0.0) for line in lines):
+        if not np.any(every == 0.0):
             _say_empty(axes)
         return
-    top = max(float(line.max()) for line in known)
-    usual = min(float(np.median(line)) for line in known)
+    positive = every[every > 0.0]
+    top = float(positive.max())
+    usual = min(median_over(x, y) for x, y in known)
     if top > FLAT * usual:
-        low = max(min(float(line.min()) for line in known), 1e-3 * usual) / 1.5
+        low = max(float(positive.min()), 1e-3 * usual) / 1.5
         axes.set_yscale("log", nonpositive="mask")
         axes.set_ylim(low * (low / top) ** room, 2.0 * top)
     else:

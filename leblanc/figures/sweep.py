@@ -51,7 +51,7 @@ def _over_speed(figure: Figure, result: SweepResult, speed: Array) -> None:
     axes.plot(rpm, wet[:, 2], color=WET, label="median with liquid")
     every = max(1, rpm.size // 14)
     axes.plot(rpm, dry, label="median without liquid", marker="o", markevery=every, **BARE)
-    value_axis(axes, 0.0, [*wet.T, dry])
+    value_axis(axes, 0.0, [(rpm, line) for line in (*wet.T, dry)])
     axes.set_xlim(rpm[0], rpm[-1])
     axes.set_ylabel(f"Amplitude{plane_label('chamber' in result.plane) if result.plane else ''} (mm)")
     axes.set_xlabel("Speed (rpm)")

@@ -70,21 +70,44 @@ def table(
     return Table(title, tuple(head), cells, sentences)
 
 
+_CLAUSES = 2  # of the sentence of doubt
+# What weighs most in it first; what none of these begins follows.
+_WEIGHTS = (
+    "Not converged",
+    "Stopped before its end",
+    "Amplitude infinite",
+    "Constraints exceeded",
+    "Answer unstable",
+    "A small whirl grows when operating",
+    "Growth not known",
+    "Stability not known",
+    "Liquid model out of range",
+    "Model out of range",
+    "Error above",
+    "Self-excited whirl",
+)
+
+
+def _weight(label: str) -> int:
+    """Rank of a check in the sentence of doubt, the lowest first."""
+    ranks = (rank for rank, start in enumerate(_WEIGHTS) if label.startswith(start))
+    return next(ranks, len(_WEIGHTS))
+
+
 def doubt(checks: Table, holds: str = "") -> str:
-    """What must not be relied on in an answer, in one sentence.
+    """What must not be relied on in an answer, in one sentence of two clauses; the rest is in the table.
 
     Parameters
     ----------
     checks : a row for each, its label and what fails it
     holds : what is said of an answer that passes all, after that
     """
-    failed = [
-        f"{label.text[:1].lower()}{label.text[1:]}: {found.text}"
-        for label, found in checks.rows
-        if found.warning
-    ]
+    failed = [(label.text, found.text) for label, found in checks.rows if found.warning]
+    failed.sort(key=lambda row: _weight(row[0]))  # of one weight in their order
     if failed:
-        return f"Doubtful: {'; '.join(failed)}."
+        told = "; ".join(f"{label[:1].lower()}{label[1:]}: {where}" for label, where in failed[:_CLAUSES])
+        rest = len(failed) - _CLAUSES
+        return f"Doubtful: {told}{f' ({rest} more under the limits)' if rest > 0 else ''}."
     return f"No limit of the models is passed{f'; {holds}' if holds else ''}."
 
 

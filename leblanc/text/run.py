@@ -32,21 +32,33 @@ def answer(result: RunResult) -> str:
     speed, place = in_rpm(float(result.speed[-1])), amplitude_place(result)
     where = f" {place}" if place else ""
     if not result.liquid_mass > 0.0:
-        return f"Without liquid the amplitude{where} is {most.wet_text} at most, at {at.wet} rpm."
+        size = _UNBOUNDED if most.wet == _INFINITE else f"is {most.wet_text} at most,"
+        return f"Without liquid the amplitude{where} {size} at {at.wet} rpm."
     if result.speed.size == 1:
-        return (
-            f"At {speed} the amplitude{where} is {last.wet_text} with the liquid{_doubted(result, -1)} and "
-            f"{last.dry_text} without."
-        )
+        size = f"{_sized(last.wet_text)} with the liquid{_doubted(result, -1)}"
+        bare = _UNBOUNDED if last.dry == _INFINITE else last.dry_text
+        return f"At {speed} the amplitude{where} {size} and {bare} without."
     highest = largest(result.curve.amplitude)
     assert highest is not None
-    at_last = f"it is {last.wet_text}{_doubted(result, -1)} instead of {last.dry_text}"
+    at_last = f"it {_sized(last.wet_text)}{_doubted(result, -1)} instead of {last.dry_text}"
+    if last.dry == _INFINITE:
+        at_last = f"it {_sized(last.wet_text)}{_doubted(result, -1)}; without it {_UNBOUNDED}"
     if last.wet == NOT_FOUND:
         at_last = f"no answer was found with the liquid; without it is {last.dry_text}"
-    return (
-        f"The largest amplitude{where} is {most.wet_text} at {at.wet} rpm with the liquid"
-        f"{_doubted(result, highest)} and {most.dry_text} at {at.dry} rpm without; at {speed} {at_last}."
-    )
+    at_highest = f"at {at.wet} rpm with the liquid{_doubted(result, highest)}"
+    first = f"The largest amplitude{where} is {most.wet_text} {at_highest}"
+    if most.wet == _INFINITE:
+        first = f"The amplitude{where} {_UNBOUNDED} {at_highest}"
+    bare = f"it {_UNBOUNDED}" if most.dry == _INFINITE else most.dry_text
+    return f"{first} and {bare} at {at.dry} rpm without; at {speed} {at_last}."
+
+
+_INFINITE, _UNBOUNDED = "infinite", "grows without bound"
+
+
+def _sized(text: str) -> str:
+    """An amplitude as the end of a sentence about it."""
+    return _UNBOUNDED if text == _INFINITE else f"is {text}"
 
 
 def largest(amplitude: Array) -> int | None:

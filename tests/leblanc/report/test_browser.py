@@ -32,7 +32,7 @@ def tab() -> Iterator[Browser]:
 def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """A plain machine, one that tilts, and made-up ones with all that makes a page hard to set."""
     folder, files = tmp_path_factory.mktemp("pages"), {}
-    for name in ("centrifuge", "tub"):
+    for name in ("centrifuge", "horizontal_rig", "tub"):
         scene = load_scene(ROOT / f"examples/{name}.toml")
         record, place = run_scene(scene), folder / name
         figures = write_figures(record, place)
@@ -73,8 +73,11 @@ def test_opens_and_fits(name: str, width: int, tab: Browser, pages: dict[str, Pa
         assert abs(shown / wanted - 1.0) < 0.02
 
 
-def test_a_plain_machine_takes_one_sheet(tab: Browser, pages: dict[str, Path], tmp_path: Path) -> None:
-    tab.open(pages["centrifuge"].as_uri())
+@pytest.mark.parametrize("name", ["centrifuge", "horizontal_rig"])
+def test_a_plain_machine_takes_one_sheet(
+    name: str, tab: Browser, pages: dict[str, Path], tmp_path: Path
+) -> None:
+    tab.open(pages[name].as_uri())
     assert tab.paper(tmp_path / "a4.pdf", "A4") == 1
     assert tab.paper(tmp_path / "letter.pdf", "Letter") == 1
 

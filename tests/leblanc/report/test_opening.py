@@ -53,14 +53,38 @@ def test_every_report_opens_with_result_doubt_and_date(
     assert '<time datetime="2020-09-13">2020-09-13</time>' in opening  # 1 600 000 000 s after 1970, in UTC
 
 
-def test_the_doubt_names_each_limit_that_is_passed() -> None:
+def test_the_doubt_names_the_two_gravest_limits_and_counts_the_rest() -> None:
+    """Two clauses at most, each with its speeds as the table has them; all limits stand in the table."""
     result = lb.run(lb.example("horizontal_rig").replace({"speeds.count": 20}))
     checks = response_checks(result)
     said = doubt(checks)
-    for label, where in checks.rows:
-        lower = label.text[:1].lower() + label.text[1:]
-        assert (f"{lower}: {where.text}" in said) == where.warning
-    assert "out of range" in said
+    failed = {label.text: where.text for label, where in checks.rows if where.warning}
+    assert len(failed) > 3
+    unstable, out = failed["Answer unstable"], failed["Liquid model out of range"]
+    wanted = f"Doubtful: answer unstable: {unstable}; liquid model out of range: {out} "
+    assert said == f"{wanted}({len(failed) - 2} more under the limits)."
+
+
+def test_up_to_two_limits_are_all_told() -> None:
+    bad = Cell("100 rpm", warning=True)
+    rows = [("Wall dry in part", bad), ("Liquid model out of range", Cell("none")), ("Error above 1 %", bad)]
+    assert doubt(table("", (), rows[:2])) == "Doubtful: wall dry in part: 100 rpm."
+    assert doubt(table("", (), rows)) == "Doubtful: error above 1 %: 100 rpm; wall dry in part: 100 rpm."
+
+
+@pytest.mark.parametrize("volume", ["0 ml", "10 ml"])
+@pytest.mark.parametrize("count", [1, 21])
+def test_an_amplitude_without_a_bound_is_told_as_a_person_would(volume: str, count: int) -> None:
+    """Without damping the dry rotor has none at its critical speed, which is one of the speeds here."""
+    speeds = {"speeds.start": "1000 rpm", "speeds.stop": "1000 rpm" if count == 1 else "2000 rpm"}
+    undamped = {"rotor.damping_ratio": 0.0, "rotor.critical_speed": "1000 rpm", "speeds.count": count}
+    scene = lb.example("horizontal_rig").replace(
+        {**undamped, **speeds, "chambers.0.volume": volume, "chambers.1.volume": volume}
+    )
+    said = answer(lb.run(scene))
+    assert "grows without bound" in said and "infinite" not in said and "bound at most" not in said
+    if volume == "0 ml":
+        assert said == "Without liquid the amplitude grows without bound at 1000 rpm."
 
 
 def test_no_doubt_where_nothing_is_passed() -> None:
