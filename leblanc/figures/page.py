@@ -18,6 +18,7 @@ import matplotlib.figure
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import ListedColormap
 from matplotlib.font_manager import findfont, get_font
 from matplotlib.patches import ConnectionPatch, PathPatch, Polygon
 from matplotlib.path import Path as Lines
@@ -206,6 +207,17 @@ def fill_loops(axes: Axes, loops: Sequence[Complex], **look: Any) -> None:
         axes.add_artist(PathPatch(path, edgecolor="none", **look))
 
 
+def part_of(colours: str, first: float, last: float) -> ListedColormap:
+    """A part of a range of colours, without its ends.
+
+    Parameters
+    ----------
+    colours : name of the range, as matplotlib has it
+    first, last : of the part, from 0 to 1
+    """
+    return ListedColormap(matplotlib.colormaps[colours](np.linspace(first, last, 256)))
+
+
 def add_rate_axis(axes: Axes, label: str = "Speed (rad/s)") -> None:
     """An axis in rad/s above one in rpm.
 
@@ -288,16 +300,13 @@ def add_windows(
     whole.set_xlabel("")
     for axes in wide:
         axes.set_xlabel("Speed (rpm)")
-        axes.xaxis.set_major_formatter(number)
         axes.xaxis.set_major_locator(MaxNLocator(nbins=8 // len(wide) + 1, steps=[1, 2, 2.5, 5, 10]))
-        axes.yaxis.set_major_formatter(number)
-        axes.yaxis.set_minor_formatter("")
         for side in axes.spines.values():
             side.set(color=_LINKED, linewidth=1.0)
     for axes in wide[1:]:
         axes.set_ylabel("")
     frame = Frame(left=0.72, top=0.46, between=0.5, below=0.42)
-    lay_out(figure, [[whole], list(wide)], list(heights), frame, caption)
+    lay_out(figure, [[whole], list(wide)], list(heights), frame, caption, MOST_LINES + 1)
     gap = 0.45 / WIDTH
     for k, axes in enumerate(wide):
         box = axes.get_position()

@@ -119,12 +119,7 @@ def _over_speed(result: RunResult, name: str, panels: Sequence[tuple[float, Draw
         for i, (_, draw) in enumerate(panels):
             axes: Any = figure.add_axes((0, 0, 1, 1), label=str(i))
             draw(axes, curves, result)
-            axes.xaxis.set_major_formatter(number)
-            if not axes.yaxis.get_label_text().endswith("(deg)"):
-                axes.yaxis.set_major_formatter(number)
-                axes.yaxis.set_minor_formatter("")
-            else:
-                axes.yaxis.set_major_locator(MultipleLocator(45.0))
+            _number_axes(axes)
             rows.append([axes])
         for (axes,) in rows[:-1]:
             axes.tick_params(labelbottom=False)
@@ -139,9 +134,20 @@ def _over_speed(result: RunResult, name: str, panels: Sequence[tuple[float, Draw
         for span in spans:
             axes = figure.add_axes((0, 0, 1, 1), label=f"from {number(span[0])} rpm")
             panels[0][1](axes, cut(curves, span), result)
+            _number_axes(axes)
             wide.append(axes)
         add_windows(figure, rows[0][0], wide, WINDOWS, caption(result, f"{text} {wider_words()}"))
     return figure
+
+
+def _number_axes(axes: Axes) -> None:
+    """Plain numbers on both axes; angles in eighths of a turn."""
+    axes.xaxis.set_major_formatter(number)
+    if axes.yaxis.get_label_text().endswith("(deg)"):
+        axes.yaxis.set_major_locator(MultipleLocator(45.0))
+    else:
+        axes.yaxis.set_major_formatter(number)
+        axes.yaxis.set_minor_formatter("")
 
 
 def wider_words() -> str:

@@ -6,7 +6,18 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.page import RIGHT, WIDTH, Caption, Figure, Frame, add_rate_axis, lay_out, number, style
+from leblanc.figures.page import (
+    RIGHT,
+    WIDTH,
+    Caption,
+    Figure,
+    Frame,
+    add_rate_axis,
+    lay_out,
+    number,
+    part_of,
+    style,
+)
 from leblanc.figures.page import save as save  # a figure is drawn and written together
 from leblanc.results.base import one_line
 from leblanc.results.whirl_map import WhirlMap
@@ -16,17 +27,15 @@ from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 
-FRAME = Frame(left=0.72, top=0.46, between=0.18, below=0.42)
-PANEL, BAR, ROOM, GAP = (
-    2.3,
-    0.13,
-    0.85,
-    0.08,
-)  # inches: panel's height, bar's width, room for it, between bars
+FRAME = Frame(left=0.72, top=0.46, between=0.72, below=0.42)
+PANEL, BAR, BESIDE, ROOM = 2.3, 0.13, 0.55, 1.35  # inches: panel's height, bar's width, left of it, in all
 DARKEST = 2.0  # per cent of the decays that are faster than the colours tell apart
+SHALLOWEST = 0.05  # of the fastest decay: growth slower than that is told by outline and hatch alone
 LINES = 9  # of the caption
-GROWS, DECAYS, RATIO = "YlOrBr", "Blues_r", "cividis"
+GROWTH, RATIO = "RdBu_r", "cividis"
+PALER = (0.1, 0.9)  # of the colours of growth: their ends would hide lines and dots
 OUTLINE, NO_WHIRL = "0.1", "0.93"
+HATCH, DOTS = (0.0, 0.0, 0.0, 0.5), (0.0, 0.0, 0.0, 0.35)  # thin and sparse: the colours stay readable
 OWN = {"color": "black", "linewidth": 1.2, "linestyle": (0, (6, 2)), "zorder": 4}
 
 
@@ -45,12 +54,11 @@ def map_figure(result: WhirlMap) -> Figure:
             axes.grid(visible=False)
             axes.xaxis.set_major_formatter(_label)
             axes.yaxis.set_major_formatter(_label)
-        panels[0].tick_params(labelbottom=False)
-        panels[1].set_xlabel("Speed (rpm)")
-        add_rate_axis(panels[0])
+            axes.set_xlabel("Speed (rpm)")
+            _add_ratios(axes, result)
         lay_out(figure, [[axes] for axes in panels], [PANEL] * 2, FRAME, _caption(result), LINES)
-        for axes, beside in zip(panels, bars, strict=True):
-            _place_bars(figure, axes, beside)
+        for axes, bar in zip(panels, bars, strict=True):
+            _place_bar(axes, bar)
     return figure
 
 
@@ -58,16 +66,30 @@ def _label(value: float, _at: float) -> str:
     return number(value)
 
 
-def _place_bars(figure: Figure, axes: Axes, bars: list[Axes]) -> None:
-    """Make room on the right of a panel for its colour bars, one above the other."""
+def _add_ratios(axes: Axes, result: WhirlMap) -> None:
+    """Speed over the critical one above, share of what the chambers hold on the right."""
+    critical, whole = result.critical_speed_dry * RPM, result.capacity * ML
+    if critical > 0.0:
+        above = axes.secondary_xaxis("top", functions=(lambda x: x / critical, lambda x: x * critical))
+        above.set_xlabel("Speed/critical speed without liquid (\N{EN DASH})")
+        above.xaxis.set_major_formatter(_label)
+    else:
+        add_rate_axis(axes)
+    if whole > 0.0:
+        share = axes.secondary_yaxis(
+            "right", functions=(lambda y: 100.0 * y / whole, lambda y: y * whole / 100.0)
+        )
+        share.set_ylabel("Fill (% of the chambers)")
+        share.yaxis.set_major_formatter(_label)
+
+
+def _place_bar(axes: Axes, bar: Axes | None) -> None:
+    """Make room on the right of a panel for its colour bar."""
     box = axes.get_position()
     width = box.width - (ROOM - RIGHT) / WIDTH
     axes.set_position((box.x0, box.y0, width, box.height))
-    gap = GAP / figure.get_figheight()
-    height = (box.height - gap * (len(bars) - 1)) / max(len(bars), 1)
-    for i, bar in enumerate(bars):
-        bottom = box.y1 - height - i * (height + gap)
-        bar.set_position((box.x0 + width + 0.1 / WIDTH, bottom, BAR / WIDTH, height))
+    if bar is not None:
+        bar.set_position((box.x0 + width + BESIDE / WIDTH, box.y0, BAR / WIDTH, box.height))
 
 
 def _colours(figure: Figure, axes: Axes, result: WhirlMap, values: Array, label: str, **look: Any) -> Axes:
@@ -80,32 +102,31 @@ def _colours(figure: Figure, axes: Axes, result: WhirlMap, values: Array, label:
     return bar
 
 
-def _draw_growth(figure: Figure, axes: Axes, result: WhirlMap) -> list[Axes]:
-    """Growth and decay, each by its own colours; neutral and unknown stay white."""
-    growth, bars = result.growth, []
-    up, down = np.where(growth > 0.0, growth, np.nan), np.where(growth < 0.0, growth, np.nan)
-    if np.isfinite(up).any():
-        top = float(np.nanmax(up))
-        bars.append(_colours(figure, axes, result, up, "Growth rate (1/s)", cmap=GROWS, vmin=0.0, vmax=top))
-    if np.isfinite(down).any():
-        low = float(np.nanpercentile(down, DARKEST))
-        # The darkest blues would hide the dots.
-        bars.append(
-            _colours(figure, axes, result, down, "Decay (1/s)", cmap=DECAYS, vmin=1.5 * low, vmax=0.0)
-        )
-    return bars
+def _draw_growth(figure: Figure, axes: Axes, result: WhirlMap) -> Axes | None:
+    """Growth and decay on one scale about zero, which is white; unknown stays white as well."""
+    growth = result.growth
+    known = growth[np.isfinite(growth)]
+    if not known.size:
+        return None
+    decay = known[known < 0.0]
+    low = -float(np.percentile(decay, DARKEST)) if decay.size else 0.0
+    top = float(known.max(initial=0.0))
+    most = max(top, SHALLOWEST * low) if top > 0.0 else low
+    colours = part_of(GROWTH, *PALER)
+    look = {"cmap": colours, "vmin": -(most or 1.0), "vmax": most or 1.0}
+    return _colours(figure, axes, result, growth, "Growth rate, decay below 0 (1/s)", **look)
 
 
-def _draw_whirl(figure: Figure, axes: Axes, result: WhirlMap) -> list[Axes]:
+def _draw_whirl(figure: Figure, axes: Axes, result: WhirlMap) -> Axes | None:
     """Whirl speed over spin speed, where a whirl grows."""
     axes.set_facecolor(NO_WHIRL)
     ratio = np.where(result.growth > 0.0, result.whirl_speed / result.speed, np.nan)
     if not np.isfinite(ratio).any():
         axes.text(0.5, 0.5, "no whirl grows", transform=axes.transAxes, ha="center", va="center")
-        return []
+        return None
     low, high = float(np.nanmin(ratio)), float(np.nanmax(ratio))
     label = "Whirl speed/spin speed (\N{EN DASH})"
-    return [_colours(figure, axes, result, ratio, label, cmap=RATIO, vmin=low, vmax=max(high, low + 1e-3))]
+    return _colours(figure, axes, result, ratio, label, cmap=RATIO, vmin=low, vmax=max(high, low + 1e-3))
 
 
 def signed_distance(result: WhirlMap) -> Array:
@@ -139,18 +160,20 @@ def signed_distance(result: WhirlMap) -> Array:
 def _outline(axes: Axes, result: WhirlMap, hatched: bool) -> None:
     """Unstable region hatched and outlined, what is out of range dotted, the scene's own volume dashed."""
     x, y, distance = result.speed * RPM, result.volume * ML, signed_distance(result)
-    key = {"facecolor": "none", "edgecolor": OUTLINE, "linewidth": 0.5}
+    key = {"facecolor": "none", "linewidth": 0.0}
     if np.any(distance > 0.0):
         if hatched:
-            axes.contourf(x, y, distance, levels=[0.0, np.inf], colors="none", hatches=["//"])
+            area = axes.contourf(x, y, distance, levels=[0.0, np.inf], colors="none", hatches=["/"])
+            area.set(edgecolor=HATCH, linewidth=0.0)
         if np.any(distance < 0.0):
             axes.contour(x, y, distance, levels=[0.0], colors=[OUTLINE], linewidths=1.1)
-        axes.fill([], [], hatch="///", label="a whirl grows: unstable", **key)
+        axes.fill([], [], hatch="//", edgecolor=HATCH, label="a whirl grows: unstable", **key)
     if not result.in_range.all():
         out = np.where(result.in_range, 0.0, 1.0)
-        axes.contourf(x, y, out, levels=[0.5, 1.5], colors="none", hatches=[".."])
+        area = axes.contourf(x, y, out, levels=[0.5, 1.5], colors="none", hatches=[".."])
+        area.set(edgecolor=DOTS, linewidth=0.0)
         axes.contour(x, y, out, levels=[0.5], colors=["0.45"], linewidths=0.8, linestyles=":")
-        axes.fill([], [], hatch="...", label="model out of range", **key)
+        axes.fill([], [], hatch="...", edgecolor=DOTS, label="model out of range", **key)
     lost = np.isnan(result.growth)
     if lost.any():
         style = {

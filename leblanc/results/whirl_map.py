@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -35,6 +36,9 @@ class WhirlMap(Result):
     edges_not_known : for each volume the bands of speed in which the growth is not known, between the nearest
         speeds where it is, rad/s
     notes : limits of validity and findings
+    capacity : what the chambers that take liquid hold together, m^3
+    critical_speed_dry : without liquid; of several the one at which the unbalance moves the chambers most,
+        nan where there is none, rad/s
 
     Examples
     --------
@@ -63,6 +67,8 @@ class WhirlMap(Result):
     scene_edges: Bands
     notes: tuple[Note, ...]
     edges_not_known: tuple[Bands, ...] = ()
+    capacity: float = math.nan
+    critical_speed_dry: float = math.nan
 
     @property
     def not_known(self) -> int:
@@ -72,7 +78,8 @@ class WhirlMap(Result):
     def to_json(self) -> dict[str, Any]:
         """What `map` prints for scripts, SI: rows of `growth`, `whirl_speed`, `in_range` follow `volume`."""
         names = ["speed", "volume", "growth", "whirl_speed", "edges", "in_range", "friction", "damping"]
-        names += ["scene_volume", "scene_edges", "edges_not_known", "not_known", "name", "digest", "assumed"]
+        names += ["scene_volume", "scene_edges", "edges_not_known", "not_known", "capacity"]
+        names += ["critical_speed_dry", "name", "digest", "assumed"]
         return {name: getattr(self, name) for name in names} | {"notes": texts(self.notes)}
 
     def named_arrays(self) -> NamedArrays:

@@ -22,6 +22,8 @@ from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.liquid_model import THIN_LAYERS
 from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.vibration import critical_speeds
+from solvers.synchronous.response import main_critical_speeds
 from solvers.whirl.edges import Bands, bands_not_known, unstable_bands
 from solvers.whirl.growth import growth_map
 
@@ -91,7 +93,18 @@ def map_scene(
             *doubts(scene),
         ),
         edges_not_known=tuple(bands_not_known(speed, found) for found in growth),
+        capacity=sum(fill.chamber.capacity for fill in rows[-1] if fill.volume > 0.0),
+        critical_speed_dry=_critical_speed(machine),
     )
+
+
+def _critical_speed(machine: Prepared) -> float:
+    """Critical speed without liquid, as `run` tells it, rad/s; nan where there is none."""
+    if isinstance(machine.rotor, Jeffcott):
+        return machine.rotor.natural_frequency
+    system, dry = machine.system, critical_speeds(machine.system)
+    none = np.zeros(0), np.zeros((0, len(system.coordinates)), dtype=complex)
+    return main_critical_speeds(system, machine.scene.fills, dry, none)[0]
 
 
 def _check(scene: Scene, volumes: int, speeds: int) -> None:

@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from leblanc import figures
 from leblanc.figures import chambers, curves
@@ -125,3 +126,70 @@ def test_top_axis_is_in_radians_per_second() -> None:
     figure.draw_without_rendering()
     # 100 and 2000 rpm
     np.testing.assert_allclose(top.get_xlim(), [10.471975512, 209.4395102], rtol=1e-9)
+
+
+def magnification(ratio: np.ndarray, damping: float) -> np.ndarray:
+    """Amplitude over eccentricity of a damped rotor, at speeds over the critical one."""
+    return ratio**2 / np.abs(1.0 - ratio**2 + 2j * damping * ratio)
+
+
+@pytest.mark.parametrize("damping", [0.002, 0.02, 0.1])
+def test_half_power_band_of_a_damped_rotor(damping: float) -> None:
+    """Its ends are where the closed form falls to the peak over the root of 2."""
+    ratio = np.linspace(0.3, 2.0, 200_001)
+    size = magnification(ratio, damping)
+    ((low, high, height),) = curves.half_power_bands(ratio, size)
+    # The peak of the sampled curve is below the true one by the square of the step over the width.
+    assert height == pytest.approx(1.0 / (2.0 * damping * math.sqrt(1.0 - damping**2)), rel=1e-4)
+    for end in (low, high):
+        assert magnification(np.array([end]), damping)[0] == pytest.approx(height / math.sqrt(2.0), rel=1e-3)
+    assert low < 1.0 / math.sqrt(1.0 - 2.0 * damping**2) < high
+
+
+def test_no_band_without_both_ends() -> None:
+    """A curve that ends on the slope of a peak, or stays high after it, has no width."""
+    ratio = np.linspace(0.3, 0.99, 400)
+    assert curves.half_power_bands(ratio, magnification(ratio, 0.01)) == []
+    ratio = np.linspace(0.3, 5.0, 400)
+    assert curves.half_power_bands(ratio, magnification(ratio, 0.6)) == []
+    assert curves.half_power_bands(ratio, np.full(400, np.nan)) == []
+
+
+def test_narrow_resonances_get_a_window() -> None:
+    """Narrow ones side by side share it, far ones have their own; wide ones and many have none."""
+    x = np.linspace(1.0, 1001.0, 20_001)
+
+    def resonances(*places: float, damping: float = 0.003) -> np.ndarray:
+        return np.max([magnification(x / place, damping) for place in places], axis=0)
+
+    limits = 1.0, 1001.0
+    (one,) = curves.windows([(x, resonances(300.0))], limits)
+    assert one[0] < 300.0 < one[1] and one[1] - one[0] < 100.0
+    dry_too = [(x, resonances(300.0)), (x, resonances(320.0))]
+    (both,) = curves.windows(dry_too, limits)
+    assert both[0] < 295.0 and both[1] > 325.0
+    assert len(curves.windows([(x, resonances(200.0, 800.0))], limits)) == 2
+    assert curves.windows([(x, resonances(300.0, damping=0.1))], limits) == []
+    assert curves.windows([(x, np.full(x.shape, 1.0))], limits) == []
+    # The band takes its share of the axis: on a narrow axis the same resonance needs no window.
+    near = np.linspace(280.0, 320.0, 2001)
+    assert curves.windows([(near, magnification(near / 300.0, 0.003))], (280.0, 320.0)) == []
+
+
+def test_refined_points_do_not_change_a_median_over_speed() -> None:
+    """Of a straight line it is the middle, wherever the points crowd."""
+    x = np.union1d(np.linspace(0.0, 1.0, 501), np.linspace(0.9, 1.0, 2001))
+    # To the coarser step, which is the largest share of one point.
+    assert abs(curves.median_over(x, 3.0 * x) - 1.5) < 3.0 * 0.002
+    assert np.median(3.0 * x) > 2.7
+    assert curves.median_over(np.ones(3), np.array([1.0, 5.0, 2.0])) == 2.0
+
+
+def test_a_part_of_the_curves() -> None:
+    """All points inside, one more on either side, marked spans cut."""
+    whole = curves.prepare(folded())
+    low, high = whole.rpm[10] + 1e-6, whole.rpm[30] - 1e-6
+    part = curves.cut(replace(whole, dry_patch=[(0.0, 1e9)], out_of_range=[(0.0, 1e-9)]), (low, high))
+    assert np.array_equal(part.rpm, whole.rpm[10:31])
+    assert np.array_equal(part.branches, whole.branches[10:31], equal_nan=True)
+    assert part.limits == (low, high) and part.dry_patch == [(low, high)] and part.out_of_range == []

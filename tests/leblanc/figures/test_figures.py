@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.patches import ConnectionPatch
 from matplotlib.transforms import Bbox
 
 from leblanc import figures
@@ -137,6 +138,44 @@ def test_peak_that_flattens_the_rest_gets_a_logarithmic_axis():
     low, high = figure.axes[0].get_ylim()
     assert low < np.median(np.abs(sharp.deflection)) * 1e3 < np.max(np.abs(sharp.deflection_dry)) * 1e3 < high
     assert figures.amplitude_figure(rig()).axes[0].get_yscale() == "linear"
+
+
+@pytest.mark.parametrize("damping", [0.002, 0.05])
+def test_refined_points_do_not_change_the_scale(damping: float):
+    """The same curve with a thousand more points about its peak has the same kind of axis."""
+    even = np.linspace(10.0, 2000.0, 400) * RPM
+    peak = 1000.0 * (1.0 + 5.0 * damping * np.linspace(-1.0, 1.0, 1001)) * RPM
+    scales = []
+    for speed in (even, np.union1d(even, peak)):
+        own = dry_deflection(speed, 4.0, 2.0 * damping * 4.0 * 1000.0 * RPM)
+        sharp = replace(response_of(speed), deflection_dry=own, deflection=own)
+        scales.append(figures.amplitude_figure(record_of(sharp)).axes[0].get_yscale())
+    assert scales[0] == scales[1] == ("log" if damping < 0.01 else "linear")
+
+
+def test_narrow_resonance_is_drawn_wider_below():
+    """Both panels show the same lines; frame and links mark on the upper one what the lower one shows."""
+    speed = np.linspace(10.0, 4000.0, 4000) * RPM
+    own = dry_deflection(speed, 4.0, 2.0 * 0.01 * 4.0 * 1000.0 * RPM)
+    figure = figures.amplitude_figure(
+        record_of(replace(response_of(speed), deflection_dry=own, deflection=own))
+    )
+    whole, wide = figure.axes
+    low, high = wide.get_xlim()
+    band = 2.0 * 0.01 * 1000.0  # half-power bandwidth of a light damping
+    assert low < 1000.0 - band < 1000.0 + band < high
+    assert high - low < 0.1 * (whole.get_xlim()[1] - whole.get_xlim()[0])
+    top = np.max(np.abs(own)) * 1e3
+    for axes in (whole, wide):
+        assert axes.get_ylim()[0] <= 0.0 and axes.get_ylim()[1] > top
+        (drawn,) = (line for line in axes.lines if line.get_label() == "with liquid")
+        assert np.nanmax(drawn.get_ydata()) == pytest.approx(top, rel=1e-12)
+    assert (whole.get_xlabel(), wide.get_xlabel()) == ("", "Speed (rpm)")
+    links = [artist for artist in figure.artists if isinstance(artist, ConnectionPatch)]
+    assert [link.xy1[0] for link in links] == [low, high]
+    caption = " ".join(text.get_text() for text in reversed(figure.texts))
+    assert "less than 3 % of the axis" in caption
+    assert len(figures.amplitude_figure(rig()).axes) == 1
 
 
 def test_caption_says_scene_model_and_assumed_values():

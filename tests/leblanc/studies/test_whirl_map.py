@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
+import leblanc as lb
 from fluid.friction import Friction
 from fluid.whirl import covering_speed
 from leblanc.cli import main
@@ -23,6 +24,7 @@ from leblanc.results.notes import MapCode
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import Scene, dry_rotor, load_scene
 from leblanc.studies import whirl_map as whirl_map_study
+from leblanc.studies.run import run_scene
 from leblanc.studies.whirl_map import SPEEDS, VOLUMES, fills_over_volume, map_scene
 from meshes.errors import InputError
 from solvers.whirl.growth import asynchronous_growth, growth_map
@@ -258,15 +260,60 @@ def test_figure_has_units_on_every_axis(law: Friction) -> None:
     FigureCanvasAgg(figure).draw()
     panels = [axes for axes in figure.axes if axes.get_label() in ("growth", "whirl")]
     assert [axes.get_ylabel() for axes in panels] == ["Liquid (ml)"] * 2
-    assert panels[1].get_xlabel() == "Speed (rpm)"
-    assert panels[0].child_axes[0].get_xlabel() == "Speed (rad/s)"
-    np.testing.assert_allclose(panels[0].get_xlim(), record.speed[[0, -1]] * RPM)
-    np.testing.assert_allclose(panels[0].child_axes[0].get_xlim(), record.speed[[0, -1]])
+    assert [axes.get_xlabel() for axes in panels] == ["Speed (rpm)"] * 2
+    for axes in panels:
+        np.testing.assert_allclose(axes.get_xlim(), record.speed[[0, -1]] * RPM)
+        above, beside = axes.child_axes
+        assert above.get_xlabel() == "Speed/critical speed without liquid (\N{EN DASH})"
+        np.testing.assert_allclose(above.get_xlim(), record.speed[[0, -1]] / record.critical_speed_dry)
+        assert beside.get_ylabel() == "Fill (% of the chambers)"
+        np.testing.assert_allclose(beside.get_ylim()[1], 100.0 * record.volume[-1] / record.capacity)
     for bar in (axes for axes in figure.axes if axes not in panels):
         assert bar.get_ylabel().endswith((")", ")"))
     legend = [text.get_text() for text in figure.legends[0].get_texts()]
     assert "scene's volume, 600 ml" in legend
     assert ("a whirl grows: unstable" in legend) == bool((record.growth > 0.0).any())
+
+
+def test_ratios_are_those_of_the_machine() -> None:
+    """Full chambers are filled to the whole; the critical speed is that of `run`."""
+    record, machine = small(), scene()
+    assert record.volume[-1] == pytest.approx(record.capacity, rel=1e-12)
+    assert record.critical_speed_dry == run_scene(machine).critical_speed_dry
+    tilting = lb.example("tub").replace({"speeds.count": 9})
+    found = map_scene(tilting, volumes=2, speeds=3)
+    assert found.critical_speed_dry == pytest.approx(run_scene(tilting).critical_speed_dry, rel=1e-12)
+
+
+def test_growth_has_one_scale_with_one_zero() -> None:
+    """One bar from decay to growth, of equal steps; zero stands on it once, in the middle, without colour."""
+    record = small(volumes=21, speeds=80)
+    assert (record.growth > 0.0).any() and (record.growth < 0.0).any()
+    figure = map_figure(record)
+    FigureCanvasAgg(figure).draw()
+    (bar,) = (axes for axes in figure.axes if "Growth" in axes.get_ylabel())
+    ticks = [text.get_text() for text in bar.get_yticklabels() if text.get_text()]
+    assert ticks.count("0") == 1
+    (mesh,) = (drawn for drawn in figure.axes[0].collections if hasattr(drawn, "get_coordinates"))
+    low, high = mesh.get_clim()
+    assert low == -high and high >= np.nanmax(record.growth)
+    red, green, blue, _ = mesh.cmap(mesh.norm(0.0))
+    assert max(red, green, blue) - min(red, green, blue) < 0.05 and min(red, green, blue) > 0.9
+
+
+def test_the_hatch_leaves_the_colours() -> None:
+    """Thin, sparse and translucent, in the legend as in the map."""
+    figure = map_figure(small(volumes=21, speeds=80))
+    hatched = []
+    for drawn in figure.axes[0].collections:
+        hatches = [mark for mark in getattr(drawn, "hatches", []) if mark]
+        if hatches:
+            hatched.append(drawn)
+            assert all(len(mark) <= 2 for mark in hatches)
+            assert np.all(drawn.get_edgecolor()[:, 3] <= 0.5)
+    assert hatched
+    for key in figure.legends[0].get_patches():
+        assert key.get_edgecolor()[3] <= 0.5
 
 
 def test_validation_agrees() -> None:
