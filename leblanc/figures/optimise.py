@@ -22,10 +22,11 @@ from leblanc.figures.page import (
     style,
 )
 from leblanc.results.base import one_line, texts
+from leblanc.results.notes import plane_label
 from leblanc.results.optimum import ConditionTable, OptimumResult
-from leblanc.text.optimum import load_words, worst_condition
+from leblanc.text.optimum import amplitude_plane, load_words, worst_condition
 from leblanc.units import DEGREE, LENGTH, MM, UNBALANCE, VOLUME, in_rpm, unit_for, with_unit
-from meshes.arrays import Array
+from meshes.arrays import Array, Flags
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 
@@ -39,6 +40,7 @@ BARE = {"color": DRY, "linewidth": 1.0, "linestyle": (0, (1, 1.5)), "zorder": 1.
 FAR = 3.0  # times the baseline or the best, beyond which points are left out of the picture
 SIZES = (12.0, 130.0)  # of the marks of the front, points squared
 MOST_SLICES = 3
+DOT = 14.0  # of the marks over two volumes, points squared
 LEAST = 1e-4  # of what a chamber holds, below which a map is no longer logarithmic
 
 
@@ -80,7 +82,7 @@ def conditions_figure(result: OptimumResult) -> Figure:
             _draw_over_unbalance(axes, table)
         axes.xaxis.set_major_formatter(number)
         axes.yaxis.set_major_formatter(number)
-        axes.set_ylabel("Vibration (mm)")
+        axes.set_ylabel(_vibration_label(result))
         axes.set_ylim(0.0, 1.12 * MM * float(max(table.amplitude_dry.max(), table.amplitude.max())))
         text = (
             "Solid with marks: with the best volumes; dotted: without liquid, at the same unbalances. "
@@ -175,9 +177,14 @@ def _over_volumes(result: OptimumResult) -> Figure:
     return figure
 
 
-_CURVE = "Every volume that was tried. "
-_SECTIONS = "The volumes that were tried, over each chamber's own; the others differ from point to point. "
-_MAP = "Every pair of volumes that was tried. "
+_MOST = "Where several limits are exceeded, a mark names the one exceeded most. "
+_CURVE = f"Every volume that was tried. {_MOST}"
+_SECTIONS = (
+    f"The volumes that were tried, over each chamber's own; the others differ from point to point. {_MOST}"
+)
+_MAP = (
+    f"Every pair of volumes that was tried, coloured by its vibration; nothing is drawn between them. {_MOST}"
+)
 
 
 def front_figure(result: OptimumResult) -> Figure:
@@ -199,38 +206,53 @@ def front_figure(result: OptimumResult) -> Figure:
     return figure
 
 
-def _known(result: OptimumResult) -> tuple[Array, Array, Array]:
-    """Volumes, vibrations and excesses of the points that are finite and sure, or by the emulator."""
+def _known(result: OptimumResult) -> tuple[Array, Array, list[str]]:
+    """Volumes, vibrations and what is exceeded of the points that are sure, or by the emulator."""
     tried = result.candidates
     good = np.isfinite(tried.vibration)
     if result.emulator is None:
         good &= tried.exact
-    points, vibration, excess = tried.volume[good], tried.vibration[good], tried.excess[good]
+    told = tried.exceeded or tuple("a constraint" if excess > 0.0 else "" for excess in tried.excess)
+    points, vibration = tried.volume[good], tried.vibration[good]
+    exceeded = [name.replace("_", " ") for name, own in zip(told, good, strict=True) if own]
     if result.sweep is not None and result.volume.size == 1:
         points = np.concatenate((points, result.sweep.volume))
         vibration = np.concatenate((vibration, result.sweep.vibration))
-        excess = np.concatenate((excess, np.full(result.sweep.mass.shape, np.nan)))
-    return points, vibration, excess
+        exceeded += [_NOT_JUDGED] * result.sweep.mass.size
+    return points, vibration, exceeded
+
+
+_NOT_JUDGED = "not judged"
+# Marks of the points that were tried: those that keep to all, then those that exceed something, by its name.
+_TRIED, _OVER = "o", ("x", "+", "1", "2", "3", "4")
+_OVER_FILLED = ("s", "D", "^", "v", "<", ">")
+
+
+def _groups(exceeded: list[str], marks: tuple[str, ...]) -> list[tuple[str, str, Flags]]:
+    """Mark, label and points of those that keep to all, and of those that exceed each constraint most."""
+    names = np.array(exceeded, dtype=object)
+    found = [(_TRIED, "tried", names == "")]
+    over = sorted({name for name in exceeded if name not in ("", _NOT_JUDGED)})
+    for k, name in enumerate(over):
+        found.append((marks[k % len(marks)], f"tried, limit of {name} exceeded", names == name))
+    return [group for group in found if group[2].any()]
 
 
 def _draw_section(axes: Axes, result: OptimumResult, k: int) -> None:
     """Vibration over the volume of one chamber."""
-    points, vibration, excess = _known(result)
+    points, vibration, exceeded = _known(result)
     alone = result.volume.size == 1
     volume = points[:, k] * ML
     least = float(volume[volume > 0.0].min(initial=math.inf))
     order = np.argsort(volume, kind="stable")
-    volume, vibration, excess = volume[order], vibration[order] * MM, excess[order]
-    allowed = excess <= 0.0
+    volume, vibration, exceeded = volume[order], vibration[order] * MM, [exceeded[i] for i in order.tolist()]
     if alone:
         axes.plot(volume, vibration, color=LINE, linewidth=1.0, zorder=2)
-    for chosen, mark, label in (
-        (allowed, {"marker": "o", "markerfacecolor": "white"}, "tried"),
-        (excess > 0.0, {"marker": "x"}, "tried, a constraint exceeded"),
-    ):
-        if chosen.any():
-            look = {"color": LINE, "linestyle": "none", "markersize": 3.0, "zorder": 2.5}
-            axes.plot(volume[chosen], vibration[chosen], label=label, **look, **mark)
+    for mark, label, chosen in _groups(exceeded, _OVER):
+        look = {"color": LINE, "linestyle": "none", "markersize": 3.0, "zorder": 2.5}
+        axes.plot(
+            volume[chosen], vibration[chosen], label=label, marker=mark, markerfacecolor="white", **look
+        )
     _marks(axes, result, k)
     top = FAR * max(result.vibration_baseline, result.vibration) * MM
     low = min(float(vibration.min(initial=math.inf)), result.vibration * MM)
@@ -246,7 +268,7 @@ def _draw_section(axes: Axes, result: OptimumResult, k: int) -> None:
     axes.xaxis.set_major_formatter(number)
     axes.yaxis.set_major_formatter(number)
     axes.set_xlabel("Liquid (ml)" if alone else f"Liquid in chamber {k + 1} (ml)")
-    axes.set_ylabel("Vibration (mm)")
+    axes.set_ylabel(_vibration_label(result))
 
 
 def _marks(axes: Axes, result: OptimumResult, k: int) -> None:
@@ -268,59 +290,50 @@ def _marks(axes: Axes, result: OptimumResult, k: int) -> None:
 
 
 def _draw_map(figure: Figure, axes: Axes, result: OptimumResult) -> None:
-    """Vibration over the volumes of two chambers as colours and lines, and the points it is drawn from."""
-    points, vibration, excess = _known(result)
+    """Vibration over the volumes of two chambers: a coloured mark for each pair tried."""
+    points, vibration, exceeded = _known(result)
     points, first = np.unique(points, axis=0, return_index=True)
-    value, excess = vibration[first] * MM, excess[first]
+    value, exceeded = vibration[first] * MM, [exceeded[i] for i in first.tolist()]
     capacity = np.array([chamber.capacity for chamber in result.chambers])
     least = LEAST * capacity
     worst = max(result.vibration_baseline, result.vibration) * MM
     low = float(value.min())
     top = 1.03 * worst if worst > 1.03 * low else FAR * low
-    drawn = _contours(axes, points, np.minimum(value, top), np.log1p(points / least), (low, top))
-    for chosen, mark, label in (
-        (excess <= 0.0, ".", "tried"),
-        (excess > 0.0, "x", "tried, a constraint exceeded"),
-    ):
-        if chosen.any():
-            look = {"color": "black", "markersize": 2.0, "linestyle": "none", "zorder": 2.5}
-            axes.plot(*(points[chosen].T * ML), marker=mark, label=label, **look)
+    order = np.argsort(-value, kind="stable")  # the best lie on top
+    drawn = None
+    for mark, label, chosen in _groups(exceeded, _OVER_FILLED):
+        own = order[chosen[order]]
+        drawn = axes.scatter(
+            *(points[own].T * ML),
+            c=value[own],
+            **{"vmin": low, "vmax": top, "cmap": "cividis", "clip_on": False, "zorder": 2.5},
+            **{"marker": mark, "s": DOT, "edgecolors": "0.35", "linewidths": 0.25},
+        )
+        look = {"color": "none", "markeredgecolor": "0.2", "markeredgewidth": 0.7, "markersize": 4.0}
+        axes.plot([], [], marker=mark, linestyle="none", label=label, **look)
     star = {"color": BEST, "marker": "*", "markersize": 12.0, "linestyle": "none", "zorder": 4}
-    axes.plot(*(result.volume[:, None] * ML), label="best", markeredgecolor="white", **star)
+    axes.plot(*(result.volume[:, None] * ML), label="best", markeredgecolor="black", clip_on=False, **star)
     for form, line in zip(result.closed_form, (axes.axvline, axes.axhline), strict=False):
-        dashes = {"color": "white", "linewidth": 1.1, "linestyle": (0, (6, 2)), "zorder": 1.6}
-        line(form.optimal_volume * ML, **dashes)
-    if result.closed_form:
-        look = {"color": "0.6", "linewidth": 1.1, "linestyle": (0, (6, 2))}
-        axes.plot([], [], label="closed form: wall just covered (white)", **look)
+        dashes = {"color": FULL, "linewidth": 0.9, "linestyle": (0, (6, 2)), "zorder": 1.6}
+        line(form.optimal_volume * ML, **dashes, label="closed form: wall just covered")
     for k, scale in enumerate(("x", "y")):
         _symlog(axes, scale, least[k] * ML, capacity[k] * ML)
-    axes.grid(visible=False)
     axes.set_xlabel("Liquid in chamber 1 (ml)")
     axes.set_ylabel("Liquid in chamber 2 (ml)")
     if drawn is not None:
         bar = figure.add_axes((0, 0, 1, 1), label="bar")
-        figure.colorbar(drawn, cax=bar, label="Vibration (mm)", format=_three)
+        more = "max" if value.max() > top else "neither"
+        figure.colorbar(drawn, cax=bar, label=_vibration_label(result), format=_three, extend=more)
+
+
+def _vibration_label(result: OptimumResult) -> str:
+    """Of an axis of vibrations, with the plane where a rotor tilts."""
+    tilts = result.response is not None and result.response.motion is not None
+    return f"Vibration{plane_label(chambers=True) if tilts else ''} (mm)"
 
 
 def _three(value: float, _at: float | None = None) -> str:
     return number(_short(value))
-
-
-def _contours(axes: Axes, points: Array, value: Array, place: Array, span: tuple[float, float]) -> Any:
-    """Filled contours with labelled lines on triangles between the points; None where there are too few."""
-    from scipy.spatial import Delaunay
-
-    if points.shape[0] < 8 or np.any(np.ptp(points, axis=0) == 0.0) or not np.isfinite(place).all():
-        return None
-    triangles = Delaunay(place).simplices
-    levels = np.linspace(*span, 13)
-    drawn = axes.tricontourf(*(points.T * ML), triangles, value, levels=levels, cmap="cividis", extend="max")
-    lines = axes.tricontour(
-        *(points.T * ML), triangles, value, levels=levels[2::4], colors="white", linewidths=0.7
-    )
-    axes.clabel(lines, fmt=_three, fontsize=6.5)
-    return drawn
 
 
 def _symlog(axes: Axes, scale: str, least: float, capacity: float) -> None:
@@ -352,7 +365,10 @@ def _draw_front(axes: Axes, result: OptimumResult) -> None:
     share = np.abs(front.stability_margin) / widest if widest > 0.0 else np.zeros_like(front.stability_margin)
     size = SIZES[0] + (SIZES[1] - SIZES[0]) * share
     calm = front.stability_margin >= 0.0
-    axes.plot(mass, vibration, color="0.75", linewidth=0.8, zorder=1)
+    order = np.lexsort((vibration, mass))
+    least = np.minimum.accumulate(vibration[order])
+    look = {"color": "0.75", "linewidth": 0.8, "zorder": 1, "drawstyle": "steps-post"}
+    axes.plot(mass[order], least, label="least with so much liquid at most", **look)
     top = f"margin {number(_short(float(front.stability_margin.max())))} 1/s at most"
     if calm.any():
         look = {"facecolor": "white", "edgecolor": LINE, "linewidths": 1.0, "zorder": 2}
@@ -377,7 +393,7 @@ def _draw_front(axes: Axes, result: OptimumResult) -> None:
     axes.xaxis.set_major_formatter(number)
     axes.yaxis.set_major_formatter(number)
     axes.set_xlabel("Liquid (g)")
-    axes.set_ylabel("Vibration (mm)")
+    axes.set_ylabel(_vibration_label(result))
 
 
 def _short(value: float) -> float:
@@ -392,7 +408,8 @@ def _caption(result: OptimumResult, text: str, forms: bool = True) -> Caption:
     what = result.constraints["vibration"].meaning if "vibration" in result.constraints else vibration
     at = f"Closed forms at the deflection of the best point at {in_rpm(result.working_speed)}. "
     at = at if forms and result.closed_form else ""
-    shown = f"{text}Vibration: {what}. Objective: {result.objective}. {at}"
+    place = f" {found}" if (found := amplitude_plane(result)) else ""
+    shown = f"{text}Vibration: {what}{place}. Objective: {result.objective}. {at}"
     origin = (
         f"{notes} Scene: {one_line(result.name)}. Friction of the liquid: {result.friction.law}. "
         f"Assumed: {assumed}."

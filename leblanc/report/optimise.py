@@ -119,22 +119,26 @@ def front(result: OptimumResult) -> Table:
     edge = result.front
     if edge is None or edge.mass.size == 0:
         return table("", (), ())
-    chosen = np.flatnonzero((edge.volume == result.volume).all(axis=1)).tolist()
-    spread = np.linspace(0, edge.mass.size - 1, LISTED).round().astype(int)
-    kept = np.unique(np.concatenate((spread, np.array(chosen, dtype=int)))).tolist()
-    mass = unit_for(MASS, *edge.mass[kept].tolist())
-    liquid = unit_for(VOLUME, *edge.volume[kept].ravel().tolist())
-    size = unit_for(LENGTH, *edge.vibration[kept].tolist())
-    rows = [
-        (
-            f"{mass.number(float(edge.mass[k]))}{' (chosen)' if k in chosen else ''}",
+    chosen = set(np.flatnonzero((edge.volume == result.volume).all(axis=1)).tolist())
+    mass = unit_for(MASS, *edge.mass.tolist())
+    liquid = unit_for(VOLUME, *edge.volume.ravel().tolist())
+    size = unit_for(LENGTH, *edge.vibration.tolist())
+    merged: dict[tuple[str, ...], set[int]] = {}  # points that read alike are told once
+    for k in range(edge.mass.size):
+        row = (
+            mass.number(float(edge.mass[k])),
             ", ".join(liquid.number(volume) for volume in edge.volume[k].tolist()),
             size.number(float(edge.vibration[k])),
             number(float(edge.stability_margin[k])),
         )
-        for k in kept
+        merged.setdefault(row, set()).add(k)
+    spread = set(np.linspace(0, len(merged) - 1, LISTED).round().astype(int).tolist())
+    rows = [
+        (f"{first}{' (chosen)' if own & chosen else ''}", *rest)
+        for k, ((first, *rest), own) in enumerate(merged.items())
+        if k in spread or own & chosen
     ]
-    of = f"Liquid ({mass.name}), {len(kept)} of {edge.mass.size} points"
+    of = f"Liquid ({mass.name}), {len(rows)} of {len(merged)} points"
     head = (of, f"volumes ({liquid.name})", f"vibration ({size.name})", "stability margin (1/s)")
     return table("", head, rows)
 

@@ -221,6 +221,8 @@ class Candidates:
     excess : of the constraint that is exceeded most, relative; 0 or below where all hold, shape (m,)
     vibration, mass : m and kg, shape (m,)
     exact : the vibration is known, not an estimate from below, shape (m,)
+    exceeded : name of the constraint that is exceeded most, empty where all hold, one for each; none at all
+        where that is not known
     """
 
     volume: Array
@@ -229,6 +231,7 @@ class Candidates:
     vibration: Array
     mass: Array
     exact: Flags
+    exceeded: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

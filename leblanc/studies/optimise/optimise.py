@@ -34,7 +34,14 @@ from leblanc.studies.optimise.balance import QualityAtSpeed
 from leblanc.studies.optimise.constraints import growth
 from leblanc.studies.optimise.emulated import EmulatedVibration
 from leblanc.studies.optimise.objectives import RunupPeak
-from leblanc.studies.optimise.problem import Problem, growth_speeds, problem_of, unbalances, working_speed
+from leblanc.studies.optimise.problem import (
+    Evaluator,
+    Problem,
+    growth_speeds,
+    problem_of,
+    unbalances,
+    working_speed,
+)
 from leblanc.studies.optimise.robust import Robust, condition_table
 from leblanc.studies.optimise.search import (
     Progress,
@@ -51,7 +58,7 @@ from leblanc.units import in_rpm
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.liquid_model import LONG
-from solvers.search import Found, SearchPlan
+from solvers.search import Found, Judgement, SearchPlan
 
 _ASKED = "the scene asks for it; "
 
@@ -184,10 +191,20 @@ def _result(
             vibration=said.details["vibration"],
             mass=said.details["mass"],
             exact=said.details["sure"] == 1.0,
+            exceeded=_exceeded(evaluate, said),
         ),
         notes=(*_findings(problem, found), *problem.notes, *_limits(scene, problem, volume), *doubts(scene)),
         interrupted=found.interrupted,
     )
+
+
+def _exceeded(evaluate: Evaluator, said: Judgement) -> tuple[str, ...]:
+    """Name of the constraint that each set of volumes exceeds most, empty where it keeps to all."""
+    if not evaluate.constraints:
+        return ("",) * said.excess.size
+    worst = np.argmax([own.excess(said.details[own.name]) for own in evaluate.constraints], axis=0)
+    pairs = zip(worst.tolist(), said.excess.tolist(), strict=True)
+    return tuple(evaluate.constraints[k].name if excess > 0.0 else "" for k, excess in pairs)
 
 
 def _findings(problem: Problem, found: Found) -> tuple[Note, ...]:
