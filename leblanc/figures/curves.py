@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import combinations, pairwise
+from typing import Any
 
 import numpy as np
 
@@ -302,20 +303,18 @@ def cut(curves: Curves, window: Span) -> Curves:
     """
     first = max(int(np.searchsorted(curves.rpm, window[0], side="right")) - 1, 0)
     last = int(np.searchsorted(curves.rpm, window[1], side="left")) + 1
-    inside = {
+    inside: dict[str, Any] = {
         item.name: value[first:last]
         for item in fields(curves)
         if isinstance(value := getattr(curves, item.name), np.ndarray)
     }
-    marked = {
-        name: [
+    for name in ("dry_patch", "out_of_range", "not_converged"):
+        inside[name] = [
             (max(low, window[0]), min(high, window[1]))
             for low, high in getattr(curves, name)
             if low < window[1] and high > window[0]
         ]
-        for name in ("dry_patch", "out_of_range", "not_converged")
-    }
-    return replace(curves, limits=window, **inside, **marked)
+    return replace(curves, limits=window, **inside)
 
 
 def median_over(x: Array, y: Array) -> float:

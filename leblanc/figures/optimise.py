@@ -366,9 +366,9 @@ def _draw_front(axes: Axes, result: OptimumResult) -> None:
     size = SIZES[0] + (SIZES[1] - SIZES[0]) * share
     calm = front.stability_margin >= 0.0
     order = np.lexsort((vibration, mass))
-    least = np.minimum.accumulate(vibration[order])
+    attained = np.minimum.accumulate(vibration[order])
     look = {"color": "0.75", "linewidth": 0.8, "zorder": 1, "drawstyle": "steps-post"}
-    axes.plot(mass[order], least, label="least with so much liquid at most", **look)
+    axes.plot(mass[order], attained, label="least with so much liquid at most", **look)
     top = f"margin {number(_short(float(front.stability_margin.max())))} 1/s at most"
     if calm.any():
         look = {"facecolor": "white", "edgecolor": LINE, "linewidths": 1.0, "zorder": 2}

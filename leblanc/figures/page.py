@@ -314,10 +314,9 @@ def add_windows(
         low, high = axes.get_xlim()
         whole.axvspan(low, high, facecolor="none", edgecolor=_LINKED, linewidth=1.0, zorder=1.2)
         for x, corner in ((low, 0.0), (high, 1.0)):
-            link = ConnectionPatch(
-                *((x, 0.0), (corner, 1.0), whole.get_xaxis_transform(), axes.transAxes),
-                **{"color": _LINKED, "linewidth": 0.7, "zorder": 0.5},
-            )
+            below = whole.get_xaxis_transform()
+            link = ConnectionPatch((x, 0.0), (corner, 1.0), below, axes.transAxes, color=_LINKED)
+            link.set(linewidth=0.7, zorder=0.5)
             figure.add_artist(link)
     for label in whole.get_xticklabels():  # the lines between the panels pass behind them
         label.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.8})
