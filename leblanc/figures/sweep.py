@@ -6,9 +6,18 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.curves import COLUMNS, thin
-from leblanc.figures.page import Caption, Figure, Frame, add_rate_axis, lay_out, number, style
-from leblanc.figures.response import DRY, WET, value_axis
+from leblanc.figures.curves import COLUMNS, Span, thin, windows
+from leblanc.figures.page import (
+    Caption,
+    Figure,
+    Frame,
+    add_rate_axis,
+    add_windows,
+    lay_out,
+    number,
+    style,
+)
+from leblanc.figures.response import DRY, WET, WINDOWS, value_axis, wider_words
 from leblanc.results.base import one_line
 from leblanc.results.notes import plane_label
 from leblanc.results.sweep import SweepResult
@@ -44,7 +53,26 @@ def _over_speed(figure: Figure, result: SweepResult, speed: Array) -> None:
     dry = result.over_speed["amplitude_dry"].quantiles[order, 2] * MM
     drawn = thin(np.column_stack([wet, dry]), COLUMNS)
     rpm, wet, dry = speed[order][drawn] * RPM, wet[drawn], dry[drawn]
+    limits = float(rpm[0]), float(rpm[-1])
     axes: Any = figure.add_axes((0, 0, 1, 1))
+    _draw(axes, result, (rpm, wet, dry), limits)
+    add_rate_axis(axes)
+    text = "Amplitude of the deflection: median and ranges of the samples at each speed."
+    spans = windows([(rpm, line) for line in (*wet.T, dry)], limits)
+    if not spans:
+        axes.set_xlabel("Speed (rpm)")
+        lay_out(figure, [[axes]], [PANEL], OVER_SPEED, _caption(result, text))
+        return
+    wide = [figure.add_axes((0, 0, 1, 1), label=f"from {number(span[0])} rpm") for span in spans]
+    for panel, span in zip(wide, spans, strict=True):
+        inside = slice(max(int(np.searchsorted(rpm, span[0])) - 1, 0), int(np.searchsorted(rpm, span[1])) + 1)
+        _draw(panel, result, (rpm[inside], wet[inside], dry[inside]), span)
+    add_windows(figure, axes, wide, WINDOWS, _caption(result, f"{text} {wider_words()}"))
+
+
+def _draw(axes: Axes, result: SweepResult, lines: tuple[Array, Array, Array], limits: Span) -> None:
+    """Ranges and medians over a span of speed: rpm, quantiles with liquid, median without."""
+    rpm, wet, dry = lines
     bands = {"linewidth": 0, "zorder": 1.5}
     axes.fill_between(rpm, wet[:, 0], wet[:, 4], color=WIDE, label="5 to 95 % of the samples", **bands)
     axes.fill_between(rpm, wet[:, 1], wet[:, 3], color=NARROW, label="25 to 75 %", **bands)
@@ -52,15 +80,11 @@ def _over_speed(figure: Figure, result: SweepResult, speed: Array) -> None:
     every = max(1, rpm.size // 14)
     axes.plot(rpm, dry, label="median without liquid", marker="o", markevery=every, **BARE)
     value_axis(axes, 0.0, [(rpm, line) for line in (*wet.T, dry)])
-    axes.set_xlim(rpm[0], rpm[-1])
+    axes.set_xlim(*limits)
     axes.set_ylabel(f"Amplitude{plane_label('chamber' in result.plane) if result.plane else ''} (mm)")
-    axes.set_xlabel("Speed (rpm)")
     axes.xaxis.set_major_formatter(number)
     axes.yaxis.set_major_formatter(number)
     axes.yaxis.set_minor_formatter("")
-    add_rate_axis(axes)
-    text = "Amplitude of the deflection: median and ranges of the samples at each speed."
-    lay_out(figure, [[axes]], [PANEL], OVER_SPEED, _caption(result, text))
 
 
 def _boxes(figure: Figure, result: SweepResult) -> None:
