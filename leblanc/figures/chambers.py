@@ -36,7 +36,7 @@ BISECTIONS = 60  # from the radius down to rounding
 UNEVEN_RAYS = 721
 SHARES = 21  # of the exponent with which factors that do not fit are tried again
 OUTSIDE = 1.07  # place of the unbalance over the wall's radius, where it covers no liquid
-GAP = 0.015  # over the radius, between an inner wall and a surface drawn larger that does not meet it
+GAP = 0.03  # over the radius, between an inner wall and a surface drawn larger that does not meet it
 SEEN = 0.02  # of the radius: a deflection drawn smaller than this gets a factor of its own
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -131,8 +131,11 @@ def _visible(chambers: tuple[FilledChamber, ...], deflections: tuple[float, ...]
     wet = [0.9 * depth_factor * depth / w for depth, _ in layers for w in sizes if w < depth]
     factor = rounded_down(min([widest, *wet]))
     dry = [factor * w / depth for depth, _ in layers for w in sizes if w >= depth]
-    # Equal factors keep what is dry dry; with unequal ones a thick layer would cover it.
-    return Exaggeration(factor, factor if dry and min(dry) < depth_factor else depth_factor)
+    if dry and min(dry) < depth_factor:
+        # Equal factors leave dry arcs as they are. A film that cannot be seen so covers a larger arc.
+        film = min(SEEN * c.radius / depth for depth, c in layers)
+        depth_factor = rounded_down(max(factor, min(film, 0.5 * min(dry))))
+    return Exaggeration(factor, depth_factor)
 
 
 def _as_it_is(chamber: FilledChamber, moved: complex, scale: Exaggeration) -> bool:
@@ -396,6 +399,8 @@ def describe_scale(result: RunResult, views: Views) -> str:
     )
     depth = " and ".join(dict.fromkeys(_times(scale.depth) for scale in scales))
     text = f"Deflection drawn {deflection}, mean depth of the layer {depth}; walls to scale."
+    if deflection == depth == "to scale":
+        text = "Everything to scale."
     if views.inner:
         text += f" The liquid reaches an inner wall{' and'.join(_at_speed(result, i) for i in views.inner)}."
     return f"{text} {views.left_out} more chambers are not drawn." if views.left_out else text

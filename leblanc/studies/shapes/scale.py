@@ -28,7 +28,7 @@ CLEAR = 0.9  # of the deflection at which the wall falls dry, where it is wet
 WAVE_DEPTH = 0.25  # of a layer in a mode, over the chamber's radius: less is drawn deeper, if there is room
 WAVE = 0.75  # of the area that the layer has there, or that is free inside it: what a mode's wave moves
 INNER = 0.9  # of an inner wall's radius, inside which the axis at rest stays
-GAP = 0.015  # over the radius, between an inner wall and a surface drawn larger that does not meet it
+GAP = 0.02  # over the radius, between an inner wall and a surface drawn larger that does not meet it
 SHARES = 21  # of the exponent with which factors that do not fit are tried again
 _HALVINGS = 60
 

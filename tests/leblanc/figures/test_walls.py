@@ -87,6 +87,8 @@ def surfaces(axes: Any) -> list[Any]:
 
 def factors(figure: figures.Figure) -> list[float]:
     """Of the deflection of each view, as the caption says."""
+    if "Everything to scale." in figure.caption.shown:
+        return [1.0]
     said = re.search(r"Deflection drawn (.*?), mean depth", figure.caption.shown)
     assert said is not None
     parts = said[1].split(" and ")
@@ -265,10 +267,11 @@ def test_a_film_is_drawn_deep_enough_to_be_seen() -> None:
     radius, film = 0.1, 50e-6
     volume = math.pi * (radius**2 - (radius - film) ** 2) * HEIGHT
     here = FilledChamber(radius, 0.08, HEIGHT, volume, "water", radius - film)
-    figure = figures.chamber_figure(machine((here,), 1e-5 + 0j, 1e-5j))
-    said = re.search(r"layer \S\N{NO-BREAK SPACE}([\d.]+)", figure.caption.shown)
-    assert said is not None
-    assert float(said[1]) * film > 0.05 * radius
+    for size, least in ((1e-5, 0.05), (0.01, 0.01)):
+        figure = figures.chamber_figure(machine((here,), size + 0j, 1j * size))
+        said = re.search(r"layer \S\N{NO-BREAK SPACE}([\d.]+)", figure.caption.shown)
+        assert said is not None
+        assert float(said[1]) * film > least * radius
 
 
 @pytest.mark.parametrize("seed", range(6))
