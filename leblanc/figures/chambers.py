@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
+from itertools import zip_longest
 from typing import Any
 
 import numpy as np
@@ -28,7 +30,7 @@ from leblanc.text.run import alts, amplitude_place
 from leblanc.units import DEGREE, LENGTH, MINUS, MM, TIMES, in_rpm, number, with_unit
 from meshes.arrays import Array, Complex
 from meshes.baffles import Baffles
-from meshes.clip import Remainder, area_within, outside_circle, radius_for, wall_loops
+from meshes.clip import Remainder, area_within, outside_circle, wall_loops
 
 RAYS = 361  # one degree apart, closed
 BISECTIONS = 60  # from the radius down to rounding
@@ -37,11 +39,14 @@ UNEVEN_RAYS = 721
 SHARES = 21  # of the exponent with which factors that do not fit are tried again
 OUTSIDE = 1.07  # place of the unbalance over the wall's radius, where it covers no liquid
 GAP = 0.03  # over the radius, between an inner wall and a surface drawn larger that does not meet it
+UPRIGHT = 0.02  # of the radius: a surface whose ends are nearer stands upright in the drawing
+TIERS, HEIGHTS = 4, 24  # shades of a bowl; heights at which its area is counted
 SEEN = 0.02  # of the radius: a deflection drawn smaller than this gets a factor of its own
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 
 WALL, LIQUID, SURFACE, CENTRE, UNBALANCE = "0.15", "#56B4E9", "#0072B2", "#D55E00", "0.15"
+SHADES = ("#DCEFFA", "#BBE0F5", "#99D1F1", "#78C3ED", LIQUID)  # from the floor of a bowl to the lid
 MOST_DRAWINGS = 3  # side by side
 FRAME = Frame(left=0.15, top=0.26, between=0.6, below=0.36)
 HEADING_ROW = 0.14  # inches
@@ -90,7 +95,9 @@ def liquid_outline(chamber: FilledChamber, centre: complex, depth: float) -> tup
     return angle, np.clip(0.5 * (low + high), floor, outer), outer
 
 
-def exaggeration(chambers: tuple[FilledChamber, ...], deflections: tuple[complex, ...]) -> Exaggeration:
+def exaggeration(
+    chambers: tuple[FilledChamber, ...], deflections: tuple[complex, ...], bends: tuple[float, ...] = ()
+) -> Exaggeration:
     """Factors that make deflection and layer visible and leave what the liquid touches as it is.
 
     Wet walls stay wet, dry patches dry, and a surface that meets no inner wall meets none as drawn. Where it
@@ -100,11 +107,16 @@ def exaggeration(chambers: tuple[FilledChamber, ...], deflections: tuple[complex
     ----------
     chambers : those that are drawn
     deflections : that are drawn, complex or their sizes, m
+    bends : 2 g/Omega^2 at each of them, by which the surface's squared radius grows along the axis, m
     """
     found = _visible(chambers, tuple(abs(w) for w in deflections))
     for share in np.linspace(1.0, 0.0, SHARES):
         scale = Exaggeration(_part(found.deflection, share), _part(found.depth, share))
-        if all(_as_it_is(chamber, w, scale) for chamber in chambers for w in deflections or (0j,)):
+        if all(
+            _as_it_is(chamber, w, scale, bend)
+            for chamber in chambers
+            for w, bend in zip_longest(deflections or (0j,), bends, fillvalue=0.0)
+        ):
             break
     return scale
 
@@ -138,16 +150,18 @@ def _visible(chambers: tuple[FilledChamber, ...], deflections: tuple[float, ...]
     return Exaggeration(factor, depth_factor)
 
 
-def _as_it_is(chamber: FilledChamber, moved: complex, scale: Exaggeration) -> bool:
+def _as_it_is(chamber: FilledChamber, moved: complex, scale: Exaggeration, bend: float) -> bool:
     """Nothing is enlarged, or the surface meets no inner wall, as drawn and in truth."""
     if scale.deflection <= 1.0 and scale.depth == 1.0:
         return True
-    if meets_inner_wall(chamber, scale.deflection * moved, scale.depth, GAP):
+    if meets_inner_wall(chamber, scale.deflection * moved, scale.depth, bend, GAP):
         return False
-    return not meets_inner_wall(chamber, moved, 1.0)
+    return not meets_inner_wall(chamber, moved, 1.0, bend)
 
 
-def meets_inner_wall(chamber: FilledChamber, centre: complex, depth_factor: float, gap: float = 0.0) -> bool:
+def meets_inner_wall(
+    chamber: FilledChamber, centre: complex, depth_factor: float, bend: float = 0.0, gap: float = 0.0
+) -> bool:
     """The liquid reaches an inner wall, a core, or past the inner edges of closed baffles.
 
     Parameters
@@ -155,15 +169,19 @@ def meets_inner_wall(chamber: FilledChamber, centre: complex, depth_factor: floa
     chamber : its walls are to scale
     centre : geometric centre from the rotation axis, m
     depth_factor : by which the layer is deeper
+    bend : as for `exaggeration`
     gap : it comes as near as this to one, over the chamber's radius
     """
     if chamber.volume == 0.0 or chamber.least_depth <= 0.0:
         return False
-    found = bodies(chamber, centre, depth_factor)
-    for inside, body in zip(_inside(chamber, depth_factor), found, strict=True):
-        if inside.size and float(np.abs(inside + centre).max()) > body.level - (gap - 1e-9) * chamber.radius:
-            return True
-    return False
+    reach = [float(np.abs(z + centre).max(initial=0.0)) for z in _inside(chamber, depth_factor)]
+    if not any(reach):
+        return False
+    found = levels(chamber, centre, depth_factor, bend)
+    return any(
+        far > math.sqrt(max(square, 0.0)) - (gap - 1e-9) * chamber.radius
+        for far, square in zip(reach, found, strict=True)
+    )
 
 
 def side_by_side(chambers: tuple[FilledChamber, ...]) -> list[tuple[FilledChamber, ...]]:
@@ -190,12 +208,14 @@ class LiquidOutline:
 
     Parameters
     ----------
-    level : distance of the free surface, m
+    level : distance of the free surface, on the floor of a bowl, m
     liquid : what lies outside of it
+    higher : what is covered up to some heights above the floor, if the surface is a bowl, from the lowest on
     """
 
     level: float
     liquid: Remainder
+    higher: tuple[Remainder, ...] = ()
 
 
 @lru_cache(maxsize=64)
@@ -232,23 +252,103 @@ def _closed(chamber: FilledChamber, baffles: Baffles) -> bool:
     return baffles.wetted_span(chamber.radius, rest) == (rest, chamber.radius)
 
 
-def bodies(chamber: FilledChamber, centre: complex, depth_factor: float) -> list[LiquidOutline]:
+def bodies(
+    chamber: FilledChamber, centre: complex, depth_factor: float, bend: float = 0.0
+) -> list[LiquidOutline]:
     """Each body of liquid in its walls, outside the circle about the rotation axis that leaves its area.
+
+    Under gravity along the axis the circle widens from floor to lid: r^2 = C + bend z.
 
     Parameters
     ----------
     chamber : its walls are drawn to scale
     centre : geometric centre as drawn, from the rotation axis, m
     depth_factor : by which the layer is drawn deeper, everywhere as much as where it is thinnest
+    bend : as for `exaggeration`
     """
-    rest = chamber.mean_surface_radius - (depth_factor - 1.0) * chamber.least_depth
     found = []
-    for loops in walls(chamber):
-        wanted = Remainder(loops, ()).area - area_within(loops, max(rest, 0.0))
+    for loops, level in zip(walls(chamber), levels(chamber, centre, depth_factor, bend), strict=True):
         moved = tuple(loop + centre for loop in loops)
-        level = radius_for(moved, wanted)
-        found.append(LiquidOutline(level, outside_circle(moved, level)))
+        ramp = bend * chamber.height
+        if _is_upright(chamber, level, ramp):
+            found.append(LiquidOutline(math.sqrt(level), outside_circle(moved, math.sqrt(level))))
+            continue
+        tiers = [math.sqrt(max(level + ramp * k / TIERS, 0.0)) for k in range(TIERS + 1)]
+        left = [outside_circle(moved, radius) for radius in tiers]
+        found.append(LiquidOutline(tiers[0], left[0], tuple(left[1:])))
     return found
+
+
+def levels(chamber: FilledChamber, centre: complex, depth_factor: float, bend: float = 0.0) -> list[float]:
+    """Square of the free surface's distance from the rotation axis in each body, m^2.
+
+    On the floor, if the surface is a bowl; below 0 where it covers the axis there.
+
+    Parameters
+    ----------
+    chamber, centre, depth_factor, bend : as for `bodies`
+    """
+    rest = max(chamber.mean_surface_radius - (depth_factor - 1.0) * chamber.least_depth, 0.0)
+    ramp, found = bend * chamber.height, []
+    farthest = (chamber.radius + abs(centre)) ** 2
+    for loops in walls(chamber):
+        wanted = _within(chamber, loops, 0j, math.inf) - _within(chamber, loops, 0j, rest)
+        taken = partial(_within, chamber, loops, centre)
+        level = _square(taken, wanted, farthest, 0.0)
+        upright = _is_upright(chamber, level, ramp)
+        found.append(level if upright else _square(taken, wanted, farthest, ramp))
+    return found
+
+
+def _is_upright(chamber: FilledChamber, square: float, ramp: float) -> bool:
+    """A surface stands so nearly upright that it is drawn as if it did."""
+    return ramp == 0.0 or math.sqrt(max(square, 0.0) + ramp) - math.sqrt(max(square, 0.0)) < (
+        UPRIGHT * chamber.radius
+    )
+
+
+def _square(taken: Callable[[float], float], area: float, farthest: float, ramp: float) -> float:
+    """Square of the surface's radius on the floor that leaves an area outside it in the mean over the height.
+
+    Parameters
+    ----------
+    taken : area inside a radius
+    area : outside of it, m^2
+    farthest : square of the farthest wall's distance, m^2
+    ramp : growth of the square from floor to lid, m^2
+    """
+    whole, low, high = taken(math.inf), -ramp, farthest
+    share, weight = np.polynomial.legendre.leggauss(HEIGHTS) if ramp > 0.0 else (np.zeros(1), np.full(1, 2.0))
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        squares = np.maximum(middle + 0.5 * ramp * (1.0 + share), 0.0)
+        inside = sum(0.5 * w * taken(math.sqrt(q)) for w, q in zip(weight, squares, strict=True))
+        low, high = (middle, high) if whole - inside > area else (low, middle)
+    return 0.5 * (low + high)
+
+
+def _within(chamber: FilledChamber, loops: tuple[Complex, ...], centre: complex, radius: float) -> float:
+    """Area of a body's room inside a circle about the rotation axis, m^2."""
+    if len(walls(chamber)) == 1 and chamber.section is None:
+        both = (_common(wall, radius, abs(centre)) for wall in (chamber.radius, chamber.inner_radius))
+        outer, inner = both
+        return outer - inner
+    if math.isinf(radius):
+        return Remainder(loops, ()).area
+    return area_within(tuple(loop + centre for loop in loops), radius)
+
+
+def _common(first: float, second: float, apart: float) -> float:
+    """Area that two circles have in common, given their radii and the distance of their centres, m^2."""
+    small, large = sorted((first, second))
+    if apart <= large - small:
+        return math.pi * small**2
+    if apart >= large + small:
+        return 0.0
+    foot = (apart**2 + small**2 - large**2) / (2.0 * apart)
+    shares = foot / small, (apart - foot) / large
+    inner, outer = (math.acos(max(-1.0, min(1.0, share))) for share in shares)
+    return small**2 * inner + large**2 * outer - apart * math.sqrt(max(small**2 - foot**2, 0.0))
 
 
 def _inside(chamber: FilledChamber, depth_factor: float) -> list[Complex]:
@@ -291,7 +391,7 @@ class Views:
     scales : exaggeration of each view; alike, so that views can be compared, if the smaller deflection can be
         seen so
     largest : deflection of all views as drawn, m
-    inner : index of the views in which liquid reaches an inner wall
+    inner, bowls : index of the views in which liquid reaches an inner wall, and whose surface is a bowl
     left_out : number of chambers that found no room
     """
 
@@ -300,6 +400,7 @@ class Views:
     scales: list[Exaggeration]
     largest: float
     inner: list[int]
+    bowls: list[int]
     left_out: int
 
 
@@ -321,7 +422,7 @@ def chamber_figure(result: RunResult) -> Figure:
             scale = views.scales[views.instants.index(index)]
             axes = figure.add_axes((0, 0, 1, 1), label=str(i))
             at = moved(result, chambers, index)
-            draw_chambers(axes, chambers, at, views, scale, zero)
+            draw_chambers(axes, chambers, at, views, scale, bend_at(result, index), zero)
             if i % len(views.drawings) == 0:
                 write_numbers(axes, result, views, index)
             drawn.append(axes)
@@ -361,28 +462,47 @@ def choose_views(result: RunResult) -> Views:
     at = [
         [(chamber, moved(result, drawing, i)) for drawing in drawn for chamber in drawing] for i in instants
     ]
-    scales = _scales(at)
+    bends = [bend_at(result, i) for i in instants]
+    scales = _scales(at, bends)
     largest = max(
         (s.deflection * abs(w) for s, here in zip(scales, at, strict=True) for _, w in here), default=0.0
     )
-    inner = [
-        i for i, here in zip(instants, at, strict=True) if any(meets_inner_wall(c, w, 1.0) for c, w in here)
-    ]
+    inner, bowls = [], []
+    for i, here, bend in zip(instants, at, bends, strict=True):
+        if any(meets_inner_wall(chamber, w, 1.0, bend) for chamber, w in here):
+            inner.append(i)
+        if any(
+            c.volume > 0.0 and not _is_upright(c, square, bend * c.height)
+            for c, w in here
+            for square in levels(c, w, 1.0, bend)
+        ):
+            bowls.append(i)
     left_out = sum(map(len, drawings[MOST_DRAWINGS:]))
-    return Views(drawn, instants, scales, largest, inner, left_out)
+    return Views(drawn, instants, scales, largest, inner, bowls, left_out)
 
 
-def _scales(at: list[list[tuple[FilledChamber, complex]]]) -> list[Exaggeration]:
-    """Of each view, given its chambers and their deflections."""
+def bend_at(result: RunResult, index: int) -> float:
+    """Growth of the squared radius of the free surface along the axis at a speed, 2 g/Omega^2, m.
+
+    Parameters
+    ----------
+    result, index : the study, which of the speeds of its curve
+    """
+    return 2.0 * result.axial_gravity / float(result.curve.speed[index]) ** 2
+
+
+def _scales(at: list[list[tuple[FilledChamber, complex]]], bends: list[float]) -> list[Exaggeration]:
+    """Of each view, given its chambers and their deflections, and the bend of its surface."""
     if not at or not at[0]:
         return [Exaggeration(1.0, 1.0)] * len(at)
     radius = max(chamber.radius for chamber, _ in at[0])
     chambers = tuple(chamber for chamber, _ in at[0])
-    common = exaggeration(chambers, tuple(dict.fromkeys(w for here in at for _, w in here)))
+    of_view = [list(dict.fromkeys((w, bend) for _, w in here)) for here, bend in zip(at, bends, strict=True)]
+    common = exaggeration(chambers, *zip(*(pair for pairs in of_view for pair in pairs), strict=True))
     sizes = [max(abs(w) for _, w in here) for here in at]
     if all(common.deflection * size >= SEEN * radius for size in sizes if size > 0.0):
         return [common] * len(at)
-    return [exaggeration(chambers, tuple(dict.fromkeys(w for _, w in here))) for here in at]
+    return [exaggeration(chambers, *zip(*pairs, strict=True)) for pairs in of_view]
 
 
 def moved(result: RunResult, chambers: tuple[FilledChamber, ...], index: int) -> complex:
@@ -403,6 +523,9 @@ def describe_scale(result: RunResult, views: Views) -> str:
         text = "Everything to scale."
     if views.inner:
         text += f" The liquid reaches an inner wall{' and'.join(_at_speed(result, i) for i in views.inner)}."
+    if views.bowls:
+        places = " and".join(_at_speed(result, i) for i in views.bowls)
+        text += f" The surface is a bowl{places}: the darker, the higher above the floor the liquid reaches."
     return f"{text} {views.left_out} more chambers are not drawn." if views.left_out else text
 
 
@@ -454,6 +577,7 @@ def draw_chambers(
     deflection: complex,
     views: Views,
     scale: Exaggeration,
+    bend: float = 0.0,
     zero: str = "unbalance",
 ) -> None:
     """Walls, liquid, axes, unbalance and spin.
@@ -464,13 +588,14 @@ def draw_chambers(
     chambers : that lie inside one another, the widest first
     deflection : complex, the unbalance along the real axis, m
     views, scale : of all drawings; how much deflection and layer are exaggerated in this one
+    bend : as for `exaggeration`
     zero : what the real axis points to
     """
     centre = deflection * scale.deflection * MM
     widest = chambers[0].radius * MM
     reach = 1.18 * widest + views.largest * MM
     for chamber in chambers:
-        _draw_liquid(axes, chamber, centre, scale.depth)
+        _draw_liquid(axes, chamber, centre, scale.depth, bend)
         _draw_walls(axes, chamber, centre, scale.depth)
     _unbalance(axes, centre, widest, zero)
     axes.plot([0.0, centre.real], [0.0, centre.imag], color=CENTRE, linewidth=1.2)
@@ -495,13 +620,18 @@ def draw_chambers(
     axes.axis("off")
 
 
-def _draw_liquid(axes: Axes, chamber: FilledChamber, centre: complex, depth_factor: float) -> None:
-    """Each body of liquid and its free surface."""
+def _draw_liquid(
+    axes: Axes, chamber: FilledChamber, centre: complex, depth_factor: float, bend: float
+) -> None:
+    """Each body of liquid and its free surface, a bowl in shades of its depth."""
     if chamber.volume == 0.0 or chamber.radius <= chamber.mean_surface_radius:
         return
-    for body in bodies(chamber, centre / MM, depth_factor):
-        fill_loops(axes, [loop * MM for loop in body.liquid.loops], facecolor=LIQUID, label="liquid")
-        for arc in body.liquid.arcs:
+    for body in bodies(chamber, centre / MM, depth_factor, bend):
+        tiers = [body.liquid, *body.higher]
+        shades = SHADES if body.higher else [LIQUID]
+        for tier, shade in zip(tiers, shades, strict=True):
+            fill_loops(axes, [loop * MM for loop in tier.loops], facecolor=shade, label="liquid")
+        for arc in (*body.liquid.arcs, *(body.higher[-1].arcs if body.higher else ())):
             axes.plot(arc.real * MM, arc.imag * MM, color=SURFACE, linewidth=0.9, solid_capstyle="butt")
 
 

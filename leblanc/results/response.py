@@ -196,6 +196,7 @@ class RunResult(Result):
     balance_quality, balance_quality_dry : unbalance of rotor and liquid together over the rotor's mass times
         the speed, and that of the rotor alone, m/s [theory: balance_quality, eq. 1]; infinite where the
         motion is; shape (n,); None where no mass spins
+    axial_gravity : gravity along the axis, m/s^2
 
     Raises
     ------
@@ -233,6 +234,7 @@ class RunResult(Result):
     refined: Response | None = None
     balance_quality: Array | None = None
     balance_quality_dry: Array | None = None
+    axial_gravity: float = 0.0
 
     def __post_init__(self) -> None:
         if self.axis not in ("horizontal", "vertical"):

@@ -198,6 +198,7 @@ def run_scene(scene: Scene, progress: Callable[[str], object] = lambda _: None) 
         models=model_spans(choice, machine.speed),
         tolerance=choice.tolerance,
         refined=refined,
+        axial_gravity=machine.axial_gravity,
         **_balance(machine, answer),
     )
 

@@ -19,7 +19,7 @@ from matplotlib.path import Path as Lines
 
 from fluid.liquid import known_liquid
 from leblanc import figures
-from leblanc.figures.chambers import SURFACE
+from leblanc.figures.chambers import SURFACE, bodies
 from leblanc.figures.films import film_figure
 from leblanc.figures.liquid import modes_figure
 from leblanc.results.base import FilledChamber
@@ -31,6 +31,7 @@ from meshes.chamber import Chamber
 from meshes.chamber_section import ChamberSection, chamber_section, level
 from meshes.files.exchange import write_section
 from meshes.section import Section, annulus, disc, section_area
+from solvers.statics.hydrostatics import equilibrium
 from tests.leblanc.studies.test_runup import history_of, made_up
 from tests.oracles.records import circles, record_of, response_of
 
@@ -73,11 +74,13 @@ def chamber(kind: str, share: float, inner: float) -> FilledChamber:
     return found
 
 
-def machine(chambers: tuple[FilledChamber, ...], *deflections: complex) -> RunResult:
-    """An answer at as many speeds."""
-    w, at = np.array(deflections, dtype=complex), response_of(np.linspace(100.0, 200.0, len(deflections)))
+def machine(chambers: tuple[FilledChamber, ...], *deflections: complex, slowest: float = 0.0) -> RunResult:
+    """An answer at as many speeds; upright, if a slowest speed is given."""
+    first = slowest or 100.0
+    w, at = np.array(deflections, dtype=complex), response_of(first * np.linspace(1.0, 2.0, len(deflections)))
     shown = replace(at, deflection=w, branch_deflection=w[:, None], **circles(w, w[:, None]))
-    return record_of(shown, chambers=chambers)
+    axis, gravity = ("vertical", 9.81) if slowest > 0.0 else ("horizontal", 0.0)
+    return record_of(shown, chambers=chambers, axis=axis, axial_gravity=gravity)
 
 
 def surfaces(axes: Any) -> list[Any]:
@@ -134,9 +137,9 @@ def outside(chamber: FilledChamber, points: np.ndarray) -> float:
     return float(near[~inside].max(initial=0.0))
 
 
-def check(chambers: tuple[FilledChamber, ...], *deflections: complex) -> None:
+def check(chambers: tuple[FilledChamber, ...], *deflections: complex, slowest: float = 0.0) -> None:
     """Every drawn point of liquid and surface lies in its chamber."""
-    result = machine(chambers, *deflections)
+    result = machine(chambers, *deflections, slowest=slowest)
     figure = figures.chamber_figure(result)
     said = factors(figure)
     for axes in figure.axes:
@@ -183,7 +186,9 @@ def test_liquid_stays_between_the_walls(seed: int) -> None:
     here = chamber(kind, share, inner)
     sizes = 10.0 ** rng.uniform(-6.0, -1.2, 2)
     turns = np.exp(1j * rng.uniform(-math.pi, math.pi, 2))
-    check((here,), *(sizes * turns).tolist())
+    # Every second machine stands; its liquid may be a shallow bowl.
+    slowest = float(10.0 ** rng.uniform(0.0, 2.0)) if seed // len(KINDS) % 2 else 0.0
+    check((here,), *(sizes * turns).tolist(), slowest=slowest)
 
 
 # The first: a deflection of a tenth of the radius in a ring, the starter at resonance.
@@ -253,6 +258,26 @@ def touches(here: FilledChamber, moved: complex) -> bool:
     cell = (side[1] - side[0]) ** 2
     level_here = away[min(int(here.volume / HEIGHT / cell), away.size - 1)]
     return bool(np.abs(wall + moved).max() > level_here)
+
+
+def test_a_bowl_is_the_equilibrium_of_its_volume() -> None:
+    """Where it meets the floor, against the solver of equilibria; shades end there, the higher the later."""
+    for inner, share, size, speed in (
+        (0.0, 0.1, 0.01, 12.0),
+        (0.08, 0.3, 0.004, 9.0),
+        (0.05, 0.6, 0.0, 20.0),
+    ):
+        here = chamber("ring", share, inner / 0.1)
+        exact = equilibrium(Chamber(0.1, HEIGHT, inner), here.volume, size, speed, 9.81)
+        floor = 0.1 + size - float(exact.farthest_depth)
+        (body,) = bodies(here, complex(size), 1.0, 2.0 * 9.81 / speed**2)
+        # The area is counted at 24 heights; its growth bends where the surface meets a wall.
+        assert body.level == pytest.approx(floor, abs=2e-4 * 0.1)
+        reach = [min(float(np.abs(z).min()) for z in tier.loops) for tier in body.higher if tier.loops]
+        assert reach == sorted(reach)
+        figure = figures.chamber_figure(machine((here,), size, slowest=speed))
+        assert f"a bowl at {speed * 60.0 / 2.0 / math.pi:.4g} rpm" in figure.caption.shown
+    assert "bowl" not in figures.chamber_figure(machine((here,), size, slowest=500.0)).caption.shown
 
 
 def test_chambers_inside_one_another_and_dry_ones() -> None:
