@@ -256,6 +256,67 @@ Liquid = LiquidShape | LiquidBodies | None  # of one chamber; None where there i
 
 
 @dataclass(frozen=True)
+class Strut:
+    """A spring or damper between the machine and the ground, both places along and across the axis.
+
+    Across the axis, complex: gravity points along -i where the axis lies.
+
+    Parameters
+    ----------
+    kind : "spring", "damper", or "bush" where one acts in all directions
+    axial, across : where it holds the machine, m
+    along, aside : unit vector from there to the ground, its parts along and across the axis
+    length : as drawn, m
+    """
+
+    kind: str
+    axial: float
+    across: complex
+    along: float
+    aside: complex
+    length: float
+
+
+@dataclass(frozen=True)
+class Shell:
+    """A drum, tub or ring round the axis.
+
+    Parameters
+    ----------
+    radius : m
+    low, high : its ends along the axis, m
+    """
+
+    radius: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class MachineParts:
+    """What carries the chambers and what holds the machine, as drawn.
+
+    Parameters
+    ----------
+    drum : carries the chambers and turns with them
+    hollow : a drum with room inside; else a disc with its chambers
+    housing : round the drum, does not turn; None where there is none
+    shaft : its pieces along the axis, m
+    bearings : places along the axis, m
+    struts : springs and dampers
+    sketched : what the scene does not say of them, a sentence for the caption; empty if it says all
+    """
+
+    drum: Shell
+    hollow: bool
+    housing: Shell | None
+    shaft: tuple[Shell, ...]
+    bearings: tuple[float, ...]
+    struts: tuple[Strut, ...]
+    sketched: str
+
+
+@dataclass(frozen=True)
 class MachineMotion:
     """A machine at some speeds; s speeds, c chambers. Angles count from the unbalance, in the drum frame.
 
@@ -269,6 +330,7 @@ class MachineMotion:
     deflection : of the axis at each chamber, m, nan where none was found, shape (s, c); shape (s, 1) without
         chambers
     lean : slope of the axis along itself, rad, shape (s,)
+    parts : drum, housing, springs and dampers
     """
 
     response: RunResult
@@ -278,6 +340,7 @@ class MachineMotion:
     gravity: float
     deflection: Complex
     lean: Complex
+    parts: MachineParts
 
     @property
     def speed(self) -> Array:
@@ -348,6 +411,9 @@ class RunupView:
     fills, places : chambers with their liquid; their middles along the axis, m
     scale : common to all frames
     bodies : liquid of each chamber in each frame
+    turn : of the drum in each frame as drawn, rad, shape (f,)
+    slower : how many times slower than in truth it turns
+    parts : drum, housing, springs and dampers
     """
 
     result: RunupResult
@@ -356,6 +422,9 @@ class RunupView:
     places: tuple[float, ...]
     scale: Scale
     bodies: tuple[tuple[Liquid, ...], ...]
+    turn: Array
+    slower: float
+    parts: MachineParts
 
 
 @dataclass(frozen=True)

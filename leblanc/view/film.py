@@ -23,7 +23,7 @@ from leblanc.results.drawn import (
     RunupView,
     Scale,
 )
-from leblanc.units import LENGTH, RPM, in_rpm, unit_for
+from leblanc.units import DEGREE, LENGTH, RPM, in_rpm, unit_for
 from leblanc.view.parts import Instant, Picture, Stage
 from leblanc.view.picture import Pixels, fill, pixels, plotter, write_png
 from leblanc.view.scene import compose, stage_of, still
@@ -34,6 +34,8 @@ from meshes.errors import InputError
 FRAMES, MOST_FRAMES, RATE = 60, 600, 15  # frames a second; a GIF counts in hundredths of a second
 FILM_SIZE = (800, 600)  # pixels; video codecs want even numbers
 COLOURS = 128  # of a GIF
+
+TURN = math.radians(18.0)  # of the drum from frame to frame at the highest speed
 
 ROUND = 48  # frames of a period
 
@@ -72,7 +74,13 @@ def sweep_film(
     last = motion.speed.size - 1
     chosen = np.unique(np.linspace(0, last, min(frames, last + 1)).round().astype(int)).tolist()
     stage = stage_of(motion, scale)
-    return Film(len(chosen), lambda k: still(motion, chosen[k], liquid(chosen[k]), stage))
+    # The drum turns in proportion to its speed, by no more from frame to frame than the eye can follow.
+    turn = TURN * np.cumsum(motion.speed[chosen]) / motion.speed[chosen].max()
+    said = f"From frame to frame spin and whirl turn by {math.degrees(TURN):.0f}{DEGREE} at the highest speed."
+    return Film(
+        len(chosen),
+        lambda k: still(motion, chosen[k], liquid(chosen[k]), stage, float(turn[k] - turn[0]), said),
+    )
 
 
 def require_frames(frames: int) -> None:
@@ -100,6 +108,7 @@ def runup_film(view: RunupView) -> Film:
         scale=view.scale,
         swing=view.scale.deflection * float(abs(view.frames.deflection).max()),
         zero="unbalance" if view.result.kind == "jeffcott" else "angle 0",
+        parts=view.parts,
     )
     return Film(view.frames.time.size, lambda k: compose(stage, _instant(stage, view, k)))
 
@@ -116,7 +125,12 @@ def _instant(stage: Stage, view: RunupView, k: int) -> Instant:
         f"t = {frames.time[k]:.2f} s, amplitude {unit.text(frames.amplitude[k])}",
         f"liquid model {view.result.model}",
     ]
-    caption = [stage.scale.in_words(), "Seen from the drum.", "The surface stands upright along the axis."]
+    caption = [
+        stage.scale.in_words(),
+        f"Spin and whirl are {view.slower:g} times slower than they are.",
+        "The surface stands upright along the axis.",
+        view.parts.sketched,
+    ]
     if stage.lying:
         caption.append("Liquid that gravity holds at the bottom is drawn as a pool.")
     return Instant(
@@ -126,7 +140,7 @@ def _instant(stage: Stage, view: RunupView, k: int) -> Instant:
         title=f"{name}: run-up, {speed * RPM:.0f} rpm ({speed:.1f} rad/s)",
         state="\n".join(state),
         caption=" ".join(caption),
-        down=float(frames.pool[k]) if stage.lying else None,
+        turn=float(view.turn[k]),
     )
 
 

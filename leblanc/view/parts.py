@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from fluid.fill import Fill
-from leblanc.results.drawn import Liquid, Scale
+from leblanc.results.drawn import Liquid, MachineParts, Scale
 from leblanc.units import MM
 from meshes.arrays import Array, Complex, Indices
 
@@ -84,6 +84,7 @@ class Stage:
     swing : largest deflection as drawn, m
     zero : what the zero mark on the drum is; empty to leave it out
     gravity : show where it points
+    parts : what carries the chambers and holds them; None to show these alone
     """
 
     fills: tuple[Fill, ...]
@@ -93,11 +94,23 @@ class Stage:
     swing: float
     zero: str = "unbalance"
     gravity: bool = True
+    parts: MachineParts | None = None
 
     @property
     def radius(self) -> float:
-        """Of the widest chamber, m."""
-        return max((fill.chamber.radius for fill in self.fills), default=0.1)
+        """Of the widest chamber, or of the drum, m."""
+        bare = 0.1 if self.parts is None else self.parts.drum.radius
+        return max((fill.chamber.radius for fill in self.fills), default=bare)
+
+    @property
+    def whole(self) -> tuple[float, float]:
+        """Ends of chambers, drum, housing and shaft along the axis, m."""
+        low, high = self.ends
+        if self.parts is None:
+            return low, high
+        shells = [self.parts.drum, *self.parts.shaft]
+        shells += [] if self.parts.housing is None else [self.parts.housing]
+        return min(low, *(shell.low for shell in shells)), max(high, *(shell.high for shell in shells))
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -109,7 +122,7 @@ class Stage:
 
 @dataclass(frozen=True)
 class Instant:
-    """A machine at one instant, in the drum frame.
+    """A machine at one instant, seen from the drum unless it says otherwise.
 
     Parameters
     ----------
@@ -117,7 +130,7 @@ class Instant:
     lean : slope of the axis along itself, not yet scaled
     bodies : liquid of each chamber as drawn, None where there is none
     title, state, caption : texts
-    down : direction of gravity across the axis seen from the drum, rad; None to leave it as it is at angle 0
+    turn : of the drum from where its zero mark lies in a still, rad
     """
 
     deflection: tuple[complex, ...]
@@ -126,8 +139,7 @@ class Instant:
     title: str
     state: str
     caption: str
-    down: float | None = None
-    more: tuple[Piece, ...] = field(default=())
+    turn: float = 0.0
 
 
 def placed(stage: Stage, plane: Array | Complex, height: Array | float, along: float = 0.0) -> Array:
@@ -168,93 +180,109 @@ NO_CELLS: Indices = np.zeros((0, 2), dtype=np.int64)
 
 
 def axes(stage: Stage, instant: Instant) -> tuple[list[Piece], list[Label]]:
-    """Axis at rest, about which the machine turns, and the drum's own axis, which the deflection has moved.
+    """Axis at rest, about which the machine turns, and the drum's own axis, which the deflection has moved away.
 
     Parameters
     ----------
     stage, instant : what is fixed and what moves
     """
-    low, high = stage.ends
+    low, high = stage.whole
     ends = np.array([low - BELOW * stage.radius, high + ABOVE * stage.radius])
     middle = stage.places[0] if stage.places else 0.0
     first = instant.deflection[0] if instant.deflection else 0j
-    # The drum's axis ends a little earlier, so that the names of the two stay apart.
+    # The drum's axis ends a little earlier, so that the two can be told apart.
     shorter = ends - np.array([0.0, 0.2 * ABOVE * stage.radius])
     moved = stage.scale.deflection * (first + instant.lean * (shorter - middle))
     own = placed(stage, moved, shorter)
     rest = placed(stage, np.zeros(2), ends)
     pieces = [Piece("axis at rest", rest, line(2), "axis at rest")]
+    labels = [Label("axis of rotation", _point(rest[1]))]
     if np.any(moved != 0.0):
         pieces.append(Piece("axis of the drum", own, line(2), "axis of the drum"))
-    beyond = NAME * stage.radius * np.array([-1.0, 1.0])
-    names = placed(stage, np.array([moved[0], 0.0]), ends + beyond)
-    labels = [Label("axis of rotation", _point(names[1]))]
-    if np.abs(moved).max() > 0.015 * stage.radius:
-        labels.append(Label("axis of the drum", _point(names[0])))
+    # In all pictures of a film or in none.
+    if stage.swing > 0.015 * stage.radius:
+        labels.append(Label("axis of the drum", _point(own[0])))
     return pieces, labels
 
 
 def marks(stage: Stage, instant: Instant) -> tuple[list[Piece], list[Label]]:
-    """Unbalance, sense of the spin, gravity, scale bar.
+    """The heavy spot on the rim, or the zero mark, which turn with the drum.
 
     Parameters
     ----------
     stage, instant : what is fixed and what moves
     """
-    low, high = stage.ends
-    widest = max(range(len(stage.fills)), key=lambda k: stage.fills[k].chamber.radius, default=None)
-    centre, top, bottom = 0j, high, low
-    if widest is not None:
-        centre = stage.scale.deflection * instant.deflection[widest]
-        half = 0.5 * stage.fills[widest].chamber.height
-        top, bottom = stage.places[widest] + half, stage.places[widest] - half
-    radius = stage.radius
-    pieces, labels = _unbalance(stage, centre, top) if stage.zero else ([], [])
-    turn: Complex = np.exp(1j * np.radians(np.linspace(100.0, 150.0, 31)))
-    arc = placed(stage, centre + 1.08 * radius * turn, top)
-    pieces.append(Piece("spin", arc, line(arc.shape[0]), "spin"))
-    outside = placed(stage, centre + 1.2 * radius * turn[15:16], top)
-    labels.append(Label("spin", _point(outside[0])))
-    if stage.gravity:
-        arrow = _gravity(stage, instant, bottom)
-        pieces.append(Piece("gravity", arrow, line(2), "gravity"))
-        labels.append(Label("g", _point(arrow[1] + NAME * radius * MM * _direction(arrow))))
-    bar = scale_bar(stage, bottom)
-    pieces.append(bar)
-    beyond = bar.points[1] + 2.2 * NAME * radius * MM * _direction(bar.points)
-    labels.append(Label(f"{bar_length(stage.radius) * MM:g} mm", _point(beyond)))
-    return pieces, labels
-
-
-def _unbalance(stage: Stage, centre: complex, top: float) -> tuple[list[Piece], list[Label]]:
-    """The heavy spot on the rim, or the zero mark, with its name."""
+    if not stage.zero:
+        return [], []
+    centre, top, _ = _widest(stage, instant)
     radius = stage.radius
     spot = placed(stage, centre + np.array([radius]), top)
     pieces = [
         Piece("unbalance", spot, NO_CELLS, "unbalance", SPOT * radius * MM),
         Piece("arm", placed(stage, centre + np.array([0.0, radius]), top), line(2), "arm"),
     ]
-    # Above the unbalance of a standing machine, beside that of a lying one.
-    out, up = (1.0 + 3.0 * NAME, 0.0) if stage.lying else (1.0, 1.5 * NAME)
-    name = placed(stage, centre + np.array([out * radius]), top, up * radius)
-    return pieces, [Label(stage.zero, _point(name[0]))]
+    return pieces, [Label(stage.zero, _point(spot[0]))]
 
 
-def _direction(points: Array) -> Array:
-    """Unit vector from the first to the last of some points."""
-    along = points[-1] - points[0]
-    return np.asarray(along / np.linalg.norm(along))
+def signs(stage: Stage, instant: Instant) -> tuple[list[Piece], list[Label]]:
+    """Sense of the spin, gravity, scale bar, which stand.
+
+    Parameters
+    ----------
+    stage, instant : what is fixed and what moves
+    """
+    _, top, bottom = _widest(stage, instant)
+    away = AWAY * stage.radius + stage.swing
+    turn: Complex = np.exp(1j * np.radians(np.linspace(100.0, 150.0, 31)))
+    arc = placed(stage, away * turn, top)
+    pieces, labels = [Piece("spin", arc, line(arc.shape[0]), "spin")], [Label("spin", _point(arc[15]))]
+    if stage.gravity:
+        arrow = _gravity(stage, bottom)
+        pieces.append(Piece("gravity", arrow, line(2), "gravity"))
+        labels.append(Label("g", _point(arrow[1])))
+    bar = scale_bar(stage, bottom)
+    pieces.append(bar)
+    labels.append(Label(f"{bar_length(stage.radius) * MM:g} mm", _point(bar.points.mean(axis=0))))
+    return pieces, labels
 
 
-def _gravity(stage: Stage, instant: Instant, bottom: float) -> Array:
+def _widest(stage: Stage, instant: Instant) -> tuple[complex, float, float]:
+    """Centre, lid and floor of the widest chamber, m."""
+    widest = max(range(len(stage.fills)), key=lambda k: stage.fills[k].chamber.radius, default=None)
+    if widest is None:
+        centre = stage.scale.deflection * instant.deflection[0] if instant.deflection else 0j
+        return centre, stage.whole[1], stage.whole[0]
+    half = 0.5 * stage.fills[widest].chamber.height
+    centre = stage.scale.deflection * instant.deflection[widest]
+    return centre, stage.places[widest] + half, stage.places[widest] - half
+
+
+def turned(stage: Stage, points: Array, turn: float) -> Array:
+    """Points turned about the axis at rest, with the spin.
+
+    Parameters
+    ----------
+    stage : whether the machine lies
+    points : mm, shape (n, 3)
+    turn : rad
+    """
+    if turn == 0.0:
+        return points
+    first = 1 if stage.lying else 0
+    across = (points[:, first] + 1j * points[:, first + 1]) * np.exp(1j * turn)
+    found = points.copy()
+    found[:, first], found[:, first + 1] = across.real, across.imag
+    return found
+
+
+def _gravity(stage: Stage, bottom: float) -> Array:
     """Ends of the arrow of gravity, mm."""
     reach = stage.radius + stage.swing
     if not stage.lying:
         start = placed(stage, np.array([complex(-1.0, -0.6) * reach]), stage.ends[1])[0]
         return np.stack([start, start - np.array([0.0, 0.0, 0.3 * stage.radius * MM])])
-    down = -0.5 * math.pi if instant.down is None else instant.down
     ends = np.array([1.03 * reach, 1.03 * reach + 0.2 * stage.radius])
-    return placed(stage, np.exp(1j * down) * ends, bottom)
+    return placed(stage, -1j * ends, bottom)
 
 
 def bar_length(radius: float) -> float:

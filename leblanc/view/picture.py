@@ -67,6 +67,19 @@ LOOKS = {
     "bar": Look(INK, 1.0, 9.0),
     "metal": Look("#B0B0B0", 0.9),
     "ball": Look("#E69F00"),
+    "drum": Look("#B8C2CA", 0.16),
+    "drum back": Look("#B8C2CA", 0.35),
+    "rib": Look("#C3CBD1", 0.9),
+    "edge": Look("#6F7A83", 1.0, 2.0),
+    "housing": Look("#D9D3C7", 0.55),
+    "lug": Look("#8D8676"),
+    "shaft": Look("#8A8F94"),
+    "bearing": Look("#5C6268"),
+    "spring": Look("#3F7F5F"),
+    "damper": Look("#4A4A4A"),
+    "rod": Look("#B9BDC1"),
+    "bush": Look("#2B2B2B"),
+    "ground": Look("#A8A294"),
 }
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -16,13 +16,15 @@ from leblanc.figures.page import zero_of
 from leblanc.results.base import one_line
 from leblanc.results.drawn import DrawnLiquid, LiquidBodies, LiquidShape, MachineMotion, Scale, strips
 from leblanc.text.run import amplitude_place
-from leblanc.units import DEGREE, LENGTH, MINUS, in_rpm, with_unit
+from leblanc.units import DEGREE, LENGTH, MINUS, Unit, in_rpm, unit_for
+from leblanc.view.machine import ground_end, machine
 from leblanc.view.parts import (
     ABOVE,
     AWAY,
     BELOW,
     ROUND,
     Instant,
+    Label,
     Picture,
     Piece,
     Stage,
@@ -31,6 +33,8 @@ from leblanc.view.parts import (
     line,
     marks,
     placed,
+    signs,
+    turned,
 )
 from meshes.arrays import Array, Complex, Indices
 from meshes.bodies.body import WALL_PARTS
@@ -219,22 +223,48 @@ def compose(stage: Stage, instant: Instant) -> Picture:
             pieces += _bodies(stage, body, plates_of(fill.chamber, stage.scale.depth), k, floor)
         elif body is not None:
             pieces += _liquid(stage, body, k, floor)
-    lines, labels = axes(stage, instant)
-    signs, names = marks(stage, instant)
-    low, high = stage.ends
-    round_it = circle(0j, AWAY * stage.radius + stage.swing)
-    ends = np.array([low - BELOW * stage.radius, high + ABOVE * stage.radius])
-    rings = [placed(stage, round_it, height) for height in (low, high)]
+    carried, standing, held = machine(stage, instant)
+    lines, axis_names = axes(stage, instant)
+    spots, names = marks(stage, instant)
+    shown, sign_names = signs(stage, instant)
+    turning = [*pieces, *carried, *lines, *spots]
     return Picture(
-        pieces=(*pieces, *lines, *signs, *instant.more),
-        labels=(*labels, *names),
+        pieces=(
+            *(replace(piece, points=turned(stage, piece.points, instant.turn)) for piece in turning),
+            *standing,
+            *shown,
+        ),
+        labels=(
+            *(_turned_label(stage, label, instant.turn) for label in (*axis_names, *names)),
+            *sign_names,
+            *held,
+        ),
         title=instant.title,
         state=instant.state,
         caption=instant.caption,
         lying=stage.lying,
-        long=high - low > 2.0 * stage.radius,
-        frame=np.concatenate([*rings, placed(stage, np.zeros(2), ends)]),
+        long=stage.ends[1] - stage.ends[0] > 2.0 * stage.radius,
+        frame=_frame(stage),
     )
+
+
+def _turned_label(stage: Stage, label: Label, turn: float) -> Label:
+    x, y, z = turned(stage, np.array([label.place]), turn)[0].tolist()
+    return Label(label.text, (x, y, z))
+
+
+def _frame(stage: Stage) -> Array:
+    """Points that stay in sight whatever the machine does, mm."""
+    low, high = stage.whole
+    reach = AWAY * stage.radius
+    points = []
+    if stage.parts is not None:
+        reach = max(reach, stage.parts.housing.radius if stage.parts.housing else 0.0)
+        points = [ground_end(stage, strut)[None] for strut in stage.parts.struts]
+    round_it = circle(0j, reach + stage.swing)
+    ends = np.array([low - BELOW * stage.radius, high + ABOVE * stage.radius])
+    rings = [placed(stage, round_it, height) for height in stage.ends]
+    return np.concatenate([*rings, placed(stage, np.zeros(2), ends), *points])
 
 
 def _between(stage: Stage, name: str, look: str, *edges: tuple[Complex, float]) -> Piece:
@@ -371,10 +401,18 @@ def stage_of(motion: MachineMotion, scale: Scale) -> Stage:
         scale=scale,
         swing=scale.deflection * float(size.max(initial=0.0)),
         zero="unbalance" if tilting is None or tilting.zero == "unbalance" else "angle 0",
+        parts=motion.parts,
     )
 
 
-def still(motion: MachineMotion, index: int, liquid: DrawnLiquid, stage: Stage | None = None) -> Picture:
+def still(
+    motion: MachineMotion,
+    index: int,
+    liquid: DrawnLiquid,
+    stage: Stage | None = None,
+    turn: float = 0.0,
+    said: str = "",
+) -> Picture:
     """Picture of a machine at one of its speeds.
 
     Parameters
@@ -383,6 +421,8 @@ def still(motion: MachineMotion, index: int, liquid: DrawnLiquid, stage: Stage |
     index : of the speed
     liquid : as drawn at that speed
     stage : of several pictures, for this one alone if None
+    turn : of the drum, rad
+    said : sentence of a film about it, in place of that of a still
     """
     found = motion.deflection[index]
     deflection = np.where(np.isfinite(found), found, 0.0)
@@ -393,7 +433,8 @@ def still(motion: MachineMotion, index: int, liquid: DrawnLiquid, stage: Stage |
         bodies=liquid.bodies,
         title=describe_speed(motion.response.name, float(motion.speed[index])),
         state="\n".join(describe_state(motion, index, liquid.dry)),
-        caption=" ".join(describe_drawing(motion, index, liquid)),
+        caption=" ".join(describe_drawing(motion, index, liquid, said or "Seen from the drum.")),
+        turn=turn,
     )
     return compose(stage_of(motion, liquid.scale) if stage is None else stage, instant)
 
@@ -420,16 +461,16 @@ def describe_state(motion: MachineMotion, index: int, dry: Sequence[bool]) -> li
     found, answer = motion.deflection[index], motion.response.response
     if not np.isfinite(found).all():
         return ["no bounded deflection found: the axis is drawn at rest"]
-    lines, part = [], "deflection"
+    lines, part, unit = [], "deflection", unit_at(motion, index)
     several = len({round(abs(deflection), 12) for deflection in found}) > 1
     if motion.response.motion is not None:
-        size = with_unit(float(motion.response.amplitude[index]), LENGTH)
+        size = unit.text(float(motion.response.amplitude[index]))
         lines.append(f"amplitude {amplitude_place(motion.response)}: {size}")
         part = "with the spin"
     for k, deflection in enumerate(found):
         if k == 0 or several:
             name = f"chamber {k + 1}: {part}" if several else part
-            lines.append(f"{name} {place_in_words(complex(deflection), zero_of(motion.response))}")
+            lines.append(f"{name} {place_in_words(complex(deflection), zero_of(motion.response), unit)}")
     if not motion.fills:
         return [*lines, "no liquid"]
     which = [str(k + 1) for k, here in enumerate(dry) if here]
@@ -447,30 +488,43 @@ def describe_state(motion: MachineMotion, index: int, dry: Sequence[bool]) -> li
     return lines
 
 
-def place_in_words(deflection: complex, zero: str) -> str:
+def unit_at(motion: MachineMotion, index: int) -> Unit:
+    """The unit of all amplitudes and deflections that stand beside a picture.
+
+    Parameters
+    ----------
+    motion, index : the machine, which of its speeds
+    """
+    found = np.abs(motion.deflection[index]).tolist()
+    return unit_for(LENGTH, float(motion.response.amplitude[index]), *found)
+
+
+def place_in_words(deflection: complex, zero: str, unit: Unit) -> str:
     """Size and angle of a deflection.
 
     Parameters
     ----------
     deflection : m
     zero : what angles count from
+    unit : of its size
     """
     if deflection == 0.0:
         return "none"
     angle = f"{math.degrees(cmath.phase(deflection)):.0f}"
     angle = "0" if angle == "-0" else angle.replace("-", MINUS)
-    return f"{with_unit(abs(deflection), LENGTH)} at {angle}{DEGREE} from {zero}"
+    return f"{unit.text(abs(deflection))} at {angle}{DEGREE} from {zero}"
 
 
-def describe_drawing(motion: MachineMotion, index: int, liquid: DrawnLiquid) -> list[str]:
-    """How a still is drawn, sentence by sentence.
+def describe_drawing(motion: MachineMotion, index: int, liquid: DrawnLiquid, seen: str) -> list[str]:
+    """How a machine is drawn, sentence by sentence.
 
     Parameters
     ----------
     motion, index, liquid : the machine, which speed, its liquid as drawn
+    seen : from where, a sentence
     """
     scale = liquid.scale
-    parts = [scale.in_words(), "Seen from the drum."]
+    parts = [scale.in_words(), seen]
     if motion.fills and scale != Scale():
         parts.append("The liquid is in equilibrium with the deflection as drawn.")
     wrong = [here for there, here in zip(liquid.dry, liquid.drawn_dry, strict=True) if here != there]
@@ -490,9 +544,11 @@ def describe_drawing(motion: MachineMotion, index: int, liquid: DrawnLiquid) -> 
     tilting, answer = motion.response.motion, motion.response.response
     if tilting is not None and abs(tilting.backward[index]) > 0.01 * abs(answer.deflection[index]):
         parts.append(
-            f"Drawn is the part that turns with the spin; {with_unit(abs(tilting.backward[index]), LENGTH)} "
-            "turn against it."
+            "Drawn is the part that turns with the spin; "
+            f"{unit_at(motion, index).text(float(abs(tilting.backward[index])))} turn against it."
         )
+    if motion.parts.sketched:
+        parts.append(motion.parts.sketched)
     if motion.response.assumed:
         parts.append("Some values of the scene are assumed.")
     return parts

@@ -31,7 +31,8 @@ from leblanc.studies.runup import runup_scene
 from leblanc.studies.shapes.bodies import bodies_at_rest, is_cut, wall_is_dry
 from leblanc.studies.shapes.layer import body_at_rest, body_of_layer, body_of_pool
 from leblanc.studies.shapes.scale import SHOWN, THIN, drawn_volume, given_scale, scale_of, wave_scale
-from meshes.arrays import Complex
+from leblanc.studies.shapes.supports import machine_parts
+from meshes.arrays import Array, Complex
 from meshes.chamber_section import surface_is_whole
 from meshes.errors import InputError
 from meshes.liquid_section import LiquidSection
@@ -43,6 +44,8 @@ from solvers.sloshing.modes import SloshingModes, sloshing_modes
 from solvers.sloshing.system import condense
 from solvers.statics.hydrostatics import optimal_volume
 from solvers.synchronous.response import response
+
+TURN = math.radians(18.0)  # most of the drum from one frame of a film to the next
 
 GAP = 0.25  # between chambers moved apart, over the wider one's radius
 
@@ -81,7 +84,8 @@ def machine_motion(scene: Scene, speed: float | None = None) -> MachineMotion:
     elif scene.fills:
         deflection = np.repeat(deflection, len(scene.fills), axis=1)
     gravity, lean = axial_gravity(scene), _lean(scene, result)
-    return MachineMotion(result, scene.fills, places, moved, gravity, deflection, lean)
+    parts = machine_parts(scene, places)
+    return MachineMotion(result, scene.fills, places, moved, gravity, deflection, lean, parts)
 
 
 def require_rotor(scene: Scene) -> None:
@@ -286,11 +290,38 @@ def runup_view(
         scale = runup_scale(max((fill.chamber.radius for fill in scene.fills), default=0.1), result, kept)
     else:
         scale = given_scale(factor, scene.fills, kept.deflection)
+    turn, slower = strobe(kept.time, kept.speed)
     bodies = tuple(
-        tuple(_liquid(fill, scale, kept, k, j) for j, fill in enumerate(scene.fills))
+        tuple(_liquid(fill, scale, kept, k, j, float(turn[k])) for j, fill in enumerate(scene.fills))
         for k in range(kept.time.size)
     )
-    return RunupView(result, kept, scene.fills, places_of(scene)[0], scale, bodies)
+    places = places_of(scene)[0]
+    parts = machine_parts(scene, places)
+    return RunupView(result, kept, scene.fills, places, scale, bodies, turn, slower, parts)
+
+
+def strobe(time: Array, speed: Array) -> tuple[Array, float]:
+    """Turn of the drum in each frame of a film, slow enough for the eye to follow from frame to frame.
+
+    Parameters
+    ----------
+    time, speed : of the frames, s and rad/s, shape (f,)
+
+    Returns
+    -------
+    Turn, rad, shape (f,), and how many times slower than in truth that is, at least 1
+
+    Examples
+    --------
+    >>> turn, slower = strobe(np.array([0.0, 1.0, 2.0]), np.array([50.0, 100.0, 100.0]))
+    >>> np.round(np.degrees(np.diff(turn))), slower
+    (array([14., 18.]), 320.0)
+    """
+    steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(time)
+    slower = max(1.0, float(steps.max(initial=0.0)) / TURN)
+    # Rounded to two digits for print, upwards.
+    slower = float(f"{1.05 * slower:.2g}") if slower > 1.0 else 1.0
+    return np.concatenate([[0.0], np.cumsum(steps)]) / slower, slower
 
 
 def runup_scale(radius: float, result: RunupResult, frames: RunupFrames) -> Scale:
@@ -311,13 +342,13 @@ def runup_scale(radius: float, result: RunupResult, frames: RunupFrames) -> Scal
     return Scale(both, both)
 
 
-def _liquid(fill: Fill, scale: Scale, frames: RunupFrames, k: int, j: int) -> Liquid:
-    """Liquid of a chamber in a frame."""
+def _liquid(fill: Fill, scale: Scale, frames: RunupFrames, k: int, j: int, turn: float) -> Liquid:
+    """Liquid of a chamber in a frame, seen from the drum, which has made that turn."""
     if fill.volume == 0.0:
         return None
     moved, depth = complex(scale.deflection * frames.deflection[k, j]), frames.depth[k, j]
     if np.isnan(depth).any():
-        return body_of_pool(fill.chamber, fill.volume, moved, float(frames.pool[k]))
+        return body_of_pool(fill.chamber, fill.volume, moved, -0.5 * math.pi - turn)
     return body_of_layer(fill.chamber, moved, frames.theta, scale.depth * depth)
 
 
