@@ -26,7 +26,6 @@ from leblanc.results.drawn import DrawnLiquid, MachineMotion, Scale
 from leblanc.view.gate import address_of, gate
 from leblanc.view.parts import Picture
 from leblanc.view.picture import (
-    VIEWS,
     Plotter,
     fill,
     pixels,
@@ -36,6 +35,7 @@ from leblanc.view.picture import (
     write_png,
 )
 from leblanc.view.scene import describe_speed, describe_state, stage_of, still
+from leblanc.view.sight import VIEWS, layout
 from meshes.errors import InputError
 
 ROOMIER = 1.2  # of a page's view, in which what is near looks larger
@@ -76,6 +76,7 @@ def write_picture(picture: Picture, path: Path) -> None:
     plot = plotter(picture)
     try:
         if kind == ".html":
+            fill(plot, picture)  # its viewer has no names
             write_html(plot, picture, path)
         else:
             write_png(pixels(plot), path)
@@ -302,7 +303,7 @@ def _page(server: Any, plot: Any, name: str, frames: Frames) -> None:
 
     state = server.state
     state.trame__title = f"{name} - leblanc"
-    state.index, state.fitted = frames.first, False
+    state.index, state.fitted, state.view = frames.first, False, VIEWS[0]
     state.value, state.words = frames.values[frames.first], frames.texts[frames.first]
     with DivLayout(server) as layout:
         client.Style(STYLE)
@@ -328,13 +329,18 @@ def _page(server: Any, plot: Any, name: str, frames: Frames) -> None:
     def _moved(index: Any, fitted: Any, **_: object) -> None:
         k = min(max(int(index), 0), frames.count - 1)
         state.value, state.words = frames.values[k], frames.texts[k]
-        fill(plot, frames.picture(k, bool(fitted)))
+        picture = frames.picture(k, bool(fitted))
+        fill(plot, picture, layout(picture, tuple(plot.window_size), state.view))
         shown.update()
 
 
 def _turn(plot: Any, frames: Frames, server: Any, view: str) -> Callable[[], None]:
     def turn() -> None:
-        point_camera(plot, frames.picture(int(server.state.index), bool(server.state.fitted)), view)
+        server.state.view = view
+        picture = frames.picture(int(server.state.index), bool(server.state.fitted))
+        placed = layout(picture, tuple(plot.window_size), view)
+        fill(plot, picture, placed)
+        point_camera(plot, picture, placed)
         server.controller.update_picture()
 
     return turn

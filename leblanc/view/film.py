@@ -27,6 +27,7 @@ from leblanc.units import DEGREE, LENGTH, RPM, in_rpm, unit_for
 from leblanc.view.parts import Instant, Picture, Stage
 from leblanc.view.picture import Pixels, fill, pixels, plotter, write_png
 from leblanc.view.scene import compose, stage_of, still
+from leblanc.view.sight import layout
 from meshes.arrays import Array, Complex
 from meshes.bodies.body import columns
 from meshes.errors import InputError
@@ -76,7 +77,9 @@ def sweep_film(
     stage = stage_of(motion, scale)
     # The drum turns in proportion to its speed, by no more from frame to frame than the eye can follow.
     turn = TURN * np.cumsum(motion.speed[chosen]) / motion.speed[chosen].max()
-    said = f"From frame to frame spin and whirl turn by {math.degrees(TURN):.0f}{DEGREE} at the highest speed."
+    said = (
+        f"From frame to frame spin and whirl turn by {math.degrees(TURN):.0f}{DEGREE} at the highest speed."
+    )
     return Film(
         len(chosen),
         lambda k: still(motion, chosen[k], liquid(chosen[k]), stage, float(turn[k] - turn[0]), said),
@@ -163,11 +166,13 @@ def write_film(film: Film, path: Path, drawn: Callable[[int, int], None] | None 
     """
     kind = require_film(path)
     shown: list[Pixels] = []
-    plot = plotter(film.picture(0), FILM_SIZE)
+    first = film.picture(0)
+    placed = layout(first, FILM_SIZE)  # names stay where they are in the first frame
+    plot = plotter(first, FILM_SIZE)
     try:
         for k in range(film.count):
             if k > 0:
-                fill(plot, film.picture(k))
+                fill(plot, film.picture(k), placed)
             shown.append(pixels(plot))
             if drawn is not None:
                 drawn(k + 1, film.count)

@@ -17,7 +17,10 @@ COILS, AROUND = 7, 18  # of a spring, points of each
 COIL, WIRE, CYLINDER, ROD, GROUND = 0.062, 0.014, 0.05, 0.02, 0.16
 BEARING, COLLAR, RIB, RIB_HALF = 0.16, 0.05, 0.13, math.radians(7.0)
 OPENED = math.radians(75.0)  # half the angle in which a housing is cut away before the eye
-EYE = {True: math.radians(145.0), False: math.radians(-70.0)}  # angle of the eye round a lying, a standing axis
+EYE = {
+    True: math.radians(145.0),
+    False: math.radians(-70.0),
+}  # angle of the eye round a lying, a standing axis
 RIBS = np.radians([60.0, 180.0, 300.0])
 
 
@@ -248,9 +251,26 @@ def _housing(stage: Stage, instant: Instant, shell: Shell) -> list[Piece]:
     edges = [low, high]
     ends = [np.stack([low[k], high[k]]) for k in (0, -1)]
     return [
+        *_straps(stage, instant, shell),
         _between("housing", "housing", low, high),
         _between("back of the housing", "housing", round_hub, low),
         *(Piece("edge of the housing", edge, line(len(edge)), "edge") for edge in (*edges, *ends)),
+    ]
+
+
+def _straps(stage: Stage, instant: Instant, shell: Shell) -> list[Piece]:
+    """Rings round the whole housing where springs and dampers hold it."""
+    assert stage.parts is not None
+    turn, half = np.linspace(0.0, 2.0 * math.pi, 2 * ROUND - 1), 0.025 * shell.radius
+    wide = Shell(1.004 * shell.radius, shell.low, shell.high)
+    places = dict.fromkeys(
+        min(max(strut.axial, shell.low + half), shell.high - half) for strut in stage.parts.struts
+    )
+    return [
+        _between(
+            "strap", "lug", *(_ring(stage, instant, wide, place + way, turn, True) for way in (-half, half))
+        )
+        for place in places
     ]
 
 
@@ -304,7 +324,9 @@ def _ribs(stage: Stage, instant: Instant, shell: Shell) -> list[Piece]:
                 np.exp(1j * (turn + RIB_HALF)),
             ]
         )
-        ends = [placed(stage, corners + complex(moved(stage, instant, place)), place) for place in (low, high)]
+        ends = [
+            placed(stage, corners + complex(moved(stage, instant, place)), place) for place in (low, high)
+        ]
         # Faces apart, so that edges stay sharp.
         for k in range(3):
             pieces.append(_between("rib", "rib", ends[0][k : k + 2], ends[1][k : k + 2]))

@@ -44,6 +44,24 @@ class Label:
 
 
 @dataclass(frozen=True)
+class Inset:
+    """A small curve in the corner of each frame of a film, with a point where the film is.
+
+    Parameters
+    ----------
+    across : what it runs over, rising, shape (n,)
+    curves : one over the other, each with its name, shape (n,)
+    at : where the point is
+    name : of what it runs over
+    """
+
+    across: Array
+    curves: tuple[tuple[str, Array], ...]
+    at: float
+    name: str
+
+
+@dataclass(frozen=True)
 class Picture:
     """What is drawn.
 
@@ -55,6 +73,7 @@ class Picture:
     long : it is longer than wide
     frame : points that the camera keeps in sight, mm, shape (n, 3)
     above : a standing machine is seen from high above, so that the layer's depth shows all round
+    inset : curve of a film
     """
 
     pieces: tuple[Piece, ...]
@@ -66,6 +85,7 @@ class Picture:
     long: bool
     frame: Array
     above: bool = False
+    inset: Inset | None = None
 
     def piece(self, name: str) -> Piece:
         """The piece of that name."""

@@ -5,9 +5,7 @@ from __future__ import annotations
 import ctypes
 import os
 import sys
-import textwrap
 from dataclasses import dataclass
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -15,28 +13,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.files import writing
-from leblanc.view.parts import Picture, Piece
+from leblanc.view.parts import Label, Picture, Piece, line
+from leblanc.view.sight import (
+    BOTTOM,
+    LINE,
+    TOP,
+    Layout,
+    Placed,
+    Sight,
+    font_file,
+    layout,
+    letters,
+    words_of,
+)
 from meshes.errors import InputError
 
 Plotter = Any  # pyvista's
 Pixels = NDArray[np.uint8]
 
 SIZE = (1200, 900)  # pixels
-# Shares of the height that words take, and of the room left that the machine fills; names stand beside it.
-HEAD, FOOT, HIGH, WIDE = 0.15, 0.11, 0.94, 0.82
-LETTER = 1.0 / 52.0  # size of the letters over the height of the picture
-FONT = "DejaVuSans.ttf"  # matplotlib's, which knows more characters than VTK's own
 INK = "#262626"
 ROUNDS = 3  # of moving the few colours of a file to where the many of the picture are
-
-# Directions from which the camera looks, and what is up: standing, lying, lying and long; and other views.
-FRONT = {
-    "standing": ((0.35, -1.0, 0.75), (0.0, 0.0, 1.0)),
-    "above": ((0.35, -1.0, 1.6), (0.0, 0.0, 1.0)),
-    "lying": ((1.0, -0.55, 0.42), (0.0, 0.0, 1.0)),
-    "long": ((1.0, -1.15, 0.55), (0.0, 0.0, 1.0)),
-}
-VIEWS = ("oblique", "along the axis", "from the side")
 
 
 @dataclass(frozen=True)
@@ -61,6 +58,7 @@ LOOKS = {
     "axis at rest": Look("#000000", 1.0, 4.0),
     "axis of the drum": Look("#D55E00", 1.0, 6.0),
     "arm": Look(INK, 1.0, 3.0),
+    "leader": Look("#7A7A7A", 1.0, 1.5),
     "unbalance": Look("#CC0000", 1.0),
     "spin": Look("#4D4D4D", 1.0, 4.0, True),
     "gravity": Look("#4D4D4D", 1.0, 4.0, True),
@@ -144,39 +142,51 @@ def plotter(picture: Picture, size: tuple[int, int] = SIZE, off_screen: bool = T
     plot.enable_parallel_projection()
     plot.enable_depth_peeling(8)
     plot.enable_anti_aliasing("ssaa")
-    fill(plot, picture)
-    point_camera(plot, picture, VIEWS[0])
+    placed = layout(picture, size)
+    fill(plot, picture, placed)
+    point_camera(plot, picture, placed)
     return plot
 
 
-def fill(plot: Plotter, picture: Picture) -> None:
+def fill(plot: Plotter, picture: Picture, placed: Layout | None = None) -> None:
     """Put a picture into a plotter in place of what is there; the camera stays.
 
     Parameters
     ----------
     plot, picture : where, what
+    placed : where its names stand; nowhere if None
     """
     import pyvista
 
     plot.clear_actors()
     for piece in picture.pieces:
         _add(plot, piece, pyvista)
-    size = round(LETTER * plot.window_size[1])
-    for label in picture.labels:
-        drawn = pyvista.Label(label.text, position=label.place, size=size)
-        _write(drawn.prop)
-        drawn.prop.justification_horizontal = drawn.prop.justification_vertical = "center"
-        drawn.prop.background_color, drawn.prop.background_opacity = "white", 0.6
-        plot.add_actor(drawn, reset_camera=False, render=False)
-    _words(plot, picture, size, pyvista)
+    if placed is not None:
+        for label, name in zip(picture.labels, placed.names, strict=True):
+            _name(plot, label, name, placed.sight, pyvista)
+    _words(plot, picture, pyvista)
+
+
+def _name(plot: Plotter, label: Label, name: Placed, sight: Sight, pyvista: Any) -> None:
+    """A name beside the machine, and a line from it to what it names."""
+    anchor = np.array(label.place)
+    drawn = pyvista.Label(label.text, position=sight.lift(name.middle, anchor), size=letters(sight.size))
+    _write(drawn.prop)
+    drawn.prop.justification_horizontal = drawn.prop.justification_vertical = "center"
+    plot.add_actor(drawn, reset_camera=False, render=False)
+    left, _, right, _ = name.box
+    there = sight.project(anchor[None])[0]
+    start = np.array([right if there[0] > right else left if there[0] < left else there[0], name.middle[1]])
+    if np.linalg.norm(there - start) > letters(sight.size):
+        ends = np.stack([sight.lift(start, anchor), anchor])
+        _add(plot, Piece("leader", ends, line(2), "leader"), pyvista)
 
 
 def _write(prop: Any) -> None:
     """Colour and font of a text."""
     prop.color = INK
-    spec = find_spec("matplotlib")
-    path = Path(spec.origin).parent / "mpl-data" / "fonts" / "ttf" / FONT if spec and spec.origin else None
-    if path is not None and path.exists():
+    path = font_file()
+    if path is not None:
         prop.set_font_file(str(path))
 
 
@@ -231,60 +241,36 @@ def _tip(plot: Plotter, piece: Piece, pyvista: Any, options: dict[str, Any]) -> 
     plot.add_mesh(cone, **options)
 
 
-def _words(plot: Plotter, picture: Picture, size: int, pyvista: Any) -> None:
+def _words(plot: Plotter, picture: Picture, pyvista: Any) -> None:
     """Title, state and caption."""
-    wide, high = plot.window_size
-    line = 1.4 * size / high
-    most = int(wide / (0.58 * size)) - 3
-    above = [textwrap.shorten(picture.title, int(most / 1.3), placeholder="..."), *picture.state.split("\n")]
-    below = textwrap.wrap(picture.caption, most)
-    rows = [(line_text, 0.985 - (1.4 + k) * line, size) for k, line_text in enumerate(above)]
-    rows[0] = (above[0], 0.985 - 1.1 * line, round(1.3 * size))
-    rows += [(line_text, 0.012 + k * line, size) for k, line_text in enumerate(reversed(below))]
-    for line_text, height, letters in rows:
+    above, below = words_of(picture, tuple(plot.window_size))
+    size = letters(tuple(plot.window_size))
+    step = LINE * size / plot.window_size[1]
+    rows = [(line_text, TOP - (1.4 + k) * step, size) for k, line_text in enumerate(above)]
+    rows[0] = (above[0], TOP - 1.1 * step, round(1.3 * size))
+    rows += [(line_text, BOTTOM + k * step, size) for k, line_text in enumerate(reversed(below))]
+    for line_text, height, letters_ in rows:
         text = pyvista.Text(line_text, position=(0.02, height))
         text.GetPositionCoordinate().SetCoordinateSystemToNormalizedDisplay()
         _write(text.prop)
-        text.prop.font_size = letters
+        text.prop.font_size = letters_
         plot.add_actor(text, reset_camera=False, render=False)
 
 
-def point_camera(plot: Plotter, picture: Picture, view: str) -> None:
+def point_camera(plot: Plotter, picture: Picture, placed: Layout) -> None:
     """Point the camera so that the whole picture lies between its texts.
 
     Parameters
     ----------
     plot, picture : where, what
-    view : one of `VIEWS`
+    placed : its camera
     """
-    towards, up = _direction(picture, view)
-    middle = picture.frame.mean(axis=0)
-    back = np.array(towards) / np.linalg.norm(towards)
-    right = np.cross(np.array(up), back)
-    right /= np.linalg.norm(right)
-    over = np.cross(back, right)
-    spread_right, spread_up = ((picture.frame - middle) @ axis for axis in (right, over))
-    wide, tall = plot.window_size
-    room = 1.0 - HEAD - FOOT
-    half = 0.5 * max(np.ptp(spread_up) / (room * HIGH), np.ptp(spread_right) * tall / (wide * WIDE))
-    shift = 0.5 * (spread_up.max() + spread_up.min()) + (HEAD - FOOT) * half
-    aside = 0.5 * (spread_right.max() + spread_right.min())
-    focus = middle + shift * over + aside * right
+    sight = placed.sight
     far = 4.0 * float(np.linalg.norm(np.ptp(picture.frame, axis=0)))
     camera = plot.camera
-    camera.focal_point, camera.position, camera.up = focus, focus + far * back, up
-    camera.parallel_scale = half
+    camera.focal_point, camera.position, camera.up = sight.focus, sight.focus + far * sight.back, sight.over
+    camera.parallel_scale = sight.half
     camera.clipping_range = (0.1 * far, 3.0 * far)
-
-
-def _direction(picture: Picture, view: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    if view == VIEWS[1]:
-        return ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)) if picture.lying else ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
-    if view == VIEWS[2]:
-        return (0.0, -1.0, 0.0), (0.0, 0.0, 1.0)
-    if not picture.lying:
-        return FRONT["above" if picture.above else "standing"]
-    return FRONT["long" if picture.long else "lying"]
 
 
 def pixels(plot: Plotter) -> Pixels:

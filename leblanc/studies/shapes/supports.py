@@ -18,7 +18,7 @@ from leblanc.scene.scene import Scene
 BARE = 0.1  # m, radius of a machine without chambers and springs
 SHAFT = 0.07  # radius of the shaft
 HOUSE = 1.2  # radius of a tub round its drum
-LONG = 0.75  # of springs and dampers
+LONG = 0.6  # of springs and dampers
 CLEAR = 0.06  # between drum and housing along the axis
 DEEP = 0.9  # of a drum behind an open ring
 CUP = 1.14  # of the ring in which a planar rotor is drawn hung
@@ -135,7 +135,7 @@ def _two_plane(scene: Scene, rotor: TwoPlaneRotor, places: tuple[float, ...]) ->
         strut
         for support in rotor.supports
         for strut in _radial(
-            support.position, BEARING * radius, 1.3 * radius, UNDER if rotor.axis == "horizontal" else AROUND
+            support.position, BEARING * radius, 1.25 * radius, UNDER if rotor.axis == "horizontal" else AROUND
         )
         if strut.kind == "spring" or support.damping > 0.0
     )
