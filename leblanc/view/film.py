@@ -23,8 +23,9 @@ from leblanc.results.drawn import (
     RunupView,
     Scale,
 )
-from leblanc.units import DEGREE, LENGTH, RPM, in_rpm, unit_for
-from leblanc.view.parts import Instant, Picture, Stage
+from leblanc.units import DEGREE, LENGTH, RPM, in_rpm, unit_for, with_unit
+from leblanc.view.inset import with_inset
+from leblanc.view.parts import Inset, Instant, Picture, Stage
 from leblanc.view.picture import Pixels, fill, pixels, plotter, write_png
 from leblanc.view.scene import compose, stage_of, still
 from leblanc.view.sight import layout
@@ -80,10 +81,18 @@ def sweep_film(
     said = (
         f"From frame to frame spin and whirl turn by {math.degrees(TURN):.0f}{DEGREE} at the highest speed."
     )
-    return Film(
-        len(chosen),
-        lambda k: still(motion, chosen[k], liquid(chosen[k]), stage, float(turn[k] - turn[0]), said),
-    )
+    known = np.isfinite(motion.response.amplitude)
+    across, found = motion.speed[known], motion.response.amplitude[known]
+    name = f"amplitude, up to {with_unit(float(found.max(initial=0.0)), LENGTH)}"
+
+    def picture(k: int) -> Picture:
+        index = chosen[k]
+        shown = still(motion, index, liquid(index), stage, float(turn[k] - turn[0]), said)
+        if across.size < 2:
+            return shown
+        return replace(shown, inset=Inset(across, ((name, found),), float(motion.speed[index]), "speed"))
+
+    return Film(len(chosen), picture)
 
 
 def require_frames(frames: int) -> None:
@@ -113,7 +122,15 @@ def runup_film(view: RunupView) -> Film:
         zero="unbalance" if view.result.kind == "jeffcott" else "angle 0",
         parts=view.parts,
     )
-    return Film(view.frames.time.size, lambda k: compose(stage, _instant(stage, view, k)))
+    result = view.result
+    most, top = with_unit(float(result.amplitude.max()), LENGTH), in_rpm(float(result.speed.max()))
+    curves = ((f"amplitude, up to {most}", result.amplitude), (f"speed, up to {top}", result.speed))
+
+    def picture(k: int) -> Picture:
+        inset = Inset(result.time, curves, float(view.frames.time[k]), "time")
+        return replace(compose(stage, _instant(stage, view, k)), inset=inset)
+
+    return Film(view.frames.time.size, picture)
 
 
 def _instant(stage: Stage, view: RunupView, k: int) -> Instant:
@@ -171,9 +188,13 @@ def write_film(film: Film, path: Path, drawn: Callable[[int, int], None] | None 
     plot = plotter(first, FILM_SIZE)
     try:
         for k in range(film.count):
+            picture = first if k == 0 else film.picture(k)
             if k > 0:
-                fill(plot, film.picture(k), placed)
+                fill(plot, picture, placed)
+            inset = picture.inset
             shown.append(pixels(plot))
+            if inset is not None:
+                shown[-1] = with_inset(shown[-1], inset)
             if drawn is not None:
                 drawn(k + 1, film.count)
     finally:

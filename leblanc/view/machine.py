@@ -21,6 +21,7 @@ EYE = {
     True: math.radians(145.0),
     False: math.radians(-70.0),
 }  # angle of the eye round a lying, a standing axis
+HOLES, HOLE, CORNERS = 0.14, 0.014, 8  # between holes in a drum, their radius, corners of each
 RIBS = np.radians([60.0, 180.0, 300.0])
 
 
@@ -294,6 +295,7 @@ def _drum(stage: Stage, instant: Instant, parts: MachineParts) -> list[Piece]:
             _between("drum", "drum", low, high),
             *(Piece("edge of the drum", edge, line(len(edge)), "edge") for edge in (low, high)),
             *_ribs(stage, instant, shell),
+            _holes(stage, instant, shell),
         ]
     return pieces
 
@@ -332,6 +334,21 @@ def _ribs(stage: Stage, instant: Instant, shell: Shell) -> list[Piece]:
             pieces.append(_between("rib", "rib", ends[0][k : k + 2], ends[1][k : k + 2]))
         pieces += [Piece("rib", end, np.arange(4, dtype=np.int64)[None], "rib") for end in ends]
     return pieces
+
+
+def _holes(stage: Stage, instant: Instant, shell: Shell) -> Piece:
+    """Rows of small holes in the wall of a drum, away from its chambers."""
+    low, high = _free(stage, shell)
+    rows = max(1, round((high - low) / (HOLES * shell.radius)))
+    places = low + (high - low) * (np.arange(rows) + 0.5) / rows
+    count = round(2.0 * math.pi / HOLES)
+    turn = 2.0 * math.pi * (np.arange(count)[:, None] + 0.5 * (np.arange(rows) % 2)) / count
+    corner = 2.0 * math.pi * np.arange(CORNERS) / CORNERS
+    at = turn[..., None] + HOLE * np.cos(corner)
+    height = places[:, None] + HOLE * shell.radius * np.sin(corner) + 0.0 * at
+    plane = shell.radius * np.exp(1j * at) + moved(stage, instant, height)
+    cells = np.arange(plane.size, dtype=np.int64).reshape(-1, CORNERS)
+    return Piece("holes", placed(stage, plane.ravel(), height.ravel()), cells, "hole")
 
 
 def _free(stage: Stage, shell: Shell) -> tuple[float, float]:

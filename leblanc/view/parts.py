@@ -123,6 +123,12 @@ class Stage:
         return max((fill.chamber.radius for fill in self.fills), default=bare)
 
     @property
+    def reach(self) -> float:
+        """Farthest that drum and housing come from the axis at rest, m."""
+        shell = None if self.parts is None else self.parts.housing
+        return self.swing + max(self.radius, 0.0 if shell is None else shell.radius)
+
+    @property
     def whole(self) -> tuple[float, float]:
         """Ends of chambers, drum, housing and shaft along the axis, m."""
         low, high = self.ends
@@ -221,7 +227,7 @@ def axes(stage: Stage, instant: Instant) -> tuple[list[Piece], list[Label]]:
         pieces.append(Piece("axis of the drum", own, line(2), "axis of the drum"))
     # In all pictures of a film or in none.
     if stage.swing > 0.015 * stage.radius:
-        labels.append(Label("axis of the drum", _point(own[0])))
+        labels.append(Label("axis of the drum", _point(own[1])))
     return pieces, labels
 
 
@@ -252,15 +258,17 @@ def signs(stage: Stage, instant: Instant) -> tuple[list[Piece], list[Label]]:
     stage, instant : what is fixed and what moves
     """
     _, top, bottom = _widest(stage, instant)
-    away = AWAY * stage.radius + stage.swing
-    turn: Complex = np.exp(1j * np.radians(np.linspace(100.0, 150.0, 31)))
+    away = max(AWAY * stage.radius + stage.swing, 1.04 * stage.reach)
+    # Between the springs and dampers of a standing machine.
+    low, high = (100.0, 150.0) if stage.lying else (157.0, 205.0)
+    turn: Complex = np.exp(1j * np.radians(np.linspace(low, high, 31)))
     arc = placed(stage, away * turn, top)
     pieces, labels = [Piece("spin", arc, line(arc.shape[0]), "spin")], [Label("spin", _point(arc[15]))]
     if stage.gravity:
         arrow = _gravity(stage, bottom)
         pieces.append(Piece("gravity", arrow, line(2), "gravity"))
         labels.append(Label("g", _point(arrow[1])))
-    bar = scale_bar(stage, bottom)
+    bar = scale_bar(stage, min(bottom, stage.parts.drum.low) if stage.parts else bottom)
     pieces.append(bar)
     labels.append(Label(f"{bar_length(stage.radius) * MM:g} mm", _point(bar.points.mean(axis=0))))
     return pieces, labels
@@ -296,13 +304,12 @@ def turned(stage: Stage, points: Array, turn: float) -> Array:
 
 
 def _gravity(stage: Stage, bottom: float) -> Array:
-    """Ends of the arrow of gravity, mm."""
-    reach = stage.radius + stage.swing
+    """Ends of the arrow of gravity, mm: beside the machine, on the side of the eye where it lies."""
     if not stage.lying:
-        start = placed(stage, np.array([complex(-1.0, -0.6) * reach]), stage.ends[1])[0]
+        start = placed(stage, np.array([1.3 * stage.reach]), stage.ends[1])[0]
         return np.stack([start, start - np.array([0.0, 0.0, 0.3 * stage.radius * MM])])
-    ends = np.array([1.03 * reach, 1.03 * reach + 0.2 * stage.radius])
-    return placed(stage, -1j * ends, bottom)
+    ends = -1.25 * stage.reach + 1j * stage.radius * np.array([-0.2, -0.5])
+    return placed(stage, ends, bottom)
 
 
 def bar_length(radius: float) -> float:
@@ -325,10 +332,10 @@ def scale_bar(stage: Stage, height: float) -> Piece:
     stage : what is fixed
     height : where it lies along the axis, m
     """
-    half, away = 0.5 * bar_length(stage.radius), AWAY * stage.radius + stage.swing
-    # Beside the arrow of gravity of a lying machine.
-    shift = 0.75 * stage.radius if stage.lying else 0.0
-    ends = np.array([shift - half, shift + half]) - 1j * away
+    half = 0.5 * bar_length(stage.radius)
+    # Beside what holds a lying machine, in front of a standing one.
+    middle = complex(1.5, -1.05) * stage.reach if stage.lying else -1.15j * stage.reach
+    ends = middle + np.array([-half, half])
     return Piece("scale bar", placed(stage, ends, stage.ends[1] if stage.lying else height), line(2), "bar")
 
 

@@ -67,6 +67,7 @@ LOOKS = {
     "ball": Look("#E69F00"),
     "drum": Look("#B8C2CA", 0.16),
     "drum back": Look("#B8C2CA", 0.35),
+    "hole": Look("#5F6B75", 0.45),
     "rib": Look("#C3CBD1", 0.9),
     "edge": Look("#6F7A83", 1.0, 2.0),
     "housing": Look("#D9D3C7", 0.55),

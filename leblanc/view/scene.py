@@ -256,12 +256,10 @@ def _turned_label(stage: Stage, label: Label, turn: float) -> Label:
 def _frame(stage: Stage) -> Array:
     """Points that stay in sight whatever the machine does, mm."""
     low, high = stage.whole
-    reach = AWAY * stage.radius
     points = []
     if stage.parts is not None:
-        reach = max(reach, stage.parts.housing.radius if stage.parts.housing else 0.0)
         points = [ground_end(stage, strut)[None] for strut in stage.parts.struts]
-    round_it = circle(0j, reach + stage.swing)
+    round_it = circle(0j, max(AWAY * stage.radius + stage.swing, 1.04 * stage.reach))
     ends = np.array([low - BELOW * stage.radius, high + ABOVE * stage.radius])
     rings = [placed(stage, round_it, height) for height in stage.ends]
     return np.concatenate([*rings, placed(stage, np.zeros(2), ends), *points])

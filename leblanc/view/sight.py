@@ -21,6 +21,7 @@ LINE, TOP, BOTTOM = 1.4, 0.985, 0.012  # height of a line over its letters; firs
 INSET = 0.2  # height of a film's curve over that of the picture, from the top
 FONT = "DejaVuSans.ttf"  # matplotlib's, which knows more characters than VTK's own
 GAP, PAD = 0.9, 0.25  # between a name and the machine; round a name's letters: over the size of the letters
+EDGE = 10.0  # least distance of names from the picture's edge, pixels
 FARTHER, TRIES = 1.04, 24  # of the camera's view, until all names fit in it
 
 # Directions from which the camera looks, and what is up: standing, lying, lying and long; and other views.
@@ -143,7 +144,7 @@ def layout(picture: Picture, size: tuple[int, int], view: str = VIEWS[0]) -> Lay
     points = np.concatenate([picture.frame, *(piece.points for piece in picture.pieces)])
     for _ in range(TRIES):
         names = _names(picture.labels, sight, sight.project(points), room)
-        if all(0.0 <= name.box[0] and name.box[2] <= size[0] for name in names):
+        if all(EDGE <= name.box[0] and name.box[2] <= size[0] - EDGE for name in names):
             break
         sight = _farther(sight, room)
     return Layout(sight, names)
