@@ -305,7 +305,7 @@ def _page(server: Any, plot: Any, name: str, frames: Frames) -> None:
     state.trame__title = f"{name} - leblanc"
     state.index, state.fitted, state.view = frames.first, False, VIEWS[0]
     state.value, state.words = frames.values[frames.first], frames.texts[frames.first]
-    with DivLayout(server) as layout:
+    with DivLayout(server) as page:
         client.Style(STYLE)
         with html.Div(classes="page"):
             with html.Div(classes="tools"):
@@ -322,7 +322,7 @@ def _page(server: Any, plot: Any, name: str, frames: Frames) -> None:
             html.Div("{{ words }}", id="words", classes="words")
             with html.Div(classes="sight"):
                 shown = vtk.VtkRemoteView(plot.render_window, ref="sight", still_quality=95)
-        del layout
+        del page
     server.controller.update_picture = shown.update
 
     @state.change("index", "fitted")  # type: ignore[untyped-decorator]

@@ -1,4 +1,4 @@
-"""Drum, housing, shaft, bearings, springs and dampers of a three-dimensional picture, and the vibrating table's."""
+"""Drum, housing, shaft, bearings, springs and dampers of a three-dimensional picture."""
 
 from __future__ import annotations
 
@@ -330,8 +330,7 @@ def _ribs(stage: Stage, instant: Instant, shell: Shell) -> list[Piece]:
             placed(stage, corners + complex(moved(stage, instant, place)), place) for place in (low, high)
         ]
         # Faces apart, so that edges stay sharp.
-        for k in range(3):
-            pieces.append(_between("rib", "rib", ends[0][k : k + 2], ends[1][k : k + 2]))
+        pieces += [_between("rib", "rib", ends[0][k : k + 2], ends[1][k : k + 2]) for k in range(3)]
         pieces += [Piece("rib", end, np.arange(4, dtype=np.int64)[None], "rib") for end in ends]
     return pieces
 

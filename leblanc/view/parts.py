@@ -206,7 +206,7 @@ NO_CELLS: Indices = np.zeros((0, 2), dtype=np.int64)
 
 
 def axes(stage: Stage, instant: Instant) -> tuple[list[Piece], list[Label]]:
-    """Axis at rest, about which the machine turns, and the drum's own axis, which the deflection has moved away.
+    """Axis at rest, about which the machine turns, and the drum's own, which the deflection has moved away.
 
     Parameters
     ----------

@@ -144,7 +144,7 @@ def layout(picture: Picture, size: tuple[int, int], view: str = VIEWS[0]) -> Lay
     points = np.concatenate([picture.frame, *(piece.points for piece in picture.pieces)])
     for _ in range(TRIES):
         names = _names(picture.labels, sight, sight.project(points), room)
-        if all(EDGE <= name.box[0] and name.box[2] <= size[0] - EDGE for name in names):
+        if all(name.box[0] >= EDGE and name.box[2] <= size[0] - EDGE for name in names):
             break
         sight = _farther(sight, room)
     return Layout(sight, names)

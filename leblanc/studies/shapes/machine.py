@@ -53,6 +53,8 @@ SWING, MOST = 0.35, 100.0  # vibration as drawn over the track's radius, and the
 
 VISIBLE = 0.04  # a largest deflection smaller than this over the radius is drawn larger
 
+ENOUGH = 0.5  # of the factor that would show the deflection well
+
 MOST_MODES = 40
 AROUND_MODE, ACROSS = 120, 4  # elements around and across the layer
 
@@ -327,19 +329,23 @@ def strobe(time: Array, speed: Array) -> tuple[Array, float]:
 def runup_scale(radius: float, result: RunupResult, frames: RunupFrames) -> Scale:
     """One factor for deflections and depths, so that a surface round the axis at rest stays so as drawn.
 
+    Where there is no room for it the deflection alone grows, so that the whirl can be seen.
+
     Parameters
     ----------
     radius : of the widest chamber, m
     result, frames : the run-up and its layers at regular times
     """
     largest = float(np.abs(frames.deflection).max())
+    wanted = min(MOST, SHOWN * radius / largest) if largest > 0.0 else 1.0
     thin = any(c.radius - c.mean_surface_radius < THIN * c.radius for c in result.chambers if c.volume > 0.0)
-    if not thin and largest >= VISIBLE * radius:
-        return Scale()
-    fits = film_factor(result.chambers, frames.depth, frames.deflection)
-    both = max(1.0, min(fits, SHOWN * radius / largest if largest > 0.0 else 1.0))
-    both = float(f"{both:.2g}")
-    return Scale(both, both)
+    if thin or largest < VISIBLE * radius:
+        fits = film_factor(result.chambers, frames.depth, frames.deflection)
+        both = float(f"{max(1.0, min(fits, wanted)):.2g}")
+        if both > ENOUGH * wanted:
+            return Scale(both, both)
+    # No room for a deeper layer: the liquid stays as it is.
+    return Scale(float(f"{rounded_down(max(1.0, wanted)):.6g}"))
 
 
 def _liquid(fill: Fill, scale: Scale, frames: RunupFrames, k: int, j: int, turn: float) -> Liquid:

@@ -1,7 +1,7 @@
 """What carries the chambers of a scene and what holds it: drum, housing, shaft, bearings, springs, dampers.
 
-A scene tells masses and stiffnesses, and of springs and dampers of a tub where they hold it and which way they
-act. What it does not tell is sketched round the chambers, and said so.
+A scene tells masses and stiffnesses, and of springs and dampers of a tub where they hold it and which way
+they act. What it does not tell is sketched round the chambers, and said so.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def _tub(scene: Scene, rotor: TubRotor, places: tuple[float, ...]) -> MachinePar
     low, high = _ends(scene, places)
     half = max(-low, high, 0.5 * radius)
     length = LONG * radius
-    # Springs and dampers at one place that act along no direction of their own are the bushes of those that do.
+    # What acts along no direction of its own, at the place of what does, is the bush of that.
     taken = [part.position for part, _ in mounts if part.direction is not None]
     struts: list[Strut] = []
     for part, kind in mounts:
@@ -96,7 +96,8 @@ def _tub(scene: Scene, rotor: TubRotor, places: tuple[float, ...]) -> MachinePar
         shaft=(Shell(SHAFT * radius, -half - 4.0 * gap, -half),),
         bearings=(-half - 2.0 * gap,),
         struts=tuple(struts),
-        sketched="Springs and dampers hold the tub where the scene says; their lengths, drum and tub are sketched.",
+        sketched="Springs and dampers hold the tub where the scene says; their lengths, drum and tub are "
+        "sketched.",
     )
 
 
@@ -152,7 +153,8 @@ def _two_plane(scene: Scene, rotor: TwoPlaneRotor, places: tuple[float, ...]) ->
         shaft=tuple(Shell(size, start, end) for start, end in pieces if end > start),
         bearings=tuple(supports),
         struts=struts,
-        sketched="Supports stand where the scene says; their springs and dampers, drum and shaft are schematic.",
+        sketched="Supports stand where the scene says; their springs and dampers, drum and shaft are "
+        "schematic.",
     )
 
 
@@ -183,5 +185,5 @@ def _jeffcott(scene: Scene, rotor: JeffcottRotor, places: tuple[float, ...]) -> 
         shaft=(Shell(SHAFT * radius, end - 4.0 * gap, end),),
         bearings=(cup.low,),
         struts=tuple(strut for strut in struts if strut.kind == "spring" or damped),
-        sketched="Drum, shaft, springs and dampers are schematic: the scene gives their stiffness, not their places.",
+        sketched="Drum, shaft, springs and dampers are schematic: the scene does not say where they are.",
     )

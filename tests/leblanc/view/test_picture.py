@@ -20,8 +20,9 @@ from leblanc.view.exciter import table_picture
 from leblanc.view.files import write_picture
 from leblanc.view.film import Film, mode_film, mode_picture, shape_of, write_film
 from leblanc.view.parts import Picture
-from leblanc.view.picture import SIZE, VIEWS, fill, pixels, plotter, point_camera, prepare_off_screen
+from leblanc.view.picture import SIZE, fill, pixels, plotter, point_camera, prepare_off_screen
 from leblanc.view.scene import describe_state
+from leblanc.view.sight import VIEWS, layout
 from meshes.errors import InputError
 from tests.leblanc.view.test_surfaces import CHORD, centroid
 from tests.leblanc.view.views import Shown, film_over, picture_at, show
@@ -275,7 +276,9 @@ def test_every_view_shows_the_whole_machine() -> None:
         plot = plotter(view.picture)
         try:
             for way in VIEWS:
-                point_camera(plot, view.picture, way)
+                placed = layout(view.picture, SIZE, way)
+                fill(plot, view.picture, placed)
+                point_camera(plot, view.picture, placed)
                 seen = pixels(plot).astype(int)
                 # Nothing but white at the left and right edges: nothing is cut off.
                 assert seen[:, [0, -1]].min() == 255, (name, way)
