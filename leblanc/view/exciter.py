@@ -9,6 +9,7 @@ import numpy as np
 from leblanc.results.base import one_line
 from leblanc.results.drawn import TableView
 from leblanc.units import LENGTH, MM, in_rpm, with_unit
+from leblanc.view.machine import cylinder, damper, spring, tube
 from leblanc.view.parts import NO_CELLS, Label, Picture, Piece, bar_length, circle, line
 from meshes.arrays import Array, Indices
 
@@ -37,8 +38,10 @@ def table_picture(table: TableView) -> Picture:
         f"unbalance of the shaft: platform {with_unit(table.fast, LENGTH)}",
     ]
     labels = [
-        Label("unbalance", (0.0, -0.62 * track * MM, 0.55 * track * MM)),
-        Label(f"{table.balls} {table.kind}s", (0.0, 0.75 * track * MM, 1.1 * track * MM)),
+        Label("unbalance", (0.0, 0.0, 0.55 * track * MM)),
+        Label(f"{table.balls} {table.kind}s", (0.0, 0.0, track * MM)),
+        Label("spring", (0.8 * HALF * track * MM, 0.8 * HALF * track * MM, -2.1 * track * MM)),
+        Label("damper", (0.8 * HALF * track * MM, 0.0, -2.3 * track * MM)),
         *names,
         name,
     ]
@@ -69,26 +72,19 @@ def _table(track: float) -> list[Piece]:
     under = top - THICK * track
     points, faces = _box((-half, -half, under), (half, half, top))
     # Faces apart, so that edges stay sharp.
-    plate = [Piece("platform", points[face], np.arange(4, dtype=np.int64)[None], "floor") for face in faces]
+    plate = [Piece("platform", points[face], np.arange(4, dtype=np.int64)[None], "rib") for face in faces]
     floor = under - SPRING * track
     ground = (
         np.array([[-half, -half, floor], [half, -half, floor], [half, half, floor], [-half, half, floor]])
         * MM
     )
-    springs = []
-    turn = np.linspace(0.0, 10.0 * math.pi, 201)
-    for x in (-0.8 * half, 0.8 * half):
-        for y in (-0.8 * half, 0.8 * half):
-            coil = np.stack(
-                [
-                    x + 0.12 * track * np.cos(turn),
-                    y + 0.12 * track * np.sin(turn),
-                    np.linspace(floor, under, turn.size),
-                ],
-                axis=-1,
-            )
-            springs.append(Piece("spring", coil * MM, line(turn.size), "arm"))
-    return [*plate, Piece("ground", ground, np.arange(4, dtype=np.int64)[None], "lid"), *springs]
+    held = []
+    for k, (x, y) in enumerate([(-0.8, -0.8), (-0.8, 0.8), (0.8, -0.8), (0.8, 0.8)], start=1):
+        ends = np.array([[x * half, y * half, under], [x * half, y * half, floor]]) * MM
+        held += spring(f"spring {k}", ends[0], ends[1], 2.0 * track * MM)
+    ends = np.array([[0.8 * half, 0.0, under], [0.8 * half, 0.0, floor]]) * MM
+    held += damper("damper", ends[0], ends[1], 2.0 * track * MM)
+    return [*plate, Piece("ground", ground, np.arange(4, dtype=np.int64)[None], "ground"), *held]
 
 
 def _rotor(track: float, count: int) -> list[Piece]:
@@ -97,8 +93,8 @@ def _rotor(track: float, count: int) -> list[Piece]:
     for radius in ((1.0 - BALL) * track, (1.0 + BALL) * track):
         ring = circle(0j, radius)
         for x in (-BALL * track, BALL * track):
-            points = np.stack([np.full(ring.size, x), ring.real, ring.imag], axis=-1) * MM
-            pieces.append(Piece("track", points, line(ring.size), "rim"))
+            edge = np.stack([np.full(ring.size, x), ring.real, ring.imag], axis=-1) * MM
+            pieces.append(Piece("track", *tube(edge, 0.03 * track * MM), "shaft"))
     # Side by side about the direction of the vibration.
     apart = 2.0 * math.asin(min(1.0, BALL))
     angle = 0.5 * math.pi + apart * (np.arange(count) - 0.5 * (count - 1))
@@ -108,7 +104,17 @@ def _rotor(track: float, count: int) -> list[Piece]:
     pieces.append(Piece("arm", arm, line(2), "arm"))
     pieces.append(Piece("unbalance", arm[1:], NO_CELLS, "unbalance", SPOT * track * MM))
     shaft = np.array([[-0.9 * track, 0.0, 0.0], [0.9 * track, 0.0, 0.0]]) * MM
-    return [*pieces, Piece("shaft", shaft, line(2), "axis at rest")]
+    return [*pieces, *cylinder("shaft", "shaft", shaft[0], shaft[1], 0.07 * track * MM), *_posts(track)]
+
+
+def _posts(track: float) -> list[Piece]:
+    """What carries the shaft on the platform."""
+    pieces = []
+    for x in (-0.8, 0.8):
+        for y in (-0.5, 0.5):
+            ends = np.array([[x, 0.0, 0.0], [x, y, -1.3]]) * track * MM
+            pieces += cylinder("post", "lug", ends[0], ends[1], 0.05 * track * MM)
+    return pieces
 
 
 def _swing(track: float, size: float) -> tuple[list[Piece], list[Label]]:
@@ -116,7 +122,7 @@ def _swing(track: float, size: float) -> tuple[list[Piece], list[Label]]:
     y, middle = 1.15 * HALF * track, -1.3 * track
     x = HALF * track
     ends = [np.array([[x, y, middle], [x, y, middle + sign * size]]) * MM for sign in (1.0, -1.0)]
-    name = Label("vibration", (x * MM, y * MM, (middle + size + 0.15 * track) * MM))
+    name = Label("vibration", (x * MM, y * MM, (middle + size) * MM))
     return [Piece("vibration", end, line(2), "spin") for end in ends], [name]
 
 
@@ -125,5 +131,5 @@ def _bar(track: float) -> tuple[Piece, Label]:
     length = bar_length(track)
     y, z = -HALF * track, -(1.3 + THICK + SPRING + 0.25) * track
     points = np.array([[HALF * track, y, z], [HALF * track, y + length, z]]) * MM
-    name = Label(f"{length * MM:g} mm", (HALF * track * MM, (y + length + 0.35 * track) * MM, z * MM))
+    name = Label(f"{length * MM:g} mm", (HALF * track * MM, (y + 0.5 * length) * MM, z * MM))
     return Piece("scale bar", points, line(2), "bar"), name

@@ -82,8 +82,14 @@ def coil(start: Array, end: Array, radius: float) -> Array:
     return np.concatenate([start[None], middle, end[None]])
 
 
-def _bar(name: str, look: str, start: Array, end: Array, radius: float) -> list[Piece]:
-    """A cylinder with its ends closed."""
+def cylinder(name: str, look: str, start: Array, end: Array, radius: float) -> list[Piece]:
+    """A cylinder with its ends closed.
+
+    Parameters
+    ----------
+    name, look : of its pieces
+    start, end, radius : mm, shape (3,)
+    """
     points, faces = tube(np.stack([start, end]), radius, 2 * SIDES)
     count = 2 * SIDES
     caps = []
@@ -117,8 +123,8 @@ def damper(name: str, start: Array, end: Array, size: float) -> list[Piece]:
     """
     inside, mouth = start + 0.6 * (end - start), start + 0.42 * (end - start)
     return [
-        *_bar(name, "rod", start, inside, ROD * size),
-        *_bar(name, "damper", mouth, end, CYLINDER * size),
+        *cylinder(name, "rod", start, inside, ROD * size),
+        *cylinder(name, "damper", mouth, end, CYLINDER * size),
     ]
 
 
@@ -132,7 +138,7 @@ def ground(name: str, end: Array, way: Array, size: float) -> list[Piece]:
     way : unit vector towards the ground, shape (3,)
     size : of the machine, mm
     """
-    return _bar(name, "ground", end, end + 0.03 * size * way, 0.5 * GROUND * size)
+    return cylinder(name, "ground", end, end + 0.03 * size * way, 0.5 * GROUND * size)
 
 
 def machine(stage: Stage, instant: Instant) -> tuple[list[Piece], list[Piece], list[Label]]:
@@ -157,7 +163,7 @@ def machine(stage: Stage, instant: Instant) -> tuple[list[Piece], list[Piece], l
         still += _solid_ring(stage, instant, f"bearing {k + 1}", place - half, place + half)
     for shaft in parts.shaft:
         ends = [_at(stage, instant, place, 0j, True) for place in (shaft.low, shaft.high)]
-        still += _bar("shaft", "shaft", ends[0], ends[1], shaft.radius * MM)
+        still += cylinder("shaft", "shaft", ends[0], ends[1], shaft.radius * MM)
     return _drum(stage, instant, parts), still, labels
 
 
@@ -193,7 +199,7 @@ def _struts(stage: Stage, instant: Instant, parts: MachineParts) -> tuple[list[P
         if strut.kind == "bush":
             half = 0.5 * strut.length
             ends = [_at(stage, instant, strut.axial + way, strut.across, True) for way in (-half, half)]
-            pieces += _bar(name, "bush", ends[0], ends[1], 0.5 * strut.length * MM)
+            pieces += cylinder(name, "bush", ends[0], ends[1], 0.5 * strut.length * MM)
             continue
         end = ground_end(stage, strut)
         way = end - placed(stage, np.array([strut.across]), strut.axial)[0]
@@ -226,7 +232,7 @@ def _lug(stage: Stage, instant: Instant, parts: MachineParts, strut: Strut, name
     place = min(max(strut.axial, shell.low), shell.high)
     start = _at(stage, instant, place, foot, True)
     end = _at(stage, instant, strut.axial, strut.across, True)
-    return _bar(f"lug of {name}", "lug", start, end, 0.03 * parts.drum.radius * MM)
+    return cylinder(f"lug of {name}", "lug", start, end, 0.03 * parts.drum.radius * MM)
 
 
 def _ring(stage: Stage, instant: Instant, shell: Shell, place: float, turn: Array, standing: bool) -> Array:
@@ -278,7 +284,7 @@ def _straps(stage: Stage, instant: Instant, shell: Shell) -> list[Piece]:
 def _solid_ring(stage: Stage, instant: Instant, name: str, low: float, high: float) -> list[Piece]:
     assert stage.parts is not None
     ends = [_at(stage, instant, place, 0j, True) for place in (low, high)]
-    return _bar(name, "bearing", ends[0], ends[1], BEARING * stage.parts.drum.radius * MM)
+    return cylinder(name, "bearing", ends[0], ends[1], BEARING * stage.parts.drum.radius * MM)
 
 
 def _drum(stage: Stage, instant: Instant, parts: MachineParts) -> list[Piece]:
@@ -307,7 +313,7 @@ def _spokes(stage: Stage, instant: Instant, shell: Shell) -> list[Piece]:
     for turn in RIBS.tolist():
         way = np.exp(1j * turn)
         ends = placed(stage, middle + np.array([0.12, 0.97]) * shell.radius * way, shell.low)
-        pieces += _bar("spoke", "rib", ends[0], ends[1], 0.02 * shell.radius * MM)
+        pieces += cylinder("spoke", "rib", ends[0], ends[1], 0.02 * shell.radius * MM)
     return pieces
 
 

@@ -306,7 +306,7 @@ def turned(stage: Stage, points: Array, turn: float) -> Array:
 def _gravity(stage: Stage, bottom: float) -> Array:
     """Ends of the arrow of gravity, mm: beside the machine, on the side of the eye where it lies."""
     if not stage.lying:
-        start = placed(stage, np.array([1.3 * stage.reach]), stage.ends[1])[0]
+        start = placed(stage, complex(1.5, -0.3) * np.array([stage.reach]), stage.ends[1])[0]
         return np.stack([start, start - np.array([0.0, 0.0, 0.3 * stage.radius * MM])])
     ends = -1.25 * stage.reach + 1j * stage.radius * np.array([-0.2, -0.5])
     return placed(stage, ends, bottom)

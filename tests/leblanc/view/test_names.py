@@ -1,0 +1,144 @@
+"""Names in pictures: none covers another, the machine or the texts; in films they stay where they are."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import ImageFont
+
+import leblanc.view.film as film_module
+from leblanc.scene.scene import load_scene
+from leblanc.studies.shapes.machine import mode_view, runup_view, table_view
+from leblanc.view.exciter import table_picture
+from leblanc.view.film import Film, mode_film, mode_picture, runup_film, write_film
+from leblanc.view.parts import Picture
+from leblanc.view.picture import fill, plotter, point_camera
+from tests.leblanc.view.test_picture import EXAMPLES, MACHINES, scene, working
+
+Box = tuple[float, float, float, float]
+
+
+def drawn_names(plot: Any) -> dict[str, Box]:
+    """Names that a plotter holds with their boxes, pixels from the lower left corner."""
+    import pyvista
+    from matplotlib import font_manager
+
+    font = font_manager.findfont("DejaVu Sans")
+    height = plot.window_size[1]
+    found = {}
+    for actor in plot.actors.values():
+        if isinstance(actor, pyvista.Label):
+            plot.renderer.SetWorldPoint(*actor.GetPosition(), 1.0)
+            plot.renderer.WorldToDisplay()
+            x, y, _ = plot.renderer.GetDisplayPoint()
+            size = actor.prop.font_size
+            wide, high = ImageFont.truetype(font, size).getlength(actor.input), 1.3 * size
+            assert 0.0 < y < height
+            found[actor.input] = (x - 0.5 * wide, y - 0.5 * high, x + 0.5 * wide, y + 0.5 * high)
+    return found
+
+
+def overlap(one: Box, other: Box) -> bool:
+    return one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]
+
+
+def projected(plot: Any, points: np.ndarray) -> np.ndarray:
+    """Where points of the picture stand, pixels, shape (n, 2)."""
+    found = []
+    for point in points:
+        plot.renderer.SetWorldPoint(*point, 1.0)
+        plot.renderer.WorldToDisplay()
+        found.append(plot.renderer.GetDisplayPoint()[:2])
+    return np.array(found)
+
+
+def pictures() -> list[Picture]:
+    found = [working(name).picture for name in MACHINES]
+    found.append(table_picture(table_view(load_scene(EXAMPLES / "vibratory_table.toml"))))
+    return [*found, mode_picture(mode_view(scene("centrifuge"), 3))]
+
+
+def check_names(plot: Any, picture: Picture) -> None:
+    boxes = drawn_names(plot)
+    assert len(boxes) == len(picture.labels) > 0
+    for one, other in combinations(boxes, 2):
+        assert not overlap(boxes[one], boxes[other]), (picture.title, one, other)
+    wide = plot.window_size[0]
+    for name, box in boxes.items():
+        assert box[0] >= 0.0 and box[2] <= wide, (picture.title, name)
+    # Faces of the liquid and of what carries it, by their corners.
+    for piece in picture.pieces:
+        if piece.cells.shape[1] < 3 or piece.look == "hole":
+            continue
+        at = projected(plot, piece.points[:: max(1, len(piece.points) // 400)])
+        for name, box in boxes.items():
+            inside = (at[:, 0] > box[0]) & (at[:, 0] < box[2]) & (at[:, 1] > box[1]) & (at[:, 1] < box[3])
+            assert not inside.any(), (picture.title, piece.name, name)
+
+
+def test_names_cover_nothing() -> None:
+    for picture in pictures():
+        plot = plotter(picture)
+        try:
+            check_names(plot, picture)
+        finally:
+            plot.close()
+
+
+@pytest.mark.parametrize("size", [(800, 600), (640, 900)])
+def test_names_cover_nothing_in_other_views(size: tuple[int, int]) -> None:
+    from leblanc.view.sight import VIEWS, layout
+
+    for name in ("tub", "centrifuge", "two_plane_rig"):
+        picture = working(name).picture
+        plot = plotter(picture, size)
+        try:
+            for view in VIEWS:
+                placed = layout(picture, size, view)
+                fill(plot, picture, placed)
+                point_camera(plot, picture, placed)
+                check_names(plot, picture)
+        finally:
+            plot.close()
+
+
+def names_of_film(film: Film, monkeypatch: pytest.MonkeyPatch, folder: Path) -> list[dict[str, Box]]:
+    """Names of every frame as they are drawn, without drawing them."""
+    seen: list[dict[str, Box]] = []
+
+    def look(plot: Any) -> np.ndarray:
+        seen.append(drawn_names(plot))
+        return np.zeros((600, 800, 3), dtype=np.uint8)
+
+    monkeypatch.setattr(film_module, "pixels", look)
+    write_film(film, folder / "frames")
+    return seen
+
+
+def short_runup(name: str) -> Film:
+    machine = scene(name)
+    short = machine.replace({"runup.duration": "4 s", "runup.cells": 32})
+    return runup_film(runup_view(short, 13))
+
+
+@pytest.mark.parametrize("name", ["washing_machine", "runup"])
+def test_names_stay_in_a_film(name: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    frames = names_of_film(short_runup(name), monkeypatch, tmp_path)
+    check_film(frames)
+
+
+def test_names_stay_in_a_film_of_a_mode(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    check_film(names_of_film(mode_film(mode_view(scene("centrifuge"), 3), 8), monkeypatch, tmp_path))
+
+
+def check_film(frames: list[dict[str, Box]]) -> None:
+    assert len(frames) > 2
+    for before, after in zip(frames, frames[1:], strict=False):
+        assert before.keys() == after.keys()
+        # Within two pixels of each other: the eye sees no jump.
+        for name in before:
+            assert np.abs(np.subtract(before[name], after[name])).max() < 2.0, name

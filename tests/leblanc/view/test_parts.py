@@ -1,0 +1,192 @@
+"""Drum, housing, springs and dampers: at the places of the scene, and in films on the ground."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+from leblanc.results.drawn import RunupView
+from leblanc.studies.shapes.machine import mode_view, runup_view, strobe
+from leblanc.view.film import mode_film, runup_film
+from leblanc.view.inset import point_at
+from leblanc.view.machine import SIDES
+from leblanc.view.parts import Picture
+from leblanc.view.picture import pixels, plotter
+from tests.leblanc.view.test_picture import MACHINES, across, middle_of_circle, scene, short_film, working
+from tests.leblanc.view.views import show
+
+
+def ends_of(picture: Picture, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """First and last point of the line in the middle of a coil, mm."""
+    points = picture.piece(name).points.reshape(-1, SIDES, 3).mean(axis=1)
+    return points[0], points[-1]
+
+
+def test_springs_of_a_tub_stand_where_the_scene_says() -> None:
+    machine = scene("tub")
+    view = working("tub")
+    motion, factor = view.motion, view.scale.deflection
+    springs = [spring for spring in machine.rotor.springs if spring.direction is not None]
+    assert len(springs) == 2
+    for k, spring in enumerate(springs, start=1):
+        start, end = ends_of(view.picture, f"spring {k}")
+        x, y, z = spring.position
+        # The drum spins about y, gravity points against z: in the picture y, -x, z.
+        rest = 1e3 * np.array([y, -x, z])
+        moved = 1e3 * factor * complex(motion.deflection[-1, 0] + motion.lean[-1] * (y - motion.places[0]))
+        assert start - rest == pytest.approx([0.0, moved.real, moved.imag], abs=1e-9)
+        way = np.array([spring.direction[1], -spring.direction[0], spring.direction[2]])
+        away = (end - rest) / np.linalg.norm(end - rest)
+        assert away == pytest.approx(way / np.linalg.norm(way), abs=1e-9)
+    assert sum(piece.name.startswith("bush") for piece in view.picture.pieces) >= 4
+    assert {"damper 1", "damper 2", "drum", "housing"} <= {piece.name for piece in view.picture.pieces}
+
+
+def test_a_spring_at_a_place_of_its_own_acts_along_the_axes() -> None:
+    machine = scene("tub")
+    alone = {"position": ("300 mm", "0 mm", "0 mm"), "stiffness": ("2 N/mm", "0 N/mm", "3 N/mm")}
+    picture = show(machine.replace({"rotor.springs": [alone], "rotor.dampers": []}), 60.0).picture
+    ways = []
+    for k in (1, 2):
+        start, end = ends_of(picture, f"spring {k}")
+        ways.append(np.abs(end - start).argmax())
+    # x lies across, -y of the picture; z is up. None along y.
+    assert ways == [1, 2]
+    assert not any(piece.name in ("spring 3", "bush 1", "damper 1") for piece in picture.pieces)
+
+
+def test_supports_of_two_planes() -> None:
+    view = working("two_plane_rig")
+    axis = view.picture.piece("axis of the drum").points
+    for k, support in enumerate(scene("two_plane_rig").rotor.supports, start=1):
+        middle = view.picture.piece(f"bearing {k}").points.reshape(2, -1, 3).mean(axis=1).mean(axis=0)
+        assert middle[0] == pytest.approx(1e3 * support.position)
+        share = (middle[0] - axis[0, 0]) / (axis[1, 0] - axis[0, 0])
+        assert middle == pytest.approx(axis[0] + share * (axis[1] - axis[0]), abs=1e-9)
+    assert "schematic" in view.picture.caption
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_the_drum_carries_its_chambers(name: str) -> None:
+    view = working(name)
+    picture = view.picture
+    along = 0 if picture.lying else 2
+    names = ("drum", "back of the drum")
+    drum = np.concatenate([piece.points for piece in picture.pieces if piece.name in names])
+    assert len(drum) > 0
+    rims = np.concatenate([piece.points for piece in picture.pieces if piece.name.startswith("rim")])
+    # Walls stand so much outside the liquid that the two do not coincide: 0.3 % of the radius.
+    room = 0.004 * 1e3 * max(fill.chamber.radius for fill in view.motion.fills)
+    assert drum[:, along].min() <= rims[:, along].min() + room
+    if any(piece.name == "drum" for piece in picture.pieces):
+        assert drum[:, along].max() >= rims[:, along].max() - room
+    assert "sche" in picture.caption or "sketched" in picture.caption
+
+
+def blue(picture: Picture, machine: Picture) -> float:
+    """Share of pixels with the liquid's colours, seen by the camera of another picture."""
+    from dataclasses import replace
+
+    plot = plotter(replace(machine, pieces=picture.pieces))
+    try:
+        seen = pixels(plot).astype(int)
+    finally:
+        plot.close()
+    return float(np.mean(seen[..., 2] > seen[..., 0] + 40))
+
+
+@pytest.mark.parametrize("name", ["tub", "washing_machine", "two_plane_rig", "centrifuge"])
+def test_parts_leave_the_liquid_in_sight(name: str) -> None:
+    from dataclasses import replace
+
+    view = working(name)
+    liquid = tuple(piece for piece in view.picture.pieces if piece.look in ("liquid", "surface"))
+    bare = blue(replace(view.picture, pieces=liquid), view.picture)
+    # A seventh: a strut before a ring, and the far inside of a ring behind a shaft.
+    assert blue(view.picture, view.picture) > (1.0 - 1.0 / 7.0) * bare > 0.0
+
+
+def test_one_unit_in_a_picture() -> None:
+    # 3.8 mm with the spin and 94 um against it stand in one caption.
+    picture = working("tub").picture
+    words = f"{picture.state} {picture.caption}"
+    assert "turn against it" in words
+    assert set(re.findall(r"\d (um|mm|m)\b", words)) == {"mm"}
+
+
+# -- films ---------------------------------------------------------------------------------------------------
+
+
+def run_up(name: str, frames: int = 13) -> RunupView:
+    return runup_view(scene(name).replace({"runup.duration": "4 s", "runup.cells": 32}), frames)
+
+
+def test_spin_is_slowed_down_evenly() -> None:
+    time, speed = np.linspace(0.0, 10.0, 41), np.linspace(5.0, 105.0, 41)
+    turn, slower = strobe(time, speed)
+    # The mean speed of a step is exact while the speed rises evenly.
+    assert slower * turn == pytest.approx(5.0 * time + 5.0 * time**2, abs=1e-9)
+    assert math.degrees(np.diff(turn).max()) <= 18.0
+    # Two digits, rounded up: by no more than a tenth.
+    assert math.degrees(np.diff(turn).max()) > 16.0
+    assert strobe(time, 0.01 * speed)[1] == 1.0
+
+
+def test_a_film_of_a_run_up_shows_motion() -> None:
+    view = run_up("washing_machine")
+    film = runup_film(view)
+    shown = [film.picture(k) for k in range(film.count)]
+    assert f"{view.slower:g} times slower" in shown[0].caption
+    assert f"{view.scale.deflection:g} times" in shown[0].caption
+    factor = 1e3 * view.scale.deflection
+    # The largest whirl is a good part of the machine.
+    assert factor * np.abs(view.frames.deflection).max() > 0.1 * 180.0
+    spots, grounds, points = [], [], []
+    for k, picture in enumerate(shown):
+        centre = middle_of_circle(across(picture, "rim 1"))
+        true = factor * complex(view.frames.deflection[k, 0]) * np.exp(1j * view.turn[k])
+        assert abs(centre - true) < 1e-9
+        spots.append(complex(across(picture, "unbalance")[0]) - centre)
+        grounds.append(ends_of(picture, "spring 1")[1])
+        assert np.array_equal(picture.piece("gravity").points, shown[0].piece("gravity").points)
+        assert picture.inset is not None
+        points.append(point_at(picture.inset, picture.inset.curves[0][1], (300, 100), 10)[0])
+    steps = np.angle(np.array(spots[1:]) / np.array(spots[:-1]))
+    # The mark turns with the spin, faster and faster, never so far that it seems to stand or to turn back.
+    assert np.all(steps > 0.0) and steps.max() < math.radians(18.01)
+    assert steps == pytest.approx(np.diff(view.turn))
+    assert np.ptp(np.array(grounds), axis=0).max() == 0.0
+    assert np.all(np.diff(points) > 0.0)
+
+
+def test_a_pool_lies_at_the_bottom_of_every_frame() -> None:
+    view = run_up("washing_machine", 41)
+    film = runup_film(view)
+    pools = [k for k in range(film.count) if np.isnan(view.frames.depth[k, 0]).any()]
+    assert len(pools) > 1
+    for k in pools:
+        picture = film.picture(k)
+        centre = middle_of_circle(across(picture, "rim 1"))
+        surface = across(picture, "surface 1") - centre
+        assert surface.imag.max() < 0.0 and np.ptp(surface.imag) < 1e-6
+
+
+def test_a_film_over_speeds_turns_its_drum() -> None:
+    film = short_film()
+    angle = [np.angle(across(film.picture(k), "arm")[1]) for k in range(film.count)]
+    assert np.all(np.diff(np.unwrap(angle)) > 0.0)
+    assert "spin and whirl turn by 18" in film.picture(0).caption
+
+
+def test_a_period_of_a_mode_has_no_jump() -> None:
+    mode = mode_view(scene("centrifuge"), 3)
+    film = mode_film(mode, 24)
+    at = [film.picture(k).piece("surface 1").points for k in range(film.count)]
+    steps = [float(np.abs(one - other).max()) for one, other in zip(at, at[1:] + at[:1], strict=True)]
+    # The last step leads back to the first frame. A wave that travels moves alike in all; the surface is the
+    # root of a sine, whose slope differs a little from frame to frame.
+    assert min(steps) > 0.0
+    assert max(steps) < 1.2 * min(steps)
