@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,6 +17,7 @@ COILS, AROUND = 7, 18  # of a spring, points of each
 # Lengths over the drum's radius.
 COIL, WIRE, CYLINDER, ROD, GROUND = 0.062, 0.014, 0.05, 0.02, 0.16
 BEARING, COLLAR, RIB, RIB_HALF = 0.16, 0.05, 0.13, math.radians(7.0)
+OUTSIDE = 1.008
 OPENED = math.radians(75.0)  # half the angle in which a housing is cut away before the eye
 EYE = {
     True: math.radians(145.0),
@@ -289,7 +291,8 @@ def _solid_ring(stage: Stage, instant: Instant, name: str, low: float, high: flo
 
 def _drum(stage: Stage, instant: Instant, parts: MachineParts) -> list[Piece]:
     """Shell, back and ribs of a hollow drum; the disc of another. They turn."""
-    shell = parts.drum
+    # Outside the walls of the chambers, so that the two do not coincide.
+    shell = replace(parts.drum, radius=OUTSIDE * parts.drum.radius)
     turn = np.linspace(0.0, 2.0 * math.pi, 2 * ROUND - 1)
     low, high = (_ring(stage, instant, shell, place, turn, False) for place in (shell.low, shell.high))
     hub = Shell(parts.shaft[0].radius if parts.shaft else 0.0, shell.low, shell.low)

@@ -175,7 +175,8 @@ def _name(plot: Plotter, label: Label, name: Placed, sight: Sight, pyvista: Any)
     drawn = pyvista.Label(label.text, position=sight.lift(name.middle, anchor), size=letters(sight.size))
     _write(drawn.prop)
     drawn.prop.justification_horizontal = drawn.prop.justification_vertical = "center"
-    plot.add_actor(drawn, reset_camera=False, render=False)
+    # With a name of its own, or PyVista takes the next one for the same.
+    plot.add_actor(drawn, name=f"name {label.text}", reset_camera=False, render=False)
     left, _, right, _ = name.box
     there = sight.project(anchor[None])[0]
     start = np.array([right if there[0] > right else left if there[0] < left else there[0], name.middle[1]])

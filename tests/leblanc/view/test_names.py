@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import combinations
+from itertools import combinations, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +32,7 @@ def drawn_names(plot: Any) -> dict[str, Box]:
     found = {}
     for actor in plot.actors.values():
         if isinstance(actor, pyvista.Label):
-            plot.renderer.SetWorldPoint(*actor.GetPosition(), 1.0)
+            plot.renderer.SetWorldPoint(*actor.position, 1.0)
             plot.renderer.WorldToDisplay()
             x, y, _ = plot.renderer.GetDisplayPoint()
             size = actor.prop.font_size
@@ -137,7 +137,7 @@ def test_names_stay_in_a_film_of_a_mode(monkeypatch: pytest.MonkeyPatch, tmp_pat
 
 def check_film(frames: list[dict[str, Box]]) -> None:
     assert len(frames) > 2
-    for before, after in zip(frames, frames[1:], strict=False):
+    for before, after in pairwise(frames):
         assert before.keys() == after.keys()
         # Within two pixels of each other: the eye sees no jump.
         for name in before:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -87,21 +89,17 @@ def test_the_drum_carries_its_chambers(name: str) -> None:
 
 
 def blue(picture: Picture, machine: Picture) -> float:
-    """Share of pixels with the liquid's colours, seen by the camera of another picture."""
-    from dataclasses import replace
-
+    """Share of pixels with the liquid's colours, bluer than the grey of the walls, seen by another's camera."""
     plot = plotter(replace(machine, pieces=picture.pieces))
     try:
         seen = pixels(plot).astype(int)
     finally:
         plot.close()
-    return float(np.mean(seen[..., 2] > seen[..., 0] + 40))
+    return float(np.mean(seen[..., 2] > seen[..., 0] + 25))
 
 
 @pytest.mark.parametrize("name", ["tub", "washing_machine", "two_plane_rig", "centrifuge"])
 def test_parts_leave_the_liquid_in_sight(name: str) -> None:
-    from dataclasses import replace
-
     view = working(name)
     liquid = tuple(piece for piece in view.picture.pieces if piece.look in ("liquid", "surface"))
     bare = blue(replace(view.picture, pieces=liquid), view.picture)
@@ -158,7 +156,7 @@ def test_a_film_of_a_run_up_shows_motion() -> None:
     # The mark turns with the spin, faster and faster, never so far that it seems to stand or to turn back.
     assert np.all(steps > 0.0) and steps.max() < math.radians(18.01)
     assert steps == pytest.approx(np.diff(view.turn))
-    assert np.ptp(np.array(grounds), axis=0).max() == 0.0
+    assert np.ptp(np.array(grounds), axis=0).max() < 1e-9
     assert np.all(np.diff(points) > 0.0)
 
 
@@ -170,8 +168,10 @@ def test_a_pool_lies_at_the_bottom_of_every_frame() -> None:
     for k in pools:
         picture = film.picture(k)
         centre = middle_of_circle(across(picture, "rim 1"))
-        surface = across(picture, "surface 1") - centre
-        assert surface.imag.max() < 0.0 and np.ptp(surface.imag) < 1e-6
+        surface = across(picture, "surface 1")[np.unique(picture.piece("surface 1").cells)] - centre
+        # Flat, below the middle; where it meets the wall to the nearest of 540 rays, 2 mm apart there.
+        assert surface.imag.max() < 0.0
+        assert np.ptp(surface.imag) < 2.0
 
 
 def test_a_film_over_speeds_turns_its_drum() -> None:
@@ -185,8 +185,8 @@ def test_a_period_of_a_mode_has_no_jump() -> None:
     mode = mode_view(scene("centrifuge"), 3)
     film = mode_film(mode, 24)
     at = [film.picture(k).piece("surface 1").points for k in range(film.count)]
-    steps = [float(np.abs(one - other).max()) for one, other in zip(at, at[1:] + at[:1], strict=True)]
-    # The last step leads back to the first frame. A wave that travels moves alike in all; the surface is the
-    # root of a sine, whose slope differs a little from frame to frame.
+    steps = [float(np.linalg.norm(one - other, axis=1).max()) for one, other in pairwise([*at, at[0]])]
+    # The last step leads back to the first frame. A wave that travels moves alike in all of them, to the
+    # angle between two of its 240 points, 3/15 of a step: a share of (pi/24/5)^2 of the largest.
     assert min(steps) > 0.0
-    assert max(steps) < 1.2 * min(steps)
+    assert max(steps) == pytest.approx(min(steps), rel=1e-2)
