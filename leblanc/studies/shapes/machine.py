@@ -317,7 +317,7 @@ def strobe(time: Array, speed: Array) -> tuple[Array, float]:
     --------
     >>> turn, slower = strobe(np.array([0.0, 1.0, 2.0]), np.array([50.0, 100.0, 100.0]))
     >>> np.round(np.degrees(np.diff(turn))), slower
-    (array([14., 18.]), 320.0)
+    (array([13., 17.]), 330.0)
     """
     steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(time)
     slower = max(1.0, float(steps.max(initial=0.0)) / TURN)

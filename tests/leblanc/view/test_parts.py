@@ -16,7 +16,7 @@ from leblanc.view.film import mode_film, runup_film
 from leblanc.view.inset import point_at
 from leblanc.view.machine import SIDES
 from leblanc.view.parts import Picture
-from leblanc.view.picture import pixels, plotter
+from leblanc.view.picture import fill, pixels, plotter
 from tests.leblanc.view.test_picture import MACHINES, across, middle_of_circle, scene, short_film, working
 from tests.leblanc.view.views import show
 
@@ -89,9 +89,10 @@ def test_the_drum_carries_its_chambers(name: str) -> None:
 
 
 def blue(picture: Picture, machine: Picture) -> float:
-    """Share of pixels with the liquid's colours, bluer than the grey of the walls, seen by another's camera."""
-    plot = plotter(replace(machine, pieces=picture.pieces))
+    """Share of pixels with the liquid's colours, by another's camera."""
+    plot = plotter(machine)
     try:
+        fill(plot, picture)
         seen = pixels(plot).astype(int)
     finally:
         plot.close()
