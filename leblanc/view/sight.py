@@ -28,7 +28,7 @@ FARTHER, TRIES = 1.04, 24  # of the camera's view, until all names fit in it
 FRONT = {
     "standing": ((0.35, -1.0, 0.75), (0.0, 0.0, 1.0)),
     "above": ((0.35, -1.0, 1.6), (0.0, 0.0, 1.0)),
-    "lying": ((1.0, -0.55, 0.42), (0.0, 0.0, 1.0)),
+    "lying": ((1.0, -0.45, 0.3), (0.0, 0.0, 1.0)),
     "long": ((1.0, -1.15, 0.55), (0.0, 0.0, 1.0)),
 }
 VIEWS = ("oblique", "along the axis", "from the side")
