@@ -185,7 +185,7 @@ def moved(stage: Stage, instant: Instant, place: Array | float) -> Complex:
 def _at(stage: Stage, instant: Instant, place: float, across: complex, standing: bool) -> Array:
     """A point that moves with the axis but does not turn, mm; or one seen from the drum."""
     turn = np.exp(1j * instant.turn) if standing else 1.0
-    return placed(stage, np.array([across + moved(stage, instant, place) * turn]), place)[0]
+    return np.asarray(placed(stage, np.array([across + moved(stage, instant, place) * turn]), place)[0])
 
 
 def _struts(stage: Stage, instant: Instant, parts: MachineParts) -> tuple[list[Piece], list[Label]]:
@@ -222,7 +222,7 @@ def ground_end(stage: Stage, strut: Strut) -> Array:
     strut : the spring or damper
     """
     plane = np.array([strut.across + strut.length * strut.aside])
-    return placed(stage, plane, strut.axial + strut.length * strut.along)[0]
+    return np.asarray(placed(stage, plane, strut.axial + strut.length * strut.along)[0])
 
 
 def _lug(stage: Stage, instant: Instant, parts: MachineParts, strut: Strut, name: str) -> list[Piece]:
@@ -327,7 +327,7 @@ def _ribs(stage: Stage, instant: Instant, shell: Shell) -> list[Piece]:
         return []
     pieces = []
     for turn in RIBS.tolist():
-        corners = shell.radius * np.array(
+        corners: Complex = shell.radius * np.array(
             [
                 np.exp(1j * (turn - RIB_HALF)),
                 (1.0 - RIB) * np.exp(1j * (turn - 0.4 * RIB_HALF)),
@@ -354,7 +354,7 @@ def _holes(stage: Stage, instant: Instant, shell: Shell) -> Piece:
     corner = 2.0 * math.pi * np.arange(CORNERS) / CORNERS
     at = turn[..., None] + HOLE * np.cos(corner)
     height = places[:, None] + HOLE * shell.radius * np.sin(corner) + 0.0 * at
-    plane = shell.radius * np.exp(1j * at) + moved(stage, instant, height)
+    plane: Complex = shell.radius * np.exp(1j * at) + moved(stage, instant, height)
     cells = np.arange(plane.size, dtype=np.int64).reshape(-1, CORNERS)
     return Piece("holes", placed(stage, plane.ravel(), height.ravel()), cells, "hole")
 
