@@ -327,13 +327,9 @@ def _ribs(stage: Stage, instant: Instant, shell: Shell) -> list[Piece]:
         return []
     pieces = []
     for turn in RIBS.tolist():
-        corners: Complex = shell.radius * np.array(
-            [
-                np.exp(1j * (turn - RIB_HALF)),
-                (1.0 - RIB) * np.exp(1j * (turn - 0.4 * RIB_HALF)),
-                (1.0 - RIB) * np.exp(1j * (turn + 0.4 * RIB_HALF)),
-                np.exp(1j * (turn + RIB_HALF)),
-            ]
+        away = np.array([1.0, 1.0 - RIB, 1.0 - RIB, 1.0])
+        corners: Complex = (
+            shell.radius * away * np.exp(1j * (turn + RIB_HALF * np.array([-1.0, -0.4, 0.4, 1.0])))
         )
         ends = [
             placed(stage, corners + complex(moved(stage, instant, place)), place) for place in (low, high)
