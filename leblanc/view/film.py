@@ -147,7 +147,7 @@ def _instant(stage: Stage, view: RunupView, k: int) -> Instant:
     ]
     caption = [
         stage.scale.in_words(),
-        f"Spin and whirl are {view.slower:g} times slower than they are.",
+        f"Spin, and whirl that goes with it, are {view.slower:g} times slower than they are.",
         "The surface stands upright along the axis.",
         view.parts.sketched,
     ]
