@@ -8,7 +8,7 @@ import numpy as np
 
 from leblanc.results.base import one_line
 from leblanc.results.drawn import TableView
-from leblanc.units import LENGTH, MM, in_rpm, with_unit
+from leblanc.units import LENGTH, MM, in_rpm, unit_for
 from leblanc.view.machine import cylinder, damper, spring, tube
 from leblanc.view.parts import NO_CELLS, Label, Picture, Piece, bar_length, circle, line
 from meshes.arrays import Array, Indices
@@ -33,9 +33,10 @@ def table_picture(table: TableView) -> Picture:
         "Platform, springs and size of the balls are not in the scene and only sketched.",
         "Balls and unbalance turn at different speeds; drawn is a moment when they line up.",
     ]
+    unit = unit_for(LENGTH, table.slow, table.fast)
     state = [
-        f"balls stuck together at {in_rpm(table.stuck_speed)}: platform {with_unit(table.slow, LENGTH)}",
-        f"unbalance of the shaft: platform {with_unit(table.fast, LENGTH)}",
+        f"balls stuck together at {in_rpm(table.stuck_speed)}: platform {unit.text(table.slow)}",
+        f"unbalance of the shaft: platform {unit.text(table.fast)}",
     ]
     labels = [
         Label("unbalance", (0.0, 0.0, 0.55 * track * MM)),

@@ -244,7 +244,7 @@ def compose(stage: Stage, instant: Instant) -> Picture:
         caption=instant.caption,
         lying=stage.lying,
         long=stage.ends[1] - stage.ends[0] > 2.0 * stage.radius,
-        frame=_frame(stage),
+        frame=np.concatenate([_frame(stage), *(piece.points for piece in shown)]),
     )
 
 
@@ -262,6 +262,10 @@ def _frame(stage: Stage) -> Array:
     round_it = circle(0j, max(AWAY * stage.radius + stage.swing, 1.04 * stage.reach))
     ends = np.array([low - BELOW * stage.radius, high + ABOVE * stage.radius])
     rings = [placed(stage, round_it, height) for height in stage.ends]
+    if stage.parts is not None:
+        drum = stage.parts.drum
+        edge = circle(0j, drum.radius + stage.swing)
+        rings += [placed(stage, edge, height) for height in (drum.low, drum.high)]
     return np.concatenate([*rings, placed(stage, np.zeros(2), ends), *points])
 
 

@@ -18,6 +18,7 @@ from leblanc.view.film import Film, mode_film, mode_picture, runup_film, write_f
 from leblanc.view.parts import Picture
 from leblanc.view.picture import fill, plotter, point_camera
 from tests.leblanc.view.test_picture import EXAMPLES, MACHINES, scene, working
+from tests.leblanc.view.views import show
 
 Box = tuple[float, float, float, float]
 
@@ -56,8 +57,29 @@ def projected(plot: Any, points: np.ndarray) -> np.ndarray:
     return np.array(found)
 
 
+def texts(plot: Any) -> tuple[float, float]:
+    """Upper edge of the texts at the foot of a picture and lower edge of those at its head, pixels."""
+    import pyvista
+
+    high = plot.window_size[1]
+    props = plot.renderer.GetViewProps()
+    found = [props.GetItemAsObject(k) for k in range(props.GetNumberOfItems())]
+    lines = [prop for prop in found if isinstance(prop, pyvista.Text) and not isinstance(prop, pyvista.Label)]
+    at = [(prop.position[1] * high, prop.prop.font_size) for prop in lines]
+    foot = max(y + size for y, size in at if y < 0.5 * high)
+    return foot, min(y for y, _ in at if y > 0.5 * high)
+
+
 def pictures() -> list[Picture]:
     found = [working(name).picture for name in MACHINES]
+    # Machines of other shapes: a standing tub, a tall drum, one without chambers, supports far away.
+    found += [
+        show(scene(name).replace({"rotor.axis": "vertical"})).picture for name in ("tub", "two_plane_rig")
+    ]
+    found.append(show(scene("tub").replace({"chambers": []})).picture)
+    far = {"stiffness": 4e4, "damping": 80.0}
+    supports = [far | {"position": -3.0}, far | {"position": 2.0}]
+    found.append(show(scene("two_plane_rig").replace({"rotor.supports": supports}), 60.0).picture)
     found.append(table_picture(table_view(load_scene(EXAMPLES / "vibratory_table.toml"))))
     return [*found, mode_picture(mode_view(scene("centrifuge"), 3))]
 
@@ -70,6 +92,10 @@ def check_names(plot: Any, picture: Picture) -> None:
     wide = plot.window_size[0]
     for name, box in boxes.items():
         assert box[0] >= 0.0 and box[2] <= wide, (picture.title, name)
+    foot, head = texts(plot)
+    for piece in picture.pieces:
+        height = projected(plot, piece.points[:: max(1, len(piece.points) // 100)])[:, 1]
+        assert height.min() > foot and height.max() < head, (picture.title, piece.name)
     # Faces of the liquid and of what carries it, by their corners.
     for piece in picture.pieces:
         if piece.cells.shape[1] < 3 or piece.look == "hole":
