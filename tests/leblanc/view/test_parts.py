@@ -13,10 +13,11 @@ import pytest
 from leblanc.results.drawn import RunupView
 from leblanc.studies.shapes.machine import mode_view, runup_view, strobe
 from leblanc.view.film import mode_film, runup_film
-from leblanc.view.inset import point_at
+from leblanc.view.inset import WIDE, point_at, with_inset
 from leblanc.view.machine import SIDES
-from leblanc.view.parts import Picture
+from leblanc.view.parts import Inset, Picture
 from leblanc.view.picture import fill, pixels, plotter
+from leblanc.view.sight import INSET, letters
 from tests.leblanc.view.test_picture import MACHINES, across, middle_of_circle, scene, short_film, working
 from tests.leblanc.view.views import show
 
@@ -191,3 +192,23 @@ def test_a_period_of_a_mode_has_no_jump() -> None:
     # angle between two of its 240 points, 3/15 of a step: a share of (pi/24/5)^2 of the largest.
     assert min(steps) > 0.0
     assert max(steps) == pytest.approx(min(steps), rel=1e-2)
+
+
+def test_the_point_of_a_film_stands_on_its_curve() -> None:
+    across_, values = np.linspace(0.0, 2.0, 21), np.linspace(0.0, 1.0, 21) ** 2
+    white = np.full((600, 800, 3), 255, dtype=np.uint8)
+    places = []
+    for at in (0.5, 1.5):
+        inset = Inset(across_, (("amplitude", values),), at, "time")
+        shown = with_inset(white, inset)
+        # The curve is 2 pixels wide, the point 8: where the colour stands higher than the curve is.
+        orange = (shown[..., 0] > 190) & (shown[..., 2] < 60)
+        column = np.argmax(np.where(orange[40:].sum(axis=0) > 6, orange[40:].sum(axis=0), 0))
+        size, letter = (round(WIDE * 800), round(INSET * 600)), letters((800, 600))
+        x, y = point_at(inset, values, size, letter)
+        assert abs(column - (800 - size[0]) - x) < 3.0
+        assert orange[round(y), 800 - size[0] + round(x)]
+        places.append(y)
+    # Farther on the curve is higher, and rows of pixels count downwards.
+    assert places[1] < places[0]
+    assert np.array_equal(with_inset(white, inset)[200:], white[200:])
