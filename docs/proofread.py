@@ -61,9 +61,9 @@ class _Text(HTMLParser):
     def handle_data(self, data: str) -> None:
         """Look at text."""
         if not self._typed():
-            self.leaks += [
-                data[max(0, leak.start() - 30) : leak.end() + 30].strip() for leak in _MARKUP.finditer(data)
-            ]
+            places = _MARKUP.finditer(data)
+            around = (data[max(0, leak.start() - 30) : leak.end() + 30].strip() for leak in places)
+            self.leaks += [f"markup shows: {text!r}" for text in around]
         self.last = data[-1:]
 
     def _typed(self) -> bool:
@@ -71,7 +71,7 @@ class _Text(HTMLParser):
 
 
 def leaks(page: str) -> list[str]:
-    """Markup that shows in a page.
+    """Markup that shows in a page, and pictures without words.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def leaks(page: str) -> list[str]:
 
     Returns
     -------
-    What stands around each place
+    A line for each place
     """
     reader = _Text()
     reader.feed(page)
@@ -107,7 +107,7 @@ def faults(folder: Path) -> list[str]:
     """
     pages = sorted(folder.rglob("*.html"))
     wrong = [
-        f"{page.relative_to(folder)}: markup shows: {leak!r}"
+        f"{page.relative_to(folder)}: {leak}"
         for page in pages
         for leak in leaks(page.read_text(encoding="utf-8"))
     ]
