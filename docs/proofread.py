@@ -19,7 +19,7 @@ from tests.oracles.browser import Browser, browser, found  # noqa: E402 - of thi
 
 PHONE = 390, 844  # pixels
 # Markdown, TeX and the roles of Sphinx, as they look when nothing has read them.
-_MARKUP = re.compile(r"\*\*|`|\$|\\|\]\(|\{\w[\w:]*\}(?=`|$)")
+_MARKUP = re.compile(r"\*\*|`|\$|\\|\][([]|\{\w[\w:]*\}(?=`|$)")
 _NO_WORDS = re.compile(r"^$|\.(png|svg|webp)$|^No description")
 _AS_TYPED = {"code", "pre", "script", "style", "svg", "title"}
 _EMPTY = {"br", "col", "hr", "img", "input", "link", "meta", "source", "wbr"}

@@ -488,7 +488,10 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     # Names as long fill two columns of the index.
     names = [f"```{{py:function}} a_name_of_a_function_as_long_as_any_{k}()\n```" for k in range(4)]
     cited = "```{bibliography}\n:all:\n:style: keyed\n```"
-    text = "\n\n".join(["# Commands", "```{all-commands}\n```", "## Functions", *names, cited])
+    api = _module("api_pages", "docs/_ext")
+    speeds = api.Member("Speeds", "autoclass", "", "leblanc.scene.scene.Speeds")
+    model = "\n".join(["```{eval-rst}", *api._described(speeds), "```"])
+    text = "\n\n".join(["# Commands", "```{all-commands}\n```", "## Functions", *names, model, cited])
     (source / "commands.md").write_text(text, encoding="utf-8")
     nbformat.write(_notebook(), source / "notebook.ipynb")
     out = source.parent / "site"
@@ -510,6 +513,7 @@ class TestProofreading:
             r"<p>\(x\)</p>",
             "<td>{cite:label}`DR18`</td>",
             "<p>[page](page.md)</p>",
+            "<p>[pydantic.config.ConfigDict][]</p>",
             "<td>0.6 kg<em>mm (a plain number is in kg</em>m)</td>",
             "<img src='x.png'>",
             "<img src='x.png' alt='../x.png'>",

@@ -225,8 +225,9 @@ def _page(package: str, members: list[Module], answers: list[Member]) -> str:
 def _described(member: Member) -> list[str]:
     """The directive for the docstring of a member."""
     lines = [f".. {member.directive}:: {member.full}"]
-    # matplotlib gives each of its classes a method `set` with a docstring that is its own.
-    members = ["   :members:", "   :exclude-members: set", ""]
+    # matplotlib gives each of its classes a method `set` with a docstring that is its own, pydantic each of
+    # its models a `model_config` with words in another markup.
+    members = ["   :members:", "   :exclude-members: set, model_config", ""]
     return lines + (members if member.directive == "autoclass" else [""])
 
 
