@@ -36,6 +36,8 @@ nitpicky = True
 myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 4
 myst_links_external_new_tab = False
+# What stands on a page can be typed: "65 mm" in straight quotes, --json with two hyphens.
+smartquotes = False
 # The notebooks come executed (docs/build.py); nothing is executed here.
 nb_execution_mode = "off"
 nb_merge_streams = True

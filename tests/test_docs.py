@@ -475,6 +475,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "| Key | Unit | Meaning |\n|---|---|---|\n"
         f"| `a_long_name` | kg\\*m | {words} |\n| `b` |  | b |\n\n"
         f"|{numbers}|\n{'|---' * 12}|\n|{numbers}|\n\n"
+        'As "65 mm" with --json.\n\n'
         f"```text\n{words}\n```\n\n$$ {'+ x^2 ' * 60} \\tag{{1}} $$\n\n"
         "[![wide](images/trade_runup.png)](images/trade_runup.png)\n",
         encoding="utf-8",
@@ -558,6 +559,13 @@ class TestProofreading:
         if found() is None:
             pytest.skip("no Chromium on the path")
         assert _module("proofread").faults(site) == []
+
+    def test_what_is_shown_can_be_typed(self, site: Path) -> None:
+        """In a file and on a command line quotes are straight, and options begin with two hyphens."""
+        from html import unescape
+
+        page = unescape((site / "index.html").read_text(encoding="utf-8"))
+        assert 'As "65 mm" with --json.' in page
 
     def test_words_of_a_table_become_cards_and_numbers_stay_a_table(self, site: Path, tab: Browser) -> None:
         tables = "[...document.querySelectorAll('table.docutils')].map(t => getComputedStyle(t).display)"

@@ -69,7 +69,6 @@ def _command_section(name: str, command: Any) -> nodes.section:
         nodes.definition_list("", *items, classes=["options"]),
         ids=[f"leblanc-{name}"],
         names=[title],
-        support_smartquotes=False,  # two hyphens begin an option
     )
 
 
