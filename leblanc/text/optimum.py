@@ -117,7 +117,7 @@ def _answer(result: OptimumResult) -> list[str]:
     lines.append(f"Liquid: {with_unit(result.mass, MASS)}; {result.evaluations} sets of volumes judged")
     if result.unit == "m":
         lines.append(
-            f"Values that differ by less than {result.equal_within:.0e} of the best count as equal: this is "
+            f"Values that differ by less than {number(100.0 * result.equal_within)} % count as equal: this is "
             "the least liquid for them"
         )
     return lines
