@@ -116,9 +116,10 @@ def _answer(result: OptimumResult) -> list[str]:
     lines.append(f"Value: {shown(result.value, result.unit)}; without liquid {_baseline(result)}")
     lines.append(f"Liquid: {with_unit(result.mass, MASS)}; {result.evaluations} sets of volumes judged")
     if result.unit == "m":
+        within = f"{number(100.0 * result.equal_within)} %"
         lines.append(
-            f"Values that differ by less than {number(100.0 * result.equal_within)} % count as equal: this is "
-            "the least liquid for them"
+            f"Values that differ by less than {within} of the best count as equal: this is the least liquid "
+            "for them"
         )
     return lines
 
