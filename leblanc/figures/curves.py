@@ -16,10 +16,10 @@ from meshes.arrays import Array, Complex, Flags, Index
 Span = tuple[float, float]
 
 COLUMNS = 1500  # more than a printed page resolves
-NARROW = 0.03  # of the speeds: a resonance of a narrower half-power band is drawn once more, wider
-_LOW = 0.5  # of the highest peak, below which a peak is no resonance to be drawn wider
+NARROW = 0.025  # of the speeds: a resonance of a narrower half-power band is drawn once more, wider
+_LOW = 0.25  # of the highest peak, below which a peak is no resonance to be drawn wider
 _ASIDE = 2.5  # half-power bands shown on either side of one
-_TOGETHER = 0.1  # of the speeds: narrow bands no farther apart share one picture
+_TOGETHER = 0.05  # of the speeds: narrow bands no farther apart share one picture
 _MOST_WIDE = 0.5  # of the speeds, above which nothing is gained by drawing them again
 _MOST_WINDOWS = 3
 
@@ -235,7 +235,7 @@ def half_power_bands(x: Array, y: Array) -> list[tuple[float, float, float]]:
 
     Returns
     -------
-    Lower end, upper end and height of each, by rising ends; only of peaks that reach half of the highest
+    Lower end, upper end and height of each, by rising ends; only of peaks that reach a quarter of the highest
     and whose band has both its ends on the line
     """
     known = ~np.isnan(y)

@@ -43,11 +43,11 @@ FILM_DPI = 100
 
 @dataclass(frozen=True)
 class Frame:
-    """Room around and between the rows of axes, inches."""
+    """Room around and between the rows of axes, inches; between them alike, or a width for each gap."""
 
     left: float
     top: float
-    between: float
+    between: float | tuple[float, ...]
     below: float
 
 
@@ -267,16 +267,17 @@ def lay_out(
     text = CAPTION_ROW * len(lines) + 2.0 * MARGIN
     columns = max(1, min(4, LEGEND_CHARACTERS // (max(map(len, entries), default=0) + 8)))
     legend = LEGEND_ROW * -(-len(entries) // columns) + MARGIN
-    total = frame.top + sum(heights) + frame.between * (len(rows) - 1) + frame.below + legend + text
+    gaps = frame.between if isinstance(frame.between, tuple) else (frame.between,) * (len(rows) - 1)
+    total = frame.top + sum(heights) + sum(gaps) + frame.below + legend + text
     figure.set_size_inches(WIDTH, total)
     figure.drawn = WIDTH, total - MARGIN - CAPTION_ROW * len(lines)
     above = frame.top
-    for row, height in zip(rows, heights, strict=True):
+    for row, height, gap in zip(rows, heights, (*gaps, 0.0), strict=True):
         width = (WIDTH - frame.left - RIGHT) / len(row)
         for i, axes in enumerate(row):
             left, bottom = frame.left + i * width, total - above - height
             axes.set_position((left / WIDTH, bottom / total, width / WIDTH, height / total))
-        above += height + frame.between
+        above += height + gap
     place = {"loc": "lower center", "bbox_to_anchor": (0.5, text / total), "borderaxespad": 0.0}
     figure.legend(entries.values(), entries.keys(), ncols=columns, borderpad=0.0, **place)
     for i, line in enumerate(reversed(lines)):
@@ -285,43 +286,59 @@ def lay_out(
 
 
 def add_windows(
-    figure: Figure, whole: Axes, wide: Sequence[Axes], heights: tuple[float, float], caption: Caption
+    figure: Figure,
+    whole: Sequence[Axes],
+    wide: Sequence[Sequence[Axes]],
+    heights: Sequence[float],
+    caption: Caption,
 ) -> None:
-    """Lay out a panel over all speeds and a row of panels below it that show parts of them, linked by lines.
+    """Lay out panels over all speeds and, below, those that show parts of them, linked by lines.
 
     Parameters
     ----------
     figure : of the panels, which are drawn and have their limits
-    whole : over all speeds
-    wide : over parts of them
-    heights : of both rows, inches
+    whole : over all speeds, above one another
+    wide : for each of them those over parts of the speeds, the same parts, beside one another
+    heights : of the rows over all speeds, then of the others, inches
     caption : below the figure
     """
-    whole.set_xlabel("")
-    for axes in wide:
-        axes.set_xlabel("Speed (rpm)")
-        axes.xaxis.set_major_locator(MaxNLocator(nbins=8 // len(wide) + 1, steps=[1, 2, 2.5, 5, 10]))
-        for side in axes.spines.values():
-            side.set(color=_LINKED, linewidth=1.0)
-    for axes in wide[1:]:
-        axes.set_ylabel("")
-    frame = Frame(left=0.72, top=0.46, between=0.5, below=0.42)
-    lay_out(figure, [[whole], list(wide)], list(heights), frame, caption, MOST_LINES + 1)
-    gap = 0.45 / WIDTH
-    for k, axes in enumerate(wide):
-        box = axes.get_position()
-        axes.set_position((box.x0 + (gap if k else 0.0), box.y0, box.width - (gap if k else 0.0), box.height))
-        low, high = axes.get_xlim()
-        whole.axvspan(low, high, facecolor="none", edgecolor=_LINKED, linewidth=1.0, zorder=1.2)
-        for x, corner in ((low, 0.0), (high, 1.0)):
-            below = whole.get_xaxis_transform()
-            link = ConnectionPatch((x, 0.0), (corner, 1.0), below, axes.transAxes, color=_LINKED)
-            link.set(linewidth=0.7, zorder=0.5)
-            figure.add_artist(link)
-    for label in whole.get_xticklabels():  # the lines between the panels pass behind them
+    parts, count = len(wide[0]), len(whole)
+    for row in wide:
+        for axes in row:
+            axes.xaxis.set_major_locator(MaxNLocator(nbins=8 // parts + 1, steps=[1, 2, 2.5, 5, 10]))
+            axes.tick_params(labelbottom=row is wide[-1])
+            axes.set_xlabel("Speed (rpm)" if row is wide[-1] else "")
+            for side in axes.spines.values():
+                side.set(color=_LINKED, linewidth=1.0)
+        for axes in row[1:]:
+            axes.set_ylabel("")
+    gaps = (*[0.12] * (count - 1), 0.5, *[0.12] * (count - 1))
+    rows = [[axes] for axes in whole] + [list(row) for row in wide]
+    frame = Frame(left=0.72, top=0.46, between=gaps, below=0.42)
+    lay_out(figure, rows, list(heights), frame, caption, MOST_LINES + 1)
+    for row in wide:
+        for axes in row[1:]:
+            box = axes.get_position()
+            axes.set_position((box.x0 + _APART / WIDTH, box.y0, box.width - _APART / WIDTH, box.height))
+    for axes in wide[0]:
+        _link(figure, whole, axes)
+    for label in whole[-1].get_xticklabels():  # the lines between the panels pass behind them
         label.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.8})
 
 
+def _link(figure: Figure, whole: Sequence[Axes], part: Axes) -> None:
+    """Frame on the panels over all speeds what a part shows, and lead two lines from there to it."""
+    low, high = part.get_xlim()
+    for axes in whole:
+        axes.axvspan(low, high, facecolor="none", edgecolor=_LINKED, linewidth=1.0, zorder=1.2)
+    below = whole[-1].get_xaxis_transform()
+    for x, corner in ((low, 0.0), (high, 1.0)):
+        link = ConnectionPatch((x, 0.0), (corner, 1.0), below, part.transAxes, color=_LINKED)
+        link.set(linewidth=0.7, zorder=0.5)
+        figure.add_artist(link)
+
+
+_APART = 0.45  # inches between parts beside one another
 _LINKED = "0.45"  # frames of the panels that are linked, and the lines between them
 
 

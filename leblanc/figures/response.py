@@ -45,7 +45,7 @@ from meshes.arrays import Array, Flags
 Draw = Callable[[Any, Curves, RunResult], None]
 
 FRAME = Frame(left=0.72, top=0.46, between=0.12, below=0.42)
-WINDOWS = (1.75, 1.75)  # inches: heights of the whole range and of the resonances below it, drawn wider
+SHARE = 0.64  # of the height of a panel that two have each, the whole range and the resonances below it
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 
@@ -127,17 +127,30 @@ def _over_speed(result: RunResult, name: str, panels: Sequence[tuple[float, Draw
         add_rate_axis(rows[0][0])
         heights = [height for height, _ in panels]
         spans = windows([(curves.rpm, curves.amplitude), (curves.rpm, curves.amplitude_dry)], curves.limits)
-        if not spans or len(panels) > 1:
+        if not spans:
             lay_out(figure, rows, heights, FRAME, caption(result, text))
             return figure
-        wide = []
-        for span in spans:
-            axes = figure.add_axes((0, 0, 1, 1), label=f"from {number(span[0])} rpm")
-            panels[0][1](axes, cut(curves, span), result)
-            _number_axes(axes)
-            wide.append(axes)
-        add_windows(figure, rows[0][0], wide, WINDOWS, caption(result, f"{text} {wider_words()}"))
+        wide: list[list[Axes]] = []
+        for i, (_, draw) in enumerate(panels):
+            wide.append(
+                [figure.add_axes((0, 0, 1, 1), label=f"{i}, part {k + 1}") for k in range(len(spans))]
+            )
+            for axes, span in zip(wide[-1], spans, strict=True):
+                draw(axes, cut(curves, span), result)
+                _number_axes(axes)
+        rows[-1][0].set_xlabel("")
+        for (axes,) in rows[: len(rows) * (len(rows) > 1)]:
+            _drop_upright_names(axes)
+        heights = [SHARE * height for height in heights] * 2
+        whole = [axes for (axes,) in rows]
+        add_windows(figure, whole, wide, heights, caption(result, f"{text} {wider_words()}"))
     return figure
+
+
+def _drop_upright_names(axes: Axes) -> None:
+    """Take the names of narrow ranges from a panel that is too low for them; the legend has them."""
+    for text in [text for text in axes.texts if text.get_rotation() == 90.0]:
+        text.remove()
 
 
 def _number_axes(axes: Axes) -> None:

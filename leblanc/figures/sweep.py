@@ -17,7 +17,7 @@ from leblanc.figures.page import (
     number,
     style,
 )
-from leblanc.figures.response import DRY, WET, WINDOWS, value_axis, wider_words
+from leblanc.figures.response import DRY, SHARE, WET, value_axis, wider_words
 from leblanc.results.base import one_line
 from leblanc.results.notes import plane_label
 from leblanc.results.sweep import SweepResult
@@ -67,7 +67,8 @@ def _over_speed(figure: Figure, result: SweepResult, speed: Array) -> None:
     for panel, span in zip(wide, spans, strict=True):
         inside = slice(max(int(np.searchsorted(rpm, span[0])) - 1, 0), int(np.searchsorted(rpm, span[1])) + 1)
         _draw(panel, result, (rpm[inside], wet[inside], dry[inside]), span)
-    add_windows(figure, axes, wide, WINDOWS, _caption(result, f"{text} {wider_words()}"))
+    heights = (SHARE * PANEL, SHARE * PANEL)
+    add_windows(figure, [axes], [wide], heights, _caption(result, f"{text} {wider_words()}"))
 
 
 def _draw(axes: Axes, result: SweepResult, lines: tuple[Array, Array, Array], limits: Span) -> None:
