@@ -85,7 +85,7 @@ CASES = (
         "a mass",
         "measures something else",
     ),
-    vary('"rotor.mass" = { uniform = [-3, 12] }', '"rotor.mass".uniform', "a mass", "from 1e-09"),
+    vary('"rotor.mass" = { uniform = [-3, 12] }', '"rotor.mass".uniform', "a mass", "from 0.000 000 001"),
     vary('"rotor.mass" = { uniform = [3] }', '"rotor.mass".uniform', "a list of 2 values"),
     vary('"rotor.mass" = { uniform = 3 }', '"rotor.mass".uniform = 3', "a list of 2 values"),
     vary('"rotor.mass" = { uniform = [nan, 3] }', '"rotor.mass".uniform', "finite"),
