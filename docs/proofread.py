@@ -138,7 +138,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     wrong = [
         line for name in (sys.argv[1:] if arguments is None else arguments) for line in faults(Path(name))
     ]
-    print(*wrong, sep="\n", file=sys.stderr)
+    for line in wrong:
+        print(line, file=sys.stderr)
     return 1 if wrong else 0
 
 
