@@ -339,13 +339,14 @@ def runup_scale(radius: float, result: RunupResult, frames: RunupFrames) -> Scal
     largest = float(np.abs(frames.deflection).max())
     wanted = min(MOST, SHOWN * radius / largest) if largest > 0.0 else 1.0
     thin = any(c.radius - c.mean_surface_radius < THIN * c.radius for c in result.chambers if c.volume > 0.0)
+    both = 1.0
     if thin or largest < VISIBLE * radius:
         fits = film_factor(result.chambers, frames.depth, frames.deflection)
         both = float(f"{max(1.0, min(fits, wanted)):.2g}")
-        if both > ENOUGH * wanted:
-            return Scale(both, both)
-    # No room for a deeper layer: the liquid stays as it is.
-    return Scale(float(f"{rounded_down(max(1.0, wanted)):.6g}"))
+    if both > ENOUGH * wanted:
+        return Scale(both, both)
+    # No room for a layer so much deeper.
+    return Scale(float(f"{rounded_down(max(1.0, wanted)):.6g}"), both)
 
 
 def _liquid(fill: Fill, scale: Scale, frames: RunupFrames, k: int, j: int, turn: float) -> Liquid:
