@@ -141,7 +141,7 @@ def body_of_pool(
     down : direction of gravity, rad
     """
     level = chamber.radius * math.cos(half_angle(volume / (chamber.height * chamber.radius**2)))
-    if level < chamber.inner_radius:
+    if 0.0 < chamber.inner_radius > level:
         return _pool_round_wall(chamber, volume, deflection, down)
     # The rays start in the air, half way between its top and the level.
     start = 0.5 * (level - chamber.radius)
