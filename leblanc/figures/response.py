@@ -45,7 +45,7 @@ from meshes.arrays import Array, Flags
 Draw = Callable[[Any, Curves, RunResult], None]
 
 FRAME = Frame(left=0.72, top=0.46, between=0.12, below=0.42)
-SHARE = 0.64  # of the height of a panel that two have each, the whole range and the resonances below it
+SHARE = 0.52  # of the height of a panel that two have each, the whole range and the resonances below it
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 
@@ -139,16 +139,20 @@ def _over_speed(result: RunResult, name: str, panels: Sequence[tuple[float, Draw
                 draw(axes, cut(curves, span), result)
                 _number_axes(axes)
         rows[-1][0].set_xlabel("")
-        for (axes,) in rows[: len(rows) * (len(rows) > 1)]:
-            _drop_upright_names(axes)
+        if len(rows) > 1:
+            for axes in [axes for row in (*rows, *wide) for axes in row]:
+                _make_low(axes)
         heights = [SHARE * height for height in heights] * 2
         whole = [axes for (axes,) in rows]
+        parts = ", ".join(f"{number(round(low))} to {number(round(high))} rpm" for low, high in spans)
+        figure.alt += f" Drawn once more below, wider: {parts}."
         add_windows(figure, whole, wide, heights, caption(result, f"{text} {wider_words()}"))
     return figure
 
 
-def _drop_upright_names(axes: Axes) -> None:
-    """Take the names of narrow ranges from a panel that is too low for them; the legend has them."""
+def _make_low(axes: Axes) -> None:
+    """Label of two lines and no upright names of ranges, which the legend has, for a low panel."""
+    axes.set_ylabel(axes.get_ylabel().replace(" (", "\n("))
     for text in [text for text in axes.texts if text.get_rotation() == 90.0]:
         text.remove()
 
@@ -165,7 +169,7 @@ def _number_axes(axes: Axes) -> None:
 
 def wider_words() -> str:
     """What the panels below the whole range are, for the caption."""
-    return f"Below, wider: resonances whose half-power band takes less than {100.0 * NARROW:g} % of the axis."
+    return f"Below, wider: resonances under {100.0 * NARROW:g} % of the axis (half-power band)."
 
 
 def draw_amplitude(axes: Axes, curves: Curves, result: RunResult) -> None:

@@ -172,7 +172,8 @@ def test_narrow_resonance_is_drawn_wider_below():
     links = [artist for artist in figure.artists if isinstance(artist, ConnectionPatch)]
     assert [link.xy1[0] for link in links] == [low, high]
     caption = " ".join(text.get_text() for text in reversed(figure.texts))
-    assert "less than 2.5 % of the axis" in caption
+    assert figure.alt.endswith(f"Drawn once more below, wider: {low:.0f} to {high:.0f} rpm.")
+    assert "resonances under 2.5 % of the axis" in caption
     assert len(figures.amplitude_figure(rig()).axes) == 1
     # The liquid's two panels have two below them; only the lowest of each pair has numbers under it.
     several = figures.liquid_figure(record).axes
