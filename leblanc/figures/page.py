@@ -43,12 +43,13 @@ FILM_DPI = 100
 
 @dataclass(frozen=True)
 class Frame:
-    """Room around and between the rows of axes, inches; between them alike, or a width for each gap."""
+    """Room around and between the rows of axes, inches; `gaps` in place of `between` where they differ."""
 
     left: float
     top: float
-    between: float | tuple[float, ...]
+    between: float
     below: float
+    gaps: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -267,7 +268,7 @@ def lay_out(
     text = CAPTION_ROW * len(lines) + 2.0 * MARGIN
     columns = max(1, min(4, LEGEND_CHARACTERS // (max(map(len, entries), default=0) + 8)))
     legend = LEGEND_ROW * -(-len(entries) // columns) + MARGIN
-    gaps = frame.between if isinstance(frame.between, tuple) else (frame.between,) * (len(rows) - 1)
+    gaps = frame.gaps or (frame.between,) * (len(rows) - 1)
     total = frame.top + sum(heights) + sum(gaps) + frame.below + legend + text
     figure.set_size_inches(WIDTH, total)
     figure.drawn = WIDTH, total - MARGIN - CAPTION_ROW * len(lines)
@@ -314,7 +315,7 @@ def add_windows(
             axes.set_ylabel("")
     gaps = (*[0.12] * (count - 1), 0.5, *[0.12] * (count - 1))
     rows = [[axes] for axes in whole] + [list(row) for row in wide]
-    frame = Frame(left=0.72, top=0.46, between=gaps, below=0.42)
+    frame = Frame(left=0.72, top=0.46, between=0.12, below=0.42, gaps=gaps)
     lay_out(figure, rows, list(heights), frame, caption, MOST_LINES + 1)
     for row in wide:
         for axes in row[1:]:
