@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from leblanc.figures.curves import COLUMNS, spans, thin
-from leblanc.figures.page import Caption, Figure, Frame, add_rate_axis, lay_out, number, style
+from leblanc.figures.curves import COLUMNS, Span, spans, thin, windows
+from leblanc.figures.page import (
+    Caption,
+    Figure,
+    Frame,
+    add_rate_axis,
+    add_windows,
+    lay_out,
+    number,
+    style,
+)
 from leblanc.figures.page import save as save  # a figure is drawn and written together
-from leblanc.figures.response import DRY, OUT_OF_RANGE, SHADE, value_axis
+from leblanc.figures.response import DRY, OUT_OF_RANGE, SHADE, SHARE, value_axis, wider_words
 from leblanc.results.base import one_line
 from leblanc.results.explanation import Comparison
 from leblanc.results.notes import plane_label
@@ -18,6 +28,7 @@ from leblanc.units import MM, RPM
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
+Line = tuple[Array, Array]
 
 FRAME = Frame(left=0.72, top=0.46, between=0.12, below=0.42)
 AMPLITUDE, DIFFERENCE = 2.6, 1.3  # inches
@@ -36,37 +47,54 @@ LOOKS = (
 
 def comparison_figure(found: Comparison) -> Figure:
     """Amplitude of each model over speed; below, where there are several, their differences."""
-    order = np.argsort(found.speed, kind="stable")
-    names = list(found.results)
-    apart = [100.0 * found.difference(name)[order] for name in names]
-    drawn = thin(np.column_stack(apart), COLUMNS)
-    rpm = found.speed[order][drawn] * RPM
     with style():
         figure = Figure()
         figure.alt = comparison_alt(found)
-        labels = ("amplitude", "difference")[: len(names)]
-        rows = [figure.add_axes((0, 0, 1, 1), label=label) for label in labels]
-        _draw_amplitude(rows[0], found)
-        result = next(iter(found.results.values()))
-        place = "" if result.motion is None else plane_label(bool(result.chambers))
-        rows[0].set_ylabel(f"Amplitude{place} (mm)")
-        if len(rows) > 1:
-            _draw_difference(rows[1], rpm, names, [line[drawn] for line in apart])
-        for axes in rows:
-            _background(axes, found)
-            axes.xaxis.set_major_formatter(number)
-            axes.yaxis.set_major_formatter(number)
-            axes.yaxis.set_minor_formatter("")
-        for axes in rows[:-1]:
+        limits = _limits(found)
+        whole = _panels(figure, found, limits, "")
+        add_rate_axis(whole[0])
+        for axes in whole[:-1]:
             axes.tick_params(labelbottom=False)
-        rows[-1].set_xlabel("Speed (rpm)")
-        add_rate_axis(rows[0])
-        heights = [AMPLITUDE, DIFFERENCE][: len(rows)]
-        lay_out(figure, [[axes] for axes in rows], heights, FRAME, _caption(found))
+        heights = [AMPLITUDE, DIFFERENCE][: len(whole)]
+        curves = [result.curve for result in found.results.values()]
+        lines = [_drawn(curve.speed, curve.amplitude) for curve in curves]
+        lines.append(_drawn(curves[0].speed, curves[0].amplitude_dry))
+        wider = windows(lines, limits)
+        if wider:
+            parts = [_panels(figure, found, span, f", part {k + 1}") for k, span in enumerate(wider)]
+            text = replace(_caption(found), shown=f"{_caption(found).shown} {wider_words()}")
+            wide = list(zip(*parts, strict=True))
+            add_windows(figure, whole, wide, [SHARE * height for height in heights] * 2, text)
+        else:
+            whole[-1].set_xlabel("Speed (rpm)")
+            lay_out(figure, [[axes] for axes in whole], heights, FRAME, _caption(found))
     return figure
 
 
-def _drawn(speed: Array, amplitude: Array) -> tuple[Array, Array]:
+def _panels(figure: Figure, found: Comparison, limits: Span, part: str) -> list[Axes]:
+    """Amplitudes and, of several models, differences over a span of speed."""
+    names = list(found.results)
+    labels = ("amplitude", "difference")[: len(names)]
+    panels = [figure.add_axes((0, 0, 1, 1), label=f"{label}{part}") for label in labels]
+    _draw_amplitude(panels[0], found, limits)
+    result = next(iter(found.results.values()))
+    place = "" if result.motion is None else plane_label(bool(result.chambers))
+    panels[0].set_ylabel(f"Amplitude{place} (mm)")
+    if len(panels) > 1:
+        order = np.argsort(found.speed, kind="stable")
+        apart = [100.0 * found.difference(name)[order] for name in names]
+        drawn = thin(np.column_stack(apart), COLUMNS)
+        rpm = found.speed[order][drawn] * RPM
+        _draw_difference(panels[1], names, [_inside((rpm, line[drawn]), limits) for line in apart])
+    for axes in panels:
+        _background(axes, found, limits)
+        axes.xaxis.set_major_formatter(number)
+        axes.yaxis.set_major_formatter(number)
+        axes.yaxis.set_minor_formatter("")
+    return panels
+
+
+def _drawn(speed: Array, amplitude: Array) -> Line:
     """A line in rpm and mm, with as many points as show, by rising speed."""
     order = np.argsort(speed, kind="stable")
     line = np.where(np.isfinite(amplitude), amplitude, np.nan)[order] * MM
@@ -74,15 +102,23 @@ def _drawn(speed: Array, amplitude: Array) -> tuple[Array, Array]:
     return speed[order][kept] * RPM, line[kept]
 
 
-def _draw_amplitude(axes: Axes, found: Comparison) -> None:
+def _inside(line: Line, limits: Span) -> Line:
+    """The part of a line within a span of speed, and one point beyond either end of it."""
+    x, y = line
+    first = max(int(np.searchsorted(x, limits[0], side="right")) - 1, 0)
+    last = int(np.searchsorted(x, limits[1], side="left")) + 1
+    return x[first:last], y[first:last]
+
+
+def _draw_amplitude(axes: Axes, found: Comparison, limits: Span) -> None:
     """Amplitude by every model that answers, each with its own speeds, and without liquid."""
     marker = "o" if found.speed.size == 1 else None
     curves = {name: result.curve for name, result in found.results.items()}
-    lines = [_drawn(curve.speed, curve.amplitude) for curve in curves.values()]
+    lines = [_inside(_drawn(curve.speed, curve.amplitude), limits) for curve in curves.values()]
     for name, line, look in zip(curves, lines, LOOKS, strict=False):
         axes.plot(*line, label=name, marker=marker, **look)
     reference = curves[found.reference]
-    bare = _drawn(reference.speed, reference.amplitude_dry)
+    bare = _inside(_drawn(reference.speed, reference.amplitude_dry), limits)
     even = np.linspace(bare[0][0], bare[0][-1], 14)
     marks = np.unique(np.clip(np.searchsorted(bare[0], even), 0, bare[0].size - 1)).tolist()
     looks = {"color": DRY, "linewidth": 0.8, "marker": "o", "markerfacecolor": "white", "markevery": marks}
@@ -90,26 +126,32 @@ def _draw_amplitude(axes: Axes, found: Comparison) -> None:
     value_axis(axes, 0.0, [*lines, bare])
 
 
-def _draw_difference(axes: Axes, rpm: Array, names: list[str], lines: list[Array]) -> None:
-    marker = "o" if rpm.size == 1 else None
+def _draw_difference(axes: Axes, names: list[str], lines: list[Line]) -> None:
+    marker = "o" if lines[0][0].size == 1 else None
     for name, line, look in zip(names, lines, LOOKS, strict=False):
-        axes.plot(rpm, line, label=name, marker=marker, **look)
-    largest = max(float(np.nanmax(np.abs(line), initial=0.0)) for line in lines)
+        axes.plot(*line, label=name, marker=marker, **look)
+    largest = max(float(np.nanmax(np.abs(line), initial=0.0)) for _, line in lines)
     axes.set_ylim(*(np.array([-1.1, 1.1]) * max(largest, LEAST)))
     axes.set_ylabel("Difference (%)")
 
 
-def _background(axes: Axes, found: Comparison) -> None:
+def _limits(found: Comparison) -> Span:
+    """Of the speed, rpm."""
+    low, high = float(found.speed.min()) * RPM, float(found.speed.max()) * RPM
+    margin = 0.0 if low < high else max(0.05 * low, 1.0)
+    return low - margin, high + margin
+
+
+def _background(axes: Axes, found: Comparison, limits: Span) -> None:
     """Limits of the speed; where no model is in its range."""
     order = np.argsort(found.speed, kind="stable")
     rpm = found.speed[order] * RPM
-    margin = 0.0 if rpm[0] < rpm[-1] else max(0.05 * float(rpm[0]), 1.0)
-    limits = float(rpm[0]) - margin, float(rpm[-1]) + margin
     axes.set_xlim(*limits)
     outside = ~np.any([result.in_range[order] for result in found.results.values()], axis=0)
-    for k, (left, right) in enumerate(spans(rpm, outside, limits)):
+    for k, (left, right) in enumerate(spans(rpm, outside, _limits(found))):
         label = "_" if k else f"every {OUT_OF_RANGE}"
         axes.axvspan(left, right, color=SHADE, linewidth=0, zorder=0, label=label)
+    axes.set_xlim(*limits)
 
 
 def _caption(found: Comparison) -> Caption:
