@@ -125,3 +125,27 @@ def test_lines_of_the_figure_are_told_apart_without_colour() -> None:
 def test_one_model_needs_no_differences() -> None:
     figure = comparison(answer("statics", wet(ADDED))).plot()
     assert [axes.get_ylabel() for axes in figure.axes] == ["Amplitude (mm)"]
+
+
+def test_narrow_resonances_are_drawn_wider_below() -> None:
+    """The same lines in a span about the peaks, amplitudes above differences."""
+    speed = np.linspace(100.0, 6000.0, 2000) * RPM
+    light = 2.0 * 0.01 * MASS * 1000.0 * RPM
+
+    def narrow(added: float) -> RunResult:
+        response = response_of(speed, added)
+        own, dry = (dry_deflection(speed, MASS + share, light) for share in (added, 0.0))
+        return record_of(replace(response, deflection=own, deflection_dry=dry))
+
+    found = comparison(answer("linear", narrow(0.5 * ADDED)), answer("statics", narrow(ADDED)))
+    above, below, wide, apart = found.plot().axes
+    low, high = wide.get_xlim()
+    assert apart.get_xlim() == (low, high) and above.get_xlim() == below.get_xlim()
+    assert high - low < 0.2 * (above.get_xlim()[1] - above.get_xlim()[0])
+    for line, whole in zip(wide.lines, above.lines, strict=False):
+        top = np.nanmax(whole.get_ydata())
+        assert (
+            np.nanmax(line.get_ydata()) == top and low < line.get_xdata()[np.argmax(line.get_ydata())] < high
+        )
+        assert above.get_ylim()[1] > top and wide.get_ylim()[1] > top
+    assert (below.get_xlabel(), apart.get_xlabel()) == ("", "Speed (rpm)")

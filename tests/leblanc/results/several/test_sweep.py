@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pickle
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ import xarray as xr
 
 from leblanc.cli import main
 from leblanc.cli.output import print_json
+from leblanc.figures.sweep import sweep_figure
 from leblanc.results.sweep import QUANTILES, SweepResult
 from leblanc.studies.run import run_scene
 from leblanc.studies.sweep.store import STORE
@@ -124,3 +126,19 @@ def test_speeds_that_differ_give_boxes(tmp_path: Path) -> None:
     result = sweep_result(study_in(tmp_path, study, LINEAR), tmp_path / "out", workers=0)
     assert result.speed is None and result.samples == 10
     assert [len(axes.patches) for axes in result.plot().axes] == [4, 1]
+
+
+def test_narrow_resonances_of_a_sweep_are_drawn_wider_below(found: SweepResult) -> None:
+    """Quantiles in proportion to one another, about a peak of a hundredth of the speeds."""
+    rpm = np.linspace(100.0, 6000.0, 3000)
+    peak = 1e-3 / np.abs(1.0 - (rpm / 1000.0) ** 2 + 0.02j)
+    shares = np.array([0.8, 0.9, 1.0, 1.1, 1.2])
+    one = found.over_speed["amplitude"]
+    over = {name: replace(one, quantiles=peak[:, None] * shares) for name in ("amplitude", "amplitude_dry")}
+    narrow = replace(found, speed=rpm * RPM, over_speed={**found.over_speed, **over})
+    whole, wide = sweep_figure(narrow).axes
+    low, high = wide.get_xlim()
+    assert low < 980.0 and 1020.0 < high < low + 600.0
+    for axes in (whole, wide):
+        assert axes.get_ylim()[1] > 1.2e3 * peak.max()
+        assert np.max(axes.lines[0].get_ydata()) == pytest.approx(1e3 * peak.max(), rel=1e-12)
