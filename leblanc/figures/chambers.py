@@ -48,7 +48,8 @@ Axes = Any  # matplotlib's, which no module that only draws imports
 WALL, LIQUID, SURFACE, CENTRE, UNBALANCE = "0.15", "#56B4E9", "#0072B2", "#D55E00", "0.15"
 SHADES = ("#DCEFFA", "#BBE0F5", "#99D1F1", "#78C3ED", LIQUID)  # from the floor of a bowl to the lid
 MOST_DRAWINGS = 3  # side by side
-FRAME = Frame(left=0.15, top=0.26, between=0.6, below=0.36)
+BETWEEN, BELOW = 0.6, 0.36  # inches
+FRAME = Frame(left=0.15, top=0.26, between=BETWEEN, below=BELOW)
 HEADING_ROW = 0.14  # inches
 NOTED_LINES = 10  # of a caption with notes
 
@@ -437,9 +438,7 @@ def chamber_figure(result: RunResult) -> Figure:
         text = caption(result, f"Chamber seen along the axis. {describe_scale(result, views)}{part}")
         more = HEADING_ROW * more_heading_rows(result, views)
         below = 0.0 if result.motion is None else HEADING_ROW
-        frame = replace(
-            FRAME, top=FRAME.top + more, between=FRAME.between + more + below, below=FRAME.below + below
-        )
+        frame = replace(FRAME, top=FRAME.top + more, between=BETWEEN + more + below, below=BELOW + below)
         lay_out(figure, rows, sides, frame, text, MOST_LINES if result.motion is None else NOTED_LINES)
     return figure
 
