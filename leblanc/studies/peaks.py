@@ -9,26 +9,28 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from leblanc.studies.choose import Prepared, models_at, models_of
 from leblanc.studies.liquid import synchronous_model
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import orbit, unbalance_response
+from solvers.synchronous.coupled import Near
 from solvers.synchronous.models import LINEAR
 from solvers.synchronous.peaks import Answer, Samples, refine, seeds
 from solvers.synchronous.planar import divide
 from solvers.synchronous.resonances import Tops, planar_tops, resonances
-from solvers.synchronous.response import Response, by_speed, joined, machine_responses, response
+from solvers.synchronous.response import Response, by_speed, fill_responses, joined, machine_responses
 
 _UNDAMPED = 1e-8  # half width over speed of a resonance that nothing damps
 _NEAR, _NEARER = 1e-4, 1e-6  # relative distances over which its amplitude grows as one over the distance
 _GROWN = 30.0  # times, at least
 _ASIDE = 3e-9  # relative distance of a speed that is taken for the resonance
-_THOROUGH = 4  # rounds in which chambers in several planes are searched from scratch
 
 
 @dataclass(frozen=True)
@@ -63,8 +65,8 @@ class Asked(Protocol):
         """Parts of the deflections of the dry rotors, m, shape (m, 2)."""
         ...
 
-    def with_liquid(self, owner: Index, speed: Array) -> Response:
-        """Responses by the liquid model that is chosen at each speed."""
+    def with_liquid(self, owner: Index, speed: Array, close: bool) -> Response:
+        """Responses by the liquid model that is chosen at each speed, which may be close to known ones."""
         ...
 
 
@@ -75,7 +77,7 @@ def responses_between(
 
     Parameters
     ----------
-    machines : all of them planar, or a single one
+    machines : all of them planar, or all of one rotor with its chambers and other volumes
     answers : of each, at its own speeds
     dry : find the largest amplitudes without liquid as well
     drawn : show the shape of the resonances, as a figure needs it
@@ -90,11 +92,11 @@ def responses_between(
     if all(machine.speed[-1] <= machine.speed[0] for machine in machines):
         return [answer.at(nowhere) for answer in answers]
     planar = isinstance(machines[0].rotor, Jeffcott)
-    asked: Asked = _Planar(machines) if planar else _Other(machines[0], answers[0])
+    asked: Asked = _Planar(machines) if planar else _Other(machines, answers)
     ends = [(float(machine.speed[0]), float(machine.speed[-1])) for machine in machines]
 
     def wet_parts(owner: Index, speed: Array) -> Complex:
-        return asked.with_liquid(owner, speed).parts
+        return asked.with_liquid(owner, speed, close=True).parts
 
     endless_dry = _without_bound(asked.without_liquid, asked.dry, ends)
     endless_wet = _without_bound(wet_parts, asked.wet, ends)
@@ -103,8 +105,8 @@ def responses_between(
     def still(owner: Index, speed: Array) -> Complex:
         return _marked(asked.without_liquid(owner, speed), _met(endless_dry, owner, speed))
 
-    def wet(owner: Index, speed: Array) -> Complex:
-        answer = asked.with_liquid(owner, speed)
+    def wet(owner: Index, speed: Array, close: bool = True) -> Complex:
+        answer = asked.with_liquid(owner, speed, close)
         endless = _met(endless_wet, owner, speed)
         answer = replace(
             answer,
@@ -119,13 +121,14 @@ def responses_between(
     seen = [np.zeros(0) for _ in ends]
     if dry:
         begin = [Samples(answer.speed, answer.parts_dry) for answer in answers]
-        seen = [samples.speed for samples in _explored(still, begin, asked.dry, seen, ends, drawn)]
+        seen = [samples.speed for samples in _explored(still, still, begin, asked.dry, seen, ends, drawn)]
     begin = [Samples(answer.speed, answer.parts) for answer in answers]
-    _explored(wet, begin, asked.wet, seen, ends, drawn)
+    _explored(partial(wet, close=False), wet, begin, asked.wet, seen, ends, drawn)
     return [by_speed(parts) for parts in found]
 
 
 def _explored(
+    first: Answer,
     answer: Answer,
     samples: Sequence[Samples],
     near: Sequence[Resonances],
@@ -133,16 +136,19 @@ def _explored(
     ends: Sequence[tuple[float, float]],
     drawn: bool,
 ) -> list[Samples]:
-    """Samples of each machine with those at its resonances, at more speeds, and at the peak."""
+    """Samples of each machine with those at its resonances, at more speeds, and at the peak.
+
+    The first speeds are apart; later ones close in on answers that are known.
+    """
     fresh = []
     for own, resonance, others, (start, stop) in zip(samples, near, more, ends, strict=True):
         # Where a bound is known, it is the height of a top: its place is enough.
         width = resonance.half_width if drawn or math.isinf(resonance.bound) else 0.0 * resonance.half_width
-        here = seeds(resonance.speed, width, start, stop, own.speed)
+        here = seeds(resonance.speed, width, start, stop, own.speed, drawn)
         fresh.append(np.setdiff1d(np.union1d(here, others), own.speed))
     owner = np.repeat(np.arange(len(fresh)), [speed.size for speed in fresh])
     if owner.size:
-        parts = answer(owner, np.concatenate(fresh))
+        parts = first(owner, np.concatenate(fresh))
         samples = [own.joined(fresh[k], parts[owner == k]) for k, own in enumerate(samples)]
     return refine(answer, samples, [resonance.bound for resonance in near])
 
@@ -203,14 +209,9 @@ class _Planar:
         deflection = divide(unbalance * squared, stiffness - mass * squared + 1j * damping * speed)
         return np.stack((deflection, np.zeros_like(deflection)), axis=1)
 
-    def with_liquid(self, owner: Index, speed: Array) -> Response:
+    def with_liquid(self, owner: Index, speed: Array, close: bool) -> Response:
         """See `Asked`."""
-        present = np.unique(owner)
-        rows = [np.flatnonzero(owner == k) for k in present.tolist()]
-        pairs = zip(present.tolist(), rows, strict=True)
-        chosen = models_at([replace(self.machines[k], speed=speed[own]) for k, own in pairs])
-        order = np.argsort(np.concatenate(rows))
-        names, carried = (np.concatenate(values)[order] for values in zip(*chosen, strict=True))
+        names, carried = _models(self.machines, owner, speed)
         parts, places = [], []
         for name in np.unique(names).tolist():
             own = np.flatnonzero(names == name)
@@ -219,6 +220,17 @@ class _Planar:
             places.append(own)
         answer = joined(parts).at(np.argsort(np.concatenate(places)))
         return replace(answer, in_range=answer.in_range & carried)
+
+
+def _models(machines: Sequence[Prepared], owner: Index, speed: Array) -> tuple[NDArray[np.str_], Flags]:
+    """Liquid model at pairs of a machine and a speed, and whether the liquid rides with the drum there."""
+    present = np.unique(owner)
+    rows = [np.flatnonzero(owner == k) for k in present.tolist()]
+    pairs = zip(present.tolist(), rows, strict=True)
+    chosen = models_at([replace(machines[k], speed=speed[own]) for k, own in pairs])
+    order = np.argsort(np.concatenate(rows))
+    names, carried = (np.concatenate(values)[order] for values in zip(*chosen, strict=True))
+    return names, carried
 
 
 def _at_tops(tops: Sequence[Tops]) -> list[Resonances]:
@@ -239,38 +251,61 @@ def _beside(speed: Array, half_width: Array) -> Resonances:
 
 
 class _Other:
-    """A single rotor that is not planar."""
+    """Machines of one rotor that is not planar, each with its volumes."""
 
-    def __init__(self, machine: Prepared, answer: Response) -> None:
-        self.machine, self.position = machine, answer.position
-        fills = machine.scene.fills
-        self.dry = [_beside(*resonances(machine.system, []))]
-        # Wet all over, and with a wall so dry that the liquid is a dead mass.
-        whole = sum(fill.added_mass for fill in fills)
-        shares = (1.0, sum(fill.mass for fill in fills) / whole) if whole > 0.0 else (1.0,)
-        near = [resonances(machine.system, fills, share) for share in shares]
-        self.wet = [_beside(*(np.concatenate(values) for values in zip(*near, strict=True)))]
-        self._known, self._rounds = answer, 0
+    def __init__(self, machines: Sequence[Prepared], answers: Sequence[Response]) -> None:
+        self.machines, self.position = machines, answers[0].position
+        first = machines[0]
+        self.dry = [_beside(*resonances(first.system, []))] * len(machines)
+        self.wet = [
+            _with_folds(wet_resonances(machine), own) for machine, own in zip(machines, answers, strict=True)
+        ]
+        self._known = list(answers)
 
     def without_liquid(self, owner: Index, speed: Array) -> Complex:
         """See `Asked`."""
-        found = orbit(self.machine.system, unbalance_response(self.machine.system, speed), self.position)
+        system = self.machines[0].system
+        found = orbit(system, unbalance_response(system, speed), self.position)
         return np.stack((found.forward, found.backward), axis=1)
 
-    def with_liquid(self, owner: Index, speed: Array) -> Response:
+    def with_liquid(self, owner: Index, speed: Array, close: bool) -> Response:
         """See `Asked`."""
-        machine = replace(self.machine, speed=speed)
-        ((names, carried),) = models_at([machine])
-        models = [synchronous_model(name) for name in names.tolist()]
-        # The first speeds are apart; later ones close in on answers that are known.
-        near = self._neighbours(speed) if self._rounds >= _THOROUGH else None
-        gravity, fills = machine.axial_gravity, machine.scene.fills
-        answer = response(machine.rotor, fills, speed, gravity, models, self.position, near)
-        self._known, self._rounds = by_speed([self._known, answer]), self._rounds + 1
+        names, carried = _models(self.machines, owner, speed)
+        first, sets = self.machines[0], [machine.scene.fills for machine in self.machines]
+        models, near = [synchronous_model(name) for name in names.tolist()], self._near(owner, speed, close)
+        answer = fill_responses(
+            first.rotor, sets, owner, speed, first.axial_gravity, models, self.position, near
+        )
+        for k in np.unique(owner).tolist():
+            self._known[k] = by_speed([self._known[k], answer.at(np.flatnonzero(owner == k))])
         return replace(answer, in_range=answer.in_range & carried)
 
-    def _neighbours(self, speed: Array) -> Complex:
-        """Coordinates of all branches at the next speeds below and above, shape (m, k, n)."""
-        above = np.clip(np.searchsorted(self._known.speed, speed), 1, self._known.speed.size - 1)
-        found = self._known.branch_coordinates
-        return np.concatenate((found[above - 1], found[above]), axis=1)
+    def _near(self, owner: Index, speed: Array, close: bool) -> Near:
+        """All branches at the next speeds below and above."""
+        tables = [known.branch_coordinates for known in self._known]
+        most, n = max(table.shape[1] for table in tables), tables[0].shape[2]
+        found = np.full((speed.size, 2, most, n), complex(np.nan, np.nan))
+        places = np.empty((speed.size, 2))
+        for k in np.unique(owner).tolist():
+            known, rows = self._known[k].speed, np.flatnonzero(owner == k)
+            above = np.clip(np.searchsorted(known, speed[rows]), 1, known.size - 1)
+            sides = np.stack((above - 1, above), axis=1)
+            places[rows], found[rows, :, : tables[k].shape[1]] = known[sides], tables[k][sides]
+        return Near(places, found, enough=close)
+
+
+def wet_resonances(machine: Prepared) -> Resonances:
+    """Of a rotor that is not planar, wet all over, and with a wall so dry that the liquid is a dead mass."""
+    fills = machine.scene.fills
+    whole = sum(fill.added_mass for fill in fills)
+    shares = (1.0, sum(fill.mass for fill in fills) / whole) if whole > 0.0 else (1.0,)
+    near = [resonances(machine.system, fills, share) for share in shares]
+    speed, half_width = (np.concatenate(values) for values in zip(*near, strict=True))
+    return _beside(speed, half_width)
+
+
+def _with_folds(near: Resonances, answer: Response) -> Resonances:
+    """Resonances, and the speeds at which branches end."""
+    ends = answer.fold_speed[np.isfinite(answer.fold_speed)]
+    half_width = np.concatenate((near.half_width, np.full(ends.size, np.nan)))
+    return Resonances(np.concatenate((near.speed, ends)), half_width)

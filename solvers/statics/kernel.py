@@ -18,6 +18,7 @@ _jit: Any = njit(**wall.COMPILED)
 _inner_jit: Any = njit(**(wall.COMPILED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
 
 _ITERATIONS = 200
+_STEEP, _GUESSES = 3.0, 60  # above which a surface is nearly a cylinder, and steps to find that
 _ROUNDING = 8.0 * np.finfo(np.float64).eps
 _TINY = np.finfo(np.float64).tiny
 
@@ -156,6 +157,8 @@ def _wetted_height(
     guess = low if full < 2.0 else np.sqrt(low * high)
     if low < clear < high:
         guess = clear
+    if steep > _STEEP and clear < 4.0 * steep * eps + 0.5:
+        guess = min(max(_of_cylinder(eps, volume / (radius**2 * height), steep), low), high)
     zeta = wet = 0.0
     for _ in range(_ITERATIONS):
         zeta = guess
@@ -174,6 +177,33 @@ def _wetted_height(
         middle = np.sqrt(low * high) if high > 4.0 * low else 0.5 * (low + high)
         guess = step if low < step < high else middle
     return zeta, wet, False
+
+
+@_inner_jit
+def _of_cylinder(eps: float, area: float, steep: float) -> float:
+    """Wetted height of a surface so steep that it is a cylinder, with a dry wall on the near side.
+
+    Newton steps on the area between wall and cylinder, whose derivative with respect to the square of the
+    cylinder's radius is half the angle of its part inside the wall.
+    """
+    low, high = (1.0 - eps) ** 2, (1.0 + eps) ** 2
+    squared = 0.5 * (low + high)
+    for _ in range(_GUESSES):
+        # Half angles of the wall's and the cylinder's part beyond their common chord.
+        wall_cosine = min(max((squared - 1.0 - eps**2) / (2.0 * eps), -1.0), 1.0)
+        cosine = min(max((squared + eps**2 - 1.0) / (2.0 * eps * np.sqrt(squared)), -1.0), 1.0)
+        chord = np.sqrt(1.0 - wall_cosine**2)
+        beyond, angle = np.arccos(wall_cosine), np.arccos(cosine)
+        off = beyond - squared * angle + eps * chord - area
+        if off >= 0.0:
+            low = squared
+        else:
+            high = squared
+        step = squared + off / angle if angle > 0.0 else low
+        last, squared = squared, step if low < step < high else 0.5 * (low + high)
+        if abs(squared - last) <= 1e-13 * high:
+            break
+    return steep * ((1.0 + eps) ** 2 - squared) + 0.5
 
 
 @_inner_jit

@@ -60,33 +60,53 @@ class Liquid:
 
 @dataclass(frozen=True)
 class Balance:
-    """Equations [theory: rotor, eq. 29] of n coordinates and c chambers with liquid at s speeds.
+    """Equations [theory: rotor, eq. 29] of n coordinates and c chambers at s pairs of volumes and a speed.
 
     Parameters
     ----------
+    system : the dry rotor
     speed : Omega, rad/s, shape (s,)
+    owner : which set of volumes each pair has, rising, shape (s,)
     stiffness : dynamic stiffness with the liquid's answer to the backward part, shape (s, n, n)
     force : Omega^2 U, shape (s, n)
     plane : p = B^T (1, -i) of each chamber, shape (c, n)
-    fills : the chambers with liquid
+    fills : of each chamber those of all pairs, shape (s,); every one has liquid
+    backward_mass : with which each chamber resists the backward part, kg, shape (s, c)
+    added_mass : full mass of each chamber, kg, shape (s, c)
     limit : forward deflection up to which a chamber adds exactly its full mass, m, shape (s, c)
     model : of the liquid
     gravity : along the axis, m/s^2
     """
 
+    system: RotorSystem
     speed: Array
+    owner: Index
     stiffness: Complex
     force: Complex
     plane: Complex
-    fills: tuple[Fill, ...]
+    fills: tuple[Fills, ...]
+    backward_mass: Array
+    added_mass: Array
     limit: Array
     model: LiquidModel
     gravity: float
 
     @property
-    def added_mass(self) -> Array:
-        """Full mass of each chamber, kg, shape (c,)."""
-        return self.model.added_mass(Fills.of(self.fills))
+    def mass(self) -> Array:
+        """Mass of all the liquid, kg, shape (s,)."""
+        return np.asarray(sum((fills.mass for fills in self.fills), np.zeros(self.speed.size)))
+
+    def moved(self, which: Index, speed: Array) -> Balance:
+        """The same of some of its volumes at other speeds.
+
+        Parameters
+        ----------
+        which : of the pairs, shape (k,)
+        speed : Omega, rad/s, shape (k,)
+        """
+        chambers = tuple(fills.at(which) for fills in self.fills)
+        back, owner = self.backward_mass[which], self.owner[which]
+        return _balance(self.system, self.plane, chambers, back, owner, speed, self.gravity, self.model)
 
     def forward(self, answer: Complex) -> Complex:
         """Forward deflection at each chamber, m, shape (k, c), for coordinates of shape (k, n)."""
@@ -97,34 +117,33 @@ class Balance:
 
         Parameters
         ----------
-        which : of the speeds, shape (k,)
+        which : of the pairs, shape (k,)
         share : shape (k,) or a number
         """
-        full = self.added_mass
-        added = 0.5 * np.einsum("c,ci,cj->ij", full, self.plane, np.conj(self.plane))
-        size = (share * np.square(self.speed[which]))[:, None, None]
-        return solve_each(self.stiffness[which] - size * added, self.force[which])
+        size = (share * np.square(self.speed[which]))[:, None] * self.added_mass[which]
+        added = 0.5 * np.einsum("kc,ci,cj->kij", size, self.plane, np.conj(self.plane))
+        return solve_each(self.stiffness[which] - added, self.force[which])
 
     def liquid(self, which: Index, deflection: Array) -> Liquid:
         """Law of each chamber at forward deflections.
 
         Parameters
         ----------
-        which : of the speeds, shape (k,)
+        which : of the pairs, shape (k,)
         deflection : m, shape (k, c)
         """
         shape = deflection.shape
-        full = self.added_mass
-        unbalance, slope = full * deflection, np.broadcast_to(full, shape).copy()
+        slope = self.added_mass[which]
+        unbalance = slope * deflection
         flags = np.zeros(shape, dtype=bool), np.ones(shape, dtype=bool), np.ones(shape, dtype=bool)
         bent = ~(deflection <= self.limit[which])
-        for j, fill in enumerate(self.fills):
+        for j, fills in enumerate(self.fills):
             # The law costs most of the time, and up to the limit it is known.
             rows = np.flatnonzero(bent[:, j])
             if rows.size:
-                same, gravity = Fills.same(fill, rows.size), np.full(rows.size, self.gravity)
-                whirls = Whirls.synchronous(self.speed[which[rows]], deflection[rows, j], gravity)
-                law = self.model.answer(same, whirls)
+                own, gravity = which[rows], np.full(rows.size, self.gravity)
+                whirls = Whirls.synchronous(self.speed[own], deflection[rows, j], gravity)
+                law = self.model.answer(fills.at(own), whirls)
                 unbalance[rows, j], slope[rows, j] = law.real_unbalance(), law.slope
                 for flag, found in zip(flags, (law.dry_patch, law.in_range, law.converged), strict=True):
                     flag[rows, j] = found
@@ -132,34 +151,61 @@ class Balance:
 
 
 def harmonic_balance(
-    system: RotorSystem, fills: Sequence[Fill], speed: Array, gravity: float, model: LiquidModel
+    system: RotorSystem,
+    sets: Sequence[Sequence[Fill]],
+    owner: Index,
+    speed: Array,
+    gravity: float,
+    model: LiquidModel,
 ) -> Balance:
     """Terms of the harmonic balance [theory: rotor, eq. 28 and 29].
 
     Parameters
     ----------
     system : the dry rotor
-    fills : its chambers; those without liquid are left out
+    sets : its chambers, with other volumes in each set; those without liquid are left out, and have none in
+        any of the sets
+    owner : which set each pair has, rising, shape (s,)
     speed : Omega, rad/s, shape (s,), above 0
     gravity : along the axis, m/s^2
     model : of the liquid
     """
-    wet = tuple(fill for fill in fills if fill.volume > 0.0)
-    squared = np.square(speed)
-    plane = directions(system, wet)
+    wet = [[fill for fill in fills if fill.volume > 0.0] for fills in sets]
+    chambers = tuple(Fills.of(column).at(owner) for column in zip(*wet, strict=True))
+    back = np.array([[backward_mass(fill) for fill in fills] for fills in wet])[owner]
+    plane = directions(system, wet[0])
+    return _balance(system, plane, chambers, back, owner, speed, gravity, model)
+
+
+def _balance(
+    system: RotorSystem,
+    plane: Complex,
+    chambers: tuple[Fills, ...],
+    back: Array,
+    owner: Index,
+    speed: Array,
+    gravity: float,
+    model: LiquidModel,
+) -> Balance:
+    """Terms for the chambers and their backward masses of each pair, all of which have liquid."""
+    squared, along = np.square(speed), np.full(speed.size, gravity)
     stiffness = dynamic_stiffness(system, speed)
-    for fill, p in zip(wet, plane, strict=True):
-        back = 0.5 * backward_mass(fill) * np.outer(np.conj(p), p)
-        stiffness = stiffness - squared[:, None, None] * back
-    along = np.full(speed.size, gravity)
-    limits = [model.linear_limit(Fills.same(fill, speed.size), speed, along) for fill in wet]
+    for j, p in enumerate(plane):
+        held = 0.5 * squared * back[:, j]
+        stiffness = stiffness - held[:, None, None] * np.outer(np.conj(p), p)
+    nothing = np.zeros((speed.size, 0))
+    limits = [model.linear_limit(fills, speed, along)[:, None] for fills in chambers]
     return Balance(
+        system=system,
         speed=speed,
+        owner=owner,
         stiffness=stiffness,
         force=squared[:, None] * system.unbalance,
         plane=plane,
-        fills=wet,
-        limit=np.stack(limits, axis=1) if wet else np.zeros((speed.size, 0)),
+        fills=chambers,
+        backward_mass=back,
+        added_mass=np.hstack([nothing, *(model.added_mass(fills)[:, None] for fills in chambers)]),
+        limit=np.hstack([nothing, *limits]),
         model=model,
         gravity=gravity,
     )

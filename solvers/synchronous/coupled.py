@@ -6,6 +6,8 @@ Newton's method starts from several shares of the added mass and from the neighb
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from meshes.arrays import Array, Complex, Flags, Index
@@ -23,43 +25,73 @@ _ROUNDING = 1e-11  # of the largest term of the balance
 _SAME = 1e-6  # relative distance of two solutions that count as one
 
 
-def solutions(balance: Balance, near: Complex | None = None) -> tuple[Complex, Index, Flags]:
+_STEP = 0.5  # relative change up to which a solution at a close speed counts as the same one, moved
+_LEAST = 2.0**-12  # shortest step over the way that is followed
+
+
+@dataclass(frozen=True)
+class Near:
+    """Solutions at the next speeds below and above each of s speeds.
+
+    Parameters
+    ----------
+    speed : rad/s, shape (s, 2)
+    answer : coordinates, nan where there are fewer, shape (s, 2, k, n)
+    enough : no other solutions are looked for where these lead to one
+    """
+
+    speed: Array
+    answer: Complex
+    enough: bool = True
+
+    def at(self, which: Index) -> Near:
+        """Those of some speeds."""
+        return Near(self.speed[which], self.answer[which], self.enough)
+
+
+@dataclass(frozen=True)
+class Solutions:
+    """Solutions of the balance at s speeds.
+
+    Parameters
+    ----------
+    answer : coordinates, shape (k, n)
+    which : the speed each belongs to, shape (k,)
+    converged : a speed's solutions were found, shape (s,)
+    end : speed at which a solution that was followed from this one towards the next speed, or from there to
+        this one, ended in a fold; nan where none did, rad/s, shape (s,)
+    """
+
+    answer: Complex
+    which: Index
+    converged: Flags
+    end: Array
+
+
+def solutions(balance: Balance, near: Near | None = None) -> Solutions:
     """Solutions of the balance: all where the chambers sit in one plane, by Newton's method elsewhere.
 
     Parameters
     ----------
     balance : at s speeds, n coordinates
-    near : coordinates of the solutions at close speeds, from which Newton's method starts, nan where there
-        are none, shape (s, k, n)
-
-    Returns
-    -------
-    answer : coordinates, shape (k, n)
-    which : the speed each belongs to, shape (k,)
-    converged : a speed's solutions were found, shape (s,)
+    near : solutions at close speeds, from which others are followed where chambers sit in several planes
     """
-    if not balance.fills:
-        answer = solve_each(balance.stiffness, balance.force)
-        bounded = np.asarray(np.isfinite(answer).all(axis=1))
-        which = np.flatnonzero(bounded)
-        return answer[which], which, bounded
-    apart = np.abs(balance.plane - balance.plane[0])
-    alike = bool(np.all(apart <= 1e-12 * np.abs(balance.plane).max()))
-    return one_plane(balance) if alike else several_planes(balance, near)
+    if balance.fills:
+        apart = np.abs(balance.plane - balance.plane[0])
+        alike = bool(np.all(apart <= 1e-12 * np.abs(balance.plane).max()))
+        return one_plane(balance) if alike else several_planes(balance, near)
+    answer = solve_each(balance.stiffness, balance.force)
+    bounded = np.asarray(np.isfinite(answer).all(axis=1))
+    which = np.flatnonzero(bounded)
+    return Solutions(answer[which], which, bounded, np.full(bounded.shape, np.nan))
 
 
-def one_plane(balance: Balance) -> tuple[Complex, Index, Flags]:
+def one_plane(balance: Balance) -> Solutions:
     """Every solution where all chambers sit in one plane [theory: rotor, eq. 30].
 
     Parameters
     ----------
     balance : all its planes alike
-
-    Returns
-    -------
-    answer : coordinates, shape (k, n)
-    which : the speed each belongs to, shape (k,)
-    converged : all solutions of a speed were found, shape (s,)
     """
     p, squared = balance.plane[0], np.square(balance.speed)
     everyone = np.arange(balance.speed.size)
@@ -72,8 +104,7 @@ def one_plane(balance: Balance) -> tuple[Complex, Index, Flags]:
     support = np.ones_like(compliance)
     np.divide(1.0, compliance, out=support, where=moved)
     force = np.where(moved, np.abs(support * alone), 1.0)
-    mass = sum(fill.mass for fill in balance.fills)
-    full = float(balance.added_mass.sum())
+    mass, full = balance.mass, balance.added_mass.sum(axis=1)
     limit = np.where(moved, balance.limit.min(axis=1), np.inf)
     resistance = np.abs(support - squared * full)
     straight = over(force, resistance)
@@ -83,12 +114,12 @@ def one_plane(balance: Balance) -> tuple[Complex, Index, Flags]:
         moment = balance.liquid(k, np.repeat(deflection[:, None], len(balance.fills), 1)).unbalance.sum(
             axis=1
         )
-        return np.asarray(squared[k] * np.maximum(moment - mass * deflection, 0.0))
+        return np.asarray(squared[k] * np.maximum(moment - mass[k] * deflection, 0.0))
 
     elastic = support.real - squared * mass
     # The slope of the unbalance never exceeds a full chamber's mass; a little more holds the rounding.
     steepest = squared * (full * (1.0 + 1e-9) - mass)
-    dead = squared * sum(fill.mass * fill.chamber.radius for fill in balance.fills)
+    dead = squared * sum(fills.mass * fills.chamber.radius for fills in balance.fills)
     bent, owner, found, bounded = branches_beyond(
         pull, elastic, np.abs(support.imag), force, steepest, limit, dead, moved
     )
@@ -97,13 +128,16 @@ def one_plane(balance: Balance) -> tuple[Complex, Index, Flags]:
     size = np.concatenate((straight[linear], bent, np.abs(alone[still])))
     which = np.concatenate((linear, owner, still)).astype(np.intp)
     pulled = np.concatenate(
-        (squared[linear] * full * straight[linear], pull(bent, owner) + squared[owner] * mass * bent)
+        (
+            squared[linear] * full[linear] * straight[linear],
+            pull(bent, owner) + squared[owner] * mass[owner] * bent,
+        )
     )
     turn = _phase(support[which[: pulled.size]], alone[which[: pulled.size]], size[: pulled.size], pulled)
     answer = free[which]
     answer[: pulled.size] += unit[which[: pulled.size]] * (pulled * turn)[:, None]
     lost = np.isin(everyone, which, invert=True)
-    return answer, which, found & bounded & sound & ~lost
+    return Solutions(answer, which, found & bounded & sound & ~lost, np.full(sound.shape, np.nan))
 
 
 def _phase(support: Complex, alone: Complex, size: Array, pulled: Array) -> Complex:
@@ -111,38 +145,104 @@ def _phase(support: Complex, alone: Complex, size: Array, pulled: Array) -> Comp
     return np.asarray(np.exp(1j * (np.angle(support * alone) - np.angle(support * size - pulled))))
 
 
-def several_planes(balance: Balance, near: Complex | None = None) -> tuple[Complex, Index, Flags]:
+def several_planes(balance: Balance, near: Near | None = None) -> Solutions:
     """Solutions where chambers sit in several planes: Newton from many starts, then from speed to speed.
 
-    Parameters and returns as in `solutions` and `one_plane`; solutions far from every start may be missed.
+    Every solution is followed to the speeds beside its own. One that is far from every start and on a branch
+    that no other speed leads to may be missed; parameters as in `solutions`.
     """
     everyone = np.arange(balance.speed.size)
     straight = balance.linear(everyone)
     wet = np.asarray(np.isfinite(straight).all(axis=1))
     wet &= np.all(np.abs(balance.forward(np.where(wet[:, None], straight, 0.0))) <= balance.limit, axis=1)
-    answer, which = straight[wet], everyone[wet]
-    unknown, followed = everyone, 0
+    answer, which, end = straight[wet], everyone[wet], np.full(balance.speed.size, np.nan)
+    unknown, come = everyone, np.zeros(balance.speed.size, dtype=np.intp)
     if near is not None:
-        known = np.isfinite(near).all(axis=2)
-        answer, which = _added(balance, answer, which, near[known], np.nonzero(known)[0])
-        # What was found from a close speed is not looked for again.
-        unknown, followed = np.setdiff1d(everyone, which), which.size
+        row, side, k = np.nonzero(np.isfinite(near.answer).all(axis=3))
+        way = _followed(balance, near.answer[row, side, k], near.speed[row, side], row)
+        end[row[~way.arrived]] = way.speed[~way.arrived]
+        answer, which = _joined(balance, answer, which, way.answer[way.met], row[way.met])
+        come = np.bincount(which, minlength=come.size)
+        if near.enough:
+            unknown = np.setdiff1d(everyone, which)
     answer, which = _added(balance, answer, which, *_linear_starts(balance, unknown, _STARTS))
-    fresh = np.arange(followed, which.size)
-    # A fold is followed one speed at a time, in both directions.
-    for _ in range(balance.speed.size):
-        if fresh.size == 0:
-            break
-        begin = np.concatenate((answer[fresh], answer[fresh]))
-        owner = np.concatenate((which[fresh] - 1, which[fresh] + 1))
-        inside = (owner >= 0) & (owner < balance.speed.size)
-        before = which.size
-        answer, which = _added(balance, answer, which, begin[inside], owner[inside])
-        fresh = np.arange(before, which.size)
     lost = np.setdiff1d(everyone, which)
     if lost.size:
         answer, which = _added(balance, answer, which, *_linear_starts(balance, lost, _MORE_STARTS))
-    return answer, which, np.isin(everyone, which)
+    for above in (1, -1):
+        # Where all came from another speed, the way back leads to nothing else.
+        fresh = np.flatnonzero(np.bincount(which, minlength=come.size)[which] > come[which])
+        while fresh.size:
+            source, target = _beside(balance, which, fresh, above)
+            way = _followed(balance, answer[source], balance.speed[which[source]], target)
+            end[which[source[~way.arrived]]] = way.speed[~way.arrived]
+            come += np.bincount(target[way.arrived], minlength=come.size)
+            before = which.size
+            answer, which = _joined(balance, answer, which, way.answer[way.met], target[way.met])
+            fresh = np.arange(before, which.size)
+    return Solutions(answer, which, np.isin(everyone, which), end)
+
+
+def _beside(balance: Balance, which: Index, some: Index, above: int) -> tuple[Index, Index]:
+    """Some of the solutions with the speed above theirs (1) or below it (-1), of the same volumes."""
+    target = which[some] + above
+    inside = (target >= 0) & (target < balance.speed.size)
+    source, target = some[inside], target[inside]
+    same = balance.owner[target] == balance.owner[which[source]]
+    return source[same], target[same]
+
+
+@dataclass(frozen=True)
+class _Way:
+    """Solutions followed from other speeds.
+
+    Parameters
+    ----------
+    answer : coordinates at the speed where they were to go, shape (k, n)
+    met : there is a solution, be it that of another branch, shape (k,)
+    arrived : it is the one that was followed; else its branch ends on the way, shape (k,)
+    speed : up to which it was followed, rad/s, shape (k,)
+    """
+
+    answer: Complex
+    met: Flags
+    arrived: Flags
+    speed: Array
+
+
+def _followed(balance: Balance, begin: Complex, start: Array, target: Index) -> _Way:
+    """Solutions moved from other speeds to those of some pairs, by steps over which they change little.
+
+    Parameters
+    ----------
+    begin : shape (k, n)
+    start : their speeds, rad/s, shape (k,)
+    target : shape (k,)
+    """
+    x, here, goal = begin.copy(), start.copy(), balance.speed[target]
+    step = goal - here
+    least, arrived = _LEAST * np.abs(step), step == 0.0
+    found, met = begin.copy(), arrived.copy()
+    active = np.flatnonzero(~arrived)
+    while active.size:
+        last = np.abs(goal - here)[active] <= np.abs(step[active])
+        trial = np.where(last, goal[active], here[active] + step[active])
+        terms = balance.moved(target[active], trial)
+        y, sound = newton(terms, x[active], np.arange(active.size))
+        weight = _weight(terms)
+        change, size = (np.linalg.norm(weight * z, axis=1) for z in (y - x[active], y))
+        close = sound & (change <= _STEP * size)
+        x[active[close]], here[active[close]] = y[close], trial[close]
+        found[active[last & sound]], met[active[last & sound]] = y[last & sound], True
+        arrived[active] = close & last
+        step[active] *= np.where(close, 2.0, 0.25)
+        active = active[~arrived[active] & (np.abs(step[active]) >= least[active])]
+    return _Way(found, met, arrived, here)
+
+
+def _weight(balance: Balance) -> Array:
+    """By which coordinates count when solutions are compared, shape (s, n)."""
+    return np.sqrt(np.maximum(np.abs(np.diagonal(balance.stiffness, axis1=1, axis2=2)), 1e-300))
 
 
 def _linear_starts(balance: Balance, which: Index, shares: tuple[float, ...]) -> tuple[Complex, Index]:
@@ -163,14 +263,40 @@ def _added(
 ) -> tuple[Complex, Index]:
     """The solutions with those that Newton finds from other starts and that are not among them yet."""
     found, converged = newton(balance, begin, owner)
-    found, owner = found[converged], owner[converged]
-    weight = np.sqrt(np.maximum(np.abs(np.diagonal(balance.stiffness, axis1=1, axis2=2)), 1e-300))
-    for k in range(owner.size):
-        rivals = answer[which == owner[k]] - found[k]
-        size = np.linalg.norm(weight[owner[k]] * found[k])
-        if not np.any(np.linalg.norm(weight[owner[k]] * rivals, axis=1) <= _SAME * size):
-            answer, which = np.vstack((answer, found[k])), np.append(which, owner[k])
+    return _joined(balance, answer, which, found[converged], owner[converged])
+
+
+def _joined(
+    balance: Balance, answer: Complex, which: Index, found: Complex, owner: Index
+) -> tuple[Complex, Index]:
+    """The solutions with others that are not among them yet."""
+    weight = _weight(balance)
+    rivals, at = answer, which
+    while owner.size:
+        # Compared with all that their speeds have, then with the first of those that are new to them.
+        first, second = _meeting(owner, at)
+        scale = weight[owner[first]]
+        apart = np.linalg.norm(scale * (rivals[second] - found[first]), axis=1)
+        known = np.zeros(owner.size, dtype=bool)
+        known[first[apart <= _SAME * np.linalg.norm(scale * found[first], axis=1)]] = True
+        found, owner = found[~known], owner[~known]
+        at, new = np.unique(owner, return_index=True)
+        rivals = found[new]
+        answer, which = np.concatenate((answer, rivals)), np.concatenate((which, at))
+        rest = np.ones(owner.size, dtype=bool)
+        rest[new] = False
+        found, owner = found[rest], owner[rest]
     return answer, which
+
+
+def _meeting(owner: Index, other: Index) -> tuple[Index, Index]:
+    """All pairs of one of each that belong to the same speed."""
+    order = np.argsort(other, kind="stable")
+    start = np.searchsorted(other[order], owner)
+    count = np.searchsorted(other[order], owner, side="right") - start
+    first = np.repeat(np.arange(owner.size), count)
+    within = np.arange(first.size) - np.repeat(np.cumsum(count) - count, count)
+    return first, order[start[first] + within]
 
 
 def newton(balance: Balance, begin: Complex, which: Index) -> tuple[Complex, Flags]:

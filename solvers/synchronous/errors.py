@@ -318,19 +318,19 @@ def coupled_error(
     -------
     Of the linear law; by gravity, as `solvers.synchronous.errors.planar_gravity_error`, shape (s,)
     """
-    terms = harmonic_balance(system, fills, speed, gravity, LINEAR)
-    if not terms.fills:
+    wet = [fill for fill in fills if fill.volume > 0.0]
+    terms = harmonic_balance(system, [wet], np.zeros(speed.size, dtype=np.intp), speed, gravity, LINEAR)
+    if not wet:
         nothing = np.full(speed.shape, ROUNDING)
         exact = LinearError(nothing, nothing, np.ones(speed.shape, dtype=bool), np.zeros(speed.shape))
         return exact, np.zeros(speed.shape)
     full, own, radius, depth = np.array(
-        [(fill.added_mass, fill.mass, fill.chamber.radius, fill.depth) for fill in terms.fills]
+        [(fill.added_mass, fill.mass, fill.chamber.radius, fill.depth) for fill in wet]
     ).T
     place = np.concatenate((terms.plane, directions_at(system, [position])))
     answer, spread = _answer(terms, full, place)
     frozen, far = _answer(terms, own, place)
-    chambers, upright = len(terms.fills), np.full(speed.size, gravity)
-    each = [Fills.same(fill, speed.size) for fill in terms.fills]
+    chambers, upright, each = len(wet), np.full(speed.size, gravity), terms.fills
     surfaces = [upright_surfaces(same, speed, upright) for same in each]
     linear = np.abs(answer[0][:, :chambers])
     most = _largest_coupled(

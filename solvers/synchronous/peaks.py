@@ -28,6 +28,7 @@ _LOOKED = 6  # rounds in which a turn of the phase is followed whatever its heig
 _WORTH = 0.3  # of the largest amplitude, from which on it is followed to its end
 _CLOSE = 4.0 * np.finfo(float).eps  # relative distance of two speeds that are one
 _SHAPE = (-4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0)  # half widths from a resonance
+_SHARED = 0.5  # half widths up to which a resonance takes another one's speed for its own
 
 
 @dataclass(frozen=True)
@@ -98,7 +99,9 @@ def highest(speed: Array, amplitude: Array) -> Peak:
     return Peak(float(speed[k]), float(amplitude[k]))
 
 
-def seeds(centre: Array, half_width: Array, start: float, stop: float, known: Array) -> Array:
+def seeds(
+    centre: Array, half_width: Array, start: float, stop: float, known: Array, whole: bool = True
+) -> Array:
     """Speeds that show the shape of resonances, in a range of speeds.
 
     Parameters
@@ -106,19 +109,27 @@ def seeds(centre: Array, half_width: Array, start: float, stop: float, known: Ar
     centre, half_width : of each resonance, rad/s, shape (k,)
     start, stop : of the range, rad/s
     known : speeds at which there are samples already, rising, shape (n,)
+    whole : show all of the shape, as a figure needs it; else as much as `refine` needs to find it, where
+        resonances that overlap share their speeds
 
     Returns
     -------
     rising, shape (m,): the centres, and beside them as many as show a resonance that the samples are too
     coarse for
     """
-    found = [centre]
-    for place, width in zip(centre.tolist(), half_width.tolist(), strict=True):
+    found = list(centre) if whole else []
+    for k in np.argsort(half_width, kind="stable").tolist():  # nan, whose shape another one shows, last
+        place, width = float(centre[k]), float(half_width[k])
         near = np.abs(known - place) <= 2.0 * width
-        if 0.0 < width < 0.3 * place and np.count_nonzero(near) < len(_SHAPE):
-            found.append(place + width * np.array(_SHAPE))
-    every = np.unique(np.concatenate(found)) if centre.size else centre
-    return every[(every >= start) & (every <= stop)]
+        if not whole:
+            every = np.concatenate((known, found))
+            sides = (0.0, -1.0, 1.0) if 0.0 < width < 0.3 * place else (0.0,)
+            tried = [place + width * side if side else place for side in sides]
+            found += [x for x in tried if not np.any(np.abs(every - x) <= _SHARED * width)]
+        elif 0.0 < width < 0.3 * place and np.count_nonzero(near) < len(_SHAPE):
+            found += (place + width * np.array(_SHAPE)).tolist()
+    distinct = np.unique(found)
+    return distinct[(distinct >= start) & (distinct <= stop)]
 
 
 def refine(answer: Answer, samples: Sequence[Samples], bound: Sequence[float]) -> list[Samples]:

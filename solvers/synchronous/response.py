@@ -24,7 +24,7 @@ from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
 from solvers.rotor.system import Rotor, RotorSystem
 from solvers.rotor.vibration import critical_speeds, orbit, unbalance_response
 from solvers.synchronous.balance import Balance, Liquid, backward_mass, directions, harmonic_balance
-from solvers.synchronous.coupled import solutions
+from solvers.synchronous.coupled import Near, solutions
 from solvers.synchronous.models import LINEAR, STATICS
 from solvers.synchronous.pairs import Pairs, pair_machines
 from solvers.synchronous.planar import all_deflections, divide, is_stable, liquid_offset, with_phase
@@ -190,6 +190,8 @@ class Response:
     branch_backward : of all branches, m, shape (n, b)
     branch_coordinates : as coordinates, of all branches, nan where there are fewer, shape (n, b, m)
     coordinates : complex amplitudes of the branch reported, q = Re(coordinates e^{i Omega t}), shape (n, m)
+    fold_speed : speed at which a branch ends between this speed and the next one, as far as that was found on
+        the way, else nan, rad/s, shape (n,); of chambers in several planes only
     residual : what is left of the balance of forces over the largest of them, shape (n,)
     position : along the axis of the plane whose motion is reported, m
     """
@@ -211,6 +213,7 @@ class Response:
     branch_backward: Complex
     branch_coordinates: Complex
     coordinates: Complex
+    fold_speed: Array
     residual: Array
     position: float = 0.0
 
@@ -252,7 +255,7 @@ def response(
     gravity: float = 9.81,
     model: LiquidModel | Sequence[LiquidModel] = STATICS,
     position: float | None = None,
-    near: Complex | None = None,
+    near: Near | None = None,
 ) -> Response:
     """Steady motion of a rotor with liquid in its chambers under its unbalance [theory: rotor, eq. 2, 28-30].
 
@@ -265,8 +268,8 @@ def response(
     model : of the liquid, for the forward part; one for all speeds or one for each
     position : of the plane that is reported, m; that of the first chamber if None, 0 without chambers. All
         planes of a Jeffcott rotor move alike
-    near : coordinates of answers at speeds close to each of these, nan where there are none, from which a
-        search with chambers in several planes starts, shape (n, k, m)
+    near : answers at the next speeds below and above, from which a search with chambers in several planes
+        starts
 
     Returns
     -------
@@ -284,26 +287,61 @@ def response(
     [0.75   0.2048]
     """
     spin = np.array(speed, dtype=float).reshape(-1)
-    place = position if position is not None else (fills[0].chamber.plane if fills else 0.0)
+    if isinstance(model, Sequence) and len(model) != spin.size:
+        raise InputError("model", len(model), f"one for each of {spin.size} speeds")
+    alone = np.zeros(spin.size, dtype=np.intp)
+    return fill_responses(rotor, [fills], alone, spin, gravity, model, position, near)
+
+
+def fill_responses(
+    rotor: Rotor,
+    sets: Sequence[Sequence[Fill]],
+    owner: Index,
+    speed: Array,
+    gravity: float = 9.81,
+    model: LiquidModel | Sequence[LiquidModel] = STATICS,
+    position: float | None = None,
+    near: Near | None = None,
+) -> Response:
+    """`response` of one rotor with other volumes in its chambers: at n pairs of volumes and a speed.
+
+    Parameters
+    ----------
+    rotor : the dry rotor, of any kind
+    sets : its chambers, the same in each set
+    owner : which set each pair has, shape (n,)
+    speed : spin speeds Omega, rad/s, shape (n,), > 0
+    gravity, position, near : as for `response`; all near answers of a pair belong to its set
+    model : of the liquid; one for all pairs or one for each
+
+    Returns
+    -------
+    Response over the pairs, each the same whichever others are asked for beside those of its set
+
+    Raises
+    ------
+    InputError : a speed that is not positive and finite
+    """
+    _require_speeds(speed)
+    place = position if position is not None else (sets[0][0].chamber.plane if sets and sets[0] else 0.0)
 
     def solve(law: LiquidModel, at: Index) -> Response:
         if isinstance(rotor, Jeffcott):
-            owner = np.zeros(at.size, dtype=np.intp)
-            return machine_responses([(rotor, fills)], owner, spin[at], np.array([gravity]), law)
-        _require_speeds(spin)
-        system = rotor.system()
-        terms = harmonic_balance(system, fills, spin[at], gravity, law)
-        return _of_balance(system, terms, place, None if near is None else near[at])
+            machines = [(rotor, fills) for fills in sets]
+            return machine_responses(machines, owner[at], speed[at], np.full(len(sets), gravity), law)
+        present, own = np.unique(owner[at], return_inverse=True)
+        filled = [sets[k] for k in present.tolist()]
+        terms = harmonic_balance(rotor.system(), filled, own.reshape(-1), speed[at], gravity, law)
+        return _of_balance(rotor.system(), terms, place, None if near is None else near.at(at))
 
-    if not isinstance(model, Sequence):
-        return solve(model, np.arange(spin.size))
-    if len(model) != spin.size:
-        raise InputError("model", len(model), f"one for each of {spin.size} speeds")
-    parts = []
-    for law in dict.fromkeys(model):
-        at = np.array([k for k, other in enumerate(model) if other == law], dtype=np.intp)
-        parts.append((at, solve(law, at)))
-    return parts[0][1] if len(parts) == 1 else _merged(parts)
+    # The balance has an equation for each chamber with liquid.
+    wet = [tuple(fill.volume > 0.0 for fill in fills) for fills in sets]
+    laws = model if isinstance(model, Sequence) else [model] * speed.size
+    kinds: dict[tuple[LiquidModel, tuple[bool, ...]], list[int]] = {}
+    for k in np.argsort(owner, kind="stable").tolist():
+        kinds.setdefault((laws[k], wet[owner[k]]), []).append(k)
+    parts = [(np.array(at, dtype=np.intp), solve(law, np.array(at))) for (law, _), at in kinds.items()]
+    return _merged(parts)
 
 
 def machine_responses(
@@ -367,6 +405,7 @@ def machine_responses(
             np.where(bounded[:, None], np.where(bounded, phased, 0.0)[:, None] * circle, endless), _NONE
         ),
         coordinates=np.where(found, still[:, None] * circle, endless),
+        fold_speed=np.full(speed.shape, np.nan),
         residual=_left(pairs, still, state.unbalance[chosen]),
     )
 
@@ -386,9 +425,10 @@ def _left(pairs: Pairs, deflection: Complex, unbalance: Array) -> Array:
     return np.asarray(np.divide(left, scale, out=np.zeros(scale.shape), where=scale > 0.0))
 
 
-def _of_balance(system: RotorSystem, terms: Balance, position: float, near: Complex | None) -> Response:
+def _of_balance(system: RotorSystem, terms: Balance, position: float, near: Near | None) -> Response:
     """The solutions of a harmonic balance as tables over speed and branch, and the largest of each speed."""
-    answer, which, converged = solutions(terms, near)
+    found = solutions(terms, near)
+    answer, which = found.answer, found.which
     lost = np.setdiff1d(np.arange(terms.speed.size), which)
     nothing = np.full((lost.size, answer.shape[1]), complex(np.inf, 0.0))
     answer, which = np.concatenate((answer, nothing)), np.concatenate((which, lost))
@@ -413,7 +453,7 @@ def _of_balance(system: RotorSystem, terms: Balance, position: float, near: Comp
         stable=bounded,
         model=np.full(terms.speed.shape, terms.model.name),
         in_range=np.asarray(law.in_range.all(axis=1)),
-        converged=converged & bounded & law.converged.all(axis=1),
+        converged=found.converged & bounded & law.converged.all(axis=1),
         branch_deflection=table.spread(motion.forward, _NONE),
         branch_stable=table.spread(np.isfinite(size), False),
         backward=motion.backward[chosen],
@@ -421,6 +461,7 @@ def _of_balance(system: RotorSystem, terms: Balance, position: float, near: Comp
         branch_backward=table.spread(motion.backward, _NONE),
         branch_coordinates=table.spread(answer, _NONE),
         coordinates=answer[chosen],
+        fold_speed=found.end,
         residual=_residual(terms, q, forward, law),
         position=position,
     )
@@ -431,8 +472,8 @@ def _centre_of_mass(terms: Balance, forward: Complex, law: Liquid) -> tuple[Arra
     size = np.abs(forward)
     unit = np.divide(forward, size, out=np.zeros_like(forward), where=size > 0.0)
     moment = np.sum(law.unbalance * unit, axis=1)
-    mass = sum(fill.mass for fill in terms.fills)
-    return np.abs(moment) / mass if mass > 0.0 else np.zeros(len(forward)), np.angle(moment)
+    offset = np.divide(np.abs(moment), terms.mass, out=np.zeros(len(forward)), where=terms.mass > 0.0)
+    return offset, np.angle(moment)
 
 
 def _residual(terms: Balance, q: Complex, forward: Complex, law: Liquid) -> Array:

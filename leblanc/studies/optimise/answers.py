@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, dry_rotor, jeffcott
 from leblanc.studies.choose import axial_gravity, models_at, prepare
 from leblanc.studies.liquid import synchronous_model
-from leblanc.studies.peaks import responses_between
+from leblanc.studies.peaks import responses_between, wet_resonances
 from meshes.arrays import Array, Flags
 from solvers.rotor.vibration import orbit
 from solvers.statics.hydrostatics import equilibrium
-from solvers.synchronous.peaks import highest
+from solvers.synchronous.peaks import highest, seeds
 from solvers.synchronous.resonances import planar_tops
-from solvers.synchronous.response import by_speed, machine_responses, response
+from solvers.synchronous.response import by_speed, fill_responses, machine_responses
 
 AT_ONCE = 4000  # pairs; more at once would only take memory
 FEW = 24  # speeds from which the peak of a rotor that tilts is refined
@@ -78,7 +78,7 @@ class FilledMachine:
         for first in range(0, len(new), AT_ONCE):
             part = new[first : first + AT_ONCE]
             which = np.array([k for _, k in part], dtype=np.intp)
-            answer = self._planar if self.planar else self._one_by_one
+            answer = self._planar if self.planar else self._others
             amplitude, dry, moved = answer(rows[which], speed[which])
             amplitude = np.where(np.isnan(amplitude), math.inf, amplitude)
             reach = self._reach(rows[which], speed[which], moved)
@@ -123,18 +123,24 @@ class FilledMachine:
         return found
 
     def _other_peaks(self, volumes: Array, start: float, stop: float) -> Array:
-        """The same of rotors that tilt, each refined from a few speeds."""
-        speeds, found = Speeds.model_construct(start=start, stop=stop, count=FEW if stop > start else 1), []
+        """The same of rotors that tilt, each refined from a few speeds and those of its resonances."""
+        few = np.linspace(start, stop, FEW) if stop > start else np.array([start])
+        machines = []
         for row in volumes:
-            machine = prepare(with_volumes(self.scene, row).altered(speeds=speeds))
-            ((names, _),) = models_at([machine])
-            models = [synchronous_model(name) for name in names.tolist()]
-            fills = machine.scene.fills
-            answer = response(machine.rotor, fills, machine.speed, machine.axial_gravity, models)
-            (between,) = responses_between([machine], [answer], dry=False)
-            every = by_speed([answer, between])
-            found.append(highest(every.speed, every.amplitude).amplitude)
-        return np.array(found)
+            machine = prepare(with_volumes(self.scene, row))
+            near = wet_resonances(machine)
+            own = seeds(near.speed, near.half_width, start, stop, few, whole=False)
+            machines.append(replace(machine, speed=np.union1d(few, own)))
+        names = np.concatenate([names for names, _ in models_at(machines)])
+        models = [synchronous_model(name) for name in names.tolist()]
+        owner = np.repeat(np.arange(len(machines)), [machine.speed.size for machine in machines])
+        speed = np.concatenate([machine.speed for machine in machines])
+        sets = [machine.scene.fills for machine in machines]
+        every = fill_responses(self._rotor, sets, owner, speed, machines[0].axial_gravity, models)
+        answers = [every.at(np.flatnonzero(owner == k)) for k in range(len(machines))]
+        between = responses_between(machines, answers, dry=False)
+        found = [by_speed(pair) for pair in zip(answers, between, strict=True)]
+        return np.array([highest(own.speed, own.amplitude).amplitude for own in found])
 
     def _reach(self, volumes: Array, speed: Array, moved: Array) -> Array:
         """See `FillAnswers`, at deflections of the chambers, m, shape (m, c)."""
@@ -161,28 +167,15 @@ class FilledMachine:
         amplitude = np.abs(found.deflection)
         return amplitude, found.dry_patch, np.repeat(amplitude[:, None], volumes.shape[1], axis=1)
 
-    def _one_by_one(self, volumes: Array, speed: Array) -> tuple[Array, Flags, Array]:
-        """The same of rotors that tilt; with chambers in one plane all speeds of the same volumes at once."""
-        amplitude, dry = np.empty(speed.size), np.empty(speed.size, dtype=bool)
-        moved = np.empty(volumes.shape)
-        different, owner = np.unique(volumes, axis=0, return_inverse=True)
-        alone = len({fill.chamber.plane for fill in self.scene.fills}) > 1
-        for k, row in enumerate(different):
-            rows = np.flatnonzero(owner.reshape(-1) == k)
-            # Chambers in several planes: a speed's answer must not depend on which others are asked for.
-            for part in rows[:, None] if alone else (rows,):
-                amplitude[part], dry[part], moved[part] = self._answer(row, speed[part])
-        return amplitude, dry, moved
-
-    def _answer(self, volumes: Array, speed: Array) -> tuple[Array, Flags, Array]:
-        """The same of one set of volumes at several speeds, as `run` reports them."""
-        fills, gravity = with_volumes(self.scene, volumes).fills, axial_gravity(self.scene)
-        model = synchronous_model(self.scene.model.liquid)
-        found = response(self._rotor, fills, speed, gravity, model)
-        amplitude = np.abs(found.deflection) + np.abs(found.backward)
+    def _others(self, volumes: Array, speed: Array) -> tuple[Array, Flags, Array]:
+        """The same of rotors that tilt, as `run` reports them."""
+        sets = [with_volumes(self.scene, row).fills for row in volumes]
+        model, gravity = synchronous_model(self.scene.model.liquid), axial_gravity(self.scene)
+        # A pair's answer must not depend on which others are asked for: each is a set of its own.
+        found = fill_responses(self._rotor, sets, np.arange(speed.size), speed, gravity, model)
         system = self._rotor.system()
-        moved = [np.abs(orbit(system, found.coordinates, fill.chamber.plane).forward) for fill in fills]
-        return np.where(np.isnan(amplitude), math.inf, amplitude), found.dry_patch, np.stack(moved, axis=1)
+        moved = [np.abs(orbit(system, found.coordinates, fill.chamber.plane).forward) for fill in sets[0]]
+        return found.amplitude, found.dry_patch, np.stack(moved, axis=1)
 
 
 def with_volumes(scene: Scene, volumes: Array) -> Scene:

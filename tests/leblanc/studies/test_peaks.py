@@ -117,6 +117,14 @@ def test_random_machines(seed: int) -> None:
     assert_peaks(seed, 2001)
 
 
+@kills("solvers.synchronous.coupled:several_planes", "for above in (1, -1)", "for above in ()")
+@pytest.mark.parametrize("seed", [8, 12])
+def test_a_tongue_between_the_speeds(seed: int) -> None:
+    """The upper branch of a sharp resonance, which most speeds do not see, is followed to where it ends."""
+    peaks = [float(both(random_machine(seed).replace({"speeds.count": n})).amplitude.max()) for n in (30, 97)]
+    assert peaks[0] == pytest.approx(peaks[1], rel=1e-9)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6, 20))
 def test_random_machines_at_many_speeds(seed: int) -> None:

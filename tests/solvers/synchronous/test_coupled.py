@@ -13,17 +13,24 @@ from fluid.fill import Fill
 from fluid.liquid import Liquid
 from fluid.waves import offset_ratio
 from leblanc.studies.liquid import synchronous_model
+from meshes.arrays import Array
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.rotor.system import RotorSystem
+from solvers.rotor.system import Rotor, RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.vibration import critical_speeds, orbit, unbalance_response
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.balance import backward_mass, harmonic_balance
 from solvers.synchronous.coupled import one_plane, several_planes
 from solvers.synchronous.models import STATICS
-from solvers.synchronous.response import Response, critical_speed, response, wet_critical_speeds
+from solvers.synchronous.response import (
+    Response,
+    critical_speed,
+    fill_responses,
+    response,
+    wet_critical_speeds,
+)
 from tests.mutants import kills
 from tests.oracles.rotors import tub, two_plane
 from tests.solvers.synchronous.test_planar import WATER, fills, folded, rig
@@ -44,7 +51,7 @@ def at_chambers(system: RotorSystem, found: Response, wet: list[Fill]) -> tuple[
     "elastic = support.real - squared * mass",
     "elastic = support.real",
 )
-@kills("solvers.synchronous.coupled:one_plane", "moment - mass * deflection", "moment")
+@kills("solvers.synchronous.coupled:one_plane", "moment - mass[k] * deflection", "moment")
 @kills(
     "solvers.synchronous.coupled:_phase",
     "np.angle(support * size - pulled)",
@@ -88,11 +95,15 @@ def with_discs(system: RotorSystem, discs: list[tuple[float, float]]) -> RotorSy
 @kills("solvers.synchronous.balance:Balance.linear", "0.5 * np.einsum(", "1.0 * np.einsum(")
 @kills("solvers.synchronous.balance:directions_at", "np.array([1.0, -1j])", "np.array([1.0, 1j])")
 @kills(
-    "solvers.synchronous.balance:harmonic_balance",
+    "solvers.synchronous.balance:_balance",
     "force=squared[:, None] * system",
     "force=speed[:, None] * system",
 )
-@kills("solvers.synchronous.response:_centre_of_mass", "np.abs(moment) / mass", "np.abs(moment) * mass")
+@kills(
+    "solvers.synchronous.response:_centre_of_mass",
+    "np.abs(moment), terms.mass",
+    "np.abs(moment), 1.0 / terms.mass",
+)
 def test_added_mass() -> None:
     """Walls wet all over in isotropic supports: the mass of full chambers, at each plane its own."""
     system, speed = two_plane().system(), np.linspace(10.0, 300.0, 60)
@@ -153,14 +164,14 @@ def layered(system: RotorSystem, fill: Fill, speed: float) -> np.ndarray:
 
 
 @kills(
-    "solvers.synchronous.balance:harmonic_balance",
-    "squared[:, None, None] * back",
-    "-squared[:, None, None] * back",
+    "solvers.synchronous.balance:_balance",
+    "stiffness = stiffness - held",
+    "stiffness = stiffness + held",
 )
 @kills(
-    "solvers.synchronous.balance:harmonic_balance",
-    "backward_mass(fill) * np.outer(np.conj(p), p)",
-    "backward_mass(fill) * np.outer(p, np.conj(p))",
+    "solvers.synchronous.balance:_balance",
+    "np.outer(np.conj(p), p)",
+    "np.outer(p, np.conj(p))",
 )
 def test_linear_layer() -> None:
     """A deep layer on an anisotropic rotor: its equations of motion as they stand, no parts taken apart."""
@@ -222,6 +233,45 @@ def test_independent_ends() -> None:
     np.testing.assert_array_equal(np.isfinite(found.branch_deflection).sum(axis=1), several)
 
 
+def assert_each_as_if_alone(rotor: Rotor, sets: list[list[Fill]], speed: Array) -> None:
+    """The answer of every set of volumes among the others is that of its own."""
+    owner = np.tile(np.arange(len(sets)), speed.size)  # in any order
+    together = fill_responses(rotor, sets, owner, np.repeat(speed, len(sets)), 0.0)
+    for k, own_fills in enumerate(sets):
+        own, alone = together.at(np.flatnonzero(owner == k)), response(rotor, own_fills, speed, 0.0)
+        branches = alone.branch_amplitude.shape[1]
+        assert np.isnan(own.branch_amplitude[:, branches:]).all()
+        # Newton's last step leaves rounding of the largest terms.
+        np.testing.assert_allclose(own.branch_amplitude[:, :branches], alone.branch_amplitude, rtol=1e-9)
+        np.testing.assert_allclose(own.coordinates, alone.coordinates, rtol=1e-8, atol=1e-15)
+        np.testing.assert_allclose(own.liquid_offset, alone.liquid_offset, rtol=1e-8)
+        np.testing.assert_array_equal(own.dry_patch, alone.dry_patch)
+        np.testing.assert_array_equal(own.converged, alone.converged)
+
+
+def test_volumes_in_several_planes_at_once() -> None:
+    """Sets of volumes with folds, some without liquid in a chamber."""
+    first, second = rig(0.001, 1e-4), Jeffcott(4.0, 3.6e4, 40.0, 3e-3)
+    volumes = [(1.2e-5, 1e-5), (0.0, 2e-5), (4e-5, 1e-6), (0.0, 0.0), (1.5e-5, 1e-5), (3e-5, 0.0)]
+    sets = [[at_plane(z, v) for z, v in zip((-0.4, 0.4), row, strict=True)] for row in volumes]
+    assert_each_as_if_alone(dumbbell(((-1.0, first), (1.0, second))), sets, np.linspace(94.0, 102.0, 17))
+
+
+@kills(
+    "solvers.synchronous.balance:harmonic_balance",
+    "for fills in wet])[owner]",
+    "for fills in wet])[0 * owner]",
+)
+@kills("solvers.synchronous.coupled:one_plane", "mass[owner] * bent", "mass[0] * bent")
+def test_volumes_in_one_plane_at_once() -> None:
+    """The same of a rotor that moves differently in two directions."""
+    sets = [
+        [Fill(Chamber(0.2, 0.1, 0.0, 0.12), Liquid("heavy", 3000.0, 1e-6), volume)]
+        for volume in (1e-5, 2e-4, 3e-5, 0.011)
+    ]
+    assert_each_as_if_alone(tub(), sets, np.linspace(4.0, 60.0, 30))
+
+
 def test_newton_finds_what_the_search_finds() -> None:
     """Both ways of solving on one plane of a lopsided rotor: the same branches, the same numbers of them."""
     rotor = TwoPlane(
@@ -232,13 +282,14 @@ def test_newton_finds_what_the_search_finds() -> None:
         (PlaneUnbalance(0.05, 2e-4, 0.7),),
     )
     speed = np.linspace(94.0, 102.0, 33)
-    terms = harmonic_balance(rotor.system(), [at_plane(0.03, 1.2e-5)], speed, 0.0, STATICS)
+    alone = np.zeros(speed.size, dtype=np.intp)
+    terms = harmonic_balance(rotor.system(), [[at_plane(0.03, 1.2e-5)]], alone, speed, 0.0, STATICS)
     tables = []
-    for answer, which, converged in (one_plane(terms), several_planes(terms)):
-        assert converged.all()
-        size = np.abs(terms.forward(answer)[:, 0])
-        order = np.lexsort((size, which))
-        tables.append((which[order], size[order]))
+    for found in (one_plane(terms), several_planes(terms)):
+        assert found.converged.all()
+        size = np.abs(terms.forward(found.answer)[:, 0])
+        order = np.lexsort((size, found.which))
+        tables.append((found.which[order], size[order]))
     np.testing.assert_array_equal(tables[0][0], tables[1][0])
     np.testing.assert_allclose(tables[0][1], tables[1][1], rtol=1e-7)
     assert np.bincount(tables[0][0]).max() == 3

@@ -170,9 +170,10 @@ def rational(centre: Array, ratio: Array, size: Array):  # type: ignore[no-untyp
         max_size=3,
     ),
     st.integers(4, 300),
+    st.booleans(),
 )
-@settings(max_examples=60, deadline=None)
-def test_refined_peaks(modes: list[tuple[float, float, float, bool]], count: int) -> None:
+@settings(max_examples=100, deadline=None)
+def test_refined_peaks(modes: list[tuple[float, float, float, bool]], count: int, whole: bool) -> None:
     """No amplitude at 20 001 speeds is above the peak, from however few samples."""
     centre, ratio, size = (
         np.array(x) for x in zip(*[(c, 10.0**r, 10.0**s) for c, r, s, _ in modes], strict=True)
@@ -182,7 +183,7 @@ def test_refined_peaks(modes: list[tuple[float, float, float, bool]], count: int
     found = []
     for number in (count, 2 * count + 1):
         speed = np.linspace(1.0, 20.0, number)
-        speed = np.union1d(speed, seeds(centre, ratio * centre, 1.0, 20.0, speed))
+        speed = np.union1d(speed, seeds(centre, ratio * centre, 1.0, 20.0, speed, whole))
         (samples,) = refine(answer, [Samples(speed, answer(NOBODY, speed))], [math.inf])
         found.append(highest(samples.speed, samples.amplitude).amplitude)
     dense = np.abs(answer(NOBODY, np.linspace(1.0, 20.0, 20001))).max()
@@ -201,6 +202,17 @@ def test_narrow_resonance_without_seeds() -> None:
     assert top.amplitude == pytest.approx(near.max(), rel=1e-5)
 
 
+def test_resonances_share_their_speeds() -> None:
+    """Twenty resonances that overlap want hardly more speeds than one; narrow ones keep their own."""
+    centre, width = 10.0 + 0.01 * np.arange(20), np.full(20, 0.5)
+    known = np.linspace(1.0, 20.0, 5)
+    together = seeds(centre, width, 1.0, 20.0, known, whole=False)
+    assert together.size <= 5 and np.diff(together).min() > 0.25
+    assert seeds(centre, np.full(20, 1e-4), 1.0, 20.0, known, whole=False).size == 3 * 20
+    # Where an odd one shows the shape, its place counts alone.
+    assert seeds(np.array([7.0]), np.array([np.nan]), 1.0, 20.0, known, whole=False).tolist() == [7.0]
+
+
 @pytest.mark.parametrize("count", [3, 10, 60])
 def test_jump(count: int) -> None:
     """An amplitude that rises to a fold and falls beyond it: the peak is at the fold."""
@@ -216,12 +228,13 @@ def test_jump(count: int) -> None:
     assert top.speed == pytest.approx(7.123456, rel=1e-11) and top.amplitude == pytest.approx(2.0, rel=1e-5)
 
 
-def test_two_peaks_close_together() -> None:
+@pytest.mark.parametrize("whole", [True, False])
+def test_two_peaks_close_together(whole: bool) -> None:
     """Two resonances a hundredth of the samples' distance apart, the higher one second."""
     centre, ratio = np.array([10.03, 10.033]), np.array([5e-5, 5e-5])
     answer, _ = rational(centre, ratio, np.array([0.5, 1.0]))
     speed = np.linspace(1.0, 20.0, 60)
-    speed = np.union1d(speed, seeds(centre, ratio * centre, 1.0, 20.0, speed))
+    speed = np.union1d(speed, seeds(centre, ratio * centre, 1.0, 20.0, speed, whole))
     (samples,) = refine(answer, [Samples(speed, answer(NOBODY, speed))], [math.inf])
     near = 10.033 + np.linspace(-2e-3, 2e-3, 200001)
     assert highest(samples.speed, samples.amplitude).amplitude >= np.abs(answer(NOBODY, near)).max() * (
