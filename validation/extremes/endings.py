@@ -18,6 +18,7 @@ import tempfile
 import time
 from collections import Counter
 from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -223,14 +224,46 @@ def by_signal(command: str, name: str, trials: int, seed: int) -> tuple[Counter[
     return counts, found
 
 
-def on_a_full_disk(command: str, trials: int, seed: int) -> tuple[Counter[str], list[str]]:
-    """Ends of a command that may not write files beyond a random length, and what was not as promised."""
+@contextmanager
+def small_disk(folder: Path, size: int) -> Iterator[None]:
+    """A folder that is a disk in memory of so many bytes; takes the rights to mount one.
+
+    Raises
+    ------
+    OSError : it cannot be mounted
+    """
+    done = subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", str(folder)], capture_output=True, text=True
+    )
+    if done.returncode:
+        raise OSError(done.stderr.strip())
+    try:
+        yield
+    finally:
+        subprocess.run(["umount", str(folder)], check=True)
+
+
+def on_a_full_disk(
+    command: str, trials: int, seed: int, mounted: bool = False
+) -> tuple[Counter[str], list[str]]:
+    """Ends of a command where the disk is full, and what was not as promised.
+
+    Parameters
+    ----------
+    command : of `COMMANDS`
+    trials : how many
+    seed : of how much may be written
+    mounted : onto a small disk in memory; else no file may be longer than that
+    """
     rng, counts, found = np.random.default_rng(seed), Counter[str](), list[str]()
     for _ in range(trials):
         most = int(10.0 ** rng.uniform(2.0, 5.5))
-        with tempfile.TemporaryDirectory() as scratch:
+        with tempfile.TemporaryDirectory() as scratch, ExitStack() as stack:
             folder = Path(scratch)
-            process = start(command, folder, most)
+            if mounted:
+                (folder / "out").mkdir()
+                stack.enter_context(small_disk(folder / "out", most))
+            process = start(command, folder, None if mounted else most)
             _, said = process.communicate(timeout=_DEADLINE)
             wrong = broken(folder)
             if process.returncode not in (0, 2):
@@ -241,7 +274,8 @@ def on_a_full_disk(command: str, trials: int, seed: int) -> tuple[Counter[str], 
                 wrong.append(f"left {parts(folder)}")
         counts["done" if process.returncode == 0 else "ended"] += 1
         counts["at fault"] += bool(wrong)
-        found += [f"{command}, files up to {most} bytes: {fault}" for fault in wrong]
+        where = "a disk of" if mounted else "files up to"
+        found += [f"{command}, {where} {most} bytes: {fault}" for fault in wrong]
     return counts, found
 
 
@@ -251,6 +285,7 @@ def main() -> int:
     parser.add_argument("--trials", type=int, default=5, help="of each command and each way to end")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--commands", nargs="*", default=list(COMMANDS), choices=list(COMMANDS))
+    parser.add_argument("--mount", action="store_true", help="full disks are mounted in memory, as root")
     chosen = parser.parse_args()
     every: list[str] = []
     for command in chosen.commands:
@@ -258,7 +293,7 @@ def main() -> int:
             counts, found = by_signal(command, name, chosen.trials, chosen.seed)
             print(f"{command:18}{name:12}{json.dumps(counts)}", flush=True)
             every += found
-        counts, found = on_a_full_disk(command, chosen.trials, chosen.seed)
+        counts, found = on_a_full_disk(command, chosen.trials, chosen.seed, chosen.mount)
         print(f"{command:18}{'full disk':12}{json.dumps(counts)}", flush=True)
         every += found
     print("\n".join(every))
