@@ -120,13 +120,16 @@ def no_liquid(by_mass: bool, forbidden: tuple[str, ...]) -> Note:
     return Note(OptimumCode.NO_LIQUID, {"by_mass": by_mass, "forbidden": list(forbidden)}, text)
 
 
-def interrupted(evaluations: int) -> Note:
-    """The search was interrupted after so many sets of volumes."""
+def interrupted(evaluations: int, searched: bool = False) -> Note:
+    """The search was interrupted after so many sets of volumes, or what comes after it was."""
+    if searched:
+        text = "INTERRUPTED after the search was done: the best volumes stand, the front is missing."
+        return Note(OptimumCode.INTERRUPTED, {"evaluations": evaluations, "searched": True}, text)
     text = (
         f"INTERRUPTED after {evaluations} sets of volumes: these are the best of them, not of all that would "
         "have been tried."
     )
-    return Note(OptimumCode.INTERRUPTED, {"evaluations": evaluations}, text)
+    return Note(OptimumCode.INTERRUPTED, {"evaluations": evaluations, "searched": False}, text)
 
 
 def emulated(answer: EmulatedAnswer) -> Note:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from leblanc.results.base import texts
-from leblanc.results.optimum import ConditionTable, OptimumResult
+from leblanc.results.optimum import ConditionTable, OptimumCode, OptimumResult
 from leblanc.text.numbers import number
 from leblanc.text.run import amplitude_place, quality_words
 from leblanc.units import LENGTH, MASS, ML, UNBALANCE, VOLUME, celsius, in_rpm, unit_for, with_unit
@@ -104,7 +104,8 @@ def _answer(result: OptimumResult) -> list[str]:
     """Volumes, value, what it is without liquid."""
     lines = [f"Objective: {result.objective}, the {result.meaning}"]
     if result.interrupted:
-        lines.append("INTERRUPTED: the best of what was tried until then.")
+        said = [note.data["searched"] for note in result.notes if note.code is OptimumCode.INTERRUPTED]
+        lines.append(f"INTERRUPTED: {'no front' if any(said) else 'the best of what was tried until then'}.")
     if not result.feasible:
         lines.append(f"NOT FEASIBLE: {nearest(result)}.")
     for k, (chamber, volume) in enumerate(zip(result.chambers, result.volume.tolist(), strict=True)):

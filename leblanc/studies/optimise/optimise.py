@@ -7,6 +7,7 @@ met by the way.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -125,7 +126,8 @@ def optimise_scene(
         quick = replace(
             problem, evaluate=replace(problem.evaluate, vibration=emulator, estimated=True), costly=False
         )
-    chosen = stopped[0] if stopped else best_volumes(scene, quick, low, high, progress)
+    told = _first_part(progress) if front else progress
+    chosen = stopped[0] if stopped else best_volumes(scene, quick, low, high, told)
     if quick is not exact or stopped:
         chosen = evaluated_again(exact, chosen)
     result = _result(scene, task, exact, machine, chosen)
@@ -133,8 +135,7 @@ def optimise_scene(
         answer = emulator.answer(chosen.point)
         result = replace(result, emulator=answer, notes=(optimum.emulated(answer), *result.notes))
     if front and not result.interrupted:
-        edge, sweep = front_around(scene, problem, chosen, result.vibration, growth_speeds(scene, task))
-        result = replace(result, front=edge, sweep=sweep)
+        result = _with_front(result, scene, problem, chosen, growth_speeds(scene, task), progress)
     if isinstance(exact.evaluate.vibration, Robust):
         speeds, around = growth_speeds(scene, task), unbalances(scene, task)
         table = condition_table(
@@ -147,6 +148,23 @@ def optimise_scene(
         )
         result = replace(result, robust=table)
     return _with_response(result, scene, machine) if response else result
+
+
+def _with_front(
+    result: OptimumResult,
+    scene: Scene,
+    problem: Problem,
+    found: Found,
+    speeds: Array,
+    progress: Progress | None,
+) -> OptimumResult:
+    """The best volumes with the front around them; without it where it is interrupted from the keyboard."""
+    try:
+        edge, sweep = front_around(scene, problem, found, result.vibration, speeds, progress)
+    except KeyboardInterrupt:
+        note = optimum.interrupted(result.evaluations, searched=True)
+        return replace(result, interrupted=True, notes=(note, *result.notes))
+    return replace(result, front=edge, sweep=sweep)
 
 
 def _result(
@@ -372,12 +390,26 @@ def front_of(volume: Array, vibration: Array, mass: Array, margin: Array) -> Par
     return ParetoFront(volume[kept], vibration[kept], mass[kept], margin[kept])
 
 
+_SEARCH = 0.7  # share of the work that a search is where the front follows, as it comes on average
+_AT_ONCE = 8  # volumes of the front at once, where an answer costs much
+
+
+def _first_part(progress: Progress | None) -> Progress | None:
+    """The search is the first part of the work."""
+    return None if progress is None else lambda count, share: progress(count, _SEARCH * share)
+
+
 _SWEEP, _SPARING = 40, 12  # volumes of the dedicated sweep; where an answer costs much
 _MOST_IN_FRONT = 60  # of the points evaluated by the way
 
 
 def front_around(
-    scene: Scene, problem: Problem, found: Found, vibration: float, speeds: Array
+    scene: Scene,
+    problem: Problem,
+    found: Found,
+    vibration: float,
+    speeds: Array,
+    progress: Progress | None = None,
 ) -> tuple[ParetoFront, ParetoFront]:
     """What must be given up for what.
 
@@ -387,6 +419,7 @@ def front_around(
     found : by the search
     vibration : of the best volumes, m
     speeds : at which small whirls are looked at, rad/s
+    progress : as of the search, of which this is the rest
 
     Returns
     -------
@@ -403,9 +436,22 @@ def front_around(
     exact = np.flatnonzero((known["sure"] == 1.0) & np.isfinite(known["vibration"]))
     by_the_way = exact[_thin(known["vibration"][exact], known["mass"][exact])]
     volume = np.concatenate((swept, found.points[by_the_way]))
-    size = np.concatenate((evaluate.vibration.exact(swept), known["vibration"][by_the_way]))
+    total, done = swept.shape[0] + volume.shape[0], 0
+
+    def each(value: Callable[[Array], Array], rows: Array) -> Array:
+        nonlocal done
+        values, few = [], _AT_ONCE if problem.costly else rows.shape[0]
+        for first in range(0, rows.shape[0], few):
+            values.append(value(rows[first : first + few]))
+            done += values[-1].size
+            if progress is not None:
+                progress(found.points.shape[0], _SEARCH + (1.0 - _SEARCH) * done / total)
+        return np.concatenate(values)
+
+    size = np.concatenate((each(evaluate.vibration.exact, swept), known["vibration"][by_the_way]))
     size[np.all(volume == found.point, axis=1)] = vibration
-    margin, mass = -growth(scene, volume, speeds), volume @ evaluate.density
+    margin = -each(lambda rows: growth(scene, rows, speeds), volume)
+    mass = volume @ evaluate.density
     part = slice(0, swept.shape[0])
     whole = ParetoFront(volume[part], size[part], mass[part], margin[part])
     return front_of(volume, size, mass, margin), whole

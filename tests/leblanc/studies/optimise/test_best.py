@@ -232,13 +232,30 @@ def test_an_interrupt_keeps_the_best_so_far(monkeypatch: pytest.MonkeyPatch) -> 
         optimise_scene(scene)
 
 
-def test_progress_says_what_is_done() -> None:
+def test_an_interrupt_after_the_search_keeps_the_answer() -> None:
+    """The front is missing then, nothing else."""
+    scene = load_scene(EXAMPLES / "horizontal_rig.toml")
+
+    def stop(_: int, share: float) -> None:
+        if share > 0.8:
+            raise KeyboardInterrupt
+
+    best, full = optimise_scene(scene, progress=stop), optimise_scene(scene)
+    assert best.interrupted and best.front is None and full.front is not None
+    assert best.value == full.value and best.volume.tolist() == full.volume.tolist()
+    (note,) = [note for note in best.notes if note.code is OptimumCode.INTERRUPTED]
+    assert "the front is missing" in note.text
+
+
+@pytest.mark.parametrize("front", [False, True])
+def test_progress_says_what_is_done(front: bool) -> None:
     told: list[tuple[int, float]] = []
     best = optimise_scene(
         load_scene(EXAMPLES / "horizontal_rig.toml"),
-        front=False,
+        front=front,
         progress=lambda count, share: told.append((count, share)),
     )
+    assert (told[-1][1] > 0.99) == front
     counts, shares = np.array(told).T
     assert np.all(np.diff(counts) >= 0.0) and np.all(np.diff(shares) >= 0.0)
     assert counts[-1] >= best.evaluations and 0.0 < shares[-1] <= 1.0
