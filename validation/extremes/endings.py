@@ -88,6 +88,8 @@ def start(command: str, folder: Path, most: int | None = None) -> subprocess.Pop
     (folder / "study.toml").write_text(_STUDY, encoding="utf-8")
 
     def limit() -> None:
+        # A shell has what runs in the background ignore interrupts, and children inherit that.
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
         if most is not None:
             resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
 
