@@ -6,7 +6,7 @@ import json
 import math
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import fields, replace
 from pathlib import Path
 
@@ -337,7 +337,15 @@ class Unlucky:
         signal.raise_signal(signal.SIGINT)
 
 
-@pytest.mark.usefixtures("quick")
+@pytest.fixture
+def heard() -> Iterator[None]:
+    """Interrupts are heard even where the tests run in the background of a shell, which ignores them."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("quick", "heard")
 def test_an_interrupt_that_python_drops_ends_the_sweep(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
