@@ -34,6 +34,7 @@ def circles(w: NDArray[np.complex128], branches: NDArray[np.complex128]) -> dict
         "branch_backward": 0.0 * branches,
         "branch_coordinates": np.stack((branches, -1j * branches), axis=2),
         "coordinates": np.stack((w, -1j * w), axis=1),
+        "fold_speed": np.full(w.shape, np.nan),
         "residual": np.zeros(w.shape),
     }
 
