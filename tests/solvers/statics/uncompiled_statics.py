@@ -7,8 +7,10 @@ alone, in a process of its own in which numba compiles nothing.
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from meshes.chamber import Chamber
+from solvers.statics import kernel
 from solvers.statics.hydrostatics import equilibrium
 from tests.mutants import kills
 from tests.solvers.statics.test_hydrostatics import GRAVITY, check_state
@@ -52,3 +54,22 @@ def test_slope_and_moment_of_an_annulus() -> None:
     # Central difference: rounding 1e-15/1e-5, truncation 1e-10 times a curvature of order one to ten.
     np.testing.assert_allclose((moment[2] - moment[0]) / (2 * step), slope[1], rtol=1e-6)
     np.testing.assert_allclose(around.first_moment(), moment, rtol=1e-13)
+
+
+@kills("solvers.statics.kernel:_of_cylinder", "+ eps * chord - area", "- eps * chord - area")
+@kills("solvers.statics.kernel:_of_cylinder", "squared + eps**2 - 1.0", "squared - eps**2 - 1.0")
+def test_a_cylinder_beside_a_dry_wall_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Areas of two circles say where it is; the volume under the surface is asked for once more at most."""
+    asked, whole = 0, kernel._volume_and_plan
+
+    def counted(*state: float) -> tuple[float, float]:
+        nonlocal asked
+        asked += 1
+        return whole(*state)
+
+    monkeypatch.setattr(kernel, "_volume_and_plan", counted)
+    chamber = Chamber(0.2, 0.05)
+    for fill, e in ((0.01, 0.01), (0.1, 0.05), (0.5, 0.15), (0.9, 0.19), (1e-4, 2e-3)):
+        asked = 0
+        assert equilibrium(chamber, fill * chamber.capacity, e, 30.0, 0.0).converged
+        assert asked <= 2
