@@ -92,6 +92,8 @@ def refused(arguments: Sequence[str], target: Path, capsys: Capture) -> None:
 
 @pytest.mark.parametrize("name", FOLDERS)
 def test_folder(name: str, tmp_path: Path, capsys: Capture) -> None:
+    if name == "notebooks":  # which says first that it lacks its extra
+        pytest.importorskip("jupytext")
     (tmp_path / "file").touch()
     for target in (tmp_path / "file" / "below", tmp_path / ("long" * 70)):
         refused(FOLDERS[name], target, capsys)
