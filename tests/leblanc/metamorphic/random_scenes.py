@@ -194,10 +194,15 @@ def _floors(answer: dict[str, Any]) -> dict[str, float]:
 
 
 def _noise(answer: dict[str, Any]) -> tuple[str, ...]:
-    """Bands of speed are not compared where all that grows there grows by what rounding makes of a root."""
-    growth, speed = (numbers(answer.get(key, [])).astype(float) for key in ("growth", "whirl_speed"))
-    grows = np.nanmax(np.append(growth, 0.0)) > NOISE * np.nanmax(np.abs(np.append(speed, 0.0)))
-    return () if grows else ("whirl_bands", "edges", "scene_edges")
+    """What is not compared: bands of growth that rounding makes, the direction of a whirl that it makes."""
+    growth, whirl, spin = (
+        np.append(numbers(answer.get(key, [])).astype(float), 0.0)
+        for key in ("growth", "whirl_speed", "speed")
+    )
+    grows = np.nanmax(growth) > NOISE * np.nanmax(np.abs(whirl))
+    found = () if grows else ("whirl_bands", "edges", "scene_edges")
+    turns = np.nanmax(np.abs(whirl)) > ROOTS * np.nanmax(spin)
+    return found if turns else (*found, "whirl_speed")
 
 
 def _allowed(seed: int, command: str, table: Table, answer: dict[str, Any]) -> dict[str, float]:
