@@ -165,11 +165,6 @@ class Fills:
         )
 
     @classmethod
-    def same(cls, fill: Fill, count: int) -> Fills:
-        """One fill so many times."""
-        return cls.of([fill]).at(np.zeros(count, dtype=np.intp))
-
-    @classmethod
     def joined(cls, parts: Sequence[Fills]) -> Fills:
         """Some arrays one behind the other."""
         walls = [part.chamber for part in parts]

@@ -128,7 +128,7 @@ def test_the_estimated_error_of_the_linear_law_is_a_bound() -> None:
     for gravity in (0.0, 9.81):
         size = FILL.depth * np.linspace(0.05, 6.0, 41)
         asked = Whirls.synchronous(np.full(41, 15.0), size, np.full(41, gravity))
-        line, exact = (model.answer(Fills.same(FILL, 41), asked) for model in (LINEAR, STATICS))
+        line, exact = (model.answer(Fills.of([FILL] * 41), asked) for model in (LINEAR, STATICS))
         true = np.abs(exact.unbalance.real / line.unbalance.real - 1.0)
         assert np.all(line.error + 1e-12 >= true) and true.max() > 0.01
         large = true > 0.01

@@ -52,7 +52,7 @@ def test_compartments() -> None:
 
 def test_the_answer_at_rest_is_that_of_the_elements() -> None:
     """Force, slope and error of a small whirl are those of the added mass found, at any spin."""
-    model, fills = SmallWaves(16), Fills.same(ring(0.9), 2)
+    model, fills = SmallWaves(16), Fills.of([ring(0.9)] * 2)
     spin = np.array([30.0, 80.0])
     found = model.answer(fills, Whirls.synchronous(spin, np.full(2, 1e-4), np.zeros(2)))
     added = model.added_mass(fills)

@@ -252,7 +252,7 @@ def test_a_section_is_dry_first_where_it_is_thinnest() -> None:
     assert fill.depth == pytest.approx(0.97 * WALL - fill.surface_radius, rel=1e-4)
     e = fill.depth * np.array([0.99, 1.01])
     whirls = Whirls.synchronous(np.full(2, 40.0), e, np.zeros(2))
-    answer = SmallWaves().answer(Fills.same(fill, 2), whirls)
+    answer = SmallWaves().answer(Fills.of([fill] * 2), whirls)
     assert answer.in_range.tolist() == [True, False]
     assert answer.dry_patch.tolist() == [False, True]
 
