@@ -192,10 +192,11 @@ def liquid_shape(
 
 def _draw_curve(axes: Axes, result: RunupResult, frames: RunupFrames) -> Show:
     """Amplitude over speed and a dot that moves along it."""
-    axes.plot(result.speed * RPM, result.amplitude * MM, color="0.6", linewidth=0.9, label="whole run-up")
+    _, speed, amplitude = result.whole_curve()
+    axes.plot(speed * RPM, amplitude * MM, color="0.6", linewidth=0.9, label="whole run-up")
     (past,) = axes.plot([], [], color=SURFACE, linewidth=1.3, label="so far")
     (dot,) = axes.plot([], [], "o", color=AXIS, markersize=6, zorder=5)
-    axes.set_ylim(0.0, 1.1 * float(max(result.amplitude.max(), frames.amplitude.max())) * MM or 1.0)
+    axes.set_ylim(0.0, 1.1 * float(amplitude.max()) * MM or 1.0)
     axes.set_xlabel("Speed (rpm)")
     axes.set_ylabel("Amplitude (mm)", labelpad=2.0)
     axes.xaxis.set_major_formatter(number)

@@ -108,16 +108,14 @@ _LOOKS: tuple[dict[str, Any], ...] = (
 
 def _ways(result: RunupResult) -> list[tuple[str, Array, Array]]:
     """Name, speed in rpm and amplitude in mm on the way up and back, then both without liquid."""
-    turn = result.turning
     up = "run-up" if result.turns_back else "run-up and hold"
-    liquid = result.layer_mass.sum() > 0.0
-    runs = [(result.speed, result.amplitude, "" if liquid else ", without liquid")]
-    runs += [(result.speed_dry, result.amplitude_dry, ", without liquid")] if liquid else []
-    found = [
-        (f"{name}{what}", speed[part] * RPM, amplitude[part] * MM)
-        for speed, amplitude, what in runs
-        for name, part in ((up, slice(0, turn + 1)), ("run-down", slice(turn, None)))
-    ]
+    bare = ", without liquid"
+    runs = [(False, ""), (True, bare)] if result.layer_mass.sum() > 0.0 else [(False, bare)]
+    found = []
+    for dry, what in runs:
+        for name, back in ((up, False), ("run-down", True)):
+            _, speed, amplitude = result.curve(back, dry)
+            found.append((f"{name}{what}", speed * RPM, amplitude * MM))
     return found + [("", np.empty(0), np.empty(0))] * (len(_LOOKS) - len(found))
 
 
@@ -128,8 +126,7 @@ def largest_drawn(result: RunupResult) -> float:
     ----------
     result : the run-up
     """
-    dry = result.amplitude_dry
-    return max(float(result.amplitude.max()), float(dry[~np.isnan(dry)].max(initial=0.0)))
+    return max(float(result.whole_curve(dry)[2].max(initial=0.0)) for dry in (False, True))
 
 
 def _shade(axes: Axes, result: RunupResult, limits: tuple[float, float]) -> None:
@@ -266,11 +263,17 @@ def _draw_speed(axes: Axes, result: RunupResult) -> None:
 
 def _draw_amplitude(axes: Axes, result: RunupResult) -> None:
     dry = result.layer_mass.sum() == 0.0
-    axes.plot(result.time, result.amplitude * MM, color=DRY if dry else UP, linewidth=1.2)
-    if not dry and not np.isnan(result.amplitude_dry).all():
-        axes.plot(result.time, result.amplitude_dry * MM, **_BARE)
+    axes.plot(*_over_time(result, False), color=DRY if dry else UP, linewidth=1.2)
+    if not dry and result.history_dry is not None:
+        axes.plot(*_over_time(result, True), **_BARE)
     axes.set_ylim(0.0, 1.12 * largest_drawn(result) * MM or 1.0)
     axes.set_ylabel(_label(result))
+
+
+def _over_time(result: RunupResult, dry: bool) -> Line:
+    """Time and amplitude, mm."""
+    time, _, amplitude = result.whole_curve(dry)
+    return time, amplitude * MM
 
 
 _BARE: dict[str, Any] = {

@@ -19,7 +19,7 @@ from leblanc.results.response import peak
 from leblanc.results.runup import RunupResult
 from leblanc.text.numbers import MOST_RANGES, number
 from leblanc.text.runup import answer, describe_model, largest_dry
-from leblanc.text.runup import moments as samples
+from leblanc.text.runup import moments as main_moments
 from leblanc.units import LENGTH, MASS, MINUS, RPM, rpm_bands, rpm_range, unit_for, with_unit
 
 if TYPE_CHECKING:
@@ -66,8 +66,7 @@ def times(time: NDArray[np.float64], mask: NDArray[np.bool_]) -> str:
 def moments(result: RunupResult) -> Table:
     """Largest amplitude on the way up and down, that of the steady response, and the end."""
     found = [
-        (label, float(result.amplitude[k]), float(result.speed[k]), number(float(result.time[k])))
-        for label, k in samples(result)
+        (label, moment.amplitude, moment.speed, number(moment.time)) for label, moment in main_moments(result)
     ]
     bare = result.peak_dry
     if largest_dry(result):

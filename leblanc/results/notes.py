@@ -336,8 +336,8 @@ def energy_left(closure: float) -> Note | None:
 
 def largest_amplitude(history: RunupHistory, steady: Response | None) -> Note:
     """The largest amplitude beside that of the steady response, where there is one."""
-    k = int(np.argmax(history.amplitude))
-    size, speed = float(history.amplitude[k]), float(history.speed[k])
+    k = int(np.argmax(history.largest))
+    size, speed = float(history.largest[k]), float(history.largest_speed[k])
     data = {"amplitude": size, "speed": speed}
     text = f"Largest amplitude {with_unit(size, LENGTH)} at {in_rpm(speed)}"
     highest = None if steady is None else peak(steady.deflection)

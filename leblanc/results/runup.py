@@ -42,6 +42,22 @@ class Capture(NamedTuple):
 
 
 @dataclass(frozen=True)
+class Moment:
+    """An amplitude of a run-up and where it was.
+
+    Parameters
+    ----------
+    amplitude : m
+    speed : of the spin, rad/s
+    time : s
+    """
+
+    amplitude: float
+    speed: float
+    time: float
+
+
+@dataclass(frozen=True)
 class RunupFrames:
     """The layers at regular times, for a film; f frames, l chambers, c cells, all in the drum frame.
 
@@ -272,38 +288,79 @@ class RunupResult(Result):
     @property
     def peak(self) -> dict[str, float]:
         """Amplitude, speed and time of the largest amplitude on the way up."""
-        return self._moment(self.peak_index())
+        return asdict(self.crest())
 
     @property
     def peak_back(self) -> dict[str, float]:
         """The same on the way back."""
-        return self._moment(self.peak_index(back=True))
+        return asdict(self.crest(back=True))
 
     @property
     def peak_dry(self) -> dict[str, float]:
         """The largest amplitude on the way up without liquid; nan if that was not run."""
-        amplitude = self.amplitude_dry[: self.turning + 1]
-        if np.isnan(amplitude).all():
-            return dict.fromkeys(("amplitude", "speed", "time"), math.nan)
-        k = int(np.nanargmax(amplitude))
-        return {
-            "amplitude": float(amplitude[k]),
-            "speed": float(self.speed_dry[k]),
-            "time": float(self.time[k]),
-        }
+        if self.history_dry is None:
+            return asdict(Moment(math.nan, math.nan, math.nan))
+        return asdict(_crest(self.history_dry, self._way(False)))
 
     @property
     def end(self) -> dict[str, float]:
         """Amplitude, speed, time and angles at the end."""
         last = self.time.size - 1
         angles = ("phase", "liquid_offset", "liquid_angle")
-        return self._moment(last) | {name: float(getattr(self, name)[last]) for name in angles}
+        return asdict(self.moment(last)) | {name: float(getattr(self, name)[last]) for name in angles}
 
-    def peak_index(self, back: bool = False) -> int:
-        """Index of the largest amplitude on the way up, or on the way back."""
+    def crest(self, back: bool = False) -> Moment:
+        """Largest amplitude of all steps on the way up, or on the way back, kept or not."""
+        return _crest(self.history, self._way(back))
+
+    def curve(self, back: bool = False, dry: bool = False) -> tuple[Array, Array, Array]:
+        """Time, speed and amplitude of the samples on the way up or back, with the largest among them.
+
+        Parameters
+        ----------
+        back : on the way back
+        dry : without liquid; empty where that was not run
+
+        Returns
+        -------
+        s, rad/s and m, each of shape (p,), in order of time
+        """
+        history, part = self.history_dry if dry else self.history, self._way(back)
+        if history is None or (back and not self.turns_back) or not history.time[part].size:
+            return np.empty(0), np.empty(0), np.empty(0)
+        crest = _crest(history, part)
+        # The way back is drawn from where it turns.
+        shown = slice(max(part.start - 1, 0), part.stop)
+        time, speed, amplitude = (getattr(history, name)[shown] for name in ("time", "speed", "amplitude"))
+        if crest.time in time:
+            return time, speed, amplitude
+        place = int(np.searchsorted(time, crest.time))
+        return (
+            np.insert(time, place, crest.time),
+            np.insert(speed, place, crest.speed),
+            np.insert(amplitude, place, crest.amplitude),
+        )
+
+    def whole_curve(self, dry: bool = False) -> tuple[Array, Array, Array]:
+        """The same on both ways, one after the other."""
+        up, down = self.curve(False, dry), self.curve(True, dry)
+        # They share the sample at which the run turns.
+        time, speed, amplitude = (np.concatenate((a, b[1:])) for a, b in zip(up, down, strict=True))
+        return time, speed, amplitude
+
+    def _way(self, back: bool) -> slice:
+        """Samples of the way up, or of the way back."""
         if back and self.turns_back:
-            return self.turning + 1 + int(np.argmax(self.amplitude[self.turning + 1 :]))
-        return int(np.argmax(self.amplitude[: self.turning + 1]))
+            return slice(self.turning + 1, self.time.size)
+        return slice(0, self.turning + 1)
+
+    def moment(self, index: int) -> Moment:
+        """Amplitude, speed and time of one sample."""
+        return Moment(*(float(getattr(self, name)[index]) for name in ("amplitude", "speed", "time")))
+
+    def in_range_at(self, time: float) -> bool:
+        """The layer is a fair picture of the liquid at a time, s: at the next sample."""
+        return bool(self.in_range[min(int(np.searchsorted(self.time, time)), self.time.size - 1)])
 
     def to_json(self) -> dict[str, Any]:
         """What `runup` prints for scripts, SI and radians; of chambers a list in each list over time."""
@@ -326,10 +383,6 @@ class RunupResult(Result):
             known = getattr(self.history_dry, name)[: found.size]
             found[: known.size] = known
         return found
-
-    def _moment(self, index: int) -> dict[str, float]:
-        """Amplitude, speed and time of one sample."""
-        return {name: float(getattr(self, name)[index]) for name in ("amplitude", "speed", "time")}
 
     def _energy(self) -> dict[str, float]:
         """Terms of the balance, J, what it leaves, and that over the work."""
@@ -365,6 +418,13 @@ class RunupResult(Result):
             "converged": "yes" if self.converged else one_line(f"no: {self.reason}"),
         }
         return attributes(self, "runup", own, self.notes)
+
+
+def _crest(history: RunupHistory, part: slice) -> Moment:
+    """Largest amplitude of the steps that lead to some of the samples."""
+    amplitude, speed, time = history.largest[part], history.largest_speed[part], history.largest_time[part]
+    k = int(np.argmax(amplitude))
+    return Moment(float(amplitude[k]), float(speed[k]), float(time[k]))
 
 
 def _columns(result: RunupResult) -> dict[str, Any]:

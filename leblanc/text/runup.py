@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from leblanc.results.response import peak
-from leblanc.results.runup import RunupResult
+from leblanc.results.runup import Moment, RunupResult
 from leblanc.units import LENGTH, TIME, in_rpm, with_unit
 
 
@@ -24,12 +24,12 @@ def describe_model(model: str, cells: int, dispersion: bool) -> str:
     return f"annular long waves in time, {cells} cells, {shallow}"
 
 
-def moments(result: RunupResult) -> list[tuple[str, int]]:
-    """Label and index of the main samples: the largest amplitudes and the end."""
-    found = [("Largest on the way up" if result.turns_back else "Largest amplitude", result.peak_index())]
+def moments(result: RunupResult) -> list[tuple[str, Moment]]:
+    """The main moments with their labels: the largest amplitudes and the end."""
+    found = [("Largest on the way up" if result.turns_back else "Largest amplitude", result.crest())]
     if result.turns_back:
-        found.append(("Largest on the way down", result.peak_index(back=True)))
-    return [*found, ("At the end", result.time.size - 1)]
+        found.append(("Largest on the way down", result.crest(back=True)))
+    return [*found, ("At the end", result.moment(-1))]
 
 
 def answer(result: RunupResult) -> str:
@@ -39,7 +39,7 @@ def answer(result: RunupResult) -> str:
     ----------
     result : the run-up
     """
-    first, *rest = [index for _, index in moments(result)]
+    first, *rest = [moment for _, moment in moments(result)]
     dry = largest_dry(result)
     steady, highest = "", None if result.steady is None else peak(result.steady.deflection)
     if result.steady is not None and highest is not None:
@@ -49,15 +49,19 @@ def answer(result: RunupResult) -> str:
     later = zip(["on the way down", "at the end"][-len(rest) :], rest, strict=True)
     return (
         f"The largest amplitude{place} is {_amplitude(result, first)}{dry}{steady}; "
-        + ", ".join(f"{when} it is {_amplitude(result, index)}" for when, index in later)
+        + ", ".join(f"{when} it is {_amplitude(result, moment)}" for when, moment in later)
         + "."
     )
 
 
-def _amplitude(result: RunupResult, index: int) -> str:
-    """Amplitude of one sample and its speed; whether it can be believed."""
-    size, speed = with_unit(float(result.amplitude[index]), LENGTH), in_rpm(float(result.speed[index]))
-    return f"{size} at {speed}{'' if result.in_range[index] else ' (out of range)'}"
+def _amplitude(result: RunupResult, moment: Moment) -> str:
+    """Amplitude of one moment and its speed; whether it can be believed."""
+    doubt = "" if result.in_range_at(moment.time) else " (out of range)"
+    return f"{_size_and_speed(moment)}{doubt}"
+
+
+def _size_and_speed(moment: Moment) -> str:
+    return f"{with_unit(moment.amplitude, LENGTH)} at {in_rpm(moment.speed)}"
 
 
 def answer_rows(result: RunupResult) -> list[tuple[str, str]]:
@@ -68,8 +72,8 @@ def answer_rows(result: RunupResult) -> list[tuple[str, str]]:
     result : the run-up
     """
     rows = [
-        (label, f"{_amplitude(result, k)}, after {with_unit(float(result.time[k]), TIME)}")
-        for label, k in moments(result)
+        (label, f"{_amplitude(result, moment)}, after {with_unit(moment.time, TIME)}")
+        for label, moment in moments(result)
     ]
     if largest_dry(result):
         peak = result.peak_dry
@@ -80,9 +84,8 @@ def answer_rows(result: RunupResult) -> list[tuple[str, str]]:
 
 def largest(result: RunupResult) -> str:
     """The largest amplitude on the way up and where it was."""
-    k = result.peak_index()
     where = f" {result.plane}" if result.plane else ""
-    return f"{with_unit(float(result.amplitude[k]), LENGTH)} at {in_rpm(float(result.speed[k]))}{where}"
+    return f"{_size_and_speed(result.crest())}{where}"
 
 
 def largest_dry(result: RunupResult) -> str:

@@ -123,11 +123,12 @@ def runup_film(view: RunupView) -> Film:
         parts=view.parts,
     )
     result = view.result
-    most, top = with_unit(float(result.amplitude.max()), LENGTH), in_rpm(float(result.speed.max()))
-    curves = ((f"amplitude, up to {most}", result.amplitude), (f"speed, up to {top}", result.speed))
+    time, speed, amplitude = result.whole_curve()
+    most, top = with_unit(float(amplitude.max()), LENGTH), in_rpm(float(speed.max()))
+    curves = ((f"amplitude, up to {most}", amplitude), (f"speed, up to {top}", speed))
 
     def picture(k: int) -> Picture:
-        inset = Inset(result.time, curves, float(view.frames.time[k]), "time")
+        inset = Inset(time, curves, float(view.frames.time[k]), "time")
         return replace(compose(stage, _instant(stage, view, k)), inset=inset)
 
     return Film(view.frames.time.size, picture)

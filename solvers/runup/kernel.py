@@ -435,6 +435,18 @@ def _accept(state, room, dt, fastest):
 
 
 @_jit
+def watch(plane, place, shaft, crest):
+    """Keep the amplitude of a plane in `crest`, a record CREST, with speed and time, if it is the largest."""
+    x, y = 0.0, 0.0
+    for i in range(plane.shape[1]):
+        x += plane[0, i] * place[i]
+        y += plane[1, i] * place[i]
+    amplitude = np.hypot(x, y)
+    if amplitude > crest.amplitude:
+        crest.amplitude, crest.speed, crest.time = amplitude, shaft.spin, shaft.time
+
+
+@_jit
 def advance(machine, state, room, stop, courant, most, resumed):
     """Advance rotor and layers to a time.
 
@@ -492,5 +504,6 @@ def advance(machine, state, room, stop, courant, most, resumed):
         _accept(state, room, dt, fastest)
         shaft.time = stop if dt == left else shaft.time + dt
         sums.steps += 1.0
+        watch(machine.watched, state.place, shaft, state.crest[0])
         sums.disagreement = max(sums.disagreement, gap)
     return Outcome.DONE, taken

@@ -16,7 +16,7 @@ from solvers.layer.records import Outcome, records
 from solvers.layer.state import ring
 from solvers.rotor.system import RotorSystem
 from solvers.runup.machine import Reading
-from solvers.runup.state import RELEASE, SUMS, CoupledRotor, at_rest, layer_properties, mean_area
+from solvers.runup.state import CREST, RELEASE, SUMS, CoupledRotor, at_rest, layer_properties, mean_area
 from solvers.slices import slices
 
 if TYPE_CHECKING:
@@ -46,6 +46,12 @@ class LinearCoupled(CoupledRotor):
     def sums(self) -> np.record:
         """See `CoupledRotor`."""
         found: np.record = self.machine.sums[0]
+        return found
+
+    @property
+    def crest(self) -> np.record:
+        """See `CoupledRotor`."""
+        found: np.record = self.machine.crest[0]
         return found
 
     @property
@@ -115,7 +121,8 @@ class LinearCoupled(CoupledRotor):
         """The moment as the history keeps it."""
         m, n = self.machine, len(self.system.coordinates)
         q, active = m.place[:n].copy(), m.active > 0.0
-        planes = list(m.planes) or [self.system.centre]
+        planes = list(m.planes) or [m.watched]
+        deflection = np.array([complex(*(plane @ q)) for plane in planes])
         offset = self._offset()
         depth = np.array([fill.depth for fill in self.fills])
         rise = (m.layers.curvature - 1.0) * np.abs(offset)
@@ -125,7 +132,8 @@ class LinearCoupled(CoupledRotor):
             speed=self.spin,
             angle=float(self.shaft.angle),
             coordinates=q,
-            deflection=np.array([complex(*(plane @ q)) for plane in planes]),
+            deflection=deflection,
+            **self.largest(abs(deflection[0])),
             offset=np.where(active, offset, self.pool),
             captured=active,
             depth_min=np.where(active, depth - rise, nothing),
@@ -182,11 +190,13 @@ def couple_linear(
         active=(rest.capture < spin).astype(float),
         gravity=rest.gravity,
         curve=np.zeros((2, 0)),
+        watched=rest.watched,
         place=np.zeros(size),
         rate=np.zeros(size),
         shaft=rest.shaft,
         carried=np.full(count, spin),
         sums=records(SUMS),
+        crest=records(CREST),
         left=np.zeros((size, size)),
         change=np.zeros(size),
         swing=np.zeros(n),

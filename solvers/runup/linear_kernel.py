@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from meshes.arrays import Array
 from solvers.layer.finite_volume import COMPILED
 from solvers.layer.records import Outcome, Record, floats
-from solvers.runup.kernel import motor_torque, solve
+from solvers.runup.kernel import motor_torque, solve, watch
 
 _jit: Any = njit(**COMPILED)
 
@@ -34,10 +34,12 @@ class LinearMachine(NamedTuple):
     active : 1 for a layer, 0 for liquid that moves with the drum as a mass, shape (l,)
     gravity : across the axis, shape (2,)
     curve : the motor's, shape (2, k)
+    watched : displacement of the axis whose amplitude counts, for unit coordinates, shape (2, n)
     place, rate : rotor's coordinates and the layers' offsets, two parts each, and their rates, shape (N,)
     shaft : record SHAFT of `solvers.runup.state`, shape (1,)
     carried : rotation of each layer as a whole, rad/s, shape (l,)
     sums : record SUMS, shape (1,)
+    crest : record CREST of `solvers.runup.state`, shape (1,)
     left, change, swing : scratch, shapes (N, N), (N,), (n,)
     """
 
@@ -48,11 +50,13 @@ class LinearMachine(NamedTuple):
     active: Array
     gravity: Array
     curve: Array
+    watched: Array
     place: Array
     rate: Array
     shaft: Record
     carried: Array
     sums: Record
+    crest: Record
     left: Array
     change: Array
     swing: Array
@@ -209,4 +213,5 @@ def advance_linear(m, stop, angle_step, most):
         shaft.spin, shaft.angle = spins[1], shaft.angle + spin * dt
         shaft.time = stop if dt == left else shaft.time + dt
         m.sums[0].steps += 1.0
+        watch(m.watched, m.place, shaft, m.crest[0])
     return Outcome.DONE

@@ -16,6 +16,7 @@ from solvers.layer.state import ring
 from solvers.rotor.system import RotorSystem
 from solvers.runup.machine import Reading
 from solvers.runup.state import (
+    CREST,
     GAINS,
     LAYER,
     MEASURES,
@@ -67,6 +68,12 @@ class Coupled(CoupledRotor):
     def sums(self) -> np.record:
         """See `CoupledRotor`."""
         found: np.record = self.state.sums[0]
+        return found
+
+    @property
+    def crest(self) -> np.record:
+        """See `CoupledRotor`."""
+        found: np.record = self.state.crest[0]
         return found
 
     @property
@@ -192,7 +199,8 @@ class Coupled(CoupledRotor):
         """The moment as the history keeps it."""
         x, angle = self.state.place.copy(), float(self.shaft.angle)
         turn = complex(math.cos(angle), math.sin(angle))
-        planes = list(planes_of(self.system, self.fills)) or [self.system.centre]
+        planes = list(planes_of(self.system, self.fills)) or [self.machine.watched]
+        deflection = np.array([complex(*(plane @ x)) for plane in planes])
         surface = np.sqrt(np.maximum(1.0 - 2.0 * self.area, 0.0))
         lever = (1.0 - surface) * (1.0 + surface + np.square(surface)) / 3.0
         whole = np.maximum(self.area.sum(axis=1), 1e-300)
@@ -207,7 +215,8 @@ class Coupled(CoupledRotor):
             speed=self.spin,
             angle=angle,
             coordinates=x,
-            deflection=np.array([complex(*(plane @ x)) for plane in planes]),
+            deflection=deflection,
+            **self.largest(abs(deflection[0])),
             offset=np.where(self.active, moved, self.pool),
             captured=self.active.copy(),
             depth_min=np.where(self.active, radius * (1.0 - surface.max(axis=1, initial=0.0)), nothing),
@@ -265,6 +274,7 @@ def couple(
             gravity=rest.gravity,
             angles=ring(cells),
             curve=np.zeros((2, 0)),
+            watched=rest.watched,
         ),
         state=State(
             place=np.zeros(n),
@@ -275,6 +285,7 @@ def couple(
             push=np.zeros((0, 2, 2)),
             pace=_fresh_pace(),
             sums=records(SUMS),
+            crest=records(CREST),
         ),
         room=_room(n, 0, cells),
     )

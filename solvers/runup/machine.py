@@ -119,6 +119,8 @@ class Reading:
     coordinates : of the rotor, shape (n,)
     deflection : of each chamber's axis in the standing frame, complex, m, shape (l,); without a chamber, of
         the axis at position 0, shape (1,)
+    largest : largest modulus of the first deflection at any step since the reading before, m
+    largest_speed, largest_time : where that was, rad/s and s
     offset : of each layer's centre of mass from its chamber's axis, standing frame, complex, m, shape (l,)
     captured : the layer rides with the drum, shape (l,)
     depth_min, depth_max : of each layer, m, shape (l,); nan while it is not captured
@@ -130,6 +132,9 @@ class Reading:
     angle: float
     coordinates: Array
     deflection: Complex
+    largest: float
+    largest_speed: float
+    largest_time: float
     offset: Complex
     captured: Flags
     depth_min: Array
@@ -193,6 +198,9 @@ class RunupMachine(Protocol):
 
     def mass_error(self) -> float:
         """Largest relative change of a layer's volume since the beginning."""
+
+    def watch(self) -> None:
+        """From here on look for the largest amplitude anew."""
 
     def read(self) -> Reading:
         """The moment as the history keeps it."""

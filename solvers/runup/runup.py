@@ -105,6 +105,8 @@ class RunupHistory:
     coordinates : of the rotor, from the static equilibrium, shape (k, n)
     deflection : of each chamber's axis in the standing frame, complex, m, shape (k, l); without a chamber, of
         the axis at position 0, shape (k, 1)
+    largest : largest modulus of the first deflection at any step since the time before, m, shape (k,)
+    largest_speed, largest_time : where that was, rad/s and s, shape (k,)
     offset : of each layer's centre of mass from its chamber's axis, standing frame, complex, m, shape (k, l)
     captured : the layer rides with the drum, shape (k, l)
     depth_min, depth_max : of each layer, m, shape (k, l); nan while it is not captured
@@ -126,6 +128,9 @@ class RunupHistory:
     angle: Array
     coordinates: Array
     deflection: Complex
+    largest: Array
+    largest_speed: Array
+    largest_time: Array
     offset: Complex
     captured: Flags
     depth_min: Array
@@ -256,6 +261,7 @@ def _march(
     wanted = np.unique([np.abs(time - moment).argmin() for moment in snapshots]).astype(np.intp)
     readings, depths = [machine.read()], [machine.depth()] if 0 in wanted else []
     for k, stop in enumerate(time[1:].tolist()):
+        machine.watch()
         try:
             captured += machine.switch()
             most = _budget(machine, drive, stop, numerics)

@@ -113,6 +113,8 @@ GAINS = floats("torque", "heat", "loss", "missed")
 SHAFT = floats("spin", "angle", "time", "rate", "inertia")
 # Lengths of the last two steps, the fastest wave, and by what the next step is shortened.
 PACE = floats("last", "before", "fastest", "share")
+# The largest amplitude since the moment was last read, and the speed and time of it.
+CREST = floats("amplitude", "speed", "time")
 # What is summed up over time [theory: coupling, eq. 9-10]: work of the unbalance, of the drive on the liquid,
 # of gravity; heat in the supports and by wall friction, loss in bores and by the scheme, what the assumed
 # profile of the flow misses while the spin changes; work of the motor; steps, layer steps, largest
@@ -135,6 +137,7 @@ class Machine(NamedTuple):
     gravity : acceleration across the axis, shape (2,)
     angles : cosine and sine at the cells' middles and at their left faces, shape (4, c)
     curve : the motor's speeds and torques, shape (2, k); k = 0 for a ramp
+    watched : displacement of the axis whose amplitude counts, for unit coordinates, shape (2, n)
     """
 
     matrices: Array
@@ -144,6 +147,7 @@ class Machine(NamedTuple):
     gravity: Array
     angles: Array
     curve: Array
+    watched: Array
 
 
 class State(NamedTuple):
@@ -157,6 +161,7 @@ class State(NamedTuple):
     push : mean accelerations of the axes over the last step and over the one before, shape (l, 2, 2)
     pace : record PACE, shape (1,)
     sums : record SUMS, shape (1,)
+    crest : record CREST, shape (1,)
     """
 
     place: Array
@@ -167,6 +172,7 @@ class State(NamedTuple):
     push: Array
     pace: Record
     sums: Record
+    crest: Record
 
 
 class Room(NamedTuple):
@@ -215,6 +221,7 @@ class Rest(NamedTuple):
     capture : speed above which each liquid rides with the drum as a layer, rad/s, inf for a solid mass, (l,)
     pool : offset of the centre of mass of liquid that is no layer, along the first direction, m, shape (l,)
     planes : displacement of each chamber's axis for unit coordinates, shape (l, 2, n)
+    watched : that of the first chamber, or of the axis at position 0 without one, shape (2, n)
     shaft : record SHAFT at the spin, shape (1,)
     gravity : acceleration across the axis, shape (2,)
     """
@@ -222,6 +229,7 @@ class Rest(NamedTuple):
     capture: Array
     pool: Array
     planes: Array
+    watched: Array
     shaft: Record
     gravity: Array
 
@@ -241,10 +249,12 @@ def at_rest(system: RotorSystem, fills: Sequence[Fill], spin: float, gravity: fl
     require_not_negative("gravity", gravity)
     shaft = records(SHAFT)
     shaft[0].spin = spin
+    planes = planes_of(system, fills)
     return Rest(
         capture=np.array([layer_capture(fill, gravity) for fill in fills]),
         pool=np.array([pool_offset(fill) if gravity > 0.0 else 0.0 for fill in fills]),
-        planes=planes_of(system, fills),
+        planes=planes,
+        watched=np.array(planes[0] if fills else system.centre, dtype=float),
         shaft=shaft,
         gravity=np.array([-gravity, 0.0]),
     )
@@ -282,6 +292,11 @@ class CoupledRotor(ABC):
         """Record SUMS: works, heats and counts so far."""
 
     @property
+    @abstractmethod
+    def crest(self) -> np.record:
+        """Record CREST of the interval."""
+
+    @property
     def time(self) -> float:
         """Time, s."""
         return float(self.shaft.time)
@@ -290,6 +305,23 @@ class CoupledRotor(ABC):
     def spin(self) -> float:
         """Spin speed, rad/s."""
         return float(self.shaft.spin)
+
+    def watch(self) -> None:
+        """From here on look for the largest amplitude anew."""
+        self.crest.amplitude = 0.0
+
+    def largest(self, amplitude: float) -> dict[str, float]:
+        """Parts of a reading: the largest amplitude of the interval, with that of the moment itself.
+
+        Parameters
+        ----------
+        amplitude : of the moment, m
+        """
+        crest = self.crest
+        if amplitude >= crest.amplitude:
+            return {"largest": amplitude, "largest_speed": self.spin, "largest_time": self.time}
+        found = {"largest": crest.amplitude, "largest_speed": crest.speed, "largest_time": crest.time}
+        return {name: float(value) for name, value in found.items()}
 
     @property
     def masses(self) -> Array:

@@ -26,6 +26,10 @@ _SEEN = 1e-3  # the same of a maximum that is lower than another one
 _TURN = 0.8  # rad from one sample to the next that show a resonance's shape
 _LOOKED = 6  # rounds in which a turn of the phase is followed whatever its height
 _WORTH = 0.3  # of the largest amplitude, from which on it is followed to its end
+# Maxima seen so finely that a parabola shows their tops: rounding of an answer makes ever more of them.
+_FINE = 0.05  # of their height, by which the samples beside such a one are lower at most
+_AT_A_TIME = 8  # of them, the highest, are followed
+_SETTLED = 8  # rounds in which nothing else is wanted; a top takes three or four
 _CLOSE = 4.0 * np.finfo(float).eps  # relative distance of two speeds that are one
 _SHAPE = (-4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0)  # half widths from a resonance
 _SHARED = 0.5  # half widths up to which a resonance takes another one's speed for its own
@@ -159,10 +163,14 @@ def refine(answer: Answer, samples: Sequence[Samples], bound: Sequence[float]) -
     """
     found = list(samples)
     spacing = [np.ptp(one.speed) / max(one.speed.size - 1, 1) for one in found]
-    going = list(range(len(found)))
+    going, fine = list(range(len(found))), [0] * len(found)
     for turn in range(_ROUNDS):
-        wanted = [_wanted(found[k], bound[k], turn, spacing[k]) for k in going]
-        pairs = [(k, speed) for k, speed in zip(going, wanted, strict=True) if speed.size]
+        pairs = []
+        for k in going:
+            speed, coarse = _wanted(found[k], bound[k], turn, spacing[k])
+            fine[k] += not coarse
+            if speed.size and fine[k] <= _SETTLED:
+                pairs.append((k, speed))
         if not pairs:
             break
         going = [k for k, _ in pairs]
@@ -173,23 +181,24 @@ def refine(answer: Answer, samples: Sequence[Samples], bound: Sequence[float]) -
     return found
 
 
-def _wanted(samples: Samples, bound: float, turn: int, spacing: float) -> Array:
-    """Speeds at which a machine is looked at next; none once its peak is known."""
+def _wanted(samples: Samples, bound: float, turn: int, spacing: float) -> tuple[Array, bool]:
+    """Speeds at which a machine is looked at next, none once its peak is known; whether a shape is sought."""
     x, size = samples.speed, samples.amplitude
     known = np.isfinite(size)
     if np.isinf(size).any() or not known.any():
-        return np.zeros(0)
+        return np.zeros(0), False
     x, size, parts = x[known], size[known], samples.parts[known]
     largest = float(size.max())
     if largest == 0.0 or largest >= bound * (1.0 - _GAIN) or x.size < 2:
-        return np.zeros(0)
-    found = [_around_maxima(x, size, largest), _inside_turns(x, size, parts, largest, turn, spacing)]
-    every = np.unique(np.concatenate(found))
+        return np.zeros(0), False
+    coarse, fine = _around_maxima(x, size, largest)
+    turns = _inside_turns(x, size, parts, largest, turn, spacing)
+    every = np.unique(np.concatenate((coarse, fine, turns)))
     place = np.searchsorted(x, every)
     apart = np.minimum(
         np.abs(every - x[np.minimum(place, x.size - 1)]), np.abs(every - x[np.maximum(place - 1, 0)])
     )
-    return every[apart > _CLOSE * np.abs(every)]
+    return every[apart > _CLOSE * np.abs(every)], bool(coarse.size or turns.size)
 
 
 def _inside_turns(x: Array, size: Array, parts: Complex, largest: float, turn: int, spacing: float) -> Array:
@@ -205,13 +214,18 @@ def _inside_turns(x: Array, size: Array, parts: Complex, largest: float, turn: i
     return np.concatenate([x[k] + share * gap[k] for share in (0.25, 0.5, 0.75)])
 
 
-def _around_maxima(x: Array, size: Array, largest: float) -> Array:
+def _around_maxima(x: Array, size: Array, largest: float) -> tuple[Array, Array]:
     """Speeds around the maxima of an amplitude: where a resonance has its top, and between it and its sides.
 
     One over the amplitude squared is nearly a parabola over the speed around the top of a resonance.
+
+    Returns
+    -------
+    Around maxima whose shape is not seen yet, and around the highest of the others
     """
     edge = np.concatenate(([-np.inf], size, [-np.inf]))
     found: list[float] = []
+    fine: list[tuple[float, list[float]]] = []
     for i in np.flatnonzero((size >= edge[:-2]) & (size > edge[2:])).tolist():
         low, high = x[max(i - 1, 0)], x[min(i + 1, x.size - 1)]
         if high - low <= 8.0 * _CLOSE * x[i]:
@@ -228,10 +242,13 @@ def _around_maxima(x: Array, size: Array, largest: float) -> Array:
         if gain <= _GAIN and (flat <= 1e-5 or size[i] < (1.0 - 1e-5) * largest):
             continue
         width = 0.06 * (high - low)
-        found += [y for y in (top, top - width, top + width) if low < y < high]
-        if sharp or flat > 0.05:
-            found += _between(low, x[i], high)
-    return np.array(found)
+        around = [y for y in (top, top - width, top + width) if low < y < high]
+        if sharp or flat > _FINE:
+            found += around + _between(low, x[i], high)
+        else:
+            fine.append((size[i] * (1.0 + gain), around))
+    fine = sorted(fine, key=lambda one: -one[0])[:_AT_A_TIME]
+    return np.array(found), np.array([speed for _, around in fine for speed in around])
 
 
 def _between(low: float, middle: float, high: float) -> list[float]:

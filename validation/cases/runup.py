@@ -75,13 +75,13 @@ def run(volume: float, friction: float, cells: int = 128, check: bool = False) -
     fills = [Fill(CHAMBER, known_liquid("water"), volume)] if volume > 0.0 else []
     numerics = RunupNumerics(cells=cells, companion=check)
     h = run_up(ROTOR.system(), fills, RAMP, Friction(FrictionLaw.LINEAR, friction), 0.0, numerics)
-    k = int(np.argmax(h.amplitude))
+    k = int(np.argmax(h.largest))
     late = h.time >= h.time[-1] - _LAST
     return Point(
         volume=volume,
         friction=friction,
-        peak=float(h.amplitude[k]),
-        peak_speed=float(h.speed[k]),
+        peak=float(h.largest[k]),
+        peak_speed=float(h.largest_speed[k]),
         end=float(np.mean(h.amplitude[late])),
         last=float(h.amplitude[-1]),
         closure=h.audit.closure,

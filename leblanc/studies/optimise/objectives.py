@@ -76,7 +76,7 @@ class RunupPeak:
             system = dry_rotor(self.scene).system()
             numerics, drive = self.numerics, self.drive
             run = run_up(system, fills, drive, friction, self.gravity, numerics, None, self.model)
-            self._known[key] = float(run.amplitude.max()) if run.converged else math.inf
+            self._known[key] = float(run.largest.max()) if run.converged else math.inf
         return self._known[key]
 
 

@@ -18,7 +18,7 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.vibration import dynamic_stiffness
 from solvers.synchronous.models import LINEAR, STATICS
-from solvers.synchronous.peaks import Peak, Samples, highest, refine, seeds
+from solvers.synchronous.peaks import Answer, Peak, Samples, highest, refine, seeds
 from solvers.synchronous.resonances import Tops, planar_tops, resonances
 from solvers.synchronous.response import response
 from tests.mutants import kills
@@ -261,6 +261,59 @@ def test_a_known_bound_ends_the_search() -> None:
     asked.clear()
     refine(answer, [samples], [most])
     assert not asked
+
+
+def noisy(noise: float) -> tuple[Answer, list[int], Peak]:
+    """A resonance with noise like rounding of an ill-conditioned machine; what it is asked; its top."""
+    exact, _ = rational(np.array([10.0]), np.array([0.05]), np.array([1.0]))
+    calls = []
+
+    def answer(owner: Index, speed: Array) -> Complex:
+        calls.append(speed.size)
+        # Digits of the speed far below what the resonance feels, as good as random.
+        return exact(owner, speed) * (1.0 + noise * np.sin(speed * 1e13))[:, None]
+
+    near = np.linspace(9.5, 10.5, 100001)
+    return answer, calls, highest(near, np.abs(exact(NOBODY, near))[:, 0])
+
+
+@pytest.mark.parametrize("noise", [1e-13, 1e-9, 1e-6, 1e-4])
+def test_the_peak_under_noise(noise: float) -> None:
+    """Found with few questions: a dozen speeds a round to see the shape, then 24 in at most eight rounds."""
+    answer, calls, top = noisy(noise)
+    speed = np.linspace(5.0, 20.0, 15)
+    (samples,) = refine(answer, [Samples(speed, answer(NOBODY, speed))], [math.inf])
+    assert highest(samples.speed, samples.amplitude).amplitude == (
+        pytest.approx(top.amplitude, rel=1e-8 + 2.0 * noise)
+    )
+    assert len(calls) < 25 and sum(calls) < 300
+
+
+@kills("solvers.synchronous.peaks:_around_maxima", "[:_AT_A_TIME]", "")
+@kills("solvers.synchronous.peaks:refine", "fine[k] += not coarse", "fine[k] += 0")
+def test_maxima_of_noise_are_not_refined() -> None:
+    """Three hundred on a flat top, and each would have others beside it: eight at a time, eight times."""
+    answer, calls, top = noisy(1e-6)
+    speed = top.speed + np.linspace(-0.01, 0.01, 1001)
+    (samples,) = refine(answer, [Samples(speed, answer(NOBODY, speed))], [math.inf])
+    assert highest(samples.speed, samples.amplitude).amplitude == pytest.approx(top.amplitude, rel=2e-6)
+    assert len(calls) <= 1 + 8 and max(calls[1:]) <= 3 * 8
+
+
+def test_many_tops_of_one_height() -> None:
+    """Twelve alike, more than are followed at a time: each to its end."""
+    centre = np.linspace(5.0, 16.0, 12)
+
+    def answer(owner: Index, speed: Array) -> Complex:
+        return np.exp(-np.square((speed[:, None] - centre) / 0.2)).sum(axis=1)[:, None].astype(complex)
+
+    speed = np.linspace(4.0, 17.0, 100)
+    (samples,) = refine(answer, [Samples(speed, answer(NOBODY, speed))], [math.inf])
+    for place in centre:
+        near = np.abs(samples.speed - place) < 0.3
+        # Of neighbours exp(-25) and exp(-100) is left; a top lower than another is seen to 1e-3.
+        assert samples.amplitude[near].max() == pytest.approx(1.0, abs=1e-3)
+    assert samples.amplitude.max() == pytest.approx(answer(NOBODY, centre).real.max(), rel=1e-10)
 
 
 def test_no_peak() -> None:
