@@ -346,6 +346,48 @@ def newton(balance: Balance, begin: Complex, which: Index) -> tuple[Complex, Fla
     return x, converged
 
 
+def stable_solutions(balance: Balance, answer: Complex, which: Index) -> Flags:
+    """Stability of solutions against disturbances slow beside the liquid's waves [theory: rotor, eq. 35].
+
+    Parameters
+    ----------
+    answer : coordinates, shape (k, n)
+    which : the speed of each, shape (k,)
+
+    Returns
+    -------
+    shape (k,). With every wall wet the liquid is a mass, and dampers take the energy of any motion
+    """
+    stable = np.ones(which.size, dtype=bool)
+    bent = np.flatnonzero(np.any(np.abs(balance.forward(answer)) > balance.limit[which], axis=1))
+    if not bent.size:
+        return stable
+    x, own, p, system = answer[bent], which[bent], balance.plane, balance.system
+    size = np.abs(balance.forward(x))
+    law = balance.liquid(own, size)
+    secant = np.divide(law.unbalance, size, out=law.slope.copy(), where=size > 0.0)
+    mass = system.mass + 0.5 * np.einsum("kc,ci,cj->kij", secant, p, np.conj(p))
+    mass = mass + 0.5 * np.einsum("kc,ci,cj->kij", balance.backward_mass[own], np.conj(p), p)
+    spin = balance.speed[own, None, None]
+    rate = 2j * spin * mass + system.damping + spin * system.gyroscopic
+    _, held, _ = _linearised(balance, x, own)
+    n = held.shape[1]
+    lower = -np.linalg.solve(_real(mass), np.concatenate((held, _real(rate)), axis=2))
+    upper = np.broadcast_to(np.eye(n, 2 * n, n), lower.shape)
+    roots = np.linalg.eigvals(np.concatenate((upper, lower), axis=1))
+    # Without damping the roots are imaginary to rounding (square root of it where two meet). A branch between
+    # two folds falls away along a real root, which the sign of the determinant tells to rounding.
+    slack = 1e-7 * np.abs(roots).max(axis=1)
+    falls = np.linalg.slogdet(held)[0] < 0.0
+    stable[bent] = ~falls & (roots.real.max(axis=1) <= slack)
+    return stable
+
+
+def _real(matrix: Complex) -> Array:
+    """Complex matrices as they act on real and imaginary parts, shape (k, 2n, 2n) for (k, n, n)."""
+    return np.asarray(np.block([[matrix.real, -matrix.imag], [matrix.imag, matrix.real]]))
+
+
 def _at_rounding(balance: Balance, x: Complex, which: Index) -> Flags:
     """Nothing is left of the balance but rounding of its terms, of which the largest may cancel."""
     terms = np.einsum("kij,kj->ki", np.abs(balance.stiffness[which]), np.abs(x))

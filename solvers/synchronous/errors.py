@@ -116,8 +116,8 @@ class Enclosure:
         measured = (self.straight > 0.0) & np.isfinite(self.linear)
         np.divide(self.linear, self.straight, out=strain, where=measured)
         return LinearError(
-            amplitude=np.where(still, 0.0, amplitude) + ROUNDING,
-            liquid=np.where(none, 0.0, liquid) + ROUNDING,
+            amplitude=np.maximum(np.where(still, 0.0, amplitude), ROUNDING),
+            liquid=np.maximum(np.where(none, 0.0, liquid), ROUNDING),
             wet=self.most < self.depth,
             strain=strain,
         )
@@ -431,7 +431,7 @@ def _share(change: Array, size: Array) -> Array:
     left = size - change
     out = np.full(size.shape, np.inf)
     np.divide(change, left, out=out, where=np.isfinite(change) & (left > 0.0))
-    return np.where(change == 0.0, 0.0, out) + ROUNDING
+    return np.maximum(np.where(change == 0.0, 0.0, out), ROUNDING)
 
 
 def error_estimate(

@@ -24,7 +24,7 @@ from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
 from solvers.rotor.system import Rotor, RotorSystem
 from solvers.rotor.vibration import critical_speeds, orbit, unbalance_response
 from solvers.synchronous.balance import Balance, Liquid, backward_mass, directions, harmonic_balance
-from solvers.synchronous.coupled import Near, solutions
+from solvers.synchronous.coupled import Near, solutions, stable_solutions
 from solvers.synchronous.models import LINEAR, STATICS
 from solvers.synchronous.pairs import Pairs, pair_machines
 from solvers.synchronous.planar import all_deflections, divide, is_stable, liquid_offset, with_phase
@@ -179,8 +179,7 @@ class Response:
     liquid_offset : distance of the liquid's centre of mass from the rotation axis, m, shape (n,)
     liquid_angle : angle from the unbalance to the liquid's centre of mass, rad, shape (n,)
     dry_patch : the wall is dry somewhere in at least one chamber, shape (n,)
-    stable : the branch reported is stable against slow disturbances, shape (n,); of rotors other than the
-        Jeffcott rotor that is not known, it is True wherever a branch was found
+    stable : the branch reported is stable against slow disturbances [theory: rotor, eq. 8 and 35], shape (n,)
     model : name of the liquid model used, shape (n,)
     in_range : the model holds there, shape (n,)
     converged : every branch was found, shape (n,); with chambers in several planes, one was
@@ -434,7 +433,9 @@ def _of_balance(system: RotorSystem, terms: Balance, position: float, near: Near
     answer, which = np.concatenate((answer, nothing)), np.concatenate((which, lost))
     motion = orbit(system, answer, position)
     size = np.abs(motion.forward)
-    table = _Table.arrange(terms.speed.size, which, size, np.isfinite(size))
+    found_at, stable = np.flatnonzero(np.isfinite(size)), np.zeros(which.size, dtype=bool)
+    stable[found_at] = stable_solutions(terms, answer[found_at], which[found_at])
+    table = _Table.arrange(terms.speed.size, which, size, stable)
     chosen = table.reported
     bounded = np.isfinite(size[chosen])
     q = np.where(bounded[:, None], answer[chosen], 0.0)
@@ -450,12 +451,12 @@ def _of_balance(system: RotorSystem, terms: Balance, position: float, near: Near
         liquid_offset=offset,
         liquid_angle=angle if terms.fills else np.angle(np.where(bounded, deflection, 0.0)),
         dry_patch=np.asarray(law.dry_patch.any(axis=1)),
-        stable=bounded,
+        stable=stable[chosen],
         model=np.full(terms.speed.shape, terms.model.name),
         in_range=np.asarray(law.in_range.all(axis=1)),
         converged=found.converged & bounded & law.converged.all(axis=1),
         branch_deflection=table.spread(motion.forward, _NONE),
-        branch_stable=table.spread(np.isfinite(size), False),
+        branch_stable=table.spread(stable, False),
         backward=motion.backward[chosen],
         backward_dry=dry.backward,
         branch_backward=table.spread(motion.backward, _NONE),

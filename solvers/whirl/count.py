@@ -18,6 +18,7 @@ from meshes.arrays import Array, Complex, Flags, Index
 _STEP = 1.2  # most change of log f from the middle of a step to its ends
 _BEND = 0.6  # most difference between both: no zeros, not two alike either, are close to the step
 _ROUNDS = 48
+_CROWD = 256  # steps of one path still halved, of which twenty are usual: there the phase is rounding's
 _FAR = 1e5  # over the highest frequency: where the phase is that at infinity
 _WHOLE = 0.2  # distance of a count from a whole number
 _LIP, _END = 1e-9, 1e-8  # over the spin: how far the path stays off a cut and its end
@@ -152,6 +153,7 @@ def _phase(function: _Deflated, points: Complex, own: Index, scale: Array) -> tu
         # Where the path comes so close to a zero that rounding decides, nothing is known.
         tiny = ~even & ~(np.abs(end - start) > 1e-12 * (scale[which] + np.abs(start)))
         sure[which[tiny]] = False
+        sure &= np.bincount(which[~even], minlength=sure.size) <= _CROWD
         left = ~even & sure[which]
         if not left.any():
             return rise, sure

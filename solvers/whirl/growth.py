@@ -23,6 +23,7 @@ from solvers.whirl.system import SystemModes, circles_of, coupled_matrices, line
 
 MOST_LAYERS = 50
 _ALIKE = 1e-9  # relative; layers that differ by less are one
+_EQUAL = 1e-9  # of a mode's own speed: difference in growth of two modes that counts as none
 
 
 def asynchronous_growth(
@@ -151,7 +152,8 @@ def _fastest(modes: SystemModes, spin: Array) -> tuple[Array, Array]:
 def dominant(omega: Complex, rounding: Array, spin: Array) -> tuple[Array, Array]:
     """Growth and whirl speed of the mode that grows most.
 
-    Of modes that are equally neutral it is the one nearest to the spin, as the waves are that can grow.
+    Of modes that grow or die alike, to 1e-9 of their own speeds, it is the one nearest to the spin, as the
+    waves are that can grow.
 
     Parameters
     ----------
@@ -167,7 +169,8 @@ def dominant(omega: Complex, rounding: Array, spin: Array) -> tuple[Array, Array
     rate = np.where(missing, -np.inf, -omega.imag)
     rate = np.where(np.abs(rate) <= rounding, 0.0, rate)
     most = rate.max(axis=0)
-    away = np.where((rate == most) & ~missing, np.abs(spin - omega.real), np.inf)
+    alike = ~missing & (rate >= most - _EQUAL * np.abs(omega))
+    away = np.where(alike, np.abs(spin - omega.real), np.inf)
     which = np.argmin(away, axis=0)
     return most, np.take_along_axis(omega.real, which[None], axis=0)[0]
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.linalg
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -22,8 +24,8 @@ from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.vibration import critical_speeds, orbit, unbalance_response
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.balance import backward_mass, harmonic_balance
-from solvers.synchronous.coupled import one_plane, several_planes
-from solvers.synchronous.models import STATICS
+from solvers.synchronous.coupled import one_plane, several_planes, stable_solutions
+from solvers.synchronous.models import LINEAR, STATICS
 from solvers.synchronous.response import (
     Response,
     critical_speed,
@@ -57,6 +59,8 @@ def at_chambers(system: RotorSystem, found: Response, wet: list[Fill]) -> tuple[
     "np.angle(support * size - pulled)",
     "np.angle(support * size + pulled)",
 )
+@kills("solvers.synchronous.coupled:stable_solutions", "~falls & (", "(~falls | True) & (0.0 * ")
+@kills("solvers.synchronous.coupled:stable_solutions", "2j * spin * mass", "0j * spin * mass")
 def test_planar_rotor() -> None:
     """Every branch, dry patch and angle of the planar rotor, by the other way of solving."""
     for rotor, wet, speed, gravity in (
@@ -75,6 +79,7 @@ def test_planar_rotor() -> None:
         np.testing.assert_allclose(other.deflection_dry, one.deflection_dry, rtol=1e-12)
         np.testing.assert_allclose(np.exp(1j * (other.liquid_angle - one.liquid_angle)), 1.0, atol=1e-8)
         np.testing.assert_array_equal(other.dry_patch, one.dry_patch)
+        np.testing.assert_array_equal(other.branch_stable, one.branch_stable)
         assert np.abs(found.backward).max() < 1e-14 and found.residual.max() < 1e-12
 
 
@@ -231,6 +236,52 @@ def test_independent_ends() -> None:
     for k, one in enumerate(ends):
         np.testing.assert_allclose(at_chambers(system, found, wet)[0][:, k], one.deflection, rtol=1e-7)
     np.testing.assert_array_equal(np.isfinite(found.branch_deflection).sum(axis=1), several)
+    # The branches rise with the first end's, which folds; the other end is stable throughout.
+    np.testing.assert_array_equal(found.branch_stable, ends[0].branch_stable)
+    assert not ends[0].branch_stable[several == 3, 1].any() and found.stable.all()
+
+
+@kills(
+    "solvers.synchronous.coupled:stable_solutions", "+ spin * system.gyroscopic", "- spin * system.gyroscopic"
+)
+@kills(
+    "solvers.synchronous.coupled:stable_solutions",
+    'ci,cj->kij", secant, p, np.conj(p))',
+    'ci,cj->kij", secant, np.conj(p), p)',
+)
+def test_slow_stability_is_that_of_the_standing_frame() -> None:
+    """Rotors that tilt, with dampers that drive some modes and hold others, their liquid a mass.
+
+    What is slow in the rotating frame turns with the spin in the standing one: the same growth.
+    """
+    seen = set()
+    for seed in range(24):
+        rng = np.random.default_rng(seed)
+        # A drum like a long disc: its modes part with the spin, forward and backward.
+        rotor = two_plane(0.0, 0.6) if seed % 2 else tub(0.0)
+        system, n = rotor.system(), len(rotor.system().coordinates)
+        drive = rng.normal(size=(n, n))
+        system = replace(
+            system, damping=system.mass @ (drive + drive.T) + 2.0 * system.mass * rng.uniform(-2, 5)
+        )
+        wet = [at_plane(-0.1, 2e-3, 0.3), at_plane(0.12, 1e-3, 0.3)]
+        speed = np.array([rng.uniform(20.0, 90.0)])
+        terms = harmonic_balance(system, [wet], np.zeros(1, dtype=np.intp), speed, 0.0, LINEAR)
+        answer = terms.linear(np.zeros(1, dtype=np.intp))
+        assert stable_solutions(terms, answer, np.zeros(1, dtype=np.intp)).all()  # not looked at
+        found = stable_solutions(
+            replace(terms, limit=np.zeros_like(terms.limit)), answer, np.zeros(1, dtype=np.intp)
+        )
+        mass = system.mass.astype(complex)
+        for p, added, back in zip(terms.plane, terms.added_mass[0], terms.backward_mass[0], strict=True):
+            mass += 0.5 * (added * np.outer(p, p.conj()) + back * np.outer(p.conj(), p))
+        rate = system.damping + speed[0] * system.gyroscopic
+        zero, one = np.zeros((n, n)), np.eye(n)
+        left = np.block([[zero, one], [-system.stiffness, -rate]])
+        growth = scipy.linalg.eigvals(left, np.block([[one, zero], [zero, mass]])).real.max()
+        assert found[0] == (growth < 0.0)
+        seen.add((seed % 2, bool(found[0])))
+    assert len(seen) == 4
 
 
 def assert_each_as_if_alone(rotor: Rotor, sets: list[list[Fill]], speed: Array) -> None:

@@ -74,6 +74,28 @@ def test_a_pair_close_to_the_line_is_seen() -> None:
             assert found[0] == (4.0 if side > 0.0 else 0.0)
 
 
+@kills("solvers.whirl.count:_phase", "<= _CROWD", ">= 0")
+def test_a_phase_of_rounding_is_not_followed() -> None:
+    """An ill-conditioned determinant: what halving finds is noise, of which there is ever more: not known.
+
+    Unbounded, the steps to be halved doubled in each round until no memory was left.
+    """
+    every, asked = np.array([[-1.0 + 2.0j, -1.0 - 2.0j]]), [0]
+    exact = polynomial(every)
+
+    def noisy(points: np.ndarray, owner: np.ndarray) -> np.ndarray:
+        asked[0] += points.size
+        assert asked[0] < 1e6
+        here = exact(points, owner)
+        return np.asarray(here + np.where(points.imag < 50.0, 3.0 * np.sin(points.imag * 1e13), 0.0) * 1j)
+
+    unit = np.ones(1)
+    nothing = np.full((1, 2), complex(np.nan, np.nan))
+    assert np.isnan(missed_modes(noisy, 2, nothing, Region(0.0 * unit, unit, unit, 5.0 * unit))).all()
+    # A few rounds of at most so many steps.
+    assert asked[0] < 5000
+
+
 @pytest.mark.parametrize("kind", KINDS)
 @kills("solvers.whirl.sheets:standing_roots", "3.0 * apart, 3.0 * both", "3.0 * both, 3.0 * apart")
 @kills("solvers.whirl.sheets:standing_roots", "stiffness - 0.5 * unit", "stiffness + 0.5 * unit")

@@ -24,7 +24,14 @@ from solvers.rotor.system import RotorSystem
 from solvers.synchronous.response import response
 from solvers.whirl import edges as whirl_edges
 from solvers.whirl.edges import undamped_edges, unstable_bands
-from solvers.whirl.growth import asynchronous_growth, growth_at, growth_map, planar_layers, system_modes
+from solvers.whirl.growth import (
+    asynchronous_growth,
+    dominant,
+    growth_at,
+    growth_map,
+    planar_layers,
+    system_modes,
+)
 from solvers.whirl.laminar import _eliminate, _layer_waves, _Problem
 from solvers.whirl.planar import PlanarProblem, planar_modes
 from solvers.whirl.system import coupled_matrices
@@ -118,6 +125,17 @@ def test_published_bands() -> None:
     assert np.max(scan(0.1, 0.1, 0.0)[1]) == pytest.approx(0.066, abs=5e-4)
     damped = scan(0.1, 0.1, 0.05)[1]
     assert np.all(damped > 0.0) and np.max(damped) == pytest.approx(0.046, abs=5e-4)
+
+
+@kills("solvers.whirl.growth:dominant", "- _EQUAL * np.abs(omega)", "")
+def test_whirls_that_die_alike() -> None:
+    """Forward and backward whirl of a rotor that hardly knows of its spin: rounding does not choose."""
+    spin, size = np.array([1000.0]), 0.16 + 2.5e-4j
+    for nudge in (1.0 - 1e-12, 1.0, 1.0 + 1e-12):
+        omega = np.array([[-size.real + size.imag * 1j * nudge], [size]])
+        growth, whirl = dominant(omega, np.full((2, 1), 1e-17), spin)
+        assert whirl[0] == size.real
+        assert growth[0] == pytest.approx(-size.imag, rel=1e-11)
 
 
 def discriminant(mu: float, depth: float, ratio: mp.mpf) -> mp.mpf:
