@@ -39,7 +39,7 @@ class _Ears:
     """
 
     def __init__(self) -> None:
-        self.handler: Callable[..., NoReturn] | None = None
+        self.handler: Callable[..., None] | None = None
         self.last = -math.inf
         self.closed = threading.Event()
 
@@ -47,6 +47,12 @@ class _Ears:
         """Whether a signal is for this handler, or one that passes it on, and not for that of a library."""
         found = signal.getsignal(number)
         return callable(found) and getattr(found, "__wrapped__", found) is self.handler
+
+
+class _Holding:
+    """Whether interrupts wait for a library, and the number of the one that does."""
+
+    depth, number = 0, 0
 
 
 # What is to be done before the process is ended from another thread: files removed that are half written.
@@ -65,7 +71,10 @@ def heard() -> Iterator[None]:
         return
     ears, complain = _Ears(), sys.unraisablehook
 
-    def note(number: int, frame: FrameType | None) -> NoReturn:
+    def note(number: int, frame: FrameType | None) -> None:
+        if _Holding.depth:
+            _Holding.number = number
+            return
         ears.last = time.monotonic()
         raise KeyboardInterrupt if number == signal.SIGINT else Terminated(TERMINATED)
 
@@ -99,6 +108,39 @@ def heard() -> Iterator[None]:
         sys.unraisablehook = complain
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+@contextmanager
+def held() -> Iterator[None]:
+    """Raise no interrupt inside of a library that breaks by one: it is raised after it.
+
+    The process is ended as by compiled code where that takes too long.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    _Holding.depth += 1
+    try:
+        yield
+    finally:
+        _Holding.depth -= 1
+        number = _Holding.number
+        if number and not _Holding.depth:
+            _Holding.number = 0
+            signal.raise_signal(number)
+
+
+def behind(error: BaseException) -> KeyboardInterrupt | Terminated | None:
+    """The interrupt that compiled code has made another error of, if there is one.
+
+    Parameters
+    ----------
+    error : as it came, with what it came from
+    """
+    found: BaseException | None = error
+    while found is not None and not isinstance(found, KeyboardInterrupt | Terminated):
+        found = found.__cause__ or found.__context__
+    return found
 
 
 def _watch(reader: int, ears: _Ears) -> None:

@@ -7,7 +7,8 @@ outlive the slice, so that no digit of an answer depends on where a slice ends.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from typing import Any
 
 SLICE = 1 << 19  # cells or coordinates moved in a slice, some tenths of a second
 
@@ -44,3 +45,23 @@ def slices(steps: int, size: int) -> Iterator[int]:
     length = max(1, SLICE // size)
     for done in range(0, steps, length):
         yield min(length, steps - done)
+
+
+def compiled(loop: Callable[..., Any], *given: Any) -> Any:
+    """What a compiled loop returns; an interrupt that comes on the way into it or out of it stays one.
+
+    Parameters
+    ----------
+    loop : compiled by numba
+    given : its arguments
+
+    Raises
+    ------
+    KeyboardInterrupt : or what else a signal's handler has raised
+    """
+    try:
+        return loop(*given)
+    except SystemError as error:  # "returned a result with an exception set"
+        if error.__cause__ is None:
+            raise
+        raise error.__cause__ from None

@@ -21,7 +21,7 @@ from typer.main import get_command
 from leblanc.cli import compare, explain, layer, map, modes, new, optimise, run, runup, sweep, view, volume
 from leblanc.cli.output import drop, ready_streams, say
 from leblanc.contents import recording
-from leblanc.interrupts import INTERRUPTED, TERMINATED, Terminated, heard, leave, said
+from leblanc.interrupts import INTERRUPTED, TERMINATED, Terminated, behind, heard, leave, said
 from leblanc.scene.schema.load import NotConverged, SceneError, escaped
 from meshes.errors import InputError
 
@@ -120,6 +120,11 @@ def exit_code(action: Callable[[], object]) -> int:
         code = INTERRUPTED
     except Terminated:
         code = TERMINATED
+    except Exception as error:
+        interrupt = behind(error)
+        if interrupt is None:
+            raise
+        code = TERMINATED if isinstance(interrupt, Terminated) else INTERRUPTED
     if code in (INTERRUPTED, TERMINATED):
         say(said(int(code) - 128))
     return code if isinstance(code, int) else DONE

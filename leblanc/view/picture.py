@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.files import writing
+from leblanc.interrupts import held
 from leblanc.view.parts import Label, Picture, Piece, line
 from leblanc.view.sight import (
     BOTTOM,
@@ -120,6 +121,7 @@ def _loads(library: str) -> bool:
     return True
 
 
+@held()
 def plotter(picture: Picture, size: tuple[int, int] = SIZE, off_screen: bool = True) -> Plotter:
     """PyVista's plotter with the picture in it.
 
@@ -150,6 +152,7 @@ def plotter(picture: Picture, size: tuple[int, int] = SIZE, off_screen: bool = T
     return plot
 
 
+@held()
 def fill(plot: Plotter, picture: Picture, placed: Layout | None = None) -> None:
     """Put a picture into a plotter in place of what is there; the camera stays.
 
@@ -294,6 +297,7 @@ def point_camera(plot: Plotter, picture: Picture, placed: Layout) -> None:
     camera.clipping_range = (0.1 * far, 3.0 * far)
 
 
+@held()
 def pixels(plot: Plotter) -> Pixels:
     """What the plotter shows, shape (height, width, 3).
 

@@ -27,7 +27,7 @@ from solvers.layer.finite_volume import (
     ring_rates,
 )
 from solvers.layer.records import PACE, Drive, Outcome, Record, Wall, records
-from solvers.slices import FASTEST, RUNAWAY, slices, step_budget
+from solvers.slices import FASTEST, RUNAWAY, compiled, slices, step_budget
 
 _jit: Any = njit(**COMPILED)
 # Parts of one function: compiled one by one and linked they would cost twice the time to compile.
@@ -313,7 +313,9 @@ def march(
     if most is None:
         most = step_budget(stop - start, drive.spin, area.size, courant)
     for steps in slices(most, area.size):
-        reached, tried = advance(area, q, pace, stop, drive, wall, angles, courant, steps, spare, loads)
+        reached, tried = compiled(
+            advance, area, q, pace, stop, drive, wall, angles, courant, steps, spare, loads
+        )
         outcome, taken = Outcome(reached), taken + tried
         if outcome is not Outcome.RAN_OUT:
             break

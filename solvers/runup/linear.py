@@ -17,7 +17,7 @@ from solvers.layer.state import ring
 from solvers.rotor.system import RotorSystem
 from solvers.runup.machine import Reading
 from solvers.runup.state import CREST, RELEASE, SUMS, CoupledRotor, at_rest, layer_properties, mean_area
-from solvers.slices import slices
+from solvers.slices import compiled, slices
 
 if TYPE_CHECKING:
     from solvers.runup.linear_kernel import LinearMachine
@@ -72,7 +72,7 @@ class LinearCoupled(CoupledRotor):
         self.shaft.rate = rate
         angle_step, outcome = courant * (2.0 * math.pi / self.cells), Outcome.RAN_OUT
         for steps in slices(most, self.machine.left.size):
-            outcome = Outcome(advance_linear(self.machine, stop, angle_step, steps))
+            outcome = Outcome(compiled(advance_linear, self.machine, stop, angle_step, steps))
             if outcome is not Outcome.RAN_OUT:
                 break
         return outcome

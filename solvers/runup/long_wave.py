@@ -32,7 +32,7 @@ from solvers.runup.state import (
     mean_area,
     planes_of,
 )
-from solvers.slices import slices
+from solvers.slices import compiled, slices
 
 # A layer that gravity has thrown down is caught again at a speed higher by this factor.
 _AGAIN = 1.2
@@ -93,7 +93,7 @@ class Coupled(CoupledRotor):
         self.shaft.rate = rate
         outcome, resumed = Outcome.RAN_OUT, False
         for steps in slices(most, max(1, self.state.area.size)):
-            found, _ = advance(self.machine, self.state, self.room, stop, courant, steps, resumed)
+            found, _ = compiled(advance, self.machine, self.state, self.room, stop, courant, steps, resumed)
             outcome, resumed = Outcome(found), True
             if outcome is not Outcome.RAN_OUT:
                 break

@@ -11,7 +11,10 @@ from pathlib import Path
 
 import pytest
 
-from leblanc.interrupts import INTERRUPTED, TERMINATED, Terminated, heard
+from leblanc.cli import exit_code
+from leblanc.interrupts import INTERRUPTED, TERMINATED, Terminated, heard, held
+from solvers.slices import compiled
+from tests.mutants import kills
 
 ROOT = Path(__file__).parents[2]
 
@@ -130,3 +133,40 @@ def test_a_process_that_ignores_ctrl_c_goes_on_doing_so(monkeypatch: pytest.Monk
 
 def test_codes_are_those_of_shells() -> None:
     assert (INTERRUPTED, TERMINATED) == (130, 143)
+
+
+@pytest.mark.parametrize(
+    ("number", "raised"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, Terminated)]
+)
+@kills("leblanc.interrupts:heard", "if _Holding.depth:", "if False:")
+def test_what_breaks_by_an_interrupt_is_left_first(number: int, raised: type[BaseException]) -> None:
+    """Drawing with VTK ends in a crash, or in an import that fails, where an interrupt is raised inside of it."""
+    done = []
+
+    @held()
+    def draw() -> None:
+        signal.raise_signal(number)
+        done.append("inner")
+
+    with heard():
+        with pytest.raises(raised), held():
+            draw()
+            done.append("outer")
+        done.append("after")
+    assert done == ["inner", "outer", "after"]
+
+
+def test_an_interrupt_that_compiled_code_hides() -> None:
+    """numba says SystemError where a handler has raised while it hands over arguments; other faults stay."""
+
+    def loop(cause: BaseException | None) -> None:
+        raise SystemError("returned a result with an exception set") from cause
+
+    for cause in (KeyboardInterrupt(), Terminated(143)):
+        with pytest.raises(type(cause)):
+            compiled(loop, cause)
+        assert exit_code(lambda cause=cause: loop(cause)) == (143 if isinstance(cause, Terminated) else 130)
+    with pytest.raises(SystemError):
+        compiled(loop, None)
+    with pytest.raises(ZeroDivisionError):
+        exit_code(lambda: 1 // 0)

@@ -177,7 +177,8 @@ def faults(command: str, folder: Path, ending: Ending, number: int, whole: dict[
     whole : a sweep's store that nothing happened to
     """
     found = broken(folder)
-    if ending.code not in (_PROMISED[signal.Signals(number)], 0):
+    # Ended by the signal itself as Python takes itself down, which shells call 128 and its number as well.
+    if ending.code not in (_PROMISED[signal.Signals(number)], -number, 0):
         found.append(f"exit code {ending.code}")
     if "Traceback" in ending.said or len(ending.said.splitlines()) > 3:
         found.append(f"said {ending.said[-300:]!r}")

@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.interrupts import held
 from leblanc.scene.schema.load import NotConverged, SceneError, SceneFault, shown
 from leblanc.studies.sweep.block import Block, BlockAnswer, answer_block, own_versions, reason_of
 from leblanc.studies.sweep.sampling import Rows, sample_rows
@@ -92,8 +93,16 @@ def _client(workers: int, scheduler: str | None) -> Iterator[Any]:
             scheduler_kwargs={"dashboard": False},
             silence_logs=logging.CRITICAL,
         )
-        with cluster, Client(cluster) as client:
+        client = None
+        try:
+            client = Client(cluster)
             yield client
+        finally:
+            # Half closed they wait for each other. Where this takes long the process ends, its workers with it.
+            with held():
+                if client is not None:
+                    client.close()
+                cluster.close()
 
 
 def require_scheduler(address: str) -> None:

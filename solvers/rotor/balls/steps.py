@@ -10,7 +10,7 @@ from numba import njit
 
 from meshes.arrays import Array
 from solvers.rotor.balls import motion as ball_motion
-from solvers.slices import slices
+from solvers.slices import compiled, slices
 
 _jit: Any = njit(cache=True, error_model="numpy", nogil=True)
 _rates: Any = _jit(ball_motion.rates)
@@ -83,5 +83,5 @@ def advance(
     record[0] = state
     begin = 0
     for taken in slices((record.shape[0] - 1) * steps, 4 * state.size):
-        stretch(state, *matrices, numbers, step, steps, record, begin, begin + taken)
+        compiled(stretch, state, *matrices, numbers, step, steps, record, begin, begin + taken)
         begin += taken

@@ -10,7 +10,7 @@ from numba import njit
 
 from meshes.arrays import Array
 from solvers.rotor.exciter import machine as exciter
-from solvers.slices import slices
+from solvers.slices import compiled, slices
 
 _jit: Any = njit(cache=True, error_model="numpy", nogil=True)
 _rates: Any = _jit(exciter.rates)
@@ -151,7 +151,7 @@ def advance(
     blocks, begin, before = means.shape[0], 0, np.empty(means.shape[1] - 1)
     for taken in slices(blocks * steps, 4 * state.size):
         end = begin + taken
-        stopped = stretch(state, numbers, step, steps, most, means, first, sums, before, begin, end)
+        stopped = compiled(stretch, state, numbers, step, steps, most, means, first, sums, before, begin, end)
         if stopped:
             return int(stopped)
         begin = end
