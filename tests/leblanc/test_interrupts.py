@@ -140,7 +140,7 @@ def test_codes_are_those_of_shells() -> None:
 )
 @kills("leblanc.interrupts:heard", "if _Holding.depth:", "if False:")
 def test_what_breaks_by_an_interrupt_is_left_first(number: int, raised: type[BaseException]) -> None:
-    """Drawing with VTK ends in a crash, or in an import that fails, where an interrupt is raised inside of it."""
+    """VTK crashes, or an import of it fails, where an interrupt is raised inside of it."""
     done = []
 
     @held()

@@ -98,7 +98,7 @@ def _client(workers: int, scheduler: str | None) -> Iterator[Any]:
             client = Client(cluster)
             yield client
         finally:
-            # Half closed they wait for each other. Where this takes long the process ends, its workers with it.
+            # Half closed they wait for each other. Where this takes long the process ends, workers with it.
             with held():
                 if client is not None:
                     client.close()
