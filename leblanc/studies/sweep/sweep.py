@@ -5,6 +5,7 @@ Blocks are answered in this process, in local ones or on a cluster: the only doo
 
 from __future__ import annotations
 
+import atexit
 import functools
 import logging
 import signal
@@ -70,6 +71,7 @@ def _client(workers: int, scheduler: str | None) -> Iterator[Any]:
     """A client of local processes or of a running cluster."""
     import dask
     from distributed import Client, LocalCluster
+    from distributed.deploy.spec import close_clusters
 
     for name in ("distributed", "distributed.client", "distributed.utils"):
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what goes wrong is said by `_cluster_faults`
@@ -83,16 +85,21 @@ def _client(workers: int, scheduler: str | None) -> Iterator[Any]:
         _deaf_loop() as loop,
         dask.config.set(_ENVIRONMENT),
     ):
-        cluster = LocalCluster(
-            loop=loop,
-            local_directory=folder,
-            n_workers=workers,
-            threads_per_worker=1,
-            processes=True,
-            dashboard_address=":0",  # any free port, so that a second sweep finds one as well
-            scheduler_kwargs={"dashboard": False},
-            silence_logs=logging.CRITICAL,
-        )
+        try:
+            cluster = LocalCluster(
+                loop=loop,
+                local_directory=folder,
+                n_workers=workers,
+                threads_per_worker=1,
+                processes=True,
+                dashboard_address=":0",  # any free port, so that a second sweep finds one as well
+                scheduler_kwargs={"dashboard": False},
+                silence_logs=logging.CRITICAL,
+            )
+        except (KeyboardInterrupt, SystemExit):
+            # As Python ends Dask would wait ten seconds for what is half begun; its workers end without it.
+            atexit.unregister(close_clusters)
+            raise
         client = None
         try:
             client = Client(cluster)
