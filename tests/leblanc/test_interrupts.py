@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -19,6 +20,14 @@ from tests.mutants import kills
 ROOT = Path(__file__).parents[2]
 
 SIGNALS = {signal.SIGINT: (130, "leblanc: interrupted"), signal.SIGTERM: (143, "leblanc: terminated")}
+
+
+@pytest.fixture(autouse=True)
+def _hear_ctrl_c() -> Iterator[None]:
+    """As in a terminal: in the background of a shell Ctrl-C is ignored, and children inherit that."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 def ended(code: str, number: int, cwd: Path) -> tuple[int, str, str]:
