@@ -158,10 +158,12 @@ def _watch(reader: int, ears: _Ears) -> None:
 
 def _end(number: int) -> NoReturn:
     """End the process as its main thread would have done."""
-    for action in at_forced_end:
-        action()
-    os.write(2, f"{said(number)}\n".encode())
-    os._exit(128 + number)
+    try:
+        for action in at_forced_end:
+            action()
+        os.write(2, f"{said(number)}\n".encode())
+    finally:  # be it that nobody reads any more
+        os._exit(128 + number)
 
 
 def said(number: int) -> str:

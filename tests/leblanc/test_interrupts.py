@@ -82,6 +82,12 @@ def test_compiled_code_is_not_waited_for(number: int, tmp_path: Path) -> None:
     assert (tmp_path / "kept.txt").read_text() == "the old one"
 
 
+def test_a_process_is_ended_though_nobody_reads() -> None:
+    """What is to be said cannot be written: the thread that ends the process must not die of it."""
+    code = "import os; from leblanc.interrupts import _end; os.close(2); _end(15)"
+    assert subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=False).returncode == 143
+
+
 # The interrupt comes through `exec`, after which Python ends by the signal itself, and threads are at work.
 THROUGH_EXEC = """
 import sys, threading, time
