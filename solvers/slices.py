@@ -34,15 +34,17 @@ def step_budget(time: float, spin: float, cells: int, courant: float) -> int:
     return math.ceil(SPARE * (1.0 + FASTEST * abs(spin) * time * cells / (2.0 * math.pi * courant)))
 
 
-def slices(steps: int, size: int) -> Iterator[int]:
+def slices(steps: int, size: int, most: int = 0) -> Iterator[int]:
     """Numbers of steps that make up a number of them, each as many as take a fraction of a second.
 
     Parameters
     ----------
     steps : in all
     size : cells or coordinates that a step moves
+    most : in a slice; 0 sets no such bound
     """
     length = max(1, SLICE // size)
+    length = min(length, most) if most > 0 else length
     for done in range(0, steps, length):
         yield min(length, steps - done)
 

@@ -446,6 +446,17 @@ def watch(plane, place, shaft, crest):
         crest.amplitude, crest.speed, crest.time = amplitude, shaft.spin, shaft.time
 
 
+@_unwrapped
+def _keep(state, room, row):
+    """Write down a moment: time, angle, coordinates, and the first moment of each layer over R^3."""
+    n, shaft = state.place.size, state.shaft[0]
+    row[0], row[1] = shaft.time, shaft.angle
+    for i in range(n):
+        row[2 + i] = state.place[i]
+    for j in range(room.begin.shape[0]):
+        row[2 + n + 2 * j], row[3 + n + 2 * j] = room.begin[j].moment_x, room.begin[j].moment_y
+
+
 @_jit
 def advance(machine, state, room, stop, courant, most, resumed):
     """Advance rotor and layers to a time.
@@ -457,6 +468,8 @@ def advance(machine, state, room, stop, courant, most, resumed):
     courant : Courant number; the rotor turns in a step by at most this share of a cell
     most : most steps
     resumed : the call before ended with RAN_OUT, and nothing has changed since
+
+    Every step is written down in the state's trace if that has rows: as many as there are steps.
 
     Returns
     -------
@@ -505,5 +518,8 @@ def advance(machine, state, room, stop, courant, most, resumed):
         shaft.time = stop if dt == left else shaft.time + dt
         sums.steps += 1.0
         watch(machine.watched, state.place, shaft, state.crest[0])
+        if state.trace.shape[0] > 0:
+            _keep(state, room, state.trace[int(pace.kept)])
+            pace.kept += 1.0
         sums.disagreement = max(sums.disagreement, gap)
     return Outcome.DONE, taken

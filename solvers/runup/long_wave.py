@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -48,6 +48,7 @@ class Coupled(CoupledRotor):
     area, momentum : of all layers, shape (l, c)
     active : which of them are layers now, shape (l,)
     machine, state, room : of those
+    kept : steps written down since `followed` was asked last, rows of the state's trace
     """
 
     layers: Record
@@ -57,6 +58,7 @@ class Coupled(CoupledRotor):
     machine: Machine
     state: State
     room: Room
+    kept: list[Array] = field(default_factory=list)
 
     @property
     def shaft(self) -> np.record:
@@ -92,13 +94,40 @@ class Coupled(CoupledRotor):
 
         self.shaft.rate = rate
         outcome, resumed = Outcome.RAN_OUT, False
-        for steps in slices(most, max(1, self.state.area.size)):
+        rows = self.state.trace.shape[0]
+        for steps in slices(most, max(1, self.state.area.size), rows):
             found, _ = compiled(advance, self.machine, self.state, self.room, stop, courant, steps, resumed)
             outcome, resumed = Outcome(found), True
+            self._collect()
             if outcome is not Outcome.RAN_OUT:
                 break
         self.area[self.active], self.momentum[self.active] = self.state.area, self.state.momentum
         return outcome
+
+    def follow(self, rows: int) -> None:
+        """Write every step down from here on; 0 writes none.
+
+        Parameters
+        ----------
+        rows : steps between two looks of Python
+        """
+        width = 2 + self.state.place.size + 2 * self.state.area.shape[0]
+        self.state = self.state._replace(trace=np.zeros((rows, width)))
+        self.state.pace[0].kept = 0.0
+        self.kept = []
+
+    def followed(self) -> Array:
+        """The steps since this was asked last, rows of the state's trace, shape (k, 2 + n + 2 l)."""
+        found = np.concatenate([self.state.trace[:0], *self.kept])
+        self.kept = []
+        return found
+
+    def _collect(self) -> None:
+        """Take the steps out of the trace."""
+        pace, trace = self.state.pace[0], self.state.trace
+        if trace.shape[0] and pace.kept:
+            self.kept.append(trace[: int(pace.kept)].copy())
+            pace.kept = 0.0
 
     def energy(self) -> float:
         """Kinetic and elastic energy of rotor and liquid, J [theory: coupling, eq. 9]."""
@@ -193,6 +222,7 @@ class Coupled(CoupledRotor):
             push=np.zeros((count, 2, 2)),
             pace=_fresh_pace(),
         )
+        self.follow(old.trace.shape[0])
         self.room = _room(old.place.size, count, cells)
 
     def read(self) -> Reading:
@@ -286,6 +316,7 @@ def couple(
             pace=_fresh_pace(),
             sums=records(SUMS),
             crest=records(CREST),
+            trace=np.zeros((0, 2 + n)),
         ),
         room=_room(n, 0, cells),
     )

@@ -111,8 +111,8 @@ GAINS = floats("torque", "heat", "loss", "missed")
 # The rotation: speed, angle turned, time; rate of change of the speed on its ramp, moment of inertia about
 # the axis with a motor.
 SHAFT = floats("spin", "angle", "time", "rate", "inertia")
-# Lengths of the last two steps, the fastest wave, and by what the next step is shortened.
-PACE = floats("last", "before", "fastest", "share")
+# Lengths of the last two steps, the fastest wave, by what the next step is shortened; rows of the trace kept.
+PACE = floats("last", "before", "fastest", "share", "kept")
 # The largest amplitude since the moment was last read, and the speed and time of it.
 CREST = floats("amplitude", "speed", "time")
 # What is summed up over time [theory: coupling, eq. 9-10]: work of the unbalance, of the drive on the liquid,
@@ -162,6 +162,8 @@ class State(NamedTuple):
     pace : record PACE, shape (1,)
     sums : record SUMS, shape (1,)
     crest : record CREST, shape (1,)
+    trace : time, angle, coordinates, and the first moment of each layer over R^3 in the drum frame, of every
+        step, shape (k, 2 + n + 2 l); k = 0 where nobody wants them
     """
 
     place: Array
@@ -173,6 +175,7 @@ class State(NamedTuple):
     pace: Record
     sums: Record
     crest: Record
+    trace: Array
 
 
 class Room(NamedTuple):

@@ -104,6 +104,31 @@ def test_momentum_is_handed_over_to_rounding() -> None:
     np.testing.assert_allclose(momentum(), before, rtol=0.0, atol=1e-12 * np.abs(before).max())
 
 
+def test_every_step_is_written_down() -> None:
+    """Steps followed end where the machine stands, whatever the slices; following changes no digit."""
+    rotor = Jeffcott(3.0, 3.0 * 15.0**2, 4.0, 2e-3)
+    found = []
+    for rows in (0, 7, 500):
+        machine = couple(rotor.system(), [layer(8e-4)], 20.0, Friction(), 0.0, 32, False)
+        machine.follow(rows)
+        for stop in (0.15, 0.3):
+            assert machine.advance(stop, 0.0, 0.8, 10**6) == Outcome.DONE
+        steps = machine.followed()
+        assert steps.shape == (machine.sums.steps if rows else 0, 6)
+        found.append((machine.state.place.copy(), machine.read().offset, steps))
+    (place, offset, _), (_, _, few), (_, _, many) = found
+    for other in found[1:]:
+        np.testing.assert_array_equal(other[0], place)
+    np.testing.assert_array_equal(few, many)
+    assert np.all(np.diff(many[:, 0]) > 0.0)
+    np.testing.assert_array_equal(many[-1, 2:4], place)
+    # The moment is over R^3 and in the drum; the offset is that over the liquid's area, in space.
+    fill = layer(8e-4)
+    area = fill.volume / (fill.chamber.height * fill.chamber.radius**2)
+    seen = complex(*many[-1, 4:]) / area * fill.chamber.radius * np.exp(1j * many[-1, 1])
+    np.testing.assert_allclose(seen, offset[0], rtol=1e-9)
+
+
 def test_energy_closes_with_the_mesh() -> None:
     """What the audit's parts leave vanishes with the square of the step in smooth motion under gravity."""
     rotor = Jeffcott(3.0, 3.0 * 15.0**2, 4.0, 2e-3)
