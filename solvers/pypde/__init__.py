@@ -28,18 +28,23 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from solvers.pypde.coupled import CoupledSolver, RotorLayersPDE
     from solvers.pypde.long_wave import AnnularLongWavePDE, FiniteVolumeSolver
     from solvers.pypde.one_family import ExponentialSolver, KdvBurgersPDE, SplitPDE, circle
 
 __all__ = [
     "AnnularLongWavePDE",
+    "CoupledSolver",
     "ExponentialSolver",
     "FiniteVolumeSolver",
     "KdvBurgersPDE",
+    "RotorLayersPDE",
     "SplitPDE",
     "circle",
 ]
-_HOMES = {"AnnularLongWavePDE": "long_wave", "FiniteVolumeSolver": "long_wave"}
+_HOMES = {"AnnularLongWavePDE": "long_wave", "FiniteVolumeSolver": "long_wave"} | dict.fromkeys(
+    ("CoupledSolver", "RotorLayersPDE"), "coupled"
+)
 
 
 def __getattr__(name: str) -> Any:

@@ -1,0 +1,381 @@
+"""A rotor with its long-wave layers as one py-pde equation, and the compiled coupled steps as a py-pde solver.
+
+The layers are fields; each coordinate of the rotor and each of its rates is a field that is the same all
+round. The spin is constant. Importing this module registers the solver "coupled".
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from pde.backends.base import BackendBase
+from pde.fields.collection import FieldCollection
+from pde.fields.scalar import ScalarField
+from pde.grids.base import GridBase
+from pde.pdes.base import PDEBase
+from pde.solvers.base import ConvergenceError, SolverBase
+
+from fluid import long_wave
+from fluid.fill import Fill
+from fluid.friction import NO_FRICTION, STOKES, Friction, damping_rate
+from meshes.arrays import Array, Complex, Flags
+from meshes.errors import InputError
+from solvers.layer.finite_volume import DRY, GHOSTS, WORK, rates
+from solvers.layer.records import Outcome
+from solvers.layer.state import ring
+from solvers.pypde.one_family import circle
+from solvers.pypde.terms import faded_velocity
+from solvers.rotor.system import RotorSystem
+from solvers.runup.long_wave import Coupled, couple
+
+_ROUNDS, _AGREED = 60, 1e-13
+_ROWS = 4096  # steps written down between two looks of Python
+
+
+class RotorLayersPDE(PDEBase):  # type: ignore[no-untyped-call]
+    """Rotor and layers at a constant spin [theory: coupling, eq. 1-5].
+
+    The state is a collection on a grid as from `circle`: "area" and "momentum" of each captured layer as of
+    `AnnularLongWavePDE`, then the coordinates of the rotor by their names, then their rates of change, uniform
+    fields all of them. At time 0 the drum's zero mark lies along the first direction.
+
+    Parameters
+    ----------
+    system : the dry rotor
+    fills : its chambers; liquid that is no layer is a mass: none, a full chamber, or below its speed of capture
+    spin : Omega, rad/s
+    friction : on the walls; the laminar law takes the frequency of the slower free wave
+    gravity : across the axis, against the first direction, m/s^2
+    dispersion : add the finite depth's dispersion [theory: long_wave, eq. 12]
+    layers : which chambers hold a layer, shape (l,); None takes those whose liquid rides with the drum
+
+    Raises
+    ------
+    InputError : a negative gravity
+    """
+
+    def __init__(
+        self,
+        system: RotorSystem,
+        fills: Sequence[Fill],
+        spin: float,
+        *,
+        friction: Friction = NO_FRICTION,
+        gravity: float = 0.0,
+        dispersion: bool = False,
+        layers: Flags | None = None,
+    ) -> None:
+        super().__init__()
+        self.system, self.fills, self.spin = system, tuple(fills), spin
+        self.friction, self.gravity, self.dispersion = friction, gravity, dispersion
+        self.layers = self.machine(8).active if layers is None else np.asarray(layers, dtype=bool)
+        self.explicit_time_dependence = True
+
+    def machine(self, cells: int) -> Coupled:
+        """The same for the compiled steps, at rest, with its layers as they are caught at this spin.
+
+        Parameters
+        ----------
+        cells : round each wall
+        """
+        given = (self.system, self.fills, self.spin, self.friction, self.gravity, cells, self.dispersion)
+        found = couple(*given)
+        if hasattr(self, "layers") and not np.array_equal(found.active, self.layers):
+            found.capture = np.where(self.layers, 0.0, math.inf)
+            found.switch()
+        return found
+
+    def start(
+        self,
+        cells: int,
+        coordinates: Array | None = None,
+        rate: Array | None = None,
+        area: Array | None = None,
+        momentum: Array | None = None,
+    ) -> Any:
+        """State of so many cells; n coordinates, l captured layers.
+
+        Parameters
+        ----------
+        cells : round each wall, 8 or more
+        coordinates, rate : of the rotor, shape (n,); at rest if None
+        area, momentum : A, m^2, and q, m^4/s, shape (l, cells); uniform and at rest in the drum if None
+        """
+        rest, n = self.machine(cells), len(self.system.coordinates)
+        square = np.square(rest.machine.layers.radius)[:, None]
+        parts = [
+            rest.state.area * square if area is None else area,
+            rest.state.momentum * np.square(square) if momentum is None else momentum,
+        ]
+        uniform = [np.zeros(n) if part is None else part for part in (coordinates, rate)]
+        return self._collection(circle(cells), *parts, *uniform)
+
+    def _collection(self, grid: GridBase, area: Array, momentum: Array, place: Array, rate: Array) -> Any:
+        """State from its parts; places and rates of shape (n,)."""
+        cells, names = grid.shape[0], self.system.coordinates
+        which = np.flatnonzero(self.layers)
+        fields = [ScalarField(grid, part, label=f"area {j}") for j, part in zip(which, area, strict=True)]
+        fields += [
+            ScalarField(grid, part, label=f"momentum {j}") for j, part in zip(which, momentum, strict=True)
+        ]
+        for values, label in ((place, "{}"), (rate, "rate of {}")):
+            fields += [
+                ScalarField(grid, np.full(cells, value), label=label.format(name))
+                for name, value in zip(names, values, strict=True)
+            ]
+        return FieldCollection(fields)
+
+    def parts(self, state: Any) -> tuple[Array, Array, Array, Array]:
+        """Area and momentum of the layers, shape (l, c), coordinates and rates, shape (n,).
+
+        Raises
+        ------
+        InputError : other fields
+        """
+        n, count = len(self.system.coordinates), int(self.layers.sum())
+        if not isinstance(state, FieldCollection) or len(state) != 2 * (n + count):
+            allowed = f"{2 * count} fields of the layers and {2 * n} of the rotor, as from `start`"
+            raise InputError("state", type(state).__name__, allowed)
+        data = state.data
+        return data[:count], data[count : 2 * count], data[2 * count : -n, 0], data[-n:, 0]
+
+    def evolution_rate(self, state: Any, t: float = 0.0) -> Any:
+        """Right-hand side of the equation, for py-pde's own solvers.
+
+        The force of a layer depends on the acceleration of its chamber: it is found by rounds of a linear
+        equation with the inertia of the flow [theory: coupling, eq. 4].
+
+        Parameters
+        ----------
+        state : as from `start`
+        t : time, s
+
+        Returns
+        -------
+        Rates of all fields
+        """
+        area, momentum, place, rate = self.parts(state)
+        machine = self.machine(area.shape[1] if area.size else 8)
+        layers = [
+            _Layer(machine, j, area[j], momentum[j], self.spin, self.spin * t) for j in range(len(area))
+        ]
+        system, turn = self.system, cmath.exp(1j * self.spin * t)
+        mass, _, _, stiffness = machine.machine.matrices
+        damping = system.damping + self.spin * system.gyroscopic
+        push = (self.spin**2 * system.unbalance * turn).real - damping @ rate - stiffness @ place
+        planes = machine.machine.planes
+        left = mass + sum(
+            (plane.T @ (layer.mass * np.eye(2) - layer.inertia) @ plane for layer, plane in
+             zip(layers, planes, strict=True)), np.zeros_like(mass),
+        )  # fmt: skip
+        acceleration = np.zeros(place.size)
+        for _ in range(_ROUNDS):
+            right = push.copy()
+            for layer, plane in zip(layers, planes, strict=True):
+                seen = plane @ acceleration
+                layer.accelerate(machine.machine.gravity - seen)
+                right -= plane.T @ (layer.momentum_rate + layer.inertia @ seen)
+            before, acceleration = acceleration, np.linalg.solve(left, right)
+            if np.abs(acceleration - before).max() <= _AGREED * np.abs(acceleration).max():
+                break
+        d_area = np.array([layer.d_area for layer in layers]).reshape(area.shape)
+        d_momentum = np.array([layer.d_momentum for layer in layers]).reshape(area.shape)
+        return self._collection(state.grid, d_area, d_momentum, rate, acceleration)
+
+    def deflection(self, state: Any) -> Complex:
+        """Of each chamber's axis in the standing frame, m, complex, shape (l,)."""
+        place = self.parts(state)[2]
+        return np.array([complex(*(self.system.at(fill.chamber.plane) @ place)) for fill in self.fills])
+
+    def determine_backend(
+        self, state: Any, backend: str | BackendBase[Any] = "auto", *, use_mpi: bool = False
+    ) -> BackendBase[Any]:
+        """The backend for a solver: numpy unless another is asked for.
+
+        Parameters
+        ----------
+        state, backend, use_mpi : as py-pde passes them
+        """
+        return super().determine_backend(state, "numpy" if backend == "auto" else backend, use_mpi=use_mpi)
+
+
+class _Layer:
+    """A layer at one moment: its rates, and its momentum relative to its axis, under any acceleration.
+
+    Lengths over R in the drum frame, but for `mass`, `inertia` and `momentum_rate`, which are in SI units in
+    the standing frame.
+    """
+
+    def __init__(
+        self, machine: Coupled, j: int, area: Array, momentum: Array, spin: float, angle: float
+    ) -> None:
+        layer = machine.machine.layers[j]
+        self.layer, self.spin, self.turn = layer, spin, cmath.exp(1j * angle)
+        self.a = np.maximum(area / layer.radius**2, 0.0)
+        self.q = momentum / layer.radius**4
+        self.angles, self.mass = ring(area.size), float(layer.mass)
+        self.u = faded_velocity(self.a, self.q, spin)
+        self.surface, self.log = long_wave.free_surface_radius(self.a), long_wave.layer_log(self.a)
+        ray = self.surface * (self.angles[0] + 1j * self.angles[1])
+        self.across = 0.5 * (np.roll(ray, -1) - np.roll(ray, 1))
+        self.inertia = self._flow_inertia()
+        self.shear = self._shear()
+        self.d_area, self.d_momentum, self.momentum_rate = area, momentum, np.zeros(2)
+
+    def _flow_inertia(self) -> Array:
+        """Of the flow under a body force, standing frame, kg, shape (2, 2) [theory: coupling, eq. 4]."""
+        step = 2.0 * math.pi / self.a.size
+        seen = self.across * self.turn
+        parts = np.stack([seen.real, seen.imag])
+        scale = self.layer.weight * self.layer.radius**2
+        return np.asarray(scale * (parts * self.log) @ parts.T / step)
+
+    def _shear(self) -> Array:
+        """Rate at which friction takes q [theory: long_wave, eq. 9]."""
+        layer, coefficient = self.layer, float(self.layer.coefficient)
+        if layer.law == STOKES:
+            coefficient *= math.sqrt(self.spin)
+        lost, wet = np.zeros_like(self.a), self.a > DRY
+        a, u = self.a[wet], self.u[wet]
+        depth = 2.0 * a / (1.0 + self.surface[wet])
+        lost[wet] = damping_rate(int(layer.law), coefficient, float(layer.lid), depth, a, u) * a * u
+        return lost
+
+    def accelerate(self, push: Array) -> None:
+        """Take a body force, m/s^2, standing frame, shape (2,): minus the acceleration, and gravity."""
+        n, spin, layer = self.a.size, self.spin, self.layer
+        force = complex(*push) / layer.radius / self.turn
+        cell, face = (
+            force.real * self.angles[k] + force.imag * self.angles[k + 1] for k in (0, 2)
+        )  # fmt: skip
+        d_a, d_q, work = np.zeros(n), np.zeros(n), np.zeros((WORK, n + 2 * GHOSTS))
+        rates(self.a, self.q, spin, 0.0, cell, face, 2.0 * math.pi / n, 0.0, layer.spread, work, d_a, d_q)
+        d_q -= self.shear
+        self.d_area, self.d_momentum = d_a * layer.radius**2, d_q * layer.radius**4
+        self.momentum_rate = self._momentum_rate(d_a, d_q)
+
+    def _momentum_rate(self, d_a: Array, d_q: Array) -> Array:
+        """Rate of change of the momentum relative to the axis, N, standing frame [theory: coupling, eq. 3]."""
+        wet = self.a > DRY
+        d_u = np.divide(d_q - self.q * d_a / np.where(wet, self.a, 1.0), self.a, where=wet, out=np.zeros_like(d_a))
+        d_u += np.where(wet, self.spin * d_a, 0.0)
+        d_flow = d_u * self.log + self.u * d_a / np.square(self.surface)
+        rays = self.angles[0] + 1j * self.angles[1]
+        d_ray = -d_a / self.surface * rays
+        d_across = 0.5 * (np.roll(d_ray, -1) - np.roll(d_ray, 1))
+        step = 2.0 * math.pi / self.a.size
+        d_flowing = np.sum(d_flow * self.across + self.u * self.log * d_across)
+        d_moment = np.sum(self.surface * d_a * rays) * step
+        flowing = np.sum(self.u * self.log * self.across)
+        r = self.surface
+        moment = np.sum((1.0 - r) * (1.0 + r + r * r) / 3.0 * rays) * step
+        relative, changed = flowing + 1j * self.spin * moment, d_flowing + 1j * self.spin * d_moment
+        found = (changed + 1j * self.spin * relative) * self.turn * self.layer.weight * self.layer.radius**3
+        return np.array([found.real, found.imag])
+
+
+class CoupledSolver(SolverBase):  # type: ignore[no-untyped-call]
+    """The compiled coupled steps of the run-up, by the name "coupled" [theory: coupling, eq. 5].
+
+    Steps by the Courant number, cut to land on the times of trackers. Hooks after each step are not called.
+    `info["followed"]` holds what every step of the last stretch has left, for trackers: see
+    `solvers.runup.state.State.trace`.
+
+    Parameters
+    ----------
+    pde : the equation
+    backend : numpy, whatever is asked
+    courant : Courant number, above 0, at most 0.9
+    follow : write every step down
+
+    Raises
+    ------
+    InputError : an equation that is no `RotorLayersPDE`, another Courant number
+    """
+
+    name = "coupled"
+    _use_post_step_hook = False
+
+    def __init__(
+        self,
+        pde: RotorLayersPDE,
+        *,
+        backend: str | BackendBase[Any] = "auto",
+        courant: float = 0.8,
+        follow: bool = False,
+    ) -> None:
+        super().__init__(pde, backend="numpy" if backend == "auto" else backend)
+        if not isinstance(pde, RotorLayersPDE):
+            raise InputError("pde", type(pde).__name__, "a RotorLayersPDE")
+        if not 0.0 < courant <= 0.9:
+            raise InputError("courant", courant, "above 0, at most 0.9")
+        self.equation, self.courant, self.follow = pde, courant, follow
+
+    def make_stepper(self, state: Any, dt: float | None = None) -> Any:
+        """Function that advances a state from one time to another.
+
+        Parameters
+        ----------
+        state : an example
+        dt : None; the Courant number sets the steps
+
+        Raises
+        ------
+        InputError : other fields, a `dt`
+        """
+        if dt is not None:
+            raise InputError("dt", dt, "left out: `courant` sets the steps")
+        self.equation.parts(state)
+        self._select_backend(state)
+        self.info |= {"dt": None, "dt_adaptive": True, "stochastic": False, "steps": 0}
+        self.info |= {"courant": self.courant, "outcome": Outcome.DONE, "followed": None}
+        machine = self.equation.machine(state.grid.shape[0])
+        machine.follow(_ROWS if self.follow else 0)
+        left: Array | None = None
+
+        def advance(state: Any, start: float, stop: float) -> float:
+            nonlocal left
+            # Where nobody has touched the state the steps go on as if there had been no stop.
+            if left is None or not np.array_equal(left, state.data):
+                self._load(machine, state, start)
+            steps = machine.sums.steps
+            most = _budget(machine, stop, self.courant)
+            outcome = machine.advance(stop, 0.0, self.courant, most)
+            self.info["outcome"] = outcome
+            if outcome is not Outcome.DONE:
+                raise ConvergenceError(f"{outcome.message} between t = {start:g} s and {stop:g} s")
+            self._store(machine, state)
+            left = state.data.copy()
+            self.info["steps"] += int(machine.sums.steps - steps)
+            self.info["followed"] = machine.followed() if self.follow else None
+            return stop
+
+        return advance
+
+    def _load(self, machine: Coupled, state: Any, time: float) -> None:
+        """Take a state into the machine."""
+        area, momentum, place, rate = self.equation.parts(state)
+        square = np.square(machine.machine.layers.radius)[:, None]
+        machine.state.area[:], machine.state.momentum[:] = area / square, momentum / np.square(square)
+        machine.state.place[:], machine.state.rate[:] = place, rate
+        machine.shaft.time, machine.shaft.angle = time, self.equation.spin * time
+
+    def _store(self, machine: Coupled, state: Any) -> None:
+        """Give the machine's moment to a state."""
+        area, momentum, _, _ = self.equation.parts(state)
+        square = np.square(machine.machine.layers.radius)[:, None]
+        area[:], momentum[:] = machine.state.area * square, machine.state.momentum * np.square(square)
+        n = machine.state.place.size
+        state.data[-2 * n : -n] = machine.state.place[:, None]
+        state.data[-n:] = machine.state.rate[:, None]
+
+
+def _budget(machine: Coupled, stop: float, courant: float) -> int:
+    """Most steps up to a time."""
+    from solvers.slices import step_budget
+
+    return step_budget(stop - machine.time, machine.spin, machine.theta.size, courant)
