@@ -28,7 +28,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from solvers.pypde.coupled import CoupledSolver, RotorLayersPDE
+    from solvers.pypde.coupled import CoupledSolver, RotorLayersPDE, TurnTracker, run
     from solvers.pypde.long_wave import AnnularLongWavePDE, FiniteVolumeSolver
     from solvers.pypde.one_family import ExponentialSolver, KdvBurgersPDE, SplitPDE, circle
 
@@ -40,10 +40,12 @@ __all__ = [
     "KdvBurgersPDE",
     "RotorLayersPDE",
     "SplitPDE",
+    "TurnTracker",
     "circle",
+    "run",
 ]
 _HOMES = {"AnnularLongWavePDE": "long_wave", "FiniteVolumeSolver": "long_wave"} | dict.fromkeys(
-    ("CoupledSolver", "RotorLayersPDE"), "coupled"
+    ("CoupledSolver", "RotorLayersPDE", "TurnTracker", "run"), "coupled"
 )
 
 

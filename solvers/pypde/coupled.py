@@ -1,4 +1,4 @@
-"""A rotor with its long-wave layers as one py-pde equation, and the compiled coupled steps as a py-pde solver.
+"""A rotor with its long-wave layers as one py-pde equation, and the compiled coupled steps as its solver.
 
 The layers are fields; each coordinate of the rotor and each of its rates is a field that is the same all
 round. The spin is constant. Importing this module registers the solver "coupled".
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from pde.fields.scalar import ScalarField
 from pde.grids.base import GridBase
 from pde.pdes.base import PDEBase
 from pde.solvers.base import ConvergenceError, SolverBase
+from pde.trackers.base import FinishedSimulation, TrackerBase
 
 from fluid import long_wave
 from fluid.fill import Fill
@@ -39,14 +40,14 @@ _ROWS = 4096  # steps written down between two looks of Python
 class RotorLayersPDE(PDEBase):  # type: ignore[no-untyped-call]
     """Rotor and layers at a constant spin [theory: coupling, eq. 1-5].
 
-    The state is a collection on a grid as from `circle`: "area" and "momentum" of each captured layer as of
-    `AnnularLongWavePDE`, then the coordinates of the rotor by their names, then their rates of change, uniform
-    fields all of them. At time 0 the drum's zero mark lies along the first direction.
+    The state is a collection on a grid as from `circle`: "area" of each captured layer and "momentum" of each
+    as of `AnnularLongWavePDE`, then the coordinates of the rotor by their names and their rates of change,
+    uniform fields. At time 0 the drum's zero mark lies along the first direction.
 
     Parameters
     ----------
     system : the dry rotor
-    fills : its chambers; liquid that is no layer is a mass: none, a full chamber, or below its speed of capture
+    fills : its chambers; liquid of a full chamber, or below its speed of capture, is a mass
     spin : Omega, rad/s
     friction : on the walls; the laminar law takes the frequency of the slower free wave
     gravity : across the axis, against the first direction, m/s^2
@@ -140,7 +141,7 @@ class RotorLayersPDE(PDEBase):  # type: ignore[no-untyped-call]
         if not isinstance(state, FieldCollection) or len(state) != 2 * (n + count):
             allowed = f"{2 * count} fields of the layers and {2 * n} of the rotor, as from `start`"
             raise InputError("state", type(state).__name__, allowed)
-        data = state.data
+        data: Array = state.data
         return data[:count], data[count : 2 * count], data[2 * count : -n, 0], data[-n:, 0]
 
     def evolution_rate(self, state: Any, t: float = 0.0) -> Any:
@@ -232,7 +233,8 @@ class _Layer:
         seen = self.across * self.turn
         parts = np.stack([seen.real, seen.imag])
         scale = self.layer.weight * self.layer.radius**2
-        return np.asarray(scale * (parts * self.log) @ parts.T / step)
+        found: Array = scale * (parts * self.log) @ parts.T / step
+        return found
 
     def _shear(self) -> Array:
         """Rate at which friction takes q [theory: long_wave, eq. 9]."""
@@ -259,9 +261,11 @@ class _Layer:
         self.momentum_rate = self._momentum_rate(d_a, d_q)
 
     def _momentum_rate(self, d_a: Array, d_q: Array) -> Array:
-        """Rate of change of the momentum relative to the axis, N, standing frame [theory: coupling, eq. 3]."""
+        """Rate of change of the momentum relative to the axis, N, standing frame."""
         wet = self.a > DRY
-        d_u = np.divide(d_q - self.q * d_a / np.where(wet, self.a, 1.0), self.a, where=wet, out=np.zeros_like(d_a))
+        d_u = np.divide(
+            d_q - self.q * d_a / np.where(wet, self.a, 1.0), self.a, where=wet, out=np.zeros_like(d_a)
+        )
         d_u += np.where(wet, self.spin * d_a, 0.0)
         d_flow = d_u * self.log + self.u * d_a / np.square(self.surface)
         rays = self.angles[0] + 1j * self.angles[1]
@@ -333,6 +337,7 @@ class CoupledSolver(SolverBase):  # type: ignore[no-untyped-call]
         self._select_backend(state)
         self.info |= {"dt": None, "dt_adaptive": True, "stochastic": False, "steps": 0}
         self.info |= {"courant": self.courant, "outcome": Outcome.DONE, "followed": None}
+        self.info["layers"] = int(self.equation.layers.sum())
         machine = self.equation.machine(state.grid.shape[0])
         machine.follow(_ROWS if self.follow else 0)
         left: Array | None = None
@@ -379,3 +384,78 @@ def _budget(machine: Coupled, stop: float, courant: float) -> int:
     from solvers.slices import step_budget
 
     return step_budget(stop - machine.time, machine.spin, machine.theta.size, courant)
+
+
+def run(
+    equation: RotorLayersPDE,
+    state: Any,
+    stretch: tuple[float, float],
+    trackers: Sequence[Any],
+    **options: Any,
+) -> tuple[Any, Outcome]:
+    """Solve as py-pde does; an interrupt stays one, and steps that fail are an outcome.
+
+    Parameters
+    ----------
+    equation, state : what is solved, and where it begins
+    stretch : of time, s
+    trackers : of py-pde
+    options : of the solver
+
+    Returns
+    -------
+    The state reached, and how it ended
+
+    Raises
+    ------
+    KeyboardInterrupt : which py-pde itself takes for an end
+    """
+    try:
+        state = equation.solve(state, stretch, tracker=list(trackers), **options)
+    except ConvergenceError:
+        return equation.diagnostics["last_state"], equation.diagnostics["solver"]["outcome"]
+    info = equation.diagnostics["controller"]
+    if not info["successful"] and info["stop_reason"] == "User interrupted simulation":
+        raise KeyboardInterrupt
+    return state, Outcome.DONE
+
+
+class TurnTracker(TrackerBase):  # type: ignore[no-untyped-call]
+    """Hands on what the steps of each turn have left, until that is enough.
+
+    It serves the solver "coupled" with `follow`, and is called several times a turn.
+
+    Parameters
+    ----------
+    turn : time of a turn, s
+    enough : called with the steps of a turn, rows of `solvers.runup.state.State.trace`, with the layers at
+        its marks, areas A, m^2, shape (marks, l, c), and with the state at its end, which it may change;
+        tells whether the run may end
+    marks : how often a turn the layers are looked at
+    """
+
+    def __init__(self, turn: float, enough: Callable[[Array, Array, Any], bool], marks: int = 8) -> None:
+        super().__init__(interrupts=turn / marks)
+        self.enough, self.marks = enough, marks
+        self.steps: list[Array] = []
+        self.layers: list[Array] = []
+
+    def initialize(self, field: Any, info: dict[str, Any] | None = None) -> float:
+        """Keep a hand on what the solver tells."""
+        self.info: dict[str, Any] = {} if info is None else info
+        return super().initialize(field, info)
+
+    def handle(self, field: Any, t: float) -> None:
+        """Take what has come since the last time."""
+        steps = self.info["solver"]["followed"]
+        if steps is None:
+            return
+        self.steps.append(steps)
+        count = int(self.info["solver"]["layers"])
+        self.layers.append(field.data[:count].copy())
+        if len(self.layers) < self.marks:
+            return
+        turn, layers = np.concatenate(self.steps), np.stack(self.layers)
+        self.steps, self.layers = [], []
+        if self.enough(turn, layers, field):
+            raise FinishedSimulation("settled")

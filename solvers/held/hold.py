@@ -1,0 +1,149 @@
+"""One speed: rotor and layers go on until they are steady, periodic, or bounded without ever repeating."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from fluid.fill import Fill
+from meshes.arrays import Array, Complex
+from meshes.errors import require_positive
+from solvers.held.state import HeldMachine, HeldState, HoldNumerics, Moment
+from solvers.held.turns import Watch
+from solvers.layer.records import Outcome
+from solvers.layer.state import ring
+from solvers.runup.state import mean_area, planes_of
+
+
+def start(
+    machine: HeldMachine,
+    spin: float,
+    numerics: HoldNumerics,
+    coordinates: Complex | None = None,
+    kick: float = 0.0,
+) -> Moment:
+    """Rotor in a synchronous motion with its liquid at rest in the drum.
+
+    Parameters
+    ----------
+    machine : what is held
+    spin : Omega, rad/s
+    numerics : resolution
+    coordinates : complex amplitudes of the motion, q = Re(coordinates e^{i Omega t}), shape (n,)
+    kick : velocity of the axis beside that of the motion, over the layer's mean depth times the spin
+    """
+    from solvers.pypde import RotorLayersPDE
+
+    equation = RotorLayersPDE(
+        machine.system, machine.fills, spin, friction=machine.friction, gravity=machine.gravity
+    )
+    n = len(machine.system.coordinates)
+    motion = np.zeros(n, dtype=complex) if coordinates is None else np.asarray(coordinates)
+    rate = (1j * spin * motion).real
+    planes, layers = planes_of(machine.system, machine.fills), np.flatnonzero(equation.layers)
+    area = np.zeros((layers.size, numerics.cells))
+    for row, j in enumerate(layers.tolist()):
+        fill, plane = machine.fills[j], planes[j]
+        forward = 0.5 * complex(plane[0] @ motion + 1j * (plane[1] @ motion))
+        area[row] = _circle(fill, forward, numerics.cells)
+        if kick:
+            size = plane[0] @ np.linalg.solve(machine.system.mass, plane[0])
+            rate = rate + kick * fill.depth * spin * np.linalg.solve(machine.system.mass, plane[0]) / size
+    return Moment(spin, motion.real, rate, area, -spin * np.square(area), equation.layers)
+
+
+def _circle(fill: Fill, deflection: complex, cells: int) -> Array:
+    """Area of each cell under a circle about the rotation axis, m^2 [theory: long_wave, eq. 6]."""
+    radius, angles = fill.chamber.radius, ring(cells)
+    e = deflection / radius
+    along = e.real * angles[0] + e.imag * angles[1]
+    across = e.real * angles[1] - e.imag * angles[0]
+    whole = mean_area(fill) * cells
+
+    def area(squared: float) -> Array:
+        surface = np.sqrt(np.maximum(squared - np.square(across), 0.0)) - along
+        return np.asarray(0.5 * np.maximum(1.0 - np.square(np.clip(surface, 0.0, 1.0)), 0.0))
+
+    low, high = 0.0, (1.0 + abs(e)) ** 2
+    for _ in range(100):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if area(middle).sum() > whole else (low, middle)
+    found = area(0.5 * (low + high))
+    return np.asarray(found * (whole / found.sum()) * radius**2)
+
+
+def hold(
+    machine: HeldMachine,
+    begin: Moment,
+    numerics: HoldNumerics | None = None,
+    slowest: float = 0.0,
+    trackers: Sequence[Any] = (),
+) -> HeldState:
+    """Hold a machine at the spin of a moment until its motion has settled.
+
+    Parameters
+    ----------
+    machine : what is held
+    begin : where it begins
+    numerics : resolution
+    slowest : rate at which the slowest small motion dies or grows, 1/s; a limit cycle is told from a motion
+        that dies slowly by windows long against it; 0 where it is not known
+    trackers : of py-pde, beside our own
+
+    Returns
+    -------
+    HeldState
+
+    Raises
+    ------
+    InputError : a value out of its range
+    KeyboardInterrupt : broken off
+    """
+    numerics = numerics or HoldNumerics()
+    require_positive("speed", begin.spin)
+    watch, moment, outcome = Watch(machine, begin, numerics, slowest), begin, Outcome.RAN_OUT
+    while outcome is not Outcome.DONE:
+        moment, outcome = _march(machine, moment, numerics, watch, trackers)
+        fallen = _fallen(machine, moment, outcome)
+        if fallen is None:
+            break
+        moment = fallen
+        watch.forget()
+    return watch.answer(moment, outcome)
+
+
+def _march(
+    machine: HeldMachine, moment: Moment, numerics: HoldNumerics, watch: Watch, trackers: Sequence[Any]
+) -> tuple[Moment, Outcome]:
+    """On py-pde's road until the watch has seen enough, the turns have run out or the steps have failed."""
+    from solvers.pypde import RotorLayersPDE, TurnTracker, run
+
+    equation = RotorLayersPDE(
+        machine.system, machine.fills, moment.spin, friction=machine.friction, gravity=machine.gravity,
+        dispersion=numerics.dispersion, layers=moment.layers,
+    )  # fmt: skip
+    state = equation.start(numerics.cells, moment.coordinates, moment.rate, moment.area, moment.momentum)
+    turn = 2.0 * math.pi / moment.spin
+    stretch = 0.0, (numerics.turns - watch.count) * turn
+    tracker = TurnTracker(turn, watch.turn)
+    options = {"solver": "coupled", "follow": True, "courant": numerics.courant}
+    state, outcome = run(equation, state, stretch, [tracker, *trackers], **options)
+    area, momentum, place, rate = (part.copy() for part in equation.parts(state))
+    return Moment(moment.spin, place, rate, area, momentum, moment.layers), outcome
+
+
+def _fallen(machine: HeldMachine, moment: Moment, outcome: Outcome) -> Moment | None:
+    """The moment with its deepest layer at the bottom, where gravity has thrown it down; else None."""
+    thrown = outcome in (Outcome.AT_AXIS, Outcome.NOT_COUPLED)
+    if not (thrown and machine.gravity > 0.0 and moment.layers.any()):
+        return None
+    which = np.flatnonzero(moment.layers)
+    radius = np.array([machine.fills[j].chamber.radius for j in which.tolist()])
+    deepest = int(np.argmax(moment.area.max(axis=1) / np.square(radius)))
+    layers, kept = moment.layers.copy(), np.arange(which.size) != deepest
+    layers[which[deepest]] = False
+    return replace(moment, area=moment.area[kept], momentum=moment.momentum[kept], layers=layers)

@@ -1,0 +1,165 @@
+"""What is held, how it is resolved, and what comes of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from fluid.fill import Fill
+from fluid.friction import NO_FRICTION, Friction
+from meshes.arrays import Array, Complex, Flags
+from meshes.errors import InputError
+from solvers.rotor.system import RotorSystem
+
+# Turns a motion is looked at over before it may be called periodic, where nothing is known of it.
+SHORT = 8
+
+
+class HeldKind(StrEnum):
+    """What a motion settles to."""
+
+    STEADY = "steady"
+    PERIODIC = "periodic"
+    LIMIT_CYCLE = "limit_cycle"
+    NOT_SETTLED = "not_settled"
+
+
+@dataclass(frozen=True)
+class HoldNumerics:
+    """How a state is held.
+
+    Parameters
+    ----------
+    cells : finite volumes round each wall, from 8
+    dispersion : add the finite depth's dispersion to the layers
+    courant : Courant number of the layers, above 0, at most 0.9
+    tolerance : change of the amplitude over its size at which it has settled
+    turns : of the drum, at most
+
+    Raises
+    ------
+    InputError : a value out of its range
+    """
+
+    cells: int = 128
+    dispersion: bool = False
+    courant: float = 0.8
+    tolerance: float = 2e-4
+    turns: int = 1024
+
+    def __post_init__(self) -> None:
+        if not 8 <= self.cells <= 65536:
+            raise InputError("cells", self.cells, "from 8 to 65536")
+        if not 0.0 < self.courant <= 0.9:
+            raise InputError("courant", self.courant, "above 0, at most 0.9")
+        if not 0.0 < self.tolerance <= 0.1:
+            raise InputError("tolerance", self.tolerance, "above 0, at most 0.1")
+        if self.turns < 2 * SHORT:
+            raise InputError("turns", self.turns, f"{2 * SHORT} or more")
+
+
+@dataclass(frozen=True)
+class Moment:
+    """Rotor and layers when the drum's zero mark lies along the first direction; n coordinates, l layers.
+
+    Parameters
+    ----------
+    spin : Omega, rad/s
+    coordinates, rate : of the rotor, m or rad, and per second, shape (n,)
+    area, momentum : A, m^2, and q, m^4/s, of the layers' cells, shape (l, c)
+    layers : which chambers hold a layer
+    """
+
+    spin: float
+    coordinates: Array
+    rate: Array
+    area: Array
+    momentum: Array
+    layers: Flags
+
+    def at(self, spin: float) -> Moment:
+        """The same motion turn by turn at another spin: velocities go with it.
+
+        Parameters
+        ----------
+        spin : rad/s
+        """
+        share = spin / self.spin
+        return Moment(
+            spin, self.coordinates, self.rate * share, self.area, self.momentum * share, self.layers
+        )
+
+
+@dataclass(frozen=True)
+class HeldState:
+    """What rotor and liquid do at one speed; n coordinates, l chambers.
+
+    Deflections are those of the first chamber's axis, or of the axis at position 0 without one, from where it
+    rests without motion.
+
+    Parameters
+    ----------
+    spin : Omega, rad/s
+    kind : what it settles to
+    amplitude : mean over time of the axis' distance from where it rests, m
+    crest : mean over the turns of each turn's largest distance, m
+    least, largest : over time, m
+    coordinates : of the part that turns with the drum, q = Re(coordinates e^{i Omega t}), complex, shape (n,)
+    rest : mean of the coordinates, shape (n,)
+    liquid : mean of each layer's centre of mass from its chamber's axis, in the drum, complex, m, shape (l,)
+    ripple : largest distance of the centre of mass from that mean, m, shape (l,)
+    whirl_speed : strongest of the axis' frequencies that is not the spin's, standing frame, positive with the
+        spin, rad/s; nan where the motion repeats every turn
+    dry : the wall is dry somewhere, shape (l,)
+    captured : the liquid rides with the drum as a layer, shape (l,)
+    mean_rotation : of each layer relative to the drum at the end, rad/s, shape (l,)
+    mass_error : largest relative change of a layer's volume
+    change : of the amplitude that may still come, over its size
+    turns, steps : what it took
+    moment : where it ends, from which other speeds can go on
+    reason : why it did not settle, or empty
+    """
+
+    spin: float
+    kind: HeldKind
+    amplitude: float
+    crest: float
+    least: float
+    largest: float
+    coordinates: Complex
+    rest: Array
+    liquid: Complex
+    ripple: Array
+    whirl_speed: float
+    dry: Flags
+    captured: Flags
+    mean_rotation: Array
+    mass_error: float
+    change: float
+    turns: int
+    steps: int
+    moment: Moment
+    reason: str = ""
+
+    @property
+    def settled(self) -> bool:
+        """It came to an answer."""
+        return self.kind is not HeldKind.NOT_SETTLED
+
+
+@dataclass(frozen=True)
+class HeldMachine:
+    """What is held.
+
+    Parameters
+    ----------
+    system : the dry rotor
+    fills : its chambers with their liquid
+    friction : on the walls; the laminar law takes the frequency of the slower free wave
+    gravity : across the axis, m/s^2
+    """
+
+    system: RotorSystem
+    fills: tuple[Fill, ...]
+    friction: Friction = NO_FRICTION
+    gravity: float = 0.0

@@ -1,0 +1,138 @@
+"""States held at one speed: the statics where they are stable, limit cycles where they are not."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from fluid.fill import Fill
+from fluid.friction import Friction
+from fluid.liquid import Liquid
+from meshes.chamber import Chamber
+from meshes.errors import InputError
+from solvers.held.branch import HeldTask, held_branches, one_by_one
+from solvers.held.hold import hold, start
+from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.synchronous.response import response
+from solvers.whirl.growth import asynchronous_growth
+from tests.mutants import kills
+
+WATER = Liquid("water", 1000.0, 1e-6)
+RIG = Jeffcott(4.0, 4.0 * 110.0**2, 2.0 * 0.1 * 4.0 * 110.0, 6e-4)
+SMALL = Fill(Chamber(0.065, 0.02), WATER, 1e-5)
+
+
+def held(
+    rotor: Jeffcott,
+    fill: Fill,
+    spin: float,
+    friction: Friction,
+    numerics: HoldNumerics,
+    gravity: float = 0.0,
+    kick: float = 0.0,
+) -> HeldState:
+    """A planar rotor from its synchronous motion."""
+    steady = response(rotor, [fill], [spin], 0.0).coordinates[0]
+    growth = float(asynchronous_growth(rotor, [fill], np.array([spin]), friction)[0][0])
+    machine = HeldMachine(rotor.system(), (fill,), friction, gravity)
+    return hold(machine, start(machine, spin, numerics, steady, kick), numerics, growth)
+
+
+def test_upright_and_stable_it_is_the_statics() -> None:
+    """To the mesh: second order in the cell and the step, below 1e-3 at 128 cells."""
+    spin, exact = 150.0, abs(response(RIG, [SMALL], [150.0], 0.0).deflection[0])
+    errors = []
+    for cells in (32, 64, 128):
+        numerics = HoldNumerics(cells=cells, tolerance=2e-5)
+        found = held(RIG, SMALL, spin, Friction("linear", 3.0), numerics)
+        assert found.kind in (HeldKind.STEADY, HeldKind.PERIODIC)
+        assert found.mass_error < 1e-12
+        assert found.least <= found.amplitude <= found.largest
+        assert abs(found.coordinates[0]) == pytest.approx(found.amplitude, rel=1e-4)
+        errors.append(abs(found.amplitude / exact - 1.0))
+    assert errors[2] < 1e-3
+    assert errors[2] < 0.45 * errors[1] < 0.45 * 0.45 * errors[0]
+
+
+@kills("solvers.held.turns:Watch._left", "each / -math.expm1(self.slowest)", "0.0")
+def test_gravity_across_leaves_the_mean() -> None:
+    """With gravity across the axis the mean of the amplitude is that without, and the liquid ripples.
+
+    The first-order ripple of the liquid's centre of mass is the forced wave's: g n=1 at -Omega seen from the
+    drum, G = 1 - 2 s^2/((1 - kappa) omega_w^2 + 2 kappa s^2) with omega_w = 0 there: about g/(kappa Omega^2).
+    """
+    spin, friction = 150.0, Friction("linear", 3.0)
+    numerics = HoldNumerics(cells=64)
+    plain = held(RIG, SMALL, spin, friction, numerics)
+    found = held(RIG, SMALL, spin, friction, numerics, gravity=9.81)
+    assert found.kind in (HeldKind.STEADY, HeldKind.PERIODIC)
+    # Second order in the wave that gravity makes: (0.4 mm over 1.2 mm of depth)^2 of the liquid's share.
+    assert found.amplitude == pytest.approx(plain.amplitude, rel=2e-3)
+    assert found.ripple[0] > 100.0 * plain.ripple[0]
+
+
+SCALE = 60.0  # omega_n
+MU, DEEP, LAG = 0.1, 0.1, 0.03
+
+
+def whirler(damping: float) -> tuple[Jeffcott, Fill]:
+    """A rotor without unbalance with a layer of a tenth of the radius; m_f is a tenth of its mass."""
+    chamber = Chamber(0.15, 0.05)
+    surface = chamber.radius * (1.0 - DEEP)
+    fill = Fill(chamber, WATER, math.pi * (chamber.radius**2 - surface**2) * chamber.height)
+    mass = fill.full_mass / MU
+    return Jeffcott(mass, mass * SCALE**2, 2.0 * damping * mass * SCALE, 0.0), fill
+
+
+# W/h0 and whirl speed over omega_n of the coupled march at 128 cells, linear friction 0.03 omega_n.
+KNOWN = {1.2: (0.4147, 0.94461), 1.3: (0.5664, 0.95072)}
+
+
+@kills(
+    "solvers.held.turns:_other_speed", "float(speeds[k]) - width, float(speeds[k]) + width", "-width, width"
+)
+@kills("solvers.held.turns:Watch._judge", "> _ELSEWHERE *", "< _ELSEWHERE *")
+@pytest.mark.parametrize("ratio", KNOWN)
+def test_a_whirl_that_excites_itself(ratio: float) -> None:
+    """Where a small whirl grows the motion is a limit cycle of the size that marching in time has found."""
+    rotor, fill = whirler(0.02)
+    numerics = HoldNumerics(cells=64)
+    found = held(rotor, fill, ratio * SCALE, Friction("linear", LAG * SCALE), numerics, kick=0.1)
+    assert found.kind is HeldKind.LIMIT_CYCLE
+    size, speed = KNOWN[ratio]
+    # 64 against 128 cells: 0.1 % (0.5658 and 0.5664).
+    assert found.amplitude / fill.depth == pytest.approx(size, rel=5e-3)
+    assert found.whirl_speed / SCALE == pytest.approx(speed, rel=1e-3)
+
+
+@kills("solvers.held.branch:_Chain._may_differ", "return kinds or", "return")
+def test_the_way_down_is_another_one() -> None:
+    """Beyond the linear edge, 1.4866, the whirl lives on if it is carried up; none starts from rest."""
+    rotor, fill = whirler(0.02)
+    friction, numerics = Friction("linear", LAG * SCALE), HoldNumerics(cells=32)
+    machine = HeldMachine(rotor.system(), (fill,), friction)
+    spins = SCALE * np.array([1.3, 1.4, 1.47, 1.55])
+    growth = asynchronous_growth(rotor, [fill], spins, friction)[0]
+    tasks = [
+        HeldTask(start(machine, spin, numerics, kick=0.1 if grows > 0.0 else 0.0), float(grows))
+        for spin, grows in zip(spins.tolist(), growth.tolist(), strict=True)
+    ]
+    found = held_branches(tasks, one_by_one(machine, numerics))
+    assert found.hysteresis.tolist() == [False, False, False, True]
+    # W/h0 carried up is 0.8126 at 128 cells.
+    assert found.up[-1].amplitude / fill.depth == pytest.approx(0.8126, rel=0.02)
+    assert found.down[-1].amplitude < 1e-6 * fill.depth
+
+
+def test_bad_numerics() -> None:
+    with pytest.raises(InputError, match="cells"):
+        HoldNumerics(cells=4)
+    with pytest.raises(InputError, match="courant"):
+        HoldNumerics(courant=1.0)
+    with pytest.raises(InputError, match="turns"):
+        HoldNumerics(turns=3)
+    with pytest.raises(InputError, match="tolerance"):
+        HoldNumerics(tolerance=0.0)
