@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshes.arrays import Flags
-from solvers.held.hold import hold
+from solvers.held.hold import hold_with_error
 from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics, Moment
 
 # Amplitudes of two motions are the same within this share of the larger.
@@ -73,7 +73,7 @@ def one_by_one(machine: HeldMachine, numerics: HoldNumerics) -> Runner:
 
     def run(tasks: Sequence[HeldTask]) -> Iterator[tuple[int, HeldState]]:
         for k, task in enumerate(tasks):
-            yield k, hold(machine, task.begin, numerics, task.slowest)
+            yield k, hold_with_error(machine, task.begin, numerics, task.slowest)
 
     return run
 

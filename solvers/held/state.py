@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -115,6 +116,8 @@ class HeldState:
     mean_rotation : of each layer relative to the drum at the end, rad/s, shape (l,)
     mass_error : largest relative change of a layer's volume
     change : of the amplitude that may still come, over its size
+    error : estimated, of mean and largest amplitude, over the latter, by another run with half the cells; nan
+        without that run
     turns, steps : what it took
     moment : where it ends, from which other speeds can go on
     reason : why it did not settle, or empty
@@ -140,6 +143,7 @@ class HeldState:
     steps: int
     moment: Moment
     reason: str = ""
+    error: float = math.nan
 
     @property
     def settled(self) -> bool:
