@@ -20,6 +20,10 @@ def run(
     out: Annotated[
         Path | None, typer.Option(help="Folder for the files [default: out/<scene name>].")
     ] = None,
+    workers: Annotated[
+        int | None, typer.Option(help="Processes that hold waves in time [default: all cores].")
+    ] = None,
+    fresh: Annotated[bool, typer.Option(help="Hold anew what an earlier run has left.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Answer of the machine at each speed. Figures, data file, report."""
@@ -34,9 +38,11 @@ def run(
         return
 
     with working("preparing") as update:
+        from leblanc.studies.held.holding import Holding
         from leblanc.studies.run import run_scene
 
-        result = run_scene(machine, lambda what: update(what=what))
+        holding = Holding(_processes(workers), folder, fresh)
+        result = run_scene(machine, lambda what: update(what=what), holding)
 
     from leblanc.figures.response import write_figures
     from leblanc.report.page import about, command_line
@@ -71,6 +77,21 @@ def run(
             ]
         )
     say(f"{result.name}: {result.speed.size} speeds done")
+
+
+def _processes(wanted: int | None) -> int:
+    """So many as are wanted, or one on each core.
+
+    Raises
+    ------
+    InputError : fewer than one
+    """
+    from leblanc.studies.held.holding import cores
+    from meshes.errors import InputError
+
+    if wanted is not None and wanted < 1:
+        raise InputError("--workers", wanted, "1 or more")
+    return cores() if wanted is None else wanted
 
 
 def _run_exciter(machine: Scene, scene: Path, folder: Path, json: bool) -> None:

@@ -118,6 +118,46 @@ class SelfExcited:
         return found
 
 
+@dataclass(frozen=True)
+class Held:
+    """What rotor and long waves do at the speeds at which they were held in time until they settled.
+
+    n speeds, c chambers. At the other speeds numbers are nan and states are "steady".
+
+    Parameters
+    ----------
+    at : where that was done, shape (n,)
+    state : one of `MOTIONS`, as met while the speed rises, shape (n,)
+    least, largest : distance of the axis from where it rests, over time, m, shape (n,)
+    whirl_speed : of the whirl that goes round beside the spin, in space, nan without one, rad/s, shape (n,)
+    liquid : mean of each layer's centre of mass from its chamber's axis, in the drum, m, shape (n, c)
+    ripple : largest distance of it from that mean, m, shape (n, c)
+    error : estimated from half the cells, over the largest distance, shape (n,)
+    state_down, amplitude_down : while the speed falls, m, shape (n,)
+    cells : round each wall
+    """
+
+    at: Flags
+    state: NDArray[np.str_]
+    least: Array
+    largest: Array
+    whirl_speed: Array
+    liquid: Complex
+    ripple: Array
+    error: Array
+    state_down: NDArray[np.str_]
+    amplitude_down: Array
+    cells: int
+
+    @property
+    def hysteresis(self) -> Flags:
+        """Where the motion depends on whether the speed rises or falls, shape (n,)."""
+        return self.at & ~np.isnan(self.amplitude_down)
+
+
+MOTIONS = ("steady", "periodic", "limit_cycle", "not_settled")
+
+
 def grade_words(quality: float) -> str:
     """The finest grade of ISO 21940-11 that a balance quality keeps, in words.
 
@@ -134,6 +174,7 @@ def grade_words(quality: float) -> str:
     return f"above {grade_name(GRADES[-1])}" if grade is None else grade_name(grade)
 
 
+_CIRCLE = 1e-9  # of the deflection, that the part against the spin may have in a circle
 SCALARS = ("liquid_mass", "critical_speed_dry", "critical_speed_wet", "capture_speed")
 STABILITY = ("not_known", "unstable", "stable")
 STATES = ("dry_patch", "stable", "model", "in_range", "converged")  # over speed
@@ -197,6 +238,7 @@ class RunResult(Result):
         the speed, and that of the rotor alone, m/s [theory: balance_quality, eq. 1]; infinite where the
         motion is; shape (n,); None where no mass spins
     axial_gravity : gravity along the axis, m/s^2
+    held : of speeds at which the motion was held in time; None where it was at none
 
     Raises
     ------
@@ -235,6 +277,7 @@ class RunResult(Result):
     balance_quality: Array | None = None
     balance_quality_dry: Array | None = None
     axial_gravity: float = 0.0
+    held: Held | None = None
 
     def __post_init__(self) -> None:
         if self.axis not in ("horizontal", "vertical"):
@@ -244,7 +287,7 @@ class RunResult(Result):
             raise InputError("speeds", self.response.speed.shape, "a list of at least one speed")
         branches = self.response.branch_deflection.shape
         for each in fields(self.response):
-            if each.name in ("coordinates", "branch_coordinates", "position"):
+            if each.name in ("coordinates", "branch_coordinates", "position", "over_time"):
                 continue
             shape = getattr(self.response, each.name).shape
             expected = (count, *branches[1:]) if each.name.startswith("branch_") else (count,)
@@ -376,7 +419,39 @@ class RunResult(Result):
         """Names of the liquid models, in the order in which they appear over speed."""
         return tuple(dict.fromkeys(self.curve.model.tolist()))
 
-    # Every branch; what a rotor adds that is not planar.
+    @property
+    def amplitude_min(self) -> Array:
+        """Least distance of the axis from where it rests, over time, m, shape (n,)."""
+        least = np.abs(np.abs(self.response.deflection) - np.abs(self.response.backward))
+        found = np.where(np.isfinite(self.response.deflection), least, self.amplitude)
+        return found if self.held is None else np.where(self.held.at, self.held.least, found)
+
+    @property
+    def amplitude_max(self) -> Array:
+        """Largest distance of the axis from where it rests, over time, m, shape (n,)."""
+        return (
+            self.amplitude if self.held is None else np.where(self.held.at, self.held.largest, self.amplitude)
+        )
+
+    @property
+    def state(self) -> NDArray[np.str_]:
+        """What the motion is: one of `MOTIONS`, shape (n,).
+
+        A circle with the spin is steady, an ellipse periodic; a limit cycle never repeats with the turn.
+        """
+        r = self.response
+        ellipse = np.abs(r.backward) > _CIRCLE * np.abs(r.deflection)
+        found = np.where(~r.converged, "not_settled", np.where(ellipse, "periodic", "steady"))
+        return found if self.held is None else np.where(self.held.at, self.held.state, found)
+
+    # Held states; every branch; what a rotor adds that is not planar.
+    held_at = carried("held.at")
+    held_error = carried("held.error")
+    held_whirl_speed = carried("held.whirl_speed")
+    liquid_mean = carried("held.liquid")
+    liquid_ripple = carried("held.ripple")
+    amplitude_down = carried("held.amplitude_down")
+    state_down = carried("held.state_down")
     branches = carried("response.branch_deflection")
     branch_stable = carried("response.branch_stable")
     whirl_bands = carried("whirl.bands")
@@ -404,6 +479,9 @@ class RunResult(Result):
         return {
             "speed": _finite(r.speed),
             "amplitude": _finite(self.amplitude),
+            "amplitude_min": _finite(self.amplitude_min),
+            "amplitude_max": _finite(self.amplitude_max),
+            "state": self.state.tolist(),
             "amplitude_dry": _finite(self.amplitude_dry),
             "peak": _numbers(self.peak),
             "peak_dry": _numbers(self.peak_dry),
@@ -423,6 +501,7 @@ class RunResult(Result):
             **_motion_json(self.motion),
             **_whirl_json(self.whirl),
             **_refined_json(self.refined),
+            **_held_json(self.held),
         }
 
     def named_arrays(self) -> NamedArrays:
@@ -471,6 +550,21 @@ def _refined_json(refined: Response | None) -> dict[str, Any]:
         return {}
     names = ("speed", "amplitude", "amplitude_dry")
     return {"refined": {name: _finite(getattr(refined, name)) for name in names}}
+
+
+def _held_json(held: Held | None) -> dict[str, Any]:
+    """Motions that were held in time, null at the other speeds."""
+    if held is None:
+        return {}
+    return {
+        "held_at": held.at.tolist(),
+        "held_error": _finite(held.error),
+        "held_whirl_speed": _finite(held.whirl_speed),
+        "liquid_mean": _finite(held.liquid),
+        "liquid_ripple": _finite(held.ripple),
+        "amplitude_down": _finite(held.amplitude_down),
+        "state_down": held.state_down.tolist(),
+    }
 
 
 def _quality_json(result: RunResult) -> dict[str, Any]:
@@ -523,10 +617,14 @@ def _variables(result: RunResult) -> dict[str, Variable]:
     states = np.where(np.isnan(r.branch_deflection), -1, r.branch_stable)
     # The last one has the value 1.
     stability = np.array([STABILITY.index(state) - 1 for state in result.stability.tolist()])
+    motion = _numbered(result.state)
     mass, dry, wet, capture = (np.array(getattr(result, name), dtype=np.float64) for name in SCALARS)
     lag, slow = "from the unbalance, positive with the spin, a lag is negative", "against slow disturbances"
     return {
         "amplitude": var(over, result.amplitude, "m", "amplitude", "of the branch reported"),
+        "amplitude_min": var(over, result.amplitude_min, "m", "least amplitude", "over time"),
+        "amplitude_max": var(over, result.amplitude_max, "m", "largest amplitude", "over time"),
+        "state": flags(*(over, motion, " ".join(MOTIONS), "state of the motion"), "once it is settled"),
         "amplitude_dry": var(over, result.amplitude_dry, "m", "amplitude", "without liquid"),
         "phase": var(over, phase(r.deflection), "rad", "phase of the deflection", lag),
         "phase_dry": var(over, phase(r.deflection_dry), "rad", "phase without liquid", lag),
@@ -553,6 +651,7 @@ def _variables(result: RunResult) -> dict[str, Variable]:
         **_error_variables(result),
         **_motion_variables(result),
         **_whirl_variables(result),
+        **_held_variables(result.held),
     }
 
 
@@ -577,6 +676,30 @@ def _peak_variables(result: RunResult) -> dict[str, Variable]:
         found["refined_amplitude"] = var(over, wet, "m", "amplitude", text)
         found["refined_amplitude_dry"] = var(over, dry, "m", "amplitude", f"{text}, without liquid")
     return found
+
+
+def _numbered(states: NDArray[np.str_]) -> Array:
+    """Motions as numbers of which the last is 1."""
+    return np.array([MOTIONS.index(state) - len(MOTIONS) + 2 for state in states.tolist()], dtype=float)
+
+
+def _held_variables(held: Held | None) -> dict[str, Variable]:
+    """Motions that were held in time."""
+    if held is None:
+        return {}
+    over, each, drum = ("speed",), ("speed", "chamber"), "from the chamber's axis, in the drum"
+    down = _numbered(held.state_down)
+    return {
+        "held_at": flags(over, held.at, "no yes", "held", "the motion was held in time until it settled"),
+        "held_error": var(over, held.error, "1", "estimated error", "of the held motion, by half the cells"),
+        "held_whirl_speed": var(
+            over, held.whirl_speed, "rad s-1", "whirl speed", "beside the spin, in space"
+        ),
+        **_pair("liquid_mean", each, held.liquid, f"mean of the layer's centre of mass {drum}"),
+        "liquid_ripple": var(each, held.ripple, "m", "ripple of the layer's centre of mass", "largest"),
+        "amplitude_down": var(over, held.amplitude_down, "m", "amplitude", "while the speed falls"),
+        "state_down": flags(over, down, " ".join(MOTIONS), "state of the motion", "while the speed falls"),
+    }
 
 
 def _quality_variables(result: RunResult) -> dict[str, Variable]:

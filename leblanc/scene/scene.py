@@ -43,6 +43,8 @@ MAX_CHAMBERS = 1000
 MAX_SPEEDS = 100_000
 MAX_ASSUMED = 10_000
 
+HELD = ("auto", "never", "always")
+MAX_CELLS = 4096
 LIQUID_MODELS = ("auto", "statics", "linear", "long_wave", "kdv", "fem")
 _LAWS = ("none", "stokes")
 _SOME_CHAMBERS = Entries(1, MAX_CHAMBERS, "tables headed [[chambers]]")
@@ -130,6 +132,14 @@ class Model(Part):
     )
     tolerance: Annotated[float, quantity(units.NUMBER, 1e-12, 1.0)] = Field(
         1e-3, description="relative error that auto may make"
+    )
+    held: Annotated[str, one_of(*HELD)] = Field(
+        "auto",
+        description="whether auto may hold the wave in time at speeds where no steady model is within the "
+        "tolerance: where they need it (auto), never, or everywhere (always)",
+    )
+    cells: Annotated[int, whole(16, MAX_CELLS)] = Field(
+        128, description="finite volumes round each wall of a wave that is held"
     )
 
 

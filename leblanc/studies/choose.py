@@ -16,7 +16,7 @@ from fluid.waves import capture_speed
 from fluid.whirl import covering_speed
 from leblanc.results.choice import Choice
 from leblanc.scene.scene import Scene, dry_rotor
-from leblanc.studies.liquid import SYNCHRONOUS_MODELS, synchronous_model
+from leblanc.studies.liquid import RESPONSE_MODELS, synchronous_model
 from meshes.arrays import Array, Flags
 from meshes.chamber_section import rest_offset, surface_is_whole
 from meshes.errors import InputError
@@ -118,8 +118,8 @@ def choose_all(machines: Sequence[Prepared]) -> list[Choice]:
     """
     for machine in machines:
         scene = machine.scene
-        if scene.model.liquid not in ("auto", *SYNCHRONOUS_MODELS):
-            allowed = ", ".join(("auto", *SYNCHRONOUS_MODELS))
+        if scene.model.liquid not in ("auto", *RESPONSE_MODELS):
+            allowed = ", ".join(("auto", *RESPONSE_MODELS))
             raise InputError(
                 "model.liquid", scene.model.liquid, f"one of {allowed} for the response to an unbalance"
             )
@@ -136,7 +136,12 @@ def models_of(scene: Scene) -> tuple[str, ...]:
     """Names of the liquid models that may answer a scene at some speed."""
     if is_cut(scene):
         return ("fem",)
-    return ("linear", "statics") if scene.model.liquid == "auto" else (scene.model.liquid,)
+    return ("linear", "statics") if scene.model.liquid == "auto" else (_beginning(scene),)
+
+
+def _beginning(scene: Scene) -> str:
+    """The model that answers first: waves held in time begin with the exact equilibrium."""
+    return "statics" if scene.model.liquid == "long_wave" else scene.model.liquid
 
 
 def models_at(machines: Sequence[Prepared]) -> list[tuple[NDArray[np.str_], Flags]]:
@@ -194,6 +199,20 @@ differently in two directions"
         raise InputError("model.liquid", scene.model.liquid, allowed)
 
 
+def held_at(scene: Scene, choice: Choice) -> Flags:
+    """At which speeds the wave is held in time, shape (n,).
+
+    Parameters
+    ----------
+    scene : names the model, and whether auto may hold
+    choice : the steady models
+    """
+    every = scene.model.liquid == "long_wave" or (
+        scene.model.liquid == "auto" and scene.model.held == "always" and not is_cut(scene)
+    )
+    return np.full(choice.models.shape, every)
+
+
 def is_cut(scene: Scene) -> bool:
     """The exact equilibrium of a circular chamber does not hold in some chamber."""
     return any(fill.compartments > 1 or fill.chamber.section is not None for fill in scene.fills)
@@ -233,7 +252,7 @@ def _other_errors(machine: Prepared) -> tuple[LinearError, Array]:
 def _choice(machine: Prepared, linear: LinearError, gravity: Array) -> Choice:
     """The cheapest model that the errors allow, or the one that the scene names."""
     scene, speed = machine.scene, machine.speed
-    liquid, tolerance = scene.model.liquid, scene.model.tolerance
+    liquid, tolerance = _beginning(scene), scene.model.tolerance
     # What gravity does to all models alike does not speak for the dearer one. Where a wall may run dry the
     # exact equilibrium says where.
     enough = linear.wet & (linear.worst <= tolerance)
@@ -252,7 +271,7 @@ def _choice(machine: Prepared, linear: LinearError, gravity: Array) -> Choice:
         # Of the machine alone: the exact equilibrium, unless another is named, or there is none.
         model=small if cut else "statics" if liquid == "auto" else liquid,
         models=models,
-        prescribed=liquid != "auto",
+        prescribed=scene.model.liquid != "auto",
         in_range=_carried(machine),
         captured_from=_captured_from(scene),
         tolerance=tolerance,

@@ -61,6 +61,8 @@ _MAKE: Mapping[str, _Make] = {
 WAVE_MODELS = tuple(_MAKE)
 # Those that answer the unbalance of a rotor: the liquid is at rest in a synchronous whirl.
 SYNCHRONOUS_MODELS = ("statics", "linear", "fem")
+# Those that answer it in the end: long waves are held in time until they settle.
+RESPONSE_MODELS = (*SYNCHRONOUS_MODELS, "long_wave")
 # Those that go through time with a rotor.
 RUNUP_MODELS = ("long_wave", "linear")
 

@@ -15,7 +15,8 @@ from leblanc.results.choice import Choice, model_spans
 from leblanc.results.response import Motion, RestMode, RunResult, SelfExcited
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
-from leblanc.studies.choose import Prepared, choose_all, liquid_models, prepare
+from leblanc.studies.choose import Prepared, choose_all, held_at, liquid_models, prepare
+from leblanc.studies.held.holding import HERE, Began, Holding
 from leblanc.studies.liquid import synchronous_model
 from leblanc.studies.peaks import responses_between
 from leblanc.studies.validity import doubts
@@ -131,13 +132,18 @@ def _directed(
     return tuple((float(critical), float(way)) for critical, way in zip(speed, sense, strict=True))
 
 
-def run_scene(scene: Scene, progress: Callable[[str], object] = lambda _: None) -> RunResult:
+def run_scene(
+    scene: Scene,
+    progress: Callable[[str], object] = lambda _: None,
+    holding: Holding = HERE,
+) -> RunResult:
     """Response to the unbalance and the liquid's centre of mass at each speed of a scene.
 
     Parameters
     ----------
     scene : the machine
     progress : called with what is done next
+    holding : on how many cores waves are held in time, and where what was found is kept
 
     Returns
     -------
@@ -170,12 +176,24 @@ def run_scene(scene: Scene, progress: Callable[[str], object] = lambda _: None) 
     (refined,) = responses_between([machine], [answer], drawn=True)
     progress("self-excited whirl")
     whirl = self_excited(machine)
-    answer = replace(
-        answer, in_range=answer.in_range & choice.in_range, stable=whirl.leaves_stable(answer.stable)
-    )
+    at, held, stable = held_at(scene, choice), None, whirl.leaves_stable(answer.stable)
+    if at.any():
+        from leblanc.studies.held.held import hold_answer
+
+        began = Began(answer, refined, whirl.growth, at)
+        choice, answer, refined, held = hold_answer(machine, choice, began, holding, progress)
+        stable = np.where(at, answer.stable, stable)
+        if motion is not None:
+            forward = _at_chambers(machine.system, scene.fills, answer)
+            motion = replace(
+                motion, backward=answer.backward, branch_backward=answer.branch_backward,
+                chamber_forward=forward,
+            )  # fmt: skip
+    answer = replace(answer, in_range=answer.in_range & choice.in_range, stable=stable)
     # Next to a speed at which it is not known whether a whirl grows, it is not known either.
     calm = np.interp(refined.speed, machine.speed, np.isnan(whirl.growth)) == 0.0
-    refined = replace(refined, stable=refined.stable & calm & ~whirl.inside(refined.speed))
+    steady = refined.stable & calm & ~whirl.inside(refined.speed)
+    refined = replace(refined, stable=np.where(refined.model == "long_wave", refined.stable, steady))
     if motion is not None:
         motion = replace(motion, refined_forward=_at_chambers(machine.system, scene.fills, refined))
     return RunResult(
@@ -199,6 +217,7 @@ def run_scene(scene: Scene, progress: Callable[[str], object] = lambda _: None) 
         tolerance=choice.tolerance,
         refined=refined,
         axial_gravity=machine.axial_gravity,
+        held=held,
         **_balance(machine, answer),
     )
 

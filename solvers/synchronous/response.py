@@ -9,7 +9,7 @@ deflections, dampers left out.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import Any, TypeVar
 
 import numpy as np
@@ -159,6 +159,7 @@ def _added_mass(
 
 
 _Value = TypeVar("_Value", bound=np.generic)
+_ASIDE = "position", "over_time"  # fields that are not one value a speed
 _NONE = complex(np.nan, np.nan)  # in tables of branches, where there are fewer
 
 
@@ -193,6 +194,8 @@ class Response:
         the way, else nan, rad/s, shape (n,); of chambers in several planes only
     residual : what is left of the balance of forces over the largest of them, shape (n,)
     position : along the axis of the plane whose motion is reported, m
+    over_time : mean over time of the axis' distance from where it rests, of motions that were held in time, m,
+        else nan, shape (n,); empty where none was
     """
 
     speed: Array
@@ -215,6 +218,7 @@ class Response:
     fold_speed: Array
     residual: Array
     position: float = 0.0
+    over_time: Array = field(default_factory=lambda: np.zeros(0))
 
     @property
     def parts(self) -> Complex:
@@ -228,8 +232,14 @@ class Response:
 
     @property
     def amplitude(self) -> Array:
-        """Largest distance of the axis from the line it rests in, of the branch reported, m, shape (n,)."""
-        return np.asarray(np.abs(self.parts).sum(axis=1))
+        """Largest distance of the axis from the line it rests in, of the branch reported, m, shape (n,).
+
+        Of motions that were held in time it is the mean.
+        """
+        size = np.abs(self.parts).sum(axis=1)
+        if self.over_time.size == 0:
+            return np.asarray(size)
+        return np.where(np.isnan(self.over_time), size, self.over_time)
 
     @property
     def amplitude_dry(self) -> Array:
@@ -243,8 +253,10 @@ class Response:
 
     def at(self, which: Index) -> Response:
         """The response at some of its speeds, by their index."""
-        own = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "position"}
-        return Response(**{name: values[which] for name, values in own.items()}, position=self.position)
+        own = {each.name: getattr(self, each.name) for each in fields(self) if each.name not in _ASIDE}
+        over_time = self.over_time[which] if self.over_time.size else self.over_time
+        found = {name: values[which] for name, values in own.items()}
+        return Response(**found, position=self.position, over_time=over_time)
 
 
 def response(
@@ -528,13 +540,21 @@ def joined(parts: Sequence[Response]) -> Response:
     ----------
     parts : of one rotor, at least one
     """
-    found: dict[str, Any] = {"position": parts[0].position}
-    for field in fields(Response):
-        values = [getattr(part, field.name) for part in parts]
-        if field.name not in found:
-            wide = _padded(values) if field.name.startswith("branch_") else values
-            found[field.name] = np.concatenate(wide)
+    found: dict[str, Any] = {"position": parts[0].position, "over_time": _times(parts)}
+    for each in fields(Response):
+        values = [getattr(part, each.name) for part in parts]
+        if each.name not in found:
+            wide = _padded(values) if each.name.startswith("branch_") else values
+            found[each.name] = np.concatenate(wide)
     return Response(**found)
+
+
+def _times(parts: Sequence[Response]) -> Array:
+    """Means over time of several responses; empty where none has any."""
+    if not any(part.over_time.size for part in parts):
+        return np.zeros(0)
+    whole = [part.over_time if part.over_time.size else np.full(part.speed.shape, np.nan) for part in parts]
+    return np.concatenate(whole)
 
 
 def by_speed(parts: Sequence[Response]) -> Response:

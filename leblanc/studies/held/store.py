@@ -20,7 +20,9 @@ from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics, M
 FOLDER = "held"
 
 
-def kept(run: Runner, folder: Path, machine: HeldMachine, numerics: HoldNumerics) -> Runner:
+def kept(
+    run: Runner, folder: Path, machine: HeldMachine, numerics: HoldNumerics, fresh: bool = False
+) -> Runner:
     """A runner that looks for each state in a folder first, and leaves there what it finds.
 
     Parameters
@@ -28,6 +30,7 @@ def kept(run: Runner, folder: Path, machine: HeldMachine, numerics: HoldNumerics
     run : finds what is not there
     folder : made where it is missing
     machine, numerics : what is held; states of another machine, resolution or version are not taken
+    fresh : take none
     """
     folder.mkdir(parents=True, exist_ok=True)
     whole = hashlib.sha256()
@@ -39,7 +42,7 @@ def kept(run: Runner, folder: Path, machine: HeldMachine, numerics: HoldNumerics
             own = whole.copy()
             _feed(own, task)
             paths.append(folder / f"{own.hexdigest()[:32]}.npz")
-            known = _read(paths[-1])
+            known = None if fresh else _read(paths[-1])
             if known is None:
                 missing.append(k)
             else:

@@ -18,11 +18,6 @@ from solvers.held.state import HeldMachine, HeldState, HoldNumerics
 _THREADS = "OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"
 
 
-def cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
 @contextmanager
 def runner(machine: HeldMachine, numerics: HoldNumerics, workers: int) -> Iterator[Runner]:
     """A runner of tasks in so many processes; in this one where that is one or none.

@@ -24,6 +24,7 @@ import numpy as np
 
 from leblanc.interrupts import held
 from leblanc.scene.schema.load import NotConverged, SceneError, SceneFault, shown
+from leblanc.studies.held.holding import cores
 from leblanc.studies.sweep.block import Block, BlockAnswer, answer_block, own_versions, reason_of
 from leblanc.studies.sweep.sampling import Rows, sample_rows
 from leblanc.studies.sweep.store import Store, field_values, locked, open_store, write_block
@@ -316,10 +317,7 @@ def _workers(wanted: int | None, blocks: int) -> int:
     """As many as there are cores and work; a single block needs no process of its own."""
     if wanted is not None:
         return wanted
-    import os
-
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return 0 if blocks == 1 else min(cores, blocks)
+    return 0 if blocks == 1 else min(cores(), blocks)
 
 
 def _probe(sweep: Sweep) -> None:

@@ -1,0 +1,266 @@
+"""The response of a scene with long waves held in time: where they begin, and what they say."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from leblanc.results.choice import Choice
+from leblanc.results.response import Held
+from leblanc.studies.choose import Prepared
+from leblanc.studies.held.holding import Began, Holding
+from leblanc.studies.held.store import FOLDER, kept
+from leblanc.studies.held.workers import runner
+from meshes.arrays import Array, Complex, Flags, Index
+from solvers.held.branch import HeldBranches, HeldTask, held_branches
+from solvers.held.hold import start
+from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics
+from solvers.rotor.vibration import orbit
+from solvers.synchronous.response import Response, joined
+from solvers.whirl.growth import asynchronous_growth
+
+_KICK = 0.1  # of the layer's depth times the spin: what a whirl that grows by itself begins with
+
+
+def hold_answer(
+    machine: Prepared,
+    choice: Choice,
+    began: Began,
+    holding: Holding,
+    progress: Callable[[str], object] = lambda _: None,
+) -> tuple[Choice, Response, Response, Held]:
+    """The answer of a machine with the wave held in time where that is wanted.
+
+    Parameters
+    ----------
+    machine : the scene's
+    choice : the steady models
+    began : what they answer
+    holding : workers, and what is kept
+    progress : called with what is done
+
+    Returns
+    -------
+    The choice with the wave as model where it was held; the answers at the speeds asked for and between them;
+    the held states
+    """
+    rows = np.flatnonzero(began.at)
+    between = _between(began)
+    steady = joined([began.answer.at(rows), began.refined.at(between)])
+    order = np.argsort(steady.speed, kind="stable")
+    more = asynchronous_growth(
+        machine.rotor, machine.scene.fills, began.refined.speed[between], machine.friction
+    )[0] if between.size else np.zeros(0)  # fmt: skip
+    growth, total, done = np.concatenate([began.growth[rows], more])[order], steady.speed.size, 0
+
+    def told(count: int) -> None:
+        nonlocal done
+        done += count
+        progress(f"waves held in time, {done} of {total} speeds" if done <= total else "waves carried on")
+
+    told(0)
+    found = hold_speeds(machine, steady.at(order), growth, holding, told)
+    back = np.argsort(order, kind="stable")
+    every = held_response(machine, steady.at(order), found).at(back)
+    states = HeldBranches(*(tuple(way[k] for k in back.tolist()) for way in (found.up, found.down)))
+    own = HeldBranches(states.up[: rows.size], states.down[: rows.size])
+    held = held_result(own, machine, rows)
+    answer = _placed(began.answer, every.at(np.arange(rows.size)), rows)
+    models, error = choice.models.astype("U9"), choice.error.copy()
+    models[rows], error[rows] = "long_wave", held.error[rows]
+    kept = every.at(np.arange(rows.size, total)) if began.at.all() else began.refined.at(_far(began))
+    return replace(choice, models=models, error=error), answer, kept, held
+
+
+def _between(began: Began) -> Index:
+    """Refined speeds at which the wave is held as well: the peaks, with liquid and without."""
+    size = began.refined.speed.size
+    if not began.at.all() or size == 0:
+        return np.zeros(0, dtype=np.intp)
+    peaks = (np.argmax(np.where(np.isfinite(part), part, -1.0))
+             for part in (began.refined.amplitude, began.refined.amplitude_dry))  # fmt: skip
+    return np.unique(np.array(list(peaks), dtype=np.intp))
+
+
+def _far(began: Began) -> Index:
+    """Refined speeds between two at which steady models answer."""
+    speed, after = began.answer.speed, np.searchsorted(began.answer.speed, began.refined.speed)
+    last = speed.size - 1
+    return np.flatnonzero(~(began.at[np.clip(after, 0, last)] | began.at[np.clip(after - 1, 0, last)]))
+
+
+def _placed(whole: Response, part: Response, rows: Index) -> Response:
+    """A response with another one at some of its speeds."""
+    others = np.setdiff1d(np.arange(whole.speed.size), rows)
+    if others.size == 0:
+        return part
+    order = np.argsort(np.concatenate([rows, others]), kind="stable")
+    return joined([part, whole.at(others)]).at(order)
+
+
+def held_machine(machine: Prepared) -> HeldMachine:
+    """The machine as held states take it.
+
+    Parameters
+    ----------
+    machine : the scene's
+    """
+    fills = tuple(machine.scene.fills)
+    return HeldMachine(machine.system, fills, machine.friction, machine.across_gravity)
+
+
+def hold_speeds(
+    machine: Prepared,
+    steady: Response,
+    growth: Array,
+    holding: Holding,
+    progress: Callable[[int], object] = lambda _: None,
+) -> HeldBranches:
+    """Held states at the speeds of a steady response.
+
+    Parameters
+    ----------
+    machine : the scene's
+    steady : where the motions begin, by rising speed
+    growth : of the whirl that grows most at each speed, 1/s, nan where it is not known, shape (n,)
+    holding : workers, and what is kept
+    progress : called with how many states were found since the last call
+    """
+    held, numerics = held_machine(machine), HoldNumerics(cells=machine.scene.model.cells)
+    tasks = []
+    for k, spin in enumerate(steady.speed.tolist()):
+        found = np.isfinite(steady.coordinates[k]).all()
+        grows = bool(growth[k] > 0.0) or not (found and steady.stable[k]) or bool(np.isnan(growth[k]))
+        motion = steady.coordinates[k] if found else None
+        begin = start(held, spin, numerics, motion, _KICK if grows else 0.0)
+        rate = float(growth[k]) if np.isfinite(growth[k]) and (growth[k] > 0.0) == grows else 0.0
+        tasks.append(HeldTask(begin, rate))
+    several = np.count_nonzero(np.isfinite(steady.branch_deflection) & steady.branch_stable, axis=1) > 1
+    with runner(held, numerics, holding.workers) as run:
+        if holding.folder is not None:
+            run = kept(run, holding.folder / FOLDER, held, numerics, holding.fresh)
+        return held_branches(tasks, run, several, progress)
+
+
+def held_response(
+    machine: Prepared, steady: Response, found: HeldBranches, position: float | None = None
+) -> Response:
+    """The steady response with held states in the place of its own answers, all speeds.
+
+    Parameters
+    ----------
+    machine : the scene's
+    steady : at the speeds of the states; angles, the dry rotor and the plane reported are its own
+    found : held states at all of them
+    position : along the axis of the plane reported, m; the steady response's if None
+    """
+    system, fills = machine.system, machine.scene.fills
+    place = steady.position if position is None else position
+    up = found.up
+    coordinates = np.array([state.coordinates for state in up])
+    motion = orbit(system, coordinates, place)
+    offset, angle = _liquid(machine, up, coordinates)
+    settled = np.array([state.settled for state in up])
+    circles = settled & np.array([state.kind is not HeldKind.LIMIT_CYCLE for state in up])
+    none = np.full((settled.size, 0), complex(np.nan, np.nan))
+    return replace(
+        steady,
+        deflection=motion.forward,
+        backward=motion.backward,
+        coordinates=coordinates,
+        liquid_offset=offset,
+        liquid_angle=angle if fills else np.angle(motion.forward),
+        dry_patch=np.array([state.dry.any() for state in up]),
+        stable=circles,
+        model=np.full(settled.shape, "long_wave"),
+        in_range=steady.in_range & _in_range(machine, up),
+        converged=settled,
+        branch_deflection=np.column_stack([motion.forward, none]),
+        branch_stable=circles[:, None],
+        branch_backward=np.column_stack([motion.backward, none]),
+        branch_coordinates=coordinates[:, None, :],
+        fold_speed=np.full(settled.shape, np.nan),
+        residual=np.array([state.change for state in up]),
+        over_time=_sizes(machine, up),
+    )
+
+
+def _sizes(machine: Prepared, states: tuple[HeldState, ...]) -> Array:
+    """Mean distance of the axis over time; where its orbit is an ellipse each turn's largest counts."""
+    planar = machine.scene.rotor.kind == "jeffcott"
+    return np.array([state.amplitude if planar else state.crest for state in states])
+
+
+def _in_range(machine: Prepared, states: tuple[HeldState, ...]) -> Flags:
+    """Every layer rides with the drum, is long, and clear of its inner wall."""
+    found = []
+    for state in states:
+        rows = iter(range(len(state.moment.area)))
+        kept = True
+        for j, fill in enumerate(machine.scene.fills):
+            radius = fill.chamber.radius
+            if not state.captured[j]:
+                kept &= fill.volume == 0.0 or fill.surface_radius <= 0.0
+                continue
+            area = state.moment.area[next(rows)] / radius**2
+            deepest = 1.0 - float(np.sqrt(max(1.0 - 2.0 * area.max(), 0.0)))
+            kept &= fill.depth <= _LONG * radius and deepest * radius <= radius - fill.chamber.inner_radius
+        found.append(kept)
+    return np.array(found, dtype=bool)
+
+
+_LONG = 0.3  # mean depth over the radius up to which waves are long
+
+
+def _liquid(machine: Prepared, states: tuple[HeldState, ...], coordinates: Complex) -> tuple[Array, Array]:
+    """Distance of all the liquid's mean centre of mass from the rotation axis, and its angle, in the drum."""
+    fills = machine.scene.fills
+    mass = np.array([fill.mass for fill in fills])
+    if mass.sum() == 0.0:
+        return np.zeros(len(states)), np.zeros(len(states))
+    axes = np.stack([orbit(machine.system, coordinates, f.chamber.plane).forward for f in fills], axis=1)
+    centre = (axes + np.array([state.liquid for state in states])) @ mass / mass.sum()
+    return np.abs(centre), np.angle(centre)
+
+
+def held_result(found: HeldBranches, machine: Prepared, at: Index) -> Held:
+    """What a result tells of held states.
+
+    Parameters
+    ----------
+    found : the states
+    machine : the scene's
+    at : indices of its speeds that were held, shape (k,)
+    """
+    up, down, speeds = found.up, found.down, machine.speed.size
+    apart = found.hysteresis
+
+    def spread(values: Sequence[Any] | Array, missing: float | complex = np.nan) -> NDArray[Any]:
+        known = np.asarray(values)
+        whole = np.full((speeds, *known.shape[1:]), missing, dtype=known.dtype)
+        whole[at] = known
+        return whole
+
+    flags, states = np.zeros(speeds, dtype=bool), np.full(speeds, "steady", "U11")
+    flags[at] = True
+    states[at] = [str(state.kind) for state in up]
+    states_down = states.copy()
+    states_down[at] = [str(state.kind) for state in down]
+    falling = np.where(apart, _sizes(machine, down), np.nan)
+    return Held(
+        at=flags,
+        state=states,
+        least=spread([state.least for state in up]),
+        largest=spread([state.largest for state in up]),
+        whirl_speed=spread([state.whirl_speed for state in up]),
+        liquid=spread([state.liquid for state in up], complex(np.nan, np.nan)),
+        ripple=spread([state.ripple for state in up]),
+        error=spread([state.error for state in up]),
+        state_down=states_down,
+        amplitude_down=spread(falling),
+        cells=machine.scene.model.cells,
+    )

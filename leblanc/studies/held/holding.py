@@ -1,0 +1,52 @@
+"""How a study is to hold waves in time, and what it knows before."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from meshes.arrays import Array, Flags
+from solvers.synchronous.response import Response
+
+
+@dataclass(frozen=True)
+class Holding:
+    """How waves are held in time.
+
+    Parameters
+    ----------
+    workers : processes; 0 or 1 for this one alone
+    folder : where states are kept, so that a run that was broken off goes on; None keeps none
+    fresh : do not take what is kept there
+    """
+
+    workers: int = 0
+    folder: Path | None = None
+    fresh: bool = False
+
+
+HERE = Holding()
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@dataclass(frozen=True)
+class Began:
+    """The steady answer with which held states begin; n speeds.
+
+    Parameters
+    ----------
+    answer : at the speeds asked for
+    refined : between them
+    growth : of the whirl that grows most, 1/s, shape (n,)
+    at : at which speeds the wave is to be held, shape (n,)
+    """
+
+    answer: Response
+    refined: Response
+    growth: Array
+    at: Flags
