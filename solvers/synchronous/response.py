@@ -194,7 +194,7 @@ class Response:
         the way, else nan, rad/s, shape (n,); of chambers in several planes only
     residual : what is left of the balance of forces over the largest of them, shape (n,)
     position : along the axis of the plane whose motion is reported, m
-    over_time : mean over time of the axis' distance from where it rests, of motions that were held in time, m,
+    over_time : mean over time of the distance of the axis from where it rests, of motions held in time, m,
         else nan, shape (n,); empty where none was
     """
 
