@@ -236,22 +236,22 @@ _AFTER, _BEFORE, _ROWS = 11, 18, 7
 
 
 @_inlined
-def ring_rates(area, q, spin, euler, pull_cell, pull_face, step, dt, spread, work, d_area, d_q):
+def ring_rates(area, q, spin, euler, pull_cell, pull_face, step, dt, dispersion, work, d_area, d_q):
     """`rates`, for callers that are compiled themselves: it becomes part of them."""
     _cells(area, q, spin, pull_cell, work)
     fastest = _faces(pull_face, spin, work)
     mass = work[_MASS]
     _drain(area, step, dt, mass, work[_FLOW], work[_BEFORE + 4], work[_AFTER + 4], work[_BED])
     _gather(area, euler, step, work, d_q)
-    if spread > 0.0:
-        _disperse(area, spin, pull_cell, step, spread, work, d_q)
+    if dispersion:
+        _disperse(area, spin, pull_cell, step, work, d_q)
     for i in range(area.size):
         d_area[i] = (mass[i] - mass[i + 1]) / step
     return fastest
 
 
 @_jit
-def rates(area, q, spin, euler, pull_cell, pull_face, step, dt, spread, work, d_area, d_q):
+def rates(area, q, spin, euler, pull_cell, pull_face, step, dt, dispersion, work, d_area, d_q):
     """Rates of change of A and q; returns the largest characteristic speed.
 
     Parameters
@@ -261,11 +261,11 @@ def rates(area, q, spin, euler, pull_cell, pull_face, step, dt, spread, work, d_
     pull_cell, pull_face : f_r at the cells' middles and at their left faces, shape (n,)
     step : cell width, rad
     dt : time step in which no cell may lose more than it has
-    spread : L^2 of the undisturbed layer for the dispersive term, 0 without it
+    dispersion : whether the waves disperse
     work : scratch, shape (WORK, n + 2 GHOSTS)
     d_area, d_q : results, shape (n,)
     """
-    return ring_rates(area, q, spin, euler, pull_cell, pull_face, step, dt, spread, work, d_area, d_q)
+    return ring_rates(area, q, spin, euler, pull_cell, pull_face, step, dt, dispersion, work, d_area, d_q)
 
 
 @_inlined
@@ -352,60 +352,86 @@ def _gather(area, euler, step, work, d_q):
 
 
 @_jit
-def _disperse(area, spin, pull, step, spread, work, d_q):
-    """Add what the finite depth takes from the pressure gradient [theory: long_wave, eq. 12].
+def _disperse(area, spin, pull, step, work, d_q):
+    """Add what the finite depth takes from the flux of momentum [theory: long_wave, eq. 12-14].
 
-    The gradient g of Bernoulli's function counts as tanh(nL)/(nL) of itself: what is missing, y, solves
-    (15 - 6 L^2 d^2) y = -5 L^2 d^2 g. Weighted with the mean area it exerts no net torque; cells with less
-    than half of that feel less.
+    Serre's pressure over the layer is A L^2 (2 u'^2 - a')/3, a = y - g* being the acceleration that moves
+    along; at y' stands 6/15 for 1/3, for short waves' sake. y solves
+    15 A y - 6 (A L^2 y')' = -5 (A L^2 (g*' + 2 u'^2))', and A y is added as the difference of fluxes: no
+    torque, whatever the areas.
+    Faces next to a dry cell let none through.
     """
     n = area.size
-    velocity, head, slope = work[_VELOCITY, GHOSTS:], work[_AFTER], work[_AFTER + 1]
-    right = work[_AFTER + 2, :n]
+    velocity, head, reach = work[_VELOCITY, GHOSTS:], work[_AFTER], work[_AFTER + 1]
+    face, slope, push = work[_AFTER + 2], work[_AFTER + 3], work[_AFTER + 4]
+    diagonal, value = work[_AFTER + 5, :n], work[_AFTER + 6, :n]
     for i in range(n):
         surface = np.maximum(_surface(area[i]), NEAREST)
         log = log_of_surface(area[i], surface)
-        head[i] = _bernoulli(velocity[i], log, area[i], surface, spin, pull[i])
-    head[n], head[n + 1] = head[0], head[1]
-    for i in range(n + 1):
-        slope[i] = (head[i + 1] - head[i - 1 if i > 0 else n - 1]) / (2.0 * step)
-    slope[n + 1] = slope[1]
-    reach, mean = spread / (step * step), 0.0
+        # Without the flow's own square: what is left is the acceleration that moves along.
+        carried = velocity[i] / surface
+        head[i] = _bernoulli(velocity[i], log, area[i], surface, spin, pull[i]) - 0.5 * carried * carried
+        reach[i] = area[i] * log * log if area[i] > DRY else 0.0
     for i in range(n):
-        bend = slope[i + 1] - 2.0 * slope[i] + slope[i - 1 if i > 0 else n - 1]
-        right[i] = -_LESS * reach * bend
-        mean += area[i] / n
-    solve_ring(_CONSTANT + 2.0 * _CURVED * reach, _CURVED * reach, right)
+        before = i - 1 if i > 0 else n - 1
+        face[i] = 2.0 * reach[i] * reach[before] / (reach[i] + reach[before] + _NOTHING)
+        push[i] = face[i] * (head[i] - head[before])
+    face[n], push[n] = face[0], push[0]
     for i in range(n):
-        # A film shorter of liquid than half the mean would be torn by the mean layer's share.
-        d_q[i] += min(mean, 2.0 * area[i]) * right[i]
+        # Of the two sides' differences the deeper one's counts: a film has none of its own.
+        slope[i] = (push[i] + push[i + 1]) / (step * (face[i] + face[i + 1]) + _NOTHING)
+    for i in range(n):
+        before = i - 1 if i > 0 else n - 1
+        stretch = velocity[i] - velocity[before]
+        bend = slope[i] - slope[before] + 2.0 * stretch * stretch / step
+        push[i] = _LESS / (_CONSTANT * step) * face[i] * bend
+        face[i] *= _CURVED / (_CONSTANT * step * step)
+    face[n], push[n] = face[0], push[0]
+    for i in range(n):
+        diagonal[i] = area[i] + face[i] + face[i + 1] + _NOTHING
+        value[i] = (push[i] - push[i + 1]) / step
+    solve_ring(diagonal, face, value, slope)
+    for i in range(n):
+        before = i - 1 if i > 0 else n - 1
+        push[i] -= face[i] * step * (value[i] - value[before])
+    push[n] = push[0]
+    for i in range(n):
+        d_q[i] += (push[i] - push[i + 1]) / step
 
 
 @_jit
-def solve_ring(diagonal, side, value):
-    """Solve diagonal y_i - side (y_{i-1} + y_{i+1}) = value_i round a ring, in place.
+def solve_ring(diagonal, side, value, spare):
+    """Solve diagonal_i y_i - side_i y_{i-1} - side_{i+1} y_{i+1} = value_i round a ring, in place.
 
-    With diagonal > 2 side >= 0 the matrix is c (1 - p S)(1 - p S^T), S being the shift by one cell: a sweep
-    each way, each started with the value that it will end with.
+    Elimination, and the two corners by the formula of Sherman and Morrison. The matrix must be positive
+    definite.
+
+    Parameters
+    ----------
+    diagonal : shape (n,); left with the pivots' inverses
+    side : shape (n + 1,) or longer, its last the first once more
+    value : right-hand side and solution, shape (n,)
+    spare : scratch, shape (n,) or longer
     """
     n = value.size
-    root = 0.5 * (diagonal + np.sqrt((diagonal - 2.0 * side) * (diagonal + 2.0 * side)))
-    ratio = side / root
-    whole = 1.0 - np.exp(n * np.log(ratio)) if ratio > 0.0 else 1.0
-    carried = 0.0
+    last, first, share = n - 1, diagonal[0], side[0] / diagonal[0]
+    diagonal[last] += side[0] * share
+    diagonal[0] = 0.5 / first
+    spare[0] = 1.0
+    for i in range(1, n):
+        factor = side[i] * diagonal[i - 1]
+        spare[i] = factor * spare[i - 1] + (share if i == last else 0.0)
+        value[i] += factor * value[i - 1]
+        diagonal[i] = 1.0 / (diagonal[i] - factor * side[i])
+    value[last] *= diagonal[last]
+    spare[last] *= diagonal[last]
+    for i in range(n - 2, -1, -1):
+        value[i] = (value[i] + side[i + 1] * value[i + 1]) * diagonal[i]
+        spare[i] = (spare[i] + side[i + 1] * spare[i + 1]) * diagonal[i]
+    gained = value[0] + share * value[last]
+    gained /= 1.0 / first - spare[0] - share * spare[last]
     for i in range(n):
-        carried = value[i] + ratio * carried
-    carried /= whole
-    for i in range(n):
-        carried = value[i] + ratio * carried
-        value[i] = carried / root
-    carried = 0.0
-    for i in range(n):
-        carried = value[n - 1 - i] + ratio * carried
-    carried /= whole
-    for i in range(n):
-        carried = value[n - 1 - i] + ratio * carried
-        value[n - 1 - i] = carried
+        value[i] += gained * spare[i]
 
 
 @_inlined

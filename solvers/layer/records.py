@@ -53,13 +53,13 @@ class Wall(NamedTuple):
     ----------
     law, coefficient : of the friction, as from `fluid.friction.Friction.at`; rates in the unit of the spin
     lid : 2 R/h_c, floor and lid under Stokes' friction
-    spread : square of the layer's L for the dispersive term, 0 without it
+    dispersion : whether its waves disperse
     """
 
     law: int
     coefficient: float
     lid: float
-    spread: float
+    dispersion: bool
 
 
 # Integrals over time: force by the pressure on the wall over rho h_c R^3, offset, turning, least and largest

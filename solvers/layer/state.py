@@ -78,7 +78,7 @@ class Numerics:
     Parameters
     ----------
     cells : finite volumes round the wall, at least 8
-    dispersion : add the finite depth's dispersion [theory: long_wave, eq. 12]
+    dispersion : add the finite depth's dispersion [theory: long_wave, eq. 13]
     """
 
     cells: int = 256
@@ -214,7 +214,6 @@ def start(fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics) -> M
     radius, spin = chamber.radius, whirl.spin
     n = numerics.cells
     area = np.full(n, fill.volume / (2.0 * math.pi * chamber.height * radius**2))
-    log = -0.5 * math.log1p(-2.0 * area[0])
     law, coefficient = friction.at(fill.liquid.viscosity, whirl.slip, radius)
     # The quadratic coefficient is a pure number, the others are rates.
     scaled = coefficient if law == QUADRATIC else coefficient / spin
@@ -231,7 +230,7 @@ def start(fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics) -> M
             weight=whirl.gravity / (radius * spin**2),
             spin=1.0,
         ),
-        wall=Wall(law, scaled, 2.0 * radius / chamber.height, log**2 if numerics.dispersion else 0.0),
+        wall=Wall(law, scaled, 2.0 * radius / chamber.height, numerics.dispersion),
         angles=ring(n),
         scratch=scratch(n),
     )

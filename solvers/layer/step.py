@@ -112,7 +112,9 @@ def pull(x, y, angles, pull_cell, pull_face):
 
 
 @_inner
-def stage_rates(area, q, spin, euler, x, y, angles, dt, spread, pull_cell, pull_face, spare, rate_a, rate_q):
+def stage_rates(
+    area, q, spin, euler, x, y, angles, dt, dispersion, pull_cell, pull_face, spare, rate_a, rate_q
+):
     """Rates of change at one stage of a time step, for callers that are compiled themselves.
 
     Parameters
@@ -122,7 +124,7 @@ def stage_rates(area, q, spin, euler, x, y, angles, dt, spread, pull_cell, pull_
     x, y : body force in the drum frame
     angles : cosine and sine at the cells' middles and at their left faces, shape (4, n)
     dt : of the step, 0 where only the fastest wave is asked for
-    spread : as for `solvers.layer.finite_volume.rates`
+    dispersion : as for `solvers.layer.finite_volume.rates`
     pull_cell, pull_face, rate_a, rate_q : results, shape (n,)
     spare : scratch
 
@@ -132,7 +134,9 @@ def stage_rates(area, q, spin, euler, x, y, angles, dt, spread, pull_cell, pull_
     """
     step = 2.0 * np.pi / area.size
     pull(x, y, angles, pull_cell, pull_face)
-    fastest = ring_rates(area, q, spin, euler, pull_cell, pull_face, step, dt, spread, spare, rate_a, rate_q)
+    fastest = ring_rates(
+        area, q, spin, euler, pull_cell, pull_face, step, dt, dispersion, spare, rate_a, rate_q
+    )
     outcome = Outcome.DONE
     if not fastest < np.inf:
         outcome = Outcome.AT_AXIS
@@ -227,7 +231,7 @@ def advance(area, q, pace, stop, drive, wall, angles, courant, most, spare, load
     n = area.size
     step = 2.0 * np.pi / n
     slip, spin, sums = drive.slip, drive.spin, loads[0]
-    law, coefficient, lid, spread = wall.law, wall.coefficient, wall.lid, wall.spread
+    law, coefficient, lid, dispersion = wall.law, wall.coefficient, wall.lid, wall.dispersion
     pull_cell, pull_face = spare[WORK, :n], spare[WORK + 1, :n]
     rate_a, rate_q = spare[WORK + 2, :n], spare[WORK + 3, :n]
     next_a, next_q, begin_q = spare[WORK + 4, :n], spare[WORK + 5, :n], spare[WORK + 6, :n]
@@ -250,7 +254,7 @@ def advance(area, q, pace, stop, drive, wall, angles, courant, most, spare, load
         x, y = _whirl(time + dt if stage == 2 else time, drive)
         limit = dt if stage > 0 else 0.0
         outcome, fastest = stage_rates(
-            next_a, next_q, spin, 0.0, x, y, angles, limit, spread,
+            next_a, next_q, spin, 0.0, x, y, angles, limit, dispersion,
             pull_cell, pull_face, spare, rate_a, rate_q,
         )  # fmt: skip
         if outcome == Outcome.AT_AXIS:

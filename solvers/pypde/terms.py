@@ -37,7 +37,7 @@ class LongWaveTerms:
     fill : chamber and liquid; the volume is that of the uniform layer
     whirl : of the drum's axis, at a constant speed in space, and gravity; its spin is that at time 0
     friction : on the wall; the laminar law takes the frequency of the whirl seen from the drum at time 0
-    dispersion : add the finite depth's dispersion [theory: long_wave, eq. 12]
+    dispersion : add the finite depth's dispersion [theory: long_wave, eq. 13]
     spin_rate : rate of change of the spin, rad/s^2
 
     Raises
@@ -117,7 +117,7 @@ def layer_rates(terms: LongWaveTerms, area: Array, momentum: Array, time: float)
     if is_layer(terms, area, momentum):
         cell, face = radial_force(terms, n, time)
         work, step = np.zeros((WORK, n + 2 * GHOSTS)), 2.0 * math.pi / n
-        rates(a, q, spin, terms.spin_rate, cell, face, step, 0.0, _spread(terms, a), work, d_area, d_q)
+        rates(a, q, spin, terms.spin_rate, cell, face, step, 0.0, terms.dispersion, work, d_area, d_q)
         d_q -= _shear(terms, a, q, spin)
     return d_area * radius**2, d_q * radius**4
 
@@ -158,7 +158,7 @@ def march(
         weight=whirl.gravity / radius,
         spin=whirl.spin,
     )
-    wall, loads = Wall(law, coefficient, _lid(terms), _spread(terms, a)), records(LOADS)
+    wall, loads = Wall(law, coefficient, _lid(terms), terms.dispersion), records(LOADS)
     outcome, steps = march_layer(a, q, start, stop, drive, wall, ring(n), courant, scratch(n), loads)
     return a * radius**2, q * radius**4, outcome, int(steps)
 
@@ -202,11 +202,6 @@ def faded_velocity(a: Array, q: Array, spin: float) -> Array:
     square = np.square(a)
     found = 2.0 * (q + spin * square) * a / (square + np.maximum(square, THIN**2))
     return np.where(a > DRY, found, 0.0)
-
-
-def _spread(terms: LongWaveTerms, a: Array) -> float:
-    """Square of the mean layer's L for the dispersive term, 0 without it."""
-    return float(long_wave.layer_log(a.mean())) ** 2 if terms.dispersion else 0.0
 
 
 def _lid(terms: LongWaveTerms) -> float:

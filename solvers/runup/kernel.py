@@ -195,7 +195,7 @@ def layer_step(area, q, spins, force, layer, coefficient, dt, angles, spare, gai
     """
     n = area.size
     step, euler = 2.0 * np.pi / n, (spins[1] - spins[0]) / dt
-    law, lid, spread = layer.law, layer.lid, layer.spread
+    law, lid, dispersion = layer.law, layer.lid, layer.dispersion
     pull_cell, pull_face = spare[WORK, :n], spare[WORK + 1, :n]
     rate_a, rate_q = spare[WORK + 4, :n], spare[WORK + 5, :n]
     next_a, next_q, before = spare[WORK + 6, :n], spare[WORK + 7, :n], spare[WORK + 8, :n]
@@ -210,7 +210,7 @@ def layer_step(area, q, spins, force, layer, coefficient, dt, angles, spare, gai
     for stage in range(2):
         spin, x, y = spins[stage], force[2 * stage], force[2 * stage + 1]
         outcome, speed = stage_rates(
-            next_a, next_q, spin, euler, x, y, angles, dt, spread,
+            next_a, next_q, spin, euler, x, y, angles, dt, dispersion,
             pull_cell, pull_face, spare, rate_a, rate_q,
         )  # fmt: skip
         fastest = max(fastest, speed)

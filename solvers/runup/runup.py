@@ -32,7 +32,7 @@ class RunupNumerics:
     ----------
     cells : finite volumes round each wall, from 8
     samples : how many times are recorded, at least 2
-    dispersion : add the finite depth's dispersion to the layers [theory: long_wave, eq. 12]
+    dispersion : add the finite depth's dispersion to the layers [theory: long_wave, eq. 13]
     courant : Courant number of the layers; the rotor turns by at most this share of a cell in a step
     companion : run once more with half the cells, hence twice the steps, to estimate the error; from 16 cells
     """

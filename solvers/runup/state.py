@@ -42,7 +42,7 @@ class LayerProperties(NamedTuple):
     mass : kg
     law, coefficient : of the friction: number of the law; k, 1/s, Stokes' over the root of the spin, or c_f
     lid : 2 R/h_c under Stokes' friction, otherwise 0
-    spread : square of L for the dispersive term, 0 without it
+    dispersion : whether its waves disperse
     """
 
     radius: float
@@ -51,13 +51,12 @@ class LayerProperties(NamedTuple):
     law: int
     coefficient: float
     lid: float
-    spread: float
+    dispersion: bool
 
 
-# The same as a record; the number of the law is an integer.
-LAYER = np.dtype(
-    [(name, np.int64 if name == "law" else np.float64) for name in LayerProperties._fields], align=True
-)
+# The same as a record.
+_KINDS = {"law": np.int64, "dispersion": np.bool_}
+LAYER = np.dtype([(name, _KINDS.get(name, np.float64)) for name in LayerProperties._fields], align=True)
 
 
 def layer_properties(fill: Fill, friction: Friction, dispersion: bool) -> LayerProperties:
@@ -76,8 +75,7 @@ def layer_properties(fill: Fill, friction: Friction, dispersion: bool) -> LayerP
     law, coefficient = friction.at(fill.liquid.viscosity, slip, chamber.radius)
     lid = 2.0 * chamber.radius / chamber.height if friction.law is FrictionLaw.STOKES and slip > 0.0 else 0.0
     weight = fill.liquid.density * chamber.height
-    spread = log**2 if dispersion and log < math.inf else 0.0
-    return LayerProperties(chamber.radius, weight, fill.mass, law, coefficient, lid, spread)
+    return LayerProperties(chamber.radius, weight, fill.mass, law, coefficient, lid, dispersion)
 
 
 def layer_capture(fill: Fill, gravity: float) -> float:

@@ -539,7 +539,7 @@ def test_manufactured_solution_with_linear_friction() -> None:
 
 @kills("solvers.pypde.terms:march", "slip=whirl.slip", "slip=-whirl.slip")
 @kills("solvers.pypde.terms:march", "weight=whirl.gravity / radius", "weight=whirl.gravity")
-@kills("solvers.pypde.terms:march", "_lid(terms), _spread(terms, a))", "0.0, _spread(terms, a))")
-@kills("solvers.pypde.terms:_spread", "layer_log(a.mean())) ** 2", "layer_log(a.mean()))")
+@kills("solvers.pypde.terms:march", "_lid(terms), terms.dispersion)", "0.0, terms.dispersion)")
+@kills("solvers.pypde.terms:march", "_lid(terms), terms.dispersion)", "_lid(terms), False)")
 def test_history_with_stokes_friction() -> None:
     check_history()

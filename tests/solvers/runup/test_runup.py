@@ -614,3 +614,19 @@ def test_every_outcome_but_the_end_has_a_reason() -> None:
     assert [bool(outcome.message) for outcome in Outcome] == [
         outcome is not Outcome.DONE for outcome in Outcome
     ]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("cells", [128, 256])
+def test_a_weak_motor_gets_through_with_dispersion(cells: int) -> None:
+    """With dispersion the run comes to its end as without it, on fine cells too."""
+    from leblanc.scene.examples import example
+    from validation.trade.answers import taken_run
+
+    ends = []
+    for dispersion in (False, True):
+        history = taken_run(example("weak_motor"), "long_wave", cells, dispersion).history
+        assert history.time[-1] == 60.0
+        ends.append((history.speed[-1], history.amplitude.max()))
+    # What disperses is a part of the waves' height, and that a part of the amplitude.
+    np.testing.assert_allclose(ends[1], ends[0], rtol=1e-3)
