@@ -1,0 +1,222 @@
+"""A layer under a prescribed whirl whose wave stands in the whirl's frame, by finite volumes in time.
+
+Seen from the drum the whirl turns at the slip. After the time in which it turns by one cell the layer is as
+it was, but one cell further on: a fixed point of that short map is the steady wave, with whatever bores and
+dry cells it has. The scheme keeps mass and angular momentum, so that the wave's force and the wall's torque
+agree to rounding. Lengths over R, times over 1/Omega [theory: whirl, eq. 21-23].
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from fluid.fill import Fill
+from fluid.friction import Friction, FrictionLaw
+from meshes.arrays import Array, Complex
+from solvers.layer.records import LOADS, PACE, Drive, Outcome, Wall, records
+from solvers.layer.state import ring
+from solvers.slices import compiled, step_budget
+
+_COURANT = 0.8
+# Of the equal steps of a cell's time, which are no longer than this: no step is cut where none need be.
+_LONGEST = 1.09
+_STEP = 1e-8  # of the mean area and of what drives the layer, in differences of the map
+_LEAST = 1e-7  # of the radius: smaller deflections are answered as this one, the limit of a small whirl
+_SLOWEST = 1e-3  # of the spin: a wave that turns more slowly in the drum is none
+_SETTLED = 2e-5  # change of G from period to period
+_MEANS = ((1, 40), (4, 10), (12, 10))  # periods a mean is taken over, and how many such means are tried
+
+
+class Whirling(NamedTuple):
+    """What drives a layer.
+
+    Parameters
+    ----------
+    ratio : r = omega_w/Omega
+    size : w = W/R
+    drag : coefficient of the friction as `fluid.friction.damping_rate` takes it, over Omega if it is a rate
+    """
+
+    ratio: float
+    size: float
+    drag: float
+
+
+class Answer(NamedTuple):
+    """A layer after some time.
+
+    Parameters
+    ----------
+    state : area and momentum of the cells, shape (2 n,)
+    force : G, mean over that time
+    turning : mean rotation of the liquid relative to the drum, over Omega
+    """
+
+    state: Array
+    force: complex
+    turning: float
+
+
+@dataclass(frozen=True)
+class Derivatives:
+    """Of the map over the time of one cell at a state, the states having 2 n components.
+
+    Parameters
+    ----------
+    state : of the state after it, shape (2 n, 2 n)
+    given : by ratio, size and drag, shape (2 n, 3)
+    force : of G by the state, shape (2 n,)
+    force_given : and by ratio, size and drag, shape (3,)
+    """
+
+    state: Array
+    given: Array
+    force: Complex
+    force_given: Complex
+
+
+class StandingWave:
+    """A layer on its way to a standing wave.
+
+    Parameters
+    ----------
+    fill : chamber and liquid, with some liquid and a free surface
+    friction : on the wall
+    cells : finite volumes round the wall
+    """
+
+    def __init__(self, fill: Fill, friction: Friction, cells: int) -> None:
+        from solvers.layer.step import scratch
+
+        chamber = fill.chamber
+        self.fill, self.friction, self.cells = fill, friction, cells
+        self.mean = fill.volume / (2.0 * math.pi * chamber.height * chamber.radius**2)
+        self._lid = 2.0 * chamber.radius / chamber.height if friction.law is FrictionLaw.STOKES else 0.0
+        self._step, self._angles, self._scratch = 2.0 * math.pi / cells, ring(cells), scratch(cells)
+        self._parts, self._fastest = 1, 0.0
+        area = np.full(cells, self.mean)
+        self.state = np.concatenate([area, -np.square(area)])
+
+    @property
+    def least(self) -> float:
+        """Least area of a cell over the mean: 0 where the wall is dry."""
+        return float(self.state[: self.cells].min()) / self.mean
+
+    def drag(self, spin: float, whirl_speed: float) -> float:
+        """Coefficient of the friction, over the spin if it is a rate; both speeds in rad/s."""
+        slip, radius = whirl_speed - spin, self.fill.chamber.radius
+        _, found = self.friction.at(self.fill.liquid.viscosity, slip, radius)
+        return found if self.friction.law is FrictionLaw.QUADRATIC else found / spin
+
+    def period(self, given: Whirling) -> Answer | None:
+        """Go on for one turn of the whirl in the drum; None where the layer breaks down."""
+        state = self.state.copy()
+        found = self._advance(state, given, 2.0 * math.pi / abs(given.ratio - 1.0), 0, 0.0)
+        if found is not None:
+            self.state = found.state
+        return found
+
+    def settle(self, given: Whirling) -> Answer | None:
+        """Go on until G stays; None where it does not, or where the layer breaks down.
+
+        First one period is compared with the next, then means of 4 and of 12.
+        """
+        for length, tries in _MEANS:
+            last = complex(math.inf)
+            for _ in range(tries):
+                found = [self.period(given) for _ in range(length)]
+                if any(part is None for part in found):
+                    return None
+                parts = [part for part in found if part is not None]
+                mean = sum(part.force for part in parts) / length
+                if abs(mean - last) < _SETTLED:
+                    turning = sum(part.turning for part in parts) / length
+                    return Answer(self.state, mean, turning)
+                last = mean
+        return None
+
+    def cell(self, state: Array, given: Whirling, turned: float = 0.0) -> Answer | None:
+        """The map: a state after the time of one cell, moved back by it; None where the layer breaks down.
+
+        Parameters
+        ----------
+        state : shape (2 n,)
+        given : what drives it
+        turned : angle of the push ahead of the frame the state is in, rad
+        """
+        slip, n = given.ratio - 1.0, self.cells
+        if not abs(slip) > _SLOWEST:
+            return None
+        found = self._advance(state.copy(), given, self._step / abs(slip), self._parts, turned / slip)
+        if found is None:
+            return None
+        way = 1 if slip < 0.0 else -1
+        moved = np.concatenate([np.roll(found.state[:n], way), np.roll(found.state[n:], way)])
+        return found._replace(state=moved)
+
+    def linearise(self, given: Whirling) -> Derivatives | None:
+        """Derivatives of the map at the present state; None where the layer breaks down."""
+        slip, size = given.ratio - 1.0, 2 * self.cells
+        if not abs(slip) > _SLOWEST:
+            return None
+        time = self._step / abs(slip)
+        # How many steps it takes: their number stays while the state changes, which keeps the map smooth.
+        if self._advance(self.state.copy(), given, time, 0, 0.0) is None:
+            return None
+        self._parts = max(1, math.ceil(self._fastest * time / (_COURANT * self._step)))
+        base = self.cell(self.state, given)
+        if base is None:
+            return None
+        by_state, by_given = np.empty((size, size)), np.empty((size, 3))
+        force, force_given = np.empty(size, dtype=complex), np.empty(3, dtype=complex)
+        step = _STEP * self.mean
+        moved = self.state.copy()
+        for k in range(size):
+            moved[k] += step
+            found = self.cell(moved, given)
+            moved[k] = self.state[k]
+            if found is None:
+                return None
+            by_state[:, k] = (found.state - base.state) / step
+            force[k] = (found.force - base.force) / step
+        for k, value in enumerate(given):
+            step = _STEP * (abs(value) or 1.0)
+            found = self.cell(self.state, given._replace(**{given._fields[k]: value + step}))
+            if found is None:
+                return None
+            by_given[:, k] = (found.state - base.state) / step
+            force_given[k] = (found.force - base.force) / step
+        return Derivatives(by_state, by_given, force, force_given)
+
+    def kept(self, state: Array) -> Array:
+        """A state without areas below nothing, of the layer's volume."""
+        area = np.maximum(state[: self.cells], 0.0)
+        return np.concatenate([area * (self.mean / area.mean()), state[self.cells :]])
+
+    def _advance(self, state: Array, given: Whirling, time: float, parts: int, start: float) -> Answer | None:
+        """Advance a state, in place, in so many equal steps or, if 0, in as long ones as it allows."""
+        from solvers.layer.step import advance
+
+        n, pace, loads = self.cells, records(PACE), records(LOADS)
+        drive = Drive(max(given.size, _LEAST), given.ratio - 1.0, 0.0, given.ratio, 0.0, 1.0)
+        wall = Wall(self.friction.law.number, max(given.drag, 0.0), self._lid, 0.0)
+        courant, pace[0].time = _LONGEST if parts else _COURANT, start
+        most = step_budget(time, 1.0, n, courant)
+        for part in range(max(parts, 1)):
+            stop = start + time * (part + 1) / max(parts, 1)
+            outcome, _ = compiled(
+                *(advance, state[:n], state[n:], pace, stop, drive, wall, self._angles, courant, most),
+                *(self._scratch, loads),
+            )
+            if outcome != Outcome.DONE:
+                return None
+        self._fastest = float(pace[0].fastest)
+        sums = loads[0]
+        offset = complex(sums.offset_x, sums.offset_y) / time
+        # Newton's law for all liquid, of which the mean area is half the share of a full drum's.
+        force = 2.0 * self.mean * (1.0 + offset / drive.amplitude)
+        return Answer(state, force, float(sums.turning) / time)
