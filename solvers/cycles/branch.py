@@ -30,6 +30,7 @@ _SHORTEST = 1.0 / 16.0  # share of a Newton step
 _SLOW = 0.4  # of what was left before: above that the derivatives are found anew
 _GONE = 0.5  # of the mean area: a layer this far from a standing wave does not come to one
 _FIRST, _LEAST, _MOST = 0.1, 2e-3, 0.4  # of the arc's steps
+_CLOSE, _FINEST = 0.35, 0.02  # longest step next to a small whirl: of its size over the depth, and at least
 _FEW, _MANY = 5, 9  # rounds after which the next step is longer or shorter
 _SPREAD, _RANGE = 0.05, 0.1  # changes of whirl speed and of spin that count as a depth of the layer does
 _DIFFERENCE = 1e-6
@@ -134,7 +135,19 @@ class Follower:
             for wave, size in zip(self.waves, sizes, strict=True)
         ]
 
-    def start(self, moved: Complex, whirl_speed: float, spin: float, size: float) -> Cycle | None:
+    def size(self, cycle: Cycle) -> float:
+        """Largest deflection of a layer's axis over the depth of the largest layer."""
+        return float(np.abs(self._rows @ cycle.moved).max()) / self.depth
+
+    def thinnest(self, cycle: Cycle) -> float:
+        """Least depth of a layer over its mean depth."""
+        pairs = zip(self.waves, cycle.state, strict=True)
+        area = min(float(state[: wave.cells].min()) / wave.mean for wave, state in pairs)
+        return max(area, 0.0)
+
+    def start(
+        self, moved: Complex, whirl_speed: float, spin: float, size: float, hold_size: bool = False
+    ) -> Cycle | None:
         """A limit cycle at a spin, looked for near a whirl; None where none is found.
 
         Parameters
@@ -142,6 +155,7 @@ class Follower:
         moved : shape of the whirl
         whirl_speed, spin : rad/s
         size : of the whirl over the depth of the layer
+        hold_size : look for a limit cycle of that size, at whatever spin
         """
         watched = complex(self._rows[self._watched] @ moved)
         shape = moved * (cmath.exp(-1j * cmath.phase(watched)) / float(np.abs(self._rows @ moved).max()))
@@ -149,7 +163,10 @@ class Follower:
         if not self._grown(vector, size):
             return None
         towards = np.zeros(vector.size)
-        towards[-1] = 1.0
+        if hold_size:
+            towards[:-2] = vector[:-2] / np.linalg.norm(vector[:-2])
+        else:
+            towards[-1] = 1.0
         point = _Point(np.array([wave.state for wave in self.waves]), vector)
         found = self._corrected(point, vector, towards)
         return None if found is None else self._cycle(found, towards, 0.0)
@@ -175,7 +192,7 @@ class Follower:
             cycle = found
             yield cycle
             length *= 1.6 if self._rounds <= _FEW else 1.0 if self._rounds <= _MANY else 0.7
-            length = min(length, _MOST)
+            length = min(length, _MOST, _CLOSE * self.size(cycle) + _FINEST)
 
     def step(self, cycle: Cycle, length: float) -> Cycle | None:
         """The limit cycle further on along the branch by a length of arc; None where it is not found."""

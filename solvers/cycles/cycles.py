@@ -1,0 +1,407 @@
+"""Limit cycles of a rotor with liquid layers over speed: where its branches start, and what is told of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fluid.fill import Fill
+from fluid.friction import NO_FRICTION, Friction, FrictionLaw
+from meshes.arrays import Array, Complex, Flags
+from meshes.errors import InputError
+from solvers.cycles.balance import Circular, NoCircles, circular
+from solvers.cycles.branch import Cycle, Follower
+from solvers.cycles.estimate import Estimate, estimated_whirl
+from solvers.cycles.floquet import disturbance_growth
+from solvers.rotor.system import Rotor, RotorSystem
+from solvers.whirl.edges import unstable_bands
+from solvers.whirl.growth import growth_at
+
+CELLS = 64
+FEWEST = 32
+_GRID = 241  # speeds among which bands are looked for
+_BELOW, _BEYOND = 0.6, 1.25  # of the range of speeds: whirls are followed this far out of it
+_SHARES = (0.3, 0.5, 0.15, 0.75)  # of a band, where the first whirl of a branch is looked for
+_LARGE = 0.8  # of the depth: a first whirl that would be larger is looked for nearer to the edge
+_SMALL = 0.03  # of the depth: a branch ends in small whirls
+_FIRST = 0.02  # of the depth: first whirl of a branch from an edge
+_POINTS = 400
+_NEAR = 0.03  # relative, of an edge at which a branch already ends
+_PROMINENT = 3e-4  # relative: a smaller turn of the branch is the scheme's, not a fold
+_WILD = 0.1  # of the spin: growth beyond that is that of a kink of the scheme's limiter, not of the whirl
+FAST_LAG = 1.0 / 3.0  # of the spin: beyond that the flow's profile no longer describes the lagging liquid
+
+
+@dataclass(frozen=True)
+class Branch:
+    """Limit cycles one after the other; k of them, c chambers.
+
+    Parameters
+    ----------
+    speed, whirl_speed : Omega and omega_w, rad/s, shape (k,)
+    deflection : of each chamber's axis in the frame of the whirl, complex, m, shape (k, c)
+    lag : by which the liquid of each chamber turns more slowly than the drum, rad/s, nan where there is no
+        layer, shape (k, c)
+    growth : of the disturbance that grows most, 1/s, below 0 where the whirl is stable, shape (k,); where it
+        was not found that between its neighbours, nan where it was found nowhere
+    torque : that the drive has to supply on top, N m, shape (k,)
+    thinnest : least depth of a layer over its mean depth, shape (k,)
+    folds : indices of the whirls next to a fold, where the branch turns back in speed
+    fold_speed, fold_amplitude : there, by a parabola through three whirls, rad/s and m
+    reason : why it ends where it ends, at the first whirl and at the last one
+    """
+
+    speed: Array
+    whirl_speed: Array
+    deflection: Complex
+    lag: Array
+    growth: Array
+    torque: Array
+    thinnest: Array
+    folds: tuple[int, ...]
+    fold_speed: tuple[float, ...]
+    fold_amplitude: tuple[float, ...]
+    reason: tuple[str, str]
+
+    @property
+    def amplitude(self) -> Array:
+        """Deflection of the first chamber's axis, m, shape (k,)."""
+        return np.asarray(np.abs(self.deflection[:, 0]))
+
+    @property
+    def stable(self) -> Flags:
+        """Small disturbances die out, shape (k,)."""
+        return np.asarray(self.growth < 0.0)
+
+    @property
+    def power(self) -> Array:
+        """Of the drive on top, W, shape (k,)."""
+        return np.asarray(self.torque * self.speed)
+
+    def at(self, speed: float) -> list[tuple[float, float, float, bool]]:
+        """Amplitude, whirl speed, lag and stability of every whirl of the branch at a speed.
+
+        Between two whirls of the branch values go in a straight line.
+
+        Parameters
+        ----------
+        speed : Omega, rad/s
+        """
+        found = []
+        lag = np.nanmax(self.lag, axis=1)
+        for k in range(self.speed.size - 1):
+            first, last = self.speed[k], self.speed[k + 1]
+            if first == last or not min(first, last) <= speed < max(first, last):
+                continue
+            part = (speed - first) / (last - first)
+            values = [
+                float((1.0 - part) * row[k] + part * row[k + 1])
+                for row in (self.amplitude, self.whirl_speed, lag)
+            ]
+            found.append((*values, bool(self.stable[k] and self.stable[k + 1])))
+        return found
+
+
+@dataclass(frozen=True)
+class LimitCycles:
+    """All limit cycles that were found.
+
+    Parameters
+    ----------
+    branches : each through its folds
+    reason : why there are none, or what is not among them; empty if nothing is to be said
+    """
+
+    branches: tuple[Branch, ...]
+    reason: str = ""
+
+    def largest_stable(self, speed: float) -> float:
+        """Amplitude of the largest stable whirl at a speed, m; 0 where there is none."""
+        stable = [size for branch in self.branches for size, _, _, holds in branch.at(speed) if holds]
+        return max(stable, default=0.0)
+
+
+def limit_cycles(
+    rotor: Rotor,
+    fills: Sequence[Fill],
+    speeds: tuple[float, float],
+    friction: Friction,
+    cells: int = CELLS,
+    progress: Callable[[int, float], None] | None = None,
+) -> LimitCycles:
+    """Self-excited whirls of finite size over a range of speeds [theory: whirl, eq. 21-28].
+
+    Without unbalance and gravity, in isotropic supports: the whirl is a circle.
+
+    Parameters
+    ----------
+    rotor : the dry rotor
+    fills : of its chambers
+    speeds : first and last spin speed, rad/s; branches are followed somewhat further
+    friction : on the walls
+    cells : of each layer
+    progress : called with the number of whirls found and the speed of the last one
+
+    Returns
+    -------
+    LimitCycles; without branches, and with the reason, where the supports are not isotropic, the chambers
+    have baffles, or no friction or no damping settles how large the whirl is
+
+    Raises
+    ------
+    InputError : speeds out of order, too few cells
+
+    Examples
+    --------
+    >>> from fluid.liquid import Liquid
+    >>> from meshes.chamber import Chamber
+    >>> from solvers.rotor.jeffcott import Jeffcott
+    >>> fill = Fill(Chamber(0.1, 0.02), Liquid("water", 1000.0, 1e-6), 1.19e-4)
+    >>> rotor = Jeffcott(mass=6.28, stiffness=6.28e4, damping=25.1, unbalance=0.0)
+    >>> found = limit_cycles(rotor, [fill], (125.0, 135.0), Friction("linear", 3.0), cells=32)
+    >>> print(f"{1e3 * found.largest_stable(130.0):.1f} mm")
+    5.6 mm
+    """
+    first, last = speeds
+    if not 0.0 < first < last:
+        raise InputError("speeds", speeds, "rising and above 0")
+    if cells < FEWEST:
+        raise InputError("cells", cells, f"at least {FEWEST}")
+    system = rotor.system()
+    try:
+        machine = circular(system, fills, friction)
+    except NoCircles as why:
+        return LimitCycles((), str(why))
+    unsettled = _unsettled(machine, friction)
+    if unsettled:
+        return LimitCycles((), unsettled)
+    range_ = (_BELOW * first, _BEYOND * last)
+    finder = _Finder(machine, friction, cells, range_, progress)
+    branches: list[Branch] = []
+    starts = list(_bands(system, fills, range_))
+    for lower, upper, near in starts:
+        branch = finder.large(lower, upper, near)
+        if branch is not None:
+            branches.append(branch)
+    (own,) = unstable_bands(rotor, [fills], np.linspace(*range_, _GRID), friction)
+    for _, upper in own:
+        if not range_[0] < upper < last or any(_ends_at(branch, upper) for branch in branches):
+            continue
+        near = float(growth_at(rotor, [fills], np.array([0]), np.array([upper]), friction)[1][0])
+        branch = finder.small(upper, near)
+        if branch is not None:
+            branches.append(branch)
+    reason = ""
+    if not branches:
+        reason = "no whirl grows by itself in this range" if not starts else "no limit cycle was found"
+    return LimitCycles(tuple(branches), reason)
+
+
+def whirl_estimate(
+    rotor: Rotor, fills: Sequence[Fill], speeds: Array, friction: Friction
+) -> tuple[Estimate | None, ...]:
+    """Size of the whirl at each speed inside a band, without solving for it [theory: whirl, eq. 29].
+
+    Parameters
+    ----------
+    rotor, fills, friction : as for `limit_cycles`
+    speeds : rad/s, rising, shape (n,)
+
+    Returns
+    -------
+    An estimate for each speed; None outside the bands, and where the whirl is no circle or nothing bounds it
+    """
+    system = rotor.system()
+    try:
+        machine = circular(system, fills, friction)
+    except NoCircles:
+        return (None,) * len(speeds)
+    if _unsettled(machine, friction):
+        return (None,) * len(speeds)
+    bands = list(_bands(system, fills, (_BELOW * float(speeds[0]), _BEYOND * float(speeds[-1]))))
+    found: list[Estimate | None] = []
+    for speed in speeds.tolist():
+        here = [(lower, near) for lower, upper, near in bands if lower < speed < upper]
+        found.append(estimated_whirl(machine, friction, *here[0], speed) if here else None)
+    return tuple(found)
+
+
+def _unsettled(machine: Circular, friction: Friction) -> str:
+    """Why no whirl of a certain size can last; empty where one can."""
+    if friction.law is FrictionLaw.NONE or (
+        friction.law is not FrictionLaw.STOKES and friction.coefficient == 0.0
+    ):
+        return "without friction of the liquid nothing keeps it turning: a whirl drags it back and dies down"
+    if not np.abs(machine.damping).max() > 0.0:
+        return "without damping of the supports nothing bounds the whirl"
+    return ""
+
+
+def _bands(
+    system: RotorSystem, fills: Sequence[Fill], range_: tuple[float, float]
+) -> Iterator[tuple[float, float, float]]:
+    """Bands of the same machine without friction and damping: their edges, and the whirl speed at the lower."""
+    free = replace(system, damping=0.0 * system.damping)
+    (bands,) = unstable_bands(free, [fills], np.linspace(*range_, _GRID), NO_FRICTION)
+    for lower, upper in bands:
+        inside = np.array([lower + 1e-3 * (upper - lower)])
+        near = growth_at(free, [fills], np.array([0]), inside, NO_FRICTION)[1]
+        yield lower, upper, float(near[0])
+
+
+def _ends_at(branch: Branch, edge: float) -> bool:
+    return any(abs(branch.speed[k] - edge) <= _NEAR * edge for k in (0, -1))
+
+
+class _Finder:
+    """Branches of a machine within a range of speeds."""
+
+    def __init__(
+        self,
+        machine: Circular,
+        friction: Friction,
+        cells: int,
+        range_: tuple[float, float],
+        progress: Callable[[int, float], None] | None,
+    ) -> None:
+        self.machine, self.friction, self.cells, self.range = machine, friction, cells, range_
+        self.progress, self.count = progress, 0
+
+    def large(self, lower: float, upper: float, near: float) -> Branch | None:
+        """The branch through a band, from a large whirl inside it."""
+        follower = Follower(self.machine, self.friction, self.cells, lower)
+        for share in _SHARES:
+            spin = lower + share * (upper - lower)
+            guess = estimated_whirl(self.machine, self.friction, lower, near, spin)
+            while guess.amplitude > _LARGE * follower.depth and spin > lower * 1.002:
+                spin = lower + 0.6 * (spin - lower)
+                guess = estimated_whirl(self.machine, self.friction, lower, near, spin)
+            size = min(guess.amplitude / follower.depth, 1.2 * _LARGE)
+            start = follower.start(guess.moved, guess.whirl_speed, spin, size)
+            if start is not None and follower.size(start) > 1e-3:
+                return self._both_ways(follower, start)
+        return None
+
+    def small(self, edge: float, near: float) -> Branch | None:
+        """The branch from an edge of a band, at which a whirl of a frequency neither grows nor dies."""
+        follower = Follower(self.machine, self.friction, self.cells, edge)
+        shape = self.machine.small_whirl(near, edge)
+        start = follower.start(shape, near, edge, _FIRST, hold_size=True)
+        if start is None:
+            return None
+        found, why = self._follow(follower, start)
+        return _branch([self._row(follower, start), *found], ("edge of the band", why))
+
+    def _both_ways(self, follower: Follower, start: Cycle) -> Branch:
+        parts, reasons = [], []
+        for way in (-1.0, 1.0):
+            found, why = self._follow(follower, replace(start, tangent=way * start.tangent))
+            parts.append([replace(row, arc=way * row.arc) for row in found])
+            reasons.append(why)
+        rows = [*reversed(parts[0]), self._row(follower, start), *parts[1]]
+        return _branch(rows, (reasons[0], reasons[1]))
+
+    def _follow(self, follower: Follower, start: Cycle) -> tuple[list[_Row], str]:
+        """Whirls on from one, and why the last one is the last."""
+        rows: list[_Row] = []
+        size = follower.size(start)
+        for cycle in follower.after(start):
+            if not self.range[0] <= cycle.spin <= self.range[1]:
+                return rows, "end of the range of speeds"
+            if follower.size(cycle) < _SMALL and follower.size(cycle) < size:
+                return rows, "edge of the band"
+            size = follower.size(cycle)
+            rows.append(self._row(follower, cycle))
+            self.count += 1
+            if self.progress is not None:
+                self.progress(self.count, cycle.spin)
+            if len(rows) >= _POINTS:
+                return rows, "so many whirls were found that the rest was left"
+        return rows, "no further whirl was found"
+
+    def _row(self, follower: Follower, cycle: Cycle) -> _Row:
+        machine = self.machine
+        rows = np.array([place.row for place in machine.places])
+        size = np.square(np.abs(rows @ cycle.moved))
+        mass = np.array([place.full_mass for place in machine.places])
+        lag = np.full(len(machine.rows), np.nan)
+        for place, turning in zip(machine.places, cycle.turning, strict=True):
+            lag[list(place.which)] = -turning
+        return _Row(
+            speed=cycle.spin,
+            whirl_speed=cycle.whirl_speed,
+            deflection=machine.rows @ cycle.moved,
+            lag=lag,
+            growth=self._growth(follower, cycle),
+            torque=float(cycle.whirl_speed**2 * (mass * size * cycle.force.imag).sum()),
+            thinnest=follower.thinnest(cycle),
+            arc=cycle.arc,
+        )
+
+    def _growth(self, follower: Follower, cycle: Cycle) -> float:
+        """Growth of the disturbance that grows most, 1/s; nan where a kink of the scheme hides it."""
+        found = disturbance_growth(self.machine, follower.waves, cycle)
+        return found if found is not None and found < _WILD * cycle.spin else float("nan")
+
+
+@dataclass(frozen=True)
+class _Row:
+    """A limit cycle as a branch tells it, see `Branch`."""
+
+    speed: float
+    whirl_speed: float
+    deflection: Complex
+    lag: Array
+    growth: float
+    torque: float
+    thinnest: float
+    arc: float
+
+
+def _branch(rows: list[_Row], reason: tuple[str, str]) -> Branch:
+    """A branch from its whirls, the slow end first."""
+    names = ("speed", "whirl_speed", "deflection", "lag", "growth", "torque", "thinnest")
+    values = {name: np.array([getattr(row, name) for row in rows]) for name in names}
+    amplitude, arc = np.abs(values["deflection"][:, 0]), np.array([row.arc for row in rows])
+    known = np.isfinite(values["growth"])
+    if known.any():
+        # Between its neighbours where it is not known.
+        values["growth"] = np.interp(arc, arc[known], values["growth"][known])
+    turns = _turns(values["speed"])
+    near = [slice(k - 1, k + 2) for k in turns]
+    folds = [_fold(arc[at], values["speed"][at], amplitude[at]) for at in near]
+    return Branch(
+        **values,
+        folds=tuple(turns),
+        fold_speed=tuple(speed for speed, _ in folds),
+        fold_amplitude=tuple(size for _, size in folds),
+        reason=reason,
+    )
+
+
+def _turns(speed: Array) -> list[int]:
+    """Whirls at which a branch turns back in speed, small turns to and fro left out."""
+    found: list[int] = []
+    best, way = 0, 0
+    for k in range(1, speed.size):
+        step = (speed[k] - speed[best]) / speed[best]
+        if way == 0:
+            if abs(step) > _PROMINENT:
+                way, best = int(np.sign(step)), k
+        elif way * step > 0.0:
+            best = k
+        elif abs(step) > _PROMINENT:
+            found.append(best)
+            way, best = -way, k
+    return [k for k in found if 0 < k < speed.size - 1]
+
+
+def _fold(arc: Array, speed: Array, amplitude: Array) -> tuple[float, float]:
+    """Speed and amplitude where the parabola of speed over arc through three whirls turns back."""
+    place = arc - arc[1]
+    bend, slope, _ = np.polyfit(place, speed, 2)
+    top = float(np.clip(-0.5 * slope / bend, place.min(), place.max())) if bend else 0.0
+    at = [float(np.polyval(np.polyfit(place, part, 2), top)) for part in (speed, amplitude)]
+    return at[0], at[1]

@@ -1,0 +1,92 @@
+"""How large a self-excited whirl grows, in one line: the layer's lag by rule, no wave solved."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from fluid.friction import QUADRATIC, Friction, FrictionLaw, damping_rate
+from meshes.arrays import Complex
+from solvers.cycles.balance import Circular, Place
+
+# The whirl drags the liquid back until it turns at about this share of the speed at which whirls begin to grow.
+_DRAGGED = 0.955
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A whirl by rule [theory: whirl, eq. 29].
+
+    Parameters
+    ----------
+    spin, whirl_speed : Omega and omega_w, rad/s
+    moved : the rotor's coordinates, complex, shape (p,)
+    amplitude : largest deflection of a chamber with a layer, m
+    lag : by which the liquid turns more slowly than the drum, rad/s
+    """
+
+    spin: float
+    whirl_speed: float
+    moved: Complex
+    amplitude: float
+    lag: float
+
+
+def estimated_whirl(machine: Circular, friction: Friction, lower: float, near: float, spin: float) -> Estimate:
+    """Frequency, shape and size of a large whirl [theory: whirl, eq. 29].
+
+    It whirls as if the chambers were full of solid, drags the liquid back to about the lower edge of the band,
+    and is as large as the torque of the lagging liquid on the wall can feed against the supports' damping.
+
+    Parameters
+    ----------
+    machine : the rotor and its layers
+    friction : on the walls
+    lower : edge of the band where whirls begin to grow, without friction and damping, rad/s
+    near : frequency of the whirl there, rad/s
+    spin : Omega, rad/s
+
+    Returns
+    -------
+    Estimate; its amplitude is 0 without friction and infinite without damping of the supports
+    """
+    whirl_speed, shape = _full(machine, near, spin)
+    rows = np.array([place.row for place in machine.places])
+    shape = shape / float(np.abs(rows @ shape).max())
+    lag = max(spin - _DRAGGED * lower, 0.0)
+    torque = sum(
+        _wall_torque(place, friction, lag, spin, abs(whirl_speed - spin)) for place in machine.places
+    )
+    resisted = whirl_speed * float((shape.conj() @ machine.damping @ shape).real)
+    size = math.sqrt(torque / resisted) if resisted > 0.0 else math.inf
+    return Estimate(spin, whirl_speed, shape, size, lag)
+
+
+def _full(machine: Circular, near: float, spin: float) -> tuple[float, Complex]:
+    """Frequency and shape of the undamped rotor's whirl with full chambers, the one nearest to a frequency."""
+    mass = machine.mass.copy()
+    for place in machine.places:
+        mass = mass + place.full_mass * np.outer(place.row.conj(), place.row)
+    p = len(mass)
+    inverse = np.linalg.inv(mass)
+    # omega^2 M - i omega Omega G - K = 0.
+    state = np.zeros((2 * p, 2 * p), dtype=complex)
+    state[:p, p:] = np.eye(p)
+    state[p:, :p], state[p:, p:] = inverse @ machine.stiffness, 1j * spin * inverse @ machine.gyroscopic
+    values, vectors = np.linalg.eig(state)
+    best = int(np.argmin(np.abs(values - near)))
+    return float(values[best].real), np.asarray(vectors[:p, best])
+
+
+def _wall_torque(place: Place, friction: Friction, lag: float, spin: float, slip: float) -> float:
+    """Torque of the wall on liquid that turns as a solid, N m."""
+    fill = place.fill
+    radius, depth = fill.chamber.radius, fill.depth / fill.chamber.radius
+    law, coefficient = friction.at(fill.liquid.viscosity, slip, radius)
+    velocity = lag * (1.0 - depth)  # over R, at the surface: the profile R/r of the long waves
+    lid = 2.0 * radius / fill.chamber.height if friction.law is FrictionLaw.STOKES else 0.0
+    area = depth * (1.0 - 0.5 * depth)
+    rate = float(damping_rate(law, coefficient, lid, depth, area, velocity if law == QUADRATIC else 0.0))
+    return place.mass * rate * velocity * radius**2
