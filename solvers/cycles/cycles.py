@@ -368,7 +368,10 @@ def _branch(rows: list[_Row], reason: tuple[str, str]) -> Branch:
     known = np.isfinite(values["growth"])
     if known.any():
         # Between its neighbours where it is not known.
-        values["growth"] = np.interp(arc, arc[known], values["growth"][known])
+        filled = np.interp(arc, arc[known], values["growth"][known])
+        # A kink may hide it at single whirls: the middle one of three neighbours counts.
+        wide = np.concatenate([filled[:1], filled, filled[-1:]])
+        values["growth"] = np.median([wide[:-2], wide[1:-1], wide[2:]], axis=0)
     turns = _turns(values["speed"])
     near = [slice(k - 1, k + 2) for k in turns]
     folds = [_fold(arc[at], values["speed"][at], amplitude[at]) for at in near]

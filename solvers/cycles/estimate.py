@@ -34,7 +34,9 @@ class Estimate:
     lag: float
 
 
-def estimated_whirl(machine: Circular, friction: Friction, lower: float, near: float, spin: float) -> Estimate:
+def estimated_whirl(
+    machine: Circular, friction: Friction, lower: float, near: float, spin: float
+) -> Estimate:
     """Frequency, shape and size of a large whirl [theory: whirl, eq. 29].
 
     It whirls as if the chambers were full of solid, drags the liquid back to about the lower edge of the band,
