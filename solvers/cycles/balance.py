@@ -22,7 +22,7 @@ _ROUND = 1e-7  # of a circle: how much of an ellipse may be in it
 _WAY = np.array([1.0, -1j])  # a circle's two directions; with the spin
 
 
-class NoCircles(Exception):
+class NotCircularError(Exception):
     """The rotor does not whirl in circles; the text says why."""
 
 
@@ -78,7 +78,7 @@ class Circular:
         return np.asarray(left)
 
     def small_whirl(self, whirl_speed: float, spin: float) -> Complex:
-        """Shape of the small whirl of a frequency at an edge of its band, largest deflection 1, shape (p,)."""
+        """Shape of the small whirl at an edge of its band, largest deflection 1, shape (p,)."""
         matrix = self.dynamic_stiffness(whirl_speed, spin)
         for place in self.places:
             layer = place.layer
@@ -101,10 +101,12 @@ def circular(system: RotorSystem, fills: Sequence[Fill], friction: Friction) -> 
 
     Raises
     ------
-    NoCircles : supports that are not the same in all directions, baffles in the liquid, no layer
+    NotCircularError : supports that are not the same in all directions, baffles in the liquid, no layer
     """
     if any(fill.uneven for fill in fills if fill.volume > 0.0):
-        raise NoCircles("the long waves of limit cycles know no baffles and no other sections than rings")
+        raise NotCircularError(
+            "the long waves of limit cycles know no baffles and no other sections than rings"
+        )
     mass = np.array(system.mass, dtype=float)
     for fill in fills:
         if is_full(fill):
@@ -113,7 +115,7 @@ def circular(system: RotorSystem, fills: Sequence[Fill], friction: Friction) -> 
     layers = {k: plane_layer(fill, friction) for k, fill in enumerate(fills)}
     wet = {k: layer for k, layer in layers.items() if layer is not None}
     if not wet:
-        raise NoCircles("no chamber has a layer with a free surface")
+        raise NotCircularError("no chamber has a layer with a free surface")
     planes = [system.at(fill.chamber.plane) for fill in fills]
     basis = _circles(system, mass, planes)
     rows = np.array([0.5 * _WAY.conj() @ plane @ basis for plane in planes])
@@ -184,7 +186,7 @@ def _circles(system: RotorSystem, mass: Array, planes: Sequence[Array]) -> Compl
     along = np.array([0.5 * _WAY.conj() @ plane @ basis for plane in planes])
     against = np.array([0.5 * _WAY @ plane @ basis for plane in planes])
     if np.abs(against).max() > 10.0 * _ROUND * np.abs(along).max():
-        raise NoCircles(
-            "the supports differ between directions: the whirl is an ellipse, which a held state of `run` follows"
+        raise NotCircularError(
+            "the supports differ between directions: the whirl is an ellipse, which held states of `run` follow"
         )
-    return basis
+    return np.asarray(basis)

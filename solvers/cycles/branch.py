@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,7 +23,7 @@ from solvers.cycles.wave import Answer, Derivatives, StandingWave, Whirling
 _ROUNDS = 24
 # What is left of the layers' maps over their mean areas, and of the rotor's balance times the weight.
 _LEFT, _WEIGHT = 1e-7, 10.0
-# Next to a kink of the scheme's limiter Newton's steps go to and fro: this will do if the whirl moves no more.
+# Next to a kink of the scheme's limiter Newton's steps go to and fro: this will do once the whirl stays.
 _KINKED, _STILL = 1e-5, 3e-6
 _SMOOTHING = 8  # cells' times that a layer is left alone where no Newton step helps
 _SHORTEST = 1.0 / 16.0  # share of a Newton step
@@ -123,7 +123,7 @@ class Follower:
     def parts(self, vector: Array) -> tuple[Complex, float, float]:
         """Coordinates, whirl speed and spin of unknowns of the rotor."""
         p = self._coordinates
-        moved = self.unit * (vector[:p] + 1j * vector[p : 2 * p])
+        moved = np.asarray(self.unit * (vector[:p] + 1j * vector[p : 2 * p]), dtype=complex)
         return moved, float(vector[-2]) * _SPREAD * self.speed, float(vector[-1]) * _RANGE * self.speed
 
     def given(self, vector: Array) -> list[Whirling]:
@@ -340,7 +340,7 @@ class Follower:
         ahead = np.zeros(len(matrix))
         ahead[-1] = 1.0
         tangent = np.linalg.solve(matrix, ahead)
-        tangent /= float(np.linalg.norm(tangent[-point.vector.size :]))
+        tangent = np.asarray(tangent / float(np.linalg.norm(tangent[-point.vector.size :])), dtype=float)
         moved, whirl_speed, spin = self.parts(point.vector)
         return Cycle(
             spin=spin,
@@ -356,7 +356,7 @@ class Follower:
         )
 
 
-def _differences(function, vector: Array) -> Array:
+def _differences(function: Callable[[Array], Array], vector: Array) -> Array:
     """Central differences of a function of a vector, shape (m, n)."""
     columns = []
     for k in range(vector.size):

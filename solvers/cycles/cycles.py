@@ -1,9 +1,10 @@
-"""Limit cycles of a rotor with liquid layers over speed: where its branches start, and what is told of them."""
+"""Limit cycles of a rotor with liquid layers over speed: where branches start, and what is told of them."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from fluid.fill import Fill
 from fluid.friction import NO_FRICTION, Friction, FrictionLaw
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
-from solvers.cycles.balance import Circular, NoCircles, circular
+from solvers.cycles.balance import Circular, NotCircularError, circular
 from solvers.cycles.branch import Cycle, Follower
 from solvers.cycles.estimate import Estimate, estimated_whirl
 from solvers.cycles.floquet import disturbance_growth
@@ -32,6 +33,15 @@ _NEAR = 0.03  # relative, of an edge at which a branch already ends
 _PROMINENT = 3e-4  # relative: a smaller turn of the branch is the scheme's, not a fold
 _WILD = 0.1  # of the spin: growth beyond that is that of a kink of the scheme's limiter, not of the whirl
 FAST_LAG = 1.0 / 3.0  # of the spin: beyond that the flow's profile no longer describes the lagging liquid
+
+
+class HeldWhirl(NamedTuple):
+    """A limit cycle at a speed: amplitude, m, whirl speed and lag of the liquid, rad/s, and stability."""
+
+    amplitude: float
+    whirl_speed: float
+    lag: float
+    stable: bool
 
 
 @dataclass(frozen=True)
@@ -80,7 +90,7 @@ class Branch:
         """Of the drive on top, W, shape (k,)."""
         return np.asarray(self.torque * self.speed)
 
-    def at(self, speed: float) -> list[tuple[float, float, float, bool]]:
+    def at(self, speed: float) -> list[HeldWhirl]:
         """Amplitude, whirl speed, lag and stability of every whirl of the branch at a speed.
 
         Between two whirls of the branch values go in a straight line.
@@ -100,7 +110,7 @@ class Branch:
                 float((1.0 - part) * row[k] + part * row[k + 1])
                 for row in (self.amplitude, self.whirl_speed, lag)
             ]
-            found.append((*values, bool(self.stable[k] and self.stable[k + 1])))
+            found.append(HeldWhirl(*values, bool(self.stable[k] and self.stable[k + 1])))
         return found
 
 
@@ -119,8 +129,8 @@ class LimitCycles:
 
     def largest_stable(self, speed: float) -> float:
         """Amplitude of the largest stable whirl at a speed, m; 0 where there is none."""
-        stable = [size for branch in self.branches for size, _, _, holds in branch.at(speed) if holds]
-        return max(stable, default=0.0)
+        whirls = [whirl for branch in self.branches for whirl in branch.at(speed)]
+        return max((whirl.amplitude for whirl in whirls if whirl.stable), default=0.0)
 
 
 def limit_cycles(
@@ -172,7 +182,7 @@ def limit_cycles(
     system = rotor.system()
     try:
         machine = circular(system, fills, friction)
-    except NoCircles as why:
+    except NotCircularError as why:
         return LimitCycles((), str(why))
     unsettled = _unsettled(machine, friction)
     if unsettled:
@@ -216,7 +226,7 @@ def whirl_estimate(
     system = rotor.system()
     try:
         machine = circular(system, fills, friction)
-    except NoCircles:
+    except NotCircularError:
         return (None,) * len(speeds)
     if _unsettled(machine, friction):
         return (None,) * len(speeds)
@@ -242,7 +252,7 @@ def _unsettled(machine: Circular, friction: Friction) -> str:
 def _bands(
     system: RotorSystem, fills: Sequence[Fill], range_: tuple[float, float]
 ) -> Iterator[tuple[float, float, float]]:
-    """Bands of the same machine without friction and damping: their edges, and the whirl speed at the lower."""
+    """Bands without friction and damping: their edges, and the whirl speed at the lower one."""
     free = replace(system, damping=0.0 * system.damping)
     (bands,) = unstable_bands(free, [fills], np.linspace(*range_, _GRID), NO_FRICTION)
     for lower, upper in bands:

@@ -11,7 +11,7 @@ from fluid.friction import QUADRATIC, Friction, FrictionLaw, damping_rate
 from meshes.arrays import Complex
 from solvers.cycles.balance import Circular, Place
 
-# The whirl drags the liquid back until it turns at about this share of the speed at which whirls begin to grow.
+# The whirl drags the liquid back until it turns at about this share of the speed where whirls begin to grow.
 _DRAGGED = 0.955
 
 
@@ -39,7 +39,7 @@ def estimated_whirl(
 ) -> Estimate:
     """Frequency, shape and size of a large whirl [theory: whirl, eq. 29].
 
-    It whirls as if the chambers were full of solid, drags the liquid back to about the lower edge of the band,
+    It whirls as if the chambers were full of solid, drags the liquid back to about the band's lower edge,
     and is as large as the torque of the lagging liquid on the wall can feed against the supports' damping.
 
     Parameters
@@ -67,7 +67,7 @@ def estimated_whirl(
 
 
 def _full(machine: Circular, near: float, spin: float) -> tuple[float, Complex]:
-    """Frequency and shape of the undamped rotor's whirl with full chambers, the one nearest to a frequency."""
+    """Frequency and shape of the undamped whirl with full chambers, the one nearest to a frequency."""
     mass = machine.mass.copy()
     for place in machine.places:
         mass = mass + place.full_mass * np.outer(place.row.conj(), place.row)

@@ -144,13 +144,13 @@ def _step(
     half = 0.5 * time
     ahead, back = _real((1.0 + 1j * ratio * half) * unit), _real((1.0 - 1j * ratio * half) * unit)
     none, one = np.zeros((2 * p, 2 * p)), np.eye(2 * p)
-    whole, damping, stiffness = _real(whole), _real(damping), _real(stiffness)
+    inertia, drag, spring = _real(whole), _real(damping), _real(stiffness)
     # Place, rate and mean acceleration at the end, given all at the beginning.
     left = np.block(
         [
             [ahead, -half * one, none],
             [none, ahead, -time * one],
-            [half * stiffness, ahead @ whole + half * damping, ahead @ carried @ pushed],
+            [half * spring, ahead @ inertia + half * drag, ahead @ carried @ pushed],
         ]
     )
     right = np.block(
@@ -159,8 +159,8 @@ def _step(
             [np.zeros((2 * p, count)), none, back],
             [
                 back @ carried - ahead @ carried @ steps,
-                -half * stiffness,
-                back @ whole - half * damping,
+                -half * spring,
+                back @ inertia - half * drag,
             ],
         ]
     )

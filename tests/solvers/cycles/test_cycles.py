@@ -73,7 +73,7 @@ def test_time_marching_comes_to_the_same_whirl(depth: float, zeta: float) -> Non
 def test_the_branch_a_machine_leaves(branches: tuple[LimitCycles, Fill]) -> None:
     cycles, fill = branches
     for speed, amplitude in SEPARATRIX:
-        left = [w for branch in cycles.branches for w in branch.at(speed * NATURAL) if not w[3]]
+        left = [w for branch in cycles.branches for w in branch.at(speed * NATURAL) if not w.stable]
         # Next to the edge the amplitude rises steeply: 1e-3 of the speed are 2 % of it at 1.503.
         assert min(abs(w[0] / fill.depth / amplitude - 1.0) for w in left) < (0.03 if speed < 1.52 else 0.01)
 
@@ -152,10 +152,10 @@ def test_the_fixed_point_is_what_marching_comes_to() -> None:
 def same(first: Branch, second: Branch, amplitude: float) -> None:
     """Two branches are alike within a relative difference of amplitudes."""
     for speed in (1.2, 1.35):
-        (one_size, other_size) = (
-            max(w[0] for w in branch.at(speed * NATURAL) if w[3]) for branch in (first, second)
+        size, other = (
+            max(w.amplitude for w in branch.at(speed * NATURAL) if w.stable) for branch in (first, second)
         )
-        assert one_size == pytest.approx(other_size, rel=amplitude)
+        assert size == pytest.approx(other, rel=amplitude)
 
 
 def test_a_chamber_cut_in_two_and_a_rotor_of_two_planes_that_moves_in_one(
