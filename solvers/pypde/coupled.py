@@ -141,7 +141,7 @@ class RotorLayersPDE(PDEBase):  # type: ignore[no-untyped-call]
         if not isinstance(state, FieldCollection) or len(state) != 2 * (n + count):
             allowed = f"{2 * count} fields of the layers and {2 * n} of the rotor, as from `start`"
             raise InputError("state", type(state).__name__, allowed)
-        data: Array = state.data
+        data = np.asarray(state.data, dtype=float)
         return data[:count], data[count : 2 * count], data[2 * count : -n, 0], data[-n:, 0]
 
     def evolution_rate(self, state: Any, t: float = 0.0) -> Any:
@@ -241,7 +241,8 @@ class _Layer:
         layer, coefficient = self.layer, float(self.layer.coefficient)
         if layer.law == STOKES:
             coefficient *= math.sqrt(self.spin)
-        lost, wet = np.zeros_like(self.a), self.a > DRY
+        lost: Array = np.zeros(self.a.size)
+        wet = self.a > DRY
         a, u = self.a[wet], self.u[wet]
         depth = 2.0 * a / (1.0 + self.surface[wet])
         lost[wet] = damping_rate(int(layer.law), coefficient, float(layer.lid), depth, a, u) * a * u
