@@ -85,7 +85,8 @@ class ModelSpan:
 
 def model_spans(choice: Choice, speed: Array) -> tuple[ModelSpan, ...]:
     """Consecutive speeds with the same model that are alike in range and within the tolerance."""
-    kinds = np.stack((choice.models != "statics", choice.in_range, choice.missed))
+    numbers = np.unique(choice.models, return_inverse=True)[1].reshape(-1)
+    kinds = np.stack((numbers, choice.in_range, choice.missed))
     edges = np.flatnonzero((np.diff(kinds.astype(int), axis=1) != 0).any(axis=0)) + 1
     return tuple(_span(choice, speed, part) for part in np.split(np.arange(speed.size), edges))
 
@@ -117,6 +118,10 @@ def _reason(choice: Choice, model: str, part: Index) -> str:
             "gravity across the axis outweighs the spin: the liquid does not ride with the drum, the numbers "
             "are those of liquid that does"
         )
+    if model == "long_wave":
+        return _held_reason(choice, part)
+    if model == "fem" and not choice.cut:
+        return "the scene asks for it; finite elements integrate the paraboloid and miss it by their mesh"
     why = _statics_reason(choice, part) if model == "statics" else _linear_reason(choice, part)
     if choice.prescribed:
         why = f"the scene asks for it; {why}"
@@ -126,6 +131,14 @@ def _reason(choice: Choice, model: str, part: Index) -> str:
     if waves > choice.tolerance:
         return f"{why}; but waves driven by gravity may change it by {percent(waves)}, tolerance {limit}"
     return f"{why}; this is more than the tolerance of {limit}"
+
+
+def _held_reason(choice: Choice, part: Index) -> str:
+    """What a wave that was held in time rests on."""
+    asked = "the scene asks for it; " if choice.prescribed else ""
+    worst = choice.error[part].max()
+    size = percent(worst) if np.isfinite(worst) else "an amount that is not known"
+    return f"{asked}rotor and wave are held in time until they settle; half the cells change them by {size}"
 
 
 def _linear_reason(choice: Choice, part: Index) -> str:
@@ -166,6 +179,8 @@ def _better(choice: Choice, model: str, part: Index) -> str:
         return "none: no other model knows such chambers"
     if not choice.in_range[part[0]]:
         return "none that is steady: `leblanc runup` carries the liquid until it is caught"
+    if model == "long_wave":
+        return "the same with more cells ([model] cells)"
     gravity = choice.gravity[part].max()
     if gravity > 0.0 and (model == "statics" or gravity > choice.tolerance):
         return f"long waves in time (`leblanc runup`, seconds a speed), for gravity's {percent(gravity)}"

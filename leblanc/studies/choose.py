@@ -140,8 +140,14 @@ def models_of(scene: Scene) -> tuple[str, ...]:
 
 
 def _beginning(scene: Scene) -> str:
-    """The model that answers first: waves held in time begin with the exact equilibrium."""
-    return "statics" if scene.model.liquid == "long_wave" else scene.model.liquid
+    """The model that answers first: dearer ones begin with the exact equilibrium."""
+    dear = scene.model.liquid == "long_wave" or by_elements(scene)
+    return "statics" if dear else scene.model.liquid
+
+
+def by_elements(scene: Scene) -> bool:
+    """Whether the paraboloid in plain chambers is integrated by finite elements at every speed."""
+    return scene.model.liquid == "fem" and not is_cut(scene)
 
 
 def models_at(machines: Sequence[Prepared]) -> list[tuple[NDArray[np.str_], Flags]]:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from solvers.runup.machine import RunupModel
 
 _Make = Callable[[Friction, int | None, bool], WaveModel]
+_SEGMENTS = 48  # edges along the wall of the elements under a paraboloid
 _POINTS = 256  # round the wall, unless another number is asked for
 
 
@@ -98,6 +99,13 @@ def synchronous_model(name: str) -> LiquidModel:
     if name not in ("auto", *SYNCHRONOUS_MODELS):
         raise InputError("model.liquid", name, "one of auto, " + ", ".join(SYNCHRONOUS_MODELS))
     return wave_model("statics" if name == "auto" else name)
+
+
+def element_model() -> LiquidModel:
+    """The paraboloid in a plain chamber by finite elements: equal to the exact one to its mesh, some 1e-7."""
+    from solvers.synchronous.models import ElementsAtRest
+
+    return ElementsAtRest(_SEGMENTS, order=2)
 
 
 def runup_model(name: str) -> RunupModel:

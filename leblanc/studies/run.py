@@ -15,14 +15,15 @@ from leblanc.results.choice import Choice, model_spans
 from leblanc.results.response import Motion, RestMode, RunResult, SelfExcited
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
-from leblanc.studies.choose import Prepared, choose_all, held_at, liquid_models, prepare
+from leblanc.studies.choose import Prepared, by_elements, choose_all, held_at, liquid_models, prepare
 from leblanc.studies.held.holding import HERE, Began, Holding
-from leblanc.studies.liquid import synchronous_model
+from leblanc.studies.liquid import element_model, synchronous_model
 from leblanc.studies.peaks import responses_between
 from leblanc.studies.validity import doubts
 from leblanc.studies.whirl_map import small_whirl_friction
 from meshes.arrays import Array, Complex
 from meshes.chamber_section import liquid_of
+from solvers.liquid_model import ROUNDING
 from solvers.rotor.balance_quality import balance_quality, tolerance_planes
 from solvers.rotor.campbell import campbell
 from solvers.rotor.jeffcott import Jeffcott
@@ -36,6 +37,7 @@ from solvers.rotor.vibration import (
 from solvers.statics.hydrostatics import optimal_volume
 from solvers.synchronous.response import (
     Response,
+    answered_by,
     by_speed,
     critical_speed,
     main_critical_speeds,
@@ -108,6 +110,32 @@ def motion_response(machine: Prepared, choice: Choice) -> tuple[Response, Motion
     return found, motion, main
 
 
+def element_answers(
+    machine: Prepared, choice: Choice, answer: Response, refined: Response
+) -> tuple[Choice, Response, Response]:
+    """The same answers with the free surface integrated over finite elements.
+
+    Their error is the distance from the exact equilibrium that they began with.
+
+    Parameters
+    ----------
+    machine : its chambers are plain
+    choice : the exact equilibrium at every speed
+    answer, refined : at the speeds asked for and between them
+    """
+    found = [
+        answered_by(machine.rotor, machine.scene.fills, known, element_model(), machine.axial_gravity)
+        for known in (answer, refined)
+    ]
+    gaps = []
+    for name in ("amplitude", "liquid_offset"):
+        exact = getattr(answer, name)
+        gap = np.abs(getattr(found[0], name) - exact)
+        gaps.append(np.divide(gap, exact, out=np.zeros_like(gap), where=exact > 0.0))
+    error = choice.gravity + np.maximum(*gaps) + ROUNDING
+    return replace(choice, models=found[0].model, error=error), found[0], found[1]
+
+
 def _at_chambers(system: RotorSystem, fills: tuple[Fill, ...], found: Response) -> Complex:
     """Forward part at every chamber, those without liquid as well, shape (s, c)."""
     places = [orbit(system, found.coordinates, fill.chamber.plane).forward for fill in fills]
@@ -174,6 +202,9 @@ def run_scene(
         answer, motion, (dry, wet) = motion_response(machine, choice)
     progress("peaks between the speeds")
     (refined,) = responses_between([machine], [answer], drawn=True)
+    if by_elements(scene):
+        progress("finite elements")
+        choice, answer, refined = element_answers(machine, choice, answer, refined)
     progress("self-excited whirl")
     whirl = self_excited(machine)
     at, held, stable = held_at(scene, choice), None, whirl.leaves_stable(answer.stable)

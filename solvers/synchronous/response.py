@@ -9,7 +9,7 @@ deflections, dampers left out.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Any, TypeVar
 
 import numpy as np
@@ -24,7 +24,7 @@ from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
 from solvers.rotor.system import Rotor, RotorSystem
 from solvers.rotor.vibration import critical_speeds, orbit, unbalance_response
 from solvers.synchronous.balance import Balance, Liquid, backward_mass, directions, harmonic_balance
-from solvers.synchronous.coupled import Near, solutions, stable_solutions
+from solvers.synchronous.coupled import Near, newton, solutions, stable_solutions
 from solvers.synchronous.models import LINEAR, STATICS
 from solvers.synchronous.pairs import Pairs, pair_machines
 from solvers.synchronous.planar import all_deflections, divide, is_stable, liquid_offset, with_phase
@@ -418,6 +418,51 @@ def machine_responses(
         coordinates=np.where(found, still[:, None] * circle, endless),
         fold_speed=np.full(speed.shape, np.nan),
         residual=_left(pairs, still, state.unbalance[chosen]),
+    )
+
+
+def answered_by(
+    rotor: Rotor, fills: Sequence[Fill], known: Response, model: LiquidModel, gravity: float = 9.81
+) -> Response:
+    """The branches that one liquid model reports, as another has them: Newton's method from each.
+
+    It serves models that are too dear to look for branches by, and near to one that is not.
+
+    Parameters
+    ----------
+    rotor, fills, gravity : see `response`
+    known : the answer by the other model
+    model : of the liquid
+
+    Returns
+    -------
+    Response; `residual` is that of the model's own balance, branches that are not reported stay as they were
+    """
+    system, found = rotor.system(), np.flatnonzero(np.isfinite(known.coordinates).all(axis=1))
+    owner = np.zeros(found.size, dtype=np.intp)
+    terms = harmonic_balance(system, [fills], owner, known.speed[found], gravity, model)
+    answer, met = newton(terms, known.coordinates[found], np.arange(found.size))
+    motion, forward = orbit(system, answer, known.position), terms.forward(answer)
+    law = terms.liquid(np.arange(found.size), np.abs(forward))
+    offset, angle = _centre_of_mass(terms, forward, law)
+
+    def placed(values: NDArray[_Value], name: str) -> NDArray[_Value]:
+        whole: NDArray[_Value] = getattr(known, name).copy()
+        whole[found] = values
+        return whole
+
+    return replace(
+        known,
+        deflection=placed(motion.forward, "deflection"),
+        backward=placed(motion.backward, "backward"),
+        coordinates=placed(answer, "coordinates"),
+        liquid_offset=placed(offset, "liquid_offset"),
+        liquid_angle=placed(angle if terms.fills else np.angle(motion.forward), "liquid_angle"),
+        dry_patch=placed(law.dry_patch.any(axis=1), "dry_patch"),
+        in_range=placed(law.in_range.all(axis=1), "in_range"),
+        converged=known.converged & placed(met & law.converged.all(axis=1), "converged"),
+        residual=placed(_residual(terms, answer, forward, law), "residual"),
+        model=np.full(known.speed.shape, model.name.split()[0]),
     )
 
 
