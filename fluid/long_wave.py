@@ -44,9 +44,9 @@ def mass_flux(velocity: Real, log: Real) -> Real:
     return velocity * log
 
 
-def momentum_flux(velocity: Real, log: Real, area: Real, surface: Real) -> Real:
-    """Flux of relative angular momentum by the flow, u^2 (L + A/r^2)/2 [theory: long_wave, eq. 4]."""
-    return 0.5 * velocity * velocity * (log + area / (surface * surface))
+def momentum_flux(velocity: Real, log: Real, area: Real, inverse: Real) -> Real:
+    """Flux of relative angular momentum by the flow, u^2 (L + A/r^2)/2, given 1/r^2 [theory: long_wave]."""
+    return 0.5 * velocity * velocity * (log + area * inverse)
 
 
 def pressure_force(area: Real, surface: Real, spin: float, pull: Real) -> Real:
@@ -58,12 +58,11 @@ def pressure_force(area: Real, surface: Real, spin: float, pull: Real) -> Real:
     return 0.5 * spin * spin * area * area + pull * arm
 
 
-def wave_celerity(velocity: Real, log: Real, surface: Real, spin: float) -> tuple[Real, Real]:
-    """Mean and half difference of the two characteristic speeds [theory: long_wave, eq. 3].
+def wave_celerity(turning: Real, log: Real, spin: float) -> tuple[Real, Real]:
+    """Mean and half difference of the two characteristic speeds, of u/r^2 [theory: long_wave, eq. 3].
 
     lambda = u/r^2 + Omega L +- sqrt(Omega^2 L^2 + L W^2), W = Omega + u/r^2.
     """
-    turning = velocity / (surface * surface)
     carried = spin * log
     whole = spin + turning
     return turning + carried, np.sqrt(carried * carried + log * whole * whole)

@@ -29,6 +29,10 @@ COMPILED: dict[str, Any] = {
     "_nrt": False,
 }
 _face_jit: Any = njit(**(COMPILED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
+# Sums and largest values over a ring, in parts that the compiler chooses once and for all: the same numbers
+# give the same sum.
+SUMMED: dict[str, Any] = COMPILED | {"fastmath": {"contract", "arcp", "nsz", "reassoc", "nnan"}}
+_sum_jit: Any = njit(**(SUMMED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
 
 _surface = _face_jit(long_wave.free_surface_radius)
 _head = _face_jit(long_wave.static_head)
@@ -46,35 +50,46 @@ NEAREST = 0.03
 # Keeps quotients of nothing by nothing at nothing.
 _NOTHING = 1e-300
 
+_LOG_4 = 1.3862943611198906
+
+
+@_face_jit
+def log_and_inverse(area: float, surface: float) -> tuple[float, float]:
+    """L = ln(1/r) and 1/r^2 for r >= 0.03, to rounding for any area down to nothing.
+
+    With a c of 1, 4 or 16 that brings c r above 0.48, L = ln c + 2 artanh z, z = (1 - c r)/(1 + c r) up to
+    0.352. For c = 1 the numerator times 1 + r is twice the area, so that thin films keep their digits.
+    artanh z over z is a polynomial in z^2, right to 2e-17. No branch, no root, one division: it vectorises.
+    """
+    near = surface >= 0.5
+    scale = 1.0 if near else (4.0 if surface >= 0.125 else 16.0)
+    begin = 0.0 if near else (_LOG_4 if surface >= 0.125 else 2.0 * _LOG_4)
+    scaled = scale * surface
+    above = 2.0 * area if near else (1.0 - scaled) * (1.0 + scaled)
+    below = (1.0 + scaled) * (1.0 + scaled)
+    square = surface * surface
+    quotient = 1.0 / (below * square)
+    z = above * square * quotient
+    y = z * z
+    # The polynomial in z^2 through ten Chebyshev points of what artanh z/z adds to 1, over z^2.
+    total = 0.08595651784385513
+    total = total * y + 0.041446293257421704
+    total = total * y + 0.06053446533638424
+    total = total * y + 0.06651188202397319
+    total = total * y + 0.0769316491415723
+    total = total * y + 0.090908803768947
+    total = total * y + 0.11111111661167948
+    total = total * y + 0.14285714280380316
+    total = total * y + 0.2000000000002001
+    total = total * y + 0.3333333333333332
+    return begin + 2.0 * z * (1.0 + y * total), below * quotient
+
 
 @_face_jit
 def log_of_surface(area: float, surface: float) -> float:
-    """L = ln(1/r) for r >= 0.03, to rounding for any area down to nothing.
-
-    With p = r^(1/8), L = 16 artanh((1 - p)/(1 + p)), whose argument is below 0.22; 1 - p is taken from the
-    area, so that thin films keep their digits. Unlike log1p it vectorises.
-    """
-    half = np.sqrt(surface)
-    quarter = np.sqrt(half)
-    eighth = np.sqrt(quarter)
-    whole = (1.0 + surface) * (1.0 + half) * (1.0 + quarter) * (1.0 + eighth) * (1.0 + eighth)
-    z = 2.0 * area / whole
-    y = z * z
-    total = 1.0 / 25.0
-    total = total * y + 1.0 / 23.0
-    total = total * y + 1.0 / 21.0
-    total = total * y + 1.0 / 19.0
-    total = total * y + 1.0 / 17.0
-    total = total * y + 1.0 / 15.0
-    total = total * y + 1.0 / 13.0
-    total = total * y + 1.0 / 11.0
-    total = total * y + 1.0 / 9.0
-    total = total * y + 1.0 / 7.0
-    total = total * y + 1.0 / 5.0
-    total = total * y + 1.0 / 3.0
-    total = total * y + 1.0
-    result: float = 16.0 * z * total
-    return result
+    """L alone, as by `log_and_inverse`."""
+    log: float = log_and_inverse(area, surface)[0]
+    return log
 
 
 @_face_jit
@@ -86,11 +101,12 @@ def faded_velocity(area: float, q: float, spin: float) -> float:
 
 
 @_face_jit
-def primitives(area, q, spin, pull, velocity, head):
-    """Fill velocity and static head of each cell; arrays of one shape."""
+def primitives(area, q, spin, pull, velocity, head, surface):
+    """Fill velocity, static head and radius of the surface of each cell; arrays of one shape."""
     for i in range(area.size):
+        surface[i] = _surface(area[i])
         velocity[i] = faded_velocity(area[i], q[i], spin)
-        head[i] = _head(area[i], _surface(area[i]), spin, pull[i])
+        head[i] = _head(area[i], surface[i], spin, pull[i])
 
 
 @_face_jit
@@ -103,11 +119,12 @@ def _half_slope(back: float, ahead: float) -> float:
 
 
 @_face_jit
-def half_slopes(area, head, velocity, spin, half_head, half_velocity):
-    """Half of the slopes of a ring's cells but the first and the last, limited wave by wave.
+def half_slopes(area, head, velocity, surface, spin, half_head, half_velocity, log):
+    """Half of the slopes of a ring's cells but the first and the last, limited wave by wave; and their L.
 
     Differences of head and velocity are split into those that the two waves of the cell carry, of which
-    du/dA = (lambda - u/r^2)/L [theory: long_wave, eq. 3]. Next to a dry cell there is no slope.
+    du/dA = (lambda - u/r^2)/L = Omega +- c/L, c half the difference of the speeds [theory: long_wave, eq. 3].
+    Next to a dry cell there is no slope.
     """
     n = half_head.size
     area_b, area_m, area_a = area[:n], area[1 : n + 1], area[2 : n + 2]
@@ -115,21 +132,24 @@ def half_slopes(area, head, velocity, spin, half_head, half_velocity):
     velocity_b, velocity_m, velocity_a = velocity[:n], velocity[1 : n + 1], velocity[2 : n + 2]
     for i in range(n):
         wet = min(area_b[i], area_m[i], area_a[i]) > DRY
-        surface = np.maximum(_surface(area_m[i]), NEAREST)
+        r = np.maximum(surface[i + 1], NEAREST)
+        log[i], inverse = log_and_inverse(area_m[i], r)
         # In a film the split has no digits, and it is not used.
-        log = log_of_surface(area_m[i], surface) if wet else 1.0
-        mean, half = _celerity(velocity_m[i], log, surface, spin)
-        carried = mean - velocity_m[i] / (surface * surface)
-        # Velocity over head of the wave that runs ahead and of the other one.
-        scale = 1.0 / (log * spin * spin)
-        ahead, behind = (carried + half) * scale, (carried - half) * scale
-        share = 1.0 / (ahead - behind)
+        length = log[i] if wet else 1.0
+        _, half = _celerity(velocity_m[i] * inverse, length, spin)
+        # Velocity over head of the wave that runs ahead and of the other one, times Omega^2 L; the inverse of
+        # their difference.
+        carried, weight = spin * length, spin * spin * length
+        ahead, behind = carried + half, carried - half
+        quotient = 1.0 / (half * weight)
+        share = 0.5 * weight * quotient
         head_1, head_2 = head_m[i] - head_b[i], head_a[i] - head_m[i]
-        velocity_1, velocity_2 = velocity_m[i] - velocity_b[i], velocity_a[i] - velocity_m[i]
-        first = _half_slope((velocity_1 - behind * head_1) * share, (velocity_2 - behind * head_2) * share)
-        second = _half_slope((ahead * head_1 - velocity_1) * share, (ahead * head_2 - velocity_2) * share)
-        half_head[i] = first + second if wet else 0.0
-        half_velocity[i] = ahead * first + behind * second if wet else 0.0
+        velocity_1 = weight * (velocity_m[i] - velocity_b[i])
+        velocity_2 = weight * (velocity_a[i] - velocity_m[i])
+        first = _half_slope(velocity_1 - behind * head_1, velocity_2 - behind * head_2)
+        second = _half_slope(ahead * head_1 - velocity_1, ahead * head_2 - velocity_2)
+        half_head[i] = (first + second) * share if wet else 0.0
+        half_velocity[i] = 0.5 * (ahead * first + behind * second) * quotient if wet else 0.0
 
 
 @_face_jit
@@ -177,11 +197,11 @@ def side(
         r = level if wet else 1.0
         u = velocity[i] + way * half_velocity[i] if wet else 0.0
         a = 0.5 * (1.0 - r) * (1.0 + r)
-        log = log_of_surface(a, r)
+        log, inverse = log_and_inverse(a, r)
         area[i], momentum[i] = a, u * a - spin * a * a
         mass[i], push[i] = _mass(u, log), _pressure(a, r, spin, bed[i])
-        flow[i] = _momentum(u, log, a, r) + push[i]
-        mean, half = _celerity(u, log, r, spin)
+        flow[i] = _momentum(u, log, a, inverse) + push[i]
+        mean, half = _celerity(u * inverse, log, spin)
         back[i], ahead[i] = mean - half, mean + half
 
 
@@ -197,23 +217,32 @@ def signals(area_l, area_r, back_l, back_r, ahead_l, ahead_r, slow, fast):
 
 
 @_face_jit
-def hll(slow, fast, left, right, state_l, state_r, flux):
-    """Flux of Harten, Lax and van Leer from the two sides' fluxes and states."""
-    for i in range(flux.size):
+def hll(slow, fast, mass_l, mass_r, flow_l, flow_r, area_l, area_r, q_l, q_r, mass, flow):
+    """Fluxes of Harten, Lax and van Leer from the two sides' fluxes and states."""
+    for i in range(mass.size):
         width = 1.0 / (fast[i] - slow[i] + _NOTHING)
-        jump = fast[i] * slow[i] * (state_r[i] - state_l[i])
-        flux[i] = (fast[i] * left[i] - slow[i] * right[i] + jump) * width
+        left, right, both = fast[i] * width, slow[i] * width, fast[i] * slow[i] * width
+        mass[i] = left * mass_l[i] - right * mass_r[i] + both * (area_r[i] - area_l[i])
+        flow[i] = left * flow_l[i] - right * flow_r[i] + both * (q_r[i] - q_l[i])
+
+
+@_sum_jit
+def _greatest(slow, fast):
+    """Largest speed either way; any number where one is not a number."""
+    found = 0.0
+    for i in range(slow.size):
+        speed = fast[i] if fast[i] > -slow[i] else -slow[i]
+        found = speed if speed > found else found
+    return found
 
 
 @_face_jit
 def largest(slow, fast):
     """Largest speed either way; a speed that is not a number counts as infinite."""
-    found = 0.0
+    bad = 0
     for i in range(slow.size):
-        speed = np.maximum(-slow[i], fast[i])
-        if not speed <= found:
-            found = speed if speed > found else np.inf
-    return found
+        bad += 0 if fast[i] - slow[i] < np.inf else 1
+    return _greatest(slow, fast) if bad == 0 else np.inf
 
 
 _jit: Any = njit(**COMPILED)
@@ -229,10 +258,10 @@ FULL = 0.4995
 GHOSTS = 2
 # Rows of scratch: of cells with ghosts, of faces, and of either side of the faces (area, q, flux of mass and
 # of q, pressure, speeds). Only whole rows are contiguous to the compiler: they are taken one by one.
-WORK = 25
-_AREA, _PULL, _VELOCITY, _HEAD, _HALF_HEAD, _HALF_VELOCITY = range(6)
-_BED, _SLOW, _FAST, _MASS, _FLOW = range(6, 11)
-_AFTER, _BEFORE, _ROWS = 11, 18, 7
+WORK = 27
+_AREA, _PULL, VELOCITY, _HEAD, SURFACE, _HALF_HEAD, _HALF_VELOCITY, LOG = range(8)
+_BED, _SLOW, _FAST, _MASS, _FLOW = range(8, 13)
+_AFTER, _BEFORE, _ROWS = 13, 20, 7
 
 
 @_inlined
@@ -276,14 +305,17 @@ def _cells(area, q, spin, pull, work):
     for i in range(n):
         work[_AREA, i + GHOSTS] = area[i]
         work[_PULL, i + GHOSTS] = pull[i]
-    primitives(area, q, spin, pull, work[_VELOCITY, GHOSTS:end], work[_HEAD, GHOSTS:end])
-    for row in range(_HEAD + 1):
+    cells = slice(GHOSTS, end)
+    primitives(area, q, spin, pull, work[VELOCITY, cells], work[_HEAD, cells], work[SURFACE, cells])
+    for row in range(SURFACE + 1):
         for i in range(GHOSTS):
             work[row, i] = work[row, n + i]
             work[row, end + i] = work[row, GHOSTS + i]
     inner = slice(1, n + 3)
-    half_head, half_velocity = work[_HALF_HEAD, inner], work[_HALF_VELOCITY, inner]
-    half_slopes(work[_AREA], work[_HEAD], work[_VELOCITY], spin, half_head, half_velocity)
+    half_slopes(
+        *(work[_AREA], work[_HEAD], work[VELOCITY], work[SURFACE], spin),
+        *(work[_HALF_HEAD, inner], work[_HALF_VELOCITY, inner], work[LOG, inner]),
+    )
 
 
 @_inlined
@@ -304,7 +336,7 @@ def _faces(pull_face, spin, work):
             wide[cells],
             work[_HEAD, cells],
             work[_HALF_HEAD, cells],
-            work[_VELOCITY, cells],
+            work[VELOCITY, cells],
             work[_HALF_VELOCITY, cells],
             bed,
             way,
@@ -329,9 +361,10 @@ def _faces(pull_face, spin, work):
         slow,
         fast,
     )
-    for k in range(2):
-        flux = work[_MASS + k, :m]
-        hll(slow, fast, work[before + 2 + k], work[after + 2 + k], work[before + k], work[after + k], flux)
+    hll(
+        *(slow, fast, work[before + 2], work[after + 2], work[before + 3], work[after + 3]),
+        *(work[before], work[after], work[before + 1], work[after + 1], work[_MASS, :m], work[_FLOW, :m]),
+    )
     return largest(slow, fast)
 
 
@@ -362,12 +395,12 @@ def _disperse(area, spin, pull, step, work, d_q):
     Faces next to a dry cell let none through.
     """
     n = area.size
-    velocity, head, reach = work[_VELOCITY, GHOSTS:], work[_AFTER], work[_AFTER + 1]
+    velocity, radius, logs = work[VELOCITY, GHOSTS:], work[SURFACE, GHOSTS:], work[LOG, GHOSTS:]
+    head, reach = work[_AFTER], work[_AFTER + 1]
     face, slope, push = work[_AFTER + 2], work[_AFTER + 3], work[_AFTER + 4]
     diagonal, value = work[_AFTER + 5, :n], work[_AFTER + 6, :n]
     for i in range(n):
-        surface = np.maximum(_surface(area[i]), NEAREST)
-        log = log_of_surface(area[i], surface)
+        surface, log = np.maximum(radius[i], NEAREST), logs[i]
         # Without the flow's own square: what is left is the acceleration that moves along.
         carried = velocity[i] / surface
         head[i] = _bernoulli(velocity[i], log, area[i], surface, spin, pull[i]) - 0.5 * carried * carried
@@ -441,10 +474,15 @@ def _drain(area, step, dt, mass, flow, push_l, push_r, share):
     The flow beyond the pressure is cut alike: a film that kept its mass and lost the momentum of more, or the
     other way round, would run away.
     """
-    n = area.size
+    n, rate, empty = area.size, dt / step, 0
     for i in range(n):
-        lost = dt / step * (np.maximum(mass[i + 1], 0.0) - np.minimum(mass[i], 0.0))
-        share[i + 1] = area[i] / lost if lost > area[i] else 1.0
+        lost = rate * (np.maximum(mass[i + 1], 0.0) - np.minimum(mass[i], 0.0))
+        share[i + 1] = lost
+        empty += 1 if lost > area[i] else 0
+    if empty == 0:
+        return
+    for i in range(n):
+        share[i + 1] = area[i] / share[i + 1] if share[i + 1] > area[i] else 1.0
     share[0], share[n + 1] = share[n], share[1]
     for face in range(n + 1):
         kept = share[face] if mass[face] > 0.0 else share[face + 1]

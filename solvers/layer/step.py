@@ -21,6 +21,7 @@ from solvers.layer.finite_volume import (
     FULL,
     GHOSTS,
     NEAREST,
+    SUMMED,
     WORK,
     faded_velocity,
     log_of_surface,
@@ -30,11 +31,14 @@ from solvers.layer.records import PACE, Drive, Outcome, Record, Wall, records
 from solvers.slices import FASTEST, RUNAWAY, compiled, slices, step_budget
 
 _jit: Any = njit(**COMPILED)
+_sum_jit: Any = njit(**SUMMED)
 # Parts of one function: compiled one by one and linked they would cost twice the time to compile.
 _inner: Any = njit(inline="always")
 
 # Courant number beyond which a step is taken again.
 LARGEST = 1.0
+# Decays up to this in a step take the exponential's series, whose tenth term is 0.06^10/10! = 2e-19.
+_WEAK = 0.0625
 # Films thinner than this (area over R^2) are held back, at this multiple of the spin.
 FILM = 1e-5
 
@@ -52,21 +56,75 @@ def copy(source, target):
 
 
 @_jit
-def wall_friction(area, q, spin, law, coefficient, lid, dt):
-    """Friction alone over a time dt: an exact decay of the velocity, cell by cell."""
+def profile(area, q, spin, velocity, surface, log):
+    """Fill velocity, radius of the surface (at least 0.03) and L of each cell; arrays of one shape."""
+    for i in range(area.size):
+        surface[i] = np.maximum(surface_radius(area[i]), NEAREST)
+        velocity[i] = faded_velocity(area[i], q[i], spin)
+        log[i] = log_of_surface(area[i], surface[i])
+
+
+@_sum_jit
+def kept_speed(area, velocity, surface, law, coefficient, lid, dt, kept):
+    """Share of each cell's velocity that friction leaves after a time dt: an exact decay, cell by cell.
+
+    Parameters
+    ----------
+    area, velocity, surface : as `profile` gives them, shape (n,)
+    law, coefficient, lid : as for `fluid.friction.damping_rate`
+    dt : time
+    kept : result, shape (n,)
+    """
+    n, strong = area.size, 0
+    for i in range(n):
+        a = np.maximum(area[i], DRY)
+        # The wall's shear over the velocity, without the cancellation in 1 - r.
+        rate = _damping(law, coefficient, lid, 2.0 * area[i] / (1.0 + surface[i]), a, velocity[i])
+        kept[i] = rate * dt
+        strong += 1 if kept[i] > _WEAK else 0
+    if law == friction.QUADRATIC:
+        # du/dt = -c |u| u has the hyperbola as its solution, the others the exponential.
+        for i in range(n):
+            kept[i] = 1.0 / (1.0 + kept[i])
+    elif strong == 0:
+        # The exponential's series, which vectorises; it ends with rounding.
+        for i in range(n):
+            x = kept[i]
+            total = 1.0 - x / 9.0
+            total = 1.0 - x / 8.0 * total
+            total = 1.0 - x / 7.0 * total
+            total = 1.0 - x / 6.0 * total
+            total = 1.0 - x / 5.0 * total
+            total = 1.0 - x / 4.0 * total
+            total = 1.0 - x / 3.0 * total
+            total = 1.0 - x / 2.0 * total
+            kept[i] = 1.0 - x * total
+    else:
+        for i in range(n):
+            kept[i] = np.exp(-kept[i])
+
+
+@_jit
+def wall_friction(area, q, spin, law, coefficient, lid, dt, spare):
+    """Friction alone over a time dt; `spare`: scratch of at least four rows."""
+    n = area.size
+    velocity, surface, kept = spare[0, :n], spare[1, :n], spare[2, :n]
     if law == friction.NONE:
         return
+    for i in range(n):
+        surface[i] = surface_radius(area[i])
+        velocity[i] = (q[i] + spin * area[i] * area[i]) / np.maximum(area[i], DRY)
+    kept_speed(area, velocity, surface, law, coefficient, lid, dt, kept)
+    decelerate(area, q, spin, kept)
+
+
+@_jit
+def decelerate(area, q, spin, kept):
+    """Leave each cell this share of its velocity; dry ones keep none."""
     for i in range(area.size):
-        a = area[i]
-        if a <= DRY:
-            q[i] = -spin * a * a
-            continue
-        moved = q[i] + spin * a * a
-        depth = 1.0 - surface_radius(a)
-        rate = _damping(law, coefficient, lid, depth, a, moved / a)
-        # Quadratic friction: du/dt = -c |u| u has the hyperbola as its solution, the others the exponential.
-        kept = 1.0 / (1.0 + rate * dt) if law == friction.QUADRATIC else np.exp(-rate * dt)
-        q[i] = moved * kept - spin * a * a
+        square = spin * area[i] * area[i]
+        moved = (q[i] + square) * kept[i]
+        q[i] = (moved if area[i] > DRY else 0.0) - square
 
 
 @_jit
@@ -75,31 +133,31 @@ def calm(area, q, spin):
 
     No front runs ahead at twice the speed of the drum; films below FILM may go twice as fast as that.
     """
+    most = FASTEST * abs(spin)
     for i in range(area.size):
-        a = area[i]
-        if a < FILM:
-            most = FASTEST * abs(spin) * a
-            moved = min(max(q[i] + spin * a * a, -most), most)
-            q[i] = moved - spin * a * a
+        a, square = area[i], spin * area[i] * area[i]
+        moved = np.minimum(np.maximum(q[i] + square, -most * a), most * a)
+        q[i] = moved - square if a < FILM else q[i]
 
 
 @_jit
 def predict(area, q, rate_a, rate_q, dt, next_a, next_q):
     """Euler step; tells whether the surface stays off the axis and every number is one."""
-    sound = True
+    wrong = 0
     for i in range(area.size):
-        next_a[i] = max(area[i] + dt * rate_a[i], 0.0)
+        next_a[i] = np.maximum(area[i] + dt * rate_a[i], 0.0)
         next_q[i] = q[i] + dt * rate_q[i]
-        # Written so that nan is not sound either.
-        sound = sound and area[i] < FULL and next_a[i] < FULL and abs(next_q[i]) < np.inf
-    return sound
+        # Written so that nan is wrong too.
+        sound = area[i] < FULL and next_a[i] < FULL and abs(next_q[i]) < np.inf
+        wrong += 0 if sound else 1
+    return wrong == 0
 
 
 @_jit
 def correct(area, q, rate_a, rate_q, dt, next_a, next_q):
     """Second stage of Heun's method."""
     for i in range(area.size):
-        area[i] = 0.5 * (area[i] + max(next_a[i] + dt * rate_a[i], 0.0))
+        area[i] = 0.5 * (area[i] + np.maximum(next_a[i] + dt * rate_a[i], 0.0))
         q[i] = 0.5 * (q[i] + next_q[i] + dt * rate_q[i])
 
 
@@ -167,37 +225,45 @@ def _whirl(time, drive):
     return x, y
 
 
-@_jit
-def _cell_loads(area, q, spin, pull, pressure, lever, turning):
-    """Pressure on the wall, first moment and mass flux of each cell."""
+@_sum_jit
+def _cell_loads(area, q, spin, pull, cosine, sine):
+    """Sums over the cells: pressure on the wall, first moment, both along two directions; area; mass flux."""
+    force_x, force_y, moment_x, moment_y, total, turned = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(area.size):
         r = np.maximum(surface_radius(area[i]), NEAREST)
         u, log = faded_velocity(area[i], q[i], spin), log_of_surface(area[i], r)
-        pressure[i] = _wall(u, log, area[i], r, spin, pull[i])
-        lever[i] = (1.0 - r) * (1.0 + r + r * r) / 3.0
-        turning[i] = u * log
+        pressure = _wall(u, log, area[i], r, spin, pull[i])
+        lever = (1.0 - r) * (1.0 + r + r * r) / 3.0
+        force_x += pressure * cosine[i]
+        force_y += pressure * sine[i]
+        moment_x += lever * cosine[i]
+        moment_y += lever * sine[i]
+        total += area[i]
+        turned += u * log
+    return force_x, force_y, moment_x, moment_y, total, turned
+
+
+@_sum_jit
+def _bounds(values):
+    """Least and largest of them."""
+    least, largest = values[0], values[0]
+    for i in range(values.size):
+        least = values[i] if values[i] < least else least
+        largest = values[i] if values[i] > largest else largest
+    return least, largest
 
 
 @_jit
-def _tally(area, q, spin, pull, angles, work, cosine, sine, share, sums):
+def _tally(area, q, spin, pull, angles, cosine, sine, share, sums):
     """Add a time's share of the loads to the record of `advance`.
 
     Forces and offsets are turned into the frame of the deflection, at an angle of this cosine and sine.
     """
-    n = area.size
-    pressure, lever, turning = work[0, :n], work[1, :n], work[2, :n]
-    _cell_loads(area, q, spin, pull, pressure, lever, turning)
-    force_x, force_y, moment_x, moment_y = 0.0, 0.0, 0.0, 0.0
-    total, turned, least, largest = 0.0, 0.0, area[0], area[0]
-    for i in range(n):
-        force_x += pressure[i] * angles[0, i]
-        force_y += pressure[i] * angles[1, i]
-        moment_x += lever[i] * angles[0, i]
-        moment_y += lever[i] * angles[1, i]
-        total += area[i]
-        turned += turning[i]
-        least, largest = min(least, area[i]), max(largest, area[i])
-    part, step = share / total, share * 2.0 * np.pi / n
+    force_x, force_y, moment_x, moment_y, total, turned = _cell_loads(
+        area, q, spin, pull, angles[0], angles[1]
+    )
+    least, largest = _bounds(area)
+    part, step = share / total, share * 2.0 * np.pi / area.size
     sums.force_x += (force_x * cosine + force_y * sine) * step
     sums.force_y += (force_y * cosine - force_x * sine) * step
     sums.offset_x += (moment_x * cosine + moment_y * sine) * part
@@ -247,7 +313,7 @@ def advance(area, q, pace, stop, drive, wall, angles, courant, most, spare, load
             dt = min(courant * step / (1.1 * fastest), stop - time)
             for i in range(n):
                 begin_q[i] = q[i]
-            wall_friction(area, q, spin, law, coefficient, lid, 0.5 * dt)
+            wall_friction(area, q, spin, law, coefficient, lid, 0.5 * dt, spare)
         if stage < 2:
             for i in range(n):
                 next_a[i], next_q[i] = area[i], q[i]
@@ -275,11 +341,11 @@ def advance(area, q, pace, stop, drive, wall, angles, courant, most, spare, load
             x, y = _whirl(time, drive)
             pull(x, y, angles, pull_cell, pull_face)
             cosine, sine = np.cos(slip * time), np.sin(slip * time)
-            _tally(area, begin_q, spin, pull_cell, angles, spare, cosine, sine, dt, sums)
+            _tally(area, begin_q, spin, pull_cell, angles, cosine, sine, dt, sums)
             sums.push_x += (x * cosine + y * sine) * dt
             sums.push_y += (y * cosine - x * sine) * dt
             correct(area, q, rate_a, rate_q, dt, next_a, next_q)
-            wall_friction(area, q, spin, law, coefficient, lid, 0.5 * dt)
+            wall_friction(area, q, spin, law, coefficient, lid, 0.5 * dt, spare)
             time += dt
             steps += 1
         stage = 2 if stage == 1 else 1

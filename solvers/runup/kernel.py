@@ -13,21 +13,23 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from fluid.friction import STOKES
-from solvers.layer.finite_volume import (
-    COMPILED,
-    DRY,
-    GHOSTS,
-    NEAREST,
-    WORK,
-    faded_velocity,
-    log_of_surface,
-)
+from fluid.friction import NONE, STOKES
+from solvers.layer.finite_volume import COMPILED, GHOSTS, LOG, NEAREST, SUMMED, SURFACE, VELOCITY, WORK
 from solvers.layer.records import Outcome
-from solvers.layer.step import calm, copy, correct, predict, stage_rates, surface_radius, wall_friction
+from solvers.layer.step import (
+    calm,
+    copy,
+    correct,
+    decelerate,
+    kept_speed,
+    predict,
+    profile,
+    stage_rates,
+)
 
 _jit: Any = njit(**COMPILED)
 _unwrapped: Any = njit(**(COMPILED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
+_summed: Any = njit(**(SUMMED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
 # Parts of one function: compiled one by one and linked they would cost twice the time to compile.
 _inner: Any = njit(inline="always")
 
@@ -88,89 +90,134 @@ def flow_inertia(measures, layer, c, s, out):
     out[2] = s * s * xx + 2.0 * c * s * xy + c * c * yy
 
 
+# Rows of a layer's scratch beyond those of its rates: radial forces, rates of change, state of the second
+# stage, share of the velocity that friction leaves; velocity, radius of the surface and L at the step's end.
+_PULL_CELL, _PULL_FACE, _RATE_A, _RATE_Q, _NEXT_A, _NEXT_Q, _KEPT = range(WORK, WORK + 7)
+_VELOCITY, _SURFACE, _LOG = range(WORK + 7, WORK + 10)
+
+
 def layer_scratch(layers: int, cells: int) -> NDArray[np.float64]:
     """Scratch that `layer_step` wants for each of so many layers."""
-    return np.zeros((layers, WORK + 9, cells + 2 * GHOSTS))
+    return np.zeros((layers, WORK + 10, cells + 2 * GHOSTS))
 
 
 @_jit
 def measure(area, q, spin, angles, spare, out):
     """Fill `out`, a record MEASURES, for a layer [theory: coupling, eq. 2, 4 and 7]."""
     n = area.size
-    step = 2.0 * np.pi / n
-    across, along, log = spare[WORK, :n], spare[WORK + 1, :n], spare[WORK + 2, :n]
-    flow = spare[WORK + 3, :n]
-    moment_x, moment_y, spinning, energy = 0.0, 0.0, 0.0, 0.0
-    for i in range(n):
-        r = np.maximum(surface_radius(area[i]), NEAREST)
-        u = faded_velocity(area[i], q[i], spin)
-        log[i] = log_of_surface(area[i], r)
-        across[i], along[i] = r * angles[0, i], r * angles[1, i]
-        flow[i] = u * log[i]
-        lever = (1.0 - r) * (1.0 + r + r * r) / 3.0
-        moment_x += lever * angles[0, i] * step
-        moment_y += lever * angles[1, i] * step
-        whole = area[i] * (1.0 - area[i])
-        spinning += (spin * whole + u * area[i]) * step
-        energy += (0.5 * spin * spin * whole + spin * u * area[i] + 0.5 * u * u * log[i]) * step
-    flow_x, flow_y, xx, xy, yy = 0.0, 0.0, 0.0, 0.0, 0.0
-    for i in range(n):
-        after, before = i + 1 if i + 1 < n else 0, i - 1
-        x, y = 0.5 * (across[after] - across[before]), 0.5 * (along[after] - along[before])
-        flow_x += flow[i] * x
-        flow_y += flow[i] * y
-        xx += log[i] * x * x / step
-        xy += log[i] * x * y / step
-        yy += log[i] * y * y / step
-    out.moment_x, out.moment_y, out.spinning, out.energy = moment_x, moment_y, spinning, energy
-    out.flow_x, out.flow_y, out.xx, out.xy, out.yy = flow_x, flow_y, xx, xy, yy
+    profile(area, q, spin, spare[_VELOCITY, :n], spare[_SURFACE, :n], spare[_LOG, :n])
+    measure_profile(area, spin, angles, spare, out)
 
 
-@_unwrapped
-def _energy(area, q, spin):
-    """Energy of the flow in the frame that does not turn, over rho h_c R^4 [theory: coupling, eq. 7]."""
-    total = 0.0
-    for i in range(area.size):
-        r = np.maximum(surface_radius(area[i]), NEAREST)
-        u = faded_velocity(area[i], q[i], spin)
-        turning = spin * area[i] * (0.5 * spin * (1.0 - area[i]) + u)
-        total += turning + 0.5 * u * u * log_of_surface(area[i], r)
-    return total * 2.0 * np.pi / area.size
-
-
-@_unwrapped
-def _power(area, q, spin, euler, x, y, angles, rate_a, gains, dt):
-    """Power of the body force in the frame that does not turn [theory: coupling, eq. 8].
-
-    Adds what the flow's profile makes of the changing spin: the Euler force acts on the angular momentum,
-    which the profile does not turn into energy to the last digit.
-    """
+@_jit
+def measure_profile(area, spin, angles, spare, out):
+    """The same of a layer whose profile stands in its scratch, as `layer_step` leaves it."""
     n = area.size
+    velocity, surface, log = spare[_VELOCITY, :n], spare[_SURFACE, :n], spare[_LOG, :n]
     step = 2.0 * np.pi / n
-    moment_x, moment_y, rate_x, rate_y = 0.0, 0.0, 0.0, 0.0
+    sums = _moments(area, velocity, surface, log, spin, angles[0], angles[1])
+    out.moment_x, out.moment_y = sums[0] * step, sums[1] * step
+    out.spinning, out.energy = sums[2] * step, sums[3] * step
+    across, along = spare[0], spare[1]
     for i in range(n):
-        r = np.maximum(surface_radius(area[i]), NEAREST)
+        across[i + 1], along[i + 1] = surface[i] * angles[0, i], surface[i] * angles[1, i]
+    across[0], along[0], across[n + 1], along[n + 1] = across[n], along[n], across[1], along[1]
+    flow = _flows(velocity, log, across, along)
+    out.flow_x, out.flow_y = flow[0], flow[1]
+    out.xx, out.xy, out.yy = flow[2] / step, flow[3] / step, flow[4] / step
+
+
+@_summed
+def _moments(area, velocity, surface, log, spin, cosine, sine):
+    """Sums over the cells: first moment, angular momentum and energy."""
+    moment_x, moment_y, spinning, energy = 0.0, 0.0, 0.0, 0.0
+    for i in range(area.size):
+        r, u = surface[i], velocity[i]
         lever = (1.0 - r) * (1.0 + r + r * r) / 3.0
-        moment_x += lever * angles[0, i] * step
-        moment_y += lever * angles[1, i] * step
-        rate_x += r * angles[0, i] * rate_a[i] * step
-        rate_y += r * angles[1, i] * rate_a[i] * step
-        u, log = faded_velocity(area[i], q[i], spin), log_of_surface(area[i], r)
-        gains.missed -= dt * step * euler * u * (area[i] - log * (1.0 - area[i]))
-    return x * (rate_x - spin * moment_y) + y * (rate_y + spin * moment_x)
+        moment_x += lever * cosine[i]
+        moment_y += lever * sine[i]
+        whole = area[i] * (1.0 - area[i])
+        spinning += spin * whole + u * area[i]
+        energy += 0.5 * spin * spin * whole + spin * u * area[i] + 0.5 * u * u * log[i]
+    return moment_x, moment_y, spinning, energy
+
+
+@_summed
+def _flows(velocity, log, across, along):
+    """Sums over the cells: rate of the first moment by the flow, and the flow's inertia."""
+    flow_x, flow_y, xx, xy, yy = 0.0, 0.0, 0.0, 0.0, 0.0
+    n = velocity.size
+    across_b, across_a, along_b, along_a = across[:n], across[2 : n + 2], along[:n], along[2 : n + 2]
+    for i in range(n):
+        x, y = 0.5 * (across_a[i] - across_b[i]), 0.5 * (along_a[i] - along_b[i])
+        flow = velocity[i] * log[i]
+        flow_x += flow * x
+        flow_y += flow * y
+        xx += log[i] * x * x
+        xy += log[i] * x * y
+        yy += log[i] * y * y
+    return flow_x, flow_y, xx, xy, yy
+
+
+@_summed
+def _power(area, velocity, surface, log, rate_a, spin, x, y, cosine, sine):
+    """Power of the body force in the frame that does not turn, and what the flow's profile misses, a cell.
+
+    The second is over the change of the spin: the Euler force acts on the angular momentum, which the profile
+    does not turn into energy to the last digit [theory: coupling, eq. 8].
+    """
+    moment_x, moment_y, rate_x, rate_y, missed = 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(area.size):
+        r = np.maximum(surface[i], NEAREST)
+        lever = (1.0 - r) * (1.0 + r + r * r) / 3.0
+        moment_x += lever * cosine[i]
+        moment_y += lever * sine[i]
+        rate_x += r * cosine[i] * rate_a[i]
+        rate_y += r * sine[i] * rate_a[i]
+        missed += velocity[i] * (log[i] * (1.0 - area[i]) - area[i])
+    return x * (rate_x - spin * moment_y) + y * (rate_y + spin * moment_x), missed
+
+
+@_summed
+def _rub(area, velocity, log, kept, spin):
+    """Let friction leave its share of the velocities; sums over the cells.
+
+    Returns
+    -------
+    Impulse of the wall's torque, heat, and the energy in the frame that does not turn before and after, all
+    over rho h_c R^4 [theory: coupling, eq. 7]
+    """
+    torque, heat, before, after = 0.0, 0.0, 0.0, 0.0
+    for i in range(area.size):
+        u, v = velocity[i], velocity[i] * kept[i]
+        velocity[i] = v
+        torque += area[i] * (v - u)
+        lost = 0.5 * log[i] * (u - v) * (u + v)
+        heat += lost
+        turning = spin * area[i]
+        still = turning * (0.5 * spin * (1.0 - area[i]) + v) + 0.5 * log[i] * v * v
+        after += still
+        before += still + turning * (u - v) + lost
+    return torque, heat, before, after
 
 
 @_unwrapped
-def _work(area, q, before, spin, step, gains):
-    """Add what friction has done to the velocities: impulse of the wall's torque, and heat."""
-    for i in range(area.size):
-        a = area[i]
-        if a <= DRY:
-            continue
-        r = np.maximum(surface_radius(a), NEAREST)
-        u, v = faded_velocity(a, before[i], spin), faded_velocity(a, q[i], spin)
-        gains.torque += a * (v - u) * step
-        gains.heat += 0.5 * log_of_surface(a, r) * (u * u - v * v) * step
+def _half_friction(area, q, spin, layer, coefficient, dt, spare, gains):
+    """Half a step of friction; the energy before and after, with the profile left in the scratch."""
+    n, step = area.size, 2.0 * np.pi / area.size
+    velocity, surface, log = spare[_VELOCITY, :n], spare[_SURFACE, :n], spare[_LOG, :n]
+    kept = spare[_KEPT, :n]
+    profile(area, q, spin, velocity, surface, log)
+    if layer.law == NONE:
+        for i in range(n):
+            kept[i] = 1.0
+    else:
+        kept_speed(area, velocity, surface, layer.law, coefficient, layer.lid, 0.5 * dt, kept)
+        decelerate(area, q, spin, kept)
+    torque, heat, before, after = _rub(area, velocity, log, kept, spin)
+    gains.torque += torque * step
+    gains.heat += heat * step
+    return before * step, after * step
 
 
 @_unwrapped
@@ -186,7 +233,7 @@ def layer_step(area, q, spins, force, layer, coefficient, dt, angles, spare, gai
     coefficient : of its friction at these spins
     dt : time step
     angles : cosine and sine at the cells' middles and at their left faces, shape (4, n)
-    spare : scratch of this layer, from `layer_scratch`
+    spare : scratch of this layer, from `layer_scratch`; the profile at the end is left in it
     gains : results, a record GAINS
 
     Returns
@@ -194,18 +241,15 @@ def layer_step(area, q, spins, force, layer, coefficient, dt, angles, spare, gai
     Outcome.DONE, Outcome.TOO_LONG or Outcome.AT_AXIS; and the largest speed met
     """
     n = area.size
-    step, euler = 2.0 * np.pi / n, (spins[1] - spins[0]) / dt
-    law, lid, dispersion = layer.law, layer.lid, layer.dispersion
-    pull_cell, pull_face = spare[WORK, :n], spare[WORK + 1, :n]
-    rate_a, rate_q = spare[WORK + 4, :n], spare[WORK + 5, :n]
-    next_a, next_q, before = spare[WORK + 6, :n], spare[WORK + 7, :n], spare[WORK + 8, :n]
+    step, euler, dispersion = 2.0 * np.pi / n, (spins[1] - spins[0]) / dt, layer.dispersion
+    pull_cell, pull_face = spare[_PULL_CELL, :n], spare[_PULL_FACE, :n]
+    rate_a, rate_q = spare[_RATE_A, :n], spare[_RATE_Q, :n]
+    next_a, next_q = spare[_NEXT_A, :n], spare[_NEXT_Q, :n]
+    velocity, surface, log = spare[VELOCITY, GHOSTS:], spare[SURFACE, GHOSTS:], spare[LOG, GHOSTS:]
     gains.torque, gains.heat, gains.loss, gains.missed = 0.0, 0.0, 0.0, 0.0
-    copy(q, before)
-    wall_friction(area, q, spins[0], law, coefficient, lid, 0.5 * dt)
-    _work(area, q, before, spins[0], step, gains)
+    _, gains.loss = _half_friction(area, q, spins[0], layer, coefficient, dt, spare, gains)
     copy(area, next_a)
     copy(q, next_q)
-    gains.loss = _energy(area, q, spins[0])
     fastest = 0.0
     for stage in range(2):
         spin, x, y = spins[stage], force[2 * stage], force[2 * stage + 1]
@@ -216,18 +260,17 @@ def layer_step(area, q, spins, force, layer, coefficient, dt, angles, spare, gai
         fastest = max(fastest, speed)
         if outcome != Outcome.DONE:
             return outcome, fastest
-        done = _power(next_a, next_q, spin, euler, x, y, angles, rate_a, gains, 0.5 * dt)
-        gains.loss += 0.5 * dt * done
+        done, missed = _power(next_a, velocity, surface, log, rate_a, spin, x, y, angles[0], angles[1])
+        gains.loss += 0.5 * dt * step * done
+        gains.missed += 0.5 * dt * step * euler * missed
         if stage == 0:
             if not predict(area, q, rate_a, rate_q, dt, next_a, next_q):
                 return Outcome.AT_AXIS, fastest
         else:
             correct(area, q, rate_a, rate_q, dt, next_a, next_q)
             calm(area, q, spin)
-    gains.loss -= _energy(area, q, spins[1]) + gains.missed
-    copy(q, before)
-    wall_friction(area, q, spins[1], law, coefficient, lid, 0.5 * dt)
-    _work(area, q, before, spins[1], step, gains)
+    energy, _ = _half_friction(area, q, spins[1], layer, coefficient, dt, spare, gains)
+    gains.loss -= energy + gains.missed
     return Outcome.DONE, fastest
 
 
@@ -274,7 +317,8 @@ def _measure_layers(machine, state, room):
     size = np.hypot(cosine, sine)
     for j in range(machine.layers.shape[0]):
         layer = machine.layers[j]
-        measure(state.area[j], state.momentum[j], spins[1], machine.angles, room.spare[j], room.end[j])
+        # Their steps have left the profiles at the end.
+        measure_profile(state.area[j], spins[1], machine.angles, room.spare[j], room.end[j])
         relative_momentum(room.begin[j], layer, spins[0], turn[0], turn[1], room.before[j])
         relative_momentum(room.end[j], layer, spins[1], turn[2], turn[3], room.after[j])
         flow_inertia(room.begin[j], layer, cosine / size, sine / size, room.inertia[j])

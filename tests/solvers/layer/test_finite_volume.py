@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 
+import mpmath as mp
 import numpy as np
 import pytest
+from numba import njit
 
 from fluid import long_wave as lw
-from solvers.layer.finite_volume import DRY, GHOSTS, WORK, rates, solve_ring
+from solvers.layer.finite_volume import DRY, FULL, GHOSTS, WORK, log_and_inverse, rates, solve_ring
 from solvers.layer.records import LOADS, Drive, Outcome, Wall, records
-from solvers.layer.step import march, scratch
+from solvers.layer.step import kept_speed, march, scratch
 
 SPIN = 1.0
 
@@ -88,7 +90,7 @@ def jump_residual(a: tuple[float, float], u: tuple[float, float]) -> float:
     areas, us = np.array(a), np.array(u)
     log, surface = lw.layer_log(areas), lw.free_surface_radius(areas)
     mass = lw.mass_flux(us, log)
-    flow = lw.momentum_flux(us, log, areas, surface) + lw.pressure_force(areas, surface, SPIN, 0.0)
+    flow = lw.momentum_flux(us, log, areas, surface**-2.0) + lw.pressure_force(areas, surface, SPIN, 0.0)
     q = us * areas - SPIN * areas**2
     return float((mass[1] - mass[0]) / (areas[1] - areas[0]) - (flow[1] - flow[0]) / (q[1] - q[0]))
 
@@ -177,6 +179,43 @@ def test_order() -> None:
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     # Limiters clip at the two extrema: a little below two in the mean.
     assert np.all(orders > 1.7), orders
+
+
+def test_logarithm_over_the_whole_range() -> None:
+    """ln(1/r) and 1/r^2, compiled, within a few roundings of the exact ones of the same area and radius."""
+    rng = np.random.default_rng(11)
+    thin, deep = 10.0 ** rng.uniform(-13.0, -1.0, 4000), rng.uniform(0.1, FULL, 4000)
+    edges = 0.5 * (1.0 - np.array([0.5, 0.125]) ** 2)
+    area = np.concatenate(
+        [thin, deep, edges, np.nextafter(edges, 0.0), np.nextafter(edges, 1.0), [1e-13, FULL]]
+    )
+    radius, log, inverse = lw.free_surface_radius(area), np.empty(area.size), np.empty(area.size)
+    _logs(area, radius, log, inverse)
+    with mp.workdps(40):
+        by_area = np.array([float(-mp.log(1 - 2 * mp.mpf(a)) / 2) for a in area])
+        by_radius = np.array([float(-mp.log(r)) for r in radius])
+    # Beyond r = 1/2 the radius stands for the layer; its own rounding over r ln r is not the logarithm's.
+    exact = np.where(radius >= 0.5, by_area, by_radius)
+    assert np.abs(log / exact - 1.0).max() < 4.0 * np.finfo(float).eps
+    assert np.abs(inverse * radius**2 - 1.0).max() < 5.0 * np.finfo(float).eps
+
+
+@njit
+def _logs(area, radius, log, inverse):  # type: ignore[no-untyped-def]
+    for i in range(area.size):
+        log[i], inverse[i] = log_and_inverse(area[i], radius[i])
+
+
+def test_friction_keeps_its_digits() -> None:
+    """The share of the velocity that friction leaves, by the series and beyond it."""
+    area = np.array([1e-9, 1e-5, 0.02, 0.1, 0.3])
+    surface, kept, velocity = lw.free_surface_radius(area), np.empty(5), np.full(5, 0.1)
+    for coefficient in (1e-9, 1e-3, 0.03, 0.3, 30.0):
+        kept_speed(area, velocity, surface, 1, coefficient, 0.0, 1.0, kept)
+        with mp.workdps(40):
+            shear = [coefficient * 2 / (1 + mp.sqrt(1 - 2 * mp.mpf(a))) for a in area]
+            exact = np.array([float(mp.exp(-x)) for x in shear])
+        np.testing.assert_allclose(kept, exact, rtol=2.0 * np.finfo(float).eps * (1.0 + 2.0 * coefficient))
 
 
 def test_ring() -> None:
