@@ -12,7 +12,10 @@ from leblanc.results.base import EXACT, percent
 from meshes.arrays import Array, Flags, Index
 
 if TYPE_CHECKING:
-    from solvers.synchronous.errors import LinearError
+    from solvers.synchronous.errors import GravityError, LinearError
+
+
+_COST = "1 to 10"  # of a held state, as measured at 128 cells
 
 
 @dataclass(frozen=True)
@@ -30,8 +33,8 @@ class Choice:
     error : estimated relative error of what is taken, of amplitude and liquid the larger one; nan where there
         is no estimate
     linear : error of the linear theory against the exact equilibrium
-    gravity : estimated error by gravity across the axis, which no model of a steady answer has; nan where the
-        liquid does not ride with the drum
+    gravity : what gravity across the axis does, which no model of a steady answer has, to the means over time
+        and as a ripple about them
     cut : baffles cut the liquid of a chamber into compartments, or its section is no circle
     """
 
@@ -43,7 +46,7 @@ class Choice:
     tolerance: float
     error: Array
     linear: LinearError
-    gravity: Array
+    gravity: GravityError
     cut: bool = False
 
     @property
@@ -65,7 +68,11 @@ class ModelSpan:
     error : largest estimate of it; nan where one is missing
     linear_error : largest error that the linear theory may have against the exact equilibrium
     strain : largest linear deflection over the one at which the law of the liquid bends
-    gravity_error : largest estimate of what gravity across the axis does; nan where one is missing
+    gravity_error : largest estimate of what gravity across the axis does to the mean of the amplitude; nan
+        where one is missing
+    liquid_error : the same of the mean of the liquid's offset
+    ripple : largest estimate of the amplitude's ripple about its mean
+    liquid_ripple : the same of the liquid's centre of mass in the drum, m
     reason : why the model is taken, in words
     better : what the next better model would cost and give, in words
     """
@@ -79,6 +86,9 @@ class ModelSpan:
     linear_error: float
     strain: float
     gravity_error: float
+    liquid_error: float
+    ripple: float
+    liquid_ripple: float
     reason: str
     better: str
 
@@ -102,7 +112,10 @@ def _span(choice: Choice, speed: Array, part: Index) -> ModelSpan:
         error=float(choice.error[part].max()),
         linear_error=float(choice.linear.worst[part].max()),
         strain=float(choice.linear.strain[part].max()),
-        gravity_error=float(choice.gravity[part].max()),
+        gravity_error=float(choice.gravity.amplitude[part].max()),
+        liquid_error=float(choice.gravity.liquid[part].max()),
+        ripple=float(choice.gravity.ripple[part].max()),
+        liquid_ripple=float(choice.gravity.liquid_ripple[part].max()),
         reason=_reason(choice, model, part),
         better=_better(choice, model, part),
     )
@@ -127,9 +140,9 @@ def _reason(choice: Choice, model: str, part: Index) -> str:
         why = f"the scene asks for it; {why}"
     if not choice.missed[part[0]]:
         return why
-    limit, waves = percent(choice.tolerance), choice.gravity[part].max()
+    limit, waves = percent(choice.tolerance), choice.gravity.amplitude[part].max()
     if waves > choice.tolerance:
-        return f"{why}; but waves driven by gravity may change it by {percent(waves)}, tolerance {limit}"
+        return f"{why}; but gravity's waves may change its mean by {percent(waves)}, tolerance {limit}"
     return f"{why}; this is more than the tolerance of {limit}"
 
 
@@ -181,9 +194,9 @@ def _better(choice: Choice, model: str, part: Index) -> str:
         return "none that is steady: `leblanc runup` carries the liquid until it is caught"
     if model == "long_wave":
         return "the same with more cells ([model] cells)"
-    gravity = choice.gravity[part].max()
+    gravity = choice.gravity.amplitude[part].max()
     if gravity > 0.0 and (model == "statics" or gravity > choice.tolerance):
-        return f"long waves in time (`leblanc runup`, seconds a speed), for gravity's {percent(gravity)}"
+        return f"long waves held in time ([model] held, {_COST} s a speed), for gravity's {percent(gravity)}"
     if model != "statics":
         worst = choice.linear.worst[part].max()
         gives = "the same" if worst < EXACT else f"less than {percent(worst)} of change"

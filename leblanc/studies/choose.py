@@ -23,7 +23,7 @@ from meshes.errors import InputError
 from solvers.liquid_model import ROUNDING, LiquidModel
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.sloshing.model import REST_ERROR
-from solvers.synchronous.errors import LinearError, error_estimate, machine_errors
+from solvers.synchronous.errors import GravityError, LinearError, error_estimate, machine_errors
 
 if TYPE_CHECKING:
     from solvers.rotor.system import RotorSystem
@@ -229,7 +229,7 @@ def liquid_models(choice: Choice) -> list[LiquidModel]:
     return [synchronous_model(name) for name in choice.models.tolist()]
 
 
-def _planar_errors(machines: Sequence[Prepared]) -> list[tuple[LinearError, Array]]:
+def _planar_errors(machines: Sequence[Prepared]) -> list[tuple[LinearError, GravityError]]:
     """Error of the linear theory, and by gravity across the axis, of each machine."""
     counts = [machine.speed.size for machine in machines]
     owner = np.repeat(np.arange(len(machines)), counts)
@@ -243,19 +243,19 @@ def _planar_errors(machines: Sequence[Prepared]) -> list[tuple[LinearError, Arra
     return [
         (
             LinearError(error.amplitude[part], error.liquid[part], error.wet[part], error.strain[part]),
-            thrown[part],
+            thrown.at(part),
         )
         for part in parts
     ]
 
 
-def _other_errors(machine: Prepared) -> tuple[LinearError, Array]:
+def _other_errors(machine: Prepared) -> tuple[LinearError, GravityError]:
     """The same of a rotor that tilts, or moves differently in two directions."""
     along, across = machine.axial_gravity, machine.across_gravity
     return error_estimate(machine.rotor, machine.scene.fills, machine.speed, along, across)
 
 
-def _choice(machine: Prepared, linear: LinearError, gravity: Array) -> Choice:
+def _choice(machine: Prepared, linear: LinearError, gravity: GravityError) -> Choice:
     """The cheapest model that the errors allow, or the one that the scene names."""
     scene, speed = machine.scene, machine.speed
     liquid, tolerance = _beginning(scene), scene.model.tolerance
@@ -267,7 +267,7 @@ def _choice(machine: Prepared, linear: LinearError, gravity: Array) -> Choice:
     if cut or liquid != "auto":
         enough = np.full(speed.shape, liquid != "statics")
     models = np.where(enough, small, "statics")
-    error = np.where(enough, linear.worst, ROUNDING) + gravity
+    error = np.where(enough, linear.worst, ROUNDING) + gravity.amplitude
     if small == "fem":
         error = error + np.where(enough, REST_ERROR, 0.0)
     if cut:

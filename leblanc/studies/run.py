@@ -132,7 +132,7 @@ def element_answers(
         exact = getattr(answer, name)
         gap = np.abs(getattr(found[0], name) - exact)
         gaps.append(np.divide(gap, exact, out=np.zeros_like(gap), where=exact > 0.0))
-    error = choice.gravity + np.maximum(*gaps) + ROUNDING
+    error = choice.gravity.amplitude + np.maximum(*gaps) + ROUNDING
     return replace(choice, models=found[0].model, error=error), found[0], found[1]
 
 

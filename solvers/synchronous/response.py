@@ -458,9 +458,9 @@ def answered_by(
         coordinates=placed(answer, "coordinates"),
         liquid_offset=placed(offset, "liquid_offset"),
         liquid_angle=placed(angle if terms.fills else np.angle(motion.forward), "liquid_angle"),
-        dry_patch=placed(law.dry_patch.any(axis=1), "dry_patch"),
-        in_range=placed(law.in_range.all(axis=1), "in_range"),
-        converged=known.converged & placed(met & law.converged.all(axis=1), "converged"),
+        dry_patch=placed(np.asarray(law.dry_patch.any(axis=1)), "dry_patch"),
+        in_range=placed(np.asarray(law.in_range.all(axis=1)), "in_range"),
+        converged=known.converged & placed(np.asarray(met & law.converged.all(axis=1)), "converged"),
         residual=placed(_residual(terms, answer, forward, law), "residual"),
         model=np.full(known.speed.shape, model.name.split()[0]),
     )

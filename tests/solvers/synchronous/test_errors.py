@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from fluid.fill import Fill, Fills
 from fluid.liquid import KNOWN_LIQUIDS
+from fluid.waves import gravity_offset
 from leblanc.scene.scene import dry_rotor, load_scene
 from leblanc.studies.choose import across_gravity, axial_gravity
 from meshes.chamber import Chamber
@@ -305,19 +306,23 @@ def test_tilting_and_planar_bounds_agree() -> None:
     assert (error.amplitude < 1e-9).all() and (other.error().amplitude < 1e-9).all()
     pairs = pair_machines([(ROTOR, [DRUM])], np.zeros(3, np.intp), speeds, np.zeros(1), LINEAR)
     # Next to no backward part: the stiffness along the deflection is what one unit of force meets.
-    np.testing.assert_allclose(thrown, planar_gravity_error(pairs, np.full(3, G), other.most), rtol=1e-6)
+    same = planar_gravity_error(pairs, np.full(3, G), other.most)
+    for name in ("amplitude", "liquid", "ripple", "liquid_ripple"):
+        np.testing.assert_allclose(getattr(thrown, name), getattr(same, name), rtol=1e-6)
     none, still = error_estimate(ROTOR.system(), [], speeds, 0.0, G)
-    assert (none.worst == ROUNDING).all() and (still == 0.0).all()
+    assert (none.worst == ROUNDING).all() and (still.liquid == 0.0).all()
 
 
 @kills("solvers.synchronous.errors:law_error", "(radius / depth) ** _THIN", "(depth / radius) ** _THIN")
 @kills("solvers.synchronous.errors:law_error", "_THIN * np.square(weakness)", "_THIN * weakness")
 @kills(
     "solvers.synchronous.errors:planar_gravity_error",
-    "pull = np.square(pairs.speed) * weighted",
-    "pull = weighted",
+    "pull = np.square(pairs.speed) * waves.weighted",
+    "pull = waves.weighted",
 )
-@kills("solvers.synchronous.errors:planar_gravity_error", "largest + moved", "largest - moved")
+@kills("solvers.synchronous.errors:_Waves.error", "self.largest + moved", "self.largest - moved")
+@kills("solvers.synchronous.errors:_Waves.error", "np.square(self.weakest)", "self.weakest")
+@kills("solvers.synchronous.errors:_Waves.add", "0.5 * gravity", "gravity")
 def test_gravity() -> None:
     """Gravity: as its square over that of the spin's fourth power, none upright, no number below capture.
 
@@ -338,8 +343,13 @@ def test_gravity() -> None:
     )  # fmt: skip
     most = rotor.unbalance * slow**2 / 4.0e9
     change = law_error(fills, slow, np.array([G]))
-    expected = change * (1.0 + fills.added_mass * slow**2 / 4.0e9)
-    np.testing.assert_allclose(planar_gravity_error(one, np.array([G]), most), expected, rtol=1e-9)
+    found, moved = planar_gravity_error(one, np.array([G]), most), fills.added_mass * slow**2 / 4.0e9
+    np.testing.assert_allclose(found.amplitude, change * moved, rtol=1e-9)
+    np.testing.assert_allclose(found.liquid, change * (1.0 + moved), rtol=1e-9)
+    np.testing.assert_allclose(found.ripple, 1.0 / 20.0**2, rtol=1e-9)
+    # The layer leans as linear theory has it.
+    lean = -gravity_offset((0.1 / 0.0984) ** 2, slow, G)
+    np.testing.assert_allclose(found.liquid_ripple, lean, rtol=1e-9)
 
 
 @pytest.mark.slow
