@@ -135,6 +135,7 @@ def map_whirl(
     speeds: int = 201,
     max_volume: Quantity | None = None,
     friction: str | Friction | None = None,
+    cycles: bool = False,
     progress: Callable[[int, int], None] | None = None,
 ) -> WhirlMap:
     """Growth rate of self-excited whirl over speed and fill, with the edges of its bands.
@@ -145,6 +146,7 @@ def map_whirl(
     volumes, speeds : how many of each
     max_volume : most liquid in all chambers together, m^3; what fits if None
     friction : none, stokes, linear:RATE or quadratic:NUMBER; the scene's if None
+    cycles : find how large the whirls of the scene as it stands grow as well, in `cycles` and `folds`
     progress : called with the number of volumes done and of all
 
     Raises
@@ -165,7 +167,7 @@ def map_whirl(
     with _keywords():
         most = None if max_volume is None else parse_option(max_volume, VOLUME, "--max-volume")
         law = None if friction is None else friction_of(friction)
-        return map_scene(machine, volumes, speeds, most, law, progress)
+        return map_scene(machine, volumes, speeds, most, law, progress, cycles)
 
 
 def optimise(

@@ -25,6 +25,9 @@ def map(
         str | None,
         typer.Option(help="none, stokes, linear:RATE or quadratic:NUMBER [default: the scene's]."),
     ] = None,
+    cycles: Annotated[
+        bool, typer.Option("--cycles", help="Find how large the whirls of the scene as it stands grow.")
+    ] = False,
     out: Annotated[
         Path | None, typer.Option(help="Folder for the files [default: out/<scene name>].")
     ] = None,
@@ -32,9 +35,12 @@ def map(
 ) -> None:
     """Growth of self-excited whirl over speed and volume. Edges of the unstable bands, figure, report.
 
+    With --cycles also how large the whirls grow: their branches over speed with amplitude, frequency, folds
+    and stability.
+
     Points at which the growth is not known are marked; the command fails where they are more than one in 100.
     """
-    from leblanc.units import VOLUME, parse_friction, parse_option
+    from leblanc.units import VOLUME, in_rpm, parse_friction, parse_option
 
     machine = load(scene)
     law = None if friction is None else parse_friction(friction, "--friction")
@@ -47,16 +53,21 @@ def map(
         def progress(done: int, total: int) -> None:
             update(done, total, "volumes" if done < total else "edges of the bands")
 
-        found = map_scene(machine, volumes, speeds, most, law, progress)
+        def whirls(count: int, speed: float) -> None:
+            update(None, None, f"whirls of finite size: {count} found, at {in_rpm(speed)}")
 
-    from leblanc.figures.whirl_map import map_figure, save
+        found = map_scene(machine, volumes, speeds, most, law, progress, cycles, whirls)
+
+    from leblanc.figures.whirl_map import cycles_figure, map_figure, save
     from leblanc.report.page import about, command_line
     from leblanc.report.run import write_map_report
     from leblanc.results.netcdf import write_netcdf
     from leblanc.studies.whirl_map import SPEEDS, VOLUMES
 
     write_netcdf(found.named_arrays(), folder / "map.nc")
-    files = save(map_figure(found), folder, "map", "Self-excited whirl over speed and volume")
+    files = [save(map_figure(found), folder, "map", "Self-excited whirl over speed and volume")]
+    if found.branches:
+        files.append(save(cycles_figure(found), folder, "cycles", "How large the whirl grows, over speed"))
     command = command_line(
         "map",
         scene,
@@ -64,6 +75,7 @@ def map(
         ("--speeds", speeds, SPEEDS),
         ("--max-volume", max_volume, None),
         ("--friction", friction, None),
+        ("--cycles", cycles, False),
     )
     what = about(machine, command, "map.nc", unused=("runup", "optimise"))
     write_map_report(found, what, files, folder / "map.html")

@@ -21,8 +21,8 @@ from leblanc.figures.page import (
 from leblanc.figures.page import save as save  # a figure is drawn and written together
 from leblanc.results.base import one_line
 from leblanc.results.whirl_map import WhirlMap
-from leblanc.text.whirl_map import alt
-from leblanc.units import ML, RPM, VOLUME, with_unit
+from leblanc.text.whirl_map import alt, cycles_alt
+from leblanc.units import ML, MM, RPM, VOLUME, with_unit
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -36,6 +36,14 @@ GROWTH, RATIO = "RdBu_r", "cividis"
 PALER = (0.1, 0.9)  # of the colours of growth: their ends would hide lines and dots
 OUTLINE, NO_WHIRL = "0.1", "0.93"
 HATCH, DOTS = (0.0, 0.0, 0.0, 0.5), (0.0, 0.0, 0.0, 0.35)  # thin and sparse: the colours stay readable
+_SHOWN = ("branch", "speed", "amplitude", "whirl_speed", "stable", "in_range")
+ASIDE = 0.4  # inches, for the axis on the right
+CYCLES_FRAME = Frame(left=0.72, top=0.46, between=0.12, below=0.42)
+BAND = {"facecolor": "0.9", "hatch": "//", "edgecolor": (0.0, 0.0, 0.0, 0.15), "linewidth": 0.0, "zorder": 0}
+STABLE = {"color": "#0072B2", "linewidth": 1.9, "linestyle": "-", "zorder": 3}
+LEFT = {"color": "#D55E00", "linewidth": 1.3, "linestyle": (0, (4, 2)), "zorder": 2.8}
+FAR = {"linewidth": 0.7}
+FOLD = {"color": "black", "marker": "D", "markersize": 4.0, "linestyle": "none", "zorder": 5}
 OWN = {"color": "black", "linewidth": 1.2, "linestyle": (0, (6, 2)), "zorder": 4}
 
 
@@ -198,6 +206,84 @@ def _outline(axes: Axes, result: WhirlMap, hatched: bool) -> None:
         axes.axhline(
             result.scene_volume * ML, label=f"scene's volume, {with_unit(result.scene_volume, VOLUME)}", **OWN
         )
+
+
+def cycles_figure(result: WhirlMap) -> Figure:
+    """Amplitude of self-excited whirls above, their frequency below, over speed."""
+    shown: dict[str, Array] = {
+        name: np.array([row[name] for row in result.cycles], dtype=float) for name in _SHOWN
+    }
+    with style():
+        figure = Figure()
+        figure.alt = cycles_alt(result)
+        panels: list[Axes] = [
+            figure.add_axes((0, 0, 1, 1), label=name) for name in ("amplitude", "frequency")
+        ]
+        ends = [float(end) * RPM for end in (result.speed[0], result.speed[-1])]
+        for axes, name, scale in zip(panels, ("amplitude", "whirl_speed"), (MM, RPM), strict=True):
+            for k, (low, high) in enumerate(result.scene_edges):
+                label = "_" if k else "a small whirl grows"
+                axes.axvspan(low * RPM, high * RPM, label=label, **BAND)
+            for branch in np.unique(shown["branch"]).tolist():
+                _draw_branch(
+                    axes, {key: value[shown["branch"] == branch] for key, value in shown.items()}, name, scale
+                )
+            axes.set_xlim(ends[0], ends[1])
+            axes.xaxis.set_major_formatter(_label)
+            axes.yaxis.set_major_formatter(_label)
+        _dress_cycles(*panels, result)
+        caption = Caption(
+            "Self-excited whirls of finite size over speed: amplitude of the first chamber's axis, and "
+            "frequency in space. Thin where the liquid lags by over a third of the spin: beyond the model.",
+            f"Scene: {one_line(result.name)}. Liquid model: nonlinear long waves that stand in the whirl's "
+            f"frame; liquid friction: {result.friction}; support: {result.damping}; no unbalance or gravity.",
+        )
+        lay_out(figure, [[axes] for axes in panels], [2.6, 1.7], CYCLES_FRAME, caption, LINES)
+        for axes in panels:
+            box = axes.get_position()
+            axes.set_position((box.x0, box.y0, box.width - ASIDE / WIDTH, box.height))
+    return figure
+
+
+def _dress_cycles(top: Axes, below: Axes, result: WhirlMap) -> None:
+    """Folds, key and axes of the figure of limit cycles."""
+    folds = np.array([(fold["speed"] * RPM, fold["amplitude"] * MM) for fold in result.folds])
+    if folds.size:
+        top.plot(*folds.T, label="fold", **FOLD)
+    for label, look in (("stable", STABLE), ("unstable", LEFT), ("the liquid lags by over a third", FAR)):
+        top.plot([], [], label=label, **look)
+    top.set_ylim(0.0, None)
+    top.set_ylabel("Amplitude (mm)")
+    top.tick_params(labelbottom=False)
+    if result.depth > 0.0:
+        depth = result.depth * MM
+        share = top.secondary_yaxis("right", functions=(lambda y: y / depth, lambda y: y * depth))
+        share.set_ylabel("Amplitude/depth (\N{EN DASH})")
+        share.yaxis.set_major_formatter(_label)
+    add_rate_axis(top)
+    if result.critical_speed_dry > 0.0:
+        critical = result.critical_speed_dry * RPM
+        below.axhline(
+            critical, color="0.45", linewidth=0.9, linestyle=":", label="critical speed without liquid"
+        )
+    below.set_ylabel("Whirl speed (rpm)")
+    below.set_xlabel("Spin speed (rpm)")
+
+
+def _draw_branch(axes: Axes, rows: dict[str, Array], name: str, scale: float) -> None:
+    """A branch, stable parts in full and thick, unstable ones dashed, those out of the model's range thin."""
+    x, y = rows["speed"] * RPM, rows[name] * scale
+    stable, fair = rows["stable"] > 0.0, rows["in_range"] > 0.0
+    for holds, valid, look in (
+        (True, True, STABLE),
+        (True, False, STABLE | FAR),
+        (False, True, LEFT),
+        (False, False, LEFT | FAR),
+    ):
+        here = (stable == holds) & (fair == valid)
+        # A piece reaches to the next whirl, so that pieces join.
+        wide = here | np.concatenate([[False], here[:-1]])
+        axes.plot(x, np.where(wide, y, np.nan), **look)
 
 
 def _caption(result: WhirlMap) -> Caption:

@@ -32,6 +32,10 @@ if TYPE_CHECKING:
 
 SHOWN = 4  # figures, of which the phase stands in its own file only; with more, all
 
+CYCLES = (
+    "Nonlinear long waves that stand in the whirl's frame, rotor and every cell of every layer solved at "
+    "once; stability by Floquet multipliers."
+)
 LISTED = 11  # volumes of the table of bands
 
 
@@ -186,14 +190,14 @@ def _share(mask: np.ndarray) -> str:
     return f"{count} of {mask.size} points ({number(100.0 * count / mask.size)} %)" if count else "none"
 
 
-def write_map_report(result: WhirlMap, what: About, figure: FigureFiles, path: Path) -> None:
+def write_map_report(result: WhirlMap, what: About, figures: Sequence[FigureFiles], path: Path) -> None:
     """Write the report.
 
     Parameters
     ----------
     result : the map
     what : it is about
-    figure : of it
+    figures : of it
     path : the file to write or replace
     """
     values = dict(whirl_map_facts(result))
@@ -207,8 +211,8 @@ def write_map_report(result: WhirlMap, what: About, figure: FigureFiles, path: P
         "facts": table("", (), whirl_map_facts(result)),
         "checks": map_checks(result),
         "bands": bands(result),
-        "pictures": [picture(figure)],
-        "models": [("linear", " ".join(WHIRL))],
+        "pictures": [picture(figure) for figure in figures],
+        "models": [("linear", " ".join(WHIRL)), *([("long_wave", CYCLES)] if result.branches else [])],
         "reason": "No other model answers this for any growth and any whirl speed.",
         "remarks": notes(result.notes),
     }

@@ -46,6 +46,24 @@ class LayerExplanation:
     walls: str = ""
 
 
+@dataclass(frozen=True)
+class WhirlOutlook:
+    """How large a self-excited whirl may grow, by rule and not by solving for it [theory: whirl, eq. 29].
+
+    Parameters
+    ----------
+    speed : spin speed of the scene inside a band of self-excited whirl at which it is largest, rad/s
+    amplitude : of the axis at the chambers, m; mostly within 10 %, up to half of it off next to an edge
+    whirl_speed : in space, rad/s
+    lag : of the liquid behind the drum, rad/s
+    """
+
+    speed: float
+    amplitude: float
+    whirl_speed: float
+    lag: float
+
+
 _ABOUT = ("source", "assumed", "digest")  # of the scene; not part of the JSON
 
 
@@ -66,6 +84,7 @@ class Explanation(Result):
     tolerance : relative error that the scene allows
     modes : of the dry rotor at rest; none for a planar rotor, whose only one is the critical speed
     runup : which liquid model the run-up will take, in words; empty without one
+    whirl : how large the whirl grows by itself; None where none does, or nothing bounds it
     source, assumed, digest : of the scene
 
     Examples
@@ -90,6 +109,7 @@ class Explanation(Result):
     tolerance: float
     modes: tuple[RestMode, ...] = ()
     runup: str = ""
+    whirl: WhirlOutlook | None = None
     source: str = ""
     assumed: tuple[str, ...] = ()
     digest: str = ""
@@ -113,6 +133,7 @@ class Explanation(Result):
                 "critical_speed_wet": var((), self.critical_speed_wet, rate, "critical speed with liquid"),
                 "damping_ratio": var((), self.damping_ratio, "1", "damping ratio", "of the support"),
                 "capture_speed": var((), captured, rate, "capture speed", "the liquid rides with the drum"),
+                **_whirl_variables(self.whirl),
                 "tolerance": var((), self.tolerance, "1", "tolerance", "relative error that is allowed"),
                 "first": var(span, spans["first"], rate, "first speed of a liquid model"),
                 "last": var(span, spans["last"], rate, "last speed of a liquid model"),
@@ -125,6 +146,20 @@ class Explanation(Result):
             coords={"speed": var(("end",), ends, rate, "spin speed", "first and last of the scene")},
             attrs=attributes(self, "explain", {}, ()),
         )
+
+
+def _whirl_variables(whirl: WhirlOutlook | None) -> dict[str, Variable]:
+    """The estimate of the self-excited whirl, nan where there is none."""
+    parts = {
+        "whirl_spin": ("speed", "rad s-1", "spin speed"),
+        "whirl_amplitude": ("amplitude", "m", "amplitude"),
+        "whirl_speed": ("whirl_speed", "rad s-1", "whirl speed"),
+        "whirl_lag": ("lag", "rad s-1", "lag of the liquid"),
+    }
+    return {
+        name: var((), math.nan if whirl is None else getattr(whirl, own), unit, words, "by rule")
+        for name, (own, unit, words) in parts.items()
+    }
 
 
 def _layer_variables(layers: tuple[LayerExplanation | None, ...]) -> dict[str, Variable]:

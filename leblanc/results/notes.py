@@ -421,6 +421,55 @@ class MapCode(NoteCode):
     NOT_HELD = "not_held"
     THICK_WALL_LAYER = "thick_wall_layer"
     NOT_KNOWN = "not_known"
+    NO_CYCLES = "no_cycles"
+    NO_CIRCLE = "no_circle"
+    LAGGING = "lagging"
+    DEEP_WHIRL = "deep_whirl"
+
+
+def no_cycles(reason: str) -> Note:
+    """Why no limit cycle is told.
+
+    Parameters
+    ----------
+    reason : in words
+    """
+    return Note(MapCode.NO_CYCLES, {"reason": reason}, f"No limit cycles: {reason}.")
+
+
+def no_circle() -> Note:
+    """Gravity across the axis is left out of limit cycles."""
+    text = (
+        "Limit cycles are those without gravity across the axis, with which a whirl is no circle: ask for a "
+        "held state of `run` where the spin hardly outweighs it."
+    )
+    return Note(MapCode.NO_CIRCLE, {}, text)
+
+
+def lagging(largest: float, limit: float) -> Note:
+    """Limit cycles whose liquid lags more than the layer's flow describes.
+
+    Parameters
+    ----------
+    largest : lag over the spin
+    limit : of it
+    """
+    text = (
+        f"Limit cycles in which the liquid lags by more than {percent(limit)} of the spin (up to "
+        f"{percent(largest)}) are the model's own: its flow has no vorticity."
+    )
+    return Note(MapCode.LAGGING, {"largest": largest, "limit": limit}, text)
+
+
+def deep_whirl(largest: float) -> Note:
+    """Limit cycles about as large as the layer is deep.
+
+    Parameters
+    ----------
+    largest : amplitude over depth
+    """
+    text = f"The largest limit cycle is {largest:.2g} times the depth of the layer: walls fall nearly dry."
+    return Note(MapCode.DEEP_WHIRL, {"largest": largest}, text)
 
 
 def growth_not_known(lost: int, points: int) -> Note:

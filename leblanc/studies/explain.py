@@ -10,7 +10,7 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.numbers import layer_numbers
 from leblanc.results.choice import model_spans
-from leblanc.results.explanation import ExciterExplanation, Explanation, LayerExplanation
+from leblanc.results.explanation import ExciterExplanation, Explanation, LayerExplanation, WhirlOutlook
 from leblanc.results.response import RestMode
 from leblanc.scene.rotors import Exciter as ExciterOfScene
 from leblanc.scene.rows import baffle_words
@@ -20,11 +20,13 @@ from leblanc.studies.exciter import printed_critical
 from leblanc.studies.liquid import synchronous_model
 from leblanc.studies.run import rest_modes
 from meshes.errors import InputError
+from solvers.cycles.cycles import whirl_estimate
 from solvers.rotor.exciter.machine import characteristic_speeds
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import critical_speeds, modes, orbit, unbalance_response
 from solvers.statics.hydrostatics import optimal_volume
 from solvers.synchronous.response import critical_speed, main_critical_speeds, wet_critical_speeds
+from solvers.whirl.growth import growth_map
 
 
 def explain_exciter(scene: Scene) -> ExciterExplanation:
@@ -94,10 +96,29 @@ def explain_scene(scene: Scene) -> Explanation:
         tolerance=choice.tolerance,
         modes=bare.modes,
         runup=_runup(scene),
+        whirl=_whirl(machine),
         source=scene.source,
         assumed=scene.assumed,
         digest=scene.digest,
     )
+
+
+def _whirl(machine: Prepared) -> WhirlOutlook | None:
+    """How large a whirl grows by itself at the scene's speeds; None where none does."""
+    scene, speed = machine.scene, np.unique(machine.speed)
+    if not scene.fills or speed.size < 2:
+        return None
+    found = whirl_estimate(machine.rotor, scene.fills, speed, scene.model.friction)
+    known = [estimate for estimate in found if estimate is not None and estimate.lag > 0.0]
+    spins = np.array([estimate.spin for estimate in known])
+    if not known:
+        return None
+    rising = growth_map(machine.rotor, [scene.fills], spins, scene.model.friction)[0][0] > 0.0
+    known = [estimate for estimate, grows in zip(known, rising.tolist(), strict=True) if grows]
+    if not known:
+        return None
+    most = max(known, key=lambda estimate: estimate.amplitude)
+    return WhirlOutlook(most.spin, most.amplitude, most.whirl_speed, most.lag)
 
 
 def _covering(fill: Fill, deflection: float, speed: float, gravity: float) -> float:

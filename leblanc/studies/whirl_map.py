@@ -13,13 +13,14 @@ from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
 from leblanc.results import notes
 from leblanc.results.base import Note
-from leblanc.results.whirl_map import WhirlMap
+from leblanc.results.whirl_map import DEEP, FAST_LAG, WhirlMap
 from leblanc.scene.scene import Scene
 from leblanc.studies.choose import Prepared, prepare
 from leblanc.studies.validity import doubts
 from leblanc.units import friction_words
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
+from solvers.cycles.cycles import LimitCycles, limit_cycles
 from solvers.liquid_model import THIN_LAYERS
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import critical_speeds
@@ -40,6 +41,8 @@ def map_scene(
     max_volume: float | None = None,
     friction: Friction | None = None,
     progress: Callable[[int, int], None] | None = None,
+    cycles: bool = False,
+    found: Callable[[int, float], None] | None = None,
 ) -> WhirlMap:
     """Growth rate and whirl speed of self-excited whirl over the scene's speeds and over volume.
 
@@ -50,6 +53,8 @@ def map_scene(
     max_volume : in all chambers together, m^3; as much as fits if None
     friction : in place of the scene's
     progress : called now and then with the number of volumes done and of all
+    cycles : find how large the whirls of the scene as it stands grow as well
+    found : called with the number of those whirls found so far and the spin speed of the last one, rad/s
 
     Raises
     ------
@@ -71,6 +76,7 @@ def map_scene(
     edges = unstable_bands(rotor, rows, speed, law, growth)
     (own,) = unstable_bands(rotor, [scene.fills], speed, law)
     carried = np.array([_held(scene, fills, speed) for fills in rows])
+    large = _limit_cycles(machine, law, found) if cycles else None
     pairs = zip(rows, whirl_speed - speed, strict=True)
     thin = np.array([_thin_layers(fills, slip) for fills, slip in pairs]) | (law.law != "stokes")
     return WhirlMap(
@@ -90,12 +96,42 @@ def map_scene(
         scene_edges=own,
         notes=(
             *_notes(machine, law, own, carried, thin, int(np.count_nonzero(np.isnan(growth)))),
+            *(() if large is None else _cycle_notes(machine, large)),
             *doubts(scene),
         ),
         edges_not_known=tuple(bands_not_known(speed, found) for found in growth),
         capacity=sum(fill.chamber.capacity for fill in rows[-1] if fill.volume > 0.0),
         critical_speed_dry=_critical_speed(machine),
+        branches=None if large is None else large.branches,
+        depth=max((fill.depth for fill in scene.fills), default=0.0),
     )
+
+
+def _limit_cycles(
+    machine: Prepared, friction: Friction, progress: Callable[[int, float], None] | None
+) -> LimitCycles:
+    """Limit cycles of the scene as it stands, over its speeds."""
+    speeds = machine.scene.speeds
+    return limit_cycles(
+        machine.rotor, machine.scene.fills, (speeds.start, speeds.stop), friction, progress=progress
+    )
+
+
+def _cycle_notes(machine: Prepared, found: LimitCycles) -> list[Note]:
+    """What the limit cycles leave out, and why there are none."""
+    if found.reason:
+        return [notes.no_cycles(found.reason)]
+    said = []
+    if machine.scene.rotor.axis == "horizontal" and machine.scene.gravity > 0.0:
+        said.append(notes.no_circle())
+    lagging = max(float(np.nanmax(branch.lag / branch.speed[:, None])) for branch in found.branches)
+    if lagging > FAST_LAG:
+        said.append(notes.lagging(lagging, FAST_LAG))
+    largest = max(float(np.abs(branch.deflection).max()) for branch in found.branches)
+    depth = max(fill.depth for fill in machine.scene.fills)
+    if largest > DEEP * depth:
+        said.append(notes.deep_whirl(largest / depth))
+    return said
 
 
 def _critical_speed(machine: Prepared) -> float:

@@ -39,6 +39,12 @@ def machine_rows(answer: Explanation) -> Rows:
     if answer.captured_from is not None:
         captured = f"above {in_rpm(answer.captured_from)} the liquid rides with the drum"
         rows.append(("captured", captured))
+    if answer.whirl is not None:
+        size, speed = with_unit(answer.whirl.amplitude, LENGTH), in_rpm(answer.whirl.speed)
+        text = (
+            f"grows by itself to about {size} at {speed}, going round at {in_rpm(answer.whirl.whirl_speed)}"
+        )
+        rows.append(("whirl", f"{text}; `map --cycles` solves for it"))
     return rows
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.text.numbers import number
-from leblanc.units import RPM, VOLUME, in_rpm, with_unit
+from leblanc.units import LENGTH, RPM, VOLUME, in_rpm, with_unit
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,10 +33,57 @@ def answer(found: WhirlMap) -> str:
         return f"No whirl grows by itself at any speed {where}."
     own = f"with the scene's {with_unit(found.scene_volume, VOLUME)}"
     bands = f"from {band_words(found.scene_edges)} rpm" if found.scene_edges else "nowhere"
+    largest = _largest(found)
+    grown = f", up to {largest}" if largest else ""
     return (
         f"A whirl grows by itself at {values['A whirl grows at']}, fastest by {values['Fastest growth']}; "
-        f"{own} it grows {bands}."
+        f"{own} it grows {bands}{grown}."
     )
+
+
+def _largest(found: WhirlMap) -> str:
+    """Amplitude of the largest stable whirl, and its speed; empty where there is none."""
+    stable = [row for row in _within(found) if row["stable"]]
+    if not stable:
+        return ""
+    row = max(stable, key=lambda row: float(row["amplitude"]))
+    return f"{with_unit(row['amplitude'], LENGTH)} at {in_rpm(row['speed'])}"
+
+
+def _within(found: WhirlMap) -> list[dict[str, Any]]:
+    """Limit cycles at the speeds of the map, without those on the way to them."""
+    first, last = float(found.speed[0]), float(found.speed[-1])
+    return [row for row in found.cycles if first <= row["speed"] <= last]
+
+
+def cycle_facts(found: WhirlMap) -> list[tuple[str, str]]:
+    """What the limit cycles say in numbers: label and value; nothing where there are none.
+
+    Parameters
+    ----------
+    found : the map
+    """
+    rows = _within(found)
+    if not rows:
+        return []
+    stable = [row for row in rows if row["stable"]]
+    folds = [f"{in_rpm(fold['speed'])} at {with_unit(fold['amplitude'], LENGTH)}" for fold in found.folds]
+    said = [
+        ("Whirls of finite size", f"{len(rows)} on {len(found.branches or ())} branches"),
+        ("Largest stable whirl", _largest(found) or "none is stable"),
+    ]
+    if stable:
+        power = max(stable, key=lambda row: float(row["power"]))
+        ends = [number(f([row["speed"] for row in stable]) * RPM) for f in (min, max)]
+        turning = [number(f([row["whirl_speed"] for row in stable]) * RPM) for f in (min, max)]
+        lag = max(float(row["lag"] / row["speed"]) for row in stable)
+        said += [
+            ("Stable whirls (rpm)", f"{ends[0]} to {ends[1]}"),
+            ("They go round in space with (rpm)", f"{turning[0]} to {turning[1]}"),
+            ("Their liquid lags by up to", f"{number(100.0 * lag)} % of the spin"),
+            ("Power of the drive on top", f"up to {number(power['power'])} W at {in_rpm(power['speed'])}"),
+        ]
+    return [*said, ("Folds", "; ".join(folds) or "none in this range")]
 
 
 def band_words(bands: Sequence[tuple[float, float]]) -> str:
@@ -76,6 +123,7 @@ def facts(found: WhirlMap) -> list[tuple[str, str]]:
         ),
         ("Friction of the liquid", found.friction),
         ("Support", found.damping),
+        *cycle_facts(found),
     ]
 
 
@@ -85,4 +133,13 @@ def alt(found: WhirlMap) -> str:
     return (
         "Map of the growth rate over speed and liquid, and of the whirl's speed where one grows; one grows "
         f"at {values['A whirl grows at']}, fastest: {values['Fastest growth']}."
+    )
+
+
+def cycles_alt(found: WhirlMap) -> str:
+    """What the figure of limit cycles shows and the numbers a reader would take from it."""
+    values = dict(cycle_facts(found))
+    return (
+        "Curves of the amplitude and, below, of the frequency of self-excited whirls over speed, the stable "
+        f"ones in full lines. Largest: {values['Largest stable whirl']}; folds: {values['Folds']}."
     )

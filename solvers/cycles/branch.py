@@ -351,7 +351,7 @@ class Follower:
             turning=spin * np.array([answer.turning for answer in answers]),
             state=point.state,
             derivatives=tuple(derivatives),
-            tangent=tangent,
+            tangent=np.asarray(tangent, dtype=np.float64),
             arc=arc,
         )
 

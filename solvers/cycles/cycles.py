@@ -16,14 +16,16 @@ from solvers.cycles.balance import Circular, NotCircularError, circular
 from solvers.cycles.branch import Cycle, Follower
 from solvers.cycles.estimate import Estimate, estimated_whirl
 from solvers.cycles.floquet import disturbance_growth
-from solvers.rotor.system import Rotor, RotorSystem
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.system import Rotor
 from solvers.whirl.edges import unstable_bands
 from solvers.whirl.growth import growth_at
 
 CELLS = 64
 FEWEST = 32
 _GRID = 241  # speeds among which bands are looked for
-_BELOW, _BEYOND = 0.6, 1.25  # of the range of speeds: whirls are followed this far out of it
+_BELOW = 0.6  # of the first speed: whirls are followed this far below it, where a band may begin
+_ABOVE = 1.5  # of the last speed: where the upper edge of a band is looked for, for an estimate
 _SHARES = (0.3, 0.5, 0.15, 0.75)  # of a band, where the first whirl of a branch is looked for
 _LARGE = 0.8  # of the depth: a first whirl that would be larger is looked for nearer to the edge
 _SMALL = 0.03  # of the depth: a branch ends in small whirls
@@ -106,11 +108,11 @@ class Branch:
             if first == last or not min(first, last) <= speed < max(first, last):
                 continue
             part = (speed - first) / (last - first)
-            values = [
+            size, turning, behind = (
                 float((1.0 - part) * row[k] + part * row[k + 1])
                 for row in (self.amplitude, self.whirl_speed, lag)
-            ]
-            found.append(HeldWhirl(*values, bool(self.stable[k] and self.stable[k + 1])))
+            )
+            found.append(HeldWhirl(size, turning, behind, bool(self.stable[k] and self.stable[k + 1])))
         return found
 
 
@@ -149,7 +151,8 @@ def limit_cycles(
     ----------
     rotor : the dry rotor
     fills : of its chambers
-    speeds : first and last spin speed, rad/s; branches are followed somewhat further
+    speeds : first and last spin speed, rad/s; branches are followed to the first whirl beyond the last
+        one, and somewhat further below the first one
     friction : on the walls
     cells : of each layer
     progress : called with the number of whirls found and the speed of the last one
@@ -187,10 +190,10 @@ def limit_cycles(
     unsettled = _unsettled(machine, friction)
     if unsettled:
         return LimitCycles((), unsettled)
-    range_ = (_BELOW * first, _BEYOND * last)
+    range_ = (_BELOW * first, last)
     finder = _Finder(machine, friction, cells, range_, progress)
     branches: list[Branch] = []
-    starts = list(_bands(system, fills, range_))
+    starts = list(_bands(rotor, fills, range_))
     for lower, upper, near in starts:
         branch = finder.large(lower, upper, near)
         if branch is not None:
@@ -230,7 +233,7 @@ def whirl_estimate(
         return (None,) * len(speeds)
     if _unsettled(machine, friction):
         return (None,) * len(speeds)
-    bands = list(_bands(system, fills, (_BELOW * float(speeds[0]), _BEYOND * float(speeds[-1]))))
+    bands = list(_bands(rotor, fills, (_BELOW * float(speeds[0]), _ABOVE * float(speeds[-1]))))
     found: list[Estimate | None] = []
     for speed in speeds.tolist():
         here = [(lower, near) for lower, upper, near in bands if lower < speed < upper]
@@ -250,10 +253,15 @@ def _unsettled(machine: Circular, friction: Friction) -> str:
 
 
 def _bands(
-    system: RotorSystem, fills: Sequence[Fill], range_: tuple[float, float]
+    rotor: Rotor, fills: Sequence[Fill], range_: tuple[float, float]
 ) -> Iterator[tuple[float, float, float]]:
     """Bands without friction and damping: their edges, and the whirl speed at the lower one."""
-    free = replace(system, damping=0.0 * system.damping)
+    free: Rotor
+    if isinstance(rotor, Jeffcott):
+        free = replace(rotor, damping=0.0)
+    else:
+        system = rotor.system()
+        free = replace(system, damping=0.0 * system.damping)
     (bands,) = unstable_bands(free, [fills], np.linspace(*range_, _GRID), NO_FRICTION)
     for lower, upper in bands:
         inside = np.array([lower + 1e-3 * (upper - lower)])
@@ -318,8 +326,6 @@ class _Finder:
         rows: list[_Row] = []
         size = follower.size(start)
         for cycle in follower.after(start):
-            if not self.range[0] <= cycle.spin <= self.range[1]:
-                return rows, "end of the range of speeds"
             if follower.size(cycle) < _SMALL and follower.size(cycle) < size:
                 return rows, "edge of the band"
             size = follower.size(cycle)
@@ -327,6 +333,8 @@ class _Finder:
             self.count += 1
             if self.progress is not None:
                 self.progress(self.count, cycle.spin)
+            if not self.range[0] <= cycle.spin <= self.range[1]:
+                return rows, "end of the range of speeds"
             if len(rows) >= _POINTS:
                 return rows, "so many whirls were found that the rest was left"
         return rows, "no further whirl was found"

@@ -182,7 +182,7 @@ def test_a_map_of_many_points_stays_light(tmp_path: Path) -> None:
         in_range=growth < 0.9, edges=(edge,) * volume.size,
     )  # fmt: skip
     files = save(map_figure(many), tmp_path, "map", "Map")
-    report_map.write_map_report(many, about(scene), files, tmp_path / "map.html")
+    report_map.write_map_report(many, about(scene), [files], tmp_path / "map.html")
     assert (tmp_path / "map.html").stat().st_size < 3_000_000
     assert len(read_page(tmp_path / "map.html").table("Liquid (ml)")) == report_map.LISTED
 
