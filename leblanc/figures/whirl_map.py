@@ -231,7 +231,7 @@ def cycles_figure(result: WhirlMap) -> Figure:
             axes.set_xlim(ends[0], ends[1])
             axes.xaxis.set_major_formatter(_label)
             axes.yaxis.set_major_formatter(_label)
-        _dress_cycles(*panels, result)
+        _dress_cycles(panels[0], panels[1], result)
         caption = Caption(
             "Self-excited whirls of finite size over speed: amplitude of the first chamber's axis, and "
             "frequency in space. Thin where the liquid lags by over a third of the spin: beyond the model.",

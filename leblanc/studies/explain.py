@@ -20,7 +20,7 @@ from leblanc.studies.exciter import printed_critical
 from leblanc.studies.liquid import synchronous_model
 from leblanc.studies.run import rest_modes
 from meshes.errors import InputError
-from solvers.cycles.cycles import whirl_estimate
+from solvers.cycles.estimate import whirl_estimate
 from solvers.rotor.exciter.machine import characteristic_speeds
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import critical_speeds, modes, orbit, unbalance_response

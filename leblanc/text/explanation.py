@@ -41,10 +41,9 @@ def machine_rows(answer: Explanation) -> Rows:
         rows.append(("captured", captured))
     if answer.whirl is not None:
         size, speed = with_unit(answer.whirl.amplitude, LENGTH), in_rpm(answer.whirl.speed)
-        text = (
-            f"grows by itself to about {size} at {speed}, going round at {in_rpm(answer.whirl.whirl_speed)}"
-        )
-        rows.append(("whirl", f"{text}; `map --cycles` solves for it"))
+        turning = in_rpm(answer.whirl.whirl_speed)
+        text = f"grows by itself to about {size} at {speed}, turning at {turning}: an estimate"
+        rows.append(("whirl", f"{text}, see `map --cycles`"))
     return rows
 
 

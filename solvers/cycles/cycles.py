@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import NO_FRICTION, Friction, FrictionLaw
+from fluid.friction import Friction
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.cycles.balance import Circular, NotCircularError, circular
 from solvers.cycles.branch import Cycle, Follower
-from solvers.cycles.estimate import Estimate, estimated_whirl
+from solvers.cycles.estimate import estimated_whirl, undamped_bands, unsettled
 from solvers.cycles.floquet import disturbance_growth
-from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import Rotor
 from solvers.whirl.edges import unstable_bands
 from solvers.whirl.growth import growth_at
@@ -25,7 +24,6 @@ CELLS = 64
 FEWEST = 32
 _GRID = 241  # speeds among which bands are looked for
 _BELOW = 0.6  # of the first speed: whirls are followed this far below it, where a band may begin
-_ABOVE = 1.5  # of the last speed: where the upper edge of a band is looked for, for an estimate
 _SHARES = (0.3, 0.5, 0.15, 0.75)  # of a band, where the first whirl of a branch is looked for
 _LARGE = 0.8  # of the depth: a first whirl that would be larger is looked for nearer to the edge
 _SMALL = 0.03  # of the depth: a branch ends in small whirls
@@ -187,13 +185,13 @@ def limit_cycles(
         machine = circular(system, fills, friction)
     except NotCircularError as why:
         return LimitCycles((), str(why))
-    unsettled = _unsettled(machine, friction)
-    if unsettled:
-        return LimitCycles((), unsettled)
+    why_not = unsettled(machine, friction)
+    if why_not:
+        return LimitCycles((), why_not)
     range_ = (_BELOW * first, last)
     finder = _Finder(machine, friction, cells, range_, progress)
     branches: list[Branch] = []
-    starts = list(_bands(rotor, fills, range_))
+    starts = list(undamped_bands(rotor, fills, range_))
     for lower, upper, near in starts:
         branch = finder.large(lower, upper, near)
         if branch is not None:
@@ -210,63 +208,6 @@ def limit_cycles(
     if not branches:
         reason = "no whirl grows by itself in this range" if not starts else "no limit cycle was found"
     return LimitCycles(tuple(branches), reason)
-
-
-def whirl_estimate(
-    rotor: Rotor, fills: Sequence[Fill], speeds: Array, friction: Friction
-) -> tuple[Estimate | None, ...]:
-    """Size of the whirl at each speed inside a band, without solving for it [theory: whirl, eq. 29].
-
-    Parameters
-    ----------
-    rotor, fills, friction : as for `limit_cycles`
-    speeds : rad/s, rising, shape (n,)
-
-    Returns
-    -------
-    An estimate for each speed; None outside the bands, and where the whirl is no circle or nothing bounds it
-    """
-    system = rotor.system()
-    try:
-        machine = circular(system, fills, friction)
-    except NotCircularError:
-        return (None,) * len(speeds)
-    if _unsettled(machine, friction):
-        return (None,) * len(speeds)
-    bands = list(_bands(rotor, fills, (_BELOW * float(speeds[0]), _ABOVE * float(speeds[-1]))))
-    found: list[Estimate | None] = []
-    for speed in speeds.tolist():
-        here = [(lower, near) for lower, upper, near in bands if lower < speed < upper]
-        found.append(estimated_whirl(machine, friction, *here[0], speed) if here else None)
-    return tuple(found)
-
-
-def _unsettled(machine: Circular, friction: Friction) -> str:
-    """Why no whirl of a certain size can last; empty where one can."""
-    if friction.law is FrictionLaw.NONE or (
-        friction.law is not FrictionLaw.STOKES and friction.coefficient == 0.0
-    ):
-        return "without friction of the liquid nothing keeps it turning: a whirl drags it back and dies down"
-    if not np.abs(machine.damping).max() > 0.0:
-        return "without damping of the supports nothing bounds the whirl"
-    return ""
-
-
-def _bands(
-    rotor: Rotor, fills: Sequence[Fill], range_: tuple[float, float]
-) -> Iterator[tuple[float, float, float]]:
-    """Bands without friction and damping: their edges, and the whirl speed at the lower one."""
-    free: Rotor
-    if isinstance(rotor, Jeffcott):
-        free = replace(rotor, damping=0.0)
-    else:
-        system = rotor.system()
-        free = replace(system, damping=0.0 * system.damping)
-    (bands,) = unstable_bands(free, [fills], np.linspace(*range_, _GRID), NO_FRICTION)
-    for lower, upper in bands:
-        inside = np.array([lower + 1e-3 * (upper - lower)])
-        near = growth_at(free, [fills], np.array([0]), inside, NO_FRICTION)[1]
-        yield lower, upper, float(near[0])
 
 
 def _ends_at(branch: Branch, edge: float) -> bool:

@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fluid.friction import QUADRATIC, Friction, FrictionLaw, damping_rate
-from meshes.arrays import Complex
-from solvers.cycles.balance import Circular, Place
+from fluid.fill import Fill
+from fluid.friction import NO_FRICTION, QUADRATIC, Friction, FrictionLaw, damping_rate
+from meshes.arrays import Array, Complex
+from solvers.cycles.balance import Circular, NotCircularError, Place, circular
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.system import Rotor
+from solvers.whirl.edges import unstable_bands
+from solvers.whirl.growth import growth_at
 
 # The whirl drags the liquid back until it turns at about this share of the speed where whirls begin to grow.
 _DRAGGED = 0.955
+_GRID = 241  # speeds among which bands are looked for
+_BELOW, _ABOVE = 0.6, 1.5  # of the first and of the last speed, where edges of bands are looked for
 
 
 @dataclass(frozen=True)
@@ -92,3 +100,72 @@ def _wall_torque(place: Place, friction: Friction, lag: float, spin: float, slip
     area = depth * (1.0 - 0.5 * depth)
     rate = float(damping_rate(law, coefficient, lid, depth, area, velocity if law == QUADRATIC else 0.0))
     return place.mass * rate * velocity * radius**2
+
+
+def whirl_estimate(
+    rotor: Rotor, fills: Sequence[Fill], speeds: Array, friction: Friction
+) -> tuple[Estimate | None, ...]:
+    """Size of the whirl at each speed inside a band, without solving for it [theory: whirl, eq. 29].
+
+    Parameters
+    ----------
+    rotor, fills, friction : as for `solvers.cycles.cycles.limit_cycles`
+    speeds : rad/s, rising, shape (n,)
+
+    Returns
+    -------
+    An estimate for each speed; None outside the bands, and where the whirl is no circle or nothing bounds it
+    """
+    system = rotor.system()
+    try:
+        machine = circular(system, fills, friction)
+    except NotCircularError:
+        return (None,) * len(speeds)
+    if unsettled(machine, friction):
+        return (None,) * len(speeds)
+    bands = list(undamped_bands(rotor, fills, (_BELOW * float(speeds[0]), _ABOVE * float(speeds[-1]))))
+    found: list[Estimate | None] = []
+    for speed in speeds.tolist():
+        here = [(lower, near) for lower, upper, near in bands if lower < speed < upper]
+        found.append(estimated_whirl(machine, friction, *here[0], speed) if here else None)
+    return tuple(found)
+
+
+def unsettled(machine: Circular, friction: Friction) -> str:
+    """Why no whirl of a certain size can last; empty where one can.
+
+    Parameters
+    ----------
+    machine : the rotor and its layers
+    friction : on the walls
+    """
+    if friction.law is FrictionLaw.NONE or (
+        friction.law is not FrictionLaw.STOKES and friction.coefficient == 0.0
+    ):
+        return "without friction of the liquid nothing keeps it turning: a whirl drags it back and dies down"
+    if not np.abs(machine.damping).max() > 0.0:
+        return "without damping of the supports nothing bounds the whirl"
+    return ""
+
+
+def undamped_bands(
+    rotor: Rotor, fills: Sequence[Fill], range_: tuple[float, float]
+) -> Iterator[tuple[float, float, float]]:
+    """Bands without friction and damping: their edges, and the whirl speed at the lower one.
+
+    Parameters
+    ----------
+    rotor, fills : the machine
+    range_ : first and last speed, rad/s
+    """
+    free: Rotor
+    if isinstance(rotor, Jeffcott):
+        free = replace(rotor, damping=0.0)
+    else:
+        system = rotor.system()
+        free = replace(system, damping=0.0 * system.damping)
+    (bands,) = unstable_bands(free, [fills], np.linspace(*range_, _GRID), NO_FRICTION)
+    for lower, upper in bands:
+        inside = np.array([lower + 1e-3 * (upper - lower)])
+        near = growth_at(free, [fills], np.array([0]), inside, NO_FRICTION)[1]
+        yield lower, upper, float(near[0])

@@ -14,7 +14,8 @@ from fluid.liquid import Liquid
 from fluid.whirl import force_with_friction, plane_layer
 from meshes.chamber import Chamber
 from meshes.errors import InputError
-from solvers.cycles.cycles import Branch, LimitCycles, limit_cycles, whirl_estimate
+from solvers.cycles.cycles import Branch, LimitCycles, limit_cycles
+from solvers.cycles.estimate import whirl_estimate
 from solvers.cycles.wave import StandingWave, Whirling
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.two_plane import Support, TwoPlane
