@@ -287,6 +287,7 @@ def optimise_rows(wanted: Optimisation) -> list[Row]:
         ("stable", "Small whirls", "may grow"),
         ("stability_margin", "Stability margin", _rate(wanted.stability_margin)),
         ("least_film", "Thinnest film", _length(wanted.least_film)),
+        ("whirl_limit", "Whirl limit", _length(wanted.whirl_limit)),
         ("spill", "Inner edge", "may be reached at the working speed"),
         ("operating", "Operating speeds", _span(wanted.operating, ANGULAR_SPEED)),
         ("clearance", "Clearance", _length(wanted.clearance)),

@@ -126,6 +126,10 @@ class Optimisation(Part):
         description="thinnest film that forms on a wall, by its mean depth: a chamber holds none or at least "
         "as much; 0 for no limit",
     )
+    whirl_limit: Annotated[float | None, _LENGTH] = Field(
+        None,
+        description="largest self-excited whirl at the operating speeds; no limit if left out",
+    )
     spill: Truth = Field(
         False, description="whether the liquid may reach a chamber's inner edge at the working speed"
     )

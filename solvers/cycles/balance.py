@@ -7,7 +7,7 @@ many as real ones: the deflection of an axis is row c, and the whirl c e^{i omeg
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from fluid.fill import Fill
 from fluid.friction import Friction
 from fluid.whirl import Layer, force_with_friction, is_full, plane_layer, stokes_rate
 from meshes.arrays import Array, Complex
-from solvers.rotor.system import RotorSystem
+from solvers.rotor.system import Rotor, RotorSystem
 
 _ALIKE = 1e-9  # relative
 _ROUND = 1e-7  # of a circle: how much of an ellipse may be in it
@@ -131,6 +131,22 @@ def circular(system: RotorSystem, fills: Sequence[Fill], friction: Friction) -> 
         places=_places(fills, wet, rows),
         rows=rows,
     )
+
+
+def not_circular(rotor: Rotor, fills: Sequence[Fill], friction: Friction) -> str:
+    """Why a rotor's self-excited whirls are no circles, whatever its chambers hold; empty where they are.
+
+    Parameters
+    ----------
+    rotor : the dry rotor
+    fills, friction : as for `circular`
+    """
+    half = [replace(fill, volume=0.5 * fill.chamber.capacity) for fill in fills if not fill.uneven]
+    try:
+        circular(rotor.system(), half if len(half) == len(fills) else fills, friction)
+    except NotCircularError as why:
+        return str(why)
+    return ""
 
 
 def _places(fills: Sequence[Fill], wet: dict[int, Layer], rows: Complex) -> tuple[Place, ...]:

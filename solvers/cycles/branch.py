@@ -202,6 +202,18 @@ class Follower:
         found = self._corrected(point, point.vector, towards)
         return None if found is None else self._cycle(found, towards, cycle.arc + length)
 
+    def at(self, cycle: Cycle, spin: float) -> Cycle | None:
+        """The limit cycle at a spin, rad/s, next to one that is known; None where it is not found."""
+        origin = self.unknowns(cycle.moved, cycle.whirl_speed, cycle.spin)
+        towards = np.zeros(origin.size)
+        towards[-1] = 1.0
+        rise = (spin - cycle.spin) / (_RANGE * self.speed)
+        length = rise / cycle.tangent[-1] if cycle.tangent[-1] else 0.0
+        point = self._kept(_Point(cycle.state, origin).moved(length * cycle.tangent))
+        found = self._corrected(point, point.vector, towards)
+        way = cycle.tangent[-origin.size :]
+        return None if found is None else self._cycle(found, way, cycle.arc + length)
+
     def _kept(self, point: _Point) -> _Point:
         states = [wave.kept(state) for wave, state in zip(self.waves, point.state, strict=True)]
         return _Point(np.array(states), point.vector)

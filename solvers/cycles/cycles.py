@@ -10,6 +10,7 @@ import numpy as np
 
 from fluid.fill import Fill
 from fluid.friction import Friction
+from fluid.whirl import plane_layer
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.cycles.balance import Circular, NotCircularError, circular
@@ -149,8 +150,8 @@ def limit_cycles(
     ----------
     rotor : the dry rotor
     fills : of its chambers
-    speeds : first and last spin speed, rad/s; branches are followed to the first whirl beyond the last
-        one, and somewhat further below the first one
+    speeds : first and last spin speed, rad/s; branches are followed somewhat further below the
+        first one
     friction : on the walls
     cells : of each layer
     progress : called with the number of whirls found and the speed of the last one
@@ -210,6 +211,46 @@ def limit_cycles(
     return LimitCycles(tuple(branches), reason)
 
 
+def largest_whirl(
+    rotor: Rotor, fills: Sequence[Fill], speeds: Array, friction: Friction, cells: int = FEWEST
+) -> float:
+    """Amplitude of the largest self-excited whirl at any of some speeds, m, on few cells; see `limit_cycles`.
+
+    The largest whirl at a speed is a stable one, whether a small one grows there or a kick has to start it:
+    the unstable branch lies below. A layer so thin that a whirl lays it dry is answered by the estimate.
+
+    Parameters
+    ----------
+    rotor, fills, friction, cells : as for `limit_cycles`
+    speeds : rad/s, rising, shape (n,)
+
+    Returns
+    -------
+    0 where no whirl grows by itself, infinite where nothing bounds one
+    """
+    if not any(plane_layer(fill, friction) for fill in fills):
+        return 0.0
+    machine = circular(rotor.system(), fills, friction)
+    if unsettled(machine, friction):
+        return np.inf if not np.abs(machine.damping).max() > 0.0 else 0.0
+    # A single speed still needs a way to it.
+    range_ = (_BELOW * float(speeds[0]), float(speeds[-1]) * (1.0 + 1e-3))
+    finder = _Finder(machine, friction, cells, range_, None, judged=False)
+    largest = 0.0
+    for lower, upper, near in undamped_bands(rotor, fills, (range_[0], 2.0 * range_[1])):
+        if lower >= range_[1]:
+            continue
+        branch = finder.large(lower, min(upper, range_[1]), near)
+        if branch is None:
+            inside = [speed for speed in speeds.tolist() if lower < speed < upper]
+            rules = [estimated_whirl(machine, friction, lower, near, speed) for speed in inside]
+            largest = max([largest, *(rule.amplitude for rule in rules)])
+            continue
+        sizes = [whirl.amplitude for speed in speeds.tolist() for whirl in branch.at(speed)]
+        largest = max([largest, *sizes])
+    return largest
+
+
 def _ends_at(branch: Branch, edge: float) -> bool:
     return any(abs(branch.speed[k] - edge) <= _NEAR * edge for k in (0, -1))
 
@@ -224,7 +265,9 @@ class _Finder:
         cells: int,
         range_: tuple[float, float],
         progress: Callable[[int, float], None] | None,
+        judged: bool = True,
     ) -> None:
+        self.judged = judged
         self.machine, self.friction, self.cells, self.range = machine, friction, cells, range_
         self.progress, self.count = progress, 0
 
@@ -270,11 +313,15 @@ class _Finder:
             if follower.size(cycle) < _SMALL and follower.size(cycle) < size:
                 return rows, "edge of the band"
             size = follower.size(cycle)
+            beyond = not self.range[0] <= cycle.spin <= self.range[1]
+            if beyond:
+                found = follower.at(cycle, float(np.clip(cycle.spin, *self.range)))
+                cycle = cycle if found is None else found
             rows.append(self._row(follower, cycle))
             self.count += 1
             if self.progress is not None:
                 self.progress(self.count, cycle.spin)
-            if not self.range[0] <= cycle.spin <= self.range[1]:
+            if beyond:
                 return rows, "end of the range of speeds"
             if len(rows) >= _POINTS:
                 return rows, "so many whirls were found that the rest was left"
@@ -301,6 +348,8 @@ class _Finder:
 
     def _growth(self, follower: Follower, cycle: Cycle) -> float:
         """Growth of the disturbance that grows most, 1/s; nan where a kink of the scheme hides it."""
+        if not self.judged:
+            return float("nan")
         found = disturbance_growth(self.machine, follower.waves, cycle)
         return found if found is not None and found < _WILD * cycle.spin else float("nan")
 

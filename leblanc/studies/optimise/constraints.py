@@ -17,6 +17,9 @@ from leblanc.studies.optimise.objectives import PeakOver, Vibration
 from leblanc.studies.optimise.robust import Robust
 from leblanc.units import LENGTH, with_unit
 from meshes.arrays import Array
+from meshes.errors import InputError
+from solvers.cycles.balance import not_circular
+from solvers.cycles.cycles import largest_whirl
 from solvers.whirl.growth import growth_map
 
 
@@ -129,6 +132,37 @@ def stability(scene: Scene, speed: Array, margin: float, where: str) -> Constrai
     scale = max(margin, 1e-3 * float(speed.max()))
     text = f"largest growth of a small whirl {where}"
     return Constraint("stability", text, "1/s", 0.0 - margin, scale, value)
+
+
+def whirl_size(scene: Scene, speed: Array, limit: float) -> Constraint:
+    """Whirls that excite themselves grow to a limit at most, m [theory: whirl, eq. 24].
+
+    Parameters
+    ----------
+    scene : the machine
+    speed : operating speeds, rad/s, rising, shape (n,)
+    limit : m
+
+    Raises
+    ------
+    InputError : a machine whose whirls are no circles
+    """
+    rotor, friction = dry_rotor(scene), whirl_friction(scene)
+    why_not = not_circular(rotor, scene.fills, friction)
+    if why_not:
+        raise InputError("optimise.whirl_limit", limit, f"left out: {why_not}")
+    known: dict[bytes, float] = {}
+
+    def value(volumes: Array) -> Array:
+        for row in volumes:
+            key = row.tobytes()
+            if key not in known:
+                known[key] = largest_whirl(rotor, with_volumes(scene, row).fills, speed, friction)
+        return np.array([known[row.tobytes()] for row in volumes])
+
+    return Constraint(
+        "whirl_limit", "largest self-excited whirl at the operating speeds", "m", limit, limit, value
+    )
 
 
 def wetting(scene: Scene, least: float) -> Constraint:

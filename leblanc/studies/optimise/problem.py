@@ -27,6 +27,7 @@ from leblanc.studies.optimise.constraints import (
     stability,
     wetting,
     whirl_friction,
+    whirl_size,
 )
 from leblanc.studies.optimise.objectives import (
     AtSpeed,
@@ -151,9 +152,10 @@ def problem_of(
     at_work = AtSpeed(machine, np.array([speed]), np.ones(1))
     constraints = _constraints(scene, task, machine, speed)
     rpm = in_rpm(speed)
+    costly = not planar or task.whirl_limit is not None
     evaluate = Evaluator(at_work, density, constraints)
     notes = (optimum.laminar(),) if whirl_friction(scene) != scene.model.friction else ()
-    problem = Problem(evaluate, f"amplitude at {rpm}", speed, (speed,), not planar, notes)
+    problem = Problem(evaluate, f"amplitude at {rpm}", speed, (speed,), costly, notes)
     return _MAKERS[task.objective](scene, task, machine, problem, solve)
 
 
@@ -168,6 +170,8 @@ def _constraints(
         found.append(wetting(scene, task.least_film))
     if not task.spill and any(fill.chamber.inner_radius > 0.0 for fill in scene.fills):
         found.append(spill(machine, speed))
+    if task.whirl_limit is not None:
+        found.append(whirl_size(scene, growth_speeds(scene, task), task.whirl_limit))
     if task.clearance is not None:
         found.append(clearance(PeakOver(machine, operating_speeds(scene, task)), task.clearance))
     if task.balance_quality is not None:
