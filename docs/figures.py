@@ -82,6 +82,11 @@ RECIPES = (
     ),
     _example("run", "washing_machine", washing_machine_amplitude="amplitude"),
     _example("map", "horizontal_rig", whirl_map="map"),
+    Recipe(
+        ("leblanc", "map", "docs/examples/self_excited.toml", "--cycles", "--volumes", "21"),
+        ("whirl_cycles",),
+        {"whirl_cycles": "cycles"},
+    ),
     _example("runup", "runup", runup_example_speed="runup_speed"),
     _example(
         "runup",

@@ -12,7 +12,7 @@ from fluid.fill import Fill
 from fluid.friction import Friction
 from meshes.errors import InputError, require_positive
 from solvers.layer.records import Outcome
-from solvers.rotor.system import RotorSystem
+from solvers.rotor.system import Rotor, RotorSystem
 from solvers.runup.long_wave import couple
 from solvers.runup.runup import RunupNumerics
 
@@ -82,3 +82,58 @@ def whirl_in_time(
     growth = np.polyfit(time[1:][last], np.log(modulus), 1)[0]
     turning = np.polyfit(time[1:][last], np.unwrap(np.angle(deflection[last])), 1)[0]
     return WhirlInTime(float(growth), float(turning), bool(modulus.max() < _LARGE * depth))
+
+
+@dataclass(frozen=True)
+class LargeWhirl:
+    """A whirl that a machine has come to.
+
+    Parameters
+    ----------
+    amplitude : mean deflection of the first chamber's axis, m
+    whirl_speed : rad/s, standing frame
+    spread : of the deflection over its mean
+    """
+
+    amplitude: float
+    whirl_speed: float
+    spread: float
+
+
+_SETTLING, _WATCHED = 900.0, 200.0  # rad of spin: until a whirl has settled, and over which it is measured
+
+
+def large_whirl_in_time(
+    rotor: Rotor,
+    fills: Sequence[Fill],
+    spin: float,
+    friction: Friction,
+    kick: float,
+    cells: int = 64,
+) -> LargeWhirl:
+    """Kick a rotor with uniform layers sideways at a constant speed and wait [theory: coupling].
+
+    Parameters
+    ----------
+    rotor, fills, friction : as for `solvers.cycles.cycles.limit_cycles`
+    spin : rad/s
+    kick : deflection of the first chamber's axis at first, m
+    cells : of each layer
+
+    Returns
+    -------
+    LargeWhirl, nan where the machine does not get so far
+    """
+    machine = couple(rotor.system(), fills, spin, friction, 0.0, cells, False)
+    plane = rotor.system().at(fills[0].chamber.plane)
+    machine.state.place[:] = kick * np.linalg.pinv(plane)[:, 0]
+    times = np.append(np.linspace(0.0, _SETTLING, 31)[1:], _SETTLING + np.arange(1.0, _WATCHED + 1.0)) / spin
+    deflection = np.empty(times.size, dtype=complex)
+    for k, stop in enumerate(times.tolist()):
+        if machine.advance(stop, 0.0, RunupNumerics().courant, 10**9) != Outcome.DONE:
+            return LargeWhirl(math.nan, math.nan, math.nan)
+        deflection[k] = complex(*(plane @ machine.state.place))
+    last = times > _SETTLING / spin
+    size, turned = np.abs(deflection[last]), np.unwrap(np.angle(deflection[last]))
+    turning = np.polyfit(times[last], turned, 1)[0]
+    return LargeWhirl(float(size.mean()), float(turning), float(np.ptp(size) / size.mean()))

@@ -15,12 +15,15 @@ from fluid.friction import NO_FRICTION, Friction, FrictionLaw
 from fluid.liquid import known_liquid
 from meshes.arrays import Array
 from meshes.chamber import Chamber
+from solvers.cycles.cycles import limit_cycles
 from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.system import Rotor
+from solvers.rotor.two_plane import Support, TwoPlane
 from solvers.runup.runup import RunupNumerics
 from solvers.whirl.edges import unstable_bands
 from solvers.whirl.growth import asynchronous_growth
 from validation.cases.case import Case, compare
-from validation.whirl_in_time import whirl_in_time
+from validation.whirl_in_time import large_whirl_in_time, whirl_in_time
 
 _SOURCE = "Wolf's problem, scan in steps of 5e-4"
 NATURAL = 100.0  # rad/s
@@ -48,7 +51,7 @@ def cases() -> list[Case]:
                     note="agrees within a step of the scan",
                 )
             )
-    return [*found, *_peaks(), _weak(), *_limits(), *_in_time()]
+    return [*found, *_peaks(), _weak(), *_limits(), *_in_time(), *_limit_cycles()]
 
 
 def _in_time() -> list[Case]:
@@ -82,6 +85,47 @@ def _in_time() -> list[Case]:
             )
         )
     return found
+
+
+def _limit_cycles() -> list[Case]:
+    """Whirls of finite size against rotor and layers let go from a kick, in one plane and in two."""
+    planar, fill = layered_rotor(0.1, 0.1, 0.02)
+    full = fill.full_mass
+    supports = (
+        Support(-0.1, 0.45 * full / 0.1 * NATURAL**2, 2.2 * full / 0.1),
+        Support(0.12, 0.6 * full / 0.1 * NATURAL**2, 1.8 * full / 0.1),
+    )
+    two = TwoPlane(full / 0.1, full / 0.1 * 0.08**2, full / 0.1 * 0.06**2, supports)
+    halves = [_thinner(fill, -0.05, 0.6, 0.19), _thinner(fill, 0.07, 0.4, 0.15)]
+    law, found = Friction(FrictionLaw.LINEAR, 0.03 * NATURAL), []
+    machines: list[tuple[str, Rotor, list[Fill], float]] = [
+        *((f"planar-{ratio:g}", planar, [fill], ratio) for ratio in (1.2, 1.4)),
+        ("two-planes-1.25", two, halves, 1.25),
+    ]
+    for name, rotor, fills, ratio in machines:
+        spin = ratio * NATURAL
+        cycles = limit_cycles(rotor, fills, (0.95 * NATURAL, 1.45 * NATURAL), law)
+        size = cycles.largest_stable(spin)
+        seen = large_whirl_in_time(rotor, fills, spin, law, 0.7 * size)
+        found.append(
+            compare(
+                f"whirl/limit-cycle-{name}",
+                "limit cycles by balance",
+                f"amplitude of the self-excited whirl at {ratio:g} times 100 rad/s, m",
+                size,
+                seen.amplitude,
+                tolerance=0.01,
+                note="printed is the branch by Newton's method, computed rotor and layers in time after a kick; "
+                f"whirl speed {seen.whirl_speed:.5g} rad/s",
+            )
+        )
+    return found
+
+
+def _thinner(fill: Fill, plane: float, share: float, filled: float) -> Fill:
+    """A chamber of a share of the height in a plane, filled to a part."""
+    chamber = Chamber(fill.chamber.radius, share * fill.chamber.height, plane=plane)
+    return Fill(chamber, fill.liquid, filled * chamber.capacity)
 
 
 def layered_rotor(mu: float, depth: float, zeta: float) -> tuple[Jeffcott, Fill]:
