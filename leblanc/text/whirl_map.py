@@ -52,7 +52,8 @@ def _largest(found: WhirlMap) -> str:
 
 def _within(found: WhirlMap) -> list[dict[str, Any]]:
     """Limit cycles at the speeds of the map, without those on the way to them."""
-    first, last = float(found.speed[0]), float(found.speed[-1])
+    # The whirl at the end of the range is there up to rounding.
+    first, last = float(found.speed[0]) * (1.0 - 1e-9), float(found.speed[-1]) * (1.0 + 1e-9)
     return [row for row in found.cycles if first <= row["speed"] <= last]
 
 

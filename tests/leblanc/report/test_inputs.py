@@ -39,6 +39,7 @@ REST = {
         "duty": [{"speed": "300 rpm", "weight": 2}], "vibration_limit": "1.5 mm", "limit_at": "operating",
         "deflection": "0.7 mm", "unbalance": ["1 kg*mm", "2 kg*mm"], "temperature": ["5 degC", "35 degC"],
         "quantile": 0.9, "samples": 12, "seed": 4, "dry_patch": False, "stability_margin": "0.25 1/s",
+        "whirl_limit": "3 mm",
         "stable": False, "least_film": "20 um", "spill": True,
         "operating": ["500 rpm", "800 rpm"], "clearance": "4 mm", "volumes": [["1 ml", "20 ml"]],
         "balance_quality": "G 6.3",
@@ -265,6 +266,7 @@ def test_units() -> None:
     assert found["chambers.0.liquid"] == "liquid, 900 kg/m³, 2 mm²/s"
     assert found["optimise.volumes"] == "chamber 1 1 to 20 ml"
     assert found["optimise.stability_margin"] == "at least 0.25 1/s"
+    assert found["optimise.whirl_limit"] == "3 mm"
 
 
 def test_units_of_other_rotors() -> None:
