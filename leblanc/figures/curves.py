@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.results.response import RunResult, phase
+from leblanc.results.response import HELD_MODEL, Held, RunResult, phase
 from leblanc.units import MM, RPM
 from meshes.arrays import Array, Complex, Flags, Index
 
@@ -25,6 +25,28 @@ _MOST_WINDOWS = 3
 
 
 @dataclass(frozen=True)
+class HeldCurves:
+    """Motions held in time in the units of figures, by rising speed; n speeds, c chambers.
+
+    Parameters
+    ----------
+    rpm : of all speeds asked for, shape (n,)
+    cycle : amplitude of limit cycles on average, mm, nan elsewhere, shape (n,)
+    whirl : speed of their whirl in space, rpm, nan elsewhere, shape (n,)
+    down : amplitude on the way down where it differs, and at the neighbours, mm, nan elsewhere, shape (n,)
+    layer, swing : distance of each layer's mean centre of mass from its chamber's axis, and by how much the
+        centre leaves that mean, mm, nan where the layer was not held, shape (n, c)
+    """
+
+    rpm: Array
+    cycle: Array
+    whirl: Array
+    down: Array
+    layer: Array
+    swing: Array
+
+
+@dataclass(frozen=True)
 class Curves:
     """One study in the units of its figures, by rising speed; p points, b branches.
 
@@ -35,11 +57,14 @@ class Curves:
     amplitude, amplitude_dry, offset : mm, shape (p,)
     angle, phase, phase_dry : degrees in (-270, 90], nan where nothing has a direction, shape (p,)
     stable : of the branch reported, shape (p,)
+    cycling : a limit cycle is reported, shape (p,)
+    least, largest : amplitude over time, mm, nan where no motion was held, shape (p,)
     branches : amplitudes of all branches, mm, shape (p, b)
     branch_stable : shape (p, b)
     chain : number of the continuous curve that each branch belongs to, -1 where there is none, shape (p, b)
     reported : chain of the branch reported, -1 if it is none of them, shape (p,)
     dry_patch, out_of_range, not_converged : spans of speed, rpm
+    held : motions held in time; None where none was
     """
 
     rpm: Array
@@ -51,6 +76,9 @@ class Curves:
     phase: Array
     phase_dry: Array
     stable: Flags
+    cycling: Flags
+    least: Array
+    largest: Array
     branches: Array
     branch_stable: Flags
     chain: Index
@@ -58,6 +86,7 @@ class Curves:
     dry_patch: list[Span]
     out_of_range: list[Span]
     not_converged: list[Span]
+    held: HeldCurves | None = None
 
 
 def lag_degrees(angle: Array, size: Array) -> Array:
@@ -204,7 +233,7 @@ def prepare(result: RunResult) -> Curves:
     table = np.column_stack([*lines, each * MM])[order]
     drawn = thin(table, COLUMNS)
     kept = order[drawn]
-    chain = link(branches[kept])
+    chain, ends = link(branches[kept]), _over_time(result)
     amplitude, amplitude_dry, offset, angle, lag, lag_dry = table[drawn, : len(lines)].T
     return Curves(
         rpm=rpm[drawn],
@@ -216,6 +245,9 @@ def prepare(result: RunResult) -> Curves:
         phase=lag,
         phase_dry=lag_dry,
         stable=r.stable[kept],
+        cycling=result.cycling[kept],
+        least=ends[0][kept],
+        largest=ends[1][kept],
         branches=table[drawn, len(lines) :],
         branch_stable=r.branch_stable[kept],
         chain=chain,
@@ -223,6 +255,40 @@ def prepare(result: RunResult) -> Curves:
         dry_patch=spans(rpm, r.dry_patch[order], limits),
         out_of_range=spans(rpm, ~r.in_range[order], limits),
         not_converged=spans(rpm, ~r.converged[order], limits),
+        held=None if result.held is None else _held_curves(result, result.held),
+    )
+
+
+def _over_time(result: RunResult) -> tuple[Array, Array]:
+    """Least and largest amplitude on the curve, mm, nan where no motion was held, shape (p,).
+
+    At speeds between those asked for their shares of the mean are interpolated: there only the mean is kept.
+    """
+    curve, held = result.curve, result.held
+    if held is None:
+        return np.full(curve.speed.shape, np.nan), np.full(curve.speed.shape, np.nan)
+    order = np.argsort(result.speed, kind="stable")
+    mean = np.where(result.amplitude > 0.0, result.amplitude, np.nan)
+    shares = (np.interp(curve.speed, result.speed[order], (end / mean)[order])
+              for end in (held.least, held.largest))  # fmt: skip
+    least, largest = (
+        np.where(curve.model == HELD_MODEL, share * curve.amplitude * MM, np.nan) for share in shares
+    )
+    return least, largest
+
+
+def _held_curves(result: RunResult, held: Held) -> HeldCurves:
+    """Motions held in time, ready for drawing."""
+    order = np.argsort(result.speed, kind="stable")
+    mean, apart, drawn = result.amplitude[order], held.hysteresis[order], held.at[order]
+    down = np.where(apart, held.amplitude_down[order], np.where(drawn, mean, np.nan))
+    return HeldCurves(
+        rpm=result.speed[order] * RPM,
+        cycle=np.where(held.limit_cycle[order], mean, np.nan) * MM,
+        whirl=np.where(held.limit_cycle, held.whirl_speed, np.nan)[order] * RPM,
+        down=np.where(widened(apart), down, np.nan) * MM,
+        layer=np.abs(held.liquid[order]) * MM,
+        swing=held.ripple[order] * MM,
     )
 
 
@@ -303,11 +369,12 @@ def cut(curves: Curves, window: Span) -> Curves:
     """
     first = max(int(np.searchsorted(curves.rpm, window[0], side="right")) - 1, 0)
     last = int(np.searchsorted(curves.rpm, window[1], side="left")) + 1
-    inside: dict[str, Any] = {
-        item.name: value[first:last]
-        for item in fields(curves)
-        if isinstance(value := getattr(curves, item.name), np.ndarray)
-    }
+    inside = _rows(curves, slice(first, last))
+    if curves.held is not None:
+        # No point of another grid may stand outside, but for those that lines lead to.
+        low, high = np.searchsorted(curves.held.rpm, window)
+        held = slice(max(int(low) - 1, 0), int(high) + 1)
+        inside["held"] = replace(curves.held, **_rows(curves.held, held))
     for name in ("dry_patch", "out_of_range", "not_converged"):
         inside[name] = [
             (max(low, window[0]), min(high, window[1]))
@@ -315,6 +382,12 @@ def cut(curves: Curves, window: Span) -> Curves:
             if low < window[1] and high > window[0]
         ]
     return replace(curves, limits=window, **inside)
+
+
+def _rows(curves: Curves | HeldCurves, part: slice) -> dict[str, Any]:
+    """Every array over the speeds at some of them."""
+    values = {item.name: getattr(curves, item.name) for item in fields(curves)}
+    return {name: value[part] for name, value in values.items() if isinstance(value, np.ndarray)}
 
 
 def median_over(x: Array, y: Array) -> float:

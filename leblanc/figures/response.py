@@ -12,6 +12,7 @@ from leblanc.figures.chambers import chamber_figure
 from leblanc.figures.curves import (
     NARROW,
     Curves,
+    HeldCurves,
     cut,
     gapped,
     joined,
@@ -56,6 +57,16 @@ FLAT = 100.0  # a peak so many times the usual value flattens all the rest on a 
 MARKS = 14  # along a line
 OUT_OF_RANGE = "model out of range"
 
+CYCLE = (0, (4, 1, 1, 1))  # dashes of a limit cycle's mean
+BAND = {"facecolor": "#CFE3F1", "edgecolor": WET, "hatch": "/////", "linewidth": 0.4}
+DOWN = "#009E73"  # after Okabe and Ito
+LAYERS = (
+    (WET, "solid"),
+    ("#E69F00", (0, (5, 1.5))),
+    ("#009E73", (0, (3, 1, 1, 1))),
+    ("#CC79A7", (0, (1, 1))),
+)
+
 FORWARD, BACKWARD, STRAIGHT, SPIN = "#0072B2", "#D55E00", "0.35", "0.2"  # after Okabe and Ito
 CLEAR = 0.2  # from here on a whirl is drawn as one with or against the spin
 HZ = 60.0  # rpm in one hertz
@@ -93,13 +104,24 @@ def amplitude_figure(result: RunResult) -> Figure:
     text = "Amplitude of the deflection."
     if result.motion is not None:
         text = f"Largest radius of the axis' orbit {amplitude_place(result)}."
-    return _over_speed(result, "amplitude", [(2.75, draw_amplitude)], text)
+    panels: list[tuple[float, Draw]] = [(2.75, draw_amplitude)]
+    if result.held is not None:
+        text += " Held in time: lines are means over time, the band reaches from the least to the largest."
+        if result.held.limit_cycle.any():
+            panels.append((1.3, draw_whirl))
+            text += " Below: speed at which the axis whirls in space, beside the spin."
+    return _over_speed(result, "amplitude", panels, text)
 
 
 def liquid_figure(result: RunResult) -> Figure:
     """Distance and angle of the liquid's centre of mass over speed."""
     panels = [(1.55, draw_offset), (1.55, draw_angle)]
     text = f"Centre of mass of the liquid: distance from the rotation axis, angle from {zero_of(result)}."
+    if _layers_held(result):
+        panels.append((1.55, draw_layers))
+        text += " Below: each layer's from its chamber's axis, mean and swing, as seen from the drum"
+        few = result.held is not None and result.held.ripple.shape[1] > len(LAYERS)
+        text += f" (the {len(LAYERS)} that swing most)." if few else "."
     return _over_speed(result, "liquid", panels, text)
 
 
@@ -172,8 +194,16 @@ def wider_words() -> str:
     return f"Below, wider: resonances under {100.0 * NARROW:g} % of the axis (half-power band)."
 
 
+def _layers_held(result: RunResult) -> bool:
+    """Some layer was held in time."""
+    return result.held is not None and bool(np.isfinite(result.held.ripple).any())
+
+
 def draw_amplitude(axes: Axes, curves: Curves, result: RunResult) -> None:
-    """Deflection amplitude with and without liquid, all branches."""
+    """Deflection amplitude with and without liquid, all branches; its range over time where it was held."""
+    lines = [(curves.rpm, curves.amplitude), (curves.rpm, curves.amplitude_dry)]
+    if curves.held is not None:
+        lines += _draw_held(axes, curves, curves.held)
     reported(axes, curves, curves.amplitude, "with liquid")
     without(axes, curves, curves.amplitude_dry)
     if np.any(np.count_nonzero(curves.chain >= 0, axis=1) > 1):
@@ -181,10 +211,75 @@ def draw_amplitude(axes: Axes, curves: Curves, result: RunResult) -> None:
         stable, unstable = other_branches(curves)
         axes.plot(*stable, **thin, label="other branches, stable")
         axes.plot(*unstable, **thin, linestyle=UNSTABLE, label="other branches, unstable")
-    lines = [(curves.rpm, curves.amplitude), (curves.rpm, curves.amplitude_dry)]
     value_axis(axes, room_below(curves), lines, curves.branches.ravel())
     background(axes, curves, result, [curves.amplitude, curves.amplitude_dry])
     axes.set_ylabel(f"Amplitude{'' if result.motion is None else plane_label(bool(result.chambers))} (mm)")
+
+
+def _draw_held(axes: Axes, curves: Curves, held: HeldCurves) -> list[tuple[Array, Array]]:
+    """Least to largest amplitude over time, limit cycles, and the way down; the lines that need room."""
+    ends = curves.least, curves.largest
+    axes.fill_between(curves.rpm, *ends, **BAND, zorder=1.2, label="least to largest over time")
+    if np.isfinite(held.cycle).any():
+        axes.plot(
+            *(held.rpm, held.cycle, "D"),
+            **{"color": WET, "markerfacecolor": "white", "markersize": 4.5, "zorder": 3},
+            label="limit cycle, mean",
+        )
+    if np.isfinite(held.down).any():
+        axes.plot(
+            *(held.rpm, held.down),
+            **{"color": DOWN, "linewidth": 0.9, "marker": "v", "markersize": 3.5, "zorder": 2.5},
+            label="while the speed falls",
+        )
+    return [(curves.rpm, curves.largest), (held.rpm, held.down)]
+
+
+def draw_whirl(axes: Axes, curves: Curves, result: RunResult) -> None:
+    """Speed of the whirl of limit cycles in space, and the spin."""
+    held = curves.held
+    assert held is not None
+    axes.plot(
+        *(held.rpm, held.whirl, "D"),
+        **{"color": WET, "markersize": 4.5, "markerfacecolor": "white"},
+        label="limit cycle: whirl",
+    )
+    axes.plot(curves.limits, curves.limits, color=SPIN, linewidth=0.9, linestyle=(0, (1, 1.2)), label="spin")
+    known = np.concatenate([held.whirl[np.isfinite(held.whirl)], curves.limits])
+    low, high = min(0.0, float(known.min())), float(known.max())
+    axes.set_ylim(1.08 * low - (STRIP + 0.02) * (high - low) * bool(curves.dry_patch), 1.08 * high)
+    background(axes, curves, result, [np.full(curves.rpm.shape, np.nan)])
+    axes.set_ylabel("Whirl speed (rpm)")
+
+
+def draw_layers(axes: Axes, curves: Curves, result: RunResult) -> None:
+    """Each layer's centre of mass off its chamber's axis, mean and swing."""
+    held = curves.held
+    assert held is not None and result.held is not None
+    most = np.max(np.nan_to_num(result.held.ripple), axis=0)
+    drawn = np.sort(np.argsort(-most, kind="stable")[: len(LAYERS)]).tolist()
+    for k, (color, dashes) in zip(drawn, LAYERS, strict=False):
+        mean, swing = held.layer[:, k], held.swing[:, k]
+        axes.plot(held.rpm, mean, color=color, linestyle=dashes, label=f"layer of chamber {k + 1}")
+        ends = np.maximum(mean - swing, 0.0), mean + swing
+        axes.fill_between(held.rpm, *ends, color=color, alpha=0.15, linewidth=0, zorder=1.2)
+        for end in ends:
+            axes.plot(held.rpm, end, color=color, linewidth=0.5, zorder=1.9, label="_")
+    # Where the models do not hold the swing may be as wide as the chamber.
+    kept = ~_within(held.rpm, curves.out_of_range)
+    kept = kept if kept.any() else ~kept
+    most_seen = [(held.rpm[kept], (held.layer + held.swing)[kept, k]) for k in drawn]
+    value_axis(axes, room_below(curves), most_seen)
+    background(axes, curves, result, [np.full(curves.rpm.shape, np.nan)])
+    axes.set_ylabel("Layer's centre (mm)")
+
+
+def _within(rpm: Array, spans: Sequence[tuple[float, float]]) -> Flags:
+    """Which speeds lie in one of some spans, shape (n,)."""
+    found = np.zeros(rpm.shape, dtype=bool)
+    for low, high in spans:
+        found |= (rpm >= low) & (rpm <= high)
+    return found
 
 
 def draw_offset(axes: Axes, curves: Curves, result: RunResult) -> None:
@@ -217,7 +312,7 @@ def reported(axes: Axes, curves: Curves, y: Array, label: str) -> None:
     jumps = np.diff(curves.reported) != 0
     jumps &= (curves.reported[1:] >= 0) & (curves.reported[:-1] >= 0)
     breaks = jumps | _turns(y)
-    unstable = ~curves.stable & ~np.isnan(y)
+    unstable = ~curves.stable & ~curves.cycling & ~np.isnan(y)
     x_solid, solid = gapped(curves.rpm, np.where(curves.stable, y, np.nan), breaks)
     dots = np.flatnonzero(lonely(solid)).tolist()
     axes.plot(x_solid, solid, color=WET, label=label, marker="o" if dots else None, markevery=dots or None)
@@ -232,6 +327,9 @@ def reported(axes: Axes, curves: Curves, y: Array, label: str) -> None:
             markevery=dots or None,
             label=f"{label}, unstable",
         )
+    if curves.cycling.any():
+        x, dashed = gapped(curves.rpm, np.where(widened(curves.cycling), y, np.nan), breaks)
+        axes.plot(x, dashed, color=WET, linestyle=CYCLE, label=f"{label}, limit cycle")
     steps = [(curves.rpm[i : i + 2], y[i : i + 2]) for i in np.flatnonzero(jumps & ~_turns(y)).tolist()]
     if steps:
         axes.plot(*joined(steps), color=WET, linewidth=0.9, linestyle=":", label="jump between branches")

@@ -135,6 +135,7 @@ class Held:
     error : estimated from half the cells, over the largest distance, shape (n,)
     state_down, amplitude_down : while the speed falls, m, shape (n,)
     cells : round each wall
+    reason : why the motion has not settled, else empty, shape (n,); no entry where that is not known
     """
 
     at: Flags
@@ -148,6 +149,17 @@ class Held:
     state_down: NDArray[np.str_]
     amplitude_down: Array
     cells: int
+    reason: NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, dtype="U1"))
+
+    @property
+    def limit_cycle(self) -> Flags:
+        """Where the motion, as met while the speed rises, is bounded but never repeats, shape (n,)."""
+        return np.asarray(self.at & (self.state == "limit_cycle"))
+
+    @property
+    def not_settled(self) -> Flags:
+        """Where the motion still changed when it was given up, shape (n,)."""
+        return np.asarray(self.at & (self.state == "not_settled"))
 
     @property
     def hysteresis(self) -> Flags:
@@ -156,6 +168,7 @@ class Held:
 
 
 MOTIONS = ("steady", "periodic", "limit_cycle", "not_settled")
+HELD_MODEL = "long_wave"  # the liquid model of motions held in time
 
 
 def grade_words(quality: float) -> str:
@@ -381,11 +394,15 @@ class RunResult(Result):
     def stability(self) -> NDArray[np.str_]:
         """Of the branch reported, one of `STABILITY`, shape (n,).
 
-        Not known where no branch was found or the modes of the whirls were not.
+        Not known where no branch was found or the modes of the whirls were not. A motion held in time has
+        shown its stability itself; one that has not settled has not.
         """
-        held = self.response.branch_stable.any(axis=1)
+        kept = self.response.branch_stable.any(axis=1)
         growth = np.zeros(self.speed.shape) if self.growth is None else self.growth
-        lost = ~np.isfinite(self.response.deflection) | (held & np.isnan(growth))
+        lost = ~np.isfinite(self.response.deflection) | (kept & np.isnan(growth))
+        if self.held is not None:
+            growth = np.where(self.held.at, 0.0, growth)
+            lost = np.where(self.held.at, self.held.not_settled, lost)
         state = np.where(lost & ~(growth > 0.0), 0, np.where(self.stable, 2, 1))
         return np.asarray(np.array(STABILITY)[state])
 
@@ -444,10 +461,17 @@ class RunResult(Result):
         found = np.where(~r.converged, "not_settled", np.where(ellipse, "periodic", "steady"))
         return found if self.held is None else np.where(self.held.at, self.held.state, found)
 
+    @property
+    def cycling(self) -> Flags:
+        """Where the answer of `curve` is a limit cycle, shape (p,)."""
+        curve = self.curve
+        return np.asarray((curve.model == HELD_MODEL) & curve.converged & ~curve.stable)
+
     # Held states; every branch; what a rotor adds that is not planar.
     held_at = carried("held.at")
     held_error = carried("held.error")
     held_whirl_speed = carried("held.whirl_speed")
+    held_reason = carried("held.reason")
     liquid_mean = carried("held.liquid")
     liquid_ripple = carried("held.ripple")
     amplitude_down = carried("held.amplitude_down")
@@ -564,6 +588,7 @@ def _held_json(held: Held | None) -> dict[str, Any]:
         "liquid_ripple": _finite(held.ripple),
         "amplitude_down": _finite(held.amplitude_down),
         "state_down": held.state_down.tolist(),
+        "held_reason": held.reason.tolist(),
     }
 
 
@@ -688,7 +713,10 @@ def _held_variables(held: Held | None) -> dict[str, Variable]:
     if held is None:
         return {}
     over, each, drum = ("speed",), ("speed", "chamber"), "from the chamber's axis, in the drum"
-    down = _numbered(held.state_down)
+    down, reasons = _numbered(held.state_down), {}
+    if held.reason.size:
+        text = "why the motion has not settled"
+        reasons["held_reason"] = var(over, held.reason, "1", text, "empty where it has, or was not held")
     return {
         "held_at": flags(over, held.at, "no yes", "held", "the motion was held in time until it settled"),
         "held_error": var(over, held.error, "1", "estimated error", "of the held motion, by half the cells"),
@@ -699,6 +727,7 @@ def _held_variables(held: Held | None) -> dict[str, Variable]:
         "liquid_ripple": var(each, held.ripple, "m", "ripple of the layer's centre of mass", "largest"),
         "amplitude_down": var(over, held.amplitude_down, "m", "amplitude", "while the speed falls"),
         "state_down": flags(over, down, " ".join(MOTIONS), "state of the motion", "while the speed falls"),
+        **reasons,
     }
 
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from leblanc.results.base import one_line, percent
 from leblanc.results.choice import ModelSpan
 from leblanc.results.notes import plane_words
-from leblanc.results.response import RunResult, grade_words
+from leblanc.results.response import HELD_MODEL, Held, RunResult, grade_words
 from leblanc.text.numbers import NOT_FOUND, number, ranges
 from leblanc.units import LENGTH, MASS, RPM, VOLUME, in_rpm, rpm_bands, rpm_range, unit_for, with_unit
 from meshes.arrays import Array, Flags
@@ -34,19 +34,20 @@ def answer(result: RunResult) -> str:
     if not result.liquid_mass > 0.0:
         size = _UNBOUNDED if most.wet == _INFINITE else f"is {most.wet_text} at most,"
         return f"Without liquid the amplitude{where} {size} at {at.wet} rpm."
+    final = f"{_sized(last.wet_text)}{_on_average(result, -1)}"
     if result.speed.size == 1:
-        size = f"{_sized(last.wet_text)} with the liquid{_doubted(result, -1)}"
+        size = f"{final} with the liquid{_aside(result, -1)}"
         bare = _UNBOUNDED if last.dry == _INFINITE else last.dry_text
         return f"At {speed} the amplitude{where} {size} and {bare} without."
     highest = largest(result.curve.amplitude)
     assert highest is not None
-    at_last = f"it {_sized(last.wet_text)}{_doubted(result, -1)} instead of {last.dry_text}"
+    at_last = f"it {final}{_aside(result, -1)} instead of {last.dry_text}"
     if last.dry == _INFINITE:
-        at_last = f"it {_sized(last.wet_text)}{_doubted(result, -1)}; without it {_UNBOUNDED}"
+        at_last = f"it {final}{_aside(result, -1)}; without it {_UNBOUNDED}"
     if last.wet == NOT_FOUND:
         at_last = f"no answer was found with the liquid; without it is {last.dry_text}"
-    at_highest = f"at {at.wet} rpm with the liquid{_doubted(result, highest)}"
-    first = f"The largest amplitude{where} is {most.wet_text} {at_highest}"
+    at_highest = f"at {at.wet} rpm with the liquid{_aside(result, highest)}"
+    first = f"The largest amplitude{where} is {most.wet_text}{_on_average(result, highest)} {at_highest}"
     if most.wet == _INFINITE:
         first = f"The amplitude{where} {_UNBOUNDED} {at_highest}"
     bare = f"it {_UNBOUNDED}" if most.dry == _INFINITE else most.dry_text
@@ -71,16 +72,50 @@ def largest(amplitude: Array) -> int | None:
     return None if np.isnan(amplitude).all() else int(np.nanargmax(amplitude))
 
 
-def _doubted(result: RunResult, index: int) -> str:
-    """What keeps an amplitude from being believed, in brackets; empty where nothing does."""
+def _aside(result: RunResult, index: int) -> str:
+    """What an amplitude is beside its size, in brackets; empty where there is nothing to say."""
     found = _wrong(result, index)
+    if (ends := _ends(result, index)) is not None:
+        unit = unit_for(LENGTH, *ends)
+        found.append(f"between {unit.number(ends[0])} and {unit.number(ends[1])} {unit.name}")
     return f" ({', '.join(found)})" if found else ""
+
+
+RIPPLE = 0.01  # of the amplitude, beyond which its change over time is told
+
+
+def _on_average(result: RunResult, index: int) -> str:
+    """Said of an amplitude that changes over time."""
+    told = result.cycling[index] or _ends(result, index) is not None
+    return " on average" if told else ""
+
+
+def _ends(result: RunResult, index: int) -> tuple[float, float] | None:
+    """Least and largest amplitude over time at a place of the curve; None where it hardly changes.
+
+    Where an orbit is an ellipse its amplitude is that of each turn's largest distance: only more is told.
+    """
+    if result.held is None:
+        return None
+    (rows,) = np.nonzero(result.held.at & (result.speed == result.curve.speed[index]))
+    if rows.size == 0:
+        return None
+    k = int(rows[0])
+    least, largest, mean = (
+        float(size[k]) for size in (result.amplitude_min, result.amplitude_max, result.amplitude)
+    )
+    swing = largest - least if result.motion is None else largest - mean
+    changes = bool(result.held.limit_cycle[k]) or swing > RIPPLE * mean
+    return (least, largest) if changes and math.isfinite(swing) else None
 
 
 def _wrong(result: RunResult, index: int) -> list[str]:
     """What keeps an amplitude from being believed."""
     r = result.curve
     found = [] if r.in_range[index] else ["out of range"]
+    if result.held is not None and r.model[index] == HELD_MODEL:
+        state = "limit cycle" if result.cycling[index] else "" if r.converged[index] else "not settled"
+        return [*found, state] if state else found
     if not r.stable[index]:
         found.append("stability not known" if _unknown(result, index) else "unstable")
     return found
@@ -220,8 +255,36 @@ def facts(result: RunResult) -> list[tuple[str, str]]:
     return [
         ("Mass of the liquid", with_unit(result.liquid_mass, MASS)),
         (f"Its centre of mass at {in_rpm(float(r.speed[-1]))}", where),
+        *_held_facts(result),
         *_vibration(result),
     ]
+
+
+def _held_facts(result: RunResult) -> list[tuple[str, str]]:
+    """How much was held in time, and how much the liquid swings."""
+    held = result.held
+    if held is None:
+        return []
+    count, every = int(np.count_nonzero(held.at)), result.speed.size
+    error = _largest_known(held.error)
+    found = [
+        (
+            "Rotor and long waves held in time",
+            f"{'all' if count == every else f'{count} of'} {every} speeds, {held.cells} cells round each wall"
+            + ("" if math.isnan(error) else f", estimated error at most {percent(error)}"),
+        )
+    ]
+    swing = _largest_known(held.ripple[-1])
+    if not math.isnan(swing):
+        label = f"Swing of a layer's centre of mass at {in_rpm(float(result.speed[-1]))}"
+        found.append((label, f"up to {with_unit(swing, LENGTH)} about its mean in the drum"))
+    return found
+
+
+def _largest_known(values: Array) -> float:
+    """Largest of the values that are known; nan where none is."""
+    known = values[~np.isnan(values)]
+    return float(known.max()) if known.size else math.nan
 
 
 def _vibration(result: RunResult) -> list[tuple[str, str]]:
@@ -267,11 +330,11 @@ def limits(result: RunResult) -> list[Limit]:
     ----------
     result : the response
     """
-    r, tolerance = result.response, result.tolerance
-    found = [
-        _limit("Not converged", r.speed, ~r.converged),
-        _limit("Liquid model out of range", r.speed, ~r.in_range),
-    ]
+    r, tolerance, held = result.response, result.tolerance, result.held
+    lost = ~r.converged if held is None else ~r.converged & ~held.at
+    found = [_limit("Not converged", r.speed, lost)] if held is None or lost.any() else []
+    found += _held_limits(result, held) if held is not None else []
+    found.append(_limit("Liquid model out of range", r.speed, ~r.in_range))
     if result.capture_speed is not None:
         loose = r.speed <= result.capture_speed
         edge = f" (below {in_rpm(result.capture_speed)})" if loose.any() else ""
@@ -280,8 +343,13 @@ def limits(result: RunResult) -> list[Limit]:
         missed = ~(result.error_estimate <= tolerance)
         found.append(_limit(f"Error above {number(100.0 * tolerance)} % or unknown", r.speed, missed))
     found.append(_limit("Wall dry in part", r.speed, r.dry_patch))
-    found.append(_limit("Answer unstable", r.speed, result.stability == "unstable"))
+    unstable = result.stability == "unstable"
+    found.append(
+        _limit("Answer unstable", r.speed, unstable if held is None else unstable & ~held.limit_cycle)
+    )
     lost = result.stability == "not_known"
+    if held is not None:
+        lost &= ~held.not_settled
     if lost.any():
         found.append(_limit("Stability not known", r.speed, lost))
     if result.whirl is not None:
@@ -293,6 +361,16 @@ def limits(result: RunResult) -> list[Limit]:
     if infinite.any():
         found.append(_limit("Amplitude infinite", result.curve.speed, infinite))
     return found
+
+
+def _held_limits(result: RunResult, held: Held) -> list[Limit]:
+    """What motions held in time are that did not settle to one that repeats."""
+    found = [_limit("Not settled", result.speed, held.not_settled)]
+    cycles = _limit("Limit cycle", result.speed, held.limit_cycle)
+    if cycles.failed:
+        most = with_unit(float(held.largest[held.limit_cycle].max()), LENGTH)
+        cycles = replace(cycles, where=f"{cycles.where}, amplitude up to {most}")
+    return [*found, cycles, _limit("Up and down differ", result.speed, held.hysteresis)]
 
 
 def limit_rows(result: RunResult) -> list[tuple[str, str]]:
@@ -367,15 +445,42 @@ def alts(result: RunResult) -> dict[str, str]:
     centre = next(value for label, value in values.items() if label.startswith("Its centre"))
     return {
         "amplitude": f"Curves of the amplitude{where} over speed: largest {most.wet_text} at {at.wet} "
-        f"rpm with liquid, {most.dry_text} at {at.dry} rpm without.",
+        f"rpm with liquid, {most.dry_text} at {at.dry} rpm without.{_held_alt(result)}",
         "liquid": "Curves of the distance and the angle of the liquid's centre of mass over speed; at the "
-        f"last speed: {centre}.",
+        f"last speed: {centre}.{_swing_alt(result)}",
         "phase": "Curves of the angle from the unbalance to the deflection over speed, with and without "
         "liquid.",
         "chamber": "Drawing of each chamber with its liquid, seen along the axis, at the largest deflection, "
         f"{most.wet_text}, and at the last speed, {last.wet_text}.",
         "campbell": "Curves of the natural frequencies without liquid over speed.",
     }
+
+
+def _held_alt(result: RunResult) -> str:
+    """What a figure of the amplitude shows of motions held in time."""
+    held = result.held
+    if held is None:
+        return ""
+    rows = {limit.label: limit for limit in _held_limits(result, held)}
+    parts = ["A band from the least to the largest amplitude over time"]
+    if (cycles := rows["Limit cycle"]).failed:
+        parts.append(f"diamonds and, below, the speed of the whirl at limit cycles: {cycles.where}")
+    if (differ := rows["Up and down differ"]).failed:
+        parts.append(f"a thin line while the speed falls: {differ.where}")
+    if (lost := rows["Not settled"]).failed:
+        parts.append(f"not settled: {lost.where}")
+    return f" {'; '.join(parts)}."
+
+
+def _swing_alt(result: RunResult) -> str:
+    """What a figure of the liquid shows of layers held in time."""
+    if result.held is None or not result.held.ripple.size:
+        return ""
+    most = with_unit(_largest_known(result.held.ripple), LENGTH)
+    return (
+        " Below, each layer's centre of mass off its chamber's axis with a band as wide as its swing, at "
+        f"most {most}."
+    )
 
 
 def summary(result: RunResult) -> list[tuple[str, str]]:
@@ -414,6 +519,11 @@ MODELS = {
         "Taken for granted: plane frictionless flow, an undisturbed surface that is a circle.",
     ),
 }
+
+HELD = (
+    "Rotor and long waves march in time together, speed by speed, until their motion rests, repeats with the "
+    "turn or stays within bounds; amplitudes and centres of mass are means over time."
+)
 
 WHIRL = (
     "Free whirls of rotor and liquid together, by the exact linear theory of the plane layer with laminar or "

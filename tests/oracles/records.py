@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from leblanc.results import notes as run_notes
 from leblanc.results.base import FilledChamber
-from leblanc.results.response import RunResult
+from leblanc.results.response import HELD_MODEL, Held, RunResult
 from meshes.arrays import Array
 from solvers.synchronous.response import Response
 
@@ -148,6 +148,48 @@ def folded(count: int = 241, follow: str = "low") -> RunResult:
     )
 
 
+def held_rig(count: int = 21, at: slice = slice(None)) -> RunResult:
+    """The rig held in time from 100 to 2000 rpm: calm, but for three speeds of limit cycles and one lost.
+
+    With 21 speeds, 95 rpm apart: not settled at 195 rpm, limit cycles from 1145 to 1335 rpm and, on the way
+    down, at 1430 rpm still; elsewhere the amplitude ripples by 2 per mille.
+    """
+    plain = rig(count)
+    r, rpm = plain.response, plain.response.speed / RPM
+    chosen = np.zeros(count, dtype=np.bool_)
+    chosen[at] = True
+    cycle, lost = (chosen & (low < rpm) & (rpm < high) for low, high in ((1100, 1400), (150, 200)))
+    late = chosen & (rpm > 1400) & (rpm < 1440)
+    state = np.where(
+        cycle, "limit_cycle", np.where(lost, "not_settled", np.where(chosen, "periodic", "steady"))
+    )
+    size = np.abs(r.deflection)
+    held = Held(
+        at=chosen,
+        state=state,
+        least=np.where(chosen, size * np.where(cycle, 0.6, 0.999), np.nan),
+        largest=np.where(chosen, size * np.where(cycle, 1.5, 1.001), np.nan),
+        whirl_speed=np.where(cycle, 0.8 * r.speed, np.nan),
+        liquid=np.where(chosen, 0.02 * r.deflection / size.max(), np.nan)[:, None],
+        ripple=np.where(chosen, np.where(cycle, 2e-3, 1e-4), np.nan)[:, None],
+        error=np.where(chosen & ~lost, 3e-3, np.nan),
+        state_down=np.where(late, "limit_cycle", state),
+        amplitude_down=np.where(late, 3.0 * size, np.nan),
+        cells=128,
+        reason=np.where(lost, "the motion still changes after 1024 turns", ""),
+    )
+    response = replace(
+        r,
+        model=np.where(chosen, HELD_MODEL, r.model),
+        stable=r.stable & ~cycle & ~lost,
+        branch_stable=(r.stable & ~cycle & ~lost)[:, None],
+        converged=~lost,
+        over_time=np.where(chosen, size, np.nan),
+    )
+    error = np.where(chosen, held.error, 1e-4)
+    return replace(plain, response=response, held=held, error_estimate=error, tolerance=1e-3)
+
+
 def nothing_found() -> RunResult:
     r = rig(50).response
     empty = {
@@ -233,4 +275,6 @@ EXTREMES: dict[str, Callable[[], RunResult]] = {
     "undamped at its critical speed": undamped,
     "no chamber": lambda: replace(rig(20), chambers=()),
     "no liquid": no_liquid,
+    "held in time": held_rig,
+    "held in time at some speeds": lambda: held_rig(at=slice(8, 16)),
 }

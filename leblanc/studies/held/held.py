@@ -263,4 +263,5 @@ def held_result(found: HeldBranches, machine: Prepared, at: Index) -> Held:
         state_down=states_down,
         amplitude_down=spread(falling),
         cells=machine.scene.model.cells,
+        reason=spread([state.reason for state in up], ""),
     )
