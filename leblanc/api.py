@@ -36,12 +36,14 @@ SceneOrPath = Scene | str | PathLike[str]
 _OPTION = re.compile(r"--([a-z][a-z-]*)")
 
 
-def run(scene: SceneOrPath) -> RunResult | ExciterResult:
+def run(scene: SceneOrPath, *, workers: int = 1) -> RunResult | ExciterResult:
     """Response and the liquid's centre of mass at each speed of a scene.
 
     Parameters
     ----------
     scene : the machine, or the path of its file
+    workers : processes that hold long waves in time, where the scene asks for that; this one alone if 1. The
+        answer does not depend on it
 
     Returns
     -------
@@ -50,7 +52,7 @@ def run(scene: SceneOrPath) -> RunResult | ExciterResult:
     Raises
     ------
     SceneError : with everything that is wrong with the file
-    InputError : the scene names a liquid model that does not answer this
+    InputError : the scene names a liquid model that does not answer this, fewer than one worker
 
     Examples
     --------
@@ -59,14 +61,17 @@ def run(scene: SceneOrPath) -> RunResult | ExciterResult:
     >>> answer.speed.shape == answer.amplitude.shape == (201,)
     True
     """
+    if workers < 1:
+        raise InputError("workers", workers, "1 or more")
     machine = _scene(scene)
     if machine.rotor.kind == "exciter":
         from leblanc.studies.exciter import run_exciter
 
         return run_exciter(machine)
+    from leblanc.studies.held.holding import Holding
     from leblanc.studies.run import run_scene
 
-    return run_scene(machine)
+    return run_scene(machine, holding=Holding(workers))
 
 
 def explain(scene: SceneOrPath) -> Explanation | ExciterExplanation:

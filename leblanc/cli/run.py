@@ -48,7 +48,7 @@ def run(
     from leblanc.report.page import about, command_line
     from leblanc.report.run import write_run_report
     from leblanc.results.netcdf import write_netcdf
-    from leblanc.text.run import amplitude_place, comparisons, limit_rows
+    from leblanc.text.run import amplitude_place, comparisons, limit_rows, unanswered
 
     write_netcdf(result.named_arrays(), folder / "response.nc")
     figures = write_figures(result, folder)
@@ -68,14 +68,13 @@ def run(
     if not result.converged.all():
         from leblanc.scene.schema.load import NotConverged
 
-        lost = result.speed[~result.converged]
-        raise NotConverged(
-            [
-                f"{scene}: no bounded deflection found at {lost.size} of {result.speed.size} speeds: "
-                + ", ".join(f"{speed:.6g} rad/s" for speed in lost[:10])
-                + (", ..." if lost.size > 10 else "")
-            ]
-        )
+        failed = [f"{scene}: {text}" for text in unanswered(result)]
+        if result.held is not None and result.held.not_settled.any():
+            failed.append(
+                "All files are written; what has not settled is marked not_settled and has the numbers of its "
+                f"last turns. The states are kept in {folder / 'held'}: another run takes them from there."
+            )
+        raise NotConverged(failed)
     say(f"{result.name}: {result.speed.size} speeds done")
 
 

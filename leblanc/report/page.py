@@ -122,9 +122,15 @@ def why(spans: Sequence[ModelSpan]) -> Table:
     return table("", ("Speeds (rpm)", "Model", "Estimated error", "Why"), rows, sentences=True)
 
 
-def models(names: Sequence[str]) -> list[tuple[str, str]]:
-    """Each liquid model that was used, and what it does and takes for granted."""
-    return described(names)
+def models(names: Sequence[str], held: bool = False) -> list[tuple[str, str]]:
+    """Each liquid model that was used, and what it does and takes for granted.
+
+    Parameters
+    ----------
+    names : of the models
+    held : long waves were held in time
+    """
+    return described(names, held)
 
 
 def notes(given: Iterable[Note | str], elsewhere: Collection[NoteCode] = ()) -> list[str]:

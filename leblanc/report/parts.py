@@ -74,6 +74,7 @@ _CLAUSES = 2  # of the sentence of doubt
 # What weighs most in it first; what none of these begins follows.
 _WEIGHTS = (
     "Not converged",
+    "Not settled",
     "Stopped before its end",
     "Amplitude infinite",
     "Constraints exceeded",
@@ -84,6 +85,7 @@ _WEIGHTS = (
     "Liquid model out of range",
     "Model out of range",
     "Error above",
+    "Limit cycle",
     "Self-excited whirl",
 )
 

@@ -12,19 +12,20 @@ import numpy as np
 from leblanc.report.page import About, models, notes, why, write_page
 from leblanc.report.parts import Cell, Table, doubt, picture, table
 from leblanc.results.exciter import ExciterResult
-from leblanc.results.notes import OF_MODELS
+from leblanc.results.notes import OF_MODELS, RunCode
 from leblanc.results.response import RunResult
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.text.exciter import NUMBERS
 from leblanc.text.exciter import answer as exciter_answer
 from leblanc.text.exciter import facts as exciter_facts
 from leblanc.text.exciter import limits as exciter_limits
-from leblanc.text.numbers import number, ranges
+from leblanc.text.numbers import NOT_FOUND, number, ranges
 from leblanc.text.run import BALLS, WHIRL, answer, comparisons, facts, largest_error, limits, machine, remarks
 from leblanc.text.whirl_map import answer as whirl_map_answer
 from leblanc.text.whirl_map import band_words
 from leblanc.text.whirl_map import facts as whirl_map_facts
 from leblanc.units import LENGTH, RPM, VOLUME, unit_for
+from meshes.arrays import Array, Flags, Index
 
 if TYPE_CHECKING:
     from leblanc.figures.page import FigureFiles
@@ -56,7 +57,7 @@ def write_run_report(result: RunResult, what: About, figures: Sequence[FigureFil
     path : the file to write or replace
     """
     shown = [figure for figure in figures if len(figures) > SHOWN or figure.name != "phase"]
-    elsewhere = OF_MODELS if result.models else ()
+    elsewhere = (*(OF_MODELS if result.models else ()), RunCode.HELD)
     error = largest_error(result)
     parts = {
         "title": "Response to the unbalance over speed",
@@ -72,10 +73,59 @@ def write_run_report(result: RunResult, what: About, figures: Sequence[FigureFil
         "checks": response_checks(result),
         "pictures": [picture(files) for files in shown],
         "why": why(result.models) if result.models else _used(result),
-        "models": models(result.models_used),
+        "models": models(result.models_used, result.held is not None),
+        "held": held_motions(result),
         "remarks": [*notes(result.notes, elsewhere), *remarks(result)],
     }
     write_page("run", what, parts, path)
+
+
+def held_motions(result: RunResult) -> list[Table]:
+    """Limit cycles by ranges of speed, and where the way down differs; nothing where no motion was held."""
+    held = result.held
+    if held is None:
+        return []
+    mean, least, largest = result.amplitude, result.amplitude_min, result.amplitude_max
+    unit, tables = unit_for(LENGTH, *mean[held.at].tolist()), []
+
+    def size(values: Array) -> str:
+        return _extent(values * unit.count)
+
+    cycles = [
+        (
+            *(_extent(result.speed[part] * RPM), size(mean[part])),
+            *(unit.number(float(least[part].min())), unit.number(float(largest[part].max()))),
+            _extent(held.whirl_speed[part] * RPM),
+        )
+        for part in _runs(result.speed, held.limit_cycle)
+    ]
+    if cycles:
+        sizes = (f"{name} ({unit.name})" for name in ("mean amplitude", "least", "largest"))
+        tables.append(table("", ("Limit cycles (rpm)", *sizes, "whirl speed (rpm)"), cycles))
+    apart = [
+        (_extent(result.speed[part] * RPM), size(mean[part]), size(held.amplitude_down[part]))
+        for part in _runs(result.speed, held.hysteresis)
+    ]
+    if apart:
+        sizes = (f"amplitude, {way} speed ({unit.name})" for way in ("rising", "falling"))
+        tables.append(table("", ("Up and down differ (rpm)", *sizes), apart))
+    return tables
+
+
+def _runs(speed: Array, mask: Flags) -> list[Index]:
+    """Neighbouring speeds at which a condition holds, each run by rising speed."""
+    order = np.argsort(speed, kind="stable")
+    holds = np.flatnonzero(mask[order])
+    return [order[run] for run in np.split(holds, np.flatnonzero(np.diff(holds) > 1) + 1) if run.size]
+
+
+def _extent(values: Array) -> str:
+    """Least and largest of some values; one where they print alike."""
+    known = values[np.isfinite(values)]
+    if not known.size:
+        return NOT_FOUND
+    ends = number(float(known.min())), number(float(known.max()))
+    return ends[0] if ends[0] == ends[1] else " to ".join(ends)
 
 
 def _used(result: RunResult) -> Table:

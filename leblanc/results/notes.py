@@ -13,7 +13,7 @@ import numpy as np
 from fluid.friction import Friction
 from leblanc.results.base import Note, NoteCode, percent
 from leblanc.results.choice import Choice
-from leblanc.results.response import SelfExcited, peak
+from leblanc.results.response import HELD_MODEL, Held, SelfExcited, peak
 from leblanc.units import LENGTH, RPM, VOLUME, friction_words, in_rpm, number, rpm_bands, rpm_range, with_unit
 from meshes.arrays import Array, Flags
 
@@ -41,6 +41,8 @@ class RunCode(NoteCode):
     UNBOUNDED = "unbounded"
     WALL = "wall"
     MESH = "mesh"
+    HELD = "held"
+    NOT_SETTLED = "not_settled"
 
 
 # What a page that shows the table of models says there already.
@@ -54,12 +56,15 @@ def liquid_models(choice: Choice) -> Note | None:
         return Note(RunCode.LIQUID_MODEL, {"fem": choice.models.size}, text)
     if choice.prescribed:
         return None
-    exact, count = int(np.count_nonzero(choice.models == "statics")), choice.models.size
+    exact, held = (int(np.count_nonzero(choice.models == name)) for name in ("statics", HELD_MODEL))
+    count, told = choice.models.size, f"; long waves held in time at {held}" if held else ""
+    linear = count - exact - held
     text = (
-        f"Liquid model: linear theory at {count - exact} of {count} speeds, where it is within "
-        f"{percent(choice.tolerance)}; exact equilibrium at {exact}."
+        f"Liquid model: linear theory at {linear} of {count} speeds, where it is within "
+        f"{percent(choice.tolerance)}; exact equilibrium at {exact}{told}."
     )
-    return Note(RunCode.LIQUID_MODEL, {"linear": count - exact, "statics": exact}, text)
+    data = {"linear": linear, "statics": exact} | ({HELD_MODEL: held} if held else {})
+    return Note(RunCode.LIQUID_MODEL, data, text)
 
 
 def tolerance_missed(choice: Choice, speed: Array) -> Note | None:
@@ -97,10 +102,59 @@ def not_carried(below: float) -> Note:
     return Note(RunCode.NOT_CARRIED, {"below": below}, text)
 
 
-def slow_disturbances() -> Note:
-    """What the stability of branches of a planar rotor means."""
-    text = "Branches are judged against slow disturbances, the liquid always in equilibrium."
+def slow_disturbances(held: Held | None = None) -> Note | None:
+    """What the stability of branches of a planar rotor means; None where all motions have shown their own.
+
+    Parameters
+    ----------
+    held : motions held in time, which have shown whether they are stable
+    """
+    if held is not None and held.at.all():
+        return None
+    where = "Branches" if held is None else "Where no motion was held in time branches"
+    text = f"{where} are judged against slow disturbances, the liquid always in equilibrium."
     return Note(RunCode.SLOW_DISTURBANCES, {}, text)
+
+
+def held_motions(held: Held, speed: Array) -> list[Note]:
+    """How many motions were held in time, how well, and what they came to.
+
+    Parameters
+    ----------
+    held : the motions
+    speed : rad/s, shape (n,)
+    """
+    count, cycles, apart = (int(np.count_nonzero(x)) for x in (held.at, held.limit_cycle, held.hysteresis))
+    error = held.error[held.at]
+    worst = float(error[~np.isnan(error)].max(initial=0.0))
+    size = f"estimated error at most {percent(worst)}" if not np.isnan(error).all() else "error not estimated"
+    text = (
+        f"Rotor and long waves held in time at {count} of {speed.size} speeds, {held.cells} cells round each "
+        f"wall, {size}."
+    )
+    if cycles:
+        text += f" Limit cycles at {cycles}, {_between(speed[held.limit_cycle])}."
+    if apart:
+        text += (
+            f" Up and down differ at {apart}, {_between(speed[held.hysteresis])}: amplitudes are those while "
+            "the speed rises."
+        )
+    data = {"held": count, "cells": held.cells, "error": worst, "limit_cycles": cycles, "hysteresis": apart}
+    found, lost = [Note(RunCode.HELD, data, text)], held.not_settled
+    if lost.any():
+        why = held.reason[lost][0] if held.reason.size else ""
+        text = (
+            f"At {np.count_nonzero(lost)} of the speeds held the motion has not settled, "
+            f"{_between(speed[lost])}{f': {why}' if why else ''}. Do not rely on the numbers there."
+        )
+        found.append(Note(RunCode.NOT_SETTLED, {"speed": tuple(speed[lost].tolist())}, text))
+    return found
+
+
+def _between(speed: Array) -> str:
+    """First and last of some speeds."""
+    low, high = float(speed.min()), float(speed.max())
+    return f"at {in_rpm(low)}" if low == high else f"between {number(low * RPM)} and {in_rpm(high)}"
 
 
 def plane_words(position: float, chambers: bool) -> str:
@@ -142,18 +196,20 @@ def plane(position: float, zero: str, chambers: bool) -> Note:
     return Note(RunCode.PLANE, {"position": position}, text)
 
 
-def against_spin(share: float, speed: float) -> Note:
+def against_spin(share: float, speed: float, held: Held | None = None) -> Note:
     """How far the orbit is from a circle.
 
     Parameters
     ----------
     share : of the orbit that goes against the spin, at most
     speed : where it does, rad/s
+    held : motions held in time, in which the long waves answer that part as well
     """
-    text = (
-        f"Up to {share:.2g} of the orbit goes against the spin, at {in_rpm(speed)}; the liquid answers "
-        "that part by linear theory."
-    )
+    by = "the liquid answers that part by linear theory"
+    if held is not None:
+        rest = f"; elsewhere {by}" if not held.at.all() else ""
+        by = f"where motions were held in time the long waves answer that part as well{rest}"
+    text = f"Up to {share:.2g} of the orbit goes against the spin, at {in_rpm(speed)}; {by}."
     return Note(RunCode.AGAINST_SPIN, {"share": share, "speed": speed}, text)
 
 

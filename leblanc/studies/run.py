@@ -12,7 +12,7 @@ from fluid.fill import Fill
 from leblanc.results import notes
 from leblanc.results.base import FilledChamber, Note
 from leblanc.results.choice import Choice, model_spans
-from leblanc.results.response import Motion, RestMode, RunResult, SelfExcited
+from leblanc.results.response import Held, Motion, RestMode, RunResult, SelfExcited
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
 from leblanc.studies.choose import Prepared, by_elements, choose_all, held_at, liquid_models, prepare
@@ -235,7 +235,7 @@ def run_scene(
         digest=scene.digest,
         response=answer,
         liquid_mass=sum(fill.mass for fill in scene.fills),
-        notes=_notes(machine, choice, answer, refined, motion, whirl),
+        notes=_notes(machine, choice, answer, refined, motion, whirl, held),
         axis=scene.rotor.axis,
         chambers=tuple(_chamber(fill, motion) for fill in scene.fills),
         capture_speed=choice.captured_from,
@@ -285,17 +285,19 @@ def _notes(
     refined: Response,
     motion: Motion | None,
     whirl: SelfExcited,
+    held: Held | None,
 ) -> tuple[Note, ...]:
     """Limits of validity and findings."""
     found = [notes.liquid_models(choice), notes.tolerance_missed(choice, machine.speed)]
     if choice.captured_from is not None:
         found.append(notes.not_carried(choice.captured_from))
+    found += notes.held_motions(held, answer.speed) if held is not None else []
     if motion is None:
-        found.append(notes.slow_disturbances())
+        found.append(notes.slow_disturbances(held))
     else:
         chambers = bool(machine.scene.fills)
         found.append(notes.plane(motion.position, motion.zero, chambers))
-        found.append(_against_spin(answer, motion) if chambers else None)
+        found.append(_against_spin(answer, motion, held) if chambers else None)
     found.append(notes.self_excited(whirl))
     several = np.count_nonzero(np.isfinite(answer.branch_deflection), axis=1) > 1
     if several.any():
@@ -314,7 +316,7 @@ def _endless(answer: Response) -> Note | None:
     return None if wet is None and dry is None else notes.unbounded(wet, dry)
 
 
-def _against_spin(answer: Response, motion: Motion) -> Note | None:
+def _against_spin(answer: Response, motion: Motion, held: Held | None) -> Note | None:
     """How far the orbit is from a circle; None where it is one."""
     size, against = np.abs(answer.deflection), np.abs(motion.backward)
     known = np.isfinite(size) & (size + against > 0.0)
@@ -324,7 +326,7 @@ def _against_spin(answer: Response, motion: Motion) -> Note | None:
     worst = int(np.argmax(share))
     if share[worst] <= 1e-6:
         return None
-    return notes.against_spin(float(share[worst]), float(answer.speed[known][worst]))
+    return notes.against_spin(float(share[worst]), float(answer.speed[known][worst]), held)
 
 
 def _walls(machine: Prepared, answer: Response, motion: Motion | None) -> list[Note]:

@@ -389,6 +389,33 @@ def _limit(label: str, speed: Array, fails: Flags) -> Limit:
     return Limit(label, ranges(speed, fails), bool(fails.any()))
 
 
+def unanswered(result: RunResult) -> list[str]:
+    """What has no answer, a line a kind, each with its first speeds.
+
+    Parameters
+    ----------
+    result : the response
+    """
+    held, found = result.held, []
+    lost = ~result.converged if held is None else ~result.converged & ~held.at
+    if lost.any():
+        speeds = _first([f"{speed:.6g} rad/s" for speed in result.speed[lost].tolist()])
+        count = f"{np.count_nonzero(lost)} of {lost.size}"
+        found.append(f"no bounded deflection found at {count} speeds: {speeds}")
+    if held is not None and held.not_settled.any():
+        why = held.reason[held.not_settled].tolist() if held.reason.size else []
+        speeds = [in_rpm(speed) for speed in result.speed[held.not_settled].tolist()]
+        told = [f"{speed} ({reason})" for speed, reason in zip(speeds, why, strict=True)] if why else speeds
+        count = f"{len(speeds)} of {np.count_nonzero(held.at)}"
+        found.append(f"the motion has not settled at {count} speeds at which it was held: {_first(told)}")
+    return found
+
+
+def _first(parts: list[str]) -> str:
+    """The first ten."""
+    return ", ".join(parts[:10]) + (", ..." if len(parts) > 10 else "")
+
+
 def machine(result: RunResult) -> str:
     """The machine and its speeds, in one sentence.
 
@@ -539,14 +566,19 @@ BALLS = (
 )
 
 
-def described(names: Iterable[str]) -> list[tuple[str, str]]:
+def described(names: Iterable[str], held: bool = False) -> list[tuple[str, str]]:
     """Name of each model once, with what it does and takes for granted; nothing of one that is not known.
 
     Parameters
     ----------
     names : of models, in any order
+    held : long waves were held in time
     """
-    return [(name, " ".join(MODELS.get(name, ()))) for name in dict.fromkeys(names)]
+    found = {name: MODELS.get(name, ()) for name in names}
+    if held:
+        does, granted = MODELS[HELD_MODEL]
+        found[HELD_MODEL] = (does, HELD, granted)
+    return [(name, " ".join(told)) for name, told in found.items()]
 
 
 def speeds_words(span: ModelSpan) -> str:
