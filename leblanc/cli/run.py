@@ -71,7 +71,7 @@ def run(
         failed = [f"{scene}: {text}" for text in unanswered(result)]
         if result.held is not None and result.held.not_settled.any():
             failed.append(
-                "All files are written; what has not settled is marked not_settled and has the numbers of its "
+                "All files are written; what has not settled is marked not_settled, with the numbers of its "
                 f"last turns. The states are kept in {folder / 'held'}: another run takes them from there."
             )
         raise NotConverged(failed)

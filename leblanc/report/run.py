@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from leblanc.report.page import About, models, notes, why, write_page
 from leblanc.report.parts import Cell, Table, doubt, picture, table
@@ -102,13 +103,21 @@ def held_motions(result: RunResult) -> list[Table]:
     if cycles:
         sizes = (f"{name} ({unit.name})" for name in ("mean amplitude", "least", "largest"))
         tables.append(table("", ("Limit cycles (rpm)", *sizes, "whirl speed (rpm)"), cycles))
+
+    def motion(states: NDArray[np.str_], values: Array) -> str:
+        return f"{', '.join(dict.fromkeys(states.tolist()))}, {size(values)}".replace("_", " ")
+
     apart = [
-        (_extent(result.speed[part] * RPM), size(mean[part]), size(held.amplitude_down[part]))
+        (
+            _extent(result.speed[part] * RPM),
+            motion(held.state[part], mean[part]),
+            motion(held.state_down[part], held.amplitude_down[part]),
+        )
         for part in _runs(result.speed, held.hysteresis)
     ]
     if apart:
-        sizes = (f"amplitude, {way} speed ({unit.name})" for way in ("rising", "falling"))
-        tables.append(table("", ("Up and down differ (rpm)", *sizes), apart))
+        ways = (f"{way} speed: motion, amplitude ({unit.name})" for way in ("rising", "falling"))
+        tables.append(table("", ("Up and down differ (rpm)", *ways), apart))
     return tables
 
 

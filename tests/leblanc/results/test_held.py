@@ -1,0 +1,167 @@
+"""Motions held in time: what a result says of them in numbers, notes, words, tables and exit codes."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import leblanc as lb
+from leblanc.cli import main
+from leblanc.report.run import held_motions
+from leblanc.results import notes
+from leblanc.results.notes import RunCode
+from leblanc.results.response import MOTIONS, RunResult, SelfExcited
+from leblanc.text import run as words
+from meshes.errors import InputError
+from tests.oracles.data_files import assert_read_back
+from tests.oracles.records import RPM, held_rig, rig
+
+SOME = slice(8, 16)  # 860 to 1525 rpm: the limit cycles and two speeds more
+
+
+def held_of(result: RunResult):
+    assert result.held is not None
+    return result.held
+
+
+def at(result: RunResult, rpm: float) -> int:
+    return int(np.argmin(np.abs(result.speed - rpm * RPM)))
+
+
+def cut(result: RunResult, rpm: float) -> RunResult:
+    """The speeds up to one, which is then the last."""
+    last = np.arange(at(result, rpm) + 1)
+    held = held_of(result)
+    arrays = {
+        name: value[last]
+        for name, value in vars(held).items()
+        if isinstance(value, np.ndarray) and value.shape[:1] == result.speed.shape
+    }
+    error = result.error_estimate
+    assert error is not None
+    response = result.response.at(last)
+    return replace(result, response=response, held=replace(held, **arrays), error_estimate=error[last])
+
+
+def test_json_and_data_file_have_the_same_motions(tmp_path: Path) -> None:
+    result = held_rig(at=SOME)
+    found = json.loads(json.dumps(result.to_json(), allow_nan=False))
+    data = result.to_dataset()
+    assert_read_back(result.named_arrays(), tmp_path)
+    held = held_of(result)
+    assert found["held_at"] == held.at.tolist() == (data["held_at"] == 1).values.tolist()
+    assert found["state"].count("limit_cycle") == 3
+    for key in ("held_error", "held_whirl_speed", "amplitude_down", "amplitude_min", "amplitude_max"):
+        np.testing.assert_array_equal(np.array(found[key], dtype=float), data[key].values)
+        np.testing.assert_array_equal(np.array(found[key], dtype=float), getattr(result, key))
+    for key in ("liquid_mean", "liquid_ripple"):
+        assert [row != [None] and row != [[None, None]] for row in found[key]] == held.at.tolist()
+    assert data["held_reason"].values.tolist() == found["held_reason"] == result.held_reason.tolist()
+    meanings = data["state_down"].attrs["flag_meanings"].split()
+    assert tuple(meanings) == MOTIONS
+    shown = [meanings[int(value) + len(MOTIONS) - 2] for value in data["state_down"].values]
+    assert shown == found["state_down"]
+
+
+def test_a_motion_held_has_shown_its_own_stability() -> None:
+    """Where linear theory knows nothing of the whirls the motion itself says what it is."""
+    result = replace(held_rig(), whirl=SelfExcited(np.full(21, np.nan), np.full(21, np.nan), (), "none"))
+    kinds = dict(zip(result.state.tolist(), result.stability.tolist(), strict=True))
+    assert kinds == {"periodic": "stable", "limit_cycle": "unstable", "not_settled": "not_known"}
+
+
+def test_limits_tell_cycles_from_what_is_unstable() -> None:
+    rows = {limit.label: limit for limit in words.limits(held_rig())}
+    largest = held_of(held_rig()).largest[held_of(held_rig()).limit_cycle].max() * 1e3
+    assert rows["Limit cycle"].where == f"1145 to 1335 rpm, amplitude up to {largest:.4g} mm"
+    assert (rows["Not settled"].where, rows["Up and down differ"].where) == ("195 rpm", "1430 rpm")
+    assert not rows["Answer unstable"].failed
+    assert not {"Not converged", "Stability not known"} & set(rows)
+    # Nothing of all this where no motion was held.
+    assert not {"Limit cycle", "Not settled", "Up and down differ"} & {x.label for x in words.limits(rig())}
+
+
+def test_the_answer_says_that_a_number_is_a_mean() -> None:
+    result = cut(held_rig(), 1240.0)
+    k, held = at(result, 1240.0), held_of(result)
+    mean, least, largest = (x[k] * 1e3 for x in (result.amplitude, held.least, held.largest))
+    said = words.answer(result)
+    assert f"is {mean:.4g} mm on average (limit cycle, between {least:.4g} and {largest:.4g} mm)" in said
+    # Two per mille are not spoken of, two percent are.
+    assert "on average" not in words.answer(held_rig())
+    calm = held_of(held_rig())
+    stirred = replace(held_rig(), held=replace(calm, largest=1.02 * calm.largest))
+    assert words.answer(stirred).count("on average") == 2
+    assert words.answer(stirred).count("limit cycle") == 0
+
+
+def test_an_unsettled_number_is_said_to_be_one() -> None:
+    assert "(out of range, not settled)" in words.answer(cut(held_rig(), 195.0))
+
+
+def test_notes_count_what_was_held() -> None:
+    held, speed = held_of(held_rig()), held_rig().speed
+    motions, restless = notes.held_motions(held, speed)
+    assert motions.code is RunCode.HELD and restless.code is RunCode.NOT_SETTLED
+    assert dict(motions.data) == {
+        "held": 21, "cells": 128, "error": 3e-3, "limit_cycles": 3, "hysteresis": 1,
+    }  # fmt: skip
+    assert "Limit cycles at 3, between 1145 and 1335 rpm." in motions.text
+    assert "at 195 rpm: the motion still changes after 1024 turns" in restless.text
+    settled = replace(held, state=np.where(held.not_settled, "periodic", held.state))
+    assert [note.code for note in notes.held_motions(settled, speed)] == [RunCode.HELD]
+
+
+def test_slow_disturbances_are_spoken_of_where_nothing_was_held() -> None:
+    """A motion held in time has met every disturbance, slow or not."""
+    assert notes.slow_disturbances(held_of(held_rig())) is None
+    some = notes.slow_disturbances(held_of(held_rig(at=SOME)))
+    assert some is not None and some.text.startswith("Where no motion was held in time")
+    plain = notes.slow_disturbances()
+    assert plain is not None and plain.text.startswith("Branches are judged")
+
+
+def test_report_tells_cycles_by_ranges_of_speed() -> None:
+    cycles, apart = held_motions(held_rig())
+    (row,) = [[cell.text for cell in row] for row in cycles.rows]
+    result = held_rig()
+    of = held_of(result).limit_cycle
+    mean, whirl = result.amplitude[of] * 1e3, held_of(result).whirl_speed[of] / RPM
+    assert row[0] == "1145 to 1335"
+    assert row[1] == f"{mean.min():.4g} to {mean.max():.4g}"
+    assert float(row[2]) == pytest.approx(held_of(result).least[of].min() * 1e3, rel=1e-3)
+    assert float(row[3]) == pytest.approx(held_of(result).largest[of].max() * 1e3, rel=1e-3)
+    assert row[4] == f"{whirl.min():.4g} to {whirl.max():.4g}"
+    (row,) = [[cell.text for cell in row] for row in apart.rows]
+    assert row[0] == "1430" and row[1].startswith("periodic, ") and row[2].startswith("limit cycle, ")
+    assert held_motions(rig()) == []
+
+
+def test_exit_code_3_says_what_has_not_settled_and_what_is_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("leblanc.studies.run.run_scene", lambda *_, **__: held_rig())
+    scene = Path(__file__).parents[3] / "examples/horizontal_rig.toml"
+    assert main(["run", str(scene), "--out", str(tmp_path)]) == 3
+    said = " ".join(capsys.readouterr().err.split())
+    assert "not settled at 1 of 21 speeds" in said
+    assert "195 rpm (the motion still changes after 1024 turns)" in said
+    assert "held" in said and "no bounded deflection" not in said
+    assert (tmp_path / "response.nc").exists() and (tmp_path / "summary.html").exists()
+
+
+def test_the_answer_does_not_depend_on_the_workers() -> None:
+    scene = lb.example("horizontal_rig").replace(
+        {
+            "model.liquid": "long_wave", "model.cells": 16, "model.friction": {"linear": 20.0},
+            "speeds.start": "1600 rpm", "speeds.stop": "1800 rpm", "speeds.count": 2,
+        }
+    )  # fmt: skip
+    alone, two = (lb.run(scene, workers=count).to_json() for count in (1, 2))
+    assert alone == two and set(alone["model"]) == {"long_wave"}
+    with pytest.raises(InputError, match="workers"):
+        lb.run(scene, workers=0)
