@@ -29,8 +29,9 @@ def test_layer_against_computed_flow() -> None:
     half = found["B_0.5_f1"]
     assert abs(float(half.printed) - 0.001 - float(half.computed)) < 0.005 * float(half.computed)  # type: ignore[arg-type]
     for variant in ("plain", "dispersion", "friction", "both"):
-        off = [float(one) for one in str(found[f"C_0.05_f1-{variant}"].difference).rstrip(" %").split(",")]
-        assert max(off[:3]) <= 10.0 and max(off[3], off[5]) <= 35.0
+        assert found[f"C_0.05_f1-{variant}"].verdict == "agrees"
+        # The computed flow is no target there: it depends on its mesh.
+        assert found[f"C_0.05_f1-{variant}-late"].verdict == "trend"
 
 
 def test_finite_elements_agree_with_closed_forms() -> None:

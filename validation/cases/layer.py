@@ -21,14 +21,14 @@ from meshes.chamber import Chamber
 from solvers.layer.settle import settle, simulate
 from solvers.layer.state import LayerHistory, Numerics
 from solvers.liquid_model import Whirl
-from validation.cases.case import Case, Verdict
+from validation.cases.case import Case, Effect, shape_verdict
 from validation.cases.rigs import data
 
 _SOURCE = "interFoam, openfoam_layer.json"
 _HEIGHT = 0.01  # the flow is plane: any height will do
-# Force of the bore over the reference's modulus: the first three whirl periods, and the next three, where
-# two meshes of the reference differ by up to 29 %.
-_EARLY, _LATE, _ROTATION = 0.10, 0.35, 0.25
+# Force of the bore over the reference's modulus in the first three whirl periods. From the fourth on the
+# reference depends on its mesh by more than a fourth, and is no target: a trend.
+_PERIODS, _EARLY, _ROTATION = 3, 0.10, 0.25
 
 
 def cases() -> list[Case]:
@@ -102,26 +102,46 @@ def _bore(run: dict[str, Any]) -> list[Case]:
     reference = np.array([complex(*pair) for pair in run["force_ratio"]])
     found = []
     for name, history in bore_histories().items():
-        off = np.abs(history.force_ratio - reference) / np.abs(reference)
-        found.append(_force_case(run["name"], name, off))
+        found += _force_cases(run["name"], name, history.force_ratio, reference)
         if name == "both":
             found.append(_rotation_case(run, history.time, history.mean_rotation))
     return found
 
 
-def _force_case(run: str, variant: str, off: NDArray[np.float64]) -> Case:
-    met = bool(np.all(off[:3] <= _EARLY) and np.all(off[3:6] <= _LATE))
-    verdict: Verdict = "agrees" if met else "differs"
-    return Case(
-        name=f"layer/{run}-{variant}",
-        source=_SOURCE,
-        quantity="force of the bore, nine whirl periods, deviation over the reference's modulus",
-        printed=0.0,
-        computed=float(np.max(off[:6])),
-        difference=", ".join(f"{100 * error:.0f}" for error in off) + " %",
-        verdict=verdict,
-        note="agrees within 10 % in three periods and 35 % in the next three; computed is the largest of six",
-    )
+def _force_cases(
+    run: str, variant: str, force: NDArray[np.complex128], reference: NDArray[np.complex128]
+) -> list[Case]:
+    """The first periods of the bore, which are held to the flow's, and the others, whose trend is."""
+    off = np.abs(force - reference) / np.abs(reference)
+    early, late = off[:_PERIODS], off[_PERIODS:]
+    sizes = [float(np.abs(each[_PERIODS:]).mean()) for each in (reference, force)]
+    return [
+        Case(
+            name=f"layer/{run}-{variant}",
+            source=_SOURCE,
+            quantity="force of the bore, three whirl periods, deviation over the reference's modulus",
+            printed=0.0,
+            computed=float(np.max(early)),
+            difference=_percent(early),
+            verdict="agrees" if bool(np.all(early <= _EARLY)) else "differs",
+            note="agrees within 10 %; computed is the largest",
+        ),
+        Case(
+            name=f"layer/{run}-{variant}-late",
+            source=_SOURCE,
+            quantity="the same in the six periods after those, where the reference depends on its mesh",
+            printed=0.0,
+            computed=float(np.max(late)),
+            difference=_percent(late),
+            verdict=shape_verdict(True, Effect("mean modulus of the force ratio", *sizes)),
+            note="computed is the largest",
+            effect=Effect("mean modulus of the force ratio", *sizes),
+        ),
+    ]
+
+
+def _percent(shares: NDArray[np.float64]) -> str:
+    return ", ".join(f"{100 * share:.0f}" for share in shares) + " %"
 
 
 def _rotation_case(run: dict[str, Any], time: NDArray[np.float64], rotation: NDArray[np.float64]) -> Case:
@@ -136,7 +156,7 @@ def _rotation_case(run: dict[str, Any], time: NDArray[np.float64], rotation: NDA
         quantity="mean rotation of the liquid against the drum, deviation at each of the reference's times",
         printed=0.0,
         computed=float(off.max()),
-        difference=", ".join(f"{100 * error:.0f}" for error in off) + " %",
+        difference=_percent(off),
         verdict="agrees" if bool(np.all(off <= _ROTATION)) else "differs",
         note="agrees within 25 %; with dispersion and laminar wall friction",
     )
