@@ -404,9 +404,9 @@ def unanswered(result: RunResult) -> list[str]:
         found.append(f"no bounded deflection found at {count} speeds: {speeds}")
     if held is not None and held.not_settled.any():
         why = held.reason[held.not_settled].tolist() if held.reason.size else []
-        speeds = [in_rpm(speed) for speed in result.speed[held.not_settled].tolist()]
-        told = [f"{speed} ({reason})" for speed, reason in zip(speeds, why, strict=True)] if why else speeds
-        count = f"{len(speeds)} of {np.count_nonzero(held.at)}"
+        places = [in_rpm(speed) for speed in result.speed[held.not_settled].tolist()]
+        told = [f"{place} ({reason})" for place, reason in zip(places, why, strict=True)] if why else places
+        count = f"{len(places)} of {np.count_nonzero(held.at)}"
         found.append(f"the motion has not settled at {count} speeds at which it was held: {_first(told)}")
     return found
 
@@ -574,7 +574,7 @@ def described(names: Iterable[str], held: bool = False) -> list[tuple[str, str]]
     names : of models, in any order
     held : long waves were held in time
     """
-    found = {name: MODELS.get(name, ()) for name in names}
+    found: dict[str, tuple[str, ...]] = {name: MODELS.get(name, ()) for name in names}
     if held:
         does, granted = MODELS[HELD_MODEL]
         found[HELD_MODEL] = (does, HELD, granted)

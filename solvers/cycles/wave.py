@@ -204,7 +204,7 @@ class StandingWave:
 
         n, pace, loads = self.cells, records(PACE), records(LOADS)
         drive = Drive(max(given.size, _LEAST), given.ratio - 1.0, 0.0, given.ratio, 0.0, 1.0)
-        wall = Wall(self.friction.law.number, max(given.drag, 0.0), self._lid, 0.0)
+        wall = Wall(self.friction.law.number, max(given.drag, 0.0), self._lid, False)
         courant, pace[0].time = _LONGEST if parts else _COURANT, start
         most = step_budget(time, 1.0, n, courant)
         for part in range(max(parts, 1)):

@@ -239,7 +239,7 @@ def held_result(found: HeldBranches, machine: Prepared, at: Index) -> Held:
     up, down, speeds = found.up, found.down, machine.speed.size
     apart = found.hysteresis
 
-    def spread(values: Sequence[Any] | Array, missing: float | complex = np.nan) -> NDArray[Any]:
+    def spread(values: Sequence[Any] | Array, missing: complex | str = np.nan) -> NDArray[Any]:
         known = np.asarray(values)
         whole = np.full((speeds, *known.shape[1:]), missing, dtype=known.dtype)
         whole[at] = known

@@ -1,4 +1,4 @@
-"""Figures of motions held in time: range over time, limit cycles and their whirl, the way down, the layers."""
+"""Figures of motions held in time: range over time, limit cycles, the way down, the layers."""
 
 from __future__ import annotations
 
