@@ -308,6 +308,7 @@ def layer(
     liquid: str | Liquid = "water",
     duration: Quantity | None = None,
     ramp: Quantity = 0.0,
+    solver: str | None = None,
 ) -> LayerResult | LayerPeriodsResult:
     """Force and centre of mass of a liquid layer under a prescribed whirl, in the plane.
 
@@ -327,6 +328,7 @@ def layer(
     liquid : a known name, or a `leblanc.Liquid`
     duration : start from rest and answer period by period, s; for long_wave
     ramp : time over which the whirl grows, with a duration, s
+    solver : of py-pde, as runge-kutta or scipy, in place of finite_volume (long_wave), steady_newton (kdv)
 
     Raises
     ------

@@ -105,6 +105,7 @@ def layer_question(
     liquid: str | Liquid = "water",
     duration: Quantity | None = None,
     ramp: Quantity = 0.0,
+    solver: str | None = None,
 ) -> LayerQuestion:
     """The question of `layer`; the parameters are those of `leblanc.api.layer`.
 
@@ -128,7 +129,7 @@ def layer_question(
     }
     law = friction_of(friction)
     with as_options():
-        whirl["model"] = wave_model(model, law, cells, dispersion)
+        whirl["model"] = wave_model(model, law, cells, dispersion, solver)
     length = None if duration is None else parse_option(duration, TIME, "--duration")
     return LayerQuestion(whirl, length, parse_option(ramp, TIME, "--ramp"))
 

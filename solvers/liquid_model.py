@@ -70,6 +70,20 @@ class Whirl:
         return 2.0 * math.pi / (abs(self.slip) or self.spin)
 
 
+def grown(time: Array | float, ramp: float) -> Array:
+    """Share of its amplitude that a whirl has grown to, tau - sin(2 pi tau)/(2 pi), tau = time/ramp up to 1.
+
+    Parameters
+    ----------
+    time : s, any shape
+    ramp : time over which it grows, s; 0: it is there at once
+    """
+    if ramp == 0.0:
+        return np.ones_like(time, dtype=float)
+    part = np.minimum(np.asarray(time) / ramp, 1.0)
+    return np.asarray(part - np.sin(2.0 * math.pi * part) / (2.0 * math.pi))
+
+
 @dataclass(frozen=True)
 class Whirls:
     """n circular whirls, one for each of the fills that are asked about; all shapes (n,).
@@ -345,6 +359,11 @@ class WaveModel(LiquidModel, Protocol):
 
     # Chambers with baffles in the liquid, or a section of their own, are served as well.
     takes_baffles: ClassVar[bool] = False
+
+    @property
+    def solver(self) -> str:
+        """Name in py-pde of what solves it; empty where that is not py-pde."""
+        return ""
 
     @property
     def ranges(self) -> Mapping[str, Range]:

@@ -42,6 +42,12 @@ def layer(
         str | None, typer.Option(help="Start from rest and answer period by period (long_wave).")
     ] = None,
     ramp: Annotated[str, typer.Option(help="Time over which the whirl grows, with --duration.")] = "0",
+    solver: Annotated[
+        str | None,
+        typer.Option(
+            help="Of py-pde: runge-kutta, scipy ... [default: long_wave finite_volume, kdv steady_newton]."
+        ),
+    ] = None,
     profile: Annotated[bool, typer.Option("--profile", help="Add the depth around the wall.")] = False,
     out: Annotated[Path | None, typer.Option(help="Folder for the figure of the wave.")] = None,
     animate: Annotated[
@@ -64,11 +70,12 @@ def layer(
         require_film(animate)
         require_writable(animate)
     result: LayerResult | LayerPeriodsResult
-    with working("waves under the whirl"):
+    with working("waves under the whirl") as update:
+        whirl = question.whirl | {"progress": lambda share: update(share, 1.0)}
         if question.duration is not None:
-            result = layer_history(**question.whirl, duration=question.duration, ramp=question.ramp)
+            result = layer_history(**whirl, duration=question.duration, ramp=question.ramp)
         else:
-            result = answer_layer(**question.whirl)
+            result = answer_layer(**whirl)
             if folder is not None:
                 _draw(result, folder)
     if animate is not None:
@@ -139,7 +146,8 @@ def _film(question: LayerQuestion, path: Path) -> None:
     from leblanc.studies.layer import layer_film
 
     with working("waves through time") as update:
-        wave, film = layer_film(**question.whirl, duration=question.duration, ramp=question.ramp)
+        whirl = question.whirl | {"progress": lambda share: update(share, 1.0)}
+        wave, film = layer_film(**whirl, duration=question.duration, ramp=question.ramp)
         update(what="drawing")
         frames = animate(wave, film, path, update)
     say(f"wrote {path}, {frames} frames")

@@ -95,6 +95,7 @@ class LayerCase:
     radius, inner_radius, mean_depth : wall, inner wall (0 if none), layer undisturbed, m
     speed, whirl_speed : spin; whirl in space, negative against the spin, rad/s
     whirl_amplitude : m
+    solver : of the model's equations, by its name in py-pde; empty where that does not solve them
     """
 
     model: str
@@ -104,6 +105,7 @@ class LayerCase:
     speed: float
     whirl_speed: float
     whirl_amplitude: float
+    solver: str = ""
 
 
 @dataclass(frozen=True)
@@ -150,6 +152,7 @@ class LayerResult(Result):
     captured: bool
     validity: tuple[Number, ...]
 
+    solver = carried("case.solver")
     figure = "leblanc.figures.wave:layer_figure"
     summary = "leblanc.text.liquid:layer_summary"
 
@@ -182,6 +185,7 @@ class LayerResult(Result):
         more = ("theta", "depth") if profile else ()
         found: dict[str, Any] = {name: getattr(self, name) for name in (*names, *more)}
         return found | {
+            "solver": self.solver,
             "notes": texts(self.notes),
             "gravity_offset": self.gravity_offset,
             "captured": self.captured,
@@ -231,6 +235,7 @@ class LayerPeriodsResult(Result):
     notes: tuple[Note, ...]
     validity: tuple[Number, ...]
 
+    solver = carried("case.solver")
     figure = "leblanc.figures.wave:periods_figure"
     summary = "leblanc.text.liquid:periods_summary"
 
@@ -266,6 +271,7 @@ class LayerPeriodsResult(Result):
         names += ("mass_error", "converged", *(("theta", "depth") if profile else ()))
         found: dict[str, Any] = {name: getattr(self.history, name) for name in names}
         return found | {
+            "solver": self.solver,
             "in_range": self.in_range,
             "validity": tuple(map(asdict, self.validity)),
             "notes": texts(self.notes),

@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -27,8 +28,8 @@ from leblanc.results.layer import (
 )
 from leblanc.studies.validity import judge
 from meshes.errors import InputError, require_not_negative, require_positive
-from solvers.layer.settle import LongWave, film, simulate
 from solvers.liquid_model import LiquidWave, WaveModel, Whirl
+from solvers.pypde.models import LongWave, OneFamily, Progress
 from solvers.synchronous.models import LINEAR
 
 _ONE_WAY = 1e-6  # part of the answer that may go the other way round before it is worth a note
@@ -41,6 +42,7 @@ def answer_layer(
     whirl_amplitude: float,
     model: WaveModel,
     gravity: float = 0.0,
+    progress: Progress = None,
 ) -> LayerResult:
     """Answer of the liquid in one chamber to a circular whirl of its axis.
 
@@ -53,6 +55,7 @@ def answer_layer(
         ratio, the others no force
     model : of the liquid, with its friction and resolution; `leblanc.studies.liquid.wave_model` names them
     gravity : across the axis, m/s^2; for the linear and the long-wave model
+    progress : called with the share of the longest time that is done, by models that go through time
 
     Raises
     ------
@@ -70,7 +73,7 @@ def answer_layer(
     begin = time.perf_counter()
     whirl = Whirl(speed, whirl_speed, whirl_amplitude, gravity=gravity)
     with as_options():
-        wave = model.wave(fill, whirl)
+        wave = watched(model, progress).wave(fill, whirl)
     taken = time.perf_counter() - begin
     notes, surface = wave_notes(wave), fill.surface_radius
     in_range = not notes
@@ -78,7 +81,7 @@ def answer_layer(
         notes = (dry_wall(),)
     kappa = (fill.chamber.radius / surface) ** 2 if gravity else math.nan
     return LayerResult(
-        case=_case(fill, whirl, model.name),
+        case=_case(fill, whirl, model),
         force_ratio=_force_ratio(fill, whirl, wave),
         offset=complex(wave.answer.offset[0]),
         mass_error=wave.mass_error,
@@ -93,6 +96,16 @@ def answer_layer(
         captured=not gravity or speed > float(waves.capture_speed(surface, gravity)),
         validity=judge(wave),
     )
+
+
+Model = TypeVar("Model", bound=WaveModel)
+
+
+def watched(model: Model, progress: Progress) -> Model:
+    """The model, with someone to tell how far it has come, if it goes through time."""
+    if progress is not None and isinstance(model, LongWave | OneFamily):
+        return replace(model, progress=progress)
+    return model
 
 
 @contextmanager
@@ -125,16 +138,17 @@ def wave_notes(wave: LiquidWave) -> tuple[Note, ...]:
     )
 
 
-def _case(fill: Fill, whirl: Whirl, model: str) -> LayerCase:
+def _case(fill: Fill, whirl: Whirl, model: WaveModel) -> LayerCase:
     """The whirl and the chamber, for texts and figures."""
     return LayerCase(
-        model=model,
+        model=model.name,
         radius=fill.chamber.radius,
         inner_radius=fill.chamber.inner_radius,
         mean_depth=fill.depth,
         speed=whirl.spin,
         whirl_speed=whirl.speed,
         whirl_amplitude=whirl.amplitude,
+        solver=model.solver,
     )
 
 
@@ -147,6 +161,7 @@ def layer_history(
     duration: float,
     ramp: float = 0.0,
     gravity: float = 0.0,
+    progress: Progress = None,
 ) -> LayerPeriodsResult:
     """Layer from rest in the drum, whirl period by whirl period; the parameters are `answer_layer`'s.
 
@@ -154,6 +169,7 @@ def layer_history(
     ----------
     duration : time answered, s
     ramp : time over which the whirl amplitude grows, s
+    progress : called with the share of the time that is done
 
     Raises
     ------
@@ -161,10 +177,13 @@ def layer_history(
     """
     if not isinstance(model, LongWave):
         raise InputError("--model", model.name, "long_wave where a --duration is given")
+    from solvers.pypde.settle import simulate
+
     whirl = Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity)
-    history = simulate(fill, whirl, duration, model.friction, model.numerics)
+    with as_options():
+        history = simulate(fill, whirl, duration, model.friction, model.numerics, model.solver, progress)
     wave = model.wave_at_end(fill, whirl, history)
-    return LayerPeriodsResult(_case(fill, whirl, model.name), history, wave_notes(wave), judge(wave))
+    return LayerPeriodsResult(_case(fill, whirl, model), history, wave_notes(wave), judge(wave))
 
 
 def layer_film(
@@ -176,6 +195,7 @@ def layer_film(
     gravity: float = 0.0,
     duration: float | None = None,
     ramp: float = 0.0,
+    progress: Progress = None,
 ) -> tuple[Wave, WaveFrames]:
     """A layer in the drum frame for a film; the parameters are `layer_history`'s.
 
@@ -192,9 +212,10 @@ def layer_film(
     """
     whirl = Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity)
     if not isinstance(model, LongWave):
-        answer = answer_layer(fill, speed, whirl_speed, whirl_amplitude, model, gravity)
+        answer = answer_layer(fill, speed, whirl_speed, whirl_amplitude, model, gravity, progress)
         return answer.wave(), steady_film(answer, whirl, 2.0 * whirl.period)
-    frames = _film_from_rest(fill, whirl, model, duration or 6.0 * whirl.period)
+    with as_options():
+        frames = _film_from_rest(fill, whirl, watched(model, progress), duration or 6.0 * whirl.period)
     linear = answer_layer(fill, speed, whirl_speed, whirl_amplitude, LINEAR, gravity)
     last = replace(linear.wave(), model=model.name, theta=frames.theta, depth=frames.depth[-1], notes=())
     return last, frames
@@ -202,9 +223,12 @@ def layer_film(
 
 def _film_from_rest(fill: Fill, whirl: Whirl, model: LongWave, duration: float) -> WaveFrames:
     """Long waves from rest."""
+    from solvers.pypde.settle import film
+
     # Eight pictures at least while the deflection turns once, and enough for a smooth film.
     frames = int(np.clip(8.0 * duration / whirl.period, 120, 2000))
-    shots = film(fill, whirl, frames, duration / whirl.period, model.friction, model.numerics)
+    periods = duration / whirl.period
+    shots = film(fill, whirl, frames, periods, model.friction, model.numerics, model.solver, model.progress)
     return WaveFrames(time=shots.time, theta=shots.theta, depth=shots.depth, deflection=shots.deflection)
 
 

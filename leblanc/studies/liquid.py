@@ -6,6 +6,7 @@ A room of solvers is imported where one of its models is made: the response need
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fluid.friction import NO_FRICTION, Friction, FrictionLaw
@@ -16,30 +17,32 @@ from solvers.synchronous.models import LINEAR, STATICS
 if TYPE_CHECKING:
     from solvers.runup.machine import RunupModel
 
-_Make = Callable[[Friction, int | None, bool], WaveModel]
+_Make = Callable[[Friction, int | None, bool, str | None], WaveModel]
 _SEGMENTS = 48  # edges along the wall of the elements under a paraboloid
 _POINTS = 256  # round the wall, unless another number is asked for
 
 
-def _linear(friction: Friction, cells: int | None, dispersion: bool) -> WaveModel:
+def _linear(friction: Friction, cells: int | None, dispersion: bool, solver: str | None) -> WaveModel:
     _require_none(friction, "the linear theory, which is inviscid")
     return LINEAR
 
 
-def _long_wave(friction: Friction, cells: int | None, dispersion: bool) -> WaveModel:
-    from solvers.layer.settle import LongWave
+def _long_wave(friction: Friction, cells: int | None, dispersion: bool, solver: str | None) -> WaveModel:
     from solvers.layer.state import Numerics
+    from solvers.pypde.models import LongWave
 
-    return LongWave(friction, Numerics(_POINTS if cells is None else cells, dispersion))
-
-
-def _kdv(friction: Friction, cells: int | None, dispersion: bool) -> WaveModel:
-    from solvers.waves.one_family import OneFamily
-
-    return OneFamily(friction, _POINTS if cells is None else cells, dispersion)
+    numerics = Numerics(_POINTS if cells is None else cells, dispersion)
+    return LongWave(friction, numerics) if solver is None else LongWave(friction, numerics, solver)
 
 
-def _fem(friction: Friction, cells: int | None, dispersion: bool) -> WaveModel:
+def _kdv(friction: Friction, cells: int | None, dispersion: bool, solver: str | None) -> WaveModel:
+    from solvers.pypde.models import OneFamily
+
+    family = OneFamily(friction, _POINTS if cells is None else cells, dispersion)
+    return family if solver is None else replace(family, solver=solver)
+
+
+def _fem(friction: Friction, cells: int | None, dispersion: bool, solver: str | None) -> WaveModel:
     from solvers.sloshing.model import SmallWaves
 
     _require_none(friction, "finite elements, which are inviscid")
@@ -60,6 +63,8 @@ _MAKE: Mapping[str, _Make] = {
     "fem": _fem,
 }
 WAVE_MODELS = tuple(_MAKE)
+# Those that py-pde solves.
+_MARCHED = ("long_wave", "kdv")
 # Those that answer the unbalance of a rotor: the liquid is at rest in a synchronous whirl.
 SYNCHRONOUS_MODELS = ("statics", "linear", "fem")
 # Those that answer it in the end: long waves are held in time until they settle.
@@ -69,7 +74,11 @@ RUNUP_MODELS = ("long_wave", "linear")
 
 
 def wave_model(
-    name: str, friction: Friction = NO_FRICTION, cells: int | None = None, dispersion: bool = False
+    name: str,
+    friction: Friction = NO_FRICTION,
+    cells: int | None = None,
+    dispersion: bool = False,
+    solver: str | None = None,
 ) -> WaveModel:
     """The liquid model that `layer` names, for a prescribed whirl.
 
@@ -79,14 +88,18 @@ def wave_model(
     friction : on the wall; statics feel none, as the liquid is at rest in the drum
     cells : round the wall, or points of one family; as many as serves most cases if None
     dispersion : of the finite depth, for long waves; the exact one for one family; the others have it anyway
+    solver : its name in py-pde, for long waves and one family; the model's own if None
 
     Raises
     ------
-    InputError : no such name, friction that the model does not know, a resolution that it does not take
+    InputError : no such name, a solver for another model, friction that the model does not know, a resolution
+        that it does not take
     """
     if name not in _MAKE:
         raise InputError("model", name, "one of " + ", ".join(_MAKE))
-    return _MAKE[name](friction, cells, dispersion)
+    if solver is not None and name not in _MARCHED:
+        raise InputError("solver", solver, f"left out for {name}; " + " and ".join(_MARCHED) + " have one")
+    return _MAKE[name](friction, cells, dispersion, solver)
 
 
 def synchronous_model(name: str) -> LiquidModel:

@@ -154,7 +154,7 @@ def layer_profile(
 def layer_summary(result: LayerResult) -> list[tuple[str, str]]:
     """The main numbers of a layer's answer, as labels and values."""
     return [
-        ("Liquid model", result.case.model),
+        *_model(result),
         ("Force ratio", _at_angle(result.force_ratio)),
         ("Centre of mass", _at_angle(result.offset, LENGTH)),
         ("Mean rotation in the drum", _rate(result.mean_rotation)),
@@ -168,14 +168,20 @@ def periods_summary(result: LayerPeriodsResult) -> list[tuple[str, str]]:
     """The main numbers of a layer from rest, as labels and values."""
     h = result.history
     if not h.time.size:
-        return [("Liquid model", result.case.model), ("Answer", h.reason)]
+        return [*_model(result), ("Answer", h.reason)]
     return [
-        ("Liquid model", result.case.model),
+        *_model(result),
         ("Whirl periods", f"{h.time.size}"),
         ("Force ratio of the last one", _at_angle(complex(h.force_ratio[-1]))),
         ("Mean rotation in the drum", _rate(float(h.mean_rotation[-1]))),
         *_validity(result.converged, result.in_range, result.validity),
     ]
+
+
+def _model(result: LayerResult | LayerPeriodsResult) -> list[tuple[str, str]]:
+    """The model, and what of py-pde solves it."""
+    solver = [("Solver of py-pde", result.case.solver)] if result.case.solver else []
+    return [("Liquid model", result.case.model), *solver]
 
 
 def _validity(converged: bool, in_range: bool, numbers: tuple[Number, ...]) -> list[tuple[str, str]]:

@@ -254,7 +254,28 @@ def _bounds(values):
 
 
 @_jit
-def _tally(area, q, spin, pull, angles, cosine, sine, share, sums):
+def centre(area, angles):
+    """Centre of mass of the layer from the drum's axis, x and y in the drum frame; nan without liquid.
+
+    Parameters
+    ----------
+    area : A, shape (n,); below zero counts as dry
+    angles : as for `advance`
+    """
+    x, y, total = 0.0, 0.0, 0.0
+    for i in range(area.size):
+        a = np.maximum(area[i], 0.0)
+        r = surface_radius(a)
+        # (1 - r^3)/3, without cancellation in thin films.
+        moment = 2.0 / 3.0 * a * (1.0 + r + r * r) / (1.0 + r)
+        x += moment * angles[0, i]
+        y += moment * angles[1, i]
+        total += a
+    return x / total, y / total
+
+
+@_jit
+def tally(area, q, spin, pull, angles, cosine, sine, share, sums):
     """Add a time's share of the loads to the record of `advance`.
 
     Forces and offsets are turned into the frame of the deflection, at an angle of this cosine and sine.
@@ -341,7 +362,7 @@ def advance(area, q, pace, stop, drive, wall, angles, courant, most, spare, load
             x, y = _whirl(time, drive)
             pull(x, y, angles, pull_cell, pull_face)
             cosine, sine = np.cos(slip * time), np.sin(slip * time)
-            _tally(area, begin_q, spin, pull_cell, angles, cosine, sine, dt, sums)
+            tally(area, begin_q, spin, pull_cell, angles, cosine, sine, dt, sums)
             sums.push_x += (x * cosine + y * sine) * dt
             sums.push_y += (y * cosine - x * sine) * dt
             correct(area, q, rate_a, rate_q, dt, next_a, next_q)

@@ -29,8 +29,10 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from solvers.pypde.coupled import CoupledSolver, RotorLayersPDE, TurnTracker, run
+    from solvers.pypde.grid import circle
     from solvers.pypde.long_wave import AnnularLongWavePDE, FiniteVolumeSolver
-    from solvers.pypde.one_family import ExponentialSolver, KdvBurgersPDE, SplitPDE, circle
+    from solvers.pypde.one_family import ExponentialSolver, KdvBurgersPDE, SplitPDE
+    from solvers.pypde.steady_newton import SteadyNewtonSolver
 
 __all__ = [
     "AnnularLongWavePDE",
@@ -40,13 +42,17 @@ __all__ = [
     "KdvBurgersPDE",
     "RotorLayersPDE",
     "SplitPDE",
+    "SteadyNewtonSolver",
     "TurnTracker",
     "circle",
     "run",
 ]
-_HOMES = {"AnnularLongWavePDE": "long_wave", "FiniteVolumeSolver": "long_wave"} | dict.fromkeys(
-    ("CoupledSolver", "RotorLayersPDE", "TurnTracker", "run"), "coupled"
-)
+_HOMES = {
+    "AnnularLongWavePDE": "long_wave",
+    "FiniteVolumeSolver": "long_wave",
+    "SteadyNewtonSolver": "steady_newton",
+    "circle": "grid",
+} | dict.fromkeys(("CoupledSolver", "RotorLayersPDE", "TurnTracker", "run"), "coupled")
 
 
 def __getattr__(name: str) -> Any:

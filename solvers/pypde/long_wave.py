@@ -6,8 +6,10 @@ py-pde solver, tracker and storage works on it. Importing this module registers 
 
 from __future__ import annotations
 
+import cmath
 import math
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,26 +18,26 @@ from pde.fields.collection import FieldCollection
 from pde.fields.scalar import ScalarField
 from pde.grids.base import GridBase
 from pde.grids.cartesian import CartesianGrid
-from pde.pdes.base import PDEBase
 from pde.solvers.base import ConvergenceError, SolverBase
 
+from fluid import long_wave
 from fluid.fill import Fill
 from fluid.friction import NO_FRICTION, Friction
-from meshes.arrays import Array
+from meshes.arrays import Array, Complex
 from meshes.errors import InputError
-from solvers.layer.records import Outcome
+from solvers.layer.records import LOADS, Outcome, records
 from solvers.liquid_model import Whirl
 from solvers.pypde import terms
-from solvers.pypde import terms as layer
+from solvers.pypde.grid import CirclePDE
 from solvers.pypde.terms import LongWaveTerms
 
 _LOST = "the surface came to the axis, or a film outran the steps,"
 
 
-class AnnularLongWavePDE(PDEBase):  # type: ignore[no-untyped-call]
+class AnnularLongWavePDE(CirclePDE):  # type: ignore[no-untyped-call]
     """Nonlinear long waves on the wall of a whirling drum [theory: long_wave, eq. 1 and 4].
 
-    The state is a collection of two scalar fields on a grid as from `solvers.pypde.one_family.circle`, in the
+    The state is a collection of two scalar fields on a grid as from `solvers.pypde.grid.circle`, in the
     drum frame: "area", the liquid area per radian A in m^2, and "momentum", the relative angular momentum
     q = R u A - Omega A^2 in m^4/s. In SI units both are small numbers: tolerances of py-pde's and scipy's
     steppers, which are absolute, want to be of some 1e-6 of them.
@@ -91,7 +93,7 @@ class AnnularLongWavePDE(PDEBase):  # type: ignore[no-untyped-call]
             raise InputError("velocity", velocity, "finite numbers")
         area = terms.area_at(self.terms, np.minimum(h, fill.chamber.radius))
         momentum = terms.momentum_at(self.terms, area, u, time)
-        layer.require_layer(self.terms, area, momentum)
+        terms.require_layer(self.terms, area, momentum)
         return _collection(grid, area, momentum)
 
     def surface_radius(self, state: Any) -> Array:
@@ -113,6 +115,53 @@ class AnnularLongWavePDE(PDEBase):  # type: ignore[no-untyped-call]
     def force(self, state: Any, t: float) -> complex:
         """Force on the drum by the pressure on its wall, N, in the drum frame [theory: long_wave, eq. 7]."""
         return terms.pressure_force(self.terms, *_parts(state), t)
+
+    def place(self, state: Any, t: float) -> complex:
+        """The same in the frame of the deflection, real along it; nan where there is no layer."""
+        area = np.asarray(state.data[0])
+        return terms.offset_of(area, self.terms.fill.chamber.radius) * cmath.exp(
+            -1j * self.terms.whirl.slip * t
+        )
+
+    def loads(self, state: Any, t: float) -> Array:
+        """Loads at one moment; over time they add up to those in the `info` of "finite_volume"."""
+        return terms.loads_at(self.terms, *_parts(state), t)
+
+    def means(self, loads: Array, length: float, places: tuple[complex, complex]) -> Complex:
+        """Means over a time of loads added up.
+
+        Parameters
+        ----------
+        loads : integrals over the time, as `loads` has them at one moment
+        length : of the time, s
+        places : as from `place` at its ends
+
+        Returns
+        -------
+        As from `solvers.pypde.terms.load_means`, shape (6,)
+        """
+        return terms.load_means(self.terms, loads, length, places)
+
+    def fastest(self, grid: GridBase) -> float:
+        """Cells that the fastest wave on the layer at rest passes in a unit of time, 1/s."""
+        surface = self.terms.fill.surface_radius / self.terms.fill.chamber.radius
+        log = -math.log(surface)
+        mean, half = long_wave.wave_celerity(0.0, log, self.terms.whirl.spin)
+        return float(abs(mean) + half) * _cells(grid) / (2.0 * math.pi)
+
+    @property
+    def sizes(self) -> tuple[float, ...]:
+        """A and |q| of the layer at rest in the drum, m^2 and m^4/s, to which tolerances are relative."""
+        depth = np.array([self.terms.fill.depth])
+        area = float(terms.area_at(self.terms, depth)[0])
+        return area, self.terms.whirl.spin * area**2
+
+    # Steps times `fastest`, by py-pde's names: half of what is stable, as waves grow faster; first order
+    # needs short ones, and fixed points contract.
+    steps: ClassVar[Mapping[str, float]] = {
+        "runge-kutta": 0.5, "adams-bashforth": 0.1, "crank-nicolson": 0.25, "implicit": 0.1,
+        "euler": 0.02, "explicit": 0.02,
+    }  # fmt: skip
 
     def angular_momentum(self, state: Any, t: float) -> float:
         """Angular momentum of the liquid in space about the drum's axis, kg m^2/s."""
@@ -139,7 +188,7 @@ class AnnularLongWavePDE(PDEBase):  # type: ignore[no-untyped-call]
         InputError : other fields, another grid
         """
         area, momentum = _parts(state)
-        return _collection(state.grid, *layer.layer_rates(self.terms, area, momentum, t))
+        return _collection(state.grid, *terms.layer_rates(self.terms, area, momentum, t))
 
     def make_post_step_hook(self, state: Any, backend: str | BackendBase[Any] = "numpy") -> tuple[Any, Any]:
         """Check after each step of py-pde's own solvers that there is a layer still.
@@ -155,7 +204,7 @@ class AnnularLongWavePDE(PDEBase):  # type: ignore[no-untyped-call]
 
         # By these names: some of py-pde's solvers pass them as keywords.
         def check(state_data: Any, t: float, post_step_data: Any) -> tuple[Any, Any]:
-            if not layer.is_layer(self.terms, state_data[0], state_data[1]):
+            if not terms.is_layer(self.terms, state_data[0], state_data[1]):
                 raise ConvergenceError(f"{_LOST} at t = {t:g} s")
             return state_data, post_step_data
 
@@ -185,24 +234,14 @@ class AnnularLongWavePDE(PDEBase):  # type: ignore[no-untyped-call]
         """
         return super().solve(state, t_range, dt, tracker, solver=solver, **options)
 
-    def determine_backend(
-        self, state: Any, backend: str | BackendBase[Any] = "auto", *, use_mpi: bool = False
-    ) -> BackendBase[Any]:
-        """The backend for a solver: numpy unless another is asked for.
-
-        Parameters
-        ----------
-        state, backend, use_mpi : as py-pde passes them
-        """
-        return super().determine_backend(state, "numpy" if backend == "auto" else backend, use_mpi=use_mpi)
-
 
 class FiniteVolumeSolver(SolverBase):  # type: ignore[no-untyped-call]
     """The compiled finite volumes with their own time steps, by the name "finite_volume".
 
     Heun's method with steps by the Courant number, cut to land on the times of trackers; friction in exact
     half steps; no cell falls below zero, no liquid is lost [theory: long_wave, eq. 11]. The spin must be
-    constant. Hooks after each step are not called.
+    constant. Hooks after each step are not called. Its `info` has the integrals of the loads over the time
+    covered, as "loads": see `solvers.pypde.terms.loads_at`.
 
     Parameters
     ----------
@@ -230,7 +269,7 @@ class FiniteVolumeSolver(SolverBase):  # type: ignore[no-untyped-call]
             raise InputError("pde", type(pde).__name__, "an AnnularLongWavePDE, its right-hand side as it is")
         if not 0.0 < courant <= 0.9:
             raise InputError("courant", courant, "above 0, at most 0.9")
-        layer.require_constant_spin(pde.terms)
+        terms.require_constant_spin(pde.terms)
         self.terms, self.courant = pde.terms, courant
 
     def make_stepper(self, state: Any, dt: float | None = None) -> Any:
@@ -255,14 +294,18 @@ class FiniteVolumeSolver(SolverBase):  # type: ignore[no-untyped-call]
         self._select_backend(state)
         self.info |= {"dt": None, "dt_adaptive": True, "stochastic": False, "steps": 0}
         self.info |= {"courant": self.courant, "status": "finished"}
+        loads = records(LOADS)
+        marcher = terms.Marcher(self.terms, _cells(state.grid), self.courant, loads)
+        self.info["loads"] = loads.view(np.float64)  # goes with what the march adds up
 
         def advance(state: Any, start: float, stop: float) -> float:
-            found = layer.march(self.terms, *_parts(state), start, stop, self.courant)
-            area, momentum, outcome, steps = found
+            area, momentum, outcome, steps = marcher.march(state.data[0], state.data[1], start, stop)
             if outcome is not Outcome.DONE:
+                ran = outcome in (Outcome.RAN_OUT, Outcome.RAN_AWAY)
                 self.info["status"] = "lost"
+                self.info["reason"] = f"{outcome.message} ({steps} steps)" if ran else outcome.message
                 raise ConvergenceError(f"{outcome.message} between t = {start:g} s and {stop:g} s")
-            state.data[0], state.data[1] = area, momentum
+            state.data[...] = area, momentum
             self.info["steps"] += steps
             return stop
 

@@ -7,20 +7,25 @@ solver, tracker and storage works on it and nothing is compiled. Importing this 
 
 from __future__ import annotations
 
+import cmath
 import math
 from abc import abstractmethod
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
 import numpy as np
 from pde.backends.base import BackendBase
 from pde.fields.scalar import ScalarField
 from pde.grids.base import GridBase
 from pde.grids.cartesian import CartesianGrid
-from pde.pdes.base import PDEBase
 from pde.solvers.base import ConvergenceError, SolverBase
 
+from fluid import kdv
 from fluid.kdv import KdvCoefficients
+from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_positive
+from solvers.pypde.grid import CirclePDE
+from solvers.pypde.grid import circle as circle
 from solvers.waves.modes import WaveTerms, wave_split
 from solvers.waves.stepper import (
     Advance,
@@ -33,27 +38,7 @@ from solvers.waves.stepper import (
 )
 
 
-def circle(points: int) -> CartesianGrid:
-    """The grid the waves live on: evenly spaced cells all round the drum.
-
-    Parameters
-    ----------
-    points : number of cells, 8 or more; an even number with small factors is fastest
-
-    Returns
-    -------
-    Periodic py-pde grid over 0 ... 2 pi; the coordinate is theta at the cells' centres
-
-    Raises
-    ------
-    InputError : fewer than 8 points
-    """
-    if points < 8:
-        raise InputError("points", points, "8 or more")
-    return CartesianGrid([(0.0, 2.0 * math.pi)], points, periodic=True)
-
-
-class SplitPDE(PDEBase):  # type: ignore[no-untyped-call]
+class SplitPDE(CirclePDE):  # type: ignore[no-untyped-call]
     """A py-pde equation that names its stiff linear part, for the solver "exponential"."""
 
     @abstractmethod
@@ -78,7 +63,7 @@ class KdvBurgersPDE(SplitPDE):  # type: ignore[no-untyped-call]
     Parameters
     ----------
     c : speed, steepening, dispersion of the family
-    whitham, viscosity, damping, forcing, whirl_speed : as in `solvers.waves.modes.WaveTerms`
+    whitham, viscosity, damping, forcing, whirl_speed, ramp : as in `solvers.waves.modes.WaveTerms`
 
     Raises
     ------
@@ -94,9 +79,11 @@ class KdvBurgersPDE(SplitPDE):  # type: ignore[no-untyped-call]
         damping: float = 0.0,
         forcing: float = 0.0,
         whirl_speed: float = 0.0,
+        ramp: float = 0.0,
     ) -> None:
         super().__init__()
-        self.terms = WaveTerms(c, whitham, viscosity, damping, forcing, whirl_speed)
+        self.terms = WaveTerms(c, whitham, viscosity, damping, forcing, whirl_speed, ramp)
+        self._known: tuple[int, float, Split] | None = None
         self.explicit_time_dependence = self.terms.forcing != 0.0 and self.terms.whirl_speed != 0.0
 
     def split(self, grid: GridBase) -> Split:
@@ -114,8 +101,11 @@ class KdvBurgersPDE(SplitPDE):  # type: ignore[no-untyped-call]
         ------
         InputError : another grid
         """
-        points, first = _circle_points(grid)
-        return wave_split(self.terms, points, first)
+        points, first = circle_points(grid)
+        if self._known is None or self._known[:2] != (points, first):
+            # py-pde's own solvers ask for it at each evaluation.
+            self._known = points, first, wave_split(self.terms, points, first)
+        return self._known[2]
 
     def evolution_rate(self, state: Any, t: float = 0.0) -> Any:
         """Right-hand side of the equation, for py-pde's own solvers.
@@ -138,20 +128,69 @@ class KdvBurgersPDE(SplitPDE):  # type: ignore[no-untyped-call]
         rate = split.symbol * spectrum + split.nonlinear(spectrum, t)
         return ScalarField(state.grid, np.fft.irfft(rate, n=state.data.size))
 
-    def determine_backend(
-        self, state: Any, backend: str | BackendBase[Any] = "auto", *, use_mpi: bool = False
-    ) -> BackendBase[Any]:
-        """The backend for a solver: numpy unless another is asked for, so that nothing is compiled.
+    def make_post_step_hook(self, state: Any, backend: str | BackendBase[Any] = "numpy") -> tuple[Any, Any]:
+        """Check after each step of py-pde's own solvers that the wave is finite still.
 
         Parameters
         ----------
-        state, backend, use_mpi : as py-pde passes them
+        state, backend : as py-pde passes them
 
         Returns
         -------
-        The backend
+        Function that raises ConvergenceError where it is not; no data for it
         """
-        return super().determine_backend(state, "numpy" if backend == "auto" else backend, use_mpi=use_mpi)
+
+        # By these names: some of py-pde's solvers pass them as keywords.
+        def check(state_data: Any, t: float, post_step_data: Any) -> tuple[Any, Any]:
+            if not np.isfinite(state_data).all():
+                raise ConvergenceError(f"the wave outgrew every number at t = {t:g} s")
+            return state_data, post_step_data
+
+        return check, None
+
+    def loads(self, state: Any, t: float) -> Array:
+        """Offset of the centre of mass at one moment, in the frame of the deflection, m, shape (2,)."""
+        place = self.place(state, t)
+        return np.array([place.real, place.imag])
+
+    def place(self, state: Any, t: float) -> complex:
+        """The same as a complex number, real along the deflection."""
+        ahead = circle_points(state.grid)[1] - self.terms.whirl_speed * t
+        return complex(kdv.offset(self.terms.c, state.data)) * cmath.exp(1j * ahead)
+
+    def means(self, loads: Array, length: float, places: tuple[complex, complex]) -> Complex:
+        """Mean over a time of the offset, m, shape (1,).
+
+        Parameters
+        ----------
+        loads : integral over the time of what `loads` has at one moment
+        length : of the time, s
+        places : at its ends
+        """
+        return np.array([complex(*loads) / length])
+
+    def seen(self, state: Any, t: float) -> Array:
+        """The wave at equal steps of xi from the deflection, m^2, shape (points,)."""
+        points, first = circle_points(state.grid)
+        turn = np.arange(points // 2 + 1) * (self.terms.whirl_speed * t - first)
+        return np.asarray(np.fft.irfft(to_spectrum(state.data) * np.exp(1j * turn), n=points))
+
+    def fastest(self, grid: GridBase) -> float:
+        """Frequency of the fastest mode on a grid, 1/s, by which explicit steps are bounded."""
+        return float(np.abs(self.split(grid).symbol[:-1]).max())
+
+    @property
+    def sizes(self) -> tuple[float, ...]:
+        """Size of a wave that is small, m^2, to which tolerances are relative."""
+        return (0.01 * self.terms.c.mean_area,)
+
+    # Steps times the fastest frequency, by py-pde's names: RK4 is stable up to 2.8; a step of Adams and
+    # Bashforth grows by its fourth power, one of Euler by its square, which damping does not hold; fixed
+    # points contract.
+    steps: ClassVar[Mapping[str, float]] = {
+        "runge-kutta": 1.5, "adams-bashforth": 0.05, "crank-nicolson": 0.8, "implicit": 0.4,
+        "euler": 0.0, "explicit": 0.0,
+    }  # fmt: skip
 
 
 class ExponentialSolver(SolverBase):  # type: ignore[no-untyped-call]
@@ -248,7 +287,7 @@ class ExponentialSolver(SolverBase):  # type: ignore[no-untyped-call]
             raise ConvergenceError(f"{done.status} at t = {done.time:g} s after {self.info['steps']} steps")
 
 
-def _circle_points(grid: GridBase) -> tuple[int, float]:
+def circle_points(grid: GridBase) -> tuple[int, float]:
     """Number of points and angle of the first, of a grid that goes round once."""
     if not (
         isinstance(grid, CartesianGrid)

@@ -11,6 +11,8 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass
+from functools import lru_cache
+from types import SimpleNamespace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,14 +20,15 @@ from numpy.typing import NDArray
 from fluid import long_wave
 from fluid.fill import Fill
 from fluid.friction import NO_FRICTION, Friction, damping_rate
-from meshes.arrays import Array
+from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative
 from solvers.layer.finite_volume import DRY, FULL, GHOSTS, THIN, WORK, rates
-from solvers.layer.records import LOADS, Drive, Outcome, Wall, records
-from solvers.layer.state import ring
+from solvers.layer.records import LOADS, Drive, Outcome, Record, Wall, records
+from solvers.layer.state import means, ring
+from solvers.layer.step import centre, scratch, tally
 from solvers.layer.step import march as march_layer
-from solvers.layer.step import scratch
-from solvers.liquid_model import Whirl
+from solvers.liquid_model import Whirl, grown
+from solvers.slices import compiled
 
 
 @dataclass(frozen=True)
@@ -84,14 +87,12 @@ def body_force(terms: LongWaveTerms, time: float) -> complex:
     -------
     f in the drum frame, m/s^2, real along theta = 0
     """
-    whirl, grown = terms.whirl, 1.0
+    whirl = terms.whirl
     # The drum has turned by the time and the mean spin so far.
     turned = (whirl.spin + 0.5 * terms.spin_rate * time) * time
-    if whirl.ramp > 0.0 and time < whirl.ramp:
-        part = 2.0 * math.pi * time / whirl.ramp
-        grown = (part - math.sin(part)) / (2.0 * math.pi)
     seen = cmath.exp(1j * (whirl.speed * time - turned))
-    return whirl.speed**2 * whirl.amplitude * grown * seen - 1j * whirl.gravity * cmath.exp(-1j * turned)
+    amplitude = whirl.amplitude * float(grown(time, whirl.ramp))
+    return whirl.speed**2 * amplitude * seen - 1j * whirl.gravity * cmath.exp(-1j * turned)
 
 
 def layer_rates(terms: LongWaveTerms, area: Array, momentum: Array, time: float) -> tuple[Array, Array]:
@@ -117,13 +118,21 @@ def layer_rates(terms: LongWaveTerms, area: Array, momentum: Array, time: float)
     if is_layer(terms, area, momentum):
         cell, face = radial_force(terms, n, time)
         work, step = np.zeros((WORK, n + 2 * GHOSTS)), 2.0 * math.pi / n
-        rates(a, q, spin, terms.spin_rate, cell, face, step, 0.0, terms.dispersion, work, d_area, d_q)
+        compiled(
+            rates, a, q, spin, terms.spin_rate, cell, face, step, 0.0, terms.dispersion, work, d_area, d_q
+        )
         d_q -= _shear(terms, a, q, spin)
     return d_area * radius**2, d_q * radius**4
 
 
 def march(
-    terms: LongWaveTerms, area: Array, momentum: Array, start: float, stop: float, courant: float
+    terms: LongWaveTerms,
+    area: Array,
+    momentum: Array,
+    start: float,
+    stop: float,
+    courant: float,
+    loads: Record | None = None,
 ) -> tuple[Array, Array, Outcome, int]:
     """Advance a layer by Heun steps in which no cell falls below zero, at a constant spin.
 
@@ -133,6 +142,8 @@ def march(
     area, momentum : A and q at the start, shape (n,)
     start, stop : times, s
     courant : Courant number
+    loads : a record LOADS of `solvers.layer.records`, shape (1,), that the integrals are added to; lengths
+        over R, times in s
 
     Returns
     -------
@@ -142,25 +153,110 @@ def march(
     ------
     InputError : a spin that changes, a time before 0, a cell below zero or full
     """
-    require_constant_spin(terms)
-    require_layer(terms, area, momentum)
-    require_not_negative("time", start)
-    if area.min() < 0.0:
-        raise InputError("area", float(area.min()), "0 or above in each cell")
-    whirl, radius, n = terms.whirl, terms.fill.chamber.radius, area.size
+    return Marcher(terms, area.size, courant, loads).march(area, momentum, start, stop)
+
+
+class Marcher:
+    """The steps of `march` on one ring, made ready once.
+
+    Parameters
+    ----------
+    terms, courant, loads : as for `march`
+    cells : of the ring
+
+    Raises
+    ------
+    InputError : a spin that changes
+    """
+
+    def __init__(self, terms: LongWaveTerms, cells: int, courant: float, loads: Record | None = None) -> None:
+        require_constant_spin(terms)
+        whirl, radius = terms.whirl, terms.fill.chamber.radius
+        self.terms, self.courant, self._ring, self._spare = terms, courant, ring(cells), scratch(cells)
+        self._loads = records(LOADS) if loads is None else loads
+        self._drive = Drive(
+            amplitude=whirl.amplitude / radius,
+            slip=whirl.slip,
+            ramp=whirl.ramp,
+            whirl=whirl.speed,
+            weight=whirl.gravity / radius,
+            spin=whirl.spin,
+        )
+        self._wall = Wall(*terms.drag(), _lid(terms), terms.dispersion)
+        # The state as the last march left it: told, m^2 and m^4/s, and scaled.
+        self._told: tuple[Array, Array] | None = None
+        self._kept: tuple[Array, Array] | None = None
+
+    def march(
+        self, area: Array, momentum: Array, start: float, stop: float
+    ) -> tuple[Array, Array, Outcome, int]:
+        """See the function of that name; a layer as the last call left it goes on without a rounding."""
+        a, q = self._scaled(area, momentum, start)
+        args = start, stop, self._drive, self._wall, self._ring, self.courant, self._spare, self._loads
+        outcome, steps = march_layer(a, q, *args)
+        radius = self.terms.fill.chamber.radius
+        self._told, self._kept = (a * radius**2, q * radius**4), (a, q)
+        return *self._told, outcome, int(steps)
+
+    def _scaled(self, area: Array, momentum: Array, start: float) -> tuple[Array, Array]:
+        told = self._told
+        if self._kept and told and np.array_equal(told[0], area) and np.array_equal(told[1], momentum):
+            return self._kept
+        require_layer(self.terms, area, momentum)
+        require_not_negative("time", start)
+        if area.min() < 0.0:
+            raise InputError("area", float(area.min()), "0 or above in each cell")
+        return scaled(self.terms, area, momentum)
+
+
+def loads_at(terms: LongWaveTerms, area: Array, momentum: Array, time: float) -> Array:
+    """What `march` adds up over time, at one moment.
+
+    Parameters
+    ----------
+    terms : what acts
+    area, momentum : A and q, shape (n,)
+    time : s
+
+    Returns
+    -------
+    The fields of a record LOADS of `solvers.layer.records`; lengths over R, times in s
+    """
     a, q = scaled(terms, area, momentum)
-    law, coefficient = terms.drag()
-    drive = Drive(
-        amplitude=whirl.amplitude / radius,
-        slip=whirl.slip,
-        ramp=whirl.ramp,
-        whirl=whirl.speed,
-        weight=whirl.gravity / radius,
-        spin=whirl.spin,
-    )
-    wall, loads = Wall(law, coefficient, _lid(terms), terms.dispersion), records(LOADS)
-    outcome, steps = march_layer(a, q, start, stop, drive, wall, ring(n), courant, scratch(n), loads)
-    return a * radius**2, q * radius**4, outcome, int(steps)
+    n, slip, found = a.size, terms.whirl.slip, records(LOADS)
+    turn = cmath.exp(1j * slip * time)
+    pull = radial_force(terms, n, time)[0]
+    compiled(tally, a, q, terms.spin(time), pull, ring(n), turn.real, turn.imag, 1.0, found[0])
+    push = body_force(terms, time) / (terms.fill.chamber.radius * turn)
+    found[0].push_x, found[0].push_y = push.real, push.imag
+    return np.asarray(found.view(np.float64))
+
+
+def load_means(
+    terms: LongWaveTerms, loads: Array, length: float, offsets: tuple[complex, complex]
+) -> Complex:
+    """Means over a time of what `march` has added up [theory: long_wave, eq. 7].
+
+    Parameters
+    ----------
+    terms : the whirl
+    loads : integrals of what `loads_at` has
+    length : of the time, s
+    offsets : of the centre of mass at the beginning and the end, in the frame of the deflection, m
+
+    Returns
+    -------
+    Force over that of a full drum by the liquid's momentum, offset, m, turning, rad/s, least and largest
+    depth, m, force by the pressure on the wall as the first; shape (6,); without deflection no force
+    """
+    whirl, radius = terms.whirl, terms.fill.chamber.radius
+    mass = terms.fill.volume / (terms.fill.chamber.height * radius**2)
+    ends = offsets[0] / radius, offsets[1] / radius
+    # As plain numbers, which are read faster than those of a record.
+    sums = SimpleNamespace(**dict(zip(LOADS.names or (), loads.tolist(), strict=True)))
+    found = means(sums, length, mass, whirl.speed, ends)
+    full = math.pi * whirl.amplitude / radius * whirl.speed**2 or math.inf
+    return found * (1.0 / full, radius, 1.0, radius, radius, 1.0 / full)
 
 
 def require_constant_spin(terms: LongWaveTerms) -> None:
@@ -298,15 +394,17 @@ def liquid_offset(terms: LongWaveTerms, area: Array) -> complex:
     InputError : no liquid, a surface at the axis, a value that is not finite
     """
     require_layer(terms, area, area)
-    a = np.maximum(area, 0.0) / terms.fill.chamber.radius**2
-    if not a.any():
+    if not area.max() > 0.0:
         raise InputError("area", 0.0, "above 0 in some cell")
-    r = long_wave.free_surface_radius(a)
-    # (1 - r^3)/3, without cancellation in thin films.
-    moment = 2.0 / 3.0 * a * (1.0 + r + r * r) / (1.0 + r)
-    return complex((moment * _rays(a.size)).sum() / a.sum()) * terms.fill.chamber.radius
+    return offset_of(area, terms.fill.chamber.radius)
 
 
+def offset_of(area: Array, radius: float) -> complex:
+    """The same of what is known to be a layer; nan without liquid."""
+    return complex(*compiled(centre, area / radius**2, ring(area.size))) * radius
+
+
+@lru_cache(maxsize=16)
 def _rays(cells: int) -> NDArray[np.complex128]:
     """e^{i theta} at the cells' middles."""
     return np.asarray(ring(cells)[0] + 1j * ring(cells)[1])

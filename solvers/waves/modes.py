@@ -22,6 +22,7 @@ from threadpoolctl import ThreadpoolController
 from fluid.kdv import KdvCoefficients, wave_frequency
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative
+from solvers.liquid_model import grown
 from solvers.waves.stepper import Split, squared
 
 
@@ -37,6 +38,7 @@ class WaveTerms:
     damping : gamma, 1/s, 0 or above
     forcing : q, m^2/s, from `fluid.kdv.forcing`
     whirl_speed : s, seen from the drum, rad/s
+    ramp : time over which the forcing grows, s
     """
 
     c: KdvCoefficients
@@ -45,8 +47,10 @@ class WaveTerms:
     damping: float = 0.0
     forcing: float = 0.0
     whirl_speed: float = 0.0
+    ramp: float = 0.0
 
     def __post_init__(self) -> None:
+        require_not_negative("ramp", self.ramp)
         require_not_negative("viscosity", self.viscosity)
         require_not_negative("damping", self.damping)
         for field, value in (("forcing", self.forcing), ("whirl_speed", self.whirl_speed)):
@@ -84,7 +88,7 @@ def wave_split(terms: WaveTerms, points: int, first_angle: float = 0.0) -> Split
 
     def nonlinear(spectrum: Complex, t: float) -> Complex:
         rate = steepen * squared(spectrum, points)
-        rate[1] += push * np.exp(-1j * terms.whirl_speed * t)
+        rate[1] += push * np.exp(-1j * terms.whirl_speed * t) * grown(t, terms.ramp)
         return np.asarray(rate)
 
     frame = terms.whirl_speed if terms.forcing else terms.c.linear_speed

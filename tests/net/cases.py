@@ -162,6 +162,11 @@ def _layers() -> Iterator[Case]:
         "long_wave-gravity": f"{wave} linear:0.5 --gravity 9.81",
         "long_wave-dispersion": f"{wave} linear:0.5 --dispersion",
     }
+    stock = "--friction linear:3 --solver runge-kutta"
+    steady |= {
+        "kdv-runge-kutta": f"{_WHIRL} --model kdv --cells 16 {stock}",
+        "long_wave-runge-kutta": f"{_WHIRL} --model long_wave --cells 16 {stock} --duration 2 --ramp 1",
+    }
     starts = {f"duration-{law.partition(':')[0]}": f"{wave} {law} --duration 5 --ramp 1" for law in _FRICTION}
     starts["duration-bore"] = f"{_LAYER} 3e-3 --model long_wave --cells 64 --duration 2"
     for name, typed in (steady | starts).items():
@@ -267,6 +272,8 @@ def _wrong() -> Iterator[Case]:
         "layer-model": f"{_WHIRL} --model best",
         "layer-friction": f"{_WHIRL} --friction linear:-1",
         "layer-duration": f"{_WHIRL} --model linear --duration 3",
+        "layer-solver": f"{_WHIRL} --model long_wave --solver milstein",
+        "layer-solver-model": f"{_WHIRL} --model linear --solver scipy",
         "layer-baffles": f"{_WHIRL} --model kdv --baffles 3",
         "layer-kdv-friction": f"{_WHIRL} --model kdv --friction quadratic:0.01",
         "layer-linear-friction": f"{_WHIRL} --model linear --friction stokes",

@@ -14,9 +14,9 @@ from fluid.liquid import known_liquid
 from leblanc.studies.liquid import WAVE_MODELS, synchronous_model, wave_model
 from meshes.chamber import Chamber
 from meshes.errors import InputError
-from solvers.layer.settle import LongWave
 from solvers.layer.state import Numerics
 from solvers.liquid_model import LiquidModel, Whirl, Whirls
+from solvers.pypde.models import LongWave
 from solvers.sloshing.model import SmallWaves
 from solvers.synchronous.models import LINEAR, STATICS, CellsAtRest, ElementsAtRest
 from tests.mutants import kills

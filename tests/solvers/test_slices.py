@@ -12,11 +12,10 @@ from fluid.friction import Friction, FrictionLaw
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers import slices
-from solvers.layer.records import LOADS, Outcome, records
-from solvers.layer.settle import settle, simulate
-from solvers.layer.state import Numerics, start
-from solvers.layer.step import march
+from solvers.layer.records import Outcome
+from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl
+from solvers.pypde.settle import settle, simulate
 from solvers.rotor.balls import balancers
 from solvers.rotor.exciter.machine import Dimensionless
 from solvers.rotor.exciter.motion import integrate
@@ -25,6 +24,7 @@ from solvers.runup.linear import couple_linear
 from solvers.runup.long_wave import couple
 from solvers.runup.machine import Motor, Ramp
 from solvers.runup.runup import RunupNumerics, run_up
+from validation.benchmarks.road import BareLayer
 
 WATER = Liquid("water", 1000.0, 1e-6)
 STOKES = Friction(FrictionLaw.STOKES)
@@ -91,8 +91,8 @@ def test_an_interrupt_comes_through_between_slices(name: str, monkeypatch: pytes
     """Each loop asks for a second slice, in which Python would hear a Ctrl-C."""
     whole, asked = slices.slices, []
 
-    def heard(steps: int, size: int):  # type: ignore[no-untyped-def]
-        for k, part in enumerate(whole(steps, size)):
+    def heard(*given: int):  # type: ignore[no-untyped-def]
+        for k, part in enumerate(whole(*given)):
             asked.append(k)
             if k > 0:
                 raise KeyboardInterrupt
@@ -129,10 +129,9 @@ def test_a_film_that_runs_away_ends_the_run() -> None:
 
 def test_steps_run_out() -> None:
     """Where films are slow enough to go on for ever the budget ends the run, and the reason names it."""
-    moving = start(fill(), Whirl(spin=40.0, speed=31.0, amplitude=2e-3), STOKES, Numerics(cells=48))
-    arguments = (moving.drive, moving.wall, moving.angles, 0.8, moving.scratch, records(LOADS))
-    outcome, steps = march(moving.area, moving.momentum, 0.0, 100.0, *arguments, most=5)
-    assert (outcome, steps) == (Outcome.RAN_OUT, 5)
+    layer = BareLayer(fill(), Whirl(spin=40.0, speed=31.0, amplitude=2e-3), STOKES, Numerics(cells=48))
+    layer.advance(most=5)
+    assert layer.outcome is Outcome.RAN_OUT and layer.steps == 5
     for model in (couple, couple_linear):
         machine = model(ROTOR.system(), [fill()], 20.0, STOKES, 0.0, 24, False)
         assert machine.advance(1.0, 0.0, 0.8, 5) is Outcome.RAN_OUT

@@ -11,7 +11,7 @@ import pytest
 from leblanc.scene.scene import load_scene
 from validation.trade import fingerprint, kept, names
 from validation.trade.__main__ import table
-from validation.trade.cases import response_question, runup_question
+from validation.trade.cases import layer_questions, response_question, runup_question
 from validation.trade.judge import Row, dominates
 from validation.trade.trade import error_table
 
@@ -87,3 +87,28 @@ def test_made_again() -> None:
 def test_table() -> None:
     """One line for each scene and question."""
     assert len(table()) == 2 + len(questions())
+
+
+def test_a_layer_alone_by_each_solver_of_py_pde() -> None:
+    """The same equations by other steps: on as many cells their errors are those of the cells."""
+    waves, family = layer_questions(load_scene(EXAMPLES / "runup.toml"), quick=True)
+    solvers = {case.variant for case in waves.cases}
+    assert {
+        "finite_volume",
+        "runge-kutta",
+        "scipy",
+        "adams-bashforth",
+        "implicit",
+        "crank-nicolson",
+    } <= solvers
+    assert {"steady_newton", "exponential", "runge-kutta"} <= {case.variant for case in family.cases}
+    picked = [
+        case for case in waves.cases if case.resolution == 16 and case.variant in ("runge-kutta", "scipy")
+    ]
+    found = error_table(waves, picked)
+    first, second = (found[case.label][0] for case in picked)
+    # Both err by the cells, 6 %, and by their steps, 1e-4 of it.
+    assert 1e-2 < first < 0.1 and abs(first - second) < 1e-3 * first
+    (picked_one,) = (case for case in family.cases if case.variant == "runge-kutta")
+    assert error_table(family, [picked_one])[picked_one.label][0] < 1e-5
+    assert not any(case.variant in ("milstein", "explicit_mpi") for case in (*waves.cases, *family.cases))

@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.studies.layer import answer_layer
-from solvers.layer.settle import simulate
 from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl
+from solvers.pypde.settle import simulate
 from solvers.synchronous.models import LINEAR, STATICS
 from solvers.waves.steady import respond, solve
 from validation.benchmarks.ours import AMPLITUDE, SPEED

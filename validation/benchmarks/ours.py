@@ -11,9 +11,9 @@ import numpy as np
 
 from fluid.friction import Friction, FrictionLaw
 from meshes.arrays import Array, Complex
-from solvers.layer.settle import simulate
 from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl
+from solvers.pypde.settle import simulate
 from solvers.waves.modes import WaveTerms, wave_split
 from solvers.waves.steady import solve
 from solvers.waves.stepper import Control, advance_adaptive, advance_fixed, to_spectrum

@@ -18,9 +18,9 @@ from fluid.friction import NO_FRICTION, Friction, FrictionLaw
 from fluid.liquid import Liquid
 from fluid.waves import force_ratio
 from meshes.chamber import Chamber
-from solvers.layer.settle import settle, simulate
 from solvers.layer.state import LayerHistory, Numerics
 from solvers.liquid_model import Whirl
+from solvers.pypde.settle import settle, simulate
 from validation.cases.case import Case, Effect, shape_verdict
 from validation.cases.rigs import data
 

@@ -15,9 +15,9 @@ from fluid.friction import Friction, FrictionLaw
 from fluid.liquid import KNOWN_LIQUIDS
 from meshes.arrays import Array
 from meshes.chamber import Chamber
-from solvers.layer.settle import settle
 from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl, Whirls
+from solvers.pypde.settle import settle
 from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
 from solvers.runup.linear import couple_linear
 from solvers.runup.long_wave import couple

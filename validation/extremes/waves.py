@@ -17,10 +17,10 @@ from fluid.liquid import Liquid
 from leblanc.results.base import texts
 from leblanc.studies.layer import answer_layer, wave_notes
 from meshes.chamber import Chamber
-from solvers.layer.settle import LongWave, simulate
 from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl
-from solvers.waves.one_family import OneFamily
+from solvers.pypde.models import LongWave, OneFamily
+from solvers.pypde.settle import simulate
 
 _RADIUS, _HEIGHT = 0.15, 0.01
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from fluid.waves import force_ratio
 from leblanc.figures.page import Figure, Frame, lay_out, number, style
-from solvers.layer.settle import settle
 from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl
+from solvers.pypde.settle import settle
 from validation.cases.layer import bore_histories, bore_reference, plane_layer
 from validation.cases.rigs import data
 

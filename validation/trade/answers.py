@@ -8,15 +8,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 from pydantic import Field
 
+from fluid.fill import Fill
+from fluid.friction import Friction, FrictionLaw
 from leblanc.scene.scene import Exciter, Scene, dry_rotor
 from leblanc.studies.choose import across_gravity, axial_gravity, choose, liquid_models
 from leblanc.studies.runup import RunupChoice, chosen_run, drive_of, judged, planned
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
-from solvers.liquid_model import LiquidModel
+from solvers.layer.state import Numerics
+from solvers.liquid_model import LiquidModel, Whirl
 from solvers.runup.runup import RunupNumerics
 
 RESPONSE, RUNUP = "response", "runup"
+WAVES, FAMILY = "long waves", "one family"
 DISPERSION = "dispersion"
 
 
@@ -26,11 +30,11 @@ class Case:
 
     Parameters
     ----------
-    question : "response" or "runup"
-    model : "auto" (the scene's default), "linear", "statics", "long_wave", "fem"; of an exciter "formulas" or
-        "integration"
+    question : "response" or "runup", or of a layer alone "long waves" or "one family"
+    model : "auto" (the scene's default), "linear", "statics", "long_wave", "kdv", "fem"; of an exciter
+        "formulas" or "integration"
     resolution : cells round a wall, edges along a wall, steps in a turn; None where there is none
-    variant : "dispersion", "order 1" or "order 2", or empty
+    variant : "dispersion", "order 1" or "order 2", or empty; of a layer alone its solver, as py-pde names it
     """
 
     question: str
@@ -40,8 +44,8 @@ class Case:
 
     @property
     def selectable(self) -> bool:
-        """A scene can name it: its response takes no grid, its run-up takes any."""
-        return self.resolution is None or self.question == RUNUP
+        """A scene or `layer` can name it: a response takes no grid, what goes through time takes any."""
+        return self.resolution is None or self.question != RESPONSE
 
     @property
     def label(self) -> str:
@@ -196,10 +200,52 @@ def _exciter(scene: Scene, case: Case) -> Answer:
     )
 
 
+_DRAG = 0.05  # linear friction of a layer alone, of the spin: it settles in some ten whirl periods
+_OFF, _SMALL, _PERIODS = 0.8, 0.01, 3  # its whirl over the spin; whirl over the depth; periods from rest
+
+
+def lone_layer(scene: Scene) -> tuple[Fill, Whirl, Friction]:
+    """First layer of a scene under a small whirl at the last of its speeds, and the friction that is taken.
+
+    Raises
+    ------
+    InputError : no chamber with liquid and a free surface
+    """
+    spin = float(scene.speed_array()[-1])
+    for fill in scene.fills:
+        if 0.0 < fill.volume < fill.chamber.capacity * (1.0 - 1e-9):
+            first = Whirl(spin, _OFF * spin, _SMALL * fill.depth)
+            whirl = replace(first, ramp=first.period)
+            return fill, whirl, Friction(FrictionLaw.LINEAR, _DRAG * spin)
+    raise InputError("chambers", len(scene.fills), "one with liquid and a free surface at least")
+
+
+def _long_waves(scene: Scene, case: Case) -> Answer:
+    from solvers.pypde.settle import simulate
+
+    fill, whirl, friction = lone_layer(scene)
+    numerics = Numerics(case.resolution or Numerics().cells)
+    found = simulate(fill, whirl, _PERIODS * whirl.period, friction, numerics, case.variant)
+    force = found.force_ratio
+    return Answer(np.concatenate([force.real, force.imag]), True, found.reason, (case.model,))
+
+
+def _one_family(scene: Scene, case: Case) -> Answer:
+    from solvers.pypde.models import OneFamily
+
+    fill, whirl, friction = lone_layer(scene)
+    found = OneFamily(friction, case.resolution or 256, solver=case.variant).wave(fill, whirl)
+    offset = complex(found.answer.offset[0])
+    in_range = bool(found.answer.in_range[0])
+    return Answer(np.array([offset.real, offset.imag]), in_range, found.reason, (case.model,))
+
+
 _ANSWERS: dict[str, Callable[[Scene, Case], Answer]] = {
     RESPONSE: _response,
     RUNUP: _runup,
     "exciter": _exciter,
+    WAVES: _long_waves,
+    FAMILY: _one_family,
 }
 
 
@@ -211,6 +257,8 @@ def taste(scene: Scene, case: Case) -> None:
         answer(bit, case)
         if case.model == "auto":  # of which so small a piece takes one model alone
             answer(bit, replace(case, model="long_wave"))
+    elif case.question in (WAVES, FAMILY):
+        answer(scene, replace(case, resolution=8))
     else:
         speed = scene.speed_array()
         small = case if case.model != "fem" else replace(case, resolution=8)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fluid.kdv import coefficients
 from leblanc.scene.scene import Exciter, Runup, Scene
 from leblanc.studies.choose import across_gravity
 from leblanc.studies.runup import planned
@@ -14,11 +15,14 @@ from meshes.arrays import Array
 from solvers.runup.state import layer_capture
 from validation.trade.answers import (
     DISPERSION,
+    FAMILY,
     RESPONSE,
     RUNUP,
+    WAVES,
     Case,
     at_speeds,
     chosen_models,
+    lone_layer,
     steady,
     taken_run,
 )
@@ -29,6 +33,7 @@ CELLS, QUICK_CELLS = (16, 32, 64, 128, 256, 512), (16, 32, 64)
 _MOST_CELLS = 4096
 MESHES: tuple[tuple[int, int], ...] = ((16, 1), (32, 1), (64, 1), (16, 2), (32, 2), (64, 2))
 QUICK_MESHES: tuple[tuple[int, int], ...] = ((16, 1), (16, 2))
+STOCK, QUICK_STOCK = (16, 32), (16,)  # cells by py-pde's own solvers
 STEPS, QUICK_STEPS = (12, 16, 24, 32, 48, 96, 192), (12, 24, 48)
 _SCOUT = 16  # cells of the run that finds the largest vibration
 _BEFORE, _BEYOND, _MOTOR = 0.7, 1.2, 1.2  # of its speed, where a run-up begins and ends; of its time
@@ -44,7 +49,7 @@ class Question:
 
     Parameters
     ----------
-    name : "response" or "runup"
+    name : as of `Case.question`
     scene : cut to the question
     about : what is asked, and what was cut, in words
     cases : in the order of the table; the first is the default
@@ -61,20 +66,64 @@ class Question:
     ladder: tuple[Case, ...]
 
 
-def questions(scene: Scene, quick: bool = False) -> tuple[Question, ...]:
+def questions(scene: Scene, quick: bool = False, layer: bool = False) -> tuple[Question, ...]:
     """What can be compared on a scene: its response and, if it has one, its run-up.
 
     Parameters
     ----------
     scene : the machine
     quick : short ladders
+    layer : as well its first layer alone, by every solver that py-pde has for it
     """
     if isinstance(scene.rotor, Exciter):
         return (exciter_question(scene, quick),)
     found = [response_question(scene, quick)]
     if scene.runup is not None:
         found.append(runup_question(scene, quick))
+    if layer:
+        found += layer_questions(scene, quick)
     return tuple(found)
+
+
+def layer_questions(scene: Scene, quick: bool = False) -> list[Question]:
+    """One layer under a prescribed whirl, as long waves from rest and as one steady family.
+
+    Each by its own solver and by those of py-pde, on few cells: their steps are as many as the cells.
+
+    Parameters
+    ----------
+    scene : with a layer
+    quick : short ladders
+    """
+    from solvers.pypde import settle_family  # with which "steady_newton" comes
+    from solvers.pypde.long_wave import AnnularLongWavePDE
+    from solvers.pypde.one_family import KdvBurgersPDE
+    from solvers.pypde.stock import names
+
+    fill, whirl, friction = lone_layer(scene)
+    surface, spin = fill.surface_radius, whirl.spin
+    few = QUICK_STOCK if quick else STOCK
+    layer = (
+        f"{1e3 * fill.depth:.3g} mm of liquid at a wall of {1e3 * fill.chamber.radius:.4g} mm that spins at "
+        f"{spin:.4g} rad/s and whirls at {whirl.speed:.4g} rad/s with {1e6 * whirl.amplitude:.3g} um"
+    )
+    wave = AnnularLongWavePDE(fill, whirl, friction=friction)
+    family = KdvBurgersPDE(coefficients(fill.chamber.radius, surface, spin, -1))
+    ladder = tuple(
+        Case(WAVES, "long_wave", n, "finite_volume") for n in reversed(QUICK_CELLS if quick else CELLS)
+    )
+    others = [name for name in names(wave) if name not in ("finite_volume", "explicit")]
+    waves = (*ladder[1:], ladder[0], *(Case(WAVES, "long_wave", n, name) for name in others for n in few))
+    best = Case(FAMILY, "kdv", 64, settle_family.NEWTON)
+    others = [name for name in names(family) if name not in (settle_family.NEWTON, "explicit")]
+    steady = (best, *(Case(FAMILY, "kdv", n, name) for name in others for n in few))
+    return [
+        Question(
+            *(WAVES, scene, f"{layer}, three whirl periods from rest; error: of the force over the periods"),
+            *(waves, ladder[0], ladder[:3]),
+        ),
+        Question(*(FAMILY, scene, f"{layer}, settled; error: of the centre of mass", steady, best, (best,))),
+    ]
 
 
 def response_question(scene: Scene, quick: bool = False) -> Question:

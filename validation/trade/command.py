@@ -16,6 +16,9 @@ from leblanc.files import writing
 def trade(
     scene: Annotated[Path, typer.Argument(help="Scene file (TOML).")],
     quick: Annotated[bool, typer.Option("--quick", help="Short ladders of resolutions.")] = False,
+    layer: Annotated[
+        bool, typer.Option("--layer", help="One layer alone as well, by each solver of py-pde.")
+    ] = False,
     repeats: Annotated[int, typer.Option(min=2, help="How often short runs are timed.")] = 5,
     out: Annotated[
         Path | None, typer.Option(help="Folder for the files [default: out/<scene name>].")
@@ -37,6 +40,7 @@ def trade(
         record = trade_scene(
             *(machine, quick, repeats),
             progress=lambda what, done: bar.update(task, description=what, completed=done),
+            layer=layer,
         )
 
     from validation.trade.figure import save, trade_figure

@@ -26,7 +26,12 @@ LABEL = 6.5  # points, of a label's letters
 _REACH = 18.0  # points, farthest that a label is put from its marker
 _FLOOR = 1e-13  # of the errors drawn, where the best answer is exact
 FRONT, BELOW = "0.55", "0.92"
-TITLES = {"response": "Synchronous response", "runup": "Run-up"}
+TITLES = {
+    "response": "Synchronous response",
+    "runup": "Run-up",
+    "long waves": "One layer, long waves from rest, by each solver of py-pde",
+    "one family": "One layer, one steady family, by each solver of py-pde",
+}
 _RAISED = str.maketrans("-0123456789", "\N{SUPERSCRIPT MINUS}⁰¹²³⁴⁵⁶⁷⁸⁹")
 # Of each kind: colour, marker, line.
 LOOKS: dict[str, tuple[str, str, str]] = {
@@ -39,6 +44,18 @@ LOOKS: dict[str, tuple[str, str, str]] = {
     "long_wave, dispersion": ("#56B4E9", "P", "--"),
     "fem, order 1": ("#D55E00", "D", "-"),
     "fem, order 2": ("#CC79A7", "X", "--"),
+    "long_wave, finite_volume": ("#0072B2", "^", "-"),
+    "kdv, steady_newton": ("#0072B2", "^", "-"),
+    "kdv, exponential": ("#56B4E9", "P", "--"),
+}
+# Of py-pde's own solvers, by their names.
+SOLVERS: dict[str, tuple[str, str, str]] = {
+    "runge-kutta": ("#D55E00", "D", "-"),
+    "scipy": ("#009E73", "s", "-"),
+    "adams-bashforth": ("#CC79A7", "X", "--"),
+    "crank-nicolson": ("#E69F00", "v", "--"),
+    "implicit": ("0.35", "o", ":"),
+    "euler": ("0.6", "P", ":"),
 }
 
 
@@ -94,6 +111,11 @@ def _kind(row: Row) -> str:
     return f"{row.model}, {row.variant}" if row.variant else row.model
 
 
+def _look(kind: str) -> tuple[str, str, str]:
+    """Colour, marker and line of a kind."""
+    return LOOKS.get(kind) or SOLVERS.get(kind.rpartition(", ")[2], ("0.2", "*", ":"))
+
+
 def _draw(axes: Axes, comparison: Comparison, tolerance: float) -> None:
     """Ladders, front, marks and the region below the best answer's own error."""
     rows, floor = _known(comparison), _floor(comparison)
@@ -134,7 +156,8 @@ def _power(value: float, _at: float) -> str:
 
 def _ladder(axes: Axes, kind: str, rows: Sequence[Row], comparison: Comparison) -> None:
     """Points of one kind, hollow where the model is out of its own range, with their spread in time."""
-    colour, marker, line = LOOKS[kind]
+    rows = sorted(rows, key=lambda row: row.resolution or 0)
+    colour, marker, line = _look(kind)
     x, y = np.array([row.time for row in rows]), np.array([_height(row, comparison) for row in rows])
     name = kind.replace("_", " ").replace("fem", "finite elements")
     axes.plot(x, y, linestyle=line, color=colour, linewidth=0.9, zorder=2)
@@ -167,7 +190,7 @@ def _label(figure: Figure, axes: Axes, comparison: Comparison) -> None:
         taken.append(_Box(best.left - 1.5, best.bottom, best.right + 1.5, best.top))
         axes.annotate(
             text, (row.time, _height(row, comparison)), xytext=(best.left - x, best.bottom - y + 1.0),
-            textcoords="offset points", fontsize=LABEL, color=LOOKS[_kind(row)][0], zorder=5,
+            textcoords="offset points", fontsize=LABEL, color=_look(_kind(row))[0], zorder=5,
         )  # fmt: skip
 
 

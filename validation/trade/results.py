@@ -130,15 +130,16 @@ def trade_lines(record: TradeRecord) -> list[str]:
                 else " (it does not converge)"
             )
         lines += ["", f"{comparison.question}: {comparison.about}; {own}"]
-        lines.append(f"{'model':27}{'error':>10}{'peak error':>12}{'CPU, ms':>11}{'spread':>8}{'MB':>8}")
-        lines += [_line(row) for row in comparison.rows]
+        width = max(27, *(len(row.label) + 2 for row in comparison.rows))
+        lines.append(f"{'model':{width}}{'error':>10}{'peak error':>12}{'CPU, ms':>11}{'spread':>8}{'MB':>8}")
+        lines += [_line(row, width) for row in comparison.rows]
         lines.append(recommendation(comparison, record.tolerance))
         if comparison.dominated_by:
             lines.append(f"the default is beaten in both by: {'; '.join(comparison.dominated_by)}")
     return lines
 
 
-def _line(row: Row) -> str:
+def _line(row: Row, width: int) -> str:
     """One row of a table; what stands out of the front, the default and the advised one marked."""
     marks = [
         word
@@ -154,4 +155,4 @@ def _line(row: Row) -> str:
     peak = f"{row.peak_error:.2e}" if math.isfinite(row.peak_error) else "none"
     numbers = f"{error:>10}{peak:>12}{row.time * _KILO:>11.4g}{row.spread:>8.0%}{row.memory / _MEGA:>8.2f}"
     text = "  " + ", ".join(marks) + (f"; {row.note}" if row.note else "")
-    return f"{row.label:27}{numbers}{text if text.strip(' ;') else ''}"
+    return f"{row.label:{width}}{numbers}{text if text.strip(' ;') else ''}"

@@ -50,7 +50,11 @@ class TradeRecord:
 
 
 def trade_scene(
-    scene: Scene, quick: bool = False, repeats: int = REPEATS, progress: Progress | None = None
+    scene: Scene,
+    quick: bool = False,
+    repeats: int = REPEATS,
+    progress: Progress | None = None,
+    layer: bool = False,
 ) -> TradeRecord:
     """Measure every model and resolution on a scene.
 
@@ -60,12 +64,13 @@ def trade_scene(
     quick : short ladders
     repeats : how often what is short is timed
     progress : is called with what runs and the share that is done
+    layer : as well one layer alone, by every solver that py-pde has for it
     """
     require_clear(scene, "a comparison of models, most of which know circular walls alone")
     tell = progress or (lambda _, __: None)
     tolerance = scene.model.tolerance
     found = []
-    cases = questions(scene, quick)
+    cases = questions(scene, quick, layer)
     for k, question in enumerate(cases):
 
         def said(text: str, share: float, k: int = k) -> None:

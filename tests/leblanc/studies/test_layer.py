@@ -18,8 +18,8 @@ from leblanc.studies.layer import answer_layer, steady_film
 from leblanc.studies.liquid import wave_model
 from meshes.chamber import Chamber
 from solvers.liquid_model import Whirl
+from solvers.pypde.models import OneFamily
 from solvers.synchronous.models import LINEAR, STATICS
-from solvers.waves.one_family import OneFamily
 from tests.mutants import kills
 
 R, A, H, SPIN = 0.15, 0.135, 0.01, 40.0

@@ -18,7 +18,8 @@ from pde.solvers.base import ConvergenceError
 
 from fluid.kdv import KdvCoefficients, wave_frequency
 from meshes.errors import InputError
-from solvers.pypde.one_family import ExponentialSolver, KdvBurgersPDE, circle
+from solvers.pypde.grid import circle
+from solvers.pypde.one_family import ExponentialSolver, KdvBurgersPDE
 from solvers.waves.modes import WaveTerms, wave_split
 from solvers.waves.stepper import advance_fixed, squared, to_spectrum
 from tests.solvers.waves.test_terms import FAMILIES, PROGRADE, RETROGRADE, field, hump, relative, solved
@@ -204,7 +205,8 @@ def test_nothing_is_compiled() -> None:
 import sys
 from fluid.exact import cnoidal_wave
 from fluid.kdv import coefficients
-from solvers.pypde.one_family import KdvBurgersPDE, circle
+from solvers.pypde.grid import circle
+from solvers.pypde.one_family import KdvBurgersPDE
 from pde import MemoryStorage, ScalarField
 c = coefficients(0.15, 0.135, 40.0, 1)
 grid = circle(32)

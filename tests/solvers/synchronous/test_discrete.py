@@ -14,9 +14,9 @@ from fluid.liquid import known_liquid
 from meshes.arrays import Array
 from meshes.chamber import Chamber
 from meshes.errors import InputError
-from solvers.layer.settle import settle
 from solvers.layer.state import Numerics
 from solvers.liquid_model import LiquidAnswer, LiquidModel, Whirl, Whirls
+from solvers.pypde.settle import settle
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.synchronous.models import STATICS, CellsAtRest, ElementsAtRest, Statics
 from solvers.synchronous.response import response

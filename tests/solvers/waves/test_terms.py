@@ -13,7 +13,8 @@ from pde import PDE, CartesianGrid, ScalarField
 from fluid.exact import TravellingWave, cnoidal_wave, solitary_wave
 from fluid.kdv import KdvCoefficients, coefficients
 from fluid.waves import free_wave_frequencies
-from solvers.pypde.one_family import KdvBurgersPDE, circle
+from solvers.pypde.grid import circle
+from solvers.pypde.one_family import KdvBurgersPDE
 from solvers.waves.modes import WaveTerms, wave_split
 from solvers.waves.stepper import Control, advance_adaptive, advance_fixed, to_spectrum
 from tests.mutants import kills

@@ -19,9 +19,9 @@ from fluid.friction import Friction
 from fluid.liquid import Liquid
 from fluid.long_wave import PADE
 from meshes.chamber import Chamber
-from solvers.layer.settle import settle
 from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl
+from solvers.pypde.settle import settle
 from solvers.waves.modes import WaveProblem
 from solvers.waves.steady import family_problem, solve
 from tests.mutants import kills

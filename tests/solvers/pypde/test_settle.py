@@ -13,9 +13,9 @@ from fluid.liquid import Liquid
 from fluid.waves import force_ratio
 from meshes.chamber import Chamber
 from meshes.errors import InputError
-from solvers.layer.settle import settle, simulate
 from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl
+from solvers.pypde.settle import settle, simulate
 from solvers.statics.hydrostatics import equilibrium
 
 SPIN, R, H = 40.0, 0.15, 0.01

@@ -1,0 +1,215 @@
+"""The waves of py-pde as liquid models: nonlinear long waves, and one family, KdV-Burgers or Whitham.
+
+py-pde itself is loaded where a wave is asked for.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+import numpy as np
+
+from fluid import kdv
+from fluid.fill import Fill
+from fluid.friction import NO_FRICTION, Friction, FrictionLaw, damping_rate
+from meshes.arrays import Array
+from meshes.errors import InputError
+from solvers.layer.state import LayerHistory, Numerics
+from solvers.liquid_model import (
+    CAPTURED,
+    LONG,
+    THIN_LAYERS,
+    LiquidWave,
+    Range,
+    WaveModel,
+    Whirl,
+    kept_limits,
+    numbers_of,
+    wave_amplitude,
+    whirl_answer,
+)
+from solvers.waves.modes import WaveTerms
+
+Progress = Callable[[float], object] | None
+
+
+@dataclass(frozen=True)
+class LongWave(WaveModel):
+    """Nonlinear long waves, held under the whirl until they settle [theory: long_wave, eq. 4].
+
+    Parameters
+    ----------
+    friction : on the wall
+    numerics : resolution
+    solver : its name in py-pde
+    progress : called with the share of the longest time that is done
+    """
+
+    friction: Friction = NO_FRICTION
+    numerics: Numerics = field(default_factory=Numerics)
+    solver: str = "finite_volume"
+    progress: Progress = field(default=None, compare=False, repr=False)
+
+    name = "long_wave"
+    ranges: ClassVar[Mapping[str, Range]] = {
+        "relative_depth": LONG, "centrifuge": CAPTURED, "wall_layer": THIN_LAYERS, "force_gap": (0.0, 0.1),
+    }  # fmt: skip
+
+    def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
+        """See `WaveModel`; the error is the gap between the force by momentum and that by pressure.
+
+        Raises
+        ------
+        InputError : no liquid, no free surface, a solver that cannot solve it
+        """
+        from solvers.pypde.settle import settle
+
+        history = settle(fill, whirl, self.friction, self.numerics, self.solver, self.progress)
+        return self.wave_at_end(fill, whirl, history)
+
+    def wave_at_end(self, fill: Fill, whirl: Whirl, history: LayerHistory) -> LiquidWave:
+        """The wave as a history leaves it, with the last means as its answer.
+
+        Parameters
+        ----------
+        fill, whirl : chamber and liquid, and its whirl
+        history : from `solvers.pypde.settle`
+        """
+        chamber, answered = fill.chamber, history.force_ratio.size > 0
+        none = complex(math.nan, math.nan)
+        force, offset = (history.force_ratio[-1], history.offset[-1]) if answered else (none, none)
+        gap, found = math.nan, {}
+        if answered:
+            gap = float(abs(force - history.pressure_ratio[-1])) / max(1.0, float(abs(force)))
+            extremes = np.concatenate([history.depth_max, history.depth_min])
+            found = {"force_gap": gap, "wave_amplitude": wave_amplitude(extremes, fill.depth)}
+        numbers = numbers_of(fill, whirl, found)
+        deepest = float(history.depth.max(initial=0.0))
+        limits = {"inner_wall": deepest <= chamber.radius - chamber.inner_radius}
+        answer = whirl_answer(
+            fill,
+            whirl,
+            force_ratio=complex(force),
+            offset=complex(offset),
+            limits=kept_limits(numbers, self.ranges) | limits,
+            dry_patch=float(history.depth.min(initial=math.inf)) <= 0.0,
+            converged=history.converged,
+            error=gap,
+        )
+        return LiquidWave(
+            answer=answer,
+            theta=history.theta,
+            depth=history.depth,
+            numbers=numbers,
+            ranges=self.ranges,
+            mass_error=history.mass_error,
+            mean_rotation=float(history.mean_rotation[-1]) if answered else math.nan,
+            reason=history.reason,
+        )
+
+
+@dataclass(frozen=True)
+class OneFamily(WaveModel):
+    """Steady wave of the family whose resonance is nearer [theory: kdv, eq. 18].
+
+    Parameters
+    ----------
+    friction : on the wall, not quadratic
+    points : of the profile, at least; more where the wave has more modes
+    dispersion : the exact one in place of KdV's
+    solver : its name in py-pde; "steady_newton" needs no time steps
+    progress : called with the share of the longest time that is done, where there are time steps
+
+    Raises
+    ------
+    InputError : quadratic friction
+    """
+
+    friction: Friction = NO_FRICTION
+    points: int = 256
+    dispersion: bool = False
+    solver: str = "steady_newton"
+    progress: Progress = field(default=None, compare=False, repr=False)
+
+    name = "kdv"
+    ranges: ClassVar[Mapping[str, Range]] = {
+        "relative_depth": LONG, "wave_amplitude": (0.0, 0.3), "other_family": (0.0, 0.2),
+        "wall_layer": THIN_LAYERS,
+    }  # fmt: skip
+
+    def __post_init__(self) -> None:
+        if self.friction.law is FrictionLaw.QUADRATIC:
+            raise InputError("friction", self.friction.law, "none, stokes or linear for one family of waves")
+
+    def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
+        """See `WaveModel`; the error is the response of the other family over that of this one.
+
+        Raises
+        ------
+        InputError : gravity across the axis, no free surface
+        """
+        chamber, surface = fill.chamber, fill.surface_radius
+        if whirl.gravity != 0.0:
+            raise InputError("gravity", whirl.gravity, "0 for one family of waves")
+        if not chamber.inner_radius < surface < chamber.radius:
+            allowed = "less than what fills the chamber, for a free surface"
+            raise InputError("volume", fill.volume, allowed)
+        pair = [kdv.coefficients(chamber.radius, surface, whirl.spin, sign) for sign in (1, -1)]
+        family = min(pair, key=lambda c: abs(whirl.slip - c.linear_speed))
+        gamma = float(kdv.decay(family, self._friction_rate(fill, whirl)))
+        forcing = float(kdv.forcing(family, whirl.speed**2 * whirl.amplitude))
+        acting = WaveTerms(family, self.dispersion, 0.0, gamma, forcing, whirl.slip)
+        eta, reason = self._steady(acting, whirl)
+        points = eta.size
+        offset = complex(kdv.offset(family, eta))
+        theta = 2.0 * math.pi * np.arange(points) / points
+        around = np.mod(theta + math.pi, 2.0 * math.pi) - math.pi
+        order = np.argsort(around)
+        area = np.clip(family.mean_area + eta, 0.0, 0.5 * chamber.radius**2)
+        size = kdv.validity(family, eta, whirl.slip)
+        other = float(size.neglected)
+        numbers = numbers_of(fill, whirl, {"wave_amplitude": float(size.amplitude), "other_family": other})
+        # Below nothing and above all that the drum holds there is no layer, whatever the equation says.
+        dry = float(size.thinnest) <= 0.0
+        possible = not dry and float(eta.max()) < 0.5 * surface**2
+        ratio = complex(kdv.force_ratio(family, offset, whirl.amplitude)) if whirl.amplitude else 0j
+        answer = whirl_answer(
+            fill,
+            whirl,
+            force_ratio=ratio,
+            offset=offset,
+            limits=kept_limits(numbers, self.ranges),
+            dry_patch=dry,
+            converged=not reason and possible,
+            error=other,
+        )
+        return LiquidWave(
+            answer=answer,
+            theta=around[order],
+            depth=(chamber.radius - np.sqrt(chamber.radius**2 - 2.0 * area))[order],
+            numbers=numbers,
+            ranges=self.ranges,
+            mass_error=abs(float(area.mean()) / family.mean_area - 1.0),
+            mean_rotation=math.nan,
+            reason=reason if possible else "the wave would run the wall dry or fill the drum",
+        )
+
+    def _steady(self, terms: WaveTerms, whirl: Whirl) -> tuple[Array, str]:
+        """Heights at equal steps of the angle from the deflection, m^2, and why they are none, or empty."""
+        from solvers.pypde.settle_family import steady_state, steady_wave
+
+        if self.solver == "steady_newton":
+            wave = steady_wave(terms, self.points)
+            return wave.profile(max(self.points, 2 * wave.modes.size + 2)), wave.reason
+        return steady_state(terms, whirl, self.points, self.solver, self.progress)
+
+    def _friction_rate(self, fill: Fill, whirl: Whirl) -> float:
+        """Rate at which the wall friction stops the mean layer, 1/s [theory: long_wave, eq. 9]."""
+        radius = fill.chamber.radius
+        law, coefficient = self.friction.at(fill.liquid.viscosity, whirl.slip, radius)
+        area = fill.volume / (2.0 * math.pi * fill.chamber.height * radius**2)
+        lid = 2.0 * radius / fill.chamber.height
+        return float(damping_rate(law, coefficient, lid, fill.depth / radius, area, 0.0))

@@ -1,0 +1,83 @@
+"""The steady wave of one family under a prescribed whirl, by py-pde: by Newton's method, or in time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace
+
+from pde.fields.scalar import ScalarField
+from pde.solvers.base import ConvergenceError
+
+from meshes.arrays import Array
+from solvers.liquid_model import Whirl
+from solvers.pypde.grid import circle
+from solvers.pypde.one_family import KdvBurgersPDE
+from solvers.pypde.steady_newton import SteadyNewtonSolver
+from solvers.pypde.stock import SAMPLES, require_solver, stepping
+from solvers.pypde.stretches import StretchMeans, gently, run, settling
+from solvers.waves.modes import WaveTerms
+from solvers.waves.newton import SteadyWave
+
+NEWTON = SteadyNewtonSolver.name
+# Relative change of the mean offset: of a wave that has settled; without damping, where free waves stay.
+_SETTLED, _STIRRED = 1e-6, 1e-3
+
+
+def steady_wave(terms: WaveTerms, points: int) -> SteadyWave:
+    """The steady wave of one family that py-pde's `solve` comes back with.
+
+    Parameters
+    ----------
+    terms : what acts
+    points : of the grid
+
+    Returns
+    -------
+    SteadyWave; `converged` and `reason` tell whether it is an answer
+    """
+    equation = KdvBurgersPDE(**vars(terms))
+    with suppress(ConvergenceError):  # which the wave tells as well
+        equation.solve(ScalarField(circle(points), 0.0), 1.0, tracker=None, solver=NEWTON)
+    found: SteadyWave = equation.diagnostics["solver"]["wave"]
+    return found
+
+
+def steady_state(
+    terms: WaveTerms,
+    whirl: Whirl,
+    points: int,
+    solver: str,
+    progress: Callable[[float], object] | None = None,
+) -> tuple[Array, str]:
+    """The wave that is left of rest under a whirl that has grown gently.
+
+    Parameters
+    ----------
+    terms : what acts, with the whirl's speed and forcing
+    whirl : its period, and its ramp if it has one
+    points : of the grid
+    solver : its name in py-pde
+    progress : called with the share of the longest time that is done
+
+    Returns
+    -------
+    Heights at equal steps of the angle from the deflection, m^2, shape (points,); why it has not become
+    steady, or empty
+
+    Raises
+    ------
+    InputError : a solver that cannot solve it
+    """
+    whirl = gently(whirl)
+    named = vars(replace(terms, ramp=whirl.ramp))
+    equation = KdvBurgersPDE(named.pop("c"), **named)
+    require_solver(equation, solver)
+    state = ScalarField(circle(points), 0.0)
+    settled = _SETTLED if terms.damping or terms.viscosity else _STIRRED
+    means = StretchMeans(equation, settling(whirl, False), SAMPLES, settled)
+    options = stepping(equation, state.grid, solver, whirl.period / SAMPLES)
+    reason = run(equation, state, means, solver, options, progress)
+    if not reason and not means.steady:
+        reason = "the wave still changes from one stretch of whirl periods to the next"
+    return equation.seen(*(means.last or (state, 0.0))), reason

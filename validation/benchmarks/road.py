@@ -1,0 +1,168 @@
+"""What it costs to go by py-pde: a layer driven by its `solve`, against the compiled kernel called directly.
+
+`python -m validation.benchmarks.road` runs both in turn and prints the processor time of each and the ratio.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from fluid.fill import Fill
+from fluid.friction import QUADRATIC, Friction, FrictionLaw
+from fluid.liquid import known_liquid
+from meshes.arrays import Array
+from meshes.chamber import Chamber
+from meshes.errors import InputError
+from solvers.layer.records import LOADS, Drive, Outcome, Record, Wall, records
+from solvers.layer.state import Numerics, ring
+from solvers.layer.step import march, scratch
+from solvers.liquid_model import Whirl
+from solvers.pypde.settle import simulate
+
+PERIODS, CELLS, REPEATS = 100, 128, 15
+_COURANT = 0.8
+
+
+class BareLayer:
+    """A uniform layer at rest in the drum, for the compiled time steps; lengths over R, times over 1/Omega.
+
+    Parameters
+    ----------
+    fill, whirl, friction, numerics : as for `solvers.pypde.settle.simulate`
+    """
+
+    def __init__(self, fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics) -> None:
+        chamber, spin, n = fill.chamber, whirl.spin, numerics.cells
+        radius = chamber.radius
+        self.fill, self.whirl, self.time, self.outcome = fill, whirl, 0.0, Outcome.DONE
+        self.steps = 0
+        self.area = np.full(n, fill.volume / (2.0 * math.pi * chamber.height * radius**2))
+        self.momentum = -np.square(self.area)
+        law, coefficient = friction.at(fill.liquid.viscosity, whirl.slip, radius)
+        # The quadratic coefficient is a pure number, the others are rates.
+        scaled = coefficient if law == QUADRATIC else coefficient / spin
+        self.wall = Wall(law, scaled, 2.0 * radius / chamber.height, numerics.dispersion)
+        self.drive = Drive(
+            amplitude=whirl.amplitude / radius,
+            slip=whirl.slip / spin,
+            ramp=whirl.ramp * spin,
+            whirl=whirl.speed / spin,
+            weight=whirl.gravity / (radius * spin**2),
+            spin=1.0,
+        )
+        self.angles, self.scratch = ring(n), scratch(n)
+
+    def advance(self, periods: float = 1.0, most: int | None = None) -> Record:
+        """Go on for so many whirl periods; the integrals of the loads over them, as a record LOADS."""
+        sums, length = records(LOADS), periods * self.whirl.period * self.whirl.spin
+        self.outcome, self.steps = march(
+            *(self.area, self.momentum, self.time, self.time + length, self.drive, self.wall, self.angles),
+            *(_COURANT, self.scratch, sums),
+            most=most,
+        )
+        self.time += length
+        return sums
+
+    def profile(self) -> Array:
+        """Depth over R from the deflection onward, by rising angles, shape (n,)."""
+        middle = 2.0 * math.pi * (np.arange(self.area.size) + 0.5) / self.area.size
+        theta = np.mod(middle - self.drive.slip * self.time + math.pi, 2.0 * math.pi)
+        return np.asarray(1.0 - np.sqrt(1.0 - 2.0 * self.area))[np.argsort(theta)]
+
+
+@dataclass(frozen=True)
+class Road:
+    """Cost of a layer over whirl periods, by py-pde and without it.
+
+    Parameters
+    ----------
+    cells, periods : of the layer and of its way
+    bare, road : least processor times of the kernel called period by period and of py-pde's `solve`, s
+    overhead : share by which the second takes longer; noise only adds to a time
+    """
+
+    cells: int
+    periods: int
+    bare: float
+    road: float
+    overhead: float
+
+
+def measure(periods: int = PERIODS, cells: int = CELLS, repeats: int = REPEATS) -> Road:
+    """Both in turn in this process, after one of each to compile.
+
+    Parameters
+    ----------
+    periods, cells : of the whirl and of the layer
+    repeats : turns
+
+    Raises
+    ------
+    InputError : no turns
+    """
+    if repeats < 1:
+        raise InputError("repeats", repeats, "1 or more")
+    radius, friction, numerics = 0.15, Friction(FrictionLaw.LINEAR, 1.0), Numerics(cells)
+    fill = Fill(Chamber(radius, 0.05), known_liquid("water"), 6.7e-4)
+    whirl = Whirl(40.0, 32.0, 1.5e-4, ramp=1.0)
+
+    def bare() -> None:
+        layer = BareLayer(fill, whirl, friction, numerics)
+        for _ in range(periods):
+            layer.advance()
+
+    def road() -> None:
+        simulate(fill, whirl, periods * whirl.period, friction, numerics)
+
+    times = []
+    for turn in range(repeats + 1):
+        # To and fro, so that neither always follows the other.
+        runs = (bare, road) if turn % 2 else (road, bare)
+        taken = {run: _cpu_time(run) for run in runs}
+        times.append((taken[bare], taken[road]))
+    least = np.min(times[1:], axis=0)
+    return Road(cells, periods, float(least[0]), float(least[1]), float(least[1] / least[0]) - 1.0)
+
+
+def _cpu_time(run: Callable[[], None]) -> float:
+    begin = time.process_time()
+    run()
+    return time.process_time() - begin
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Measure and print.
+
+    Parameters
+    ----------
+    arguments : of the command line; None: the process's own
+
+    Returns
+    -------
+    Exit code
+    """
+    parser = argparse.ArgumentParser(prog="python -m validation.benchmarks.road", description=__doc__)
+    parser.add_argument("--periods", type=int, default=PERIODS)
+    parser.add_argument("--cells", type=int, default=CELLS)
+    parser.add_argument("--repeats", type=int, default=REPEATS)
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    chosen = parser.parse_args(arguments)
+    found = measure(chosen.periods, chosen.cells, chosen.repeats)
+    if chosen.json:
+        print(json.dumps(asdict(found)))
+    else:
+        told = f"kernel {found.bare:.3f} s, by py-pde {found.road:.3f} s of processor time"
+        more = f"{100.0 * found.overhead:+.1f} %, least of {chosen.repeats} turns"
+        print(f"{found.periods} whirl periods on {found.cells} cells: {told}; {more}")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
