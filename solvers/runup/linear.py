@@ -121,8 +121,7 @@ class LinearCoupled(CoupledRotor):
         """The moment as the history keeps it."""
         m, n = self.machine, len(self.system.coordinates)
         q, active = m.place[:n].copy(), m.active > 0.0
-        planes = list(m.planes) or [m.watched]
-        deflection = np.array([complex(*(plane @ q)) for plane in planes])
+        deflection = np.array([complex(*(plane @ q)) for plane in self.seen])
         offset = self._offset()
         depth = np.array([fill.depth for fill in self.fills])
         rise = (m.layers.curvature - 1.0) * np.abs(offset)

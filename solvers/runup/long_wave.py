@@ -229,8 +229,7 @@ class Coupled(CoupledRotor):
         """The moment as the history keeps it."""
         x, angle = self.state.place.copy(), float(self.shaft.angle)
         turn = complex(math.cos(angle), math.sin(angle))
-        planes = list(planes_of(self.system, self.fills)) or [self.machine.watched]
-        deflection = np.array([complex(*(plane @ x)) for plane in planes])
+        deflection = np.array([complex(*(plane @ x)) for plane in self.seen])
         surface = np.sqrt(np.maximum(1.0 - 2.0 * self.area, 0.0))
         lever = (1.0 - surface) * (1.0 + surface + np.square(surface)) / 3.0
         whole = np.maximum(self.area.sum(axis=1), 1e-300)

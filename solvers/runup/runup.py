@@ -256,6 +256,7 @@ def _march(
 ) -> RunupHistory:
     """The run itself, sample by sample."""
     time, rate = _times(drive, numerics.samples)
+    highest = _highest(drive)
     machine.drive(torque_curve(drive), 0.0 if isinstance(drive, Ramp) else drive.inertia)
     energy, captured, outcome = machine.energy(), 0.0, Outcome.DONE
     wanted = np.unique([np.abs(time - moment).argmin() for moment in snapshots]).astype(np.intp)
@@ -264,7 +265,8 @@ def _march(
         machine.watch()
         try:
             captured += machine.switch()
-            most = _budget(machine, drive, stop, numerics)
+            fastest = max(machine.spin, highest)
+            most = step_budget(stop - machine.time, fastest, numerics.cells, numerics.courant)
             outcome, brought = _advance(machine, stop, float(rate[k]), numerics.courant, most)
             captured += brought
         except KeyboardInterrupt:
@@ -302,11 +304,10 @@ def _march(
 _WORKS = ("unbalance", "drive", "gravity", "support", "friction", "bores", "profile", "motor")
 
 
-def _budget(machine: RunupMachine, drive: Drive, stop: float, numerics: RunupNumerics) -> int:
-    """Most steps up to a time."""
+def _highest(drive: Drive) -> float:
+    """Largest speed that a drive asks for, rad/s."""
     speeds = drive.corners()[1] if isinstance(drive, Ramp) else np.array(drive.speeds)
-    highest = max(machine.spin, float(speeds.max()))
-    return step_budget(stop - machine.time, highest, numerics.cells, numerics.courant)
+    return float(speeds.max())
 
 
 def _advance(

@@ -10,6 +10,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -282,6 +283,12 @@ class CoupledRotor(ABC):
     capture: Array
     pool: Array
 
+    @cached_property
+    def seen(self) -> Array:
+        """Displacement of the axes that are read, for unit coordinates: of each chamber, or the one watched."""
+        planes = planes_of(self.system, self.fills)
+        return planes if len(planes) else np.array([self.system.centre], dtype=float)
+
     @property
     @abstractmethod
     def shaft(self) -> np.record:
@@ -300,12 +307,12 @@ class CoupledRotor(ABC):
     @property
     def time(self) -> float:
         """Time, s."""
-        return float(self.shaft.time)
+        return float(self.shaft["time"])
 
     @property
     def spin(self) -> float:
         """Spin speed, rad/s."""
-        return float(self.shaft.spin)
+        return float(self.shaft["spin"])
 
     def watch(self) -> None:
         """From here on look for the largest amplitude anew."""
@@ -318,11 +325,10 @@ class CoupledRotor(ABC):
         ----------
         amplitude : of the moment, m
         """
-        crest = self.crest
-        if amplitude >= crest.amplitude:
-            return {"largest": amplitude, "largest_speed": self.spin, "largest_time": self.time}
-        found = {"largest": crest.amplitude, "largest_speed": crest.speed, "largest_time": crest.time}
-        return {name: float(value) for name, value in found.items()}
+        largest, speed, time = self.crest.item()
+        if amplitude >= largest:
+            largest, speed, time = amplitude, self.spin, self.time
+        return {"largest": largest, "largest_speed": speed, "largest_time": time}
 
     @property
     def masses(self) -> Array:
