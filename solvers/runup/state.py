@@ -285,7 +285,7 @@ class CoupledRotor(ABC):
 
     @cached_property
     def seen(self) -> Array:
-        """Displacement of the axes that are read, for unit coordinates: of each chamber, or the one watched."""
+        """Displacement of the axes that are read, for unit coordinates: the chambers', or the one watched."""
         planes = planes_of(self.system, self.fills)
         return planes if len(planes) else np.array([self.system.centre], dtype=float)
 
