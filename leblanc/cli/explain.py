@@ -40,7 +40,15 @@ def explain(
 def _print(answer: Explanation) -> None:
     """The explanation as text."""
     from leblanc.results.base import percent
-    from leblanc.text.explanation import layer_rows, machine_rows, mode_rows, span_heading, span_rows
+    from leblanc.text.explanation import (
+        ESTIMATES,
+        estimate_rows,
+        layer_rows,
+        machine_rows,
+        mode_rows,
+        span_heading,
+        span_rows,
+    )
     from leblanc.text.run import described
 
     print(answer.name)
@@ -55,6 +63,9 @@ def _print(answer: Explanation) -> None:
     for span in answer.models:
         print(f"  {span_heading(span)}")
         print_table(span_rows(span), indent=4)
+    if rows := estimate_rows(answer):
+        print("  estimated: error of the means, ripple about them once a turn by gravity")
+        print_table(rows, ESTIMATES, indent=4)
     print_table(described(span.model for span in answer.models), indent=2)
     if answer.runup:
         print("liquid model of the run-up")

@@ -93,6 +93,51 @@ class ModelSpan:
     better: str
 
 
+@dataclass(frozen=True)
+class SpeedEstimate:
+    """What is expected of the answer at one speed.
+
+    Parameters
+    ----------
+    speed : rad/s
+    model : that answers
+    in_range : the liquid rides with the drum
+    error : of the mean amplitude, relative; nan where there is no estimate
+    liquid_error : by gravity across the axis, of the mean of the liquid's offset, relative
+    ripple : by which gravity moves the amplitude up and down about its mean, relative
+    liquid_ripple : by which the liquid's centre of mass goes round its mean in the drum, m
+    """
+
+    speed: float
+    model: str
+    in_range: bool
+    error: float
+    liquid_error: float
+    ripple: float
+    liquid_ripple: float
+
+
+def speed_estimates(choice: Choice, speed: Array) -> tuple[SpeedEstimate, ...]:
+    """What is expected at every speed.
+
+    Parameters
+    ----------
+    choice : the models
+    speed : rad/s, shape (n,)
+    """
+    waves = choice.gravity
+    columns = (
+        speed,
+        choice.models,
+        choice.in_range,
+        choice.error,
+        waves.liquid,
+        waves.ripple,
+        waves.liquid_ripple,
+    )
+    return tuple(SpeedEstimate(*row) for row in zip(*(column.tolist() for column in columns), strict=True))
+
+
 def model_spans(choice: Choice, speed: Array) -> tuple[ModelSpan, ...]:
     """Consecutive speeds with the same model that are alike in range and within the tolerance."""
     numbers = np.unique(choice.models, return_inverse=True)[1].reshape(-1)

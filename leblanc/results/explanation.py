@@ -11,7 +11,7 @@ import numpy as np
 
 from fluid.numbers import LayerNumbers
 from leblanc.results.base import Result, attributes
-from leblanc.results.choice import ModelSpan
+from leblanc.results.choice import ModelSpan, SpeedEstimate
 from leblanc.results.exciter import named_speeds, number_or_none
 from leblanc.results.netcdf import NamedArrays, Variable, flags
 from leblanc.results.netcdf import variable as var
@@ -81,6 +81,7 @@ class Explanation(Result):
     captured_from : speed above which the liquid rides with the drum, rad/s; None if at every speed
     layers : one for each chamber; None for an empty one
     models : which model answers at each speed, how well, and why
+    estimates : what is expected at every speed
     tolerance : relative error that the scene allows
     modes : of the dry rotor at rest; none for a planar rotor, whose only one is the critical speed
     runup : which liquid model the run-up will take, in words; empty without one
@@ -110,6 +111,7 @@ class Explanation(Result):
     modes: tuple[RestMode, ...] = ()
     runup: str = ""
     whirl: WhirlOutlook | None = None
+    estimates: tuple[SpeedEstimate, ...] = ()
     source: str = ""
     assumed: tuple[str, ...] = ()
     digest: str = ""
@@ -142,6 +144,7 @@ class Explanation(Result):
                 "error": var(span, spans["error"], "1", "estimated error", "largest, relative"),
                 "reason": var(span, spans["reason"], "1", "why that model"),
                 **_layer_variables(self.layers),
+                **_estimate_variables(self.estimates),
             },
             coords={"speed": var(("end",), ends, rate, "spin speed", "first and last of the scene")},
             attrs=attributes(self, "explain", {}, ()),
@@ -159,6 +162,21 @@ def _whirl_variables(whirl: WhirlOutlook | None) -> dict[str, Variable]:
     return {
         name: var((), math.nan if whirl is None else getattr(whirl, own), unit, words, "by rule")
         for name, (own, unit, words) in parts.items()
+    }
+
+
+def _estimate_variables(estimates: tuple[SpeedEstimate, ...]) -> dict[str, Variable]:
+    """What is expected at every speed."""
+    parts = {
+        "speed": ("rad s-1", "spin speed"),
+        "error": ("1", "estimated error of the mean amplitude"),
+        "liquid_error": ("1", "estimated error of the liquid's mean offset"),
+        "ripple": ("1", "estimated ripple of the amplitude"),
+        "liquid_ripple": ("m", "estimated ripple of the liquid's centre of mass"),
+    }
+    return {
+        f"at_{name}": var(("at",), np.array([getattr(each, name) for each in estimates]), unit, words)
+        for name, (unit, words) in parts.items()
     }
 
 

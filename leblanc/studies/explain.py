@@ -9,7 +9,7 @@ import numpy as np
 
 from fluid.fill import Fill
 from fluid.numbers import layer_numbers
-from leblanc.results.choice import model_spans
+from leblanc.results.choice import model_spans, speed_estimates
 from leblanc.results.explanation import ExciterExplanation, Explanation, LayerExplanation, WhirlOutlook
 from leblanc.results.response import RestMode
 from leblanc.scene.rotors import Exciter as ExciterOfScene
@@ -93,6 +93,7 @@ def explain_scene(scene: Scene) -> Explanation:
         captured_from=choice.captured_from,
         layers=tuple(layers),
         models=model_spans(choice, machine.speed),
+        estimates=speed_estimates(choice, machine.speed),
         tolerance=choice.tolerance,
         modes=bare.modes,
         runup=_runup(scene),

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from leblanc.results.base import EXACT, one_line
-from leblanc.results.choice import ModelSpan
+from leblanc.results.base import EXACT, one_line, percent
+from leblanc.results.choice import ModelSpan, SpeedEstimate
 from leblanc.results.explanation import (
     Comparison,
     ExciterExplanation,
@@ -87,6 +87,39 @@ def layer_rows(layer: LayerExplanation | None) -> Rows:
 def span_rows(span: ModelSpan) -> Rows:
     """One range of speeds: its error, why that model, and what the next better one gives."""
     return [("estimated error", error_words(span)), ("why", span.reason), ("next better", span.better)]
+
+
+_SHOWN = 9  # speeds in the table of estimates
+
+
+def estimate_rows(answer: Explanation) -> list[tuple[str, ...]]:
+    """What is expected at some of the speeds, as `ESTIMATES` heads it; none where no gravity lies across.
+
+    Parameters
+    ----------
+    answer : the explanation
+    """
+    every = answer.estimates
+    if not any(each.liquid_ripple != 0.0 for each in every):
+        return []
+    picked = {round(k * (len(every) - 1) / (_SHOWN - 1)) for k in range(_SHOWN)}
+    return [_estimate_row(every[k]) for k in sorted(picked)]
+
+
+ESTIMATES = "speed (rpm)", "model", "mean", "liquid's mean", "ripple", "liquid's ripple"
+
+
+def _estimate_row(each: SpeedEstimate) -> tuple[str, ...]:
+    if not each.in_range:
+        return number(each.speed * RPM), each.model, "not carried", "", "", ""
+    shares = [_share(each.error), _share(each.liquid_error), _share(each.ripple)]
+    return number(each.speed * RPM), each.model, *shares, with_unit(each.liquid_ripple, LENGTH)
+
+
+def _share(value: float) -> str:
+    if math.isnan(value):
+        return "not known"
+    return percent(value) if math.isfinite(value) else "no bound"
 
 
 def span_heading(span: ModelSpan) -> str:
