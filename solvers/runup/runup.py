@@ -355,7 +355,7 @@ def largest_wave(tolerance: float) -> float:
 
 
 def linear_run_error(history: RunupHistory, fills: Sequence[Fill]) -> LinearRunError:
-    """Error of a run with linear layers from how large its waves were [theory: model_error, eq. 22].
+    """Error of a run with linear layers from how large its waves were [theory: model_error, eq. 23].
 
     Parameters
     ----------
