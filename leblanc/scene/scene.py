@@ -134,9 +134,9 @@ class Model(Part):
         1e-3, description="relative error that auto may make"
     )
     held: Annotated[str, one_of(*HELD)] = Field(
-        "auto",
-        description="whether auto may hold the wave in time at speeds where no steady model is within the "
-        "tolerance: where they need it (auto), never, or everywhere (always)",
+        "never",
+        description="where auto may hold rotor and long waves in time, which takes seconds a speed: never; "
+        "where no steady model is within the tolerance or a whirl grows by itself (auto); or always",
     )
     cells: Annotated[int, whole(16, MAX_CELLS)] = Field(
         128, description="finite volumes round each wall of a wave that is held"

@@ -205,18 +205,25 @@ differently in two directions"
         raise InputError("model.liquid", scene.model.liquid, allowed)
 
 
-def held_at(scene: Scene, choice: Choice) -> Flags:
+def held_at(scene: Scene, choice: Choice, growth: Array) -> Flags:
     """At which speeds the wave is held in time, shape (n,).
+
+    Auto needs it where no steady model is known to be within the tolerance, though the liquid rides with the
+    drum, and where a whirl grows by itself.
 
     Parameters
     ----------
     scene : names the model, and whether auto may hold
     choice : the steady models
+    growth : of the whirl that grows most, 1/s, shape (n,)
     """
-    every = scene.model.liquid == "long_wave" or (
-        scene.model.liquid == "auto" and scene.model.held == "always" and not is_cut(scene)
-    )
-    return np.full(choice.models.shape, every)
+    if scene.model.liquid == "long_wave":
+        return np.ones(growth.shape, dtype=bool)
+    if scene.model.liquid != "auto" or scene.model.held == "never" or is_cut(scene):
+        return np.zeros(growth.shape, dtype=bool)
+    if scene.model.held == "always":
+        return np.ones(growth.shape, dtype=bool)
+    return np.asarray(choice.in_range & (choice.missed | (growth > 0.0)))
 
 
 def is_cut(scene: Scene) -> bool:

@@ -207,7 +207,7 @@ def run_scene(
         choice, answer, refined = element_answers(machine, choice, answer, refined)
     progress("self-excited whirl")
     whirl = self_excited(machine)
-    at, held, stable = held_at(scene, choice), None, whirl.leaves_stable(answer.stable)
+    at, held, stable = held_at(scene, choice, whirl.growth), None, whirl.leaves_stable(answer.stable)
     if at.any():
         from leblanc.studies.held.held import hold_answer
 

@@ -116,6 +116,23 @@ def hold(
     return watch.answer(moment, outcome)
 
 
+def compile_kernels(machine: HeldMachine, begin: Moment) -> None:
+    """Compile what holds a motion, or load it from disk, by a step of it.
+
+    Parameters
+    ----------
+    machine, begin : as for `hold`
+    """
+    from solvers.pypde import RotorLayersPDE, run
+
+    equation = RotorLayersPDE(
+        machine.system, machine.fills, begin.spin, friction=machine.friction, gravity=machine.gravity,
+        layers=begin.layers,
+    )  # fmt: skip
+    stretch = 0.0, 1e-6 / begin.spin
+    run(equation, equation.start(8), stretch, (), solver="coupled", follow=True)
+
+
 _SHARE = 0.5  # of what half the cells change; a third where the scheme is of second order
 
 

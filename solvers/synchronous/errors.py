@@ -59,7 +59,9 @@ def law_error(fills: Fills, speed: Array, gravity: Array) -> Array:
 
 @dataclass(frozen=True)
 class GravityError:
-    """Estimates of what gravity does to an answer that knows none [theory: model_error, eq. 21-22]; shape (n,).
+    """Estimates of what gravity does to an answer that knows none [theory: model_error, eq. 21-22].
+
+    Each of shape (n,).
 
     Infinite where there is no bound, nan where the liquid does not ride with the drum.
 

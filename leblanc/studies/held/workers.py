@@ -11,7 +11,7 @@ from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 
 from solvers.held.branch import HeldTask, Runner
-from solvers.held.hold import hold_with_error
+from solvers.held.hold import compile_kernels, hold_with_error
 from solvers.held.state import HeldMachine, HeldState, HoldNumerics
 
 # Libraries of linear algebra with threads of their own are slower on matrices as small as ours.
@@ -53,6 +53,9 @@ def _here(
 def _there(
     pool: ProcessPoolExecutor, machine: HeldMachine, numerics: HoldNumerics, tasks: Sequence[HeldTask]
 ) -> Iterator[tuple[int, HeldState]]:
+    if tasks:
+        # Workers that find the kernels of another version on disk at the same time would mix the two.
+        compile_kernels(machine, tasks[0].begin)
     waiting: dict[Future[HeldState], int] = {
         pool.submit(hold_with_error, machine, task.begin, numerics, task.slowest): k
         for k, task in enumerate(tasks)
