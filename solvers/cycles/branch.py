@@ -30,7 +30,7 @@ _SHORTEST = 1.0 / 16.0  # share of a Newton step
 _SLOW = 0.4  # of what was left before: above that the derivatives are found anew
 _GONE = 0.5  # of the mean area: a layer this far from a standing wave does not come to one
 _FIRST, _LEAST, _MOST = 0.1, 2e-3, 0.4  # of the arc's steps
-_CLOSE, _FINEST = 0.22, 0.01  # longest step next to a small whirl: of its size over the depth, and at least
+_CLOSE, _FINEST = 0.25, 0.35  # of the depth: whirls smaller than that, and the longest step over their size
 _FEW, _MANY = 5, 9  # rounds after which the next step is longer or shorter
 _SPREAD, _RANGE = 0.05, 0.1  # changes of whirl speed and of spin that count as a depth of the layer does
 _DIFFERENCE = 1e-6
@@ -192,7 +192,9 @@ class Follower:
             cycle = found
             yield cycle
             length *= 1.6 if self._rounds <= _FEW else 1.0 if self._rounds <= _MANY else 0.7
-            length = min(length, _MOST, _CLOSE * self.size(cycle) + _FINEST)
+            length = min(length, _MOST)
+            if self.size(cycle) < _CLOSE:
+                length = min(length, _FINEST * self.size(cycle))
 
     def step(self, cycle: Cycle, length: float) -> Cycle | None:
         """The limit cycle further on along the branch by a length of arc; None where it is not found."""

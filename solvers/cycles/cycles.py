@@ -32,7 +32,6 @@ _FIRST = 0.02  # of the depth: first whirl of a branch from an edge
 _POINTS = 400
 _NEAR = 0.03  # relative, of an edge at which a branch already ends
 _PROMINENT = 1e-4  # relative: a smaller turn of the branch is the scheme's, not a fold
-_WILD = 0.1  # of the spin: growth beyond that is that of a kink of the scheme's limiter, not of the whirl
 FAST_LAG = 1.0 / 3.0  # of the spin: beyond that the flow's profile no longer describes the lagging liquid
 
 
@@ -104,7 +103,9 @@ class Branch:
         lag = np.nanmax(self.lag, axis=1)
         for k in range(self.speed.size - 1):
             first, last = self.speed[k], self.speed[k + 1]
-            if first == last or not min(first, last) <= speed < max(first, last):
+            low, high = min(first, last), max(first, last)
+            # A whirl between two pieces of the branch belongs to the first one.
+            if low == high or not low <= speed <= high or (k > 0 and speed == first):
                 continue
             part = (speed - first) / (last - first)
             size, turning, behind = (
@@ -349,11 +350,11 @@ class _Finder:
         )
 
     def _growth(self, follower: Follower, cycle: Cycle) -> float:
-        """Growth of the disturbance that grows most, 1/s; nan where a kink of the scheme hides it."""
+        """Growth of the disturbance that grows most, 1/s; nan where it was not found."""
         if not self.judged:
             return float("nan")
         found = disturbance_growth(self.machine, follower.waves, cycle)
-        return found if found is not None and found < _WILD * cycle.spin else float("nan")
+        return float("nan") if found is None else found
 
 
 @dataclass(frozen=True)
@@ -379,7 +380,7 @@ def _branch(rows: list[_Row], reason: tuple[str, str]) -> Branch:
     if known.any():
         # Between its neighbours where it is not known.
         filled = np.interp(arc, arc[known], values["growth"][known])
-        # A kink may hide it at single whirls: the middle one of three neighbours counts.
+        # At single whirls a kink of the limiter may hide it: the middle one of three neighbours counts.
         wide = np.concatenate([filled[:1], filled, filled[-1:]])
         values["growth"] = np.median([wide[:-2], wide[1:-1], wide[2:]], axis=0)
     turns = _turns(values["speed"])

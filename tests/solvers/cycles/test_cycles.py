@@ -50,7 +50,7 @@ def found(depth: float, zeta: float, top: float, friction: Friction = FRICTION) 
 
 @pytest.fixture(scope="module")
 def branches() -> tuple[LimitCycles, Fill]:
-    return found(0.1, 0.02, 1.7)
+    return found(0.1, 0.02, 2.05)
 
 
 def stable_at(cycles: LimitCycles, speed: float) -> tuple[float, float, float]:
