@@ -34,7 +34,8 @@ _CLOSE, _FINEST = 0.25, 0.35  # of the depth: whirls smaller than that, and the 
 _FEW, _MANY = 5, 9  # rounds after which the next step is longer or shorter
 _SPREAD, _RANGE = 0.05, 0.1  # changes of whirl speed and of spin that count as a depth of the layer does
 _DIFFERENCE = 1e-6
-_RISE, _STAY = 0.05, 12  # of the whirl in a period, over the depth; periods after it
+_RISE, _STAY = 0.05, 60  # of the whirl in a period, over the depth; most periods after it
+_ROUGH = 0.01  # of the mean area: change in a period at which a layer has settled for a first whirl
 
 
 @dataclass(frozen=True)
@@ -146,7 +147,13 @@ class Follower:
         return max(area, 0.0)
 
     def start(
-        self, moved: Complex, whirl_speed: float, spin: float, size: float, hold_size: bool = False
+        self,
+        moved: Complex,
+        whirl_speed: float,
+        spin: float,
+        size: float,
+        lag: float = 0.0,
+        hold_size: bool = False,
     ) -> Cycle | None:
         """A limit cycle at a spin, looked for near a whirl; None where none is found.
 
@@ -155,11 +162,14 @@ class Follower:
         moved : shape of the whirl
         whirl_speed, spin : rad/s
         size : of the whirl over the depth of the layer
+        lag : of the liquid behind the drum at first, rad/s
         hold_size : look for a limit cycle of that size, at whatever spin
         """
         watched = complex(self._rows[self._watched] @ moved)
         shape = moved * (cmath.exp(-1j * cmath.phase(watched)) / float(np.abs(self._rows @ moved).max()))
         vector = self.unknowns(size * self.depth * shape, whirl_speed, spin)
+        for wave in self.waves:
+            wave.lag(lag / spin)
         if not self._grown(vector, size):
             return None
         towards = np.zeros(vector.size)
@@ -177,8 +187,11 @@ class Follower:
         for wave, given in zip(self.waves, self.given(vector), strict=True):
             for k in range(rise + _STAY):
                 share = min(1.0, (k + 1) / rise)
+                last = wave.state
                 if wave.period(given._replace(size=share * given.size)) is None:
                     return False
+                if k > rise + 2 and float(np.abs(wave.state - last).max()) < _ROUGH * wave.mean:
+                    break
         return True
 
     def after(self, cycle: Cycle) -> Iterator[Cycle]:

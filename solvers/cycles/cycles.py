@@ -199,11 +199,11 @@ def limit_cycles(
         if branch is not None:
             branches.append(branch)
     (own,) = unstable_bands(rotor, [fills], np.linspace(*range_, _GRID), friction)
-    for _, upper in own:
-        if not range_[0] < upper < last or any(_ends_at(branch, upper) for branch in branches):
+    for edge in np.ravel(own).tolist():
+        if not range_[0] < edge < last or any(_ends_at(branch, edge) for branch in branches):
             continue
-        near = float(growth_at(rotor, [fills], np.array([0]), np.array([upper]), friction)[1][0])
-        branch = finder.small(upper, near)
+        near = float(growth_at(rotor, [fills], np.array([0]), np.array([edge]), friction)[1][0])
+        branch = finder.small(edge, near)
         if branch is not None:
             branches.append(branch)
     reason = ""
@@ -282,7 +282,7 @@ class _Finder:
                 spin = lower + 0.6 * (spin - lower)
                 guess = estimated_whirl(self.machine, self.friction, lower, near, spin)
             size = min(guess.amplitude / follower.depth, 1.2 * _LARGE)
-            start = follower.start(guess.moved, guess.whirl_speed, spin, size)
+            start = follower.start(guess.moved, guess.whirl_speed, spin, size, guess.lag)
             if start is not None and follower.size(start) > 1e-3:
                 return self._both_ways(follower, start)
         return None

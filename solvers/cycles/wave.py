@@ -107,6 +107,12 @@ class StandingWave:
         """Least area of a cell over the mean: 0 where the wall is dry."""
         return float(self.state[: self.cells].min()) / self.mean
 
+    def lag(self, share: float) -> None:
+        """Start anew with a uniform layer that lags behind the drum by a share of its spin."""
+        area = np.full(self.cells, self.mean)
+        velocity = -share * math.sqrt(1.0 - 2.0 * self.mean)
+        self.state = np.concatenate([area, velocity * area - np.square(area)])
+
     def drag(self, spin: float, whirl_speed: float) -> float:
         """Coefficient of the friction, over the spin if it is a rate; both speeds in rad/s."""
         slip, radius = whirl_speed - spin, self.fill.chamber.radius
