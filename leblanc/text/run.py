@@ -399,9 +399,9 @@ def unanswered(result: RunResult) -> list[str]:
     held, found = result.held, []
     lost = ~result.converged if held is None else ~result.converged & ~held.at
     if lost.any():
-        speeds = _first([f"{speed:.6g} rad/s" for speed in result.speed[lost].tolist()])
+        listed = _first([f"{speed:.6g} rad/s" for speed in result.speed[lost].tolist()])
         count = f"{np.count_nonzero(lost)} of {lost.size}"
-        found.append(f"no bounded deflection found at {count} speeds: {speeds}")
+        found.append(f"no bounded deflection found at {count} speeds: {listed}")
     if held is not None and held.not_settled.any():
         why = held.reason[held.not_settled].tolist() if held.reason.size else []
         places = [in_rpm(speed) for speed in result.speed[held.not_settled].tolist()]
