@@ -36,7 +36,7 @@ def test_stability() -> None:
 
 
 @kills("leblanc.results.response:SelfExcited.leaves_stable", "(self.growth <= 0.0)", "~(self.growth > 0.0)")
-@kills("leblanc.results.response:RunResult.stability", "(held & np.isnan(growth))", "False")
+@kills("leblanc.results.response:RunResult.stability", "(kept & np.isnan(growth))", "False")
 @kills("leblanc.studies.run:self_excited", "bands_not_known(speed, growth)", "()")
 def test_what_is_not_known_is_not_stable(monkeypatch: pytest.MonkeyPatch) -> None:
     """A search that fails is told apart from a stable machine in every way out, and its bands are listed."""
