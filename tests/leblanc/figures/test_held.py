@@ -162,6 +162,12 @@ def test_panels_do_not_overlap(draw) -> None:
     assert all(low.y1 <= high.y0 + 1.0 for low, high in pairwise(boxes))
 
 
+def test_the_drawing_of_the_chamber_says_that_it_has_no_waves() -> None:
+    said = "at rest in the mean motion, without its waves"
+    assert said in str(figures.chamber_figure(held_rig()).caption)
+    assert said not in str(figures.chamber_figure(rig()).caption)
+
+
 def test_figures_without_held_motions_are_as_they_were() -> None:
     """No band, no further panel, no word of it."""
     for draw, panels in ((figures.amplitude_figure, 1), (figures.liquid_figure, 2)):
