@@ -63,6 +63,8 @@ def liquid_models(choice: Choice) -> Note | None:
         f"Liquid model: linear theory at {linear} of {count} speeds, where it is within "
         f"{percent(choice.tolerance)}; exact equilibrium at {exact}{told}."
     )
+    if held == count:
+        text = f"Liquid model: long waves held in time at all {count} speeds."
     data = {"linear": linear, "statics": exact} | ({HELD_MODEL: held} if held else {})
     return Note(RunCode.LIQUID_MODEL, data, text)
 

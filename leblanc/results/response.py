@@ -163,8 +163,12 @@ class Held:
 
     @property
     def hysteresis(self) -> Flags:
-        """Where the motion depends on whether the speed rises or falls, shape (n,)."""
-        return self.at & ~np.isnan(self.amplitude_down)
+        """Where the motion depends on whether the speed rises or falls, shape (n,).
+
+        What has not settled on either way is no motion of its own.
+        """
+        settled = (self.state != "not_settled") & (self.state_down != "not_settled")
+        return np.asarray(self.at & settled & ~np.isnan(self.amplitude_down))
 
 
 MOTIONS = ("steady", "periodic", "limit_cycle", "not_settled")

@@ -116,6 +116,17 @@ def test_notes_count_what_was_held() -> None:
     assert [note.code for note in notes.held_motions(settled, speed)] == [RunCode.HELD]
 
 
+def test_what_has_not_settled_on_the_way_down_is_no_hysteresis() -> None:
+    held = held_of(held_rig())
+    (k,) = np.flatnonzero(held.hysteresis)
+    lost = held.state_down.copy()
+    lost[k] = "not_settled"
+    result = replace(held_rig(), held=replace(held, state_down=lost))
+    assert not held_of(result).hysteresis.any()
+    assert {limit.label: limit.where for limit in words.limits(result)}["Up and down differ"] == "none"
+    assert len(held_motions(result)) == 1
+
+
 def test_slow_disturbances_are_spoken_of_where_nothing_was_held() -> None:
     """A motion held in time has met every disturbance, slow or not."""
     assert notes.slow_disturbances(held_of(held_rig())) is None
