@@ -249,7 +249,7 @@ _jit: Any = njit(**COMPILED)
 
 _inlined: Any = njit(inline="always")
 
-_bernoulli = _jit(long_wave.bernoulli)
+_bernoulli = _face_jit(long_wave.bernoulli)
 _CONSTANT, _CURVED, _LESS = long_wave.PADE
 
 # Beyond this area the surface has come to the axis (r_s < 0.03): no layer is left to speak of.
@@ -384,7 +384,7 @@ def _gather(area, euler, step, work, d_q):
         d_q[i] = -euler * area[i] - (through + within) / step
 
 
-@_jit
+@_face_jit
 def _disperse(area, spin, pull, step, work, d_q):
     """Add what the finite depth takes from the flux of momentum [theory: long_wave, eq. 12-14].
 

@@ -31,6 +31,10 @@ from solvers.layer.records import PACE, Drive, Outcome, Record, Wall, records
 from solvers.slices import FASTEST, RUNAWAY, compiled, slices, step_budget
 
 _jit: Any = njit(**COMPILED)
+# What only compiled code calls needs no wrappers.
+_bare: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_part: Any = njit(**(COMPILED | _bare))
+_sum_part: Any = njit(**(SUMMED | _bare))
 _sum_jit: Any = njit(**SUMMED)
 # Parts of one function: compiled one by one and linked they would cost twice the time to compile.
 _inner: Any = njit(inline="always")
@@ -42,12 +46,12 @@ _WEAK = 0.0625
 # Films thinner than this (area over R^2) are held back, at this multiple of the spin.
 FILM = 1e-5
 
-surface_radius = _jit(long_wave.free_surface_radius)
-_damping = _jit(friction.damping_rate)
-_wall = _jit(long_wave.wall_pressure)
+surface_radius = _part(long_wave.free_surface_radius)
+_damping = _part(friction.damping_rate)
+_wall = _part(long_wave.wall_pressure)
 
 
-@_jit
+@_part
 def copy(source, target):
     """Copy an array element by element: compiled code here may not ask for memory, as slices would."""
     to, of = target.reshape(-1), source.reshape(-1)
@@ -55,7 +59,7 @@ def copy(source, target):
         to[i] = of[i]
 
 
-@_jit
+@_part
 def profile(area, q, spin, velocity, surface, log):
     """Fill velocity, radius of the surface (at least 0.03) and L of each cell; arrays of one shape."""
     for i in range(area.size):
@@ -104,7 +108,7 @@ def kept_speed(area, velocity, surface, law, coefficient, lid, dt, kept):
             kept[i] = np.exp(-kept[i])
 
 
-@_jit
+@_part
 def wall_friction(area, q, spin, law, coefficient, lid, dt, spare):
     """Friction alone over a time dt; `spare`: scratch of at least four rows."""
     n = area.size
@@ -118,7 +122,7 @@ def wall_friction(area, q, spin, law, coefficient, lid, dt, spare):
     decelerate(area, q, spin, kept)
 
 
-@_jit
+@_part
 def decelerate(area, q, spin, kept):
     """Leave each cell this share of its velocity; dry ones keep none."""
     for i in range(area.size):
@@ -127,7 +131,7 @@ def decelerate(area, q, spin, kept):
         q[i] = (moved if area[i] > DRY else 0.0) - square
 
 
-@_jit
+@_part
 def calm(area, q, spin):
     """Hold films back that run away: they carry no momentum worth speaking of and would rule the time step.
 
@@ -140,7 +144,7 @@ def calm(area, q, spin):
         q[i] = moved - square if a < FILM else q[i]
 
 
-@_jit
+@_part
 def predict(area, q, rate_a, rate_q, dt, next_a, next_q):
     """Euler step; tells whether the surface stays off the axis and every number is one."""
     wrong = 0
@@ -153,7 +157,7 @@ def predict(area, q, rate_a, rate_q, dt, next_a, next_q):
     return wrong == 0
 
 
-@_jit
+@_part
 def correct(area, q, rate_a, rate_q, dt, next_a, next_q):
     """Second stage of Heun's method."""
     for i in range(area.size):
@@ -161,7 +165,7 @@ def correct(area, q, rate_a, rate_q, dt, next_a, next_q):
         q[i] = 0.5 * (q[i] + next_q[i] + dt * rate_q[i])
 
 
-@_jit
+@_part
 def pull(x, y, angles, pull_cell, pull_face):
     """Radial part of a uniform body force at cells and faces."""
     for i in range(pull_cell.size):
@@ -208,7 +212,7 @@ def scratch(cells: int) -> NDArray[np.float64]:
     return np.zeros((WORK + 7, cells + 2 * GHOSTS))
 
 
-@_jit
+@_part
 def _whirl(time, drive):
     """Body force in the drum frame: minus the axis' acceleration, and gravity across the axis.
 
@@ -225,7 +229,7 @@ def _whirl(time, drive):
     return x, y
 
 
-@_sum_jit
+@_sum_part
 def _cell_loads(area, q, spin, pull, cosine, sine):
     """Sums over the cells: pressure on the wall, first moment, both along two directions; area; mass flux."""
     force_x, force_y, moment_x, moment_y, total, turned = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -243,7 +247,7 @@ def _cell_loads(area, q, spin, pull, cosine, sine):
     return force_x, force_y, moment_x, moment_y, total, turned
 
 
-@_sum_jit
+@_sum_part
 def _bounds(values):
     """Least and largest of them."""
     least, largest = values[0], values[0]

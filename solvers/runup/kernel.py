@@ -34,7 +34,7 @@ _summed: Any = njit(**(SUMMED | {"no_cpython_wrapper": True, "no_cfunc_wrapper":
 _inner: Any = njit(inline="always")
 
 
-@_jit
+@_unwrapped
 def solve(matrix, right):
     """Solve a small dense system in place by elimination with pivots."""
     n = right.size
@@ -109,7 +109,7 @@ def measure(area, q, spin, angles, spare, out):
     measure_profile(area, spin, angles, spare, out)
 
 
-@_jit
+@_unwrapped
 def measure_profile(area, spin, angles, spare, out):
     """The same of a layer whose profile stands in its scratch, as `layer_step` leaves it."""
     n = area.size
@@ -478,7 +478,7 @@ def _accept(state, room, dt, fastest):
     pace.before, pace.last, pace.fastest, pace.share = pace.last, dt, fastest, min(1.0, 1.5 * pace.share)
 
 
-@_jit
+@_unwrapped
 def watch(plane, place, shaft, crest):
     """Keep the amplitude of a plane in `crest`, a record CREST, with speed and time, if it is the largest."""
     x, y = 0.0, 0.0
