@@ -299,14 +299,12 @@ class FiniteVolumeSolver(SolverBase):  # type: ignore[no-untyped-call]
         self.info["loads"] = loads.view(np.float64)  # goes with what the march adds up
 
         def advance(state: Any, start: float, stop: float) -> float:
-            data = state.data
-            area, momentum, outcome, steps = marcher.march(data[0], data[1], start, stop)
+            outcome, steps = marcher.march(state.data, start, stop)
             if outcome is not Outcome.DONE:
                 ran = outcome in (Outcome.RAN_OUT, Outcome.RAN_AWAY)
                 self.info["status"] = "lost"
                 self.info["reason"] = f"{outcome.message} ({steps} steps)" if ran else outcome.message
                 raise ConvergenceError(f"{outcome.message} between t = {start:g} s and {stop:g} s")
-            data[0], data[1] = area, momentum
             self.info["steps"] += steps
             return stop
 

@@ -125,44 +125,16 @@ def layer_rates(terms: LongWaveTerms, area: Array, momentum: Array, time: float)
     return d_area * radius**2, d_q * radius**4
 
 
-def march(
-    terms: LongWaveTerms,
-    area: Array,
-    momentum: Array,
-    start: float,
-    stop: float,
-    courant: float,
-    loads: Record | None = None,
-) -> tuple[Array, Array, Outcome, int]:
-    """Advance a layer by Heun steps in which no cell falls below zero, at a constant spin.
+class Marcher:
+    """Heun steps on one ring in which no cell falls below zero, at a constant spin.
 
     Parameters
     ----------
     terms : what acts; `spin_rate` must be 0
-    area, momentum : A and q at the start, shape (n,)
-    start, stop : times, s
+    cells : of the ring
     courant : Courant number
     loads : a record LOADS of `solvers.layer.records`, shape (1,), that the integrals are added to; lengths
         over R, times in s
-
-    Returns
-    -------
-    A and q at the stop, how it ended, and the number of steps, at most `solvers.slices.step_budget`
-
-    Raises
-    ------
-    InputError : a spin that changes, a time before 0, a cell below zero or full
-    """
-    return Marcher(terms, area.size, courant, loads).march(area, momentum, start, stop)
-
-
-class Marcher:
-    """The steps of `march` on one ring, made ready once.
-
-    Parameters
-    ----------
-    terms, courant, loads : as for `march`
-    cells : of the ring
 
     Raises
     ------
@@ -183,34 +155,45 @@ class Marcher:
             spin=whirl.spin,
         )
         self._wall = Wall(*terms.drag(), _lid(terms), terms.dispersion)
-        # The state as the last march left it: told, m^2 and m^4/s, and scaled.
-        self._told: tuple[Array, Array] | None = None
+        # The state as the last march left it: scaled, and as it was told, m^2 and m^4/s.
         self._kept: tuple[Array, Array] | None = None
+        self._told = np.zeros((2, cells))
 
-    def march(
-        self, area: Array, momentum: Array, start: float, stop: float
-    ) -> tuple[Array, Array, Outcome, int]:
-        """See the function of that name; a layer as the last call left it goes on without a rounding."""
-        a, q = self._scaled(area, momentum, start)
+    def march(self, state: Array, start: float, stop: float) -> tuple[Outcome, int]:
+        """Advance a layer; one that is as the last call left it goes on without a rounding.
+
+        Parameters
+        ----------
+        state : A and q, shape (2, n), changed in place unless the steps fail
+        start, stop : times, s
+
+        Returns
+        -------
+        How it ended, and the number of steps, at most `solvers.slices.step_budget`
+
+        Raises
+        ------
+        InputError : a time before 0, a cell below zero or full
+        """
+        if self._kept is None or not (self._told == state).all():
+            require_layer(self.terms, state[0], state[1])
+            require_not_negative("time", start)
+            if state[0].min() < 0.0:
+                raise InputError("area", float(state[0].min()), "0 or above in each cell")
+            self._kept = scaled(self.terms, state[0], state[1])
+        a, q = self._kept
         args = start, stop, self._drive, self._wall, self._ring, self.courant, self._spare, self._loads
         outcome, steps = march_layer(a, q, *args)
-        radius = self.terms.fill.chamber.radius
-        self._told, self._kept = (a * radius**2, q * radius**4), (a, q)
-        return *self._told, outcome, int(steps)
-
-    def _scaled(self, area: Array, momentum: Array, start: float) -> tuple[Array, Array]:
-        told = self._told
-        if self._kept and told and np.array_equal(told[0], area) and np.array_equal(told[1], momentum):
-            return self._kept
-        require_layer(self.terms, area, momentum)
-        require_not_negative("time", start)
-        if area.min() < 0.0:
-            raise InputError("area", float(area.min()), "0 or above in each cell")
-        return scaled(self.terms, area, momentum)
+        square = self.terms.fill.chamber.radius**2
+        np.multiply(a, square, out=self._told[0])
+        np.multiply(q, square * square, out=self._told[1])
+        if outcome is Outcome.DONE:
+            state[...] = self._told
+        return outcome, int(steps)
 
 
 def loads_at(terms: LongWaveTerms, area: Array, momentum: Array, time: float) -> Array:
-    """What `march` adds up over time, at one moment.
+    """What a `Marcher` adds up over time, at one moment.
 
     Parameters
     ----------
@@ -235,7 +218,7 @@ def loads_at(terms: LongWaveTerms, area: Array, momentum: Array, time: float) ->
 def load_means(
     terms: LongWaveTerms, loads: Array, length: float, offsets: tuple[complex, complex]
 ) -> Complex:
-    """Means over a time of what `march` has added up [theory: long_wave, eq. 7].
+    """Means over a time of what a `Marcher` has added up [theory: long_wave, eq. 7].
 
     Parameters
     ----------
