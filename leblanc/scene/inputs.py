@@ -10,7 +10,7 @@ from fluid.liquid import KNOWN_LIQUIDS, Liquid
 from fluid.temperature import Expansion, GivenLaw, PropertyLaw, Tabulated, Vogel, Walther
 from leblanc.scene.rotors import JeffcottRotor
 from leblanc.scene.rows import Row, RowTable, Value, degrees, mm, row, rpm
-from leblanc.scene.scene import Scene
+from leblanc.scene.scene import Model, Scene
 from leblanc.scene.schema.load import escaped
 from leblanc.scene.tasks import Optimisation, Runup, pairs_of
 from leblanc.units import (
@@ -226,7 +226,16 @@ def _study(scene: Scene) -> list[Row]:
         row("Liquid model", model.liquid, "model.liquid"),
         row("Liquid friction", friction_words(model.friction), "model.friction"),
         row("Tolerance", f"{number(100.0 * model.tolerance)} %", "model.tolerance"),
+        *_held(model),
     ]
+
+
+def _held(model: Model) -> list[Row]:
+    """How waves are held in time, where they are."""
+    if model.held == "never" and model.liquid != "long_wave":
+        return []
+    held = [row("Waves held in time", model.held, "model.held")] if model.held != "never" else []
+    return [*held, row("Cells of a held wave", str(model.cells), "model.cells")]
 
 
 def _runup(plan: Runup) -> list[Row]:

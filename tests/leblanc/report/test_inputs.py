@@ -29,7 +29,9 @@ CHAMBER = {
 REST = {
     "name": "full", "source": "nowhere", "gravity": 3.7, "chambers": [CHAMBER],
     "speeds": {"start": "60 rpm", "stop": "1200 rpm", "count": 20},
-    "model": {"liquid": "linear", "friction": {"linear": "0.5 1/s"}, "tolerance": 0.02},
+    "model": {"liquid": "linear", "friction": {"linear": "0.5 1/s"}, "tolerance": 0.02, "held": "auto",
+        "cells": 64,
+    },
     "runup": {
         "start": "30 rpm", "stop": "900 rpm", "rate": "2 rad/s^2", "duration": "9 s", "cells": 32,
         "back": True, "dispersion": True, "samples": 77,
@@ -249,7 +251,7 @@ def test_units() -> None:
         "chambers.0.height": 20.0, "chambers.0.plane": 3.0, "chambers.0.volume": 10.0,
         "chambers.0.baffles.count": 6.0, "chambers.0.baffles.tip_radius": 40.0,
         "chambers.0.baffles.wall_gap": 2.0, "chambers.0.baffles.first_angle": 30.0,
-        "speeds.start": 60.0, "model.tolerance": 2.0, "runup.start": 30.0, "runup.stop": 900.0,
+        "speeds.start": 60.0, "model.tolerance": 2.0, "model.cells": 64.0, "runup.start": 30.0, "runup.stop": 900.0,
         "runup.rate": 2.0, "runup.duration": 9.0, "runup.cells": 32.0, "runup.samples": 77.0,
         "optimise.working_speed": 600.0, "optimise.vibration_limit": 1.5, "optimise.deflection": 0.7,
         "optimise.unbalance": 1.0, "optimise.temperature": 5.0, "optimise.quantile": 0.9,

@@ -138,7 +138,9 @@ def test_fem_of_a_clear_chamber_runs_the_elements() -> None:
     apart = np.abs(fem.deflection / linear.deflection - 1.0)
     assert apart.min() > 0.0 and apart.max() < 1e-6
     assert fem.error_estimate is not None and linear.error_estimate is not None
-    np.testing.assert_allclose(fem.error_estimate - linear.error_estimate, 1e-7, rtol=1e-6)
+    # Its own estimate is its distance from the exact equilibrium, of amplitude and liquid the larger one.
+    own = fem.error_estimate - linear.error_estimate
+    assert np.all(own >= apart - 1e-12) and own.max() < 1e-6
     assert set(fem.response.model) == {"fem"}
 
 
