@@ -24,11 +24,13 @@ def compare(
 ) -> None:
     """The same scene by several liquid models. Table, figure, cost."""
     from leblanc.studies.compare import compare_models
+    from leblanc.studies.held.holding import Holding, cores
 
     machine = load(scene)
     folder = results_dir(machine.name, out, scene, machine.digest, "compare.nc")
     with working("response by several models"):
-        found = compare_models(machine, [name.strip() for name in models.split(",")])
+        names = [name.strip() for name in models.split(",")]
+        found = compare_models(machine, names, Holding(cores(), folder))
 
     from leblanc.figures.comparison import comparison_figure, save
     from leblanc.results.netcdf import write_netcdf

@@ -2,27 +2,29 @@
 
 from __future__ import annotations
 
-import time
+import os
 from collections.abc import Sequence
 
 from leblanc.results.explanation import Comparison, ModelAnswer
 from leblanc.scene.scene import LIQUID_MODELS, Exciter, Scene
+from leblanc.studies.held.holding import HERE, Holding
 from leblanc.studies.run import run_scene
 from meshes.errors import InputError
 
 FIELD = "--models"
 
 
-def compare_models(scene: Scene, models: Sequence[str]) -> Comparison:
+def compare_models(scene: Scene, models: Sequence[str], holding: Holding = HERE) -> Comparison:
     """Response of a scene by each of several liquid models.
 
     A model that does not answer the scene is an entry with the reason. The processor time is that of this
-    process and includes libraries that a model alone needs and that are loaded for it.
+    process and of its workers, and includes libraries that a model alone needs and that are loaded for it.
 
     Parameters
     ----------
     scene : the machine; its own liquid model does not count
     models : names as in `model.liquid`, by rising exactness: differences are taken from the last that answers
+    holding : on how many cores waves are held in time; what other processes cost counts as well
 
     Returns
     -------
@@ -43,7 +45,7 @@ def compare_models(scene: Scene, models: Sequence[str]) -> Comparison:
     found, refusals = [], []
     for name in models:
         try:
-            found.append(_answer(scene, name))
+            found.append(_answer(scene, name, holding))
         except InputError as error:
             refusals.append(error)
             found.append(ModelAnswer(name, str(error), None, None))
@@ -65,12 +67,17 @@ def _check(scene: Scene, models: Sequence[str]) -> None:
             raise InputError(FIELD, ",".join(models), f"different models: {name} stands there twice")
 
 
-def _answer(scene: Scene, name: str) -> ModelAnswer:
+def _answer(scene: Scene, name: str, holding: Holding) -> ModelAnswer:
     """The answer by one model, and its processor time."""
     variant = scene.altered(model=scene.model.altered(liquid=name))
-    began = time.process_time()
-    result = run_scene(variant)
-    return ModelAnswer(name, "", time.process_time() - began, result)
+    began = _processor_time()
+    result = run_scene(variant, holding=holding)
+    return ModelAnswer(name, "", _processor_time() - began, result)
+
+
+def _processor_time() -> float:
+    """Of this process and of those that it has waited for, s."""
+    return sum(os.times()[:4])
 
 
 def _none(models: Sequence[str], refusals: Sequence[InputError]) -> InputError:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fluid.whirl import covering_speed
 from leblanc.results.choice import Choice
 from leblanc.results.response import Held
 from leblanc.studies.choose import Prepared
@@ -196,11 +197,12 @@ def _sizes(machine: Prepared, states: tuple[HeldState, ...]) -> Array:
 
 
 def _in_range(machine: Prepared, states: tuple[HeldState, ...]) -> Flags:
-    """Every layer rides with the drum, is long, and clear of its inner wall."""
+    """Every layer rides with the drum, covers an upright wall, is long, and clear of its inner wall."""
     found = []
+    covers = max((covering_speed(f, machine.axial_gravity) for f in machine.scene.fills), default=0.0)
     for state in states:
         rows = iter(range(len(state.moment.area)))
-        kept = True
+        kept = state.spin >= covers
         for j, fill in enumerate(machine.scene.fills):
             radius = fill.chamber.radius
             if not state.captured[j]:

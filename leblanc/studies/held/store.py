@@ -12,12 +12,14 @@ from typing import Any
 
 import numpy as np
 
+import fluid
 from leblanc.files import writing
 from leblanc.results.base import versions
 from solvers.held.branch import HeldTask, Runner
 from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics, Moment
 
 FOLDER = "held"
+_ROOMS = "fluid", "solvers/rotor", "solvers/layer", "solvers/runup", "solvers/pypde", "solvers/held"
 
 
 def kept(
@@ -33,7 +35,7 @@ def kept(
     fresh : take none
     """
     folder.mkdir(parents=True, exist_ok=True)
-    whole = hashlib.sha256()
+    whole = _code()
     _feed(whole, (machine, numerics, versions()))
 
     def again(tasks: Sequence[HeldTask]) -> Iterator[tuple[int, HeldState]]:
@@ -52,6 +54,15 @@ def kept(
             yield missing[k], state
 
     return again
+
+
+def _code() -> Any:
+    """Digest of what holds states: another code may hold others."""
+    digest, root = hashlib.sha256(), Path(fluid.__file__).parent.parent
+    for room in _ROOMS:
+        for path in sorted((root / room).glob("*.py")):
+            digest.update(path.read_bytes())
+    return digest
 
 
 def _feed(digest: Any, value: Any) -> None:
