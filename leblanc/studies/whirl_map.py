@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,13 +21,16 @@ from leblanc.studies.validity import doubts
 from leblanc.units import friction_words
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
-from solvers.cycles.cycles import LimitCycles, limit_cycles
 from solvers.liquid_model import THIN_LAYERS
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import critical_speeds
 from solvers.synchronous.response import main_critical_speeds
 from solvers.whirl.edges import Bands, bands_not_known, unstable_bands
 from solvers.whirl.growth import growth_map
+
+if TYPE_CHECKING:
+    from solvers.cycles.cycles import LimitCycles
+
 
 VOLUMES, SPEEDS = 101, 201
 FEWEST, MOST = 2, 4000  # volumes or speeds of a map
@@ -111,6 +115,8 @@ def _limit_cycles(
     machine: Prepared, friction: Friction, progress: Callable[[int, float], None] | None
 ) -> LimitCycles:
     """Limit cycles of the scene as it stands, over its speeds."""
+    from solvers.cycles.cycles import limit_cycles
+
     speeds = machine.scene.speeds
     return limit_cycles(
         machine.rotor, machine.scene.fills, (speeds.start, speeds.stop), friction, progress=progress
