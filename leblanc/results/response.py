@@ -458,11 +458,13 @@ class RunResult(Result):
     def state(self) -> NDArray[np.str_]:
         """What the motion is: one of `MOTIONS`, shape (n,).
 
-        A circle with the spin is steady, an ellipse periodic; a limit cycle never repeats with the turn.
+        A circle with the spin is steady, an ellipse periodic; a limit cycle never repeats with the turn. Where
+        the steady answer is unstable, and nothing was held in time, the machine does not settle to it.
         """
         r = self.response
         ellipse = np.abs(r.backward) > _CIRCLE * np.abs(r.deflection)
-        found = np.where(~r.converged, "not_settled", np.where(ellipse, "periodic", "steady"))
+        left = ~r.converged | (self.stability == "unstable")
+        found = np.where(left, "not_settled", np.where(ellipse, "periodic", "steady"))
         return found if self.held is None else np.where(self.held.at, self.held.state, found)
 
     @property

@@ -85,7 +85,7 @@ def test_a_horizontal_axis_needs_capture() -> None:
     assert choose(scene(axis="vertical")).in_range.all()
 
 
-@pytest.mark.parametrize("model", ["long_wave", "kdv"])
+@pytest.mark.parametrize("model", ["kdv"])
 def test_models_that_do_not_answer_are_refused(model: str) -> None:
     asked = scene_from_table(table() | {"model": {"liquid": model}})
     with pytest.raises(InputError, match=r"model\.liquid"):
