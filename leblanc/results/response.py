@@ -458,8 +458,8 @@ class RunResult(Result):
     def state(self) -> NDArray[np.str_]:
         """What the motion is: one of `MOTIONS`, shape (n,).
 
-        A circle with the spin is steady, an ellipse periodic; a limit cycle never repeats with the turn. Where
-        the steady answer is unstable, and nothing was held in time, the machine does not settle to it.
+        A circle with the spin is steady, an ellipse periodic; a limit cycle never repeats with the turn. To a
+        steady answer that is unstable the machine does not settle.
         """
         r = self.response
         ellipse = np.abs(r.backward) > _CIRCLE * np.abs(r.deflection)
