@@ -130,7 +130,7 @@ def test_optimise(capsys: Capture, tmp_path: Path) -> None:
 
 
 def test_compare(capsys: Capture, tmp_path: Path) -> None:
-    names = ["statics", "linear", "long_wave"]
+    names = ["statics", "linear", "kdv"]
     printed = command(capsys, "compare", str(RIG), "--models", ",".join(names), "--out", str(tmp_path))
     found = plain(lb.compare(RIG, names).to_json())
     for entry in (*found["models"], *printed["models"]):
