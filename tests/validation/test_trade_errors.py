@@ -134,8 +134,8 @@ def test_reference_error() -> None:
 @kills("validation.trade.judge:errors", "gap / np.where(size > 0.0, size, largest)", "gap / largest")
 @kills(
     "validation.trade.judge:errors",
-    "float(found.values.max()) / largest - 1.0",
-    "float(found.values[-1]) / largest - 1.0",
+    "float(np.abs(found.values).max()) / largest - 1.0",
+    "float(np.abs(found.values[-1])) / largest - 1.0",
 )
 def test_errors() -> None:
     """A response by its worst speed, a history by its root mean square, both with the error of the peak."""
