@@ -16,7 +16,6 @@ from pde.backends.base import BackendBase
 from pde.fields.collection import FieldCollection
 from pde.fields.scalar import ScalarField
 from pde.grids.base import GridBase
-from pde.pdes.base import PDEBase
 from pde.solvers.base import ConvergenceError, SolverBase
 from pde.trackers.base import FinishedSimulation, TrackerBase
 
@@ -28,7 +27,7 @@ from meshes.errors import InputError
 from solvers.layer.finite_volume import DRY, GHOSTS, WORK, rates
 from solvers.layer.records import Outcome
 from solvers.layer.state import ring
-from solvers.pypde.one_family import circle
+from solvers.pypde.grid import CirclePDE, circle
 from solvers.pypde.terms import faded_velocity
 from solvers.rotor.system import RotorSystem
 from solvers.runup.long_wave import Coupled, couple
@@ -37,7 +36,7 @@ _ROUNDS, _AGREED = 60, 1e-13
 _ROWS = 4096  # steps written down between two looks of Python
 
 
-class RotorLayersPDE(PDEBase):  # type: ignore[no-untyped-call]
+class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
     """Rotor and layers at a constant spin [theory: coupling, eq. 1-5].
 
     The state is a collection on a grid as from `circle`: "area" of each captured layer and "momentum" of each
@@ -191,17 +190,6 @@ class RotorLayersPDE(PDEBase):  # type: ignore[no-untyped-call]
         """Of each chamber's axis in the standing frame, m, complex, shape (l,)."""
         place = self.parts(state)[2]
         return np.array([complex(*(self.system.at(fill.chamber.plane) @ place)) for fill in self.fills])
-
-    def determine_backend(
-        self, state: Any, backend: str | BackendBase[Any] = "auto", *, use_mpi: bool = False
-    ) -> BackendBase[Any]:
-        """The backend for a solver: numpy unless another is asked for.
-
-        Parameters
-        ----------
-        state, backend, use_mpi : as py-pde passes them
-        """
-        return super().determine_backend(state, "numpy" if backend == "auto" else backend, use_mpi=use_mpi)
 
 
 class _Layer:
@@ -394,7 +382,7 @@ def run(
     trackers: Sequence[Any],
     **options: Any,
 ) -> tuple[Any, Outcome]:
-    """Solve as py-pde does; an interrupt stays one, and steps that fail are an outcome.
+    """Solve as py-pde does; steps that fail are an outcome.
 
     Parameters
     ----------
@@ -409,15 +397,12 @@ def run(
 
     Raises
     ------
-    KeyboardInterrupt : which py-pde itself takes for an end
+    KeyboardInterrupt : broken off
     """
     try:
         state = equation.solve(state, stretch, tracker=list(trackers), **options)
     except ConvergenceError:
         return equation.diagnostics["last_state"], equation.diagnostics["solver"]["outcome"]
-    info = equation.diagnostics["controller"]
-    if not info["successful"] and info["stop_reason"] == "User interrupted simulation":
-        raise KeyboardInterrupt
     return state, Outcome.DONE
 
 
