@@ -26,12 +26,12 @@
 #   is known to one step, a rate to its last digit.
 # * Nothing here was measured. Of experiments it is reported, without data at hand, that a chamber
 #   completely full shows no whirl of its own, which is one of the limits below, and that the whirl has
-#   hysteresis between running up and down, which is not compared here.
+#   hysteresis between running up and down, which limit cycles have too (`docs/whirl.md`).
 #
 # ## Assumed
 #
-# * A planar rotor on supports that are alike in all directions, one plane layer, no gravity, infinitesimal
-#   motion.
+# * A rotor on supports that are alike in all directions, plane layers, no gravity. Bands and rates are those
+#   of infinitesimal motion of a planar rotor with one layer; the last two cases are whirls of finite size.
 # * Friction of the liquid is a law that must be chosen. Each line below says which one it has: none, a
 #   linear one, or that of a laminar layer on the wall.
 
@@ -54,8 +54,10 @@ picture(growth_figure(in_time(cases)))
 #
 # ## Number by number
 #
-# In the last cases the whirl is let go from a ten-millionth of the depth and its growth is measured in the
-# computed motion; *printed* is then the root of the characteristic equation.
+# In the cases named *in-time* the whirl is let go from a ten-millionth of the depth and its growth is measured
+# in the computed motion; *printed* is then the root of the characteristic equation. In those named
+# *limit-cycle* the growth has come to its end: *printed* is the balance of a whirl of finite size, computed the
+# rotor with its layers, kicked and followed in time until the whirl is steady.
 
 # %%
 case_table(cases)
@@ -76,7 +78,7 @@ picture(map_figure(map_scene(lb.example("horizontal_rig"), volumes=61, speeds=15
 #   figures; in time they are those of 256 cells.
 # * What is left open is the comparison with a measured whirl. The sources measured none, and the friction
 #   of a real chamber's liquid, on which the width of the bands depends, is not known.
-# * Floor and lid, a dry wall and the end of the growth at finite amplitude are outside of this theory.
+# * Floor and lid are outside of this theory, and a dry wall is outside of the bands and rates.
 #
 # ## Asserted
 
@@ -86,5 +88,6 @@ assert verdicts(cases) == {
         *("mu-0.1-lower-edge", "mu-0.1-upper-edge", "mu-0.5-lower-edge", "mu-0.5-upper-edge"),
         *("peak-zeta-0", "peak-zeta-0.05", "damping-alone", "empty", "full", "rigid"),
         *("in-time-1.15", "in-time-1.3", "in-time-1.45", "in-time-1", "in-time-1.7"),
+        *("limit-cycle-planar-1.3", "limit-cycle-two-planes-1.25"),
     }
 }
