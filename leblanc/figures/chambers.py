@@ -25,7 +25,8 @@ from leblanc.figures.page import (
 )
 from leblanc.results.base import FilledChamber
 from leblanc.results.drawn import chord, rounded_down
-from leblanc.results.response import HELD_MODEL, RunResult, peak, phase
+from leblanc.results.motion.held import HELD_MODEL
+from leblanc.results.response import RunResult, peak, phase
 from leblanc.text.run import alts, amplitude_place
 from leblanc.units import DEGREE, LENGTH, MINUS, MM, TIMES, in_rpm, number, with_unit
 from meshes.arrays import Array, Complex

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.results.response import HELD_MODEL, Held, RunResult, phase
+from leblanc.results.motion.held import HELD_MODEL, Held
+from leblanc.results.response import RunResult, phase
 from leblanc.units import MM, RPM
 from meshes.arrays import Array, Complex, Flags, Index
 

@@ -13,9 +13,10 @@ from fluid.numbers import LayerNumbers
 from leblanc.results.base import Result, attributes
 from leblanc.results.choice import ModelSpan, SpeedEstimate
 from leblanc.results.exciter import named_speeds, number_or_none
+from leblanc.results.motion.tilting import RestMode
 from leblanc.results.netcdf import NamedArrays, Variable, flags
 from leblanc.results.netcdf import variable as var
-from leblanc.results.response import RestMode, RunResult
+from leblanc.results.response import RunResult
 from meshes.arrays import Array
 from meshes.errors import InputError
 

@@ -13,7 +13,9 @@ import numpy as np
 from fluid.friction import Friction
 from leblanc.results.base import Note, NoteCode, percent
 from leblanc.results.choice import Choice
-from leblanc.results.response import HELD_MODEL, Held, SelfExcited, peak
+from leblanc.results.motion.held import HELD_MODEL, Held
+from leblanc.results.motion.self_excited import SelfExcited
+from leblanc.results.response import peak
 from leblanc.units import LENGTH, RPM, VOLUME, friction_words, in_rpm, number, rpm_bands, rpm_range, with_unit
 from meshes.arrays import Array, Flags
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, fields
 from itertools import pairwise
 from typing import Any, ClassVar
 
@@ -12,167 +12,17 @@ from numpy.typing import NDArray
 
 from leblanc.results.base import FilledChamber, Note, Result, attributes, carried, one_line, texts
 from leblanc.results.choice import ModelSpan
+from leblanc.results.motion.encoding import finite, pair
+from leblanc.results.motion.held import HELD_MODEL, MOTIONS, Held, numbered
+from leblanc.results.motion.self_excited import SelfExcited
+from leblanc.results.motion.tilting import Motion
 from leblanc.results.netcdf import NamedArrays, Variable, flags
 from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.rotor.balance_quality import GRADES, grade_name, grade_of
-from solvers.rotor.campbell import Campbell
 from solvers.synchronous.peaks import highest
 from solvers.synchronous.response import Response, by_speed
-
-
-@dataclass(frozen=True)
-class RestMode:
-    """Free vibration of the dry rotor at rest.
-
-    Parameters
-    ----------
-    frequency : damped, rad/s; 0 where overdamped
-    damping_ratio : 1 where overdamped
-    moves : what moves most, in words
-    """
-
-    frequency: float
-    damping_ratio: float
-    moves: str
-
-
-@dataclass(frozen=True)
-class Motion:
-    """What a rotor that tilts, or moves differently in two directions, adds to a planar one.
-
-    The axis goes round as forward e^{i Omega t} + backward e^{-i Omega t}; the deflections of the response
-    are the forward part. s speeds, b branches, c chambers.
-
-    Parameters
-    ----------
-    position : along the axis of the plane reported, m
-    backward, backward_dry : m, shape (s,)
-    branch_backward : m, shape (s, b)
-    chamber_forward : at each chamber, m, shape (s, c)
-    modes : of the dry rotor at rest, by rising frequency
-    campbell : natural frequencies of the dry rotor over its speed
-    critical_speeds_dry, critical_speeds_wet : undamped, each with the direction of its whirl, -1 to 1
-    zero : what angles count from, in words
-    refined_forward : as chamber_forward, at the refined speeds; none if empty, shape (r, c)
-    """
-
-    position: float
-    backward: NDArray[np.complex128]
-    backward_dry: NDArray[np.complex128]
-    branch_backward: NDArray[np.complex128]
-    chamber_forward: NDArray[np.complex128]
-    modes: tuple[RestMode, ...]
-    campbell: Campbell
-    critical_speeds_dry: tuple[tuple[float, float], ...]
-    critical_speeds_wet: tuple[tuple[float, float], ...]
-    zero: str
-    refined_forward: Complex = field(default_factory=lambda: np.zeros((0, 0), dtype=complex))
-
-    @property
-    def natural_frequency(self) -> list[float]:
-        """Of each mode of the dry rotor at rest, rad/s."""
-        return [mode.frequency for mode in self.modes]
-
-    @property
-    def natural_damping_ratio(self) -> list[float]:
-        """Of each of these modes."""
-        return [mode.damping_ratio for mode in self.modes]
-
-
-@dataclass(frozen=True)
-class SelfExcited:
-    """Whirl that grows by itself from the even layer, in linear theory.
-
-    Parameters
-    ----------
-    growth : of the whirl that grows most, 1/s, nan where it was not found, shape (n,)
-    whirl_speed : of that whirl in the standing frame, rad/s, shape (n,)
-    bands : of speed in which some whirl grows, rad/s; the ends of the range of speeds count as edges
-    friction : of the liquid, in words
-    not_known : bands of speed in which the modes were not found, between the nearest speeds where they were,
-        rad/s
-    """
-
-    growth: Array
-    whirl_speed: Array
-    bands: tuple[tuple[float, float], ...]
-    friction: str
-    not_known: tuple[tuple[float, float], ...] = ()
-
-    def leaves_stable(self, stable: Flags) -> Flags:
-        """Stable against slow disturbances, and no whirl grows; what is not known is not stable, shape (n,).
-
-        Parameters
-        ----------
-        stable : against slow disturbances, shape (n,)
-        """
-        return np.asarray(stable & (self.growth <= 0.0))
-
-    def inside(self, speed: Array) -> Flags:
-        """Whether speeds lie inside a band in which a whirl grows, shape (n,)."""
-        found = np.zeros(speed.shape, dtype=bool)
-        for low, high in self.bands:
-            found |= (speed >= low) & (speed <= high)
-        return found
-
-
-@dataclass(frozen=True)
-class Held:
-    """What rotor and long waves do at the speeds at which they were held in time until they settled.
-
-    n speeds, c chambers. At the other speeds numbers are nan and states are "steady".
-
-    Parameters
-    ----------
-    at : where that was done, shape (n,)
-    state : one of `MOTIONS`, as met while the speed rises, shape (n,)
-    least, largest : distance of the axis from where it rests, over time, m, shape (n,)
-    whirl_speed : of the whirl that goes round beside the spin, in space, nan without one, rad/s, shape (n,)
-    liquid : mean of each layer's centre of mass from its chamber's axis, in the drum, m, shape (n, c)
-    ripple : largest distance of it from that mean, m, shape (n, c)
-    error : estimated from half the cells, over the largest distance, shape (n,)
-    state_down, amplitude_down : while the speed falls, m, shape (n,)
-    cells : round each wall
-    reason : why the motion has not settled, else empty, shape (n,); no entry where that is not known
-    """
-
-    at: Flags
-    state: NDArray[np.str_]
-    least: Array
-    largest: Array
-    whirl_speed: Array
-    liquid: Complex
-    ripple: Array
-    error: Array
-    state_down: NDArray[np.str_]
-    amplitude_down: Array
-    cells: int
-    reason: NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, dtype="U1"))
-
-    @property
-    def limit_cycle(self) -> Flags:
-        """Where the motion, as met while the speed rises, is bounded but never repeats, shape (n,)."""
-        return np.asarray(self.at & (self.state == "limit_cycle"))
-
-    @property
-    def not_settled(self) -> Flags:
-        """Where the motion still changed when it was given up, shape (n,)."""
-        return np.asarray(self.at & (self.state == "not_settled"))
-
-    @property
-    def hysteresis(self) -> Flags:
-        """Where the motion depends on whether the speed rises or falls, shape (n,).
-
-        What has not settled on either way is no motion of its own.
-        """
-        settled = (self.state != "not_settled") & (self.state_down != "not_settled")
-        return np.asarray(self.at & settled & ~np.isnan(self.amplitude_down))
-
-
-MOTIONS = ("steady", "periodic", "limit_cycle", "not_settled")
-HELD_MODEL = "long_wave"  # the liquid model of motions held in time
 
 
 def grade_words(quality: float) -> str:
@@ -505,33 +355,33 @@ class RunResult(Result):
         present = ~np.isnan(r.branch_deflection)
         ends = np.cumsum(np.count_nonzero(present, axis=1)).tolist()
         rows = [slice(start, stop) for start, stop in pairwise([0, *ends])]
-        branches, branch_stable = _finite(r.branch_deflection[present]), r.branch_stable[present].tolist()
+        branches, branch_stable = finite(r.branch_deflection[present]), r.branch_stable[present].tolist()
         return {
-            "speed": _finite(r.speed),
-            "amplitude": _finite(self.amplitude),
-            "amplitude_min": _finite(self.amplitude_min),
-            "amplitude_max": _finite(self.amplitude_max),
+            "speed": finite(r.speed),
+            "amplitude": finite(self.amplitude),
+            "amplitude_min": finite(self.amplitude_min),
+            "amplitude_max": finite(self.amplitude_max),
             "state": self.state.tolist(),
-            "amplitude_dry": _finite(self.amplitude_dry),
+            "amplitude_dry": finite(self.amplitude_dry),
             "peak": _numbers(self.peak),
             "peak_dry": _numbers(self.peak_dry),
-            "phase": _finite(phase(r.deflection)),
-            "liquid_offset": _finite(r.liquid_offset),
-            "liquid_angle": _finite(r.liquid_angle),
+            "phase": finite(phase(r.deflection)),
+            "liquid_offset": finite(r.liquid_offset),
+            "liquid_angle": finite(r.liquid_angle),
             **{name: getattr(r, name).tolist() for name in STATES},
             "stability": self.stability.tolist(),
-            "deflection": _finite(r.deflection),
+            "deflection": finite(r.deflection),
             "branches": [branches[row] for row in rows],
             "branch_stable": [branch_stable[row] for row in rows],
             **{name: getattr(self, name) for name in ("name", "digest", *SCALARS)},
             "assumed": list(self.assumed),
             "notes": list(texts(self.notes)),
-            **({} if self.error_estimate is None else {"error_estimate": _finite(self.error_estimate)}),
+            **({} if self.error_estimate is None else {"error_estimate": finite(self.error_estimate)}),
             **_quality_json(self),
-            **_motion_json(self.motion),
-            **_whirl_json(self.whirl),
+            **({} if self.motion is None else self.motion.to_json()),
+            **({} if self.whirl is None else self.whirl.to_json()),
             **_refined_json(self.refined),
-            **_held_json(self.held),
+            **({} if self.held is None else self.held.to_json()),
         }
 
     def named_arrays(self) -> NamedArrays:
@@ -558,17 +408,6 @@ class RunResult(Result):
         )
 
 
-def _finite(values: NDArray[Any]) -> list[Any]:
-    """Nested lists, None in place of what is not finite, complex numbers as [re, im]."""
-    known = np.isfinite(values)
-    if np.iscomplexobj(values):
-        values, known = np.stack([values.real, values.imag], axis=-1), np.stack([known, known], axis=-1)
-    if known.all():
-        return list(values.tolist())
-    found: list[Any] = np.where(known, values, np.array(None)).tolist()
-    return found
-
-
 def _numbers(found: dict[str, float]) -> dict[str, float | None]:
     """The same, None in place of what is not finite."""
     return {name: value if math.isfinite(value) else None for name, value in found.items()}
@@ -579,23 +418,7 @@ def _refined_json(refined: Response | None) -> dict[str, Any]:
     if refined is None:
         return {}
     names = ("speed", "amplitude", "amplitude_dry")
-    return {"refined": {name: _finite(getattr(refined, name)) for name in names}}
-
-
-def _held_json(held: Held | None) -> dict[str, Any]:
-    """Motions that were held in time, null at the other speeds."""
-    if held is None:
-        return {}
-    return {
-        "held_at": held.at.tolist(),
-        "held_error": _finite(held.error),
-        "held_whirl_speed": _finite(held.whirl_speed),
-        "liquid_mean": _finite(held.liquid),
-        "liquid_ripple": _finite(held.ripple),
-        "amplitude_down": _finite(held.amplitude_down),
-        "state_down": held.state_down.tolist(),
-        "held_reason": held.reason.tolist(),
-    }
+    return {"refined": {name: finite(getattr(refined, name)) for name in names}}
 
 
 def _quality_json(result: RunResult) -> dict[str, Any]:
@@ -603,43 +426,7 @@ def _quality_json(result: RunResult) -> dict[str, Any]:
     if result.balance_quality is None or result.balance_quality_dry is None:
         return {}
     names = "balance_quality", "balance_quality_dry"
-    return {name: _finite(getattr(result, name)) for name in names}
-
-
-def _whirl_json(whirl: SelfExcited | None) -> dict[str, Any]:
-    """Self-excited whirl over speed, and the bands of speed in which it grows."""
-    if whirl is None:
-        return {}
-    return {
-        "growth": _finite(whirl.growth),
-        "whirl_speed": _finite(whirl.whirl_speed),
-        "whirl_bands": [list(band) for band in whirl.bands],
-        "whirl_bands_not_known": [list(band) for band in whirl.not_known],
-    }
-
-
-def _motion_json(motion: Motion | None) -> dict[str, Any]:
-    """What a rotor that is not planar adds; critical speeds as [rad/s, direction of the whirl]."""
-    if motion is None:
-        return {}
-    return {
-        "position": motion.position,
-        "backward": _finite(motion.backward),
-        "chamber_deflection": _finite(motion.chamber_forward),
-        "natural_frequency": motion.natural_frequency,
-        "natural_damping_ratio": motion.natural_damping_ratio,
-        "critical_speeds_dry": [list(speed) for speed in motion.critical_speeds_dry],
-        "critical_speeds_wet": [list(speed) for speed in motion.critical_speeds_wet],
-    }
-
-
-def _pair(name: str, dims: tuple[str, ...], values: NDArray[Any], long_name: str) -> dict[str, Variable]:
-    """Real and imaginary part of a deflection, both nan where one is."""
-    values = np.where(np.isnan(values), complex(np.nan, np.nan), values)
-    return {
-        f"{name}_real": var(dims, values.real, "m", f"{long_name}, real part", "along the unbalance"),
-        f"{name}_imag": var(dims, values.imag, "m", f"{long_name}, imaginary part", "90 deg ahead of it"),
-    }
+    return {name: finite(getattr(result, name)) for name in names}
 
 
 def _variables(result: RunResult) -> dict[str, Variable]:
@@ -648,7 +435,7 @@ def _variables(result: RunResult) -> dict[str, Variable]:
     states = np.where(np.isnan(r.branch_deflection), -1, r.branch_stable)
     # The last one has the value 1.
     stability = np.array([STABILITY.index(state) - 1 for state in result.stability.tolist()])
-    motion = _numbered(result.state)
+    motion = numbered(result.state)
     mass, dry, wet, capture = (np.array(getattr(result, name), dtype=np.float64) for name in SCALARS)
     lag, slow = "from the unbalance, positive with the spin, a lag is negative", "against slow disturbances"
     return {
@@ -659,8 +446,8 @@ def _variables(result: RunResult) -> dict[str, Variable]:
         "amplitude_dry": var(over, result.amplitude_dry, "m", "amplitude", "without liquid"),
         "phase": var(over, phase(r.deflection), "rad", "phase of the deflection", lag),
         "phase_dry": var(over, phase(r.deflection_dry), "rad", "phase without liquid", lag),
-        **_pair("deflection", over, r.deflection, "deflection of the branch reported"),
-        **_pair("deflection_dry", over, r.deflection_dry, "deflection without liquid"),
+        **pair("deflection", over, r.deflection, "deflection of the branch reported"),
+        **pair("deflection_dry", over, r.deflection_dry, "deflection without liquid"),
         "liquid_offset": var(over, r.liquid_offset, "m", "liquid offset", "rotation axis to centre of mass"),
         "liquid_angle": var(over, r.liquid_angle, "rad", "angle of the liquid's centre of mass", lag),
         "dry_patch": flags(over, r.dry_patch, "no yes", "dry patch", "the wall is dry somewhere"),
@@ -671,7 +458,7 @@ def _variables(result: RunResult) -> dict[str, Variable]:
         "model": var(over, r.model, "1", "liquid model", "used at this speed"),
         "in_range": flags(over, r.in_range, "no yes", "in range", "the liquid model holds there"),
         "converged": flags(over, r.converged, "no yes", "converged", "every branch was found"),
-        **_pair("branch", each, r.branch_deflection, "deflection of every branch"),
+        **pair("branch", each, r.branch_deflection, "deflection of every branch"),
         "branch_stable": flags(each, states, "absent unstable stable", "stability of every branch", slow),
         "liquid_mass": var((), mass, "kg", "liquid mass", "of all chambers"),
         "critical_speed_dry": var((), dry, rate, "critical speed without liquid", "undamped"),
@@ -680,9 +467,9 @@ def _variables(result: RunResult) -> dict[str, Variable]:
         **_peak_variables(result),
         **_quality_variables(result),
         **_error_variables(result),
-        **_motion_variables(result),
-        **_whirl_variables(result),
-        **_held_variables(result.held),
+        **({} if result.motion is None else result.motion.variables()),
+        **({} if result.whirl is None else result.whirl.variables()),
+        **({} if result.held is None else result.held.variables()),
     }
 
 
@@ -709,34 +496,6 @@ def _peak_variables(result: RunResult) -> dict[str, Variable]:
     return found
 
 
-def _numbered(states: NDArray[np.str_]) -> Array:
-    """Motions as numbers of which the last is 1."""
-    return np.array([MOTIONS.index(state) - len(MOTIONS) + 2 for state in states.tolist()], dtype=float)
-
-
-def _held_variables(held: Held | None) -> dict[str, Variable]:
-    """Motions that were held in time."""
-    if held is None:
-        return {}
-    over, each, drum = ("speed",), ("speed", "chamber"), "from the chamber's axis, in the drum"
-    down, reasons = _numbered(held.state_down), {}
-    if held.reason.size:
-        text = "why the motion has not settled"
-        reasons["held_reason"] = var(over, held.reason, "1", text, "empty where it has, or was not held")
-    return {
-        "held_at": flags(over, held.at, "no yes", "held", "the motion was held in time until it settled"),
-        "held_error": var(over, held.error, "1", "estimated error", "of the held motion, by half the cells"),
-        "held_whirl_speed": var(
-            over, held.whirl_speed, "rad s-1", "whirl speed", "beside the spin, in space"
-        ),
-        **_pair("liquid_mean", each, held.liquid, f"mean of the layer's centre of mass {drum}"),
-        "liquid_ripple": var(each, held.ripple, "m", "ripple of the layer's centre of mass", "largest"),
-        "amplitude_down": var(over, held.amplitude_down, "m", "amplitude", "while the speed falls"),
-        "state_down": flags(over, down, " ".join(MOTIONS), "state of the motion", "while the speed falls"),
-        **reasons,
-    }
-
-
 def _quality_variables(result: RunResult) -> dict[str, Variable]:
     """Balance quality over speed."""
     if result.balance_quality is None or result.balance_quality_dry is None:
@@ -755,38 +514,3 @@ def _error_variables(result: RunResult) -> dict[str, Variable]:
         return {}
     text = "relative, of amplitude and liquid the larger one"
     return {"error_estimate": var(("speed",), result.error_estimate, "1", "estimated error", text)}
-
-
-def _whirl_variables(result: RunResult) -> dict[str, Variable]:
-    """Self-excited whirl over speed."""
-    if result.whirl is None:
-        return {}
-    most, over = "of the whirl that grows most", ("speed",)
-    return {
-        "growth": var(over, result.whirl.growth, "s-1", "growth rate", f"{most}; above 0 unstable"),
-        "whirl_speed": var(over, result.whirl.whirl_speed, "rad s-1", "whirl speed", f"{most}, in space"),
-    }
-
-
-def _motion_variables(result: RunResult) -> dict[str, Variable]:
-    """What a rotor that is not planar adds; dimensions `mode` and `chamber` come with it."""
-    motion, over, each, rate = result.motion, ("speed",), ("speed", "branch"), "rad s-1"
-    if motion is None:
-        return {}
-    c, against = motion.campbell, "turning against the spin"
-    by_spin = ("spin", "mode")
-    at_rest = np.array([(mode.frequency, mode.damping_ratio) for mode in motion.modes]).reshape(-1, 2)
-    sense = "-1 against the spin to 1 with it"
-    return {
-        **_pair("backward", over, motion.backward, f"part of the deflection {against}"),
-        **_pair("backward_dry", over, motion.backward_dry, f"part {against}, without liquid"),
-        **_pair("branch_backward", each, motion.branch_backward, f"part of every branch {against}"),
-        **_pair("chamber", ("speed", "chamber"), motion.chamber_forward, "deflection at each chamber"),
-        "position": var((), motion.position, "m", "position", "of the plane reported, along the axis"),
-        "spin": var(("spin",), c.spin, rate, "spin speed", "of the Campbell diagram"),
-        "campbell_frequency": var(by_spin, c.frequency, rate, "natural frequency", "damped, without liquid"),
-        "campbell_damping_ratio": var(by_spin, c.damping_ratio, "1", "damping ratio", "without liquid"),
-        "campbell_direction": var(by_spin, c.direction, "1", "direction of the whirl", sense),
-        "natural_frequency": var(("rest_mode",), at_rest[:, 0], rate, "natural frequency", "at rest, dry"),
-        "natural_damping_ratio": var(("rest_mode",), at_rest[:, 1], "1", "damping ratio", "at rest, dry"),
-    }

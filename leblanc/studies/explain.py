@@ -11,7 +11,7 @@ from fluid.fill import Fill
 from fluid.numbers import layer_numbers
 from leblanc.results.choice import model_spans, speed_estimates
 from leblanc.results.explanation import ExciterExplanation, Explanation, LayerExplanation, WhirlOutlook
-from leblanc.results.response import RestMode
+from leblanc.results.motion.tilting import RestMode
 from leblanc.scene.rotors import Exciter as ExciterOfScene
 from leblanc.scene.rows import baffle_words
 from leblanc.scene.scene import Scene

@@ -12,7 +12,10 @@ from fluid.fill import Fill
 from leblanc.results import notes
 from leblanc.results.base import FilledChamber, Note
 from leblanc.results.choice import Choice, model_spans
-from leblanc.results.response import Held, Motion, RestMode, RunResult, SelfExcited
+from leblanc.results.motion.held import Held
+from leblanc.results.motion.self_excited import SelfExcited
+from leblanc.results.motion.tilting import Motion, RestMode
+from leblanc.results.response import RunResult
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
 from leblanc.studies.choose import Prepared, by_elements, choose_all, held_at, liquid_models, prepare

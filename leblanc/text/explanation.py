@@ -13,7 +13,7 @@ from leblanc.results.explanation import (
     LayerExplanation,
     ModelAnswer,
 )
-from leblanc.results.response import RestMode
+from leblanc.results.motion.tilting import RestMode
 from leblanc.text.numbers import NOT_FOUND, number
 from leblanc.text.run import amplitude_place, error_words, speeds_words
 from leblanc.units import LENGTH, RPM, VOLUME, Unit, in_rpm, unit_for, with_unit

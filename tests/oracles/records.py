@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from leblanc.results import notes as run_notes
 from leblanc.results.base import FilledChamber
-from leblanc.results.response import HELD_MODEL, Held, RunResult
+from leblanc.results.motion.held import HELD_MODEL, Held
+from leblanc.results.response import RunResult
 from meshes.arrays import Array
 from solvers.synchronous.response import Response
 

@@ -54,10 +54,10 @@ picture(growth_figure(in_time(cases)))
 #
 # ## Number by number
 #
-# In the cases named *in-time* the whirl is let go from a ten-millionth of the depth and its growth is measured
-# in the computed motion; *printed* is then the root of the characteristic equation. In those named
-# *limit-cycle* the growth has come to its end: *printed* is the balance of a whirl of finite size, computed the
-# rotor with its layers, kicked and followed in time until the whirl is steady.
+# In the cases named *in-time* the whirl is let go from a ten-millionth of the depth and its growth is
+# measured in the computed motion; *printed* is then the root of the characteristic equation. In those named
+# *limit-cycle* the growth has come to its end: *printed* is the balance of a whirl of finite size, computed
+# the rotor with its layers, kicked and followed in time until the whirl is steady.
 
 # %%
 case_table(cases)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from fluid.whirl import covering_speed
 from leblanc.results.choice import Choice
-from leblanc.results.response import Held
+from leblanc.results.motion.held import Held
 from leblanc.studies.choose import Prepared
 from leblanc.studies.held.holding import Began, Holding
 from leblanc.studies.held.store import FOLDER, kept

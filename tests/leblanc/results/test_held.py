@@ -13,8 +13,10 @@ import leblanc as lb
 from leblanc.cli import main
 from leblanc.report.run import held_motions
 from leblanc.results import notes
+from leblanc.results.motion.held import MOTIONS
+from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.results.notes import RunCode
-from leblanc.results.response import MOTIONS, RunResult, SelfExcited
+from leblanc.results.response import RunResult
 from leblanc.text import run as words
 from meshes.errors import InputError
 from tests.oracles.data_files import assert_read_back

@@ -36,11 +36,11 @@ def test_peak_is_the_largest() -> None:
     assert peak(np.array([np.nan + 0j])) is None
 
 
-@kills("leblanc.results.response:_finite", "[values.real, values.imag]", "[values.imag, values.real]")
+@kills("leblanc.results.motion.encoding:finite", "[values.real, values.imag]", "[values.imag, values.real]")
 @kills(
     "leblanc.results.response:RunResult.to_json",
-    '"liquid_angle": _finite(r.liquid_angle)',
-    '"liquid_angle": _finite(-r.liquid_angle)',
+    '"liquid_angle": finite(r.liquid_angle)',
+    '"liquid_angle": finite(-r.liquid_angle)',
 )
 def test_json_is_the_record() -> None:
     """Complex numbers go as [re, im]; what was not found as null."""
@@ -60,7 +60,9 @@ def test_json_is_the_record() -> None:
 
 
 @kills("leblanc.results.response:_variables", 'phase(r.deflection_dry), "rad"', 'phase(r.deflection), "rad"')
-@kills("leblanc.results.response:_pair", '_imag": var(dims, values.imag', '_imag": var(dims, values.real')
+@kills(
+    "leblanc.results.motion.encoding:pair", '_imag": var(dims, values.imag', '_imag": var(dims, values.real'
+)
 @kills(
     "leblanc.results.netcdf:flags",
     "np.arange(2 - len(meanings.split()), 2",

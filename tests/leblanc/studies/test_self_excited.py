@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from fluid.friction import Friction
+from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.results.notes import self_excited as note_of
-from leblanc.results.response import SelfExcited
 from leblanc.scene.scene import dry_rotor, load_scene
 from leblanc.studies.choose import prepare
 from leblanc.studies.run import run_scene, self_excited
@@ -25,8 +25,15 @@ def found(growth: list[float], bands: tuple[tuple[float, float], ...]) -> SelfEx
     return SelfExcited(np.array(growth), np.array([50.0, 60.0, 70.0]), bands, "none")
 
 
-@kills("leblanc.results.response:SelfExcited.leaves_stable", "self.growth <= 0.0)", "self.growth < 0.0)")
-@kills("leblanc.results.response:SelfExcited.leaves_stable", "stable & (self", "stable | (self")
+_ANSWER = "leblanc.results.motion.self_excited:SelfExcited"
+
+
+@kills(
+    f"{_ANSWER}.leaves_stable",
+    "self.growth <= 0.0)",
+    "self.growth < 0.0)",
+)
+@kills(f"{_ANSWER}.leaves_stable", "stable & (self", "stable | (self")
 def test_stability() -> None:
     """Growing whirls take stability away, and give none back."""
     whirl = found([-1.0, 0.0, 0.5], ((80.0, 90.0),))
@@ -35,7 +42,11 @@ def test_stability() -> None:
     np.testing.assert_array_equal(whirl.leaves_stable(np.ones(3, dtype=bool)), [True, True, False])
 
 
-@kills("leblanc.results.response:SelfExcited.leaves_stable", "(self.growth <= 0.0)", "~(self.growth > 0.0)")
+@kills(
+    f"{_ANSWER}.leaves_stable",
+    "(self.growth <= 0.0)",
+    "~(self.growth > 0.0)",
+)
 @kills("leblanc.results.response:RunResult.stability", "(kept & np.isnan(growth))", "False")
 @kills("leblanc.studies.run:self_excited", "bands_not_known(speed, growth)", "()")
 def test_what_is_not_known_is_not_stable(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from fluid.waves import free_wave_frequencies
 from leblanc.results.drawn import LiquidShape, Scale
-from leblanc.results.response import SelfExcited
+from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.studies.run import run_scene
 from leblanc.studies.shapes.machine import machine_motion, mode_view, table_view

@@ -1,0 +1,112 @@
+"""Motions held in time until they settled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from leblanc.results.motion.encoding import finite, pair
+from leblanc.results.netcdf import Variable, flags
+from leblanc.results.netcdf import variable as var
+from meshes.arrays import Array, Complex, Flags
+
+MOTIONS = ("steady", "periodic", "limit_cycle", "not_settled")
+HELD_MODEL = "long_wave"  # the liquid model of motions held in time
+
+
+@dataclass(frozen=True)
+class Held:
+    """What rotor and long waves do at the speeds at which they were held in time until they settled.
+
+    n speeds, c chambers. At the other speeds numbers are nan and states are "steady".
+
+    Parameters
+    ----------
+    at : where that was done, shape (n,)
+    state : one of `MOTIONS`, as met while the speed rises, shape (n,)
+    least, largest : distance of the axis from where it rests, over time, m, shape (n,)
+    whirl_speed : of the whirl that goes round beside the spin, in space, nan without one, rad/s, shape (n,)
+    liquid : mean of each layer's centre of mass from its chamber's axis, in the drum, m, shape (n, c)
+    ripple : largest distance of it from that mean, m, shape (n, c)
+    error : estimated from half the cells, over the largest distance, shape (n,)
+    state_down, amplitude_down : while the speed falls, m, shape (n,)
+    cells : round each wall
+    reason : why the motion has not settled, else empty, shape (n,); no entry where that is not known
+    """
+
+    at: Flags
+    state: NDArray[np.str_]
+    least: Array
+    largest: Array
+    whirl_speed: Array
+    liquid: Complex
+    ripple: Array
+    error: Array
+    state_down: NDArray[np.str_]
+    amplitude_down: Array
+    cells: int
+    reason: NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, dtype="U1"))
+
+    @property
+    def limit_cycle(self) -> Flags:
+        """Where the motion, as met while the speed rises, is bounded but never repeats, shape (n,)."""
+        return np.asarray(self.at & (self.state == "limit_cycle"))
+
+    @property
+    def not_settled(self) -> Flags:
+        """Where the motion still changed when it was given up, shape (n,)."""
+        return np.asarray(self.at & (self.state == "not_settled"))
+
+    @property
+    def hysteresis(self) -> Flags:
+        """Where the motion depends on whether the speed rises or falls, shape (n,).
+
+        What has not settled on either way is no motion of its own.
+        """
+        settled = (self.state != "not_settled") & (self.state_down != "not_settled")
+        return np.asarray(self.at & settled & ~np.isnan(self.amplitude_down))
+
+    def to_json(self) -> dict[str, Any]:
+        """Lists over speed, None (null) where the motion was not held."""
+        return {
+            "held_at": self.at.tolist(),
+            "held_error": finite(self.error),
+            "held_whirl_speed": finite(self.whirl_speed),
+            "liquid_mean": finite(self.liquid),
+            "liquid_ripple": finite(self.ripple),
+            "amplitude_down": finite(self.amplitude_down),
+            "state_down": self.state_down.tolist(),
+            "held_reason": self.reason.tolist(),
+        }
+
+    def variables(self) -> dict[str, Variable]:
+        """Arrays over `speed`, of the layers over `chamber` too."""
+        over, each, drum = ("speed",), ("speed", "chamber"), "from the chamber's axis, in the drum"
+        down, reasons = numbered(self.state_down), {}
+        if self.reason.size:
+            text = "why the motion has not settled"
+            reasons["held_reason"] = var(over, self.reason, "1", text, "empty where it has, or was not held")
+        return {
+            "held_at": flags(over, self.at, "no yes", "held", "the motion was held in time until it settled"),
+            "held_error": var(
+                over, self.error, "1", "estimated error", "of the held motion, by half the cells"
+            ),
+            "held_whirl_speed": var(
+                over, self.whirl_speed, "rad s-1", "whirl speed", "beside the spin, in space"
+            ),
+            **pair("liquid_mean", each, self.liquid, f"mean of the layer's centre of mass {drum}"),
+            "liquid_ripple": var(each, self.ripple, "m", "ripple of the layer's centre of mass", "largest"),
+            "amplitude_down": var(over, self.amplitude_down, "m", "amplitude", "while the speed falls"),
+            "state_down": flags(
+                over, down, " ".join(MOTIONS), "state of the motion", "while the speed falls"
+            ),
+            **reasons,
+        }
+
+
+def numbered(states: NDArray[np.str_]) -> Array:
+    """Motions as numbers of which the last is 1."""
+    return np.array([MOTIONS.index(state) - len(MOTIONS) + 2 for state in states.tolist()], dtype=float)
