@@ -23,7 +23,7 @@ _EVEN = 1e-5  # of the amplitude, that a circle may wobble
 _ELSEWHERE = 20.0  # times the tolerance, that the axis may be off after a turn that repeats
 _LINES = 2  # multiples of the spin that are no whirl of their own, either way
 _RESTS = 1e-7  # of the amplitude, that a stable equilibrium may move in a turn
-_GROWN = 8.0  # logarithm by which a whirl that grows has to have grown
+_GROWN = 8.0  # logarithm by which a whirl that grows has to have grown, or to have died all the same
 _FALL = 0.5  # logarithm by which a motion that dies does so in a window
 _MARKS = 8  # turns from which it is guessed where a motion is bound for
 _TRIES = 8  # how often
@@ -170,11 +170,15 @@ class Watch:
             self.kind = HeldKind.STEADY if wobble <= _EVEN else HeldKind.PERIODIC
             self.change, self.span = left, _FEW
             # A circle that the axis does not run through in a turn is a whirl of its own.
-            ends = self._deflection(np.stack([rows[-1] for rows in self.rows[-2:]]))
-            if abs(ends[1] - ends[0]) > _ELSEWHERE * self.numerics.tolerance * scale:
+            if self._elsewhere(scale):
                 self.kind, self.span = HeldKind.LIMIT_CYCLE, 2 * SHORT
             return True
         return done % (self.window // 2) == 0 and self._bounded(sizes, scale)
+
+    def _elsewhere(self, scale: float) -> bool:
+        """Whether the axis is not where it was a turn before."""
+        ends = self._deflection(np.stack([rows[-1] for rows in self.rows[-2:]]))
+        return bool(abs(ends[1] - ends[0]) > _ELSEWHERE * self.numerics.tolerance * scale)
 
     def _left(self, sizes: Array, scale: float) -> float:
         """What may still come of the amplitude's change, over its size, if the motion repeats every turn."""
@@ -184,10 +188,14 @@ class Watch:
             # No motion dies more slowly than the slowest.
             each = float(np.ptp(sizes[-_FEW:], axis=0).max()) / scale / (_FEW - 1)
             return each / -math.expm1(self.slowest)
-        if len(sizes) < 2 * SHORT or self.slowest * self.count < (_GROWN if self.slowest > 0.0 else 0.0):
+        if len(sizes) < 2 * SHORT:
             return math.inf
-        parts = sizes[-SHORT:], sizes[-2 * SHORT : -SHORT]
-        late, soon = (float(np.ptp(part, axis=0).max()) / scale for part in parts)
+        parts = sizes[-SHORT:], sizes[-2 * SHORT : -SHORT], sizes[:SHORT]
+        late, soon, first = (float(np.ptp(part, axis=0).max()) / scale for part in parts)
+        # A whirl that linear theory lets grow has had its time, or has died from where it began: unbalance
+        # and gravity may hold the layer where none grows.
+        if self.slowest > 0.0 and max(self.slowest * self.count, _fall(first, late)) < _GROWN:
+            return math.inf
         if late <= 0.25 * self.numerics.tolerance:
             return late
         share = late / soon if soon > late else 1.0
@@ -202,7 +210,8 @@ class Watch:
         means = abs(weight @ (late - soon)[:, 0]) / scale
         ends = max(abs(late[:, 1].min() - soon[:, 1].min()), abs(late[:, 2].max() - soon[:, 2].max())) / scale
         dies = np.ptp(late[:, 0]) < _DIES * np.ptp(soon[:, 0])
-        if dies or means > _MEANS * self.numerics.tolerance or ends > _ALIKE:
+        repeats = np.ptp(late, axis=0).max() <= self.numerics.tolerance * scale and not self._elsewhere(scale)
+        if repeats or dies or means > _MEANS * self.numerics.tolerance or ends > _ALIKE:
             return False
         self.kind, self.change, self.span = HeldKind.LIMIT_CYCLE, float(means), self.window
         return True
@@ -290,6 +299,13 @@ def _limit(marks: list[Array], coordinates: int) -> Array | None:
     np.maximum(areas, 0.0, out=areas)
     areas *= whole / np.maximum(areas.sum(axis=1, keepdims=True), 1e-300)
     return np.asarray(found)
+
+
+def _fall(first: float, late: float) -> float:
+    """Logarithm by which a change has become less."""
+    if first <= 0.0:
+        return 0.0
+    return math.log(first / late) if late > 0.0 else math.inf
 
 
 def _bump(count: int) -> Array:

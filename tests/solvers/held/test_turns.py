@@ -1,0 +1,122 @@
+"""What a motion is judged to be by its turns, on motions that are written down."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fluid.fill import Fill
+from fluid.liquid import Liquid
+from meshes.arrays import Array
+from meshes.chamber import Chamber
+from solvers.held.hold import start
+from solvers.held.state import HeldKind, HeldMachine, HoldNumerics
+from solvers.held.turns import _NUDGE, _PROBED, Watch, _limit, _Probe
+from solvers.rotor.jeffcott import Jeffcott
+from tests.mutants import kills
+
+SPIN, SIZE, NUMERICS = 100.0, 1e-3, HoldNumerics(cells=8)
+
+
+def watch(slowest: float) -> Watch:
+    """A planar rotor with one layer, whose slowest motion changes by so much in a turn."""
+    fill = Fill(Chamber(0.065, 0.02), Liquid("water", 1000.0, 1e-6), 1e-5)
+    machine = HeldMachine(Jeffcott(4.0, 4e4, 40.0, 6e-4).system(), (fill,))
+    return Watch(machine, start(machine, SPIN, NUMERICS), NUMERICS, slowest * SPIN / (2.0 * np.pi))
+
+
+def turns(found: Watch, count: int, lag: float) -> None:
+    """So many turns on a circle, each of which ends by a lag behind the one before."""
+    for k in range(count):
+        place = SIZE * np.exp(-1j * lag * (k + 1))
+        found.rows.append(np.array([[0.0, 0.0, place.real, place.imag, 0.0, 0.0]] * 2))
+        found.sizes.append((SIZE, SIZE, SIZE))
+    found.count = count
+
+
+@kills("solvers.held.turns:Watch._bounded", "if repeats or dies", "if dies")
+@kills("solvers.held.turns:Watch._elsewhere", "ends[1] - ends[0]", "ends[1]")
+def test_what_repeats_is_no_limit_cycle() -> None:
+    """A circle that ends where it began waits for its whirl to have grown; one that does not is a whirl."""
+    for lag, bounded in ((0.0, False), (0.7, True)):
+        found = watch(0.01)
+        turns(found, 2 * found.window, lag)
+        sizes = np.array(found.sizes)
+        assert found._bounded(sizes, SIZE) is bounded
+
+
+@kills("solvers.held.turns:Watch._left", "max(self.slowest * self.count, ", "max(0.0, ")
+def test_a_whirl_that_has_had_its_time() -> None:
+    """Linear growth of more than e^8 that moves nothing: the motion is settled, by a circle or by a whirl."""
+    for lag, kind in ((0.0, HeldKind.PERIODIC), (0.7, HeldKind.LIMIT_CYCLE)):
+        found = watch(0.2)
+        turns(found, 39, lag)
+        assert not found._judge()
+        turns(found, 41, lag)
+        assert found._judge()
+        assert found.kind is (HeldKind.STEADY if kind is HeldKind.PERIODIC else kind)
+
+
+def marks(modes: int, count: int = 10) -> tuple[list[Array], Array]:
+    """States of a linear motion at the ends of turns, and where it is bound for."""
+    rng = np.random.default_rng(4)
+    cells = 16
+    end = rng.uniform(0.5, 1.0, (6, cells))
+    end[2:] = end[2:, :1]
+    shapes = rng.normal(0.0, 0.05, (modes, 6, cells))
+    shapes[:, 0] -= shapes[:, 0].mean(axis=1, keepdims=True)
+    shapes[:, 2:] = shapes[:, 2:, :1]
+    share = np.array([0.9, -0.7, 0.5, 0.3])[:modes]
+    return [end + np.tensordot(share**k, shapes, axes=1) for k in range(count)], end
+
+
+@kills("solvers.held.turns:_limit", "states[0] + ", "states[1] + ")
+@kills("solvers.held.turns:_limit", "np.diff(states[:-1], axis=0)", "np.diff(states[1:], axis=0)")
+@pytest.mark.parametrize("modes", [1, 2, 4])
+def test_where_a_linear_motion_is_bound_for(modes: int) -> None:
+    """Reduced rank extrapolation is exact for fewer modes than marks; no liquid is lost."""
+    states, end = marks(modes)
+    found = _limit(states, 2)
+    assert found is not None
+    # Singular values below 1e-3 of the largest count as noise: what is left out is below that of the way.
+    way = np.abs(states[0] - end).max()
+    assert np.abs(found - end).max() < 1e-2 * way
+    assert found[0].sum() == pytest.approx(end[0].sum(), rel=1e-12)
+
+
+def nudged(share: float) -> tuple[Watch, SimpleNamespace, bool]:
+    """A guessed orbit, and whether that is enough, after a nudge that changes by a share in a turn."""
+    found = watch(-0.05)
+    turns(found, 2, 0.0)
+    end = np.array([*found.rows[-1][-1, 2:], 1.0, 1.0, 1.0, 1.0])
+    pushed = SimpleNamespace(data=np.full((6, 8), 2.0))
+    found.probe = _Probe(np.full((6, 8), 1.0), end, list(found.rows), list(found.sizes), HeldKind.PERIODIC)
+    enough = False
+    for k in range(_PROBED):
+        row = found.rows[0].copy()
+        row[-1, 2:] = end[:4] + _NUDGE * share**k
+        found.rows.append(row)
+        enough = found._probed(pushed)
+    return found, pushed, enough
+
+
+@kills("solvers.held.turns:Watch._probed", "late > soon * _SURE and", "late < soon and")
+def test_a_guessed_orbit_that_is_left() -> None:
+    """A nudge that grows leaves the orbit for good: the motion goes on by itself, without guesses."""
+    found, pushed, enough = nudged(1.05)
+    assert not enough
+    assert found.probe is None
+    assert found.kind is HeldKind.NOT_SETTLED
+    assert found.slowest == 0.0
+    assert (pushed.data == 2.0).all()
+
+
+@kills("solvers.held.turns:Watch._probed", "state.data[...] = probe.state", "pass")
+def test_a_guessed_orbit_that_is_kept() -> None:
+    """A nudge that dies leads back to the orbit."""
+    found, pushed, enough = nudged(0.8)
+    assert enough
+    assert found.kind is HeldKind.PERIODIC
+    assert (pushed.data == 1.0).all()
