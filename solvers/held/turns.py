@@ -23,7 +23,7 @@ _EVEN = 1e-5  # of the amplitude, that a circle may wobble
 _ELSEWHERE = 20.0  # times the tolerance, that the axis may be off after a turn that repeats
 _LINES = 2  # multiples of the spin that are no whirl of their own, either way
 _RESTS = 1e-7  # of the amplitude, that a stable equilibrium may move in a turn
-_GROWN = 8.0  # logarithm by which a whirl that grows has to have grown, or to have died all the same
+_GROWN = 8.0  # logarithm by which a whirl that grows has to have grown
 _FALL = 0.5  # logarithm by which a motion that dies does so in a window
 _MARKS = 8  # turns from which it is guessed where a motion is bound for
 _TRIES = 8  # how often
@@ -33,6 +33,7 @@ _NUDGE, _PROBED, _SURE, _LEFT = 0.002, 16, 1.1, 0.2
 _NOISE, _FAR = 1e-3, 1e3  # what counts as noise there; weights beyond which a guess is none
 _DIES = 0.8  # of the spread of a window's means in the next, where the motion dies
 _ALIKE = 0.02  # of the amplitude, by which the extremes of two windows of a limit cycle may differ
+_SWING = 0.1  # of the way between the extremes, by which that may
 _MEANS = 5.0  # times the tolerance, by which their means may
 
 
@@ -190,16 +191,28 @@ class Watch:
             return each / -math.expm1(self.slowest)
         if len(sizes) < 2 * SHORT:
             return math.inf
-        parts = sizes[-SHORT:], sizes[-2 * SHORT : -SHORT], sizes[:SHORT]
-        late, soon, first = (float(np.ptp(part, axis=0).max()) / scale for part in parts)
-        # A whirl that linear theory lets grow has had its time, or has died from where it began: unbalance
-        # and gravity may hold the layer where none grows.
-        if self.slowest > 0.0 and max(self.slowest * self.count, _fall(first, late)) < _GROWN:
+        parts = sizes[-SHORT:], sizes[-2 * SHORT : -SHORT]
+        late, soon = (float(np.ptp(part, axis=0).max()) / scale for part in parts)
+        # A whirl that linear theory lets grow has had its time, or has died all the same.
+        if self.slowest * self.count < (_GROWN if self.slowest > 0.0 else 0.0) and not self._died(
+            sizes, scale
+        ):
             return math.inf
         if late <= 0.25 * self.numerics.tolerance:
             return late
         share = late / soon if soon > late else 1.0
         return late * max(1.0, share / max(1.0 - share, 1e-3))
+
+    def _died(self, sizes: Array, scale: float) -> bool:
+        """Whether a whirl has died that linear theory lets grow: unbalance and gravity may hold the layer.
+
+        Over windows in which it would have grown visibly, and to far below the tolerance.
+        """
+        if len(sizes) < 2 * self.window:
+            return False
+        parts = sizes[-self.window :], sizes[-2 * self.window : -self.window]
+        late, soon = (float(np.ptp(part, axis=0).max()) / scale for part in parts)
+        return late <= 0.25 * self.numerics.tolerance and late < (1.0 - _SWING) * soon
 
     def _bounded(self, sizes: Array, scale: float) -> bool:
         """Whether two windows of turns, one after the other, are alike: the motion is bounded."""
@@ -209,9 +222,12 @@ class Watch:
         weight = _bump(self.window)
         means = abs(weight @ (late - soon)[:, 0]) / scale
         ends = max(abs(late[:, 1].min() - soon[:, 1].min()), abs(late[:, 2].max() - soon[:, 2].max())) / scale
-        dies = np.ptp(late[:, 0]) < _DIES * np.ptp(soon[:, 0])
+        moves = np.ptp(late[:, 0]) < _DIES * np.ptp(soon[:, 0])
+        # A whirl that is small beside the amplitude still grows or dies while the extremes look alike.
+        swings = [float(part[:, 2].max() - part[:, 1].min()) for part in (late, soon)]
+        moves |= abs(swings[0] - swings[1]) > _SWING * swings[1]
         repeats = np.ptp(late, axis=0).max() <= self.numerics.tolerance * scale and not self._elsewhere(scale)
-        if repeats or dies or means > _MEANS * self.numerics.tolerance or ends > _ALIKE:
+        if repeats or moves or means > _MEANS * self.numerics.tolerance or ends > _ALIKE:
             return False
         self.kind, self.change, self.span = HeldKind.LIMIT_CYCLE, float(means), self.window
         return True
@@ -299,13 +315,6 @@ def _limit(marks: list[Array], coordinates: int) -> Array | None:
     np.maximum(areas, 0.0, out=areas)
     areas *= whole / np.maximum(areas.sum(axis=1, keepdims=True), 1e-300)
     return np.asarray(found)
-
-
-def _fall(first: float, late: float) -> float:
-    """Logarithm by which a change has become less."""
-    if first <= 0.0:
-        return 0.0
-    return math.log(first / late) if late > 0.0 else math.inf
 
 
 def _bump(count: int) -> Array:

@@ -107,7 +107,7 @@ def test_a_whirl_that_excites_itself(ratio: float) -> None:
     assert found.whirl_speed / SCALE == pytest.approx(speed, rel=1e-3)
 
 
-@kills("solvers.held.turns:Watch._left", "max(self.slowest * self.count, _fall(first, late))", "0.0")
+@kills("solvers.held.turns:Watch._died", "return late <= ", "return late < 0.0 * ")
 def test_unbalance_may_hold_what_would_whirl() -> None:
     """Where linear theory lets a whirl of the even layer grow, unbalance and gravity can keep it down.
 

@@ -36,7 +36,7 @@ def turns(found: Watch, count: int, lag: float) -> None:
     found.count = count
 
 
-@kills("solvers.held.turns:Watch._bounded", "if repeats or dies", "if dies")
+@kills("solvers.held.turns:Watch._bounded", "if repeats or moves", "if moves")
 @kills("solvers.held.turns:Watch._elsewhere", "ends[1] - ends[0]", "ends[1]")
 def test_what_repeats_is_no_limit_cycle() -> None:
     """A circle that ends where it began waits for its whirl to have grown; one that does not is a whirl."""
@@ -47,7 +47,7 @@ def test_what_repeats_is_no_limit_cycle() -> None:
         assert found._bounded(sizes, SIZE) is bounded
 
 
-@kills("solvers.held.turns:Watch._left", "max(self.slowest * self.count, ", "max(0.0, ")
+@kills("solvers.held.turns:Watch._left", "self.slowest * self.count <", "0.0 <")
 def test_a_whirl_that_has_had_its_time() -> None:
     """Linear growth of more than e^8 that moves nothing: the motion is settled, by a circle or by a whirl."""
     for lag, kind in ((0.0, HeldKind.PERIODIC), (0.7, HeldKind.LIMIT_CYCLE)):
