@@ -9,13 +9,50 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.results.base import EXACT, percent
+from leblanc.units import TIME, with_unit
 from meshes.arrays import Array, Flags, Index
 
 if TYPE_CHECKING:
     from solvers.synchronous.errors import GravityError, LinearError
 
 
-_COST = "1 to 10"  # of a held state, as measured at 128 cells
+@dataclass(frozen=True)
+class HeldCost:
+    """What it takes to hold in time the motions that no steady model answers well enough.
+
+    Parameters
+    ----------
+    speeds : how many
+    first, last : of them, rad/s
+    seconds : processor time of all of them, s; good to a factor of two [theory: held, eq. 11 to 13]
+    asked : the scene has them held
+    """
+
+    speeds: int
+    first: float
+    last: float
+    seconds: float
+    asked: bool
+
+    @property
+    def words(self) -> str:
+        """The time for print."""
+        return f"about {seconds_words(self.seconds)} of one core"
+
+
+def seconds_words(seconds: float) -> str:
+    """A processor time that is known to a factor of two, for print.
+
+    Parameters
+    ----------
+    seconds : s
+
+    Examples
+    --------
+    >>> seconds_words(123.4), seconds_words(0.0123)
+    ('120 s', '12 ms')
+    """
+    return with_unit(float(f"{seconds:.2g}"), TIME)
 
 
 @dataclass(frozen=True)
@@ -36,6 +73,8 @@ class Choice:
     gravity : what gravity across the axis does, which no model of a steady answer has, to the means over time
         and as a ripple about them
     cut : baffles cut the liquid of a chamber into compartments, or its section is no circle
+    holding : processor time to hold rotor and waves in time at each speed, s; None where it was not asked for
+        or no wave can be held
     """
 
     model: str
@@ -48,6 +87,7 @@ class Choice:
     linear: LinearError
     gravity: GravityError
     cut: bool = False
+    holding: Array | None = None
 
     @property
     def missed(self) -> Flags:
@@ -241,7 +281,10 @@ def _better(choice: Choice, model: str, part: Index) -> str:
         return "the same with more cells ([model] cells)"
     gravity = choice.gravity.amplitude[part].max()
     if gravity > 0.0 and (model == "statics" or gravity > choice.tolerance):
-        return f"long waves held in time ([model] held, {_COST} s a speed), for gravity's {percent(gravity)}"
+        long = "seconds a speed"
+        if choice.holding is not None:
+            long = f"about {seconds_words(choice.holding[part].sum())} for all these speeds"
+        return f"long waves held in time ([model] held), {long}, for gravity's {percent(gravity)}"
     if model != "statics":
         worst = choice.linear.worst[part].max()
         gives = "the same" if worst < EXACT else f"less than {percent(worst)} of change"

@@ -11,7 +11,7 @@ import numpy as np
 
 from fluid.numbers import LayerNumbers
 from leblanc.results.base import Result, attributes
-from leblanc.results.choice import ModelSpan, SpeedEstimate
+from leblanc.results.choice import HeldCost, ModelSpan, SpeedEstimate
 from leblanc.results.exciter import named_speeds, number_or_none
 from leblanc.results.motion.tilting import RestMode
 from leblanc.results.netcdf import NamedArrays, Variable, flags
@@ -87,6 +87,7 @@ class Explanation(Result):
     modes : of the dry rotor at rest; none for a planar rotor, whose only one is the critical speed
     runup : which liquid model the run-up will take, in words; empty without one
     whirl : how large the whirl grows by itself; None where none does, or nothing bounds it
+    held : what it takes to hold in time what steady models do not answer; None where they answer all
     source, assumed, digest : of the scene
 
     Examples
@@ -112,6 +113,7 @@ class Explanation(Result):
     modes: tuple[RestMode, ...] = ()
     runup: str = ""
     whirl: WhirlOutlook | None = None
+    held: HeldCost | None = None
     estimates: tuple[SpeedEstimate, ...] = ()
     source: str = ""
     assumed: tuple[str, ...] = ()
@@ -137,6 +139,7 @@ class Explanation(Result):
                 "damping_ratio": var((), self.damping_ratio, "1", "damping ratio", "of the support"),
                 "capture_speed": var((), captured, rate, "capture speed", "the liquid rides with the drum"),
                 **_whirl_variables(self.whirl),
+                **_held_variables(self.held),
                 "tolerance": var((), self.tolerance, "1", "tolerance", "relative error that is allowed"),
                 "first": var(span, spans["first"], rate, "first speed of a liquid model"),
                 "last": var(span, spans["last"], rate, "last speed of a liquid model"),
@@ -163,6 +166,15 @@ def _whirl_variables(whirl: WhirlOutlook | None) -> dict[str, Variable]:
     return {
         name: var((), math.nan if whirl is None else getattr(whirl, own), unit, words, "by rule")
         for name, (own, unit, words) in parts.items()
+    }
+
+
+def _held_variables(held: HeldCost | None) -> dict[str, Variable]:
+    """What motions held in time take, none where there are none."""
+    count, seconds = (0, 0.0) if held is None else (held.speeds, held.seconds)
+    return {
+        "held_speeds": var((), count, "1", "speeds to hold in time"),
+        "held_seconds": var((), seconds, "s", "processor time to hold them", "good to a factor of two"),
     }
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from fluid.friction import Friction
 from leblanc.results.base import Note, NoteCode, percent
-from leblanc.results.choice import Choice
+from leblanc.results.choice import Choice, HeldCost
 from leblanc.results.motion.held import HELD_MODEL, Held
 from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.results.response import peak
@@ -71,13 +71,14 @@ def liquid_models(choice: Choice) -> Note | None:
     return Note(RunCode.LIQUID_MODEL, data, text)
 
 
-def tolerance_missed(choice: Choice, speed: Array) -> Note | None:
+def tolerance_missed(choice: Choice, speed: Array, cost: HeldCost | None = None) -> Note | None:
     """Where the estimated error is larger than the tolerance; None where it is nowhere.
 
     Parameters
     ----------
     choice : the models
     speed : rad/s, shape (n,)
+    cost : of holding motions in time
     """
     missed = choice.missed & choice.in_range
     if choice.cut or not missed.any():
@@ -89,7 +90,11 @@ def tolerance_missed(choice: Choice, speed: Array) -> Note | None:
         f"Between {number(first * RPM)} and {in_rpm(last)} the estimated error{whose} is {size}, more than "
         f"the tolerance of {percent(choice.tolerance)}."
     )
-    return Note(RunCode.TOLERANCE_MISSED, {"first": first, "last": last, "error": worst}, text)
+    data = {"first": first, "last": last, "error": worst}
+    if cost is not None and not cost.asked:
+        text += f' [model] held = "auto" holds {cost.speeds} speeds in time, for {cost.words}.'
+        data |= {"held_speeds": cost.speeds, "held_seconds": cost.seconds}
+    return Note(RunCode.TOLERANCE_MISSED, data, text)
 
 
 def not_carried(below: float) -> Note:

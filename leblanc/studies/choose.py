@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,12 +14,14 @@ from fluid.fill import Fill
 from fluid.friction import Friction
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed
-from leblanc.results.choice import Choice
+from leblanc.results.choice import Choice, HeldCost
 from leblanc.scene.scene import Scene, dry_rotor
 from leblanc.studies.liquid import RESPONSE_MODELS, synchronous_model
 from meshes.arrays import Array, Flags
 from meshes.chamber_section import rest_offset, surface_is_whole
 from meshes.errors import InputError
+from solvers.held.cost import hold_seconds
+from solvers.held.state import HoldNumerics
 from solvers.liquid_model import ROUNDING, LiquidModel
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.sloshing.model import REST_ERROR
@@ -224,6 +226,48 @@ def held_at(scene: Scene, choice: Choice, growth: Array) -> Flags:
     if scene.model.held == "always":
         return np.ones(growth.shape, dtype=bool)
     return np.asarray(choice.in_range & (choice.missed | (growth > 0.0)))
+
+
+def costed(machine: Prepared, choice: Choice, growth: Array) -> Choice:
+    """The choice with what it takes to hold rotor and waves in time at each speed.
+
+    Parameters
+    ----------
+    machine : the scene's
+    choice : the steady models
+    growth : of the whirl that grows most, 1/s, shape (n,)
+    """
+    scene = machine.scene
+    if is_cut(scene) or not any(map(_has_surface, scene.fills)):
+        return choice
+    numerics = HoldNumerics(cells=scene.model.cells)
+    return replace(
+        choice,
+        holding=hold_seconds(scene.fills, machine.speed, growth, machine.across_gravity, numerics),
+    )
+
+
+def held_cost(machine: Prepared, choice: Choice, growth: Array) -> HeldCost | None:
+    """What it takes to hold what the scene has held, or what auto would hold if it were allowed to.
+
+    Parameters
+    ----------
+    machine : whose scene names the model, and whether auto may hold
+    choice : the steady models, costed
+    growth : of the whirl that grows most, 1/s, shape (n,)
+
+    Returns
+    -------
+    None where nothing is to be held
+    """
+    scene = machine.scene
+    asked = scene.model.held != "never" or scene.model.liquid == "long_wave"
+    ready = scene if asked else scene.altered(model=scene.model.altered(held="auto"))
+    at = held_at(ready, choice, growth)
+    if choice.holding is None or not at.any():
+        return None
+    first, last = machine.speed[at][[0, -1]].tolist()
+    return HeldCost(int(np.count_nonzero(at)), first, last, float(choice.holding[at].sum()), asked)
 
 
 def is_cut(scene: Scene) -> bool:

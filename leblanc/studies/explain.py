@@ -15,10 +15,11 @@ from leblanc.results.motion.tilting import RestMode
 from leblanc.scene.rotors import Exciter as ExciterOfScene
 from leblanc.scene.rows import baffle_words
 from leblanc.scene.scene import Scene
-from leblanc.studies.choose import Prepared, choose_all, prepare
+from leblanc.studies.choose import Prepared, choose_all, costed, held_cost, prepare
 from leblanc.studies.exciter import printed_critical
 from leblanc.studies.liquid import synchronous_model
 from leblanc.studies.run import rest_modes
+from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.cycles.estimate import whirl_estimate
 from solvers.rotor.exciter.machine import characteristic_speeds
@@ -26,7 +27,7 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import critical_speeds, modes, orbit, unbalance_response
 from solvers.statics.hydrostatics import optimal_volume
 from solvers.synchronous.response import critical_speed, main_critical_speeds, wet_critical_speeds
-from solvers.whirl.growth import growth_map
+from solvers.whirl.growth import asynchronous_growth
 
 
 def explain_exciter(scene: Scene) -> ExciterExplanation:
@@ -67,6 +68,8 @@ def explain_scene(scene: Scene) -> Explanation:
     """
     machine = prepare(scene)
     gravity, (choice,) = machine.axial_gravity, choose_all([machine])
+    growth = asynchronous_growth(machine.rotor, scene.fills, machine.speed, machine.friction)[0]
+    choice = costed(machine, choice, growth)
     ends = np.array([scene.speeds.start, scene.speeds.stop])
     bare = _bare(machine, choice.model)
     layers: list[LayerExplanation | None] = []
@@ -97,25 +100,22 @@ def explain_scene(scene: Scene) -> Explanation:
         tolerance=choice.tolerance,
         modes=bare.modes,
         runup=_runup(scene),
-        whirl=_whirl(machine),
+        whirl=_whirl(machine, growth),
+        held=held_cost(machine, choice, growth),
         source=scene.source,
         assumed=scene.assumed,
         digest=scene.digest,
     )
 
 
-def _whirl(machine: Prepared) -> WhirlOutlook | None:
-    """How large a whirl grows by itself at the scene's speeds; None where none does."""
-    scene, speed = machine.scene, np.unique(machine.speed)
+def _whirl(machine: Prepared, growth: Array) -> WhirlOutlook | None:
+    """How large a whirl grows by itself at the scene's speeds, 1/s the growth there; None where none does."""
+    scene, (speed, at) = machine.scene, np.unique(machine.speed, return_index=True)
     if not scene.fills or speed.size < 2:
         return None
     found = whirl_estimate(machine.rotor, scene.fills, speed, scene.model.friction)
-    known = [estimate for estimate in found if estimate is not None and estimate.lag > 0.0]
-    spins = np.array([estimate.spin for estimate in known])
-    if not known:
-        return None
-    rising = growth_map(machine.rotor, [scene.fills], spins, scene.model.friction)[0][0] > 0.0
-    known = [estimate for estimate, grows in zip(known, rising.tolist(), strict=True) if grows]
+    rising = zip(found, (growth[at] > 0.0).tolist(), strict=True)
+    known = [whirl for whirl, grows in rising if grows and whirl is not None and whirl.lag > 0.0]
     if not known:
         return None
     most = max(known, key=lambda estimate: estimate.amplitude)

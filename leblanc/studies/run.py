@@ -18,7 +18,16 @@ from leblanc.results.motion.tilting import Motion, RestMode
 from leblanc.results.response import RunResult
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
-from leblanc.studies.choose import Prepared, by_elements, choose_all, held_at, liquid_models, prepare
+from leblanc.studies.choose import (
+    Prepared,
+    by_elements,
+    choose_all,
+    costed,
+    held_at,
+    held_cost,
+    liquid_models,
+    prepare,
+)
 from leblanc.studies.held.holding import HERE, Began, Holding
 from leblanc.studies.liquid import element_model, synchronous_model
 from leblanc.studies.peaks import responses_between
@@ -210,6 +219,7 @@ def run_scene(
         choice, answer, refined = element_answers(machine, choice, answer, refined)
     progress("self-excited whirl")
     whirl = self_excited(machine)
+    choice = costed(machine, choice, whirl.growth)
     at, held, stable = held_at(scene, choice, whirl.growth), None, whirl.leaves_stable(answer.stable)
     if at.any():
         from leblanc.studies.held.held import hold_answer
@@ -291,7 +301,8 @@ def _notes(
     held: Held | None,
 ) -> tuple[Note, ...]:
     """Limits of validity and findings."""
-    found = [notes.liquid_models(choice), notes.tolerance_missed(choice, machine.speed)]
+    cost = held_cost(machine, choice, whirl.growth)
+    found = [notes.liquid_models(choice), notes.tolerance_missed(choice, machine.speed, cost)]
     if choice.captured_from is not None:
         found.append(notes.not_carried(choice.captured_from))
     found += notes.held_motions(held, answer.speed) if held is not None else []

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from leblanc.results.base import EXACT, one_line, percent
-from leblanc.results.choice import ModelSpan, SpeedEstimate
+from leblanc.results.choice import HeldCost, ModelSpan, SpeedEstimate
 from leblanc.results.explanation import (
     Comparison,
     ExciterExplanation,
@@ -16,7 +16,7 @@ from leblanc.results.explanation import (
 from leblanc.results.motion.tilting import RestMode
 from leblanc.text.numbers import NOT_FOUND, number
 from leblanc.text.run import amplitude_place, error_words, speeds_words
-from leblanc.units import LENGTH, RPM, VOLUME, Unit, in_rpm, unit_for, with_unit
+from leblanc.units import LENGTH, RPM, VOLUME, Unit, in_rpm, rpm_range, unit_for, with_unit
 from meshes.arrays import Array
 
 Rows = list[tuple[str, str]]
@@ -44,7 +44,20 @@ def machine_rows(answer: Explanation) -> Rows:
         turning = in_rpm(answer.whirl.whirl_speed)
         text = f"grows by itself to about {size} at {speed}, turning at {turning}: an estimate"
         rows.append(("whirl", f"{text}, see `map --cycles`"))
+    if answer.held is not None:
+        rows.append(("held in time", _held_words(answer.held, answer.tolerance)))
     return rows
+
+
+def _held_words(held: HeldCost, tolerance: float) -> str:
+    """What motions held in time take, and why they are held."""
+    where = (
+        f"{held.speeds} speeds from {rpm_range(held.first, held.last)}, {held.words}, good to a factor of two"
+    )
+    if held.asked:
+        return f"{where}; the cores share it"
+    why = f"no steady model is within {percent(tolerance)} there, or a whirl grows by itself"
+    return f'{where}, with [model] held = "auto": {why}'
 
 
 def mode_rows(modes: tuple[RestMode, ...]) -> Rows:

@@ -6,14 +6,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fluid.fill import Fill, Fills
 from fluid.friction import Friction, FrictionLaw
 from fluid.liquid import KNOWN_LIQUIDS
-from meshes.arrays import Array
+from meshes.arrays import Array, Flags
 from meshes.chamber import Chamber
 from solvers.held.hold import hold, start
 from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics
@@ -21,6 +21,10 @@ from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl, Whirls
 from solvers.pypde.settle import settle
 from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
+from solvers.rotor.system import RotorSystem
+from solvers.rotor.tub import Mount, Tub
+from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
+from solvers.rotor.vibration import orbit
 from solvers.runup.linear import couple_linear
 from solvers.runup.long_wave import couple
 from solvers.runup.machine import Ramp, RunupModel
@@ -187,7 +191,7 @@ class HeldSample:
     amplitude, liquid : means of the amplitude and of the liquid's offset
     ripple, liquid_ripple : by which both go up and down about their means
     strength : gravity over the centrifugal acceleration at the surface of each machine, shape (n,)
-    cycles : share of the machines that gravity throws into a limit cycle
+    thrown : gravity throws the machine into a limit cycle, shape (n,)
     """
 
     amplitude: Coverage
@@ -195,20 +199,27 @@ class HeldSample:
     ripple: Coverage
     liquid_ripple: Coverage
     strength: Array
-    cycles: float
+    thrown: Flags
 
 
-def held_sample(seed: int, count: int, cells: int = 48) -> HeldSample:
+def held_sample(seed: int, count: int, cells: int = 48, kind: str = "jeffcott") -> HeldSample:
     """What gravity across the axis does to random lying machines that are stable without it.
 
     One or two chambers with layers of 0.01 to 0.3 of the radius, centrifugal acceleration of 2 to 100 times
     gravity, 0.2 to 5 times the critical speed, deflections of 0.02 to 1.5 depths. Machines whose liquid falls
     are left out.
+
+    Parameters
+    ----------
+    seed : of the random machines
+    count : how many are drawn
+    cells : round each wall
+    kind : of the rotor: "jeffcott", "two_plane" or "tub"
     """
     rng = np.random.default_rng(seed)
-    rows, cycles = [], []
+    rows, thrown = [], []
     for _ in range(count):
-        rotor, fills, speed, friction = _random_lying(rng)
+        rotor, fills, speed, friction = _LYING[kind](rng)
         spin = np.array([speed])
         growth = float(asynchronous_growth(rotor, fills, spin, friction)[0][0])
         steady = response(rotor, fills, spin, 0.0)
@@ -222,51 +233,147 @@ def held_sample(seed: int, count: int, cells: int = 48) -> HeldSample:
         if not (states[1].captured.all() and states[0].settled):
             continue
         estimate = error_estimate(rotor, fills, spin, 0.0, GRAVITY)[1]
-        rows.append(_held_row(fills, speed, states[0], states[1], estimate))
-        cycles.append(states[1].kind is HeldKind.LIMIT_CYCLE)
+        rows.append(_held_row(rotor.system(), fills, states[0], states[1], estimate))
+        thrown.append(states[1].kind is HeldKind.LIMIT_CYCLE)
     table = np.array(rows).T
     mean, liquid, ripple, lean = (Coverage(table[2 * k], table[2 * k + 1]) for k in range(4))
-    return HeldSample(mean, liquid, ripple, lean, strength=table[8], cycles=float(np.mean(cycles)))
+    return HeldSample(mean, liquid, ripple, lean, strength=table[8], thrown=np.array(thrown))
 
 
 def _held_row(
-    fills: list[Fill], speed: float, still: HeldState, held: HeldState, estimate: GravityError
+    system: RotorSystem, fills: list[Fill], still: HeldState, held: HeldState, estimate: GravityError
 ) -> tuple[float, ...]:
-    """Errors by gravity and their estimates, and gravity's strength."""
-    mass = np.array([fill.mass for fill in fills])
-    before, after = ((state.liquid + state.coordinates[0]) @ mass / mass.sum() for state in (still, held))
+    """Errors by gravity and their estimates, and gravity's strength.
+
+    Of a planar rotor the mean distance of the axis counts, of others that of each turn's largest: their orbit
+    is an ellipse without gravity, and what it is wider than high is no ripple.
+    """
+    mass, planar = np.array([fill.mass for fill in fills]), len(system.coordinates) == 2
+    before, after = (
+        np.array([orbit(system, state.coordinates, fill.chamber.plane).forward for fill in fills])
+        + state.liquid
+        for state in (still, held)
+    )
+    shift, size = abs(mass @ (after - before)), abs(mass @ before)
+    amplitude = [state.amplitude if planar else state.crest for state in (still, held)]
+    wider = 0.0 if planar else still.largest - still.least
     lean = float(held.ripple @ mass / mass.sum())
-    strength = max(GRAVITY / (speed**2 * fill.surface_radius) for fill in fills)
+    strength = max(GRAVITY / (held.spin**2 * fill.surface_radius) for fill in fills)
     return (
-        abs(held.amplitude / still.amplitude - 1.0), float(estimate.amplitude[0]),
-        float(abs(after - before) / abs(before)), float(estimate.liquid[0]),
-        0.5 * (held.largest - held.least) / held.amplitude, float(estimate.ripple[0]),
+        abs(amplitude[1] / amplitude[0] - 1.0), float(estimate.amplitude[0]),
+        float(shift / size), float(estimate.liquid[0]),
+        max(0.5 * (held.largest - held.least - wider), 0.0) / amplitude[1], float(estimate.ripple[0]),
         lean, float(estimate.liquid_ripple[0]), strength,
     )  # fmt: skip
 
 
-def _random_lying(rng: np.random.Generator) -> tuple[Jeffcott, list[Fill], float, Friction]:
-    """Rotor, fills, speed and friction of a lying machine."""
+Lying = tuple[Jeffcott | TwoPlane | Tub, list[Fill], float, Friction]
+
+
+def _random_layers(rng: np.random.Generator, reach: float = 0.0) -> tuple[float, list[Fill]]:
+    """A size, and one or two layers in chambers of that radius at most.
+
+    Parameters
+    ----------
+    rng : where the numbers come from
+    reach : how far along the axis they lie, over the size; 0 where all lie in one plane
+    """
     largest, fills = between(rng, 0.05, 0.4), []
     for _ in range(int(rng.integers(1, 3))):
         radius = largest * between(rng, 0.4, 1.0)
         height, depth = radius * between(rng, 0.1, 0.6), between(rng, 0.01, 0.3)
         volume = math.pi * height * radius**2 * depth * (2.0 - depth)
-        fills.append(Fill(Chamber(radius, height), WATER, volume))
+        plane = largest * rng.uniform(-reach, reach) if reach else 0.0
+        fills.append(Fill(Chamber(radius, height, plane=plane), WATER, volume))
+    return largest, fills
+
+
+def _random_planar(rng: np.random.Generator) -> Lying:
+    """Rotor, fills, speed and friction of a lying machine that does not tilt."""
+    _, fills = _random_layers(rng)
     mass = sum(fill.full_mass for fill in fills) / between(rng, 0.02, 0.6)
-    surface = max(fill.surface_radius for fill in fills)
-    speed = math.sqrt(between(rng, 2.0, 100.0) * GRAVITY / surface)
-    critical, damping = speed / between(rng, 0.2, 5.0), between(rng, 0.02, 0.3)
-    thin, parts = (
-        min(fill.depth for fill in fills),
-        (mass, mass * critical**2, 2.0 * damping * mass * critical),
-    )
+    speed, critical = _random_speed(rng, fills)
+    damping, thin = between(rng, 0.02, 0.3), min(fill.depth for fill in fills)
+    parts = mass, mass * critical**2, 2.0 * damping * mass * critical
     size = abs(response(Jeffcott(*parts, 1.0), fills, [speed], 0.0).deflection[0])
     rotor = Jeffcott(*parts, between(rng, 0.02, 1.5) * thin / size)
-    friction = Friction(FrictionLaw.STOKES)
+    return rotor, fills, speed, _random_friction(rng, speed)
+
+
+def _random_friction(rng: np.random.Generator, speed: float) -> Friction:
+    """Laminar, or of 0.01 to 0.5 of the spin."""
     if rng.random() >= 0.4:
-        friction = Friction(FrictionLaw.LINEAR, between(rng, 0.01, 0.5) * speed)
-    return rotor, fills, speed, friction
+        return Friction(FrictionLaw.LINEAR, between(rng, 0.01, 0.5) * speed)
+    return Friction(FrictionLaw.STOKES)
+
+
+def _random_speed(rng: np.random.Generator, fills: list[Fill]) -> tuple[float, float]:
+    """A speed at which the liquid rides with the drum, and a critical speed about it."""
+    surface = max(fill.surface_radius for fill in fills)
+    speed = math.sqrt(between(rng, 2.0, 100.0) * GRAVITY / surface)
+    return speed, speed / between(rng, 0.2, 5.0)
+
+
+def _random_two_plane(rng: np.random.Generator) -> Lying:
+    """The same of a rotor with two supports and two unbalances, 1 to 6 radii long."""
+    largest, fills = _random_layers(rng, reach=2.0)
+    mass = sum(fill.full_mass for fill in fills) / between(rng, 0.02, 0.6)
+    speed, critical = _random_speed(rng, fills)
+    half, damping = largest * between(rng, 0.5, 3.0), between(rng, 0.02, 0.3)
+    transverse = mass * (half**2 / 3.0 + largest**2 / 4.0)
+    polar = mass * largest**2 * rng.uniform(0.3, 0.6)
+    share, places = rng.uniform(0.3, 0.7), half * rng.uniform(0.3, 1.0, 2) * (-1.0, 1.0)
+    supports = tuple(
+        Support(place, part * mass * critical**2, 2.0 * damping * part * mass * critical)
+        for place, part in zip(places.tolist(), (share, 1.0 - share), strict=True)
+    )
+    unbalances = tuple(
+        PlaneUnbalance(half * rng.uniform(-1.0, 1.0), rng.random(), rng.uniform(0.0, 2.0 * math.pi))
+        for _ in range(2)
+    )
+    plain = TwoPlane(mass, transverse, polar, supports, unbalances)
+    size = _weakened(rng, plain, fills, speed)
+    lighter = tuple(replace(part, size=part.size * size) for part in unbalances)
+    return replace(plain, unbalances=lighter), fills, speed, _random_friction(rng, speed)
+
+
+def _random_tub(rng: np.random.Generator) -> Lying:
+    """The same of a drum in a tub, on four springs and dampers of unlike stiffness along the axes."""
+    largest, fills = _random_layers(rng, reach=1.0)
+    mass = sum(fill.full_mass for fill in fills) / between(rng, 0.02, 0.6)
+    speed, critical = _random_speed(rng, fills)
+    drum, damping = mass * rng.uniform(0.1, 0.4), between(rng, 0.02, 0.3)
+    springs, dampers = [], []
+    for corner in ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)):
+        sides = largest * rng.uniform(0.7, 1.5, 3) * (corner[0], corner[1], 1.0 if corner[0] > 0.0 else -1.0)
+        place = tuple(sides.tolist())
+        stiffness = 0.25 * mass * critical**2 * rng.uniform(0.5, 1.5, 3)
+        rate = 2.0 * damping / critical * stiffness
+        springs.append(Mount(place, along_axes=tuple(stiffness.tolist())))
+        dampers.append(Mount(place, along_axes=tuple(rate.tolist())))
+    plain = Tub(
+        tub_mass=mass - drum, drum_mass=drum,
+        tub_inertia=tuple(((mass - drum) * largest**2 * rng.uniform(0.6, 1.4, 3)).tolist()),
+        drum_polar_inertia=drum * largest**2 * rng.uniform(0.3, 1.0),
+        drum_transverse_inertia=drum * largest**2 * rng.uniform(0.3, 1.0),
+        springs=tuple(springs), dampers=tuple(dampers), unbalance=1.0,
+        drum_position=(0.0, largest * rng.uniform(0.0, 0.5), 0.0),
+        unbalance_position=largest * rng.uniform(-0.7, 0.7),
+    )  # fmt: skip
+    size = _weakened(rng, plain, fills, speed)
+    return replace(plain, unbalance=size), fills, speed, _random_friction(rng, speed)
+
+
+def _weakened(rng: np.random.Generator, rotor: TwoPlane | Tub, fills: list[Fill], speed: float) -> float:
+    """By how much the unbalance is to be scaled: the largest deflection of 0.02 to 1.5 of the least depth."""
+    system = rotor.system()
+    moved = response(rotor, fills, [speed], 0.0, LINEAR).coordinates[0]
+    orbits = [orbit(system, moved, fill.chamber.plane) for fill in fills]
+    size = max(abs(complex(part.forward)) + abs(complex(part.backward)) for part in orbits)
+    return between(rng, 0.02, 1.5) * min(fill.depth for fill in fills) / size
+
+
+_LYING = {"jeffcott": _random_planar, "two_plane": _random_two_plane, "tub": _random_tub}
 
 
 def run_up_sample(seed: int, count: int, cells: int = 64) -> Coverage:

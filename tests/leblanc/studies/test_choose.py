@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fluid.friction import Friction, FrictionLaw
 from leblanc.cli import main
 from leblanc.results.base import percent
-from leblanc.results.choice import model_spans
+from leblanc.results.choice import model_spans, seconds_words
 from leblanc.results.notes import RunCode
 from leblanc.scene.scene import Scene, dry_rotor, jeffcott, load_scene
 from leblanc.studies.choose import axial_gravity, choose, choose_all, prepare
@@ -19,9 +20,12 @@ from leblanc.studies.explain import explain_scene
 from leblanc.studies.liquid import synchronous_model
 from leblanc.studies.run import run_scene
 from leblanc.studies.runup import runup_outlook, runup_scene
+from leblanc.text.explanation import machine_rows
 from meshes.errors import InputError
+from solvers.held.cost import hold_seconds
 from solvers.synchronous.models import LINEAR
 from solvers.synchronous.response import response
+from solvers.whirl.growth import asynchronous_growth
 from tests.leblanc.studies.test_explain import scene as small_scene
 from tests.leblanc.studies.test_runup import scene as upright_scene
 from tests.mutants import kills
@@ -101,6 +105,44 @@ def test_where_the_tolerance_is_not_met() -> None:
     assert kinds[0] == (False, False) and kinds[-1] == (True, True) and (True, False) in kinds
     assert spans[0].first == speed[0] and spans[-1].last == speed[-1]
     assert "does not ride" in spans[0].reason
+
+
+@kills("leblanc.studies.choose:held_cost", 'scene.model.altered(held="auto")', "scene.model")
+@kills("leblanc.studies.choose:held_cost", "choice.holding[at].sum()", "choice.holding.sum()")
+@kills("leblanc.studies.choose:costed", "machine.across_gravity", "machine.axial_gravity")
+def test_what_motions_held_in_time_would_take_is_told_in_seconds() -> None:
+    """`explain` and the note of `run` name the speeds that auto would hold and the time that takes."""
+    lying = small_scene()
+    machine = prepare(lying)
+    growth = asynchronous_growth(machine.rotor, lying.fills, machine.speed, machine.friction)[0]
+    choice = choose(lying)
+    # As many as no steady model answers, and as grow; what each takes follows from its cells and layers.
+    wanted = choice.in_range & (choice.missed | (growth > 0.0))
+    seconds = hold_seconds(lying.fills, machine.speed[wanted], growth[wanted], 9.81)
+    held = explain_scene(lying).held
+    assert held is not None and not held.asked
+    assert held.speeds == np.count_nonzero(wanted) < machine.speed.size
+    assert held.seconds == pytest.approx(seconds.sum(), rel=1e-12)
+    assert (held.first, held.last) == tuple(machine.speed[wanted][[0, -1]])
+    assert f"{held.speeds} speeds" in (words := dict(machine_rows(explain_scene(lying)))["held in time"])
+    assert seconds_words(held.seconds) in words and 'held = "auto"' in words
+    (note,) = (each for each in run_scene(lying).notes if each.code is RunCode.TOLERANCE_MISSED)
+    assert note.data["held_speeds"] == held.speeds and note.data["held_seconds"] == held.seconds
+    assert seconds_words(held.seconds) in str(note)
+
+
+def test_nothing_is_said_of_motions_held_in_time_where_none_are_wanted() -> None:
+    """Not where steady models answer all, nor where the scene names one; once held, it is what they take."""
+    calm = small_scene(axis="vertical", unbalance=1e-6)
+    quiet = calm.altered(model=calm.model.altered(friction=Friction(FrictionLaw.LINEAR, 5.0)))
+    assert explain_scene(quiet).held is None
+    assert explain_scene(asked(small_scene(), "statics")).held is None
+    lying = small_scene()
+    every = explain_scene(lying.altered(model=lying.model.altered(held="always"))).held
+    assert every is not None and every.asked and every.speeds == lying.speed_array().size
+    few = explain_scene(lying.altered(model=lying.model.altered(held="always", cells=64))).held
+    # A quarter of the cells' share, and the turns themselves.
+    assert few is not None and 0.25 * every.seconds < few.seconds < 0.75 * every.seconds
 
 
 def test_all_scenes_at_once_are_each_one_alone() -> None:

@@ -1,0 +1,81 @@
+"""What it takes to hold a motion: turns until it has settled, steps in a turn, cells in a step."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from fluid.fill import Fill
+from meshes.arrays import Array
+from solvers.held.state import HoldNumerics
+
+# Turns of a motion that dies, with all cells and with half of them; windows of one that does not.
+_DYING, _LIVING = np.array([[60.0], [33.0]]), np.array([[4.5], [2.0]])
+_SHORTEST, _LONGEST = 32.0, 512.0  # turns of a window
+_THROWN = 0.15  # of gravity over the centrifugal acceleration, from which a motion hardly ever repeats
+# Measured, s: of a turn, and of a cell in a step.
+_TURN, _CELL = 2e-3, 1e-7
+_HEAPED, _MOST = 80.0, 22.0  # by what a turn takes longer where gravity heaps the liquid up
+
+
+def settling_turns(spin: Array, growth: Array, strength: Array, numerics: HoldNumerics) -> Array:
+    """Turns that motions take to settle, about [theory: held, eq. 11].
+
+    Parameters
+    ----------
+    spin : Omega, rad/s, shape (n,)
+    growth : of the small whirl that grows most or dies last, 1/s, nan where it is not known, shape (n,)
+    strength : gravity across the axis over the centrifugal acceleration at the surface, shape (n,)
+    numerics : how many at most
+
+    Returns
+    -------
+    With all cells, and once more with half of them, shape (2, n)
+    """
+    change = np.abs(np.where(np.isnan(growth), math.inf, growth)) * 2.0 * math.pi / spin
+    slow = np.full(change.shape, math.inf)
+    window = np.clip(np.divide(0.5, change, out=slow, where=change > 0.0), _SHORTEST, _LONGEST)
+    dies = (growth < 0.0) & (strength < _THROWN)
+    return np.asarray(np.minimum(np.where(dies, _DYING, _LIVING * window), numerics.turns))
+
+
+def hold_seconds(
+    fills: Sequence[Fill],
+    spin: Array,
+    growth: Array,
+    across: float = 0.0,
+    numerics: HoldNumerics | None = None,
+) -> Array:
+    """Processor time to hold motions until they settle, with half the cells for the error as well.
+
+    Of one core of the machine that it was measured on, to a factor of two [theory: held, eq. 12 and 13].
+
+    Parameters
+    ----------
+    fills : of all chambers
+    spin : Omega, rad/s, shape (n,)
+    growth : as for `settling_turns`
+    across : gravity across the axis, m/s^2
+    numerics : resolution
+
+    Returns
+    -------
+    s, shape (n,)
+
+    Examples
+    --------
+    >>> from fluid.liquid import KNOWN_LIQUIDS
+    >>> from meshes.chamber import Chamber
+    >>> layer = Fill(Chamber(0.065, 0.02), KNOWN_LIQUIDS["water"], 10e-6)
+    >>> hold_seconds([layer], np.array([100.0]), np.array([-0.5])).round(2)
+    array([0.33])
+    """
+    numerics = numerics or HoldNumerics()
+    surfaces = [fill.surface_radius for fill in fills if fill.volume > 0.0 and fill.surface_radius > 0.0]
+    strength = across / (np.square(spin) * min(surfaces, default=math.inf))
+    cells = np.array([[numerics.cells], [numerics.cells // 2]])
+    turn = _TURN + _CELL * len(surfaces) * np.square(cells) / numerics.courant
+    heaped = np.minimum(1.0 + _HEAPED * strength**4, _MOST)
+    return np.asarray((settling_turns(spin, growth, strength, numerics) * turn).sum(axis=0) * heaped)

@@ -1,0 +1,102 @@
+"""What motions held in time take beside what is foretold: `python -m validation.benchmarks.held`.
+
+The motions that `held = "auto"` asks for on the shipped scenes, in one process. From them come the numbers of
+`solvers.held.cost`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import time
+from dataclasses import dataclass
+
+for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(variable, "1")
+
+import numpy as np  # noqa: E402
+
+from leblanc.scene.examples import example  # noqa: E402
+from leblanc.studies.choose import choose_all, costed, held_at, liquid_models, prepare  # noqa: E402
+from leblanc.studies.held.held import held_machine, hold_speeds  # noqa: E402
+from leblanc.studies.held.holding import HERE  # noqa: E402
+from meshes.arrays import Array  # noqa: E402
+from solvers.held.hold import compile_kernels, start  # noqa: E402
+from solvers.held.state import HoldNumerics  # noqa: E402
+from solvers.synchronous.response import response  # noqa: E402
+from solvers.whirl.growth import asynchronous_growth  # noqa: E402
+
+SCENES = ("horizontal_rig", "washing_machine", "tub", "two_plane_rig", "runup", "vertical_rig")
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Processor time of the motions of a scene, s.
+
+    Parameters
+    ----------
+    scene : its name
+    foretold, taken : by each speed on its own, shape (n,)
+    carried : by motions carried from speed to speed, which nothing foretells
+    """
+
+    scene: str
+    foretold: Array
+    taken: Array
+    carried: float
+
+    @property
+    def line(self) -> str:
+        """A row of the table."""
+        ratio = self.foretold / self.taken
+        low, middle, high = np.percentile(ratio, (5, 50, 95))
+        within = np.mean((ratio > 0.5) & (ratio < 2.0))
+        return (
+            f"{self.scene:18}{ratio.size:6d}{self.foretold.sum():10.3g}{self.taken.sum():9.3g}"
+            f"{self.carried:9.3g}{low:7.2f}{middle:6.2f}{high:6.2f}{within:8.0%}"
+        )
+
+
+def cost(name: str, stride: int = 1, cells: int | None = None) -> Cost:
+    """Hold what `auto` would hold on a scene.
+
+    Parameters
+    ----------
+    name : of the scene
+    stride : only every so many of the speeds
+    cells : round each wall; the scene's if None
+    """
+    scene = example(name)
+    changes = {"held": "auto"} | ({} if cells is None else {"cells": cells})
+    machine = prepare(scene.altered(model=scene.model.altered(**changes)))
+    growth = asynchronous_growth(machine.rotor, scene.fills, machine.speed, machine.friction)[0]
+    choice = costed(machine, choose_all([machine])[0], growth)
+    at = np.flatnonzero(held_at(machine.scene, choice, growth))[::stride]
+    gravity = machine.axial_gravity
+    steady = response(machine.rotor, scene.fills, machine.speed, gravity, liquid_models(choice)).at(at)
+    held, numerics = held_machine(machine), HoldNumerics(cells=machine.scene.model.cells)
+    compile_kernels(held, start(held, float(steady.speed[0]), numerics))
+    marks = [time.process_time()]
+    hold_speeds(machine, steady, growth[at], HERE, lambda _: marks.append(time.process_time()))
+    taken = np.diff(marks)
+    assert choice.holding is not None
+    return Cost(name, choice.holding[at], taken[: at.size], float(taken[at.size :].sum()))
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(prog="python -m validation.benchmarks.held", description=__doc__)
+    parser.add_argument("scenes", nargs="*", help="names of shipped scenes [default: six]")
+    parser.add_argument("--stride", type=int, default=1, help="only every so many of the speeds")
+    parser.add_argument("--cells", type=int, help="round each wall [default: the scene's]")
+    chosen = parser.parse_args()
+    print(
+        "foretold and taken, s; each speed's ratio of the two: 5 and 50 and 95 in 100; within half and twice"
+    )
+    print(f"{'scene':18}{'speeds':>6}{'foretold':>10}{'taken':>9}{'carried':>9}{'ratio':>7}")
+    for name in chosen.scenes or SCENES:
+        print(cost(name, chosen.stride, chosen.cells).line, flush=True)
+
+
+if __name__ == "__main__":
+    main()
