@@ -20,9 +20,20 @@ from fluid.waves import capture_speed
 from leblanc.cli import main
 from leblanc.results.base import versions
 from leblanc.scene.scene import Scene, load_scene
+from leblanc.studies.run import run_scene
 from leblanc.studies.runup import planned
 from tests.mutants import kills
-from validation.trade.answers import DISPERSION, RESPONSE, RUNUP, Answer, Case, answer, at_speeds
+from validation.trade.answers import (
+    DISPERSION,
+    HELD,
+    RESPONSE,
+    RUNUP,
+    Answer,
+    Case,
+    answer,
+    at_speeds,
+    whirl_growth,
+)
 from validation.trade.cases import (
     SPEEDS,
     Question,
@@ -263,6 +274,56 @@ def test_speeds() -> None:
         assert part.max() == whole.max()
     few = machine.altered(speeds=machine.speeds.altered(count=4))
     assert telling_speeds(few).size == 4
+
+
+@kills("validation.trade.cases:stands_lying", "/ speed < -_DIES", "/ speed < 9.0")
+@kills("validation.trade.cases:stands_lying", "speed >= _CALM * capture", "speed >= capture")
+@kills("validation.trade.cases:response_question", "held[-1], held[:-4:-1]", "best, (best,)")
+def test_a_lying_machine_is_compared_with_its_motion_held_in_time() -> None:
+    """Where gravity does not throw the liquid about and no whirl grows; upright it is the equilibrium."""
+    machine = scene("horizontal_rig")
+    question = response_question(machine)
+    speed = question.scene.speed_array()
+    capture = max(float(capture_speed(fill.surface_radius, 9.81)) for fill in machine.fills)
+    assert (
+        speed.size == SPEEDS
+        and speed[0] >= 3.0 * capture
+        and (whirl_growth(question.scene) * 250.0 * 2.0 * math.pi < -speed).all()
+    )
+    assert whirl_growth(machine).max() > 0.0  # in a band of which no speed is among them
+    assert question.reference == Case(RESPONSE, "long_wave", 256, HELD) and question.reference.selectable
+    assert [case.resolution for case in question.ladder] == [256, 128, 64]
+    upright = response_question(scene("runup"))
+    assert upright.reference == Case(RESPONSE, "statics") == upright.ladder[0]
+    assert not any(case.variant == HELD for case in upright.cases)
+
+
+@kills("validation.trade.answers:_held", "0.5 * (state.largest - state.least)", "state.largest - state.least")
+@kills("validation.trade.judge:_ripple_error", "found.ripple - best.ripple", "found.ripple + best.ripple")
+def test_held_answers_are_those_of_run() -> None:
+    """Mean and ripple of two speeds of the rig; gravity makes the motion ripple, no steady one does."""
+    machine = scene("horizontal_rig")
+    cut = at_speeds(machine, np.array([40.0, 70.0]))
+    found, still = (answer(cut, Case(RESPONSE, *case)) for case in (("long_wave", 32, HELD), ("statics",)))
+    asked = machine.replace({"model.liquid": "long_wave", "model.cells": 32})
+    result = run_scene(at_speeds(asked, np.array([40.0, 70.0])))
+    assert result.held is not None and found.ripple is not None and still.ripple is not None
+    np.testing.assert_allclose(found.values, result.amplitude, rtol=1e-12)
+    half = 0.5 * (result.held.largest - result.held.least)
+    np.testing.assert_allclose(found.ripple, half, rtol=1e-12)
+    assert half[0] > 1e-4 * found.values[0] and (still.ripple <= 1e-12 * still.values).all()
+    # Gravity leaves the mean to a per cent or so, 32 cells another half.
+    np.testing.assert_allclose(still.values, found.values, rtol=0.02)
+    assert still.estimate > 1e-3 and math.isnan(found.estimate)
+    question = Question(RESPONSE, cut, "", (), Case(RESPONSE, "long_wave", 32, HELD), ())
+    cases = tuple(Case(RESPONSE, *case) for case in (("statics",), ("long_wave", 32, HELD)))
+    runs = dict(zip(cases, (Run(each, (1.0,), 0.1, 0) for each in (still, found)), strict=True))
+    one = compare(replace(question, cases=cases, ladder=(question.reference,)), runs, 1e-3)
+    assert (
+        one.ripple == one.rows[0].ripple_error == pytest.approx(float(np.max(half / found.values)), rel=1e-9)
+    )
+    assert one.rows[1].ripple_error == 0.0 and one.rows[0].estimate == still.estimate
+    assert "ripple" in "\n".join(trade_lines(replace(record(), comparisons=(one,))))
 
 
 @kills("validation.trade.cases:passage", "_HELD * _capture(scene)", "_capture(scene)")

@@ -92,12 +92,13 @@ def _comparison(question: dict[str, Any], rows: list[dict[str, Any]]) -> Compari
         rows=tuple(_row(row) for row in rows if row["question"] == question["question"]),
         dominated_by=tuple(question["default_dominated_by"]),
         overhead=_number(question["default_overhead"]),
+        ripple=_number(question["ripple"]),
     )
 
 
 def _row(values: dict[str, Any]) -> Row:
     known = {key: value for key, value in values.items() if key != "time_ratio"}
-    numbers = {key: _number(known[key]) for key in ("error", "peak_error")}
+    numbers = {key: _number(known[key]) for key in ("error", "peak_error", "estimate", "ripple_error")}
     return Row(**(known | numbers | {"used": tuple(known["used"])}))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -10,8 +11,9 @@ from pydantic import Field
 
 from fluid.fill import Fill
 from fluid.friction import Friction, FrictionLaw
+from leblanc.results.choice import Choice
 from leblanc.scene.scene import Exciter, Scene, dry_rotor
-from leblanc.studies.choose import across_gravity, axial_gravity, choose, liquid_models
+from leblanc.studies.choose import across_gravity, axial_gravity, choose, liquid_models, prepare
 from leblanc.studies.runup import RunupChoice, chosen_run, drive_of, judged, planned
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
@@ -21,7 +23,7 @@ from solvers.runup.runup import RunupNumerics
 
 RESPONSE, RUNUP = "response", "runup"
 WAVES, FAMILY = "long waves", "one family"
-DISPERSION = "dispersion"
+DISPERSION, HELD = "dispersion", "held"
 
 
 @dataclass(frozen=True)
@@ -34,7 +36,8 @@ class Case:
     model : "auto" (the scene's default), "linear", "statics", "long_wave", "kdv", "fem"; of an exciter
         "formulas" or "integration"
     resolution : cells round a wall, edges along a wall, steps in a turn; None where there is none
-    variant : "dispersion", "order 1" or "order 2", or empty; of a layer alone its solver, as py-pde names it
+    variant : "dispersion", "held" (in time until the motion settles), "order 1" or "order 2", or empty; of a
+        layer alone its solver, as py-pde names it
     """
 
     question: str
@@ -44,8 +47,8 @@ class Case:
 
     @property
     def selectable(self) -> bool:
-        """A scene or `layer` can name it: a response takes no grid, what goes through time takes any."""
-        return self.resolution is None or self.question != RESPONSE
+        """A scene or `layer` can name it: what goes through time takes any grid, what is steady none."""
+        return self.resolution is None or self.question != RESPONSE or self.variant == HELD
 
     @property
     def label(self) -> str:
@@ -64,12 +67,16 @@ class Answer:
     in_range : the model says of itself that it holds there
     reason : why there is no answer, or empty
     used : models that answered
+    ripple : half of what the amplitude swings over, m, shape (k,); None where it is not asked for
+    estimate : largest error that the answer tells of itself, relative; nan where it tells none
     """
 
     values: Array
     in_range: bool
     reason: str
     used: tuple[str, ...]
+    ripple: Array | None = None
+    estimate: float = math.nan
 
 
 class SceneAt(Scene):
@@ -88,10 +95,28 @@ def at_speeds(scene: Scene, speed: Array) -> SceneAt:
     return SceneAt.model_construct(**content, chosen=tuple(float(x) for x in speed))
 
 
-def steady(
-    scene: Scene, models: LiquidModel | Sequence[LiquidModel]
-) -> tuple[Array, Flags, Flags, tuple[str, ...]]:
-    """Amplitude, dry patch, in range and found at a scene's speeds, and the models used.
+@dataclass(frozen=True)
+class Steady:
+    """A synchronous response at the speeds of a scene, shape (n,).
+
+    Parameters
+    ----------
+    amplitude : m
+    ripple : half of what the distance of the axis swings over, its orbit being an ellipse, m
+    dry : the wall is dry somewhere
+    good : in range, and found
+    used : models that answered
+    """
+
+    amplitude: Array
+    ripple: Array
+    dry: Flags
+    good: Flags
+    used: tuple[str, ...]
+
+
+def steady(scene: Scene, models: LiquidModel | Sequence[LiquidModel]) -> Steady:
+    """Synchronous response of a scene.
 
     Parameters
     ----------
@@ -102,13 +127,14 @@ def steady(
 
     gravity = axial_gravity(scene)
     found = response(dry_rotor(scene), scene.fills, scene.speed_array(), gravity, models)
-    amplitude = np.abs(found.deflection) + np.abs(found.backward)
+    ways = np.abs(found.deflection), np.abs(found.backward)
     good = found.in_range & found.converged
-    return amplitude, found.dry_patch, good, tuple(dict.fromkeys(found.model.tolist()))
+    used = tuple(dict.fromkeys(found.model.tolist()))
+    return Steady(ways[0] + ways[1], np.minimum(*ways), found.dry_patch, good, used)
 
 
-def chosen_models(scene: Scene, model: str) -> tuple[list[LiquidModel], Flags]:
-    """Model at each speed and where the liquid rides with the drum, as the main job finds them.
+def chosen_models(scene: Scene, model: str) -> tuple[list[LiquidModel], Choice]:
+    """Model at each speed, and what the main job knows of them.
 
     A model that is named is taken as it is; its error is estimated all the same, as users get it.
 
@@ -118,7 +144,7 @@ def chosen_models(scene: Scene, model: str) -> tuple[list[LiquidModel], Flags]:
     model : "auto" or a name
     """
     choice = choose(scene.altered(model=scene.model.altered(liquid=model)))
-    return liquid_models(choice), choice.in_range
+    return liquid_models(choice), choice
 
 
 def answer(scene: Scene, case: Case) -> Answer:
@@ -143,17 +169,50 @@ def _response(scene: Scene, case: Case) -> Answer:
     from solvers.synchronous.models import CellsAtRest, ElementsAtRest
 
     size = case.resolution
-    models, in_range = chosen_models(scene, "statics" if size else case.model)
+    if case.variant == HELD:
+        return _held(scene, size or scene.model.cells)
+    models, choice = chosen_models(scene, "statics" if size else case.model)
     if size is None:
-        amplitude, _, good, used = steady(scene, models)
+        found = steady(scene, models)
+        used, estimate = found.used, float(choice.error.max())
     else:
         cells = case.model == "long_wave"
         model = CellsAtRest(size) if cells else ElementsAtRest(size, int(case.variant[-1]))
-        amplitude, _, good, _ = steady(scene, model)
-        used = (case.model,)
-    good = good & in_range
-    bad = not np.isfinite(amplitude).all()
-    return Answer(amplitude, bool(good.all()), "no bounded answer" if bad else "", used)
+        found, used, estimate = steady(scene, model), (case.model,), math.nan
+    good = found.good & choice.in_range
+    reason = "" if np.isfinite(found.amplitude).all() else "no bounded answer"
+    return Answer(found.amplitude, bool(good.all()), reason, used, found.ripple, estimate)
+
+
+def _held(scene: Scene, cells: int) -> Answer:
+    """Rotor and long waves at constant speed until they settle, each speed from its synchronous motion."""
+    from leblanc.studies.held.held import held_machine
+    from solvers.held.hold import hold, start
+    from solvers.held.state import HoldNumerics
+    from solvers.synchronous.models import STATICS
+    from solvers.synchronous.response import response
+
+    machine = prepare(scene)
+    held, numerics = held_machine(machine), HoldNumerics(cells=cells)
+    begin = response(machine.rotor, scene.fills, machine.speed, machine.axial_gravity, STATICS).coordinates
+    growth = whirl_growth(scene)
+    states = [
+        hold(held, start(held, spin, numerics, motion), numerics, rate)
+        for spin, motion, rate in zip(machine.speed.tolist(), begin, growth.tolist(), strict=True)
+    ]
+    planar = scene.rotor.kind == "jeffcott"
+    amplitude = np.array([state.amplitude if planar else state.crest for state in states])
+    ripple = np.array([0.5 * (state.largest - state.least) for state in states])
+    reason = next((state.reason for state in states if not state.settled), "")
+    captured = all(state.captured.all() for state in states)
+    return Answer(amplitude, captured, reason, ("long_wave",), ripple)
+
+
+def whirl_growth(scene: Scene) -> Array:
+    """Growth of the small whirl that grows most, or dies last, at the speeds of a scene, 1/s, shape (n,)."""
+    from solvers.whirl.growth import asynchronous_growth
+
+    return asynchronous_growth(dry_rotor(scene), scene.fills, scene.speed_array(), scene.model.friction)[0]
 
 
 def _runup(scene: Scene, case: Case) -> Answer:
@@ -260,6 +319,6 @@ def taste(scene: Scene, case: Case) -> None:
     elif case.question in (WAVES, FAMILY):
         answer(scene, replace(case, resolution=8))
     else:
-        speed = scene.speed_array()
-        small = case if case.model != "fem" else replace(case, resolution=8)
-        answer(at_speeds(scene, speed[:1]), small)
+        few = case.model == "fem" or case.variant == HELD
+        small = replace(case, resolution=8) if few else case
+        answer(at_speeds(scene, scene.speed_array()[-1:]), small)

@@ -11,11 +11,12 @@ from fluid.kdv import coefficients
 from leblanc.scene.scene import Exciter, Runup, Scene
 from leblanc.studies.choose import across_gravity
 from leblanc.studies.runup import planned
-from meshes.arrays import Array
+from meshes.arrays import Array, Flags
 from solvers.runup.state import layer_capture
 from validation.trade.answers import (
     DISPERSION,
     FAMILY,
+    HELD,
     RESPONSE,
     RUNUP,
     WAVES,
@@ -25,11 +26,13 @@ from validation.trade.answers import (
     lone_layer,
     steady,
     taken_run,
+    whirl_growth,
 )
 
 SPEEDS = 9  # at which the response is compared
 SAMPLES = 1000  # of a run-up's history
 CELLS, QUICK_CELLS = (16, 32, 64, 128, 256, 512), (16, 32, 64)
+HELD_CELLS, QUICK_HELD = (32, 64, 128, 256), (16, 32, 64)  # of waves held in time
 _MOST_CELLS = 4096
 MESHES: tuple[tuple[int, int], ...] = ((16, 1), (32, 1), (64, 1), (16, 2), (32, 2), (64, 2))
 QUICK_MESHES: tuple[tuple[int, int], ...] = ((16, 1), (16, 2))
@@ -40,6 +43,8 @@ _BEFORE, _BEYOND, _MOTOR = 0.7, 1.2, 1.2  # of its speed, where a run-up begins 
 # Of the speed of capture, from where on gravity does not throw the liquid about; of the run-up's end, where
 # the start lies at most; the least end over the start.
 _HELD, _LATEST, _WIDEST = 2.0, 0.8, 1.6
+_CALM = 3.0  # of the speed of capture, from where on a motion held in time mostly repeats with the turn
+_DIES = 4e-3  # in a turn, the logarithm by which a small whirl dies at least: e times in 250 turns
 _EXCITED = (0.25, 0.9)  # of the exciter's critical speed, between which its speeds lie
 
 
@@ -129,7 +134,8 @@ def layer_questions(scene: Scene, quick: bool = False) -> list[Question]:
 def response_question(scene: Scene, quick: bool = False) -> Question:
     """The synchronous response at the speeds that distinguish models most.
 
-    Best is the exact equilibrium of the liquid, which every other model here approaches.
+    Best is the exact equilibrium of the liquid, which every other steady model approaches; where gravity lies
+    across the axis, rotor and long waves held in time, which alone have it.
     """
     cells, meshes = (QUICK_CELLS, QUICK_MESHES) if quick else (CELLS, MESHES)
     best = Case(RESPONSE, "statics")
@@ -140,15 +146,41 @@ def response_question(scene: Scene, quick: bool = False) -> Question:
         *(Case(RESPONSE, "long_wave", n) for n in cells),
         *(Case(RESPONSE, "fem", n, f"order {order}") for n, order in meshes),
     )
-    chosen = telling_speeds(scene)
+    lying = stands_lying(scene)
+    chosen = telling_speeds(scene, SPEEDS, lying)
+    where = f"{chosen.size} speeds from {chosen[0]:.4g} to {chosen[-1]:.4g} rad/s"
+    if not lying.any():
+        about = f"synchronous response at {where}, the steady peak and the last speed among them; {_ERROR}"
+        return Question(RESPONSE, at_speeds(scene, chosen), about, cases, best, (best,))
+    held = tuple(Case(RESPONSE, "long_wave", n, HELD) for n in (QUICK_HELD if quick else HELD_CELLS))
     about = (
-        f"synchronous response at {chosen.size} speeds from {chosen[0]:.4g} to {chosen[-1]:.4g} rad/s, the "
-        "steady peak and the last speed among them; error: largest relative one of the amplitude"
+        f"response with gravity across the axis at {where}, from three times that of capture on and where no "
+        f"whirl grows by itself; {_ERROR}, its mean over time"
     )
-    return Question(RESPONSE, at_speeds(scene, chosen), about, cases, best, (best,))
+    return Question(RESPONSE, at_speeds(scene, chosen), about, (*cases, *held), held[-1], held[:-4:-1])
 
 
-def telling_speeds(scene: Scene, count: int = SPEEDS) -> Array:
+_ERROR = "error: largest relative one of the amplitude"
+
+
+def stands_lying(scene: Scene) -> Flags:
+    """At which speeds gravity across the axis shows in an answer that is steady on the whole, shape (n,).
+
+    Closer to the speed of capture gravity throws rotor and layer into limit cycles, whose size no mesh
+    decides; where a whirl grows by itself no steady model answers what it grows to, and where it dies too
+    slowly nothing settles.
+
+    Parameters
+    ----------
+    scene : the machine
+    """
+    speed, capture = scene.speed_array(), _capture(scene)
+    if capture == 0.0:
+        return np.zeros(speed.shape, dtype=bool)
+    return np.asarray((speed >= _CALM * capture) & (whirl_growth(scene) * 2.0 * math.pi / speed < -_DIES))
+
+
+def telling_speeds(scene: Scene, count: int = SPEEDS, among: Flags | None = None) -> Array:
     """Steady peak, its flanks, ends and middle of the range with a dry patch, last speed; others in between.
 
     Of the speeds at which the liquid rides with the drum, if there are such.
@@ -157,15 +189,19 @@ def telling_speeds(scene: Scene, count: int = SPEEDS) -> Array:
     ----------
     scene : the machine
     count : how many, at most
+    among : only of these, if there are any, shape (n,)
 
     Returns
     -------
     rad/s, rising, shape (k,)
     """
-    models, in_range = chosen_models(scene, "statics")
-    speed, amplitude, dry = scene.speed_array(), *steady(scene, models)[:2]
-    if in_range.any():
-        speed, amplitude, dry = speed[in_range], amplitude[in_range], dry[in_range]
+    models, choice = chosen_models(scene, "statics")
+    found, speed = steady(scene, models), scene.speed_array()
+    amplitude, dry, kept = found.amplitude, found.dry, choice.in_range
+    if among is not None and (kept & among).any():
+        kept = kept & among
+    if kept.any():
+        speed, amplitude, dry = speed[kept], amplitude[kept], dry[kept]
     if speed.size <= count:
         return speed
     top = int(np.argmax(amplitude))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from validation.trade.answers import FAMILY, RESPONSE, WAVES, Answer, Case
+from validation.trade.answers import FAMILY, HELD, RESPONSE, WAVES, Answer, Case
 from validation.trade.cases import Question
 
 _ROUNDING = 1e-12  # relative error of what is called exact
@@ -54,6 +54,8 @@ class Row:
     in_range : the model says of itself that it holds there
     selectable : a scene can name it
     note : why there is no answer, or empty
+    estimate : largest error that the answer tells of itself, relative; nan where it tells none
+    ripple_error : of the ripple, over the best answer's amplitude; nan where it is not asked for
     on_front : no other row dominates it
     default, recommended : what the scene's default gives; what is advised for its tolerance
     """
@@ -74,6 +76,8 @@ class Row:
     in_range: bool
     selectable: bool
     note: str
+    estimate: float = math.nan
+    ripple_error: float = math.nan
     on_front: bool = False
     default: bool = False
     recommended: bool = False
@@ -98,6 +102,7 @@ class Comparison:
     dominated_by : labels of the rows that dominate the default
     overhead : time of the default over that of the row that took the same model and resolution, less 1; nan
         if there is none
+    ripple : largest ripple of the best answer, over its amplitude; nan where it is not asked for
     """
 
     question: str
@@ -108,6 +113,7 @@ class Comparison:
     rows: tuple[Row, ...]
     dominated_by: tuple[str, ...]
     overhead: float
+    ripple: float = math.nan
 
     @property
     def default(self) -> Row:
@@ -156,9 +162,21 @@ def compare(question: Question, runs: Mapping[Case, Run], tolerance: float) -> C
                 in_range=run.answer.in_range,
                 selectable=case.selectable,
                 note=run.answer.reason or _other_physics(question, case),
+                estimate=run.answer.estimate,
+                ripple_error=_ripple_error(run.answer, best),
             )
         )
-    return _judged(question, rows, own, order, tolerance)
+    found = _judged(question, rows, own, order, tolerance)
+    if best.ripple is None or best.reason or question.reference.variant != HELD:
+        return found
+    return replace(found, ripple=float(np.max(best.ripple / best.values)))
+
+
+def _ripple_error(found: Answer, best: Answer) -> float:
+    """Largest difference of two ripples over the best amplitude; nan where one of them is missing."""
+    if found.ripple is None or best.ripple is None or found.reason or best.reason:
+        return math.nan
+    return float(np.max(np.abs(found.ripple - best.ripple) / best.values))
 
 
 def _judged(question: Question, rows: list[Row], own: float, order: float, tolerance: float) -> Comparison:

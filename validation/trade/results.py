@@ -47,6 +47,7 @@ def _question(comparison: Comparison, tolerance: float) -> dict[str, Any]:
         "reference": comparison.reference,
         "reference_error": _number(comparison.reference_error),
         "order": _number(comparison.order),
+        "ripple": _number(comparison.ripple),
         "default_dominated_by": list(comparison.dominated_by),
         "default_overhead": _number(comparison.overhead),
         "recommended": None if advised is None else advised.label,
@@ -129,17 +130,23 @@ def trade_lines(record: TradeRecord) -> list[str]:
                 if math.isfinite(comparison.order)
                 else " (it does not converge)"
             )
+        rippled = math.isfinite(comparison.ripple)
+        if rippled:
+            own += f"; its ripple is up to {_share(comparison.ripple)} of the amplitude"
         lines += ["", f"{comparison.question}: {comparison.about}; {own}"]
         width = max(27, *(len(row.label) + 2 for row in comparison.rows))
-        lines.append(f"{'model':{width}}{'error':>10}{'peak error':>12}{'CPU, ms':>11}{'spread':>8}{'MB':>8}")
-        lines += [_line(row, width) for row in comparison.rows]
+        ripple = f"{'ripple':>10}" if rippled else ""
+        lines.append(
+            f"{'model':{width}}{'error':>10}{'peak error':>12}{ripple}{'CPU, ms':>11}{'spread':>8}{'MB':>8}"
+        )
+        lines += [_line(row, width, rippled) for row in comparison.rows]
         lines.append(recommendation(comparison, record.tolerance))
         if comparison.dominated_by:
             lines.append(f"the default is beaten in both by: {'; '.join(comparison.dominated_by)}")
     return lines
 
 
-def _line(row: Row, width: int) -> str:
+def _line(row: Row, width: int, rippled: bool) -> str:
     """One row of a table; what stands out of the front, the default and the advised one marked."""
     marks = [
         word
@@ -153,6 +160,8 @@ def _line(row: Row, width: int) -> str:
     ]
     error = f"{row.error:.2e}" if row.resolved else ("-" if math.isfinite(row.error) else "none")
     peak = f"{row.peak_error:.2e}" if math.isfinite(row.peak_error) else "none"
-    numbers = f"{error:>10}{peak:>12}{row.time * _KILO:>11.4g}{row.spread:>8.0%}{row.memory / _MEGA:>8.2f}"
+    ripple = f"{row.ripple_error:.2e}" if math.isfinite(row.ripple_error) else "none"
+    peak = f"{peak:>12}" + (f"{ripple:>10}" if rippled else "")
+    numbers = f"{error:>10}{peak}{row.time * _KILO:>11.4g}{row.spread:>8.0%}{row.memory / _MEGA:>8.2f}"
     text = "  " + ", ".join(marks) + (f"; {row.note}" if row.note else "")
     return f"{row.label:{width}}{numbers}{text if text.strip(' ;') else ''}"

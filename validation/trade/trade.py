@@ -144,7 +144,10 @@ def alone(scene: Scene, case: Case) -> Run:
         message = done.stderr.decode(errors="replace").strip().splitlines() or ["no message"]
         raise RuntimeError(f"{case.label}: the process ended with {done.returncode}: {message[-1]}")
     read = json.loads(done.stdout)
-    found = Answer(np.array(read["values"]), read["in_range"], read["reason"], tuple(read["used"]))
+    found = Answer(
+        np.array(read["values"]), read["in_range"], read["reason"], tuple(read["used"]),
+        None if read["ripple"] is None else np.array(read["ripple"]), read["estimate"],
+    )  # fmt: skip
     return Run(found, (read["time"],), read["first"], read["memory"])
 
 
