@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -178,26 +178,42 @@ class StandingWave:
         base = self.cell(self.state, given)
         if base is None:
             return None
-        by_state, by_given = np.empty((size, size)), np.empty((size, 3))
-        force, force_given = np.empty(size, dtype=complex), np.empty(3, dtype=complex)
         step = _STEP * self.mean
-        moved = self.state.copy()
-        for k in range(size):
-            moved[k] += step
-            found = self.cell(moved, given)
-            moved[k] = self.state[k]
-            if found is None:
-                return None
-            by_state[:, k] = (found.state - base.state) / step
-            force[k] = (found.force - base.force) / step
+        moved = self.state + step * np.eye(size)
+        found = self._all_through(moved, given, time)
+        if found is None:
+            return None
+        states, forces = found
+        by_state = (states - base.state).T / step
+        force = (forces - base.force) / step
+        by_given, force_given = np.empty((size, 3)), np.empty(3, dtype=complex)
         for k, value in enumerate(given):
             step = _STEP * (abs(value) or 1.0)
-            found = self.cell(self.state, given._replace(**{given._fields[k]: value + step}))
-            if found is None:
+            ahead = self.cell(self.state, given._replace(**{given._fields[k]: value + step}))
+            if ahead is None:
                 return None
-            by_given[:, k] = (found.state - base.state) / step
-            force_given[k] = (found.force - base.force) / step
+            by_given[:, k] = (ahead.state - base.state) / step
+            force_given[k] = (ahead.force - base.force) / step
         return Derivatives(by_state, by_given, force, force_given)
+
+    def _all_through(self, moved: Array, given: Whirling, time: float) -> tuple[Array, Complex] | None:
+        """What `cell` finds from each of some states, shape (m, 2 n); None where one breaks down."""
+        from solvers.cycles.stretch import advance_each
+
+        n = self.cells
+        areas, momenta = moved[:, :n].copy(), moved[:, n:].copy()
+        loads = records(LOADS, len(moved))
+        drive, wall, most = self._posed(given, time, _LONGEST)
+        done = compiled(
+            *(advance_each, areas, momenta, records(PACE), 0.0, time, self._parts, drive, wall),
+            *(self._angles, _LONGEST, most, self._scratch, loads),
+        )
+        if not done:
+            return None
+        way = 1 if given.ratio < 1.0 else -1
+        states = np.concatenate([np.roll(areas, way, axis=1), np.roll(momenta, way, axis=1)], axis=1)
+        offset = (loads.offset_x + 1j * loads.offset_y) / time
+        return states, self._force(offset, drive.amplitude)
 
     def kept(self, state: Array) -> Array:
         """A state without areas below nothing, of the layer's volume."""
@@ -209,10 +225,8 @@ class StandingWave:
         from solvers.layer.step import advance
 
         n, pace, loads = self.cells, records(PACE), records(LOADS)
-        drive = Drive(max(given.size, _LEAST), given.ratio - 1.0, 0.0, given.ratio, 0.0, 1.0)
-        wall = Wall(self.friction.law.number, max(given.drag, 0.0), self._lid, False)
         courant, pace[0].time = _LONGEST if parts else _COURANT, start
-        most = step_budget(time, 1.0, n, courant)
+        drive, wall, most = self._posed(given, time, courant)
         for part in range(max(parts, 1)):
             stop = start + time * (part + 1) / max(parts, 1)
             outcome, _ = compiled(
@@ -224,6 +238,14 @@ class StandingWave:
         self._fastest = float(pace[0].fastest)
         sums = loads[0]
         offset = complex(sums.offset_x, sums.offset_y) / time
-        # Newton's law for all liquid, of which the mean area is half the share of a full drum's.
-        force = 2.0 * self.mean * (1.0 + offset / drive.amplitude)
-        return Answer(state, force, float(sums.turning) / time)
+        return Answer(state, complex(self._force(offset, drive.amplitude)), float(sums.turning) / time)
+
+    def _posed(self, given: Whirling, time: float, courant: float) -> tuple[Drive, Wall, int]:
+        """Drive, wall, and most steps through a time."""
+        drive = Drive(max(given.size, _LEAST), given.ratio - 1.0, 0.0, given.ratio, 0.0, 1.0)
+        wall = Wall(self.friction.law.number, max(given.drag, 0.0), self._lid, False)
+        return drive, wall, step_budget(time, 1.0, self.cells, courant)
+
+    def _force(self, offset: Any, amplitude: float) -> Any:
+        """G by Newton's law for all liquid, of which the mean area is half the share of a full drum's."""
+        return 2.0 * self.mean * (1.0 + offset / amplitude)

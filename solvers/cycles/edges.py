@@ -1,0 +1,111 @@
+"""Where small whirls of a rotor with layers neither grow nor die: a branch of limit cycles begins at each.
+
+Every mode is followed over the spin, not only the one that grows most: with several layers the branch of one
+mode may begin or end inside the band of another. The friction is that of the waves, a rate that is real
+[theory: whirl, eq. 30].
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from meshes.arrays import Array, Complex
+from solvers.cycles.balance import Circular
+
+_GRID = 201  # spins at which modes are looked at
+_ROUNDS = 4  # in which the laminar friction of a mode comes to its slip
+_NEUTRAL = 1e-9  # of the spin: a growth below it is that of a mode without any damping
+
+
+class Edge(NamedTuple):
+    """A small whirl that neither grows nor dies.
+
+    Parameters
+    ----------
+    spin, whirl_speed : Omega and omega_w, rad/s
+    moved : the rotor's coordinates, complex, shape (p,)
+    """
+
+    spin: float
+    whirl_speed: float
+    moved: Complex
+
+
+def small_whirl_edges(machine: Circular, range_: tuple[float, float]) -> tuple[Edge, ...]:
+    """All small whirls with the spin that neither grow nor die, by rising spin.
+
+    Parameters
+    ----------
+    machine : the rotor and its layers
+    range_ : first and last spin, rad/s
+    """
+    spins = np.linspace(*range_, _GRID)
+    found: list[Edge] = []
+    last: tuple[Complex, Complex] | None = None
+    for k, spin in enumerate(spins.tolist()):
+        roots, shapes = _modes(machine, spin, None if last is None else last[0])
+        if last is not None:
+            before, shapes_before = last
+            for i in np.flatnonzero(before.real * roots.real < 0.0).tolist():
+                if max(abs(before[i].real), abs(roots[i].real)) < _NEUTRAL * spin:
+                    continue
+                part = before[i].real / (before[i].real - roots[i].real)
+                root = (1.0 - part) * before[i] + part * roots[i]
+                at = (1.0 - part) * float(spins[k - 1]) + part * spin
+                shape = shapes[:, i] if part > 0.5 else shapes_before[:, i]
+                if root.imag > 0.0:
+                    found.append(Edge(at, float(root.imag), shape))
+        last = roots, shapes
+    return tuple(sorted(found, key=lambda edge: edge.spin))
+
+
+def _modes(machine: Circular, spin: float, before: Complex | None) -> tuple[Complex, Complex]:
+    """Roots lambda of all modes at a spin in the order of those before, 1/s, and the rotor's shapes."""
+    places = machine.places
+    # The friction of each mode has its own slip: all modes are found with that of one, which is kept.
+    rates = np.array([place.layer.rate for place in places])
+    roots, vectors = _eigen(machine, spin, rates + _laminar(machine, 0.15 * spin))
+    if any(place.layer.stokes for place in places):
+        for i in range(roots.size):
+            for _ in range(_ROUNDS):
+                own = rates + _laminar(machine, abs(roots[i].imag - spin))
+                near, shapes = _eigen(machine, spin, own)
+                k = int(np.argmin(np.abs(near - roots[i])))
+                moved = abs(near[k] - roots[i])
+                roots[i], vectors[:, i] = near[k], shapes[:, k]
+                if moved < 1e-6 * spin:
+                    break
+    if before is not None:
+        _, order = linear_sum_assignment(np.abs(before[:, None] - roots[None, :]))
+        roots, vectors = roots[order], vectors[:, order]
+    return roots, vectors[: len(machine.mass)]
+
+
+def _laminar(machine: Circular, slip: float) -> Array:
+    """Rate of decay of the laminar friction in each layer, 1/s."""
+    return np.array([place.layer.stokes * np.sqrt(0.5 * slip) for place in machine.places])
+
+
+def _eigen(machine: Circular, spin: float, rates: Array) -> tuple[Complex, Complex]:
+    """Roots and vectors of rotor and layers, the circles of [theory: whirl, eq. 7]."""
+    p, count = len(machine.mass), len(machine.places)
+    size = p + count
+    mass, damping, stiffness = np.zeros((3, size, size), dtype=complex)
+    mass[:p, :p] = machine.mass
+    damping[:p, :p] = machine.damping + spin * machine.gyroscopic
+    stiffness[:p, :p] = machine.stiffness
+    for j, (place, rate) in enumerate(zip(machine.places, rates.tolist(), strict=True)):
+        row, own, t = place.row, p + j, place.layer.layer_tanh
+        mass[:p, :p] += place.mass * np.outer(row.conj(), row)
+        mass[:p, own] = place.mass * row.conj()
+        mass[own, :p], mass[own, own] = 0.5 * (1.0 - t) * row, 1.0
+        damping[own, own] = rate - 2j * (1.0 + t) * spin
+        stiffness[own, own] = -(1.0 + t) * spin**2 - 1j * rate * spin
+    state = np.zeros((2 * size, 2 * size), dtype=complex)
+    state[:size, size:] = np.eye(size)
+    state[size:] = -np.linalg.solve(mass, np.hstack([stiffness, damping]))
+    roots, vectors = np.linalg.eig(state)
+    return roots, vectors

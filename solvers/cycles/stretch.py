@@ -1,0 +1,46 @@
+"""Many states of a layer through the same time at once: what derivatives by differences take most of.
+
+Compiled by numba with its cache on disk.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numba import njit
+
+from solvers.layer.finite_volume import COMPILED
+from solvers.layer.records import Outcome
+from solvers.layer.step import advance
+
+_jit: Any = njit(**COMPILED)
+
+
+@_jit
+def advance_each(areas, momenta, pace, start, time, parts, drive, wall, angles, courant, most, spare, loads):
+    """Advance states of a layer, one after the other, through a time in equal steps.
+
+    Parameters
+    ----------
+    areas, momenta : the states, changed in place, shape (m, n)
+    pace : record PACE, shape (1,), scratch
+    start, time : when they begin, and how long they go on
+    parts : steps that the time is cut into
+    drive, wall, angles, courant, most, spare : as for `solvers.layer.step.advance`
+    loads : results, record LOADS, shape (m,): of each state, added to
+
+    Returns
+    -------
+    Whether all of them came to the end
+    """
+    for k in range(areas.shape[0]):
+        pace[0].time, pace[0].fastest = start, 0.0
+        for part in range(parts):
+            stop = start + time * (part + 1) / parts
+            outcome, _ = advance(
+                areas[k], momenta[k], pace, stop, drive, wall, angles, courant, most, spare,
+                loads[k : k + 1],
+            )  # fmt: skip
+            if outcome != Outcome.DONE:
+                return False
+    return True
