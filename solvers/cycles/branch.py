@@ -30,7 +30,7 @@ _SHORTEST = 1.0 / 16.0  # share of a Newton step
 _SLOW = 0.4  # of what was left before: above that the derivatives are found anew
 _GONE = 0.5  # of the mean area: a layer this far from a standing wave does not come to one
 _FIRST, _LEAST, _MOST = 0.1, 2e-3, 0.4  # of the arc's steps
-_CLOSE, _FINEST = 0.25, 0.35  # of the depth: whirls smaller than that, and the longest step over their size
+_FINEST = 0.35  # largest relative change of a whirl's size in a step
 _FEW, _MANY = 5, 9  # rounds after which the next step is longer or shorter
 _SPREAD, _RANGE = 0.05, 0.1  # changes of whirl speed and of spin that count as a depth of the layer does
 _DIFFERENCE = 1e-6
@@ -140,6 +140,15 @@ class Follower:
         """Largest deflection of a layer's axis over the depth of the largest layer."""
         return float(np.abs(self._rows @ cycle.moved).max()) / self.depth
 
+    def _widening(self, cycle: Cycle) -> float:
+        """Change of the size over the arc's length along the branch, without sign."""
+        p = self._coordinates
+        tangent = cycle.tangent[-2 * p - 2 :]
+        way = self._rows @ (self.unit * (tangent[:p] + 1j * tangent[p : 2 * p]))
+        at = self._rows @ cycle.moved
+        rate = (at.conj() * way).real / np.maximum(np.abs(at), 1e-300)
+        return float(np.abs(rate).max()) / self.depth
+
     def thinnest(self, cycle: Cycle) -> float:
         """Least depth of a layer over its mean depth."""
         pairs = zip(self.waves, cycle.state, strict=True)
@@ -206,8 +215,8 @@ class Follower:
             yield cycle
             length *= 1.6 if self._rounds <= _FEW else 1.0 if self._rounds <= _MANY else 0.7
             length = min(length, _MOST)
-            if self.size(cycle) < _CLOSE:
-                length = min(length, _FINEST * self.size(cycle))
+            # Towards an edge the size goes with the root of the speed's distance.
+            length = min(length, _FINEST * self.size(cycle) / max(self._widening(cycle), 1e-3))
 
     def step(self, cycle: Cycle, length: float) -> Cycle | None:
         """The limit cycle further on along the branch by a length of arc; None where it is not found."""

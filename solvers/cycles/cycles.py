@@ -15,22 +15,25 @@ from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.cycles.balance import Circular, NotCircularError, circular
 from solvers.cycles.branch import Cycle, Follower
+from solvers.cycles.edges import Edge, small_whirl_edges
 from solvers.cycles.estimate import estimated_whirl, undamped_bands, unsettled
 from solvers.cycles.floquet import disturbance_growth
 from solvers.rotor.system import Rotor
-from solvers.whirl.edges import unstable_bands
-from solvers.whirl.growth import growth_at
 
 CELLS = 64
 FEWEST = 32
-_GRID = 241  # speeds among which bands are looked for
-_BELOW = 0.6  # of the first speed: whirls are followed this far below it, where a band may begin
+# Of the first and of the last speed: whirls are followed so far below the range, where a band may begin, and
+# edges are looked for so far beyond it, from which a branch may come back.
+_BELOW, _ABOVE = 0.6, 1.5
 _SHARES = (0.3, 0.5, 0.15, 0.75)  # of a band, where the first whirl of a branch is looked for
 _LARGE = 0.8  # of the depth: a first whirl that would be larger is looked for nearer to the edge
-_SMALL = 0.06  # of the depth: of smaller whirls the slope limiter decides, and linear theory knows more
-_FIRST = 0.02  # of the depth: first whirl of a branch from an edge
+_SMALL = 0.01  # of the depth: a branch that comes down to it has come to an edge
+_FIRST = (0.02, 0.05, 0.1)  # of the depth: first whirl of a branch from an edge
+_STRAYED = 0.1  # relative: a first whirl this far from its edge belongs to another
+# Two whirls are one that are nearer in spin and whirl speed over that of the edge, and in the weighted size.
+_SAME, _THICK = 2e-3, 0.05
+_BEYOND = 2.0  # of the last step of a branch: what it goes on to the edge
 _POINTS = 400
-_NEAR = 0.03  # relative, of an edge at which a branch already ends
 _PROMINENT = 1e-4  # relative: a smaller turn of the branch is the scheme's, not a fold
 FAST_LAG = 1.0 / 3.0  # of the spin: beyond that the flow's profile no longer describes the lagging liquid
 
@@ -182,34 +185,16 @@ def limit_cycles(
         raise InputError("speeds", speeds, "rising and above 0")
     if cells < FEWEST:
         raise InputError("cells", cells, f"at least {FEWEST}")
-    system = rotor.system()
     try:
-        machine = circular(system, fills, friction)
+        machine = circular(rotor.system(), fills, friction)
     except NotCircularError as why:
         return LimitCycles((), str(why))
     why_not = unsettled(machine, friction)
     if why_not:
         return LimitCycles((), why_not)
-    range_ = (_BELOW * first, last)
-    finder = _Finder(machine, friction, cells, range_, progress)
-    branches: list[Branch] = []
-    starts = list(undamped_bands(rotor, fills, range_))
-    for lower, upper, near in starts:
-        branch = finder.large(lower, upper, near)
-        if branch is not None:
-            branches.append(branch)
-    (own,) = unstable_bands(rotor, [fills], np.linspace(*range_, _GRID), friction)
-    for edge in np.ravel(own).tolist():
-        if not range_[0] < edge < last or any(_ends_at(branch, edge) for branch in branches):
-            continue
-        near = float(growth_at(rotor, [fills], np.array([0]), np.array([edge]), friction)[1][0])
-        branch = finder.small(edge, near)
-        if branch is not None:
-            branches.append(branch)
-    reason = ""
-    if not branches:
-        reason = "no whirl grows by itself in this range" if not starts else "no limit cycle was found"
-    return LimitCycles(tuple(branches), reason)
+    finder = _Finder(machine, friction, cells, (_BELOW * first, last), progress)
+    finder.search(rotor, fills)
+    return LimitCycles(tuple(finder.branches), finder.reason())
 
 
 def largest_whirl(
@@ -237,27 +222,33 @@ def largest_whirl(
     # A single speed still needs a way to it.
     range_ = (_BELOW * float(speeds[0]), float(speeds[-1]) * (1.0 + 1e-3))
     finder = _Finder(machine, friction, cells, range_, None, judged=False)
-    largest = 0.0
-    for lower, upper, near in undamped_bands(rotor, fills, (range_[0], 2.0 * range_[1])):
-        if lower >= range_[1]:
-            continue
-        branch = finder.large(lower, min(upper, range_[1]), near)
-        if branch is None:
-            inside = [speed for speed in speeds.tolist() if lower < speed < upper]
-            rules = [estimated_whirl(machine, friction, lower, near, speed) for speed in inside]
-            largest = max([largest, *(rule.amplitude for rule in rules)])
-            continue
-        sizes = [whirl.amplitude for speed in speeds.tolist() for whirl in branch.at(speed)]
-        largest = max([largest, *sizes])
+    finder.search(rotor, fills)
+    whirls = [whirl for branch in finder.branches for speed in speeds.tolist() for whirl in branch.at(speed)]
+    largest = max((whirl.amplitude for whirl in whirls), default=0.0)
+    for lower, upper, near in finder.missed:
+        inside = [speed for speed in speeds.tolist() if lower < speed < upper]
+        rules = [estimated_whirl(machine, friction, lower, near, speed) for speed in inside]
+        largest = max([largest, *(rule.amplitude for rule in rules)])
     return largest
 
 
-def _ends_at(branch: Branch, edge: float) -> bool:
-    return any(abs(branch.speed[k] - edge) <= _NEAR * edge for k in (0, -1))
-
-
 class _Finder:
-    """Branches of a machine within a range of speeds."""
+    """Branches of a machine within a range of speeds.
+
+    Parameters
+    ----------
+    machine, friction, cells : as for `limit_cycles`
+    range_ : first and last speed, rad/s
+    progress : as for `limit_cycles`
+    judged : find what becomes of disturbances
+
+    Attributes
+    ----------
+    branches : what has been found
+    missed : bands of the undamped machine in which no whirl was found: their edges and a frequency, rad/s
+    lost : spins of edges from which no branch could be followed, rad/s
+    tried : starts, from edges and inside bands
+    """
 
     def __init__(
         self,
@@ -271,9 +262,56 @@ class _Finder:
         self.judged = judged
         self.machine, self.friction, self.cells, self.range = machine, friction, cells, range_
         self.progress, self.count = progress, 0
+        self.branches: list[Branch] = []
+        self.missed: list[tuple[float, float, float]] = []
+        self.lost: list[float] = []
+        self.tried = 0
 
-    def large(self, lower: float, upper: float, near: float) -> Branch | None:
-        """The branch through a band, from a large whirl inside it."""
+    def search(self, rotor: Rotor, fills: Sequence[Fill]) -> None:
+        """Find the branches from all edges, then those of large whirls inside the bands."""
+        low, high = self.range
+        for edge in small_whirl_edges(self.machine, (low, _ABOVE * high)):
+            self.tried += 1
+            self._from_edge(edge)
+        for lower, upper, near in undamped_bands(rotor, fills, (low, _ABOVE * high)):
+            if lower < high:
+                self.tried += 1
+                self._from_inside(lower, min(upper, high), near)
+
+    def reason(self) -> str:
+        """Why there are no branches, or what may be missing among them; empty if nothing is to be said."""
+        if not self.tried:
+            return "no whirl grows by itself in this range"
+        if not self.branches:
+            return "no limit cycle was found"
+        if self.lost:
+            spins = ", ".join(f"{spin:.4g}" for spin in self.lost)
+            return f"no branch was found from the edges of bands at {spins} rad/s"
+        return ""
+
+    def _from_edge(self, edge: Edge) -> None:
+        """The branch from an edge of a band, at which a small whirl neither grows nor dies."""
+        follower = Follower(self.machine, self.friction, self.cells, edge.spin)
+        start = None
+        for size in _FIRST:
+            start = follower.start(edge.moved, edge.whirl_speed, edge.spin, size, hold_size=True)
+            if start is not None and abs(start.spin / edge.spin - 1.0) < _STRAYED:
+                break
+            start = None
+        if start is None:
+            if self._inside(edge.spin):
+                self.lost.append(edge.spin)
+            return
+        if self._known(follower, start):
+            return
+        found, why = self._follow(follower, start)
+        if self._inside(start.spin):
+            found = [self._row(follower, start), *found]
+        if found:
+            self.branches.append(_branch(found, ("edge of the band", why)))
+
+    def _from_inside(self, lower: float, upper: float, near: float) -> None:
+        """The branch of a large whirl inside a band, where none of the others leads to it."""
         follower = Follower(self.machine, self.friction, self.cells, lower)
         for share in _SHARES:
             spin = lower + share * (upper - lower)
@@ -283,19 +321,31 @@ class _Finder:
                 guess = estimated_whirl(self.machine, self.friction, lower, near, spin)
             size = min(guess.amplitude / follower.depth, 1.2 * _LARGE)
             start = follower.start(guess.moved, guess.whirl_speed, spin, size, guess.lag)
-            if start is not None and follower.size(start) > 1e-3:
-                return self._both_ways(follower, start)
-        return None
+            if start is not None and follower.size(start) > _SMALL:
+                if not self._known(follower, start):
+                    self.branches.append(self._both_ways(follower, start))
+                return
+        if not any(branch.at(0.5 * (lower + upper)) for branch in self.branches):
+            self.missed.append((lower, upper, near))
 
-    def small(self, edge: float, near: float) -> Branch | None:
-        """The branch from an edge of a band, at which a whirl of a frequency neither grows nor dies."""
-        follower = Follower(self.machine, self.friction, self.cells, edge)
-        shape = self.machine.small_whirl(near, edge)
-        start = follower.start(shape, near, edge, _FIRST, hold_size=True)
-        if start is None:
-            return None
-        found, why = self._follow(follower, start)
-        return _branch(found, ("edge of the band", why)) if found else None
+    def _known(self, follower: Follower, cycle: Cycle) -> bool:
+        """A limit cycle lies on a branch that has been found."""
+        unit, thick = follower.speed, _THICK / follower.depth
+        size = float(np.abs(self.machine.rows @ cycle.moved)[0])
+        point = np.array([cycle.spin / unit, cycle.whirl_speed / unit, thick * size])
+        for branch in self.branches:
+            rows = np.column_stack([branch.speed / unit, branch.whirl_speed / unit, thick * branch.amplitude])
+            if len(rows) < 2:
+                continue
+            way = np.diff(rows, axis=0)
+            part = ((point - rows[:-1]) * way).sum(axis=1) / np.maximum(np.square(way).sum(axis=1), 1e-300)
+            # The branch goes on a little beyond its last whirl, towards the edge.
+            least, most = np.zeros(len(way)), np.ones(len(way))
+            least[0], most[-1] = -_BEYOND, 1.0 + _BEYOND
+            gap = rows[:-1] + np.clip(part, least, most)[:, None] * way - point
+            if np.sqrt(np.square(gap).sum(axis=1)).min() < _SAME:
+                return True
+        return False
 
     def _both_ways(self, follower: Follower, start: Cycle) -> Branch:
         parts, reasons = [], []
@@ -307,28 +357,38 @@ class _Finder:
         return _branch(rows, (reasons[0], reasons[1]))
 
     def _follow(self, follower: Follower, start: Cycle) -> tuple[list[_Row], str]:
-        """Whirls on from one, and why the last one is the last."""
+        """Whirls on from one, and why the last one is the last; those out of the range are left out."""
         rows: list[_Row] = []
-        size = follower.size(start)
+        size, entered = follower.size(start), self._inside(start.spin)
         for cycle in follower.after(start):
             if follower.size(cycle) < _SMALL and follower.size(cycle) < size:
                 return rows, "edge of the band"
-            size = follower.size(cycle)
-            if follower.size(cycle) < _SMALL:
+            size, inside = follower.size(cycle), self._inside(cycle.spin)
+            if not inside and not entered:
+                # A branch from beyond the range is followed as long as it comes nearer.
+                if self._distance(cycle.spin) > self._distance(start.spin):
+                    return rows, "end of the range of speeds"
                 continue
-            beyond = not self.range[0] <= cycle.spin <= self.range[1]
-            if beyond:
+            if entered and not inside:
                 found = follower.at(cycle, float(np.clip(cycle.spin, *self.range)))
                 cycle = cycle if found is None else found
+            entered = True
             rows.append(self._row(follower, cycle))
             self.count += 1
             if self.progress is not None:
                 self.progress(self.count, cycle.spin)
-            if beyond:
+            if not inside:
                 return rows, "end of the range of speeds"
             if len(rows) >= _POINTS:
                 return rows, "so many whirls were found that the rest was left"
         return rows, "no further whirl was found"
+
+    def _inside(self, spin: float) -> bool:
+        return self.range[0] <= spin <= self.range[1]
+
+    def _distance(self, spin: float) -> float:
+        """How far a spin is from the range, rad/s."""
+        return max(self.range[0] - spin, spin - self.range[1], 0.0)
 
     def _row(self, follower: Follower, cycle: Cycle) -> _Row:
         machine = self.machine
