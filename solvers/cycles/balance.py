@@ -13,7 +13,7 @@ import numpy as np
 
 from fluid.fill import Fill
 from fluid.friction import Friction
-from fluid.whirl import Layer, force_with_friction, is_full, plane_layer, stokes_rate
+from fluid.whirl import Layer, is_full, plane_layer
 from meshes.arrays import Array, Complex
 from solvers.rotor.system import Rotor, RotorSystem
 
@@ -76,18 +76,6 @@ class Circular:
         for place, force in zip(self.places, forces, strict=True):
             left = left - whirl_speed**2 * place.full_mass * force * (place.row @ moved) * place.row.conj()
         return np.asarray(left)
-
-    def small_whirl(self, whirl_speed: float, spin: float) -> Complex:
-        """Shape of the small whirl at an edge of its band, largest deflection 1, shape (p,)."""
-        matrix = self.dynamic_stiffness(whirl_speed, spin)
-        for place in self.places:
-            layer = place.layer
-            rate = layer.rate + complex(stokes_rate(layer.stokes, whirl_speed - spin))
-            force = complex(force_with_friction(layer.layer_tanh, spin, whirl_speed, rate))
-            matrix = matrix - whirl_speed**2 * place.full_mass * force * np.outer(place.row.conj(), place.row)
-        shape = np.linalg.svd(matrix)[2][-1].conj()
-        size = np.array([place.row @ shape for place in self.places])
-        return np.asarray(shape / size[np.argmax(np.abs(size))])
 
 
 def circular(system: RotorSystem, fills: Sequence[Fill], friction: Friction) -> Circular:

@@ -27,8 +27,8 @@ FEWEST = 32
 _BELOW, _ABOVE = 0.6, 1.5
 _SHARES = (0.3, 0.5, 0.15, 0.75)  # of a band, where the first whirl of a branch is looked for
 _LARGE = 0.8  # of the depth: a first whirl that would be larger is looked for nearer to the edge
-_SMALL = 0.01  # of the depth: a branch that comes down to it has come to an edge
-_FIRST = (0.02, 0.05, 0.1)  # of the depth: first whirl of a branch from an edge
+# Trough of the wave over its layer's depth: at the first whirl from an edge, and where a branch comes to one.
+_FIRST, _SMALL = (0.05, 0.03, 0.1, 0.2), 0.02
 _STRAYED = 0.1  # relative: a first whirl this far from its edge belongs to another
 # Two whirls are one that are nearer in spin and whirl speed over that of the edge, and in the weighted size.
 _SAME, _THICK = 2e-3, 0.05
@@ -293,7 +293,8 @@ class _Finder:
         """The branch from an edge of a band, at which a small whirl neither grows nor dies."""
         follower = Follower(self.machine, self.friction, self.cells, edge.spin)
         start = None
-        for size in _FIRST:
+        for trough in _FIRST:
+            size = trough / edge.trough / follower.depth
             start = follower.start(edge.moved, edge.whirl_speed, edge.spin, size, hold_size=True)
             if start is not None and abs(start.spin / edge.spin - 1.0) < _STRAYED:
                 break
@@ -321,7 +322,7 @@ class _Finder:
                 guess = estimated_whirl(self.machine, self.friction, lower, near, spin)
             size = min(guess.amplitude / follower.depth, 1.2 * _LARGE)
             start = follower.start(guess.moved, guess.whirl_speed, spin, size, guess.lag)
-            if start is not None and follower.size(start) > _SMALL:
+            if start is not None and 1.0 - follower.thinnest(start) > _SMALL:
                 if not self._known(follower, start):
                     self.branches.append(self._both_ways(follower, start))
                 return
@@ -359,16 +360,19 @@ class _Finder:
     def _follow(self, follower: Follower, start: Cycle) -> tuple[list[_Row], str]:
         """Whirls on from one, and why the last one is the last; those out of the range are left out."""
         rows: list[_Row] = []
-        size, entered = follower.size(start), self._inside(start.spin)
+        last, entered = 1.0 - follower.thinnest(start), self._inside(start.spin)
         for cycle in follower.after(start):
-            if follower.size(cycle) < _SMALL and follower.size(cycle) < size:
+            trough, inside = 1.0 - follower.thinnest(cycle), self._inside(cycle.spin)
+            if trough < min(_SMALL, last):
                 return rows, "edge of the band"
-            size, inside = follower.size(cycle), self._inside(cycle.spin)
+            last = trough
             if not inside and not entered:
                 # A branch from beyond the range is followed as long as it comes nearer.
                 if self._distance(cycle.spin) > self._distance(start.spin):
                     return rows, "end of the range of speeds"
                 continue
+            if not entered and self._known(follower, cycle):
+                return rows, "end of the range of speeds"
             if entered and not inside:
                 found = follower.at(cycle, float(np.clip(cycle.spin, *self.range)))
                 cycle = cycle if found is None else found

@@ -26,12 +26,14 @@ class Edge(NamedTuple):
     Parameters
     ----------
     spin, whirl_speed : Omega and omega_w, rad/s
-    moved : the rotor's coordinates, complex, shape (p,)
+    moved : the rotor's coordinates, largest deflection of a layer's axis 1 m, complex, shape (p,)
+    trough : of the deepest wave over the depth of its layer, for that deflection, 1/m
     """
 
     spin: float
     whirl_speed: float
     moved: Complex
+    trough: float
 
 
 def small_whirl_edges(machine: Circular, range_: tuple[float, float]) -> tuple[Edge, ...]:
@@ -57,7 +59,7 @@ def small_whirl_edges(machine: Circular, range_: tuple[float, float]) -> tuple[E
                 at = (1.0 - part) * float(spins[k - 1]) + part * spin
                 shape = shapes[:, i] if part > 0.5 else shapes_before[:, i]
                 if root.imag > 0.0:
-                    found.append(Edge(at, float(root.imag), shape))
+                    found.append(_edge(machine, at, float(root.imag), shape))
         last = roots, shapes
     return tuple(sorted(found, key=lambda edge: edge.spin))
 
@@ -82,6 +84,20 @@ def _modes(machine: Circular, spin: float, before: Complex | None) -> tuple[Comp
         _, order = linear_sum_assignment(np.abs(before[:, None] - roots[None, :]))
         roots, vectors = roots[order], vectors[:, order]
     return roots, vectors[: len(machine.mass)]
+
+
+def _edge(machine: Circular, spin: float, whirl_speed: float, shape: Complex) -> Edge:
+    """An edge with its wave, which [theory: whirl, eq. 4] has."""
+    sizes = np.array([abs(place.row @ shape) for place in machine.places])
+    shape = shape / sizes.max()
+    rates, slip = _laminar(machine, abs(whirl_speed - spin)), whirl_speed - spin
+    troughs = []
+    for place, rate, size in zip(machine.places, rates.tolist(), (sizes / sizes.max()).tolist(), strict=True):
+        t = place.layer.layer_tanh
+        left = slip**2 - 2.0 * t * spin * slip - t * spin**2 - 1j * (place.layer.rate + rate) * slip
+        # The surface's wave over the offset of the centre of mass is kappa - 1.
+        troughs.append(size * whirl_speed**2 * t / abs(left) / place.fill.depth)
+    return Edge(spin, whirl_speed, shape, max(troughs))
 
 
 def _laminar(machine: Circular, slip: float) -> Array:

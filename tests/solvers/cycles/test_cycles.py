@@ -14,15 +14,19 @@ from fluid.liquid import Liquid
 from fluid.whirl import force_with_friction, plane_layer
 from meshes.chamber import Chamber
 from meshes.errors import InputError
+from solvers.cycles.balance import circular
 from solvers.cycles.cycles import Branch, LimitCycles, limit_cycles
+from solvers.cycles.edges import small_whirl_edges
 from solvers.cycles.estimate import whirl_estimate
 from solvers.cycles.wave import StandingWave, Whirling
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.two_plane import Support, TwoPlane
+from solvers.whirl.edges import unstable_bands
 from tests.solvers.whirl.test_growth import HEIGHT, NATURAL, RADIUS, WATER, machine
 
 FRICTION = Friction("linear", 0.03 * NATURAL)
 MU = 0.1
+RPM = math.pi / 30.0
 
 # Rotor and layer marched in time for 500/omega_n at constant spin, 128 cells (64 for the thin layer):
 # Omega/omega_n, amplitude over the depth, whirl speed over omega_n where it was kept. Settling left 0.2 %.
@@ -226,3 +230,61 @@ def test_the_estimate_in_one_line(branches: tuple[LimitCycles, Fill]) -> None:
         assert estimate.lag == pytest.approx(lag, rel=0.1)
     v = inside[1].whirl_speed / NATURAL if inside[1] else math.nan
     assert v == pytest.approx(1.0 / math.sqrt(1.0 + MU))
+
+
+def weakly_rubbed() -> tuple[Jeffcott, list[Fill]]:
+    """Water in two thin rings and ten per cent of damping: friction far weaker than the supports'."""
+    fills = [Fill(Chamber(radius, 0.02), WATER, 1e-5) for radius in (0.065, 0.05)]
+    mass, natural = 4.0, 1051.0 * RPM
+    return Jeffcott(mass, mass * natural**2, 2.0 * 0.1 * mass * natural, 0.0), fills
+
+
+def test_every_mode_has_its_edges() -> None:
+    # With linear friction those of the exact theory of the band; straight lines between 201 spins.
+    rotor, fill = machine(MU, 0.1, 0.02)
+    plain = circular(rotor.system(), [fill], FRICTION)
+    edges = small_whirl_edges(plain, (0.9 * NATURAL, 1.8 * NATURAL))
+    (bands,) = unstable_bands(rotor, [[fill]], np.linspace(0.9, 1.8, 60) * NATURAL, FRICTION)
+    assert [edge.spin for edge in edges] == pytest.approx(np.ravel(bands).tolist(), rel=2e-4)
+    # Two layers: the modes of both have edges, the inner ones within the band of the other mode.
+    rotor, fills = weakly_rubbed()
+    pair = circular(rotor.system(), fills, Friction("stokes"))
+    found = small_whirl_edges(pair, (600.0 * RPM, 2000.0 * RPM))
+    assert len(found) == 4
+    for edge in found:
+        slip = edge.whirl_speed - edge.spin
+        forces = [
+            complex(
+                force_with_friction(
+                    place.layer.layer_tanh,
+                    edge.spin,
+                    edge.whirl_speed,
+                    place.layer.stokes * math.sqrt(0.5 * abs(slip)),
+                )
+            )
+            for place in pair.places
+        ]
+        left = pair.gap(edge.whirl_speed, edge.spin, edge.moved, forces)
+        push = edge.whirl_speed**2 * sum(
+            p.full_mass * abs(f) for p, f in zip(pair.places, forces, strict=True)
+        )
+        assert np.abs(left).max() < 2e-3 * push * np.abs(edge.moved).max()
+
+
+def test_weak_friction_beside_damping() -> None:
+    # Rotor and layers in time with 64 cells and the friction at the whirl's own slip, from kicks of 4 mm:
+    # rpm, amplitude in mm, whirl speed in rpm. No kick comes to a larger whirl. Settling left 1 %.
+    rotor, fills = weakly_rubbed()
+    cycles = limit_cycles(rotor, fills, (900.0 * RPM, 1450.0 * RPM), Friction("stokes"))
+    for rpm, amplitude, whirl_speed in (
+        (1100, 0.0529, 971.2),
+        (1206, 0.1587, 1031.1),
+        (1300, 0.0414, 1096.3),
+    ):
+        size, turning, _ = stable_at(cycles, rpm * RPM)
+        assert 1e3 * size == pytest.approx(amplitude, rel=0.01)
+        assert turning / RPM == pytest.approx(whirl_speed, rel=1e-3)
+    # Small whirls grow from 1045 to 1415 rpm: the branches reach down to them, and each is told once.
+    assert cycles.reason == "" and len(cycles.branches) == 2
+    assert min(branch.speed.min() for branch in cycles.branches) < 1055.0 * RPM
+    assert max(branch.speed.max() for branch in cycles.branches) > 1405.0 * RPM
