@@ -155,6 +155,7 @@ RECIPES = (
         ("modes_baffles",),
         {"modes_baffles": "modes"},
     ),
+    Recipe(("validation.figures.whirl_passage",), ("whirl_passage",), minutes=True),
     Recipe(("validation.figures.baffles",), ("whirl_baffles",)),
     Recipe(("validation.figures.runup_trends",), ("runup_trends",), minutes=True),
     Recipe(

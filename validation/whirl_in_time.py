@@ -1,4 +1,4 @@
-"""Growth of a small whirl in time, by the coupled nonlinear model: the check on the linear stability."""
+"""Self-excited whirls in time, by the coupled nonlinear model: how fast they grow, how large they become."""
 
 from __future__ import annotations
 
@@ -11,11 +11,14 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.friction import Friction
 from fluid.waves import free_wave_frequencies
+from meshes.arrays import Array
 from meshes.errors import InputError, require_positive
 from solvers.layer.records import Outcome
+from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import Rotor, RotorSystem
 from solvers.runup.long_wave import couple
-from solvers.runup.runup import RunupNumerics
+from solvers.runup.machine import Ramp
+from solvers.runup.runup import RunupNumerics, run_up
 
 _SAMPLES = 800
 _SMALL = 1e-7  # of the smallest layer's depth, at first
@@ -150,3 +153,85 @@ def _at_slip(fill: Fill, spin: float, slip: float) -> Fill:
     free = float(free_wave_frequencies(1, log, spin)[1])
     viscosity = fill.liquid.viscosity * abs(slip / free)
     return replace(fill, liquid=replace(fill.liquid, viscosity=viscosity))
+
+
+@dataclass(frozen=True)
+class Passage:
+    """A run-up through a band of self-excited whirl and back; k times on the way up, m on the way down.
+
+    Parameters
+    ----------
+    rate : of the ramp, rad/s^2
+    time, speed, amplitude, whirl_speed : s, rad/s, m, and rad/s in the standing frame, on the way up,
+        shape (k,)
+    lag : by which the liquid turns more slowly than the drum on the way up, rad/s, shape (k,)
+    speed_down, amplitude_down, whirl_speed_down : on the way down, the last first: speeds rise, shape (m,)
+    converged : the run came to its end
+    """
+
+    rate: float
+    time: Array
+    speed: Array
+    amplitude: Array
+    whirl_speed: Array
+    lag: Array
+    speed_down: Array
+    amplitude_down: Array
+    whirl_speed_down: Array
+    converged: bool
+
+    def at(self, speed: float, back: bool = False) -> float:
+        """Amplitude at a speed on the way up or down, m.
+
+        Parameters
+        ----------
+        speed : rad/s
+        back : on the way down
+        """
+        known = (self.speed_down, self.amplitude_down) if back else (self.speed, self.amplitude)
+        return float(np.interp(speed, *known))
+
+
+_SEED = 1e-4  # of the depth: offset of the rotor's mass from the axis, which starts the whirl
+_PER_TURN = 10  # samples
+
+
+def passage(
+    rotor: Jeffcott,
+    fill: Fill,
+    friction: Friction,
+    speeds: tuple[float, float],
+    rate: float,
+    numerics: RunupNumerics,
+    seed: float = _SEED,
+) -> Passage:
+    """Run a rotor with one layer up and at once down again, with next to no unbalance [theory: coupling].
+
+    Parameters
+    ----------
+    rotor, fill, friction : the machine
+    speeds : first and last, rad/s
+    rate : of the ramp, rad/s^2
+    numerics : resolution; the samples are as many as tell the whirl's frequency
+    seed : offset of the rotor's mass from the axis over the layer's depth
+    """
+    first, last = speeds
+    ramp = Ramp(first, last, rate, (last - first) / rate, back=True)
+    turns = (last**2 - first**2) / rate / (2.0 * math.pi)
+    light = replace(rotor, unbalance=rotor.mass * seed * fill.depth)
+    resolved = replace(numerics, samples=int(_PER_TURN * turns), companion=False)
+    h = run_up(light.system(), [fill], ramp, friction, 0.0, resolved)
+    turning = np.gradient(np.unwrap(np.angle(h.deflection[:, 0])), h.time)
+    up, down = slice(0, int(np.argmax(h.speed)) + 1), slice(None, int(np.argmax(h.speed)) - 1, -1)
+    return Passage(
+        rate=rate,
+        time=h.time[up],
+        speed=h.speed[up],
+        amplitude=h.amplitude[up],
+        whirl_speed=turning[up],
+        lag=-h.mean_rotation[up, 0],
+        speed_down=h.speed[down],
+        amplitude_down=h.amplitude[down],
+        whirl_speed_down=turning[down],
+        converged=h.converged,
+    )

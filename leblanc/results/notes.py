@@ -6,7 +6,7 @@ One function a sentence: limits of validity and findings of the response, the ru
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -423,14 +423,33 @@ def capture(chamber: int, captured: bool, time: float, speed: float) -> Note:
     return Note(code, {"chamber": chamber + 1, "time": time, "speed": speed}, text)
 
 
-def self_excited_on_the_way(bands: tuple[tuple[float, float], ...], friction: Friction) -> Note | None:
-    """Speeds at which whirl grows by itself, rad/s; None where there are none."""
+def self_excited_on_the_way(
+    bands: tuple[tuple[float, float], ...],
+    friction: Friction,
+    whirl: tuple[float, float] | None = None,
+) -> Note | None:
+    """Speeds at which whirl grows by itself, rad/s; None where there are none.
+
+    Parameters
+    ----------
+    bands : of those speeds, rad/s
+    friction : of the liquid
+    whirl : estimated amplitude of the largest of them, m, and its spin speed, rad/s
+    """
     if not bands:
         return None
     listed = rpm_bands(bands)
     law = friction_words(friction)
     text = f"By linear theory with liquid friction {law}, some whirl grows by itself at {listed}."
-    return Note(RunupCode.SELF_EXCITED, {"bands": bands}, text)
+    found: dict[str, Any] = {"bands": bands}
+    if whirl is not None:
+        size, speed = whirl
+        found |= {"amplitude": size, "speed": speed}
+        text += (
+            f" Given time, it grows to about {with_unit(size, LENGTH)} at {in_rpm(speed)} by an estimate, "
+            "and may be carried beyond the band; `leblanc map --cycles` solves for it."
+        )
+    return Note(RunupCode.SELF_EXCITED, found, text)
 
 
 def out_of_range(code: RunupCode, chamber: int, holds: Flags, limit: float = math.nan) -> Note | None:

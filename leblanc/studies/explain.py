@@ -21,7 +21,7 @@ from leblanc.studies.liquid import synchronous_model
 from leblanc.studies.run import rest_modes
 from meshes.arrays import Array
 from meshes.errors import InputError
-from solvers.cycles.estimate import whirl_estimate
+from solvers.cycles.estimate import largest_estimate
 from solvers.rotor.exciter.machine import characteristic_speeds
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import critical_speeds, modes, orbit, unbalance_response
@@ -113,12 +113,9 @@ def _whirl(machine: Prepared, growth: Array) -> WhirlOutlook | None:
     scene, (speed, at) = machine.scene, np.unique(machine.speed, return_index=True)
     if not scene.fills or speed.size < 2:
         return None
-    found = whirl_estimate(machine.rotor, scene.fills, speed, scene.model.friction)
-    rising = zip(found, (growth[at] > 0.0).tolist(), strict=True)
-    known = [whirl for whirl, grows in rising if grows and whirl is not None and whirl.lag > 0.0]
-    if not known:
+    most = largest_estimate(machine.rotor, scene.fills, speed, scene.model.friction, growth[at])
+    if most is None:
         return None
-    most = max(known, key=lambda estimate: estimate.amplitude)
     return WhirlOutlook(most.spin, most.amplitude, most.whirl_speed, most.lag)
 
 

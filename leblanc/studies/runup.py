@@ -271,6 +271,7 @@ def _judged_by(found: LinearRunError) -> str:
 
 STEADY_SPEEDS = 401  # of the steady response drawn behind the run-up
 BAND_SPEEDS = 201  # at which self-excited whirl is looked for
+WHIRL_SPEEDS = 21  # of a band, at which its size is estimated
 
 
 def runup_scene(
@@ -378,7 +379,7 @@ def _notes(scene: Scene, taken: RunupChoice, steady: Response | None, bands: Ban
         notes.energy_left(h.audit.closure),
         notes.largest_amplitude(h, steady),
         *(notes.capture(j, bool(h.captured[k, j]), float(h.time[k]), float(h.speed[k])) for k, j in switched),
-        notes.self_excited_on_the_way(bands, scene.model.friction),
+        notes.self_excited_on_the_way(bands, scene.model.friction, whirl_on_the_way(scene, bands)),
     ]
     return [note for note in found if note is not None]
 
@@ -446,6 +447,25 @@ def whirl_bands(scene: Scene, speed: Array) -> Bands:
     if not scene.fills or passed.size == 0:
         return ()
     return unstable_bands(dry_rotor(scene), [scene.fills], passed, scene.model.friction)[0]
+
+
+def whirl_on_the_way(scene: Scene, bands: Bands) -> tuple[float, float] | None:
+    """Estimated amplitude of the largest whirl that grows by itself, m, and its spin speed, rad/s.
+
+    None where nothing grows, nothing bounds it, or it is no circle, as with gravity across the axis.
+
+    Parameters
+    ----------
+    scene : the machine
+    bands : of the speeds that were passed, rad/s
+    """
+    from solvers.cycles.estimate import largest_estimate
+
+    if not bands or across_gravity(scene) > 0.0:
+        return None
+    speeds = np.unique(np.concatenate([np.linspace(*band, WHIRL_SPEEDS) for band in bands]))
+    found = largest_estimate(dry_rotor(scene), scene.fills, speeds, scene.model.friction)
+    return None if found is None else (found.amplitude, found.spin)
 
 
 def _passed(speed: Array, count: int) -> Array:

@@ -15,7 +15,7 @@ from solvers.cycles.balance import Circular, NotCircularError, Place, circular
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import Rotor
 from solvers.whirl.edges import unstable_bands
-from solvers.whirl.growth import growth_at
+from solvers.whirl.growth import asynchronous_growth, growth_at
 
 # The whirl drags the liquid back until it turns at about this share of the speed where whirls begin to grow.
 _DRAGGED = 0.955
@@ -129,6 +129,27 @@ def whirl_estimate(
         here = [(lower, near) for lower, upper, near in bands if lower < speed < upper]
         found.append(estimated_whirl(machine, friction, *here[0], speed) if here else None)
     return tuple(found)
+
+
+def largest_estimate(
+    rotor: Rotor, fills: Sequence[Fill], speeds: Array, friction: Friction, growth: Array | None = None
+) -> Estimate | None:
+    """The largest of the whirls that grow by themselves at some speeds, by rule; None where none does.
+
+    Parameters
+    ----------
+    rotor, fills, friction : as for `solvers.cycles.cycles.limit_cycles`
+    speeds : rad/s, rising, shape (n,)
+    growth : of the whirl that grows most at each of them, 1/s, shape (n,); computed if None
+    """
+    found = whirl_estimate(rotor, fills, speeds, friction)
+    if not any(found):
+        return None
+    if growth is None:
+        growth = asynchronous_growth(rotor, fills, speeds, friction)[0]
+    rising = zip(found, (growth > 0.0).tolist(), strict=True)
+    known = [whirl for whirl, grows in rising if grows and whirl is not None and whirl.lag > 0.0]
+    return max(known, key=lambda estimate: estimate.amplitude, default=None)
 
 
 def unsettled(machine: Circular, friction: Friction) -> str:

@@ -23,7 +23,7 @@ from solvers.runup.runup import RunupNumerics
 from solvers.whirl.edges import unstable_bands
 from solvers.whirl.growth import asynchronous_growth
 from validation.cases.case import Case, compare
-from validation.whirl_in_time import large_whirl_in_time, whirl_in_time
+from validation.whirl_in_time import Passage, large_whirl_in_time, passage, whirl_in_time
 
 _SOURCE = "Wolf's problem, scan in steps of 5e-4"
 NATURAL = 100.0  # rad/s
@@ -51,7 +51,7 @@ def cases() -> list[Case]:
                     note="agrees within a step of the scan",
                 )
             )
-    return [*found, *_peaks(), _weak(), *_limits(), *_in_time(), *_limit_cycles()]
+    return [*found, *_peaks(), _weak(), *_limits(), *_in_time(), *_limit_cycles(), *_run_ups()]
 
 
 def _in_time() -> list[Case]:
@@ -120,6 +120,87 @@ def _limit_cycles() -> list[Case]:
             )
         )
     return found
+
+
+BANDED = Friction(FrictionLaw.LINEAR, 0.03 * NATURAL)  # of the machine whose band is passed
+_RATES = (8.0, 4.0)  # rad/s^2, the second half of the first
+_MEASURED = ((1.6, False), (1.3, True))  # speed over the natural frequency, on the way down
+_GROWN = 1e-3, 1e-2  # of the depth, between which a small whirl grows in a run-up
+
+
+def banded_rotor() -> tuple[Jeffcott, Fill]:
+    """The machine that is run through its band of self-excited whirl: 1.1236 to 1.4866 of 100 rad/s."""
+    return layered_rotor(0.1, 0.1, 0.02)
+
+
+def slow_passage(rate: float) -> Passage:
+    """That machine up through its band and back; the layer as the branch has it, without dispersion.
+
+    Parameters
+    ----------
+    rate : of the ramp, rad/s^2
+    """
+    speeds = NATURAL, 1.7 * NATURAL
+    return passage(*banded_rotor(), BANDED, speeds, rate, RunupNumerics(cells=64))
+
+
+def _run_ups() -> list[Case]:
+    """Run-ups through a band: the branch that they follow, how far behind, and how the whirl begins."""
+    rotor, fill = banded_rotor()
+    branch = limit_cycles(rotor, [fill], (0.95 * NATURAL, 1.65 * NATURAL), BANDED)
+    fast, slow = (slow_passage(rate) for rate in _RATES)
+    found = []
+    for ratio, back in _MEASURED:
+        speed, way = ratio * NATURAL, "down" if back else "up"
+        size = branch.largest_stable(speed)
+        ends = fast.at(speed, back), slow.at(speed, back)
+        found.append(
+            compare(
+                f"whirl/run-{way}-{ratio:g}",
+                "limit cycles by balance",
+                f"amplitude on the way {way} at {ratio:g} times 100 rad/s in the limit of a slow ramp, m",
+                size,
+                2.0 * ends[1] - ends[0],
+                # What is left is of second order in the lag, which is 7 % at most.
+                tolerance=0.005,
+                note="printed is the branch by Newton's method, computed a line through two run-ups",
+            )
+        )
+        apart = [abs(end / size - 1.0) for end in ends]
+        found.append(
+            compare(
+                f"whirl/run-{way}-lag-{ratio:g}",
+                "limit cycles by balance",
+                f"exponent over the rate of the distance from the branch on the way {way} at {ratio:g}",
+                1.0,
+                math.log2(apart[0] / apart[1]),
+                tolerance=0.1,
+                note=f"{apart[0]:.2%} at {_RATES[0]:g} rad/s^2, {apart[1]:.2%} at {_RATES[1]:g}",
+            )
+        )
+    return [*found, _beginning()]
+
+
+def _beginning() -> Case:
+    """A small whirl in a run-up against linear theory at the speed at which the liquid turns."""
+    rotor, fill = banded_rotor()
+    speeds, numerics = (1.1 * NATURAL, 1.35 * NATURAL), RunupNumerics(cells=128, dispersion=True)
+    seen = passage(rotor, fill, BANDED, speeds, _RATES[1], numerics, seed=1e-6)
+    first, last = (int(np.argmax(seen.amplitude > size * fill.depth)) for size in _GROWN)
+    part = slice(first, last + 1)
+    growth, _ = asynchronous_growth(rotor, [fill], (seen.speed - seen.lag)[part], BANDED)
+    by_drum, _ = asynchronous_growth(rotor, [fill], seen.speed[part], BANDED)
+    time = seen.time[part]
+    return compare(
+        "whirl/run-up-growth",
+        "linear theory",
+        "factor by which a small whirl grows in a run-up at 4 rad/s^2, its logarithm",
+        float(np.trapezoid(growth, time)),
+        math.log(seen.amplitude[last] / seen.amplitude[first]),
+        tolerance=0.02,
+        note="printed is the growth rate over the time at the liquid's own speed, which lags by "
+        f"{seen.lag[first]:.3g} rad/s; at the drum's it would be {float(np.trapezoid(by_drum, time)):.4g}",
+    )
 
 
 def _thinner(fill: Fill, plane: float, share: float, filled: float) -> Fill:

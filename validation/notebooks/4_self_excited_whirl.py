@@ -31,7 +31,8 @@
 # ## Assumed
 #
 # * A rotor on supports that are alike in all directions, plane layers, no gravity. Bands and rates are those
-#   of infinitesimal motion of a planar rotor with one layer; the last two cases are whirls of finite size.
+#   of infinitesimal motion of a planar rotor with one layer; those named limit-cycle,
+#   run-up and run-down are whirls of finite size.
 # * Friction of the liquid is a law that must be chosen. Each line below says which one it has: none, a
 #   linear one, or that of a laminar layer on the wall.
 
@@ -57,7 +58,8 @@ picture(growth_figure(in_time(cases)))
 # In the cases named *in-time* the whirl is let go from a ten-millionth of the depth and its growth is
 # measured in the computed motion; *printed* is then the root of the characteristic equation. In those named
 # *limit-cycle* the growth has come to its end: *printed* is the balance of a whirl of finite size, computed
-# the rotor with its layers, kicked and followed in time until the whirl is steady.
+# the rotor with its layers, kicked and followed in time until the whirl is steady. Those named *run-up* and
+# *run-down* pass the band on a slow ramp: their amplitude tends to the branch's in proportion to the rate.
 
 # %%
 case_table(cases)
@@ -89,5 +91,6 @@ assert verdicts(cases) == {
         *("peak-zeta-0", "peak-zeta-0.05", "damping-alone", "empty", "full", "rigid"),
         *("in-time-1.15", "in-time-1.3", "in-time-1.45", "in-time-1", "in-time-1.7"),
         *("limit-cycle-planar-1.3", "limit-cycle-two-planes-1.25"),
+        *("run-up-1.6", "run-up-lag-1.6", "run-down-1.3", "run-down-lag-1.3", "run-up-growth"),
     }
 }

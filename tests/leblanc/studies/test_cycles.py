@@ -16,6 +16,7 @@ from leblanc.scene.scene import Scene, load_scene
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.explain import explain_scene
 from leblanc.studies.optimise.constraints import whirl_size
+from leblanc.studies.runup import runup_scene, whirl_on_the_way
 from leblanc.studies.whirl_map import map_scene
 from leblanc.text.explanation import facts as explained
 from leblanc.text.whirl_map import answer, facts
@@ -125,6 +126,19 @@ def test_explain_estimates_it(machine: Scene, found: WhirlMap) -> None:
     assert any(label == "whirl" for label, _ in explained(explanation))
     calm = machine.replace({"speeds.stop": "105 rad/s"})
     assert explain_scene(calm).whirl is None
+
+
+def test_a_run_up_says_how_large_the_whirl_on_its_way_becomes(machine: Scene, found: WhirlMap) -> None:
+    plan = {"start": 100.0, "stop": 140.0, "rate": 400.0, "duration": 0.1, "cells": 16, "samples": 10}
+    ramped = machine.replace({"runup": plan})
+    (note,) = (note for note in runup_scene(ramped, check=False).notes if note.code == "self_excited")
+    solved = max(row["amplitude"] for row in found.cycles if row["stable"] and row["speed"] <= 140.0)
+    assert note.data["speed"] == approx(140.0)
+    # The rule is mostly within a tenth.
+    assert note.data["amplitude"] == approx(solved, rel=0.1)
+    assert "map --cycles" in note.text
+    lying = whirl_on_the_way(ramped.replace({"rotor.axis": "horizontal"}), ((112.4, 140.0),))
+    assert lying is None and whirl_on_the_way(ramped, ()) is None
 
 
 def test_a_limit_of_the_whirl(machine: Scene) -> None:

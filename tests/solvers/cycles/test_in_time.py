@@ -16,7 +16,9 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import Rotor
 from solvers.rotor.tub import Mount, Tub
 from solvers.rotor.two_plane import Support, TwoPlane
-from validation.whirl_in_time import large_whirl_in_time
+from solvers.runup.runup import RunupNumerics
+from tests.mutants import kills
+from validation.whirl_in_time import large_whirl_in_time, passage
 
 CELLS = 64
 # Rotor, chambers, and about its natural frequency, rad/s.
@@ -96,3 +98,29 @@ def test_random_machines_come_to_their_limit_cycle(make) -> None:
     assert found.spread < 5e-3  # what settling leaves
     assert found.amplitude == pytest.approx(branch.amplitude[k], rel=5e-3)
     assert found.whirl_speed == pytest.approx(branch.whirl_speed[k], rel=1e-3)
+
+
+@kills(
+    "validation.whirl_in_time:passage", "amplitude_down=h.amplitude[down]", "amplitude_down=h.amplitude[up]"
+)
+def test_a_run_up_is_behind_its_limit_cycle_and_a_run_down_above_it_in_proportion_to_the_rate() -> None:
+    fill = Fill(Chamber(0.1, 0.02), Liquid("any", 1000.0, 1e-6), 0.19 * Chamber(0.1, 0.02).capacity)
+    mass = 10.0 * fill.full_mass
+    rotor, law = Jeffcott(mass, mass * 100.0**2, 4.0 * mass, 0.0), Friction("linear", 3.0)
+    size = limit_cycles(rotor, [fill], (110.0, 150.0), law, cells=32).largest_stable(145.0)
+    # The mass off the axis by a fiftieth of the depth: the whirl is soon there, the unbalance's share small.
+    resolved, speeds = RunupNumerics(cells=32), (118.0, 165.0)
+    runs = [passage(rotor, fill, law, speeds, rate, resolved, 0.02) for rate in (16.0, 8.0)]
+    behind = []
+    for run in runs:
+        assert run.converged
+        # Mean over beats with the unbalance's share.
+        sizes = []
+        for speed, amplitude in ((run.speed, run.amplitude), (run.speed_down, run.amplitude_down)):
+            near = np.abs(speed - 145.0) < 4.0
+            sizes.append(float(amplitude[near].mean()) / size - 1.0)
+        behind.append(sizes)
+    (up, down), (slow_up, slow_down) = behind
+    assert -0.1 < up < slow_up < -0.02 and 0.02 < slow_down < down < 0.1
+    # In proportion to the rate to first order: what is left is of the order of the distance itself.
+    assert up / slow_up == pytest.approx(2.0, rel=0.1) and down / slow_down == pytest.approx(2.0, rel=0.1)
