@@ -52,7 +52,7 @@ def run(scene: SceneOrPath, *, workers: int = 1) -> RunResult | ExciterResult:
     Raises
     ------
     SceneError : with everything that is wrong with the file
-    InputError : the scene names a liquid model that does not answer this, fewer than one worker
+    InputError : the scene names a liquid model that does not know its chambers, fewer than one worker
 
     Examples
     --------

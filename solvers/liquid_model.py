@@ -299,6 +299,17 @@ class LiquidModel(Protocol):
         """
         return fills.added_mass
 
+    def steepest(self, fills: Fills) -> Array:
+        """No smaller than the slope of the unbalance at any deflection, kg, shape (n,).
+
+        The mass added in a small whirl, as here, where the law bends over and never up.
+
+        Parameters
+        ----------
+        fills : shape (n,)
+        """
+        return self.added_mass(fills)
+
 
 def added_mass_answer(
     fills: Fills, whirls: Whirls, error: Array | float = math.nan, added_mass: Array | None = None

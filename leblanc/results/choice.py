@@ -218,6 +218,8 @@ def _reason(choice: Choice, model: str, part: Index) -> str:
         )
     if model == "long_wave":
         return _held_reason(choice, part)
+    if model == "kdv":
+        return _family_reason(choice, part)
     if model == "fem" and not choice.cut:
         return "the scene asks for it; finite elements integrate the paraboloid and miss it by their mesh"
     why = _statics_reason(choice, part) if model == "statics" else _linear_reason(choice, part)
@@ -229,6 +231,16 @@ def _reason(choice: Choice, model: str, part: Index) -> str:
     if waves > choice.tolerance:
         return f"{why}; but gravity's waves may change its mean by {percent(waves)}, tolerance {limit}"
     return f"{why}; this is more than the tolerance of {limit}"
+
+
+def _family_reason(choice: Choice, part: Index) -> str:
+    """How far one family of waves is from liquid that both hold."""
+    worst = choice.error[part].max()
+    size = percent(worst) if np.isfinite(worst) else "an amount that is not known"
+    return (
+        "the scene asks for it; one family of waves stands for the two that hold liquid at rest in the drum, "
+        f"and is off the exact equilibrium by up to {size}"
+    )
 
 
 def _held_reason(choice: Choice, part: Index) -> str:
@@ -279,6 +291,8 @@ def _better(choice: Choice, model: str, part: Index) -> str:
         return "none that is steady: `leblanc runup` carries the liquid until it is caught"
     if model == "long_wave":
         return "the same with more cells ([model] cells)"
+    if model == "kdv":
+        return "the exact equilibrium (statics), which costs less as well"
     gravity = choice.gravity.amplitude[part].max()
     if gravity > 0.0 and (model == "statics" or gravity > choice.tolerance):
         long = "seconds a speed"

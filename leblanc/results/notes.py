@@ -44,6 +44,7 @@ class RunCode(NoteCode):
     WALL = "wall"
     MESH = "mesh"
     HELD = "held"
+    ONE_FAMILY = "one_family"
     NOT_SETTLED = "not_settled"
 
 
@@ -164,6 +165,30 @@ def _between(speed: Array) -> str:
     """First and last of some speeds."""
     low, high = float(speed.min()), float(speed.max())
     return f"at {in_rpm(low)}" if low == high else f"between {number(low * RPM)} and {in_rpm(high)}"
+
+
+def one_family(answer: Response) -> Note | None:
+    """What it means that one family of waves answers alone; None where other models do.
+
+    Parameters
+    ----------
+    answer : of the machine
+    """
+    alone = answer.model == "kdv"
+    if not alone.any():
+        return None
+    text = (
+        "Liquid model: one family of waves alone. Liquid that goes with the drum is held by both families, "
+        "so that this is out of range at every speed; the estimated error is the distance from the exact "
+        "equilibrium."
+    )
+    lost = alone & ~answer.converged & np.isfinite(answer.deflection)
+    if lost.any():
+        text += (
+            f" At {np.count_nonzero(lost)} of {lost.size} speeds, {_between(answer.speed[lost])}, it has no "
+            "wave that leaves the wall wet. Do not rely on the numbers there."
+        )
+    return Note(RunCode.ONE_FAMILY, {"lost": tuple(answer.speed[lost].tolist())}, text)
 
 
 def plane_words(position: float, chambers: bool) -> str:

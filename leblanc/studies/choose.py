@@ -16,7 +16,7 @@ from fluid.waves import capture_speed
 from fluid.whirl import covering_speed
 from leblanc.results.choice import Choice, HeldCost
 from leblanc.scene.scene import Scene, dry_rotor
-from leblanc.studies.liquid import RESPONSE_MODELS, synchronous_model
+from leblanc.studies.liquid import synchronous_model
 from meshes.arrays import Array, Flags
 from meshes.chamber_section import rest_offset, surface_is_whole
 from meshes.errors import InputError
@@ -26,6 +26,7 @@ from solvers.liquid_model import ROUNDING, LiquidModel
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.sloshing.model import REST_ERROR
 from solvers.synchronous.errors import GravityError, LinearError, error_estimate, machine_errors
+from solvers.synchronous.response import distance, response
 
 if TYPE_CHECKING:
     from solvers.rotor.system import RotorSystem
@@ -106,7 +107,7 @@ def choose(scene: Scene) -> Choice:
 
     Raises
     ------
-    InputError : the scene names a model that does not answer the synchronous response, or is an exciter
+    InputError : the scene names a model that does not know its chambers, or is an exciter
     """
     return choose_all([prepare(scene)])[0]
 
@@ -119,13 +120,7 @@ def choose_all(machines: Sequence[Prepared]) -> list[Choice]:
     InputError : as `choose`
     """
     for machine in machines:
-        scene = machine.scene
-        if scene.model.liquid not in ("auto", *RESPONSE_MODELS):
-            allowed = ", ".join(("auto", *RESPONSE_MODELS))
-            raise InputError(
-                "model.liquid", scene.model.liquid, f"one of {allowed} for the response to an unbalance"
-            )
-        _check_walls(scene)
+        _check_walls(machine.scene)
     planar = [machine for machine in machines if isinstance(machine.rotor, Jeffcott)]
     found = iter(_planar_errors(planar) if planar else ())
     errors = [
@@ -314,13 +309,15 @@ def _choice(machine: Prepared, linear: LinearError, gravity: GravityError) -> Ch
     # exact equilibrium says where.
     enough = linear.wet & (linear.worst <= tolerance)
     cut = is_cut(scene)
-    small = "fem" if cut or liquid == "fem" else "linear"
+    small = "fem" if cut or liquid == "fem" else "kdv" if liquid == "kdv" else "linear"
     if cut or liquid != "auto":
         enough = np.full(speed.shape, liquid != "statics")
     models = np.where(enough, small, "statics")
     error = np.where(enough, linear.worst, ROUNDING) + gravity.amplitude
     if small == "fem":
         error = error + np.where(enough, REST_ERROR, 0.0)
+    if liquid == "kdv" and not cut:
+        error = gravity.amplitude + _family_error(machine)
     if cut:
         # The exact equilibrium of compartments, which would judge small disturbances, is not computed.
         error = np.full(speed.shape, np.nan)
@@ -337,6 +334,15 @@ def _choice(machine: Prepared, linear: LinearError, gravity: GravityError) -> Ch
         gravity=gravity,
         cut=cut,
     )
+
+
+def _family_error(machine: Prepared) -> Array:
+    """Distance of the answer by one family of waves from the exact equilibrium, relative, shape (n,)."""
+    rotor, fills, along = machine.rotor, machine.scene.fills, machine.axial_gravity
+    own, exact = (
+        response(rotor, fills, machine.speed, along, synchronous_model(name)) for name in ("kdv", "statics")
+    )
+    return distance(own, exact)
 
 
 def _covers(fill: Fill, gravity: float) -> float:

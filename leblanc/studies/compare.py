@@ -38,8 +38,8 @@ def compare_models(scene: Scene, models: Sequence[str], holding: Holding = HERE)
     --------
     >>> from leblanc.scene.examples import example
     >>> found = compare_models(example("horizontal_rig"), ["kdv", "linear", "statics"])
-    >>> [one.answered for one in found.answers], found.reference
-    ([False, True, True], 'statics')
+    >>> [answer.answered for answer in found.answers], found.reference
+    ([True, True, True], 'statics')
     """
     _check(scene, models)
     found, refusals = [], []

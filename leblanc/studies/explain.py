@@ -64,7 +64,7 @@ def explain_scene(scene: Scene) -> Explanation:
 
     Raises
     ------
-    InputError : the scene names a liquid model that does not answer the response to an unbalance
+    InputError : the scene names a liquid model that does not know its chambers
     """
     machine = prepare(scene)
     gravity, (choice,) = machine.axial_gravity, choose_all([machine])

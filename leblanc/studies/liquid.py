@@ -66,9 +66,7 @@ WAVE_MODELS = tuple(_MAKE)
 # Those that py-pde solves.
 _MARCHED = ("long_wave", "kdv")
 # Those that answer the unbalance of a rotor: the liquid is at rest in a synchronous whirl.
-SYNCHRONOUS_MODELS = ("statics", "linear", "fem")
-# Those that answer it in the end: long waves are held in time until they settle.
-RESPONSE_MODELS = (*SYNCHRONOUS_MODELS, "long_wave")
+SYNCHRONOUS_MODELS = ("statics", "linear", "fem", "kdv")
 # Those that go through time with a rotor.
 RUNUP_MODELS = ("long_wave", "linear")
 

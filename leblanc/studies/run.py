@@ -35,7 +35,6 @@ from leblanc.studies.validity import doubts
 from leblanc.studies.whirl_map import small_whirl_friction
 from meshes.arrays import Array, Complex
 from meshes.chamber_section import liquid_of
-from solvers.liquid_model import ROUNDING
 from solvers.rotor.balance_quality import balance_quality, tolerance_planes
 from solvers.rotor.campbell import campbell
 from solvers.rotor.jeffcott import Jeffcott
@@ -52,6 +51,7 @@ from solvers.synchronous.response import (
     answered_by,
     by_speed,
     critical_speed,
+    distance,
     main_critical_speeds,
     response,
     wet_critical_speeds,
@@ -139,12 +139,7 @@ def element_answers(
         answered_by(machine.rotor, machine.scene.fills, known, element_model(), machine.axial_gravity)
         for known in (answer, refined)
     ]
-    gaps = []
-    for name in ("amplitude", "liquid_offset"):
-        exact = getattr(answer, name)
-        gap = np.abs(getattr(found[0], name) - exact)
-        gaps.append(np.divide(gap, exact, out=np.zeros_like(gap), where=exact > 0.0))
-    error = choice.gravity.amplitude + np.maximum(*gaps) + ROUNDING
+    error = choice.gravity.amplitude + distance(found[0], answer)
     return replace(choice, models=found[0].model, error=error), found[0], found[1]
 
 
@@ -191,7 +186,7 @@ def run_scene(
 
     Raises
     ------
-    InputError : the scene names a liquid model that does not answer this, or its rotor is an exciter
+    InputError : the scene names a liquid model that does not know its chambers, or its rotor is an exciter
 
     Examples
     --------
@@ -305,6 +300,7 @@ def _notes(
     found = [notes.liquid_models(choice), notes.tolerance_missed(choice, machine.speed, cost)]
     if choice.captured_from is not None:
         found.append(notes.not_carried(choice.captured_from))
+    found.append(notes.one_family(answer))
     found += notes.held_motions(held, answer.speed) if held is not None else []
     if motion is None:
         found.append(notes.slow_disturbances(held))

@@ -400,9 +400,9 @@ def unanswered(result: RunResult) -> list[str]:
     held, found = result.held, []
     lost = ~result.converged if held is None else ~result.converged & ~held.at
     if lost.any():
-        listed = _first([f"{speed:.6g} rad/s" for speed in result.speed[lost].tolist()])
-        count = f"{np.count_nonzero(lost)} of {lost.size}"
-        found.append(f"no bounded deflection found at {count} speeds: {listed}")
+        dry = lost & (result.response.model == "kdv") & np.isfinite(result.response.deflection)
+        found += _unfound(result, lost & ~dry, "no bounded deflection found")
+        found += _unfound(result, dry, "one family has no wave that leaves the wall wet")
     if held is not None and held.not_settled.any():
         why = held.reason[held.not_settled].tolist() if held.reason.size else []
         places = [in_rpm(speed) for speed in result.speed[held.not_settled].tolist()]
@@ -410,6 +410,14 @@ def unanswered(result: RunResult) -> list[str]:
         count = f"{len(places)} of {np.count_nonzero(held.at)}"
         found.append(f"the motion has not settled at {count} speeds at which it was held: {_first(told)}")
     return found
+
+
+def _unfound(result: RunResult, lost: Flags, what: str) -> list[str]:
+    """What is missing at some speeds, in a line with the first of them; no line where it is at none."""
+    if not lost.any():
+        return []
+    listed = _first([f"{speed:.6g} rad/s" for speed in result.speed[lost].tolist()])
+    return [f"{what} at {np.count_nonzero(lost)} of {lost.size} speeds: {listed}"]
 
 
 def _first(parts: list[str]) -> str:

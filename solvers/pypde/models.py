@@ -8,12 +8,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from fluid import kdv
-from fluid.fill import Fill
+from fluid.fill import Fill, Fills
 from fluid.friction import NO_FRICTION, Friction, FrictionLaw, damping_rate
 from meshes.arrays import Array
 from meshes.errors import InputError
@@ -21,17 +21,23 @@ from solvers.layer.state import LayerHistory, Numerics
 from solvers.liquid_model import (
     CAPTURED,
     LONG,
+    ROUNDING,
     THIN_LAYERS,
+    LiquidAnswer,
     LiquidWave,
     Range,
     WaveModel,
     Whirl,
+    Whirls,
     kept_limits,
     numbers_of,
     wave_amplitude,
     whirl_answer,
 )
 from solvers.waves.modes import WaveTerms
+
+if TYPE_CHECKING:
+    from solvers.pypde.family_law import Standing
 
 Progress = Callable[[float], object] | None
 
@@ -144,6 +150,48 @@ class OneFamily(WaveModel):
         if self.friction.law is FrictionLaw.QUADRATIC:
             raise InputError("friction", self.friction.law, "none, stokes or linear for one family of waves")
 
+    def at_rest(self, fills: Fills, whirls: Whirls) -> LiquidAnswer:
+        """See `WaveModel`; the error is the distance from the exact pull on a wet wall [theory: kdv, eq. 33].
+
+        A deflection without a wave is answered as if the last wave grew with it, and has not converged. In a
+        chamber without a free surface there is no wave to look for: its liquid goes with the drum.
+        """
+        size, chamber, found = whirls.amplitude, fills.chamber, self._standing(fills, whirls.amplitude)
+        numbers = {
+            "relative_depth": fills.depth / chamber.radius, "wave_amplitude": found.change,
+            "other_family": found.other,
+        }  # fmt: skip
+        limits = {name: ~found.waves | (value <= self.ranges[name][1]) for name, value in numbers.items()}
+        own, raised = fills.mass, fills.added_mass - fills.mass
+        exact = (own + raised) * size
+        unbalance = (own + raised * found.share) * size
+        missing = np.divide(exact - unbalance, exact, out=np.zeros_like(size), where=exact > 0.0)
+        return LiquidAnswer.at_rest(
+            fills,
+            whirls,
+            unbalance=unbalance,
+            slope=own + raised * found.slope,
+            dry_patch=~found.found,
+            converged=found.found,
+            limits={**limits, "inner_wall": found.deepest <= chamber.radius - chamber.inner_radius},
+            error=np.abs(missing) + ROUNDING,
+        )
+
+    def added_mass(self, fills: Fills) -> Array:
+        """See `LiquidModel`: one family brings up a part of what the exact wave does."""
+        found = self._standing(fills, np.zeros(len(fills)))
+        return np.asarray(fills.mass + (fills.added_mass - fills.mass) * found.slope)
+
+    def steepest(self, fills: Fills) -> Array:
+        """See `LiquidModel`: the wave of one family grows faster than the deflection."""
+        found = self._standing(fills, np.zeros(len(fills)))
+        return np.asarray(fills.mass + (fills.added_mass - fills.mass) * found.steepest)
+
+    def _standing(self, fills: Fills, deflection: Array) -> Standing:
+        from solvers.pypde.family_law import standing
+
+        return standing(fills, deflection, self.dispersion)
+
     def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
         """See `WaveModel`; the error is the response of the other family over that of this one.
 
@@ -174,14 +222,16 @@ class OneFamily(WaveModel):
         numbers = numbers_of(fill, whirl, {"wave_amplitude": float(size.amplitude), "other_family": other})
         # Below nothing and above all that the drum holds there is no layer, whatever the equation says.
         dry = float(size.thinnest) <= 0.0
-        possible = not dry and float(eta.max()) < 0.5 * surface**2
+        highest = float(eta.max())
+        possible = not dry and highest < 0.5 * surface**2
         ratio = complex(kdv.force_ratio(family, offset, whirl.amplitude)) if whirl.amplitude else 0j
         answer = whirl_answer(
             fill,
             whirl,
             force_ratio=ratio,
             offset=offset,
-            limits=kept_limits(numbers, self.ranges),
+            limits=kept_limits(numbers, self.ranges)
+            | {"inner_wall": surface**2 - 2.0 * highest >= chamber.inner_radius**2},
             dry_patch=dry,
             converged=not reason and possible,
             error=other,
@@ -208,6 +258,10 @@ class OneFamily(WaveModel):
 
     def _friction_rate(self, fill: Fill, whirl: Whirl) -> float:
         """Rate at which the wall friction stops the mean layer, 1/s [theory: long_wave, eq. 9]."""
+        if whirl.slip == 0.0:
+            # The wave stands still in the drum. One family alone would have its liquid flow through it, which
+            # the other family stops.
+            return 0.0
         radius = fill.chamber.radius
         law, coefficient = self.friction.at(fill.liquid.viscosity, whirl.slip, radius)
         area = fill.volume / (2.0 * math.pi * fill.chamber.height * radius**2)

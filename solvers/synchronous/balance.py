@@ -73,6 +73,7 @@ class Balance:
     fills : of each chamber those of all pairs, shape (s,); every one has liquid
     backward_mass : with which each chamber resists the backward part, kg, shape (s, c)
     added_mass : full mass of each chamber, kg, shape (s, c)
+    steepest : no smaller than the slope of all chambers' unbalance anywhere, kg, shape (s,)
     limit : forward deflection up to which a chamber adds exactly its full mass, m, shape (s, c)
     model : of the liquid
     gravity : along the axis, m/s^2
@@ -87,6 +88,7 @@ class Balance:
     fills: tuple[Fills, ...]
     backward_mass: Array
     added_mass: Array
+    steepest: Array
     limit: Array
     model: LiquidModel
     gravity: float
@@ -205,6 +207,7 @@ def _balance(
         fills=chambers,
         backward_mass=back,
         added_mass=np.hstack([nothing, *(model.added_mass(fills)[:, None] for fills in chambers)]),
+        steepest=sum((model.steepest(fills) for fills in chambers), np.zeros(speed.size)),
         limit=np.hstack([nothing, *limits]),
         model=model,
         gravity=gravity,

@@ -117,8 +117,8 @@ def one_plane(balance: Balance) -> Solutions:
         return np.asarray(squared[k] * np.maximum(moment - mass[k] * deflection, 0.0))
 
     elastic = support.real - squared * mass
-    # The slope of the unbalance never exceeds a full chamber's mass; a little more holds the rounding.
-    steepest = squared * (full * (1.0 + 1e-9) - mass)
+    # A little more than the steepest slope of the unbalance holds the rounding.
+    steepest = squared * (balance.steepest * (1.0 + 1e-9) - mass)
     dead = squared * sum(fills.mass * fills.chamber.radius for fills in balance.fills)
     bent, owner, found, bounded = branches_beyond(
         pull, elastic, np.abs(support.imag), force, steepest, limit, dead, moved

@@ -58,8 +58,8 @@ class Pairs:
     gravity : along the axis, m/s^2, shape (n,)
     model : of the liquid
     slots : one for each chamber of the machine that has most
-    liquid_mass, added_mass, reach : sums over the chambers of the liquid's mass, of the mass that it adds in
-        a small whirl, and of liquid mass times radius, shape (n,)
+    liquid_mass, added_mass, steepest, reach : sums over the chambers of the liquid's mass, of the mass that
+        it adds in a small whirl and at most, and of liquid mass times radius, shape (n,)
     """
 
     mass: Array
@@ -72,6 +72,7 @@ class Pairs:
     slots: tuple[Slot, ...]
     liquid_mass: Array
     added_mass: Array
+    steepest: Array
     reach: Array
 
     @property
@@ -159,7 +160,7 @@ def pair_machines(
     rotors = np.array([(r.mass, r.stiffness, r.damping, r.unbalance) for r, _ in machines]).reshape(-1, 4)
     wet = [[fill for fill in fills if fill.volume > 0.0] for _, fills in machines]
     own_gravity = gravity[owner]
-    slots, sums = [], np.zeros((3, owner.size))
+    slots, sums = [], np.zeros((4, owner.size))
     for k in range(max(map(len, wet), default=0)):
         having = np.array([i for i, fills in enumerate(wet) if len(fills) > k], dtype=np.intp)
         fills = Fills.of([wet[i][k] for i in having])
@@ -168,14 +169,16 @@ def pair_machines(
         place = index[owner]
         rows = np.flatnonzero(place >= 0)
         here = fills.at(place[rows])
-        sums[:, rows] += here.mass, model.added_mass(here), here.mass * here.chamber.radius
+        added, steepest = model.added_mass(here), model.steepest(here)
+        sums[:, rows] += here.mass, added, steepest, here.mass * here.chamber.radius
         slots.append(Slot(fills, place, np.full(owner.shape, np.inf)))
     mass, stiffness, damping, unbalance = np.ascontiguousarray(rotors[owner].T)
     pairs = Pairs(
         *(mass, stiffness, damping, unbalance, speed, own_gravity, model, tuple(slots)),
         liquid_mass=sums[0],
         added_mass=sums[1],
-        reach=sums[2],
+        steepest=sums[2],
+        reach=sums[3],
     )
     return replace(pairs, slots=_with_limits(pairs))
 

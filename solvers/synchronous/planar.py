@@ -203,8 +203,8 @@ def all_deflections(pairs: Pairs) -> tuple[Array, Index, Flags]:
 
     elastic = pairs.stiffness - (pairs.mass + pairs.liquid_mass) * squared
     moved = force > 0.0
-    # The slope of the unbalance never exceeds a full chamber's mass; a little more holds the rounding.
-    steepest = squared * (pairs.added_mass * (1.0 + 1e-9) - pairs.liquid_mass)
+    # A little more than the steepest slope of the unbalance holds the rounding.
+    steepest = squared * (pairs.steepest * (1.0 + 1e-9) - pairs.liquid_mass)
     bent, which, converged, bounded = branches_beyond(
         pairs.pull,
         *(elastic, damping, np.where(moved, force, 1.0), steepest),

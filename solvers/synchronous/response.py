@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from fluid.fill import Fill, Fills
 from meshes.arrays import Array, Complex, Flags, Index
 from meshes.errors import InputError
-from solvers.liquid_model import LiquidModel, Whirls
+from solvers.liquid_model import ROUNDING, LiquidModel, Whirls
 from solvers.roots import bracketed_root
 from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
 from solvers.rotor.system import Rotor, RotorSystem
@@ -27,7 +27,7 @@ from solvers.synchronous.balance import Balance, Liquid, backward_mass, directio
 from solvers.synchronous.coupled import Near, newton, solutions, stable_solutions
 from solvers.synchronous.models import LINEAR, STATICS
 from solvers.synchronous.pairs import Pairs, pair_machines
-from solvers.synchronous.planar import all_deflections, divide, is_stable, liquid_offset, with_phase
+from solvers.synchronous.planar import all_deflections, divide, is_stable, liquid_offset, over, with_phase
 
 
 def critical_speed(
@@ -464,6 +464,20 @@ def answered_by(
         residual=placed(_residual(terms, answer, forward, law), "residual"),
         model=np.full(known.speed.shape, model.name.split()[0]),
     )
+
+
+def distance(found: Response, exact: Response) -> Array:
+    """How far an answer is from another one, relative: the larger of amplitude and liquid's offset.
+
+    Parameters
+    ----------
+    found, exact : at the same speeds, shape (n,)
+    """
+    gaps = []
+    for name in ("amplitude", "liquid_offset"):
+        here, there = getattr(found, name), getattr(exact, name)
+        gaps.append(np.where(here == there, 0.0, over(np.abs(here - there), there)))
+    return np.asarray(np.maximum(*gaps) + ROUNDING)
 
 
 def _require_speeds(speed: Array) -> None:

@@ -145,9 +145,10 @@ def test_what_a_study_refuses_is_told_where_it_stands(
 ) -> None:
     """A scene without a fault, of which a command cannot answer one value."""
     path = tmp_path / "scene.toml"
-    path.write_text(GOOD.replace('"auto"', '"kdv"'), encoding="utf-8")
+    good = GOOD.replace("[[chambers]]", "[[chambers]]\nbaffles = { count = 4 }")
+    path.write_text(good.replace('"auto"', '"kdv"'), encoding="utf-8")
     (line,) = shell(path, capsys).splitlines()
-    number = GOOD.splitlines().index('liquid = "auto"') + 1
+    number = good.splitlines().index('liquid = "auto"') + 1
     assert line.startswith(f'{path}:{number}: model.liquid = "kdv": must be ')
 
 

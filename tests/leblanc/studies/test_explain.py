@@ -85,9 +85,12 @@ def test_a_horizontal_axis_needs_capture() -> None:
     assert choose(scene(axis="vertical")).in_range.all()
 
 
-@pytest.mark.parametrize("model", ["kdv"])
+@pytest.mark.parametrize("model", ["kdv", "statics", "long_wave"])
 def test_models_that_do_not_answer_are_refused(model: str) -> None:
-    asked = scene_from_table(table() | {"model": {"liquid": model}})
+    """Compartments have waves of their own."""
+    asked = scene_from_table(table() | {"model": {"liquid": model}}).replace(
+        {"chambers.0.baffles": {"count": 4}}
+    )
     with pytest.raises(InputError, match=r"model\.liquid"):
         choose(asked)
 

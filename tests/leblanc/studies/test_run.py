@@ -91,13 +91,14 @@ def test_unwritable_output(capsys: pytest.CaptureFixture[str], tmp_path: Path) -
     assert out == "" and str(blocked) in err and "Traceback" not in err
 
 
-@pytest.mark.parametrize("model", ["kdv"])
+@pytest.mark.parametrize("model", ["kdv", "statics", "long_wave"])
 def test_a_model_that_does_not_answer_writes_nothing(
     model: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     text = Path("examples/centrifuge.toml").read_text(encoding="utf-8").replace('"auto"', f'"{model}"')
     scene = tmp_path / "scene.toml"
-    scene.write_text(text, encoding="utf-8")
+    # Baffles that cut the liquid into compartments.
+    scene.write_text(text.replace("[[chambers]]", "[[chambers]]\nbaffles = { count = 4 }"), encoding="utf-8")
     assert main(["run", str(scene), "--out", str(tmp_path / "out")]) == 2
     assert "model.liquid" in capsys.readouterr().err
     assert not list((tmp_path / "out").glob("*"))

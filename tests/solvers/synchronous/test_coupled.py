@@ -471,7 +471,7 @@ def test_extremes(name: str, gravity: float) -> None:
     assert np.isfinite(found.deflection).all()
 
 
-@pytest.mark.parametrize(("speed", "model"), [([0.0], "auto"), ([math.nan], "auto"), ([1.0], "kdv")])
+@pytest.mark.parametrize(("speed", "model"), [([0.0], "auto"), ([math.nan], "auto"), ([1.0], "long_wave")])
 def test_bad_input(speed: list[float], model: str) -> None:
     with pytest.raises(InputError):
         response(two_plane(), [], speed, model=synchronous_model(model))

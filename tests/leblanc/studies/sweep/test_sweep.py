@@ -273,10 +273,11 @@ def test_what_no_sample_can_answer_is_one_fault(tmp_path: Path, capsys: Capture)
     (tmp_path / "scene.toml").write_text("")
     path = write_study(tmp_path)
     scene = tmp_path / "scene.toml"
-    scene.write_text(scene.read_text().replace('"statics"', '"kdv"'), encoding="utf-8")
+    cut = "[[chambers]]\nbaffles = { count = 4 }"
+    scene.write_text(scene.read_text().replace("[[chambers]]", cut), encoding="utf-8")
     assert main(["sweep", str(path), "--workers", "0", "--out", str(tmp_path / "out")]) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith('scene.toml: model.liquid = "kdv": must be one of')
+    assert line.startswith('scene.toml: model.liquid = "statics": must be auto or fem')
 
 
 # -- going on ------------------------------------------------------------------------------------------------
