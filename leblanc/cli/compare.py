@@ -35,6 +35,7 @@ def compare(
     from leblanc.figures.comparison import comparison_figure, save
     from leblanc.results.netcdf import write_netcdf
     from leblanc.text.explanation import basis, comparison_head, comparison_rows, refusals
+    from leblanc.text.run import unanswered
 
     write_netcdf(found.named_arrays(), folder / "compare.nc")
     files = save(comparison_figure(found), folder, "compare", "Amplitude over speed by liquid model")
@@ -45,9 +46,9 @@ def compare(
         print("\n".join([basis(found), *refusals(found)]))
         print(f"See {files.png}; the data are in {folder / 'compare.nc'}")
 
-    lost = [name for name, result in found.results.items() if not result.converged.all()]
+    lost = [f"{name}: {text}" for name, result in found.results.items() for text in unanswered(result)]
     if lost:
         from leblanc.scene.schema.load import NotConverged
 
-        raise NotConverged([f"{scene}: no bounded deflection found at some speeds by {', '.join(lost)}"])
+        raise NotConverged([f"{scene}: {text}" for text in lost])
     say(f"{found.name}: {len(found.results)} of {len(found.models)} models answered")

@@ -23,6 +23,7 @@ from leblanc.figures.response import DRY, OUT_OF_RANGE, SHADE, SHARE, value_axis
 from leblanc.results.base import one_line
 from leblanc.results.explanation import Comparison
 from leblanc.results.notes import plane_label
+from leblanc.results.response import RunResult
 from leblanc.text.explanation import comparison_alt
 from leblanc.units import MM, RPM
 from meshes.arrays import Array
@@ -32,6 +33,7 @@ Line = tuple[Array, Array]
 
 FRAME = Frame(left=0.72, top=0.46, between=0.12, below=0.42)
 AMPLITUDE, DIFFERENCE = 2.6, 1.3  # inches
+_SWING = 1e-3  # of the largest amplitude: a narrower band looks like a line
 LEAST = 1e-3  # per cent: a smaller difference looks like none
 # Colours after Okabe and Ito, safe for the colour blind; each model has a style of line and a width as well,
 # so that equal lines stay visible on top of one another.
@@ -117,6 +119,8 @@ def _draw_amplitude(axes: Axes, found: Comparison, limits: Span) -> None:
     lines = [_inside(_drawn(curve.speed, curve.amplitude), limits) for curve in curves.values()]
     for name, line, look in zip(curves, lines, LOOKS, strict=False):
         axes.plot(*line, label=name, marker=marker, **look)
+    for (name, result), look in zip(found.results.items(), LOOKS, strict=False):
+        _draw_swing(axes, name, result, look["color"])
     reference = curves[found.reference]
     bare = _inside(_drawn(reference.speed, reference.amplitude_dry), limits)
     even = np.linspace(bare[0][0], bare[0][-1], 14)
@@ -124,6 +128,21 @@ def _draw_amplitude(axes: Axes, found: Comparison, limits: Span) -> None:
     looks = {"color": DRY, "linewidth": 0.8, "marker": "o", "markerfacecolor": "white", "markevery": marks}
     axes.plot(*bare, label="without liquid", zorder=1.9, **looks)
     value_axis(axes, 0.0, [*lines, bare])
+
+
+def _draw_swing(axes: Axes, name: str, result: RunResult, color: object) -> None:
+    """From the least to the largest distance over time of a motion that was held, where the two differ."""
+    if result.held is None:
+        return
+    order = np.argsort(result.speed, kind="stable")
+    least, most = result.amplitude_min[order] * MM, result.amplitude_max[order] * MM
+    if not np.any(most - least > _SWING * np.nanmax(most)):
+        return
+    marker = {"linewidth": 5.0} if result.speed.size == 1 else {"linewidth": 0.0}
+    label = f"{name}, least to largest over time"
+    axes.fill_between(
+        result.speed[order] * RPM, least, most, color=color, alpha=0.25, zorder=1.5, label=label, **marker
+    )
 
 
 def _draw_difference(axes: Axes, names: list[str], lines: list[Line]) -> None:
@@ -164,7 +183,9 @@ def _caption(found: Comparison) -> Caption:
     )
     silent = [answer.model for answer in found.answers if not answer.answered]
     missing = f" Models that do not answer it: {', '.join(silent)}." if silent else ""
+    held = any(result.held is not None for result in found.results.values())
+    swing = " Bands: from the least to the largest over time of motions held." if held else ""
     return Caption(
-        f"Amplitude of the deflection by each liquid model.{below}",
+        f"Amplitude of the deflection by each liquid model.{swing}{below}",
         f"Scene: {one_line(found.name)}.{missing} Assumed: {assumed}.",
     )

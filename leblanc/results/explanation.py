@@ -13,6 +13,7 @@ from fluid.numbers import LayerNumbers
 from leblanc.results.base import Result, attributes
 from leblanc.results.choice import HeldCost, ModelSpan, SpeedEstimate
 from leblanc.results.exciter import named_speeds, number_or_none
+from leblanc.results.motion.held import MOTIONS
 from leblanc.results.motion.tilting import RestMode
 from leblanc.results.netcdf import NamedArrays, Variable, flags
 from leblanc.results.netcdf import variable as var
@@ -289,6 +290,34 @@ class ExciterExplanation(Result):
         )
 
 
+# Of each answer, over speed, as `run` has them.
+_OVER_SPEED = (
+    "amplitude", "liquid_offset", "amplitude_min", "amplitude_max", "state", "in_range", "error_estimate",
+)  # fmt: skip
+
+
+def _estimates(result: RunResult) -> Array:
+    """Estimated error at each speed; nan where there is none."""
+    found = result.error_estimate
+    return np.full(result.speed.shape, np.nan) if found is None else found
+
+
+def _held_counts(answers: tuple[ModelAnswer, ...]) -> dict[str, Variable]:
+    """How many motions held in time are of each kind, by model; nothing where none was held."""
+    counts = [answer.held for answer in answers]
+    if not any(counts):
+        return {}
+    return {
+        f"held_{kind}": var(
+            ("model",),
+            np.array([0 if own is None else own[kind] for own in counts]),
+            "1",
+            f"held motions that are {kind.replace('_', ' ')}",
+        )
+        for kind in MOTIONS
+    }
+
+
 @dataclass(frozen=True)
 class ModelAnswer:
     """What one liquid model says of a scene.
@@ -316,6 +345,28 @@ class ModelAnswer:
         """Largest amplitude over the range of speeds, m; None where there is none, or none that is finite."""
         found = math.nan if self.result is None else self.result.peak["amplitude"]
         return found if math.isfinite(found) else None
+
+    @property
+    def largest_error(self) -> float | None:
+        """Largest error that the model estimates for itself, relative; infinite without a bound, None unknown.
+
+        Speeds at which it has no estimate do not count.
+        """
+        error = None if self.result is None else self.result.error_estimate
+        return None if error is None or np.isnan(error).all() else float(np.nanmax(error))
+
+    @property
+    def in_range_share(self) -> float | None:
+        """Part of the speeds at which the model is within its range."""
+        return None if self.result is None else float(np.mean(self.result.in_range))
+
+    @property
+    def held(self) -> dict[str, int] | None:
+        """How many of the motions held in time are of each kind of `MOTIONS`; None where none was held."""
+        if self.result is None or self.result.held is None:
+            return None
+        held = self.result.held
+        return {kind: int(np.count_nonzero(held.at & (held.state == kind))) for kind in MOTIONS}
 
 
 @dataclass(frozen=True)
@@ -388,10 +439,11 @@ class Comparison(Result):
 
         Returns
         -------
-        nan where one of the two has no finite amplitude, shape (n,); zeros where no machine moves
+        nan where one of the two has no finite amplitude or has not converged, shape (n,); zeros where no machine moves
         """
-        own, other = (self.results[name].amplitude for name in (model, self.reference))
-        known = np.isfinite(own) & np.isfinite(other)
+        pair = [self.results[name] for name in (model, self.reference)]
+        own, other = (result.amplitude for result in pair)
+        known = np.isfinite(own) & np.isfinite(other) & pair[0].converged & pair[1].converged
         found = np.full(own.shape, np.nan)
         found[known] = own[known] - other[known]
         largest = self.results[self.reference].peak["amplitude"]
@@ -427,10 +479,12 @@ class Comparison(Result):
             "answered": answer.answered,
             "reason": answer.reason,
             "cpu_time": answer.cpu_time,
-            "amplitude": None if found is None else found.amplitude,
-            "liquid_offset": None if found is None else found.liquid_offset,
+            **{name: None if found is None else getattr(found, name) for name in _OVER_SPEED},
             "peak_amplitude": answer.peak_amplitude,
             "largest_difference": self.largest_difference(answer.model) if answer.answered else None,
+            "largest_error": answer.largest_error,
+            "in_range_share": answer.in_range_share,
+            "held": answer.held,
         }
 
     def named_arrays(self) -> NamedArrays:
@@ -450,10 +504,14 @@ class Comparison(Result):
         largest = [
             self.largest_difference(answer.model) if answer.answered else None for answer in self.answers
         ]
-        peaks, times = (
-            [getattr(answer, key) for answer in self.answers] for key in ("peak_amplitude", "cpu_time")
+        peaks, times, errors, shares = (
+            [getattr(answer, key) for answer in self.answers]
+            for key in ("peak_amplitude", "cpu_time", "largest_error", "in_range_share")
         )
         amplitude, offset = table(lambda result: result.amplitude), table(lambda result: result.liquid_offset)
+        least, most = table(lambda result: result.amplitude_min), table(lambda result: result.amplitude_max)
+        told = table(_estimates)
+        within = table(lambda result: result.in_range.astype(float)) == 1.0
         dry, reference = self.amplitude_dry, f"from {self.reference}, over its largest amplitude"
         reasons = np.array([answer.reason for answer in self.answers], dtype=object)
         return NamedArrays(
@@ -466,6 +524,15 @@ class Comparison(Result):
                 "liquid_offset": var(over, offset, "m", "liquid offset", "rotation axis to centre of mass"),
                 "peak_amplitude": var(each, numbers(peaks), "m", "largest amplitude", "over the speeds"),
                 "largest_difference": var(each, numbers(largest), "1", "largest difference", reference),
+                "amplitude_min": var(over, least, "m", "least amplitude", "over time"),
+                "amplitude_max": var(over, most, "m", "largest amplitude", "over time"),
+                "error_estimate": var(over, told, "1", "estimated error", "by the model itself, relative"),
+                "in_range": flags(over, within, "no yes", "in range", "of the model"),
+                "largest_error": var(
+                    each, numbers(errors), "1", "largest estimated error", "over the speeds"
+                ),
+                "in_range_share": var(each, numbers(shares), "1", "share in range", "of the speeds"),
+                **_held_counts(self.answers),
             },
             coords={
                 "speed": var(("speed",), self.speed, "rad s-1", "spin speed", "of the rotor about its axis"),

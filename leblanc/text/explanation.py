@@ -186,7 +186,22 @@ def comparison_head(found: Comparison) -> tuple[str, ...]:
     """
     place = next((amplitude_place(result) for result in found.results.values()), "")
     amplitude = f"largest amplitude{f' {place}' if place else ''} ({_unit(found).name})"
-    return "model", amplitude, "at (rpm)", "difference (%)", "CPU time (s)"
+    held = ("held states",) if _any_held(found) else ()
+    return (
+        "model",
+        amplitude,
+        "at (rpm)",
+        "difference (%)",
+        "estimate (%)",
+        "in range (%)",
+        *held,
+        "CPU time (s)",
+    )
+
+
+def _any_held(found: Comparison) -> bool:
+    """Some model's motions were held in time."""
+    return any(answer.held for answer in found.answers)
 
 
 def _unit(found: Comparison) -> Unit:
@@ -207,15 +222,40 @@ def comparison_rows(found: Comparison) -> list[tuple[str, ...]]:
 
 def _comparison_row(found: Comparison, answer: ModelAnswer) -> tuple[str, ...]:
     if answer.result is None or answer.cpu_time is None:
-        return answer.model, REFUSED, "", "", ""
+        return answer.model, REFUSED, *[""] * (len(comparison_head(found)) - 2)
     at, amplitude = answer.result.peak["speed"], answer.peak_amplitude
     return (
         answer.model,
         NOT_FOUND if amplitude is None else _unit(found).number(amplitude),
         "" if math.isnan(at) else number(at * RPM),
         "reference" if answer.model == found.reference else difference(found, answer.model),
+        _estimate(answer),
+        "" if answer.in_range_share is None else f"{100.0 * answer.in_range_share:.3g}",
+        *([held_words(answer)] if _any_held(found) else []),
         f"{answer.cpu_time:.2g}",
     )
+
+
+def _estimate(answer: ModelAnswer) -> str:
+    """Largest error that a model estimates for itself, per cent."""
+    error = answer.largest_error
+    if error is None:
+        return "not known"
+    if math.isinf(error):
+        return "no bound"
+    return "rounding" if error < EXACT else f"{100.0 * error:.2g}"
+
+
+def held_words(answer: ModelAnswer) -> str:
+    """How many motions held in time are of each kind; none where a model is steady.
+
+    Parameters
+    ----------
+    answer : of a model
+    """
+    if answer.held is None:
+        return "none"
+    return ", ".join(f"{count} {kind.replace('_', ' ')}" for kind, count in answer.held.items() if count)
 
 
 def difference(found: Comparison, model: str) -> str:
@@ -251,7 +291,8 @@ def basis(found: Comparison) -> str:
     """
     return (
         f"Differences are the largest over the speeds, from {found.reference}, as a share of its largest "
-        "amplitude."
+        "amplitude.\nEstimates are the largest error that a model knows of itself; in range is the part of the "
+        "speeds."
     )
 
 
@@ -277,6 +318,8 @@ def _fact(found: Comparison, answer: ModelAnswer) -> str:
     else:
         size = difference(found, answer.model)
         parts.append(f"difference {size}{' %' if size[0].isdigit() else ''}")
+    if answer.held:
+        parts.append(f"held states: {held_words(answer)}")
     return ", ".join([*parts, f"{answer.cpu_time:.2g} s of processor time"])
 
 
@@ -294,4 +337,6 @@ def comparison_alt(found: Comparison) -> str:
     """
     peaks = [f"{answer.model} {_size(answer)}" for answer in found.answers if answer.answered]
     below = "; below, their differences" if len(peaks) > 1 else ""
-    return f"Curves of the amplitude over speed by each liquid model{below}; largest: {', '.join(peaks)}."
+    held = [f"{a.model} held in time: {held_words(a)}" for a in found.answers if a.held]
+    swings = f"; {'; '.join(held)}" if held else ""
+    return f"Curves of the amplitude over speed by each liquid model{below}; largest: {', '.join(peaks)}{swings}."

@@ -261,7 +261,7 @@ def _wrong() -> Iterator[Case]:
         "compare-exciter": f"compare {table} --models statics",
         "compare-unknown": f"compare {rig} --models statics,beauty",
         "compare-twice": f"compare {rig} --models statics,statics",
-        "compare-none": f"compare {rig} --models kdv",
+        "compare-none": f"compare {_scene('closed_baffles')} --models kdv,statics",
         "optimise-objective": f"optimise {rig} --objective beauty",
         "optimise-seed": f"optimise {rig} --seed -1",
         "optimise-limit": f"optimise {rig} --objective least_mass --limit 1kg",

@@ -65,8 +65,8 @@ def test_each_as_if_alone() -> None:
 )
 @kills(
     "solvers.synchronous.pairs:pair_machines",
-    "model.added_mass(here), here.mass * here.chamber.radius",
-    "model.added_mass(here), here.mass",
+    "steepest, here.mass * here.chamber.radius",
+    "steepest, here.mass",
 )
 @kills("solvers.synchronous.pairs:Pairs.pull", "moment - fills.mass * e", "moment")
 @kills(

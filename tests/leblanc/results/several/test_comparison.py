@@ -11,8 +11,9 @@ import pytest
 from leblanc.cli.output import print_json
 from leblanc.figures.comparison import LOOKS
 from leblanc.results.explanation import Comparison, ModelAnswer
+from leblanc.results.motion.held import Held
 from leblanc.results.response import RunResult
-from leblanc.text.explanation import comparison_rows, refusals
+from leblanc.text.explanation import comparison_head, comparison_rows, refusals
 from meshes.errors import InputError
 from tests.mutants import kills
 from tests.oracles.records import ADDED, MASS, RPM, dry_deflection, record_of, response_of
@@ -91,12 +92,15 @@ def test_json_dataset_and_table_say_the_same(capsys: pytest.CaptureFixture[str])
     assert [*said] == ["models", "reference", "speed", "amplitude_dry", "name", "digest"]
     entries, data = said["models"], found.to_dataset()
     keys = ["model", "answered", "reason", "cpu_time", "amplitude", "liquid_offset"]
-    assert all([*one] == [*keys, "peak_amplitude", "largest_difference"] for one in entries)
+    more = ["amplitude_min", "amplitude_max", "state", "in_range", "error_estimate"]
+    last = ["peak_amplitude", "largest_difference", "largest_error", "in_range_share", "held"]
+    assert all([*entry] == [*keys, *more, *last] for entry in entries)
     linear, kdv, _ = entries
     assert kdv["reason"] and not kdv["answered"] and not linear["reason"] and linear["answered"]
     assert [kdv[key] for key in keys[3:]] == [None] * 3 and kdv["largest_difference"] is None
     assert dict(data.sizes) == {"model": 3, "speed": 96}
-    for key in ("amplitude", "liquid_offset", "peak_amplitude", "largest_difference", "cpu_time"):
+    over = ("amplitude", "liquid_offset", "amplitude_min", "amplitude_max")
+    for key in (*over, "peak_amplitude", "largest_difference", "in_range_share", "cpu_time"):
         assert data[key].attrs["units"] and data[key].attrs["long_name"]
         np.testing.assert_array_equal(data[key].sel(model="linear"), linear[key])
         assert np.isnan(data[key].sel(model="kdv")).all()
@@ -105,7 +109,48 @@ def test_json_dataset_and_table_say_the_same(capsys: pytest.CaptureFixture[str])
     table = comparison_rows(found)
     assert [row[0] for row in table] == ["linear", "kdv", "statics"] and table[2][3] == "reference"
     assert table[0][1] == f"{1e3 * linear['peak_amplitude']:.4g}"
+    assert {len(row) for row in table} == {len(comparison_head(found))}
     assert refusals(found) == ["kdv: model.liquid must be another"]
+
+
+@kills(
+    "leblanc.results.explanation:ModelAnswer.held",
+    "held.at & (held.state == kind)",
+    "held.state == kind",
+)
+def test_held_states_have_a_column_of_their_own() -> None:
+    """Of 20 speeds at the end of the range that were held, five repeat and two are limit cycles."""
+    steady, size = wet(ADDED), SPEED.size
+    at, state = np.arange(size) >= size - 20, np.full(size, "steady", dtype="U11")
+    state[-20:-15], state[-2:] = "periodic", "limit_cycle"
+    some, nothing = np.where(at, 1e-3, np.nan), np.full(size, np.nan)
+    least, most = 0.5 * steady.amplitude, np.where(at, 1.5 * steady.amplitude, np.nan)
+    liquid = np.zeros((size, 1), dtype=complex)
+    motions = Held(at, state, least, most, nothing, liquid, np.abs(liquid), some, state, nothing, 64)
+    waves = replace(steady, held=motions, error_estimate=np.where(at, 0.02, 0.001))
+    found = comparison(answer("statics", steady), answer("long_wave", waves))
+    kinds = {"steady": 13, "periodic": 5, "limit_cycle": 2, "not_settled": 0}
+    assert [entry["held"] for entry in found.to_json()["models"]] == [None, kinds]
+    head, (first, second) = comparison_head(found), comparison_rows(found)
+    column = head.index("held states")
+    assert (first[column], second[column]) == ("none", "13 steady, 5 periodic, 2 limit cycle")
+    within = f"{100.0 * waves.in_range.mean():.3g}"
+    assert second[head.index("estimate (%)")] == "2" and second[head.index("in range (%)")] == within
+    data = found.to_dataset()
+    assert data.held_limit_cycle.values.tolist() == [0, 2]
+    np.testing.assert_array_equal(data.amplitude_max.sel(model="long_wave"), waves.amplitude_max)
+    bands = [band for band in found.plot().axes[0].collections if "least to largest" in str(band.get_label())]
+    assert len(bands) == 1 and "5 periodic" in found.plot().alt
+    assert "held states" not in comparison_head(three())
+
+
+def test_what_has_not_converged_is_no_difference() -> None:
+    response = response_of(SPEED)
+    known = np.arange(SPEED.size) != 5
+    lost = record_of(replace(response, converged=known, deflection=np.where(known, response.deflection, 1.0)))
+    found = comparison(answer("kdv", lost), answer("statics", wet(ADDED)))
+    assert np.flatnonzero(np.isnan(found.difference("kdv"))).tolist() == [5]
+    assert found.largest_difference("kdv") == 0.0
 
 
 def test_lines_of_the_figure_are_told_apart_without_colour() -> None:
