@@ -213,7 +213,7 @@ def plane_label(chambers: bool) -> str:
     return " at chamber 1" if chambers else " at the origin"
 
 
-def plane(position: float, zero: str, chambers: bool) -> Note:
+def plane(position: float, zero: str, chambers: bool, held: bool = False) -> Note:
     """Where the motion of a rotor that tilts is measured.
 
     Parameters
@@ -221,11 +221,13 @@ def plane(position: float, zero: str, chambers: bool) -> Note:
     position : of the plane, m
     zero : what angles count from
     chambers : the plane is that of the first chamber
+    held : some motions are held in time
     """
     start = "the unbalance" if zero == "unbalance" else zero
+    turns = ", of motions held in time as a mean over the turns" if held else ""
     text = (
-        f"Amplitude: largest radius of the orbit {plane_words(position, chambers)}. Angles: of its part "
-        f"that turns with the spin, from {start}."
+        f"Amplitude: largest radius of the orbit {plane_words(position, chambers)}{turns}. "
+        f"Angles: of its part that turns with the spin, from {start}."
     )
     return Note(RunCode.PLANE, {"position": position}, text)
 

@@ -306,7 +306,7 @@ def _notes(
         found.append(notes.slow_disturbances(held))
     else:
         chambers = bool(machine.scene.fills)
-        found.append(notes.plane(motion.position, motion.zero, chambers))
+        found.append(notes.plane(motion.position, motion.zero, chambers, held is not None))
         found.append(_against_spin(answer, motion, held) if chambers else None)
     found.append(notes.self_excited(whirl))
     several = np.count_nonzero(np.isfinite(answer.branch_deflection), axis=1) > 1

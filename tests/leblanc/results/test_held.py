@@ -19,6 +19,7 @@ from leblanc.results.notes import RunCode
 from leblanc.results.response import RunResult
 from leblanc.text import run as words
 from meshes.errors import InputError
+from tests.mutants import kills
 from tests.oracles.data_files import assert_read_back
 from tests.oracles.records import RPM, held_rig, rig
 
@@ -127,6 +128,13 @@ def test_what_has_not_settled_on_the_way_down_is_no_hysteresis() -> None:
     assert not held_of(result).hysteresis.any()
     assert {limit.label: limit.where for limit in words.limits(result)}["Up and down differ"] == "none"
     assert len(held_motions(result)) == 1
+
+
+@kills("leblanc.results.notes:plane", 'turns = ", of', 'turns = "" and ", of')
+def test_the_plane_says_that_an_amplitude_is_a_mean() -> None:
+    """Where motions are held in time every turn has a largest radius of its own."""
+    for held in (False, True):
+        assert ("mean over the turns" in notes.plane(0.1, "unbalance", True, held).text) is held
 
 
 def test_slow_disturbances_are_spoken_of_where_nothing_was_held() -> None:
