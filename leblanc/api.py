@@ -36,7 +36,7 @@ SceneOrPath = Scene | str | PathLike[str]
 _OPTION = re.compile(r"--([a-z][a-z-]*)")
 
 
-def run(scene: SceneOrPath, *, workers: int = 1) -> RunResult | ExciterResult:
+def run(scene: SceneOrPath, *, workers: int = 1, solver: str | None = None) -> RunResult | ExciterResult:
     """Response and the liquid's centre of mass at each speed of a scene.
 
     Parameters
@@ -44,6 +44,8 @@ def run(scene: SceneOrPath, *, workers: int = 1) -> RunResult | ExciterResult:
     scene : the machine, or the path of its file
     workers : processes that hold long waves in time, where the scene asks for that; this one alone if 1. The
         answer does not depend on it
+    solver : of py-pde, by name, that holds them, an independent check: "runge-kutta", "scipy"; the compiled
+        steps if None
 
     Returns
     -------
@@ -70,8 +72,9 @@ def run(scene: SceneOrPath, *, workers: int = 1) -> RunResult | ExciterResult:
         return run_exciter(machine)
     from leblanc.studies.held.holding import Holding
     from leblanc.studies.run import run_scene
+    from solvers.held.state import COUPLED
 
-    return run_scene(machine, holding=Holding(workers))
+    return run_scene(machine, holding=Holding(workers, solver=solver or COUPLED))
 
 
 def explain(scene: SceneOrPath) -> Explanation | ExciterExplanation:

@@ -24,6 +24,10 @@ def run(
         int | None, typer.Option(help="Processes that hold waves in time [default: all cores].")
     ] = None,
     fresh: Annotated[bool, typer.Option(help="Hold anew what an earlier run has left.")] = False,
+    solver: Annotated[
+        str | None,
+        typer.Option(help="Of py-pde, that holds waves in time: runge-kutta, scipy ... [default: coupled]."),
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Answer of the machine at each speed. Figures, data file, report."""
@@ -40,8 +44,9 @@ def run(
     with working("preparing") as update:
         from leblanc.studies.held.holding import Holding
         from leblanc.studies.run import run_scene
+        from solvers.held.state import COUPLED
 
-        holding = Holding(_processes(workers), folder, fresh)
+        holding = Holding(_processes(workers), folder, fresh, solver or COUPLED)
         result = run_scene(machine, lambda what: update(what=what), holding)
 
     from leblanc.figures.response import write_figures

@@ -328,6 +328,7 @@ class RunResult(Result):
     held_error = carried("held.error")
     held_whirl_speed = carried("held.whirl_speed")
     held_reason = carried("held.reason")
+    held_solver = carried("held.solver")
     liquid_mean = carried("held.liquid")
     liquid_ripple = carried("held.ripple")
     amplitude_down = carried("held.amplitude_down")

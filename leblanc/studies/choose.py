@@ -202,6 +202,12 @@ differently in two directions"
         raise InputError("model.liquid", scene.model.liquid, allowed)
 
 
+def may_hold(scene: Scene) -> bool:
+    """Whether a scene lets motions be held in time."""
+    model = scene.model
+    return model.liquid == "long_wave" or (model.liquid == "auto" and model.held != "never")
+
+
 def held_at(scene: Scene, choice: Choice, growth: Array) -> Flags:
     """At which speeds the wave is held in time, shape (n,).
 
@@ -216,7 +222,7 @@ def held_at(scene: Scene, choice: Choice, growth: Array) -> Flags:
     """
     if scene.model.liquid == "long_wave":
         return np.ones(growth.shape, dtype=bool)
-    if scene.model.liquid != "auto" or scene.model.held == "never" or is_cut(scene):
+    if not may_hold(scene) or is_cut(scene):
         return np.zeros(growth.shape, dtype=bool)
     if scene.model.held == "always":
         return np.ones(growth.shape, dtype=bool)

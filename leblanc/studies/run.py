@@ -26,6 +26,7 @@ from leblanc.studies.choose import (
     held_at,
     held_cost,
     liquid_models,
+    may_hold,
     prepare,
 )
 from leblanc.studies.held.holding import HERE, Began, Holding
@@ -35,6 +36,8 @@ from leblanc.studies.validity import doubts
 from leblanc.studies.whirl_map import small_whirl_friction
 from meshes.arrays import Array, Complex
 from meshes.chamber_section import liquid_of
+from meshes.errors import InputError
+from solvers.held.state import COUPLED
 from solvers.rotor.balance_quality import balance_quality, tolerance_planes
 from solvers.rotor.campbell import campbell
 from solvers.rotor.jeffcott import Jeffcott
@@ -186,7 +189,8 @@ def run_scene(
 
     Raises
     ------
-    InputError : the scene names a liquid model that does not know its chambers, or its rotor is an exciter
+    InputError : the scene names a liquid model that does not know its chambers, or its rotor is an exciter;
+        a solver for motions that the scene does not let it hold, or that cannot hold them
 
     Examples
     --------
@@ -195,6 +199,10 @@ def run_scene(
     >>> result.speed.size
     201
     """
+    if holding.solver != COUPLED and not may_hold(scene):
+        raise InputError(
+            "solver", holding.solver, "left out: the scene has no motion held in time ([model] held)"
+        )
     machine = prepare(scene)
     progress("choosing the liquid model")
     (choice,) = choose_all([machine])

@@ -12,7 +12,7 @@ import numpy as np
 from fluid.fill import Fill
 from meshes.arrays import Array, Complex
 from meshes.errors import require_positive
-from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics, Moment
+from solvers.held.state import COUPLED, HeldKind, HeldMachine, HeldState, HoldNumerics, Moment
 from solvers.held.turns import Watch
 from solvers.layer.records import Outcome
 from solvers.layer.state import ring
@@ -105,6 +105,7 @@ def hold(
     """
     numerics = numerics or HoldNumerics()
     require_positive("speed", begin.spin)
+    require_known_solver(machine, begin.spin, numerics)
     watch, moment, outcome = Watch(machine, begin, numerics, slowest), begin, Outcome.RAN_OUT
     while outcome is not Outcome.DONE:
         moment, outcome = _march(machine, moment, numerics, watch, trackers)
@@ -131,6 +132,22 @@ def compile_kernels(machine: HeldMachine, begin: Moment) -> None:
     )  # fmt: skip
     stretch = 0.0, 1e-6 / begin.spin
     run(equation, equation.start(8), stretch, (), solver="coupled", follow=True)
+
+
+def require_known_solver(machine: HeldMachine, spin: float, numerics: HoldNumerics) -> None:
+    """Raise `InputError` unless py-pde has a solver of that name that can hold the machine.
+
+    Parameters
+    ----------
+    machine, numerics : as for `hold`
+    spin : rad/s
+    """
+    if numerics.solver == COUPLED:
+        return
+    from solvers.pypde import RotorLayersPDE
+    from solvers.pypde.stock import require_solver
+
+    require_solver(RotorLayersPDE(machine.system, machine.fills, spin), numerics.solver)
 
 
 _SHARE = 0.5  # of what half the cells change; a third where the scheme is of second order
@@ -174,6 +191,7 @@ def _march(
 ) -> tuple[Moment, Outcome]:
     """On py-pde's road until the watch has seen enough, the turns have run out or the steps have failed."""
     from solvers.pypde import RotorLayersPDE, TurnTracker, run
+    from solvers.pypde.stock import SAMPLES
 
     equation = RotorLayersPDE(
         machine.system, machine.fills, moment.spin, friction=machine.friction, gravity=machine.gravity,
@@ -182,11 +200,24 @@ def _march(
     state = equation.start(numerics.cells, moment.coordinates, moment.rate, moment.area, moment.momentum)
     turn = 2.0 * math.pi / moment.spin
     stretch = 0.0, (numerics.turns - watch.count) * turn
-    tracker = TurnTracker(turn, watch.turn)
-    options = {"solver": "coupled", "follow": True, "courant": numerics.courant}
+    marks = _MARKS if numerics.solver == COUPLED else SAMPLES
+    tracker = TurnTracker(equation, turn, watch.turn, marks)
+    options = {"solver": numerics.solver, **_stepping(equation, state.grid, numerics, turn / marks)}
     state, outcome = run(equation, state, stretch, [tracker, *trackers], **options)
     area, momentum, place, rate = (part.copy() for part in equation.parts(state))
     return Moment(moment.spin, place, rate, area, momentum, moment.layers), outcome
+
+
+_MARKS = 8  # times a turn at which the layers are looked at
+
+
+def _stepping(equation: Any, grid: Any, numerics: HoldNumerics, interval: float) -> dict[str, Any]:
+    """What `solve` is given with the name of a solver; an interval between two looks, s."""
+    if numerics.solver == COUPLED:
+        return {"follow": True, "courant": numerics.courant}
+    from solvers.pypde.stock import stepping
+
+    return stepping(equation, grid, numerics.solver, interval)
 
 
 def _fallen(machine: HeldMachine, moment: Moment, outcome: Outcome) -> Moment | None:

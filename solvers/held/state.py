@@ -14,6 +14,7 @@ from solvers.rotor.system import RotorSystem
 
 # Turns a motion is looked at over before it may be called periodic, where nothing is known of it.
 SHORT = 8
+COUPLED = "coupled"  # the compiled steps, by their name in py-pde
 
 
 class HeldKind(StrEnum):
@@ -36,6 +37,7 @@ class HoldNumerics:
     courant : Courant number of the layers, above 0, at most 0.9
     tolerance : change of the amplitude over its size at which it has settled
     turns : of the drum, at most
+    solver : its name in py-pde; another than the compiled steps is slow, and an independent check
 
     Raises
     ------
@@ -47,6 +49,7 @@ class HoldNumerics:
     courant: float = 0.8
     tolerance: float = 2e-4
     turns: int = 1024
+    solver: str = COUPLED
 
     def __post_init__(self) -> None:
         if not 8 <= self.cells <= 65536:

@@ -19,7 +19,7 @@ from solvers.runup.state import mean_area, planes_of
 
 # Turns after which a motion may be called periodic; a limit cycle is judged over windows from `_LONG` on.
 _FEW, _LONG = 4, 32
-_EVEN = 1e-5  # of the amplitude, that a circle may wobble
+_EVEN = 0.5  # times the tolerance, that a circle may wobble
 _ELSEWHERE = 20.0  # times the tolerance, that the axis may be off after a turn that repeats
 _LINES = 2  # multiples of the spin that are no whirl of their own, either way
 _RESTS = 1e-7  # of the amplitude, that a stable equilibrium may move in a turn
@@ -163,18 +163,28 @@ class Watch:
             self.kind, self.change = HeldKind.STEADY, 0.0
             return done >= 2
         if self.slowest < 0.0 and done >= 2 and np.ptp(sizes[-2:]) <= _RESTS * scale:
-            self.kind, self.change = HeldKind.STEADY, float(np.ptp(sizes[-2:]) / scale)
+            self.change = float(np.ptp(sizes[-2:]) / scale)
+            self.kind = self._repeating(self.change)
             return True
         left = self._left(sizes, scale)
         if left <= self.numerics.tolerance:
             wobble = float(np.ptp(sizes[-_FEW:])) / scale
-            self.kind = HeldKind.STEADY if wobble <= _EVEN else HeldKind.PERIODIC
+            self.kind = self._repeating(wobble)
             self.change, self.span = left, _FEW
             # A circle that the axis does not run through in a turn is a whirl of its own.
             if self._elsewhere(scale):
                 self.kind, self.span = HeldKind.LIMIT_CYCLE, 2 * SHORT
             return True
         return done % (self.window // 2) == 0 and self._bounded(sizes, scale)
+
+    def _repeating(self, wobble: float) -> HeldKind:
+        """What a motion is that repeats every turn and wobbles by so much of the amplitude.
+
+        Gravity across the axis makes every layer ripple, however little of that the axis shows.
+        """
+        ripples = self.machine.gravity > 0.0 and self.begin.layers.any()
+        even = wobble <= _EVEN * self.numerics.tolerance and not ripples
+        return HeldKind.STEADY if even else HeldKind.PERIODIC
 
     def _elsewhere(self, scale: float) -> bool:
         """Whether the axis is not where it was a turn before."""

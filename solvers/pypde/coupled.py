@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, ClassVar
 
 import numpy as np
 from pde.backends.base import BackendBase
@@ -74,6 +74,7 @@ class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
         self.friction, self.gravity, self.dispersion = friction, gravity, dispersion
         self.layers = self.machine(8).active if layers is None else np.asarray(layers, dtype=bool)
         self.explicit_time_dependence = True
+        self._still: dict[int, Coupled] = {}  # by the number of cells: what does not change with the state
 
     def machine(self, cells: int) -> Coupled:
         """The same for the compiled steps, at rest, with its layers as they are caught at this spin.
@@ -158,11 +159,8 @@ class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
         -------
         Rates of all fields
         """
-        area, momentum, place, rate = self.parts(state)
-        machine = self.machine(area.shape[1] if area.size else 8)
-        layers = [
-            _Layer(machine, j, area[j], momentum[j], self.spin, self.spin * t) for j in range(len(area))
-        ]
+        area, _, place, rate = self.parts(state)
+        machine, layers = self._resting(state), self._moving(state, t)
         system, turn = self.system, cmath.exp(1j * self.spin * t)
         mass, _, _, stiffness = machine.machine.matrices
         damping = system.damping + self.spin * system.gyroscopic
@@ -185,6 +183,59 @@ class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
         d_area = np.array([layer.d_area for layer in layers]).reshape(area.shape)
         d_momentum = np.array([layer.d_momentum for layer in layers]).reshape(area.shape)
         return self._collection(state.grid, d_area, d_momentum, rate, acceleration)
+
+    def _resting(self, state: Any) -> Coupled:
+        """The machine with as many cells as a state has."""
+        cells = int(state.data.shape[1])
+        if cells not in self._still:
+            self._still[cells] = self.machine(cells)
+        return self._still[cells]
+
+    def _moving(self, state: Any, t: float) -> list[_Layer]:
+        """The layers of a state."""
+        area, momentum, _, _ = self.parts(state)
+        machine, pairs = self._resting(state), zip(area, momentum, strict=True)
+        return [_Layer(machine, j, a, q, self.spin, self.spin * t) for j, (a, q) in enumerate(pairs)]
+
+    # Steps times `fastest`, by py-pde's names: as for the layers alone, but for those with rounds of their
+    # own beside the rounds of the coupling.
+    steps: ClassVar[Mapping[str, float]] = {
+        "runge-kutta": 0.5, "adams-bashforth": 0.1, "euler": 0.02, "explicit": 0.02,
+        "crank-nicolson": 0.0, "implicit": 0.0,
+    }  # fmt: skip
+
+    def fastest(self, grid: GridBase) -> float:
+        """Cells that the fastest wave on the layers at rest passes in a unit of time, 1/s; 0 without any."""
+        found = 0.0
+        for fill in (self.fills[j] for j in np.flatnonzero(self.layers).tolist()):
+            log = math.log(fill.chamber.radius / fill.surface_radius)
+            mean, half = long_wave.wave_celerity(0.0, log, self.spin)
+            found = max(found, float(abs(mean) + half) * grid.shape[0] / (2.0 * math.pi))
+        return found
+
+    @property
+    def sizes(self) -> tuple[float, ...]:
+        """Of each field, for tolerances: layers at rest, their least depth, that times the spin."""
+        fills, n = [self.fills[j] for j in np.flatnonzero(self.layers).tolist()], len(self.system.coordinates)
+        areas = [0.5 * (fill.chamber.radius**2 - fill.surface_radius**2) for fill in fills]
+        depth = min((fill.depth for fill in fills), default=1.0)
+        moving = [depth] * n + [depth * self.spin] * n
+        return *areas, *(self.spin * area**2 for area in areas), *moving
+
+    def row(self, state: Any, t: float) -> Array:
+        """A moment as the compiled steps write it down: see `solvers.runup.state.State.trace`.
+
+        Parameters
+        ----------
+        state, t : the moment; its time, s
+
+        Returns
+        -------
+        Shape (2 + n + 2 l,)
+        """
+        moments = [layer.moment for layer in self._moving(state, t)]
+        parts = [part for moment in moments for part in (moment.real, moment.imag)]
+        return np.array([t, self.spin * t, *self.parts(state)[2], *parts])
 
     def deflection(self, state: Any) -> Complex:
         """Of each chamber's axis in the standing frame, m, complex, shape (l,)."""
@@ -223,6 +274,12 @@ class _Layer:
         scale = self.layer.weight * self.layer.radius**2
         found: Array = scale * (parts * self.log) @ parts.T / step
         return found
+
+    @property
+    def moment(self) -> complex:
+        """First moment of the layer over R^3, drum frame."""
+        r, rays = self.surface, self.angles[0] + 1j * self.angles[1]
+        return complex(np.sum((1.0 - r) * (1.0 + r + r * r) / 3.0 * rays) * 2.0 * math.pi / self.a.size)
 
     def _shear(self) -> Array:
         """Rate at which friction takes q [theory: long_wave, eq. 9]."""
@@ -264,9 +321,7 @@ class _Layer:
         d_flowing = np.sum(d_flow * self.across + self.u * self.log * d_across)
         d_moment = np.sum(self.surface * d_a * rays) * step
         flowing = np.sum(self.u * self.log * self.across)
-        r = self.surface
-        moment = np.sum((1.0 - r) * (1.0 + r + r * r) / 3.0 * rays) * step
-        relative, changed = flowing + 1j * self.spin * moment, d_flowing + 1j * self.spin * d_moment
+        relative, changed = flowing + 1j * self.spin * self.moment, d_flowing + 1j * self.spin * d_moment
         found = (changed + 1j * self.spin * relative) * self.turn * self.layer.weight * self.layer.radius**3
         return np.array([found.real, found.imag])
 
@@ -326,7 +381,6 @@ class CoupledSolver(SolverBase):  # type: ignore[no-untyped-call]
         self._select_backend(state)
         self.info |= {"dt": None, "dt_adaptive": True, "stochastic": False, "steps": 0}
         self.info |= {"courant": self.courant, "outcome": Outcome.DONE, "followed": None}
-        self.info["layers"] = int(self.equation.layers.sum())
         machine = self.equation.machine(state.grid.shape[0])
         machine.follow(_ROWS if self.follow else 0)
         left: Array | None = None
@@ -401,18 +455,21 @@ def run(
     """
     try:
         state = equation.solve(state, stretch, tracker=list(trackers), **options)
-    except ConvergenceError:
-        return equation.diagnostics["last_state"], equation.diagnostics["solver"]["outcome"]
+    except RuntimeError:  # py-pde's solvers have no other
+        failed = equation.diagnostics["solver"].get("outcome", Outcome.TOO_LONG)
+        return equation.diagnostics.get("last_state", state), failed
     return state, Outcome.DONE
 
 
 class TurnTracker(TrackerBase):  # type: ignore[no-untyped-call]
     """Hands on what the steps of each turn have left, until that is enough.
 
-    It serves the solver "coupled" with `follow`, and is called several times a turn.
+    It is called several times a turn. The solver "coupled" with `follow` tells every step; of other solvers
+    the moments are taken at which it is called.
 
     Parameters
     ----------
+    equation : what is solved
     turn : time of a turn, s
     enough : called with the steps of a turn, rows of `solvers.runup.state.State.trace`, with the layers at
         its marks, areas A, m^2, shape (marks, l, c), and with the state at its end, which it may change;
@@ -420,9 +477,15 @@ class TurnTracker(TrackerBase):  # type: ignore[no-untyped-call]
     marks : how often a turn the layers are looked at
     """
 
-    def __init__(self, turn: float, enough: Callable[[Array, Array, Any], bool], marks: int = 8) -> None:
+    def __init__(
+        self,
+        equation: RotorLayersPDE,
+        turn: float,
+        enough: Callable[[Array, Array, Any], bool],
+        marks: int = 8,
+    ) -> None:
         super().__init__(interrupts=turn / marks)
-        self.enough, self.marks = enough, marks
+        self.equation, self.enough, self.marks = equation, enough, marks
         self.steps: list[Array] = []
         self.layers: list[Array] = []
 
@@ -433,12 +496,12 @@ class TurnTracker(TrackerBase):  # type: ignore[no-untyped-call]
 
     def handle(self, field: Any, t: float) -> None:
         """Take what has come since the last time."""
-        steps = self.info["solver"]["followed"]
-        if steps is None:
+        told = self.info["solver"]
+        steps = told["followed"] if "followed" in told else self.equation.row(field, t)[None, :]
+        if steps is None or t == 0.0:
             return
         self.steps.append(steps)
-        count = int(self.info["solver"]["layers"])
-        self.layers.append(field.data[:count].copy())
+        self.layers.append(self.equation.parts(field)[0].copy())
         if len(self.layers) < self.marks:
             return
         turn, layers = np.concatenate(self.steps), np.stack(self.layers)

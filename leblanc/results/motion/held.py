@@ -12,6 +12,7 @@ from leblanc.results.motion.encoding import finite, pair
 from leblanc.results.netcdf import Variable, flags
 from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Complex, Flags
+from solvers.held.state import COUPLED
 
 MOTIONS = ("steady", "periodic", "limit_cycle", "not_settled")
 HELD_MODEL = "long_wave"  # the liquid model of motions held in time
@@ -35,6 +36,7 @@ class Held:
     state_down, amplitude_down : while the speed falls, m, shape (n,)
     cells : round each wall
     reason : why the motion has not settled, else empty, shape (n,); no entry where that is not known
+    solver : that held them, by its name in py-pde
     """
 
     at: Flags
@@ -49,6 +51,7 @@ class Held:
     amplitude_down: Array
     cells: int
     reason: NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, dtype="U1"))
+    solver: str = COUPLED
 
     @property
     def limit_cycle(self) -> Flags:
@@ -80,6 +83,7 @@ class Held:
             "amplitude_down": finite(self.amplitude_down),
             "state_down": self.state_down.tolist(),
             "held_reason": self.reason.tolist(),
+            "held_solver": self.solver,
         }
 
     def variables(self) -> dict[str, Variable]:
@@ -103,6 +107,7 @@ class Held:
             "state_down": flags(
                 over, down, " ".join(MOTIONS), "state of the motion", "while the speed falls"
             ),
+            "held_solver": var((), np.array(self.solver), "1", "solver", "of py-pde, that held the motions"),
             **reasons,
         }
 

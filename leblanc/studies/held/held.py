@@ -18,7 +18,7 @@ from leblanc.studies.held.store import FOLDER, kept
 from leblanc.studies.held.workers import runner
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.held.branch import HeldBranches, HeldTask, held_branches
-from solvers.held.hold import start
+from solvers.held.hold import require_known_solver, start
 from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics
 from solvers.rotor.vibration import orbit
 from solvers.synchronous.response import Response, joined
@@ -69,7 +69,7 @@ def hold_answer(
     every = held_response(machine, steady.at(order), found).at(back)
     states = HeldBranches(*(tuple(way[k] for k in back.tolist()) for way in (found.up, found.down)))
     own = HeldBranches(states.up[: rows.size], states.down[: rows.size])
-    held = held_result(own, machine, rows)
+    held = held_result(own, machine, rows, holding.solver)
     answer = _placed(began.answer, every.at(np.arange(rows.size)), rows)
     models, error = choice.models.astype("U9"), choice.error.copy()
     models[rows], error[rows] = "long_wave", held.error[rows]
@@ -131,7 +131,9 @@ def hold_speeds(
     holding : workers, and what is kept
     progress : called with how many states were found since the last call
     """
-    held, numerics = held_machine(machine), HoldNumerics(cells=machine.scene.model.cells)
+    held = held_machine(machine)
+    numerics = HoldNumerics(cells=machine.scene.model.cells, solver=holding.solver)
+    require_known_solver(held, float(steady.speed[0]), numerics)
     tasks = []
     for k, spin in enumerate(steady.speed.tolist()):
         found = np.isfinite(steady.coordinates[k]).all()
@@ -229,7 +231,7 @@ def _liquid(machine: Prepared, states: tuple[HeldState, ...], coordinates: Compl
     return np.abs(centre), np.angle(centre)
 
 
-def held_result(found: HeldBranches, machine: Prepared, at: Index) -> Held:
+def held_result(found: HeldBranches, machine: Prepared, at: Index, solver: str) -> Held:
     """What a result tells of held states.
 
     Parameters
@@ -237,6 +239,7 @@ def held_result(found: HeldBranches, machine: Prepared, at: Index) -> Held:
     found : the states
     machine : the scene's
     at : indices of its speeds that were held, shape (k,)
+    solver : that held them, by its name in py-pde
     """
     up, down, speeds = found.up, found.down, machine.speed.size
     apart = found.hysteresis
@@ -266,4 +269,5 @@ def held_result(found: HeldBranches, machine: Prepared, at: Index) -> Held:
         amplitude_down=spread(falling),
         cells=machine.scene.model.cells,
         reason=spread([state.reason for state in up], ""),
+        solver=solver,
     )

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from meshes.arrays import Array, Flags
+from solvers.held.state import COUPLED
 from solvers.synchronous.response import Response
 
 
@@ -19,11 +20,13 @@ class Holding:
     workers : processes; 0 or 1 for this one alone
     folder : where states are kept, so that a run that was broken off goes on; None keeps none
     fresh : do not take what is kept there
+    solver : its name in py-pde; another than the compiled steps is slow, and an independent check
     """
 
     workers: int = 0
     folder: Path | None = None
     fresh: bool = False
+    solver: str = COUPLED
 
 
 HERE = Holding()

@@ -63,6 +63,7 @@ def test_json_and_data_file_have_the_same_motions(tmp_path: Path) -> None:
         np.testing.assert_array_equal(np.array(found[key], dtype=float), getattr(result, key))
     for key in ("liquid_mean", "liquid_ripple"):
         assert [row != [None] and row != [[None, None]] for row in found[key]] == held.at.tolist()
+    assert data["held_solver"].item() == found["held_solver"] == result.held_solver == "coupled"
     assert data["held_reason"].values.tolist() == found["held_reason"] == result.held_reason.tolist()
     meanings = data["state_down"].attrs["flag_meanings"].split()
     assert tuple(meanings) == MOTIONS

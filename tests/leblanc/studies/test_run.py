@@ -102,3 +102,12 @@ def test_a_model_that_does_not_answer_writes_nothing(
     assert main(["run", str(scene), "--out", str(tmp_path / "out")]) == 2
     assert "model.liquid" in capsys.readouterr().err
     assert not list((tmp_path / "out").glob("*"))
+
+
+def test_a_solver_for_motions_that_nobody_holds() -> None:
+    """A solver is named for motions held in time: where the scene forbids them it would go unheard."""
+    with pytest.raises(InputError, match=r"solver.*scipy.*\[model\] held"):
+        lb.run(lb.example("runup"), solver="scipy")
+    asked = lb.example("runup").replace({"model.liquid": "long_wave", "speeds.count": 1})
+    with pytest.raises(InputError, match=r"solver.*nosuch.*runge-kutta"):
+        lb.run(asked, solver="nosuch")
