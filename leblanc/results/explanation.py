@@ -348,9 +348,9 @@ class ModelAnswer:
 
     @property
     def largest_error(self) -> float | None:
-        """Largest error that the model estimates for itself, relative; infinite without a bound, None unknown.
+        """Largest error that the model estimates for itself, relative; infinite without a bound.
 
-        Speeds at which it has no estimate do not count.
+        Speeds at which it has no estimate do not count; None where it has none at all.
         """
         error = None if self.result is None else self.result.error_estimate
         return None if error is None or np.isnan(error).all() else float(np.nanmax(error))
@@ -439,7 +439,8 @@ class Comparison(Result):
 
         Returns
         -------
-        nan where one of the two has no finite amplitude or has not converged, shape (n,); zeros where no machine moves
+        nan where one of the two has no finite amplitude or has not converged, shape (n,); zeros where no
+        machine moves
         """
         pair = [self.results[name] for name in (model, self.reference)]
         own, other = (result.amplitude for result in pair)

@@ -291,8 +291,8 @@ def basis(found: Comparison) -> str:
     """
     return (
         f"Differences are the largest over the speeds, from {found.reference}, as a share of its largest "
-        "amplitude.\nEstimates are the largest error that a model knows of itself; in range is the part of the "
-        "speeds."
+        "amplitude.\nEstimates are the largest error that a model knows of itself; in range is the part of "
+        "the speeds."
     )
 
 
@@ -338,5 +338,5 @@ def comparison_alt(found: Comparison) -> str:
     peaks = [f"{answer.model} {_size(answer)}" for answer in found.answers if answer.answered]
     below = "; below, their differences" if len(peaks) > 1 else ""
     held = [f"{a.model} held in time: {held_words(a)}" for a in found.answers if a.held]
-    swings = f"; {'; '.join(held)}" if held else ""
-    return f"Curves of the amplitude over speed by each liquid model{below}; largest: {', '.join(peaks)}{swings}."
+    below += f"; largest: {', '.join(peaks)}"
+    return f"Curves of the amplitude over speed by each liquid model{'; '.join([below, *held])}."
