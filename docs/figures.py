@@ -156,6 +156,7 @@ RECIPES = (
         {"modes_baffles": "modes"},
     ),
     Recipe(("validation.figures.whirl_passage",), ("whirl_passage",), minutes=True),
+    Recipe(("validation.models.figure",), ("models",)),
     Recipe(("validation.figures.baffles",), ("whirl_baffles",)),
     Recipe(("validation.figures.runup_trends",), ("runup_trends",), minutes=True),
     Recipe(

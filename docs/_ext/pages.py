@@ -177,6 +177,19 @@ class ColdStarts(SphinxDirective):
         return [table(head, rows, code=(0,))]
 
 
+class ModelsTable(SphinxDirective):
+    """Every liquid model on two example scenes, its error and its time, as measured and kept."""
+
+    def run(self) -> list[nodes.Node]:
+        """A table with one row for each model."""
+        from validation.models import kept, words
+
+        head = ["model"]
+        for found in kept():
+            head += [f"{found.scene}: error", "time of a speed"]
+        return [table(head, words(), code=(0,))]
+
+
 def table(head: Sequence[str], rows: Sequence[Sequence[str]], code: Sequence[int] = ()) -> nodes.table:
     """A table of text.
 
@@ -209,4 +222,5 @@ def setup(app: Sphinx) -> dict[str, Any]:
     app.add_directive("kept-errors", KeptErrors)
     app.add_directive("known-liquids", KnownLiquids)
     app.add_directive("cold-starts", ColdStarts)
+    app.add_directive("models-table", ModelsTable)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

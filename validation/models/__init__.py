@@ -1,0 +1,136 @@
+"""Every liquid model on two example scenes: its error against its time, kept for the front page of the docs.
+
+`python -m validation.models` measures again; `kept` reads what it left.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+KEPT = Path(__file__).parent / "results.json"
+
+
+@dataclass(frozen=True)
+class ModelRow:
+    """One model on one scene.
+
+    Parameters
+    ----------
+    model : its name in a scene
+    cells : round each wall, of waves held in time; None elsewhere
+    error : largest relative distance from the best answer over the speeds, of the amplitude and the offset of
+        the liquid's centre of mass the larger; nan of the best answer itself
+    estimate : largest error that the model tells of itself; nan where it has none
+    time : processor time of the whole answer over the number of speeds, s
+    lost : speeds at which it has no answer
+    in_range : part of the speeds
+    """
+
+    model: str
+    cells: int | None
+    error: float
+    estimate: float
+    time: float
+    lost: int
+    in_range: float
+
+    @property
+    def name(self) -> str:
+        """Model and resolution."""
+        return self.model if self.cells is None else f"{self.model}, {self.cells} cells"
+
+
+@dataclass(frozen=True)
+class ModelTable:
+    """All models on one scene.
+
+    Parameters
+    ----------
+    scene : stem of the example
+    about : the speeds and what the best answer is, in words
+    speeds : how many
+    best_error : own error of the best answer
+    rows : the models
+    """
+
+    scene: str
+    about: str
+    speeds: int
+    best_error: float
+    rows: tuple[ModelRow, ...]
+
+
+def kept() -> tuple[ModelTable, ...]:
+    """What was measured last."""
+    found = json.loads(KEPT.read_text(encoding="utf-8"))
+    return tuple(ModelTable(**table | {"rows": tuple(map(_read, table["rows"]))}) for table in found)
+
+
+def _read(row: dict[str, Any]) -> ModelRow:
+    """A row as it was kept, with nan for what is not known."""
+    missing = {key: math.nan for key in ("error", "estimate") if row[key] is None}
+    return ModelRow(**row | missing)
+
+
+def keep(tables: tuple[ModelTable, ...]) -> None:
+    """Write what was measured.
+
+    Parameters
+    ----------
+    tables : one for each scene
+    """
+    rows = [
+        asdict(table) | {"rows": [{k: _plain(v) for k, v in asdict(row).items()} for row in table.rows]}
+        for table in tables
+    ]
+    KEPT.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+
+
+def _plain(value: object) -> object:
+    """JSON has no nan."""
+    return None if isinstance(value, float) and math.isnan(value) else value
+
+
+def error_words(row: ModelRow, best: float) -> str:
+    """An error as a table shows it.
+
+    Parameters
+    ----------
+    row : of the model
+    best : own error of the best answer, below which nothing can be told
+    """
+    if math.isnan(row.error):
+        return "best"
+    size = "rounding" if row.error < 1e-9 else f"{100.0 * row.error:.2g} %"
+    if 1e-9 <= row.error < best:
+        size = f"below {100.0 * best:.2g} %"
+    return f"{size}; no answer at {row.lost} of the speeds" if row.lost else size
+
+
+def time_words(seconds: float) -> str:
+    """A time as a table shows it.
+
+    Parameters
+    ----------
+    seconds : of one speed
+    """
+    return f"{1e3 * seconds:.3g} ms" if seconds < 1.0 else f"{seconds:.2g} s"
+
+
+def words() -> list[tuple[str, ...]]:
+    """Rows of the table on the page: model, then error and time for each scene."""
+    tables = kept()
+    names = list(dict.fromkeys(row.name for table in tables for row in table.rows))
+    found = []
+    for name in names:
+        cells = [name]
+        for table in tables:
+            row = next((row for row in table.rows if row.name == name), None)
+            told = ("", "") if row is None else (error_words(row, table.best_error), time_words(row.time))
+            cells += told
+        found.append(tuple(cells))
+    return found
