@@ -1,4 +1,4 @@
-"""The table of all models on the front page: what is kept, what the models answer, and what the page shows."""
+"""The table of all models on the front page: what is kept, what models answer, and what the page shows."""
 
 from __future__ import annotations
 

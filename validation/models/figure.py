@@ -1,6 +1,6 @@
 """The kept errors of all models over their times, drawn.
 
-`python -m validation.models.figure --out docs/images`. They are measured anew by `python -m validation.models`.
+`python -m validation.models.figure --out docs/images`; `python -m validation.models` measures them anew.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ def models_figure() -> Figure:
         axes.set_xlabel("Processor time of a speed (ms)")
         axes.set_ylabel("Largest error (%)")
         text = (
-            "Error of the amplitude or of the liquid's centre of mass over seven speeds, the larger. The best "
-            "answer has none: upright the exact equilibrium, lying waves held in time on 128 cells."
+            "Error of the amplitude or of the liquid's centre of mass over seven speeds, the larger. The "
+            "best answer has none: upright the exact equilibrium, lying waves held in time on 128 cells."
         )
         lay_out(figure, [[axes]], [2.6], _FRAME, text)
         figure.alt = alternative(tables)
