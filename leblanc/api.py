@@ -36,7 +36,9 @@ SceneOrPath = Scene | str | PathLike[str]
 _OPTION = re.compile(r"--([a-z][a-z-]*)")
 
 
-def run(scene: SceneOrPath, *, workers: int = 1, solver: str | None = None) -> RunResult | ExciterResult:
+def run(
+    scene: SceneOrPath, *, workers: int = 1, solver: str | None = None, cycles: bool = False
+) -> RunResult | ExciterResult:
     """Response and the liquid's centre of mass at each speed of a scene.
 
     Parameters
@@ -46,6 +48,8 @@ def run(scene: SceneOrPath, *, workers: int = 1, solver: str | None = None) -> R
         answer does not depend on it
     solver : of py-pde, by name, that holds them, an independent check: "runge-kutta", "scipy"; the compiled
         steps if None
+    cycles : find how large whirls that grow by themselves become, in `self_excited_amplitude`, `cycles` and
+        `folds`; it takes some seconds
 
     Returns
     -------
@@ -74,7 +78,7 @@ def run(scene: SceneOrPath, *, workers: int = 1, solver: str | None = None) -> R
     from leblanc.studies.run import run_scene
     from solvers.held.state import COUPLED
 
-    return run_scene(machine, holding=Holding(workers, solver=solver or COUPLED))
+    return run_scene(machine, holding=Holding(workers, solver=solver or COUPLED), cycles=cycles)
 
 
 def explain(scene: SceneOrPath) -> Explanation | ExciterExplanation:

@@ -28,6 +28,9 @@ def run(
         str | None,
         typer.Option(help="Of py-pde, that holds waves in time: runge-kutta, scipy ... [default: coupled]."),
     ] = None,
+    cycles: Annotated[
+        bool, typer.Option("--cycles", help="Find how large whirls that grow by themselves become.")
+    ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Answer of the machine at each speed. Figures, data file, report."""
@@ -47,7 +50,7 @@ def run(
         from solvers.held.state import COUPLED
 
         holding = Holding(_processes(workers), folder, fresh, solver or COUPLED)
-        result = run_scene(machine, lambda what: update(what=what), holding)
+        result = run_scene(machine, lambda what: update(what=what), holding, cycles)
 
     from leblanc.figures.response import write_figures
     from leblanc.report.page import about, command_line
@@ -57,7 +60,12 @@ def run(
 
     write_netcdf(result.named_arrays(), folder / "response.nc")
     figures = write_figures(result, folder)
-    what = about(machine, command_line("run", scene), "response.nc", unused=("runup", "optimise"))
+    what = about(
+        machine,
+        command_line("run", scene, ("--cycles", cycles, False)),
+        "response.nc",
+        unused=("runup", "optimise"),
+    )
     write_run_report(result, what, figures, folder / "summary.html")
     if json:
         print_json(result.to_json())

@@ -40,7 +40,7 @@ from leblanc.figures.page import (
 from leblanc.results.notes import plane_label
 from leblanc.results.response import RunResult
 from leblanc.text.run import alts, amplitude_place
-from leblanc.units import RPM, in_rpm
+from leblanc.units import MM, RPM, in_rpm
 from meshes.arrays import Array, Flags
 
 Draw = Callable[[Any, Curves, RunResult], None]
@@ -59,6 +59,7 @@ OUT_OF_RANGE = "model out of range"
 
 CYCLE = (0, (4, 1, 1, 1))  # dashes of a limit cycle's mean
 BAND = {"facecolor": "#CFE3F1", "edgecolor": WET, "hatch": "/////", "linewidth": 0.4}
+ON_TOP = {"facecolor": "#F3E1EC", "edgecolor": "#AA3377", "hatch": "\\\\\\\\", "linewidth": 0.4}
 DOWN = "#009E73"  # after Okabe and Ito
 LAYERS = (
     (WET, "solid"),
@@ -110,6 +111,8 @@ def amplitude_figure(result: RunResult) -> Figure:
         if result.held.limit_cycle.any():
             panels.append((1.3, draw_whirl))
             text += " Below: speed at which the axis whirls in space, beside the spin."
+    if result.whirl is not None and result.whirl.large is not None and result.whirl.large.branches:
+        text += " Self-excited whirl on top: the amplitude beats within the band, without a large unbalance."
     return _over_speed(result, "amplitude", panels, text)
 
 
@@ -204,6 +207,7 @@ def draw_amplitude(axes: Axes, curves: Curves, result: RunResult) -> None:
     lines = [(curves.rpm, curves.amplitude), (curves.rpm, curves.amplitude_dry)]
     if curves.held is not None:
         lines += _draw_held(axes, curves, curves.held)
+    lines += _draw_on_top(axes, curves, result)
     reported(axes, curves, curves.amplitude, "with liquid")
     without(axes, curves, curves.amplitude_dry)
     if np.any(np.count_nonzero(curves.chain >= 0, axis=1) > 1):
@@ -233,6 +237,22 @@ def _draw_held(axes: Axes, curves: Curves, held: HeldCurves) -> list[tuple[Array
             label="while the speed falls",
         )
     return [(curves.rpm, curves.largest), (held.rpm, held.down)]
+
+
+def _draw_on_top(axes: Axes, curves: Curves, result: RunResult) -> list[tuple[Array, Array]]:
+    """What the amplitude beats between with self-excited whirl on top; the line that needs room."""
+    large = None if result.whirl is None else result.whirl.large
+    if large is None:
+        return []
+    size = large.amplitude if result.held is None else np.where(result.held.at, 0.0, large.amplitude)
+    # Next to a speed without it there is none between the two either.
+    between = np.where(size > 0.0, size, np.nan) * MM
+    whirl = np.interp(curves.rpm, result.speed * RPM, between)
+    if not np.isfinite(whirl).any():
+        return []
+    low, high = np.abs(curves.amplitude - whirl), curves.amplitude + whirl
+    axes.fill_between(curves.rpm, low, high, **ON_TOP, zorder=1.1, label="beating with self-excited whirl")
+    return [(curves.rpm, high)]
 
 
 def draw_whirl(axes: Axes, curves: Curves, result: RunResult) -> None:

@@ -13,6 +13,7 @@ import numpy as np
 from fluid.friction import Friction
 from leblanc.results.base import Note, NoteCode, percent
 from leblanc.results.choice import Choice, HeldCost
+from leblanc.results.motion.cycles import LargeWhirl
 from leblanc.results.motion.held import HELD_MODEL, Held
 from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.results.response import peak
@@ -46,6 +47,7 @@ class RunCode(NoteCode):
     HELD = "held"
     ONE_FAMILY = "one_family"
     NOT_SETTLED = "not_settled"
+    LARGE_WHIRL = "large_whirl"
 
 
 # What a page that shows the table of models says there already.
@@ -272,6 +274,35 @@ def self_excited(whirl: SelfExcited) -> Note:
         fastest = f", fastest at {growth:.3g} 1/s, whirling at {in_rpm(turning)}"
     text = f"A whirl grows by itself from {listed}{fastest}: unstable there ({theory}).{unknown}"
     return Note(RunCode.SELF_EXCITED, data, text)
+
+
+def large_whirl(large: LargeWhirl, speed: Array) -> Note | None:
+    """How large the self-excited whirl on top of the response becomes; None where there is none.
+
+    Parameters
+    ----------
+    large : the whirls
+    speed : of the scene, rad/s, shape (n,)
+    """
+    if not np.nanmax(large.amplitude, initial=0.0) > 0.0:
+        return None
+    most = int(np.nanargmax(large.amplitude))
+    size, turning = float(large.amplitude[most]), float(large.whirl_speed[most])
+    data: dict[str, object] = {"amplitude": size, "speed": float(speed[most]), "whirl_speed": turning}
+    kicked = ""
+    if large.kicked.any():
+        first, last = speed[large.kicked][[0, -1]].tolist()
+        data["kicked"] = (first, last)
+        kicked = (
+            f" Where no small one grows, {rpm_range(first, last)}, a kick starts it or a run-up carries it."
+        )
+    text = (
+        f"Self-excited whirl on top of the response to the unbalance becomes up to {with_unit(size, LENGTH)} "
+        f"large, at {in_rpm(speed[most])}, going round at {in_rpm(turning)}. The amplitude beats between the "
+        "difference of both and their sum as long as the unbalance moves the axis little beside the depth of "
+        f"the layer; a larger one feeds or quenches the whirl.{kicked}"
+    )
+    return Note(RunCode.LARGE_WHIRL, data, text)
 
 
 def several_answers(first: float, last: float, stable: bool) -> Note:
@@ -533,6 +564,7 @@ class MapCode(NoteCode):
     THICK_WALL_LAYER = "thick_wall_layer"
     NOT_KNOWN = "not_known"
     NO_CYCLES = "no_cycles"
+    CYCLES_MISSING = "cycles_missing"
     NO_CIRCLE = "no_circle"
     LAGGING = "lagging"
     DEEP_WHIRL = "deep_whirl"
@@ -546,6 +578,16 @@ def no_cycles(reason: str) -> Note:
     reason : in words
     """
     return Note(MapCode.NO_CYCLES, {"reason": reason}, f"No limit cycles: {reason}.")
+
+
+def cycles_missing(reason: str) -> Note:
+    """Which limit cycles may be missing among those told.
+
+    Parameters
+    ----------
+    reason : in words
+    """
+    return Note(MapCode.CYCLES_MISSING, {"reason": reason}, f"Limit cycles may be missing: {reason}.")
 
 
 def no_circle() -> Note:

@@ -9,18 +9,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from leblanc.results.base import Note, Result, attributes, texts
-from leblanc.results.netcdf import NamedArrays, Variable, flags
+from leblanc.results.motion.cycles import cycle_arrays, cycle_rows, fold_rows
+from leblanc.results.netcdf import NamedArrays, flags
 from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Flags
 
 if TYPE_CHECKING:
     from solvers.cycles.cycles import Branch
     from solvers.whirl.edges import Bands
-
-FAST_LAG = (
-    1.0 / 3.0
-)  # of the spin: the long waves' profile of the flow does not describe a layer that lags more
-DEEP = 0.9  # of the layer's depth: whirls beyond that lay walls dry, or come near to it
 
 
 @dataclass(frozen=True)
@@ -87,43 +83,13 @@ class WhirlMap(Result):
 
     @property
     def cycles(self) -> list[dict[str, Any]]:
-        """Self-excited whirls of finite size, one after the other along their branches, SI.
-
-        `amplitude` is that of the first chamber's axis, `lag` by how much the liquid turns more slowly than
-        the drum (of several layers the one that lags most), `growth` that of a small disturbance, `torque`
-        and `power` what the drive has to supply on top, `thinnest` the least depth over the mean depth. In
-        `in_range` are whirls whose lag is below a third of the spin.
-        """
-        found = []
-        for number, branch in enumerate(self.branches or ()):
-            lag = np.nanmax(branch.lag, axis=1)
-            columns = {
-                "branch": np.full(lag.shape, number),
-                "speed": branch.speed,
-                "amplitude": branch.amplitude,
-                "whirl_speed": branch.whirl_speed,
-                "lag": lag,
-                "stable": branch.stable,
-                "growth": branch.growth,
-                "torque": branch.torque,
-                "power": branch.power,
-                "thinnest": branch.thinnest,
-                "in_range": lag <= FAST_LAG * branch.speed,
-            }
-            found += [
-                dict(zip(columns, row, strict=True))
-                for row in zip(*(values.tolist() for values in columns.values()), strict=True)
-            ]
-        return found
+        """Self-excited whirls of finite size, see `leblanc.results.motion.cycles.cycle_rows`."""
+        return cycle_rows(self.branches or ())
 
     @property
     def folds(self) -> list[dict[str, Any]]:
         """Where branches turn back in speed: `branch`, `speed` and `amplitude`, SI."""
-        return [
-            {"branch": number, "speed": speed, "amplitude": amplitude}
-            for number, branch in enumerate(self.branches or ())
-            for speed, amplitude in zip(branch.fold_speed, branch.fold_amplitude, strict=True)
-        ]
+        return fold_rows(self.branches or ())
 
     def to_json(self) -> dict[str, Any]:
         """What `map` prints for scripts, SI: rows of `growth`, `whirl_speed`, `in_range` follow `volume`."""
@@ -153,7 +119,7 @@ class WhirlMap(Result):
                 "in_range": valid,
                 "edge_low": var(("volume", "band"), ends[..., 0], "rad s-1", "lower edge", edge),
                 "edge_high": var(("volume", "band"), ends[..., 1], "rad s-1", "upper edge", edge),
-                **({} if self.branches is None else self._cycle_arrays()),
+                **({} if self.branches is None else cycle_arrays(self.branches)),
             },
             coords={
                 "speed": var(("speed",), self.speed, "rad s-1", "spin speed", "of the rotor about its axis"),
@@ -161,34 +127,3 @@ class WhirlMap(Result):
             },
             attrs=attributes(self, "map", {"friction": self.friction, "damping": self.damping}, self.notes),
         )
-
-    def _cycle_arrays(self) -> dict[str, Variable]:
-        """Limit cycles and folds by name."""
-        rate, whirls, folds = "rad s-1", self.cycles, self.folds
-        units = {
-            "speed": (rate, "spin speed", "of the rotor about its axis"),
-            "amplitude": ("m", "amplitude", "of the first chamber's axis"),
-            "whirl_speed": (rate, "whirl speed", "in space"),
-            "lag": (rate, "lag", "of the liquid behind the drum"),
-            "growth": ("s-1", "growth rate", "of a small disturbance of the whirl"),
-            "torque": ("N m", "torque", "that the drive has to supply on top"),
-            "power": ("W", "power", "that the drive has to supply on top"),
-            "thinnest": ("1", "least depth", "over the mean depth"),
-        }
-        found = {
-            f"cycle_{name}": var(("cycle",), np.array([row[name] for row in whirls], dtype=float), *words)
-            for name, words in units.items()
-        }
-        found["cycle_branch"] = var(
-            ("cycle",), np.array([row["branch"] for row in whirls], dtype=np.int64), "1", "branch"
-        )
-        stable = np.array([row["stable"] for row in whirls], dtype=bool)
-        valid = np.array([row["in_range"] for row in whirls], dtype=bool)
-        found["cycle_stable"] = flags(("cycle",), stable, "no yes", "stable", "small disturbances die out")
-        found["cycle_in_range"] = flags(
-            ("cycle",), valid, "no yes", "in range", "the liquid lags by a third at most"
-        )
-        for name in ("speed", "amplitude"):
-            values = np.array([row[name] for row in folds], dtype=float)
-            found[f"fold_{name}"] = var(("fold",), values, units[name][0], f"{units[name][1]} of the fold")
-        return found

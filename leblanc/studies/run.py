@@ -33,7 +33,7 @@ from leblanc.studies.held.holding import HERE, Began, Holding
 from leblanc.studies.liquid import element_model, synchronous_model
 from leblanc.studies.peaks import responses_between
 from leblanc.studies.validity import doubts
-from leblanc.studies.whirl_map import small_whirl_friction
+from leblanc.studies.whirl_map import large_whirl, small_whirl_friction
 from meshes.arrays import Array, Complex
 from meshes.chamber_section import liquid_of
 from meshes.errors import InputError
@@ -90,6 +90,16 @@ def self_excited(machine: Prepared) -> SelfExcited:
         bands = unstable_bands(machine.rotor, filled, speed, machine.friction, known)[0]
     friction = small_whirl_friction(scene.model.friction)
     return SelfExcited(growth, whirl_speed, bands, friction, bands_not_known(speed, growth))
+
+
+def _grown_whirl(
+    machine: Prepared, progress: Callable[[str], object]
+) -> tuple[SelfExcited, tuple[Note, ...]]:
+    """Growth of small whirls, how large they become, and what is to be said of that."""
+    whirl = self_excited(machine)
+    progress("limit cycles")
+    large, said = large_whirl(machine, whirl.growth)
+    return replace(whirl, large=large), said
 
 
 def motion_response(machine: Prepared, choice: Choice) -> tuple[Response, Motion, tuple[float, float]]:
@@ -174,6 +184,7 @@ def run_scene(
     scene: Scene,
     progress: Callable[[str], object] = lambda _: None,
     holding: Holding = HERE,
+    cycles: bool = False,
 ) -> RunResult:
     """Response to the unbalance and the liquid's centre of mass at each speed of a scene.
 
@@ -182,6 +193,7 @@ def run_scene(
     scene : the machine
     progress : called with what is done next
     holding : on how many cores waves are held in time, and where what was found is kept
+    cycles : find how large whirls that grow by themselves become
 
     Returns
     -------
@@ -221,7 +233,7 @@ def run_scene(
         progress("finite elements")
         choice, answer, refined = element_answers(machine, choice, answer, refined)
     progress("self-excited whirl")
-    whirl = self_excited(machine)
+    whirl, grown = _grown_whirl(machine, progress) if cycles else (self_excited(machine), ())
     choice = costed(machine, choice, whirl.growth)
     at, held, stable = held_at(scene, choice, whirl.growth), None, whirl.leaves_stable(answer.stable)
     if at.any():
@@ -251,7 +263,7 @@ def run_scene(
         digest=scene.digest,
         response=answer,
         liquid_mass=sum(fill.mass for fill in scene.fills),
-        notes=_notes(machine, choice, answer, refined, motion, whirl, held),
+        notes=(*_notes(machine, choice, answer, refined, motion, whirl, held), *grown),
         axis=scene.rotor.axis,
         chambers=tuple(_chamber(fill, motion) for fill in scene.fills),
         capture_speed=choice.captured_from,
@@ -317,6 +329,7 @@ def _notes(
         found.append(notes.plane(motion.position, motion.zero, chambers, held is not None))
         found.append(_against_spin(answer, motion, held) if chambers else None)
     found.append(notes.self_excited(whirl))
+    found.append(None if whirl.large is None else notes.large_whirl(whirl.large, answer.speed))
     several = np.count_nonzero(np.isfinite(answer.branch_deflection), axis=1) > 1
     if several.any():
         first, last = answer.speed[several][[0, -1]].tolist()

@@ -14,7 +14,8 @@ from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
 from leblanc.results import notes
 from leblanc.results.base import Note
-from leblanc.results.whirl_map import DEEP, FAST_LAG, WhirlMap
+from leblanc.results.motion.cycles import DEEP, FAST_LAG, LargeWhirl
+from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import Scene
 from leblanc.studies.choose import Prepared, prepare
 from leblanc.studies.validity import doubts
@@ -29,13 +30,14 @@ from solvers.whirl.edges import Bands, bands_not_known, unstable_bands
 from solvers.whirl.growth import growth_map
 
 if TYPE_CHECKING:
-    from solvers.cycles.cycles import LimitCycles
+    from solvers.cycles.cycles import HeldWhirl, LimitCycles
 
 
 VOLUMES, SPEEDS = 101, 201
 FEWEST, MOST = 2, 4000  # volumes or speeds of a map
 _AT_ONCE = 20  # volumes between reports of progress
 _THIN = THIN_LAYERS[1]
+_WAY = 1e-3  # relative width of the range of a single speed
 
 
 def map_scene(
@@ -118,16 +120,44 @@ def _limit_cycles(
     from solvers.cycles.cycles import limit_cycles
 
     speeds = machine.scene.speeds
-    return limit_cycles(
-        machine.rotor, machine.scene.fills, (speeds.start, speeds.stop), friction, progress=progress
+    # A single speed still needs a way to it.
+    range_ = speeds.start, max(speeds.stop, speeds.start * (1.0 + _WAY))
+    return limit_cycles(machine.rotor, machine.scene.fills, range_, friction, progress=progress)
+
+
+def large_whirl(machine: Prepared, growth: Array) -> tuple[LargeWhirl, tuple[Note, ...]]:
+    """How large the self-excited whirl becomes at each speed of a machine, and what is to be said of it.
+
+    Parameters
+    ----------
+    machine : its friction acts in the liquid
+    growth : of the small whirl that grows most, 1/s, shape (n,)
+    """
+    found = _limit_cycles(machine, machine.scene.model.friction, None)
+    largest = [_largest_stable(found, speed) for speed in machine.speed.tolist()]
+    size = np.array([0.0 if whirl is None else whirl.amplitude for whirl in largest])
+    turning = np.array([np.nan if whirl is None else whirl.whirl_speed for whirl in largest])
+    lost = (size == 0.0) & ~(growth <= 0.0)
+    large = LargeWhirl(
+        branches=found.branches,
+        amplitude=np.where(lost, np.nan, size),
+        whirl_speed=turning,
+        kicked=(size > 0.0) & (growth <= 0.0),
+        reason=found.reason,
     )
+    return large, tuple(_cycle_notes(machine, found))
+
+
+def _largest_stable(found: LimitCycles, speed: float) -> HeldWhirl | None:
+    whirls = [whirl for branch in found.branches for whirl in branch.at(speed) if whirl.stable]
+    return max(whirls, key=lambda whirl: whirl.amplitude, default=None)
 
 
 def _cycle_notes(machine: Prepared, found: LimitCycles) -> list[Note]:
     """What the limit cycles leave out, and why there are none."""
-    if found.reason:
+    if not found.branches:
         return [notes.no_cycles(found.reason)]
-    said = []
+    said = [notes.cycles_missing(found.reason)] if found.reason else []
     if machine.scene.rotor.axis == "horizontal" and machine.scene.gravity > 0.0:
         said.append(notes.no_circle())
     lagging = max(float(np.nanmax(branch.lag / branch.speed[:, None])) for branch in found.branches)

@@ -481,7 +481,7 @@ def alts(result: RunResult) -> dict[str, str]:
     centre = next(value for label, value in values.items() if label.startswith("Its centre"))
     return {
         "amplitude": f"Curves of the amplitude{where} over speed: largest {most.wet_text} at {at.wet} "
-        f"rpm with liquid, {most.dry_text} at {at.dry} rpm without.{_held_alt(result)}",
+        f"rpm with liquid, {most.dry_text} at {at.dry} rpm without.{_held_alt(result)}{_on_top_alt(result)}",
         "liquid": "Curves of the distance and the angle of the liquid's centre of mass over speed; at the "
         f"last speed: {centre}.{_swing_alt(result)}",
         "phase": "Curves of the angle from the unbalance to the deflection over speed, with and without "
@@ -506,6 +506,16 @@ def _held_alt(result: RunResult) -> str:
     if (lost := rows["Not settled"]).failed:
         parts.append(f"not settled: {lost.where}")
     return f" {'; '.join(parts)}."
+
+
+def _on_top_alt(result: RunResult) -> str:
+    """What a figure of the amplitude shows of self-excited whirl."""
+    large = None if result.whirl is None else result.whirl.large
+    if large is None or not np.nanmax(large.amplitude, initial=0.0) > 0.0:
+        return ""
+    most, at = with_unit(float(np.nanmax(large.amplitude)), LENGTH), int(np.nanargmax(large.amplitude))
+    where = in_rpm(float(result.speed[at]))
+    return f" A band of beating with self-excited whirl, which is largest, {most}, at {where}."
 
 
 def _swing_alt(result: RunResult) -> str:

@@ -34,6 +34,7 @@ _STRAYED = 0.1  # relative: a first whirl this far from its edge belongs to anot
 _SAME, _THICK = 2e-3, 0.05
 _BEYOND = 2.0  # of the last step of a branch: what it goes on to the edge
 _POINTS = 400
+_BROKEN = "no further whirl was found"
 _PROMINENT = 1e-4  # relative: a smaller turn of the branch is the scheme's, not a fold
 FAST_LAG = 1.0 / 3.0  # of the spin: beyond that the flow's profile no longer describes the lagging liquid
 
@@ -284,10 +285,20 @@ class _Finder:
             return "no whirl grows by itself in this range"
         if not self.branches:
             return "no limit cycle was found"
+        said = []
         if self.lost:
             spins = ", ".join(f"{spin:.4g}" for spin in self.lost)
-            return f"no branch was found from the edges of bands at {spins} rad/s"
-        return ""
+            said.append(f"no branch was found from the edges of bands at {spins} rad/s")
+        ends = [
+            float(branch.speed[k])
+            for branch in self.branches
+            for k, why in ((0, branch.reason[0]), (-1, branch.reason[1]))
+            if why == _BROKEN
+        ]
+        if ends:
+            spins = ", ".join(f"{spin:.4g}" for spin in ends)
+            said.append(f"branches could not be followed beyond {spins} rad/s")
+        return "; ".join(said)
 
     def _from_edge(self, edge: Edge) -> None:
         """The branch from an edge of a band, at which a small whirl neither grows nor dies."""
@@ -385,7 +396,7 @@ class _Finder:
                 return rows, "end of the range of speeds"
             if len(rows) >= _POINTS:
                 return rows, "so many whirls were found that the rest was left"
-        return rows, "no further whirl was found"
+        return rows, _BROKEN
 
     def _inside(self, spin: float) -> bool:
         return self.range[0] <= spin <= self.range[1]

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.results.motion.cycles import LargeWhirl
 from leblanc.results.motion.encoding import finite
 from leblanc.results.netcdf import Variable
 from leblanc.results.netcdf import variable as var
@@ -25,6 +26,7 @@ class SelfExcited:
     friction : of the liquid, in words
     not_known : bands of speed in which the modes were not found, between the nearest speeds where they were,
         rad/s
+    large : how large the whirl becomes; None where that was not asked for
     """
 
     growth: Array
@@ -32,6 +34,7 @@ class SelfExcited:
     bands: tuple[tuple[float, float], ...]
     friction: str
     not_known: tuple[tuple[float, float], ...] = ()
+    large: LargeWhirl | None = None
 
     def leaves_stable(self, stable: Flags) -> Flags:
         """Stable against slow disturbances, and no whirl grows; what is not known is not stable, shape (n,).
@@ -56,12 +59,14 @@ class SelfExcited:
             "whirl_speed": finite(self.whirl_speed),
             "whirl_bands": [list(band) for band in self.bands],
             "whirl_bands_not_known": [list(band) for band in self.not_known],
+            **({} if self.large is None else self.large.to_json()),
         }
 
     def variables(self) -> dict[str, Variable]:
-        """Arrays over `speed`."""
+        """Arrays over `speed`; those of finite whirls over `cycle` and `fold` too."""
         most, over = "of the whirl that grows most", ("speed",)
         return {
             "growth": var(over, self.growth, "s-1", "growth rate", f"{most}; above 0 unstable"),
             "whirl_speed": var(over, self.whirl_speed, "rad s-1", "whirl speed", f"{most}, in space"),
+            **({} if self.large is None else self.large.variables()),
         }
