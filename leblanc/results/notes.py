@@ -291,11 +291,10 @@ def large_whirl(large: LargeWhirl, speed: Array) -> Note | None:
     data: dict[str, object] = {"amplitude": size, "speed": float(speed[most]), "whirl_speed": turning}
     kicked = ""
     if large.kicked.any():
-        first, last = speed[large.kicked][[0, -1]].tolist()
-        data["kicked"] = (first, last)
-        kicked = (
-            f" Where no small one grows, {rpm_range(first, last)}, a kick starts it or a run-up carries it."
-        )
+        ends = np.flatnonzero(np.diff(np.concatenate([[False], large.kicked, [False]]).astype(int)))
+        spans = [(float(speed[k]), float(speed[m - 1])) for k, m in ends.reshape(-1, 2).tolist()]
+        data["kicked"] = spans
+        kicked = f" Where no small one grows, {rpm_bands(spans)}, a kick starts it or a run-up carries it."
     text = (
         f"Self-excited whirl on top of the response to the unbalance becomes up to {with_unit(size, LENGTH)} "
         f"large, at {in_rpm(speed[most])}, going round at {in_rpm(turning)}. The amplitude beats between the "
