@@ -54,11 +54,16 @@ def run() -> RunResult:
     return run_scene(scene("tub"))
 
 
+SELF_EXCITED = {"speeds.start": 120.0, "speeds.stop": 155.0, "speeds.count": 4}
+
 RESULTS = {
     "runup": lambda: run_up(RUNUP, samples=50, check=False),
     "optimise": lambda: optimise(scene("horizontal_rig")),
     "optimise robust": lambda: optimise(scene("runup").altered(optimise=WARM), front=False),
     "run": run,
+    "run with cycles": lambda: run_scene(
+        load_scene(ROOT / "docs/examples/self_excited.toml").replace(SELF_EXCITED), cycles=True
+    ),
     "map": lambda: map_scene(scene("horizontal_rig"), 5, 21),
     "compare": lambda: compare_models(scene("horizontal_rig"), ["kdv", "linear", "statics"]),
     "explain": lambda: explain_scene(scene("runup")),
