@@ -112,6 +112,9 @@ def run_up(
     check: bool = True,
     frames: int | None = None,
     progress: Callable[[float], None] | None = None,
+    ensemble: int = 0,
+    seed: int = 0,
+    workers: int = 1,
 ) -> RunupResult:
     """Rotor and liquid through the speeds in time, as the scene's table [runup] says.
 
@@ -122,6 +125,10 @@ def run_up(
     check : run once more with half the cells to estimate the error
     frames : how many times the layers are kept for a film; not at all if None
     progress : called with the share of the work that is done
+    ensemble : how many times the run is repeated with its unbalance changed in the last digits, to tell what
+        rounding alone does
+    seed : of those changes
+    workers : processes that repeat it
 
     Raises
     ------
@@ -137,7 +144,9 @@ def run_up(
     """
     from leblanc.studies.runup import runup_scene
 
-    return runup_scene(_scene(scene), cells, samples, check, progress, frames)
+    if workers < 1:
+        raise InputError("workers", workers, "1 or more")
+    return runup_scene(_scene(scene), cells, samples, check, progress, frames, ensemble, seed, workers)
 
 
 def map_whirl(

@@ -142,3 +142,18 @@ def _plain(value: Any) -> Any:
     if hasattr(value, "tolist"):  # arrays and their scalars, without importing numpy for it
         return _plain(value.tolist())
     raise TypeError(f"{type(value).__name__} has no form in JSON")
+
+
+def processes(wanted: int | None) -> int:
+    """So many as are wanted, or one on each core.
+
+    Raises
+    ------
+    InputError : fewer than one
+    """
+    from leblanc.studies.held.holding import cores
+    from meshes.errors import InputError
+
+    if wanted is not None and wanted < 1:
+        raise InputError("--workers", wanted, "1 or more")
+    return cores() if wanted is None else wanted

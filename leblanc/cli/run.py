@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.output import load, print_json, print_table, say
+from leblanc.cli.output import load, print_json, print_table, processes, say
 from leblanc.cli.progress import working
 from leblanc.contents import results_dir
 
@@ -49,7 +49,7 @@ def run(
         from leblanc.studies.run import run_scene
         from solvers.held.state import COUPLED
 
-        holding = Holding(_processes(workers), folder, fresh, solver or COUPLED)
+        holding = Holding(processes(workers), folder, fresh, solver or COUPLED)
         result = run_scene(machine, lambda what: update(what=what), holding, cycles)
 
     from leblanc.figures.response import write_figures
@@ -89,21 +89,6 @@ def run(
             )
         raise NotConverged(failed)
     say(f"{result.name}: {result.speed.size} speeds done")
-
-
-def _processes(wanted: int | None) -> int:
-    """So many as are wanted, or one on each core.
-
-    Raises
-    ------
-    InputError : fewer than one
-    """
-    from leblanc.studies.held.holding import cores
-    from meshes.errors import InputError
-
-    if wanted is not None and wanted < 1:
-        raise InputError("--workers", wanted, "1 or more")
-    return cores() if wanted is None else wanted
 
 
 def _run_exciter(machine: Scene, scene: Path, folder: Path, json: bool) -> None:

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.output import load, print_json, print_table, say
+from leblanc.cli.output import load, print_json, print_table, processes, say
 from leblanc.cli.progress import working
 from leblanc.contents import results_dir
 from leblanc.files import require_writable
 
 if TYPE_CHECKING:
     from leblanc.results.runup import RunupResult
-    from leblanc.scene.scene import Scene
 
 
 def runup(
@@ -32,6 +31,13 @@ def runup(
     no_check: Annotated[
         bool, typer.Option("--no-check", help="Do not run again with half the cells to estimate the error.")
     ] = False,
+    ensemble: Annotated[
+        int, typer.Option(help="Repeat it so often with the unbalance changed in its last digits.")
+    ] = 0,
+    seed: Annotated[int, typer.Option(help="Of those changes.")] = 0,
+    workers: Annotated[
+        int | None, typer.Option(help="Processes that repeat it [default: one a core].")
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Through the resonance in time, up and down. Figures, data file, energy balance, report."""
@@ -49,7 +55,14 @@ def runup(
         require_layers(machine)
         require_writable(animate)
     folder = results_dir(machine.name, out, scene, machine.digest, "runup.nc", "runup.html")
-    result = _run(machine, cells, samples, not no_check, animate is not None)
+    with working("running up") as update:
+        from leblanc.studies.runup import FRAMES, runup_scene
+
+        frames = FRAMES if animate is not None else None
+        result = runup_scene(
+            *(machine, cells, samples, not no_check, lambda done: update(done, 1.0), frames),
+            *(ensemble, seed, processes(workers)),
+        )
 
     from leblanc.figures.runup import write_figures
     from leblanc.report.page import about, command_line
@@ -59,7 +72,8 @@ def runup(
     write_netcdf(result.named_arrays(), folder / "runup.nc")
     figures = write_figures(result, folder)
     options = ("--cells", cells, None), ("--samples", samples, None), ("--no-check", no_check, False)
-    command = command_line("runup", scene, *options)
+    again = ("--ensemble", ensemble, 0), ("--seed", seed, 0)
+    command = command_line("runup", scene, *options, *again)
     what = about(machine, command, "runup.nc", unused=("speeds", "optimise"))
     write_runup_report(result, what, figures, folder / "runup.html")
     if animate is not None:
@@ -69,15 +83,6 @@ def runup(
     else:
         _tell(result, folder)
     _finish(result, scene)
-
-
-def _run(machine: Scene, cells: int | None, samples: int | None, check: bool, film: bool) -> RunupResult:
-    """The run itself, with a bar on a terminal."""
-    with working("running up") as update:
-        from leblanc.studies.runup import FRAMES, runup_scene
-
-        frames = FRAMES if film else None
-        return runup_scene(machine, cells, samples, check, lambda done: update(done, 1.0), frames)
 
 
 def _film(result: RunupResult, path: Path) -> None:
@@ -107,7 +112,8 @@ def _finish(result: RunupResult, scene: Path) -> None:
     from leblanc.scene.schema.load import NotConverged
     from solvers.layer.records import Outcome
 
-    if result.outcome is Outcome.INTERRUPTED:
+    cut = result.spread is not None and result.spread.members < result.spread.asked
+    if result.outcome is Outcome.INTERRUPTED or cut:
         raise KeyboardInterrupt
     if not result.converged:
         raise NotConverged([f"{scene}: {result.reason}; what was reached is written"])

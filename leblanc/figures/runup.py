@@ -31,7 +31,7 @@ ASIDE = 0.45  # inches, for a second axis on the right
 LINES = 7  # of a caption
 UP, BACK, GAINED, USED = WET, "#56B4E9", WET, DRY
 DRY_BACK = "#E69F00"
-STEADY, WHIRL = "0.45", "#F0E442"
+STEADY, WHIRL, RANGE = "0.45", "#F0E442", "#CC79A7"
 BACK_DASHES = (0, (4.0, 1.2, 1.0, 1.2))
 ARROWS = 3  # along each way
 MARKS = 12  # along the run without liquid
@@ -77,6 +77,7 @@ def speed_figure(result: RunupResult) -> Figure:
                 axes.plot(x, y, label=label, **look, **marks)
                 if not dry:
                     _arrows(axes, x, y, scale, look["color"])
+        _draw_ranges(axes, result)
         axes.set_xlim(low - room, high + room)
         axes.set_ylim(0.0, top)
         axes.set_xlabel("Speed (rpm)")
@@ -126,7 +127,23 @@ def largest_drawn(result: RunupResult) -> float:
     ----------
     result : the run-up
     """
-    return max(float(result.whole_curve(dry)[2].max(initial=0.0)) for dry in (False, True))
+    ensemble = 0.0 if result.spread is None else float(np.nanmax(result.spread.amplitude_max))
+    return max(ensemble, *(float(result.whole_curve(dry)[2].max(initial=0.0)) for dry in (False, True)))
+
+
+def _draw_ranges(axes: Axes, result: RunupResult, over_time: bool = False) -> None:
+    """Between the least and the largest amplitude of an ensemble, over the speed or over time."""
+    spread = result.spread
+    if spread is None:
+        return
+    ways = [slice(0, result.turning + 1)]
+    ways += [slice(result.turning, None)] if result.turns_back else []
+    for i, part in enumerate(ways):
+        place = result.time[part] if over_time else result.speed[part] * RPM
+        edges = spread.amplitude_min[part] * MM, spread.amplitude_max[part] * MM
+        look: dict[str, Any] = {"facecolor": RANGE, "alpha": 0.6, "edgecolor": "0.3", "linewidth": 0.3}
+        label = "_" if i else f"range over {spread.members} runs that rounding tells apart"
+        axes.fill_between(place, *edges, **look, zorder=3.5, label=label)
 
 
 def _shade(axes: Axes, result: RunupResult, limits: tuple[float, float]) -> None:
@@ -266,6 +283,7 @@ def _draw_amplitude(axes: Axes, result: RunupResult) -> None:
     axes.plot(*_over_time(result, False), color=DRY if dry else UP, linewidth=1.2)
     if not dry and result.history_dry is not None:
         axes.plot(*_over_time(result, True), **_BARE)
+    _draw_ranges(axes, result, over_time=True)
     axes.set_ylim(0.0, 1.12 * largest_drawn(result) * MM or 1.0)
     axes.set_ylabel(_label(result))
 
@@ -375,6 +393,8 @@ def caption(result: RunupResult, text: str) -> Caption:
     """What a figure shows, the scene, model, friction, resolution, error and what is assumed."""
     error = result.error_estimate
     size = "not estimated" if math.isnan(error) else f"{error:.1%} of the largest"
+    if result.spread is not None:
+        size += f"; by rounding alone {result.spread.largest_spread:.2g} of it"
     assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
     stopped = "" if result.converged else f" Stopped: {one_line(result.reason)}."
     return Caption(

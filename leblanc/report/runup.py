@@ -18,7 +18,7 @@ from leblanc.results.notes import CLOSURE, ERROR, IN_TABLES
 from leblanc.results.response import peak
 from leblanc.results.runup import RunupResult
 from leblanc.text.numbers import MOST_RANGES, number
-from leblanc.text.runup import answer, describe_model, largest_dry
+from leblanc.text.runup import answer, describe_model, largest_dry, rounding
 from leblanc.text.runup import moments as main_moments
 from leblanc.units import LENGTH, MASS, MINUS, RPM, rpm_bands, rpm_range, unit_for, with_unit
 
@@ -100,6 +100,7 @@ def facts(result: RunupResult) -> list[tuple[str, str]]:
         ("Resolution", f"{result.cells} cells, {result.steps} steps, {result.time.size} samples kept"),
         ("Error by half the cells, of the largest", _share(result.error_estimate)),
         ("Error of model and steps", _share(result.model_error)),
+        *([] if result.spread is None else [("By rounding alone", rounding(result.spread))]),
         ("Energy not accounted for, of the work", _share(result.energy.closure)),
         ("Largest change of a layer's mass", _share(result.mass_error)),
     ]

@@ -17,16 +17,29 @@ from leblanc.results.motion.cycles import LargeWhirl
 from leblanc.results.motion.held import HELD_MODEL, Held
 from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.results.response import peak
-from leblanc.units import LENGTH, RPM, VOLUME, friction_words, in_rpm, number, rpm_bands, rpm_range, with_unit
+from leblanc.units import (
+    LENGTH,
+    RPM,
+    TIME,
+    VOLUME,
+    friction_words,
+    in_rpm,
+    number,
+    rpm_bands,
+    rpm_range,
+    with_unit,
+)
 from meshes.arrays import Array, Flags
 
 if TYPE_CHECKING:
+    from solvers.runup.ensemble import Spread
     from solvers.runup.runup import RunupHistory
     from solvers.synchronous.response import Response
     from solvers.whirl.edges import Bands
 
 
 CLOSURE = 1e-3  # of the work: what the energy balance may leave
+SETTLED = 1e-6  # of the largest amplitude: what rounding may change without being spoken of
 ERROR = 0.02  # of the largest amplitude: an error estimate to speak of
 
 
@@ -401,6 +414,7 @@ class RunupCode(NoteCode):
     STOPPED = "stopped"
     ERROR_UNKNOWN = "error_unknown"
     ROUGH = "rough"
+    ROUNDING = "rounding"
     ENERGY = "energy"
     PEAK = "peak"
     PEAK_STEADY = "peak_steady"
@@ -446,6 +460,43 @@ def numerical_error(error: float) -> Note | None:
         "more cells would sharpen it."
     )
     return Note(RunupCode.ROUGH, {"error": error}, text)
+
+
+def rounding(spread: Spread, history: RunupHistory) -> Note:
+    """What rounding alone does to a run-up, beside its error estimate.
+
+    Parameters
+    ----------
+    spread : over the ensemble
+    history : of the unchanged run
+    """
+    width = spread.amplitude_max - spread.amplitude_min
+    when = int(np.nanargmax(width))
+    data = {
+        "members": spread.members,
+        "change": spread.change,
+        "peak_spread": spread.peak_spread,
+        "largest_spread": spread.largest_spread,
+        "time": float(history.time[when]),
+        "speed": float(history.speed[when]),
+    }
+    runs = f"over {spread.members} runs whose unbalance differs by {spread.change:.0e} at most"
+    if spread.largest_spread < SETTLED:
+        text = (
+            f"Rounding does not matter: {runs} amplitudes differ by {spread.largest_spread:.0e} of the peak."
+        )
+        return Note(RunupCode.ROUNDING, data, text)
+    error = history.error_estimate
+    beside = ""
+    if not math.isnan(error):
+        than = "less" if spread.largest_spread < error else "more"
+        beside = f", {than} than the {percent(error)} that half the cells change"
+    text = (
+        f"By rounding alone, {runs}, the largest amplitude differs by {percent(spread.peak_spread)} and the "
+        f"amplitude at one time by up to {percent(spread.largest_spread)} of it, after "
+        f"{with_unit(data['time'], TIME)} at {in_rpm(data['speed'])}{beside}."
+    )
+    return Note(RunupCode.ROUNDING, data, text)
 
 
 def energy_left(closure: float) -> Note | None:

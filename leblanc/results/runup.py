@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +18,7 @@ from leblanc.results.response import phase
 from leblanc.units import friction_words
 from meshes.arrays import Array, Complex, Flags
 from solvers.layer.records import Outcome
+from solvers.runup.ensemble import Spread
 from solvers.runup.runup import EnergyAudit, RunupHistory
 from solvers.synchronous.response import Response
 
@@ -105,6 +106,7 @@ class RunupResult(Result):
     notes : limits of validity and findings
     frames : the layers at regular times; None if they were not kept
     history_dry : of the same rotor on the same way without liquid; None if it was not run
+    spread : over an ensemble of runs that rounding tells apart; None if it was not asked for
 
     Examples
     --------
@@ -139,6 +141,7 @@ class RunupResult(Result):
     notes: tuple[Note, ...]
     frames: RunupFrames | None = None
     history_dry: RunupHistory | None = None
+    spread: Spread | None = None
 
     figure = "leblanc.figures.runup:speed_figure"
     summary = "leblanc.text.runup:summary"
@@ -303,6 +306,14 @@ class RunupResult(Result):
         return asdict(_crest(self.history_dry, self._way(False)))
 
     @property
+    def ensemble(self) -> dict[str, Any] | None:
+        """What rounding alone does: ranges over time and of the peak, m; None if it was not asked for."""
+        if self.spread is None:
+            return None
+        shares = {name: getattr(self.spread, name) for name in ("peak_spread", "largest_spread")}
+        return {field.name: getattr(self.spread, field.name) for field in fields(self.spread)} | shares
+
+    @property
     def end(self) -> dict[str, float]:
         """Amplitude, speed, time and angles at the end."""
         last = self.time.size - 1
@@ -370,7 +381,7 @@ class RunupResult(Result):
         over += ["depth_max", "depth_min", "mean_rotation", "peak", "peak_dry", "end"]
         over += ["peak_back"] if self.turns_back else []
         rest = ("error_estimate", "converged", "reason", "steps", "cells", "model", "model_reason")
-        own = ("model_error", "name", "digest", "assumed", "bands")
+        own = ("model_error", "name", "digest", "assumed", "bands", *(("ensemble",) if self.spread else ()))
         return {name: getattr(self, name) for name in (*over, *rest, *own)} | {
             "energy": self._energy(),
             "notes": texts(self.notes),
@@ -417,6 +428,13 @@ class RunupResult(Result):
             "steps": np.int64(self.steps),
             "converged": "yes" if self.converged else one_line(f"no: {self.reason}"),
         }
+        if self.spread is not None:
+            own |= {
+                "ensemble_members": np.int64(self.spread.members),
+                "ensemble_change": self.spread.change,
+                "ensemble_seed": np.int64(self.spread.seed),
+                "ensemble_peaks": self.spread.peaks,
+            }
         return attributes(self, "runup", own, self.notes)
 
 
@@ -457,6 +475,10 @@ def _columns(result: RunupResult) -> dict[str, Any]:
         "mean_rotation": each(h.mean_rotation, "rad s-1", "mean rotation of the liquid in the drum"),
         "layer_mass": variable(("chamber",), h.layer_mass, "kg", "mass of the liquid"),
     }
+    if result.spread is not None:
+        for part in ("min", "max", "median"):
+            name, words = f"amplitude_{part}", f"amplitude, {part} over runs that rounding tells apart"
+            columns[name] = variable(over, getattr(result.spread, name), "m", words)
     for name, values, text in (
         ("deflection", h.deflection, "of the chamber's axis, standing frame"),
         ("offset", h.offset, "of the liquid's centre of mass from its chamber's axis, standing frame"),

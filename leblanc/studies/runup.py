@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,6 +27,8 @@ from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.layer.records import Outcome
 from solvers.liquid_model import LONG
+from solvers.runup.ensemble import EnsembleTask, Member, Spread, member_of, run_member, spread_over
+from solvers.runup.ensemble import ensemble as made_ensemble
 from solvers.runup.machine import Drive, Motor, Ramp
 from solvers.runup.runup import (
     MOST_LAG,
@@ -281,6 +283,9 @@ def runup_scene(
     check: bool = True,
     progress: Progress = None,
     frames: int | None = None,
+    ensemble: int = 0,
+    seed: int = 0,
+    workers: int = 1,
 ) -> RunupResult:
     """Run the machine of a scene through its speeds [theory: coupling].
 
@@ -291,6 +296,10 @@ def runup_scene(
     check : run once more with half the cells to estimate the error
     progress : called with the share of the work that is done
     frames : how many times the layers are kept for a film; not at all if None
+    ensemble : how many times the run is repeated with its unbalance changed in the last digits; 0 leaves out
+        what rounding does
+    seed : of those changes
+    workers : processes that repeat it; this one alone if 1. The answer is the same with any number
 
     Returns
     -------
@@ -308,8 +317,13 @@ def runup_scene(
     numerics = numerics_of(plan, cells, samples, check)
     drive, gravity = drive_of(plan), across_gravity(scene)
     times = () if frames is None else np.linspace(0.0, float(drive.corners()[0, -1]), frames)
-    taken = chosen_run(scene, drive, gravity, numerics, progress, times)
+    share = 1.0 / (1.0 + 0.8 * ensemble / workers)
+    first = None if progress is None else lambda part: progress(share * part)
+    tasks = ensemble_tasks(scene, drive, gravity, numerics, ensemble, seed)
+    taken = chosen_run(scene, drive, gravity, numerics, first, times)
     history = taken.history
+    rest = None if progress is None else lambda part: progress(share + (1.0 - share) * part)
+    spread = rounding_spread(taken, tasks, seed, workers, rest)
     dry = dry_run(scene, history, drive, gravity, numerics)
     steady, bands = steady_response(scene, history.speed), whirl_bands(scene, history.speed)
     in_range, limits = judged(scene, history, taken.model)
@@ -336,10 +350,70 @@ def runup_scene(
         bands=bands,
         chambers=tuple(_chamber(fill) for fill in scene.fills),
         planes=tuple(fill.chamber.plane for fill in scene.fills),
-        notes=(*_notes(scene, taken, steady, bands), *limits, *doubts(scene)),
+        notes=(*_notes(scene, taken, steady, bands, spread), *limits, *doubts(scene)),
         frames=runup_frames(history),
         history_dry=dry,
+        spread=spread,
     )
+
+
+def ensemble_tasks(
+    scene: Scene, drive: Drive, gravity: float, numerics: RunupNumerics, count: int, seed: int
+) -> list[EnsembleTask]:
+    """The runs of an ensemble, with long waves until it is known which model is taken.
+
+    Parameters
+    ----------
+    scene : the machine
+    drive, gravity, numerics : of its run-up
+    count, seed : as for `solvers.runup.ensemble.ensemble`; none for a count of 0
+
+    Raises
+    ------
+    InputError : a count or seed out of its range
+    """
+    if count == 0:
+        return []
+    system, friction, model = dry_rotor(scene).system(), scene.model.friction, runup_model("long_wave")
+    return made_ensemble(system, scene.fills, drive, friction, gravity, numerics, model, count, seed)
+
+
+def rounding_spread(
+    taken: RunupChoice, tasks: list[EnsembleTask], seed: int, workers: int, progress: Progress = None
+) -> Spread | None:
+    """The range that rounding leaves a run-up; None where none was asked for or the run did not end.
+
+    Parameters
+    ----------
+    taken : the unchanged run
+    tasks : the changed ones
+    seed : of the changes
+    workers : processes; with 1 they are run here
+    progress : called with the share of them that is done
+    """
+    if not tasks or not taken.history.converged:
+        return None
+    model, members = runup_model(taken.model), [member_of(taken.history)]
+    try:
+        for member in _each([replace(task, model=model) for task in tasks], workers):
+            members.append(member)
+            if progress is not None:
+                progress((len(members) - 1) / len(tasks))
+    except KeyboardInterrupt:
+        # What is there by now is told.
+        pass
+    return spread_over(members, len(tasks) + 1, taken.history.time.size, seed)
+
+
+def _each(tasks: list[EnsembleTask], workers: int) -> Iterator[Member]:
+    """Run the members of an ensemble, in their order."""
+    if workers <= 1:
+        yield from map(run_member, tasks)
+        return
+    from leblanc.processes import processes
+
+    with processes(min(workers, len(tasks))) as pool:
+        yield from pool.map(run_member, tasks)
 
 
 def dry_run(
@@ -367,7 +441,9 @@ def dry_run(
     return run_up(dry_rotor(scene).system(), empty, drive, scene.model.friction, gravity, alone, None, model)
 
 
-def _notes(scene: Scene, taken: RunupChoice, steady: Response | None, bands: Bands) -> list[Note]:
+def _notes(
+    scene: Scene, taken: RunupChoice, steady: Response | None, bands: Bands, spread: Spread | None
+) -> list[Note]:
     """What happened and how far it can be trusted."""
     h = taken.history
     after, which = np.nonzero(np.diff(h.captured.astype(np.int8), axis=0))
@@ -376,6 +452,7 @@ def _notes(scene: Scene, taken: RunupChoice, steady: Response | None, bands: Ban
         notes.liquid_model(taken.model, taken.reason),
         None if h.converged else notes.stopped(h.reason),
         notes.numerical_error(h.error_estimate),
+        None if spread is None else notes.rounding(spread, h),
         notes.energy_left(h.audit.closure),
         notes.largest_amplitude(h, steady),
         *(notes.capture(j, bool(h.captured[k, j]), float(h.time[k]), float(h.speed[k])) for k, j in switched),

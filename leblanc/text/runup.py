@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 
+from leblanc.results.base import percent
+from leblanc.results.notes import SETTLED
 from leblanc.results.response import peak
 from leblanc.results.runup import Moment, RunupResult
 from leblanc.units import LENGTH, TIME, in_rpm, with_unit
+from solvers.runup.ensemble import Spread
 
 
 def describe_model(model: str, cells: int, dispersion: bool) -> str:
@@ -75,11 +78,26 @@ def answer_rows(result: RunupResult) -> list[tuple[str, str]]:
         (label, f"{_amplitude(result, moment)}, after {with_unit(moment.time, TIME)}")
         for label, moment in moments(result)
     ]
+    if result.spread is not None:
+        rows.append(("By rounding alone", rounding(result.spread)))
     if largest_dry(result):
         peak = result.peak_dry
         size, when = with_unit(peak["amplitude"], LENGTH), with_unit(peak["time"], TIME)
         rows.insert(1, ("Without liquid", f"{size} at {in_rpm(peak['speed'])}, after {when}"))
     return rows
+
+
+def rounding(spread: Spread) -> str:
+    """What rounding alone does to the largest amplitude and to that at one time, in words."""
+    return (
+        f"largest amplitude {_share(spread.peak_spread)}, at one time up to "
+        f"{_share(spread.largest_spread)} of it, {spread.members} runs"
+    )
+
+
+def _share(part: float) -> str:
+    """As a percentage, or as not worth one."""
+    return percent(part) if part >= SETTLED else "unchanged"
 
 
 def largest(result: RunupResult) -> str:

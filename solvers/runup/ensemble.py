@@ -1,0 +1,173 @@
+"""What rounding does to a run-up: the same run many times, its unbalance changed in the last digits.
+
+Where walls run dry a difference in the last digits grows until it is seen: then a run shows one of many
+courses, and the range over them belongs to the answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fluid.fill import Fill
+from fluid.friction import Friction
+from meshes.arrays import Array
+from meshes.errors import InputError
+from solvers.rotor.system import RotorSystem
+from solvers.runup.machine import Drive, RunupModel
+from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
+
+# Relative, of the unbalance: some hundred times rounding, as the steps of a long run gather it.
+CHANGE = 1e-13
+MOST = 10_000  # members
+
+
+@dataclass(frozen=True)
+class EnsembleTask:
+    """One run of an ensemble; the parameters are those of `solvers.runup.runup.run_up`, with its number."""
+
+    system: RotorSystem
+    fills: tuple[Fill, ...]
+    drive: Drive
+    friction: Friction
+    gravity: float
+    numerics: RunupNumerics
+    model: RunupModel
+
+
+@dataclass(frozen=True)
+class Member:
+    """What is kept of a run of an ensemble.
+
+    Parameters
+    ----------
+    amplitude : modulus of the first deflection at the times that were reached, m, shape (j,)
+    largest : largest amplitude since the time before, m, shape (j,)
+    """
+
+    amplitude: Array
+    largest: Array
+
+
+@dataclass(frozen=True)
+class Spread:
+    """The range of an ensemble over k times.
+
+    Parameters
+    ----------
+    asked : runs that were wanted, the unchanged one among them
+    members : those of them that were made
+    lost : of those, how many did not come to their end
+    change : largest relative change of the unbalance
+    seed : of the changes
+    amplitude_min, amplitude_max, amplitude_median : over the members, of the modulus of the first deflection,
+        m, shape (k,); nan where none came so far
+    peaks : largest amplitude of every member, on the way back too, the unchanged run first, m,
+        shape (members,)
+    """
+
+    asked: int
+    members: int
+    lost: int
+    change: float
+    seed: int
+    amplitude_min: Array
+    amplitude_max: Array
+    amplitude_median: Array
+    peaks: Array
+
+    @property
+    def peak_spread(self) -> float:
+        """Difference of the largest and the smallest peak over the median one; 0 where nothing moves."""
+        middle = float(np.median(self.peaks))
+        return float(np.ptp(self.peaks)) / middle if middle > 0.0 else 0.0
+
+    @property
+    def largest_spread(self) -> float:
+        """Largest width of the range at one time over the median peak; 0 where nothing moves."""
+        middle = float(np.median(self.peaks))
+        width = float(np.nanmax(self.amplitude_max - self.amplitude_min, initial=0.0))
+        return width / middle if middle > 0.0 else 0.0
+
+
+def ensemble(
+    system: RotorSystem,
+    fills: Sequence[Fill],
+    drive: Drive,
+    friction: Friction,
+    gravity: float,
+    numerics: RunupNumerics,
+    model: RunupModel,
+    count: int,
+    seed: int = 0,
+) -> list[EnsembleTask]:
+    """Runs whose unbalance is changed by up to `CHANGE`, each by a number of its own.
+
+    Parameters
+    ----------
+    system, fills, drive, friction, gravity, numerics, model : as for `solvers.runup.runup.run_up`
+    count : how many, besides the run itself
+    seed : of the changes; what a run gets depends on this and its number alone
+
+    Raises
+    ------
+    InputError : a count or seed out of its range
+    """
+    if not 1 <= count <= MOST:
+        raise InputError("ensemble", count, f"from 1 to {MOST}")
+    if seed < 0:
+        raise InputError("seed", seed, "0 or more")
+    alone, tasks = replace(numerics, companion=False), []
+    for member in range(count):
+        part = CHANGE * np.random.default_rng([seed, member]).uniform(-1.0, 1.0)
+        changed = replace(system, unbalance=system.unbalance * (1.0 + part))
+        tasks.append(EnsembleTask(changed, tuple(fills), drive, friction, gravity, alone, model))
+    return tasks
+
+
+def run_member(task: EnsembleTask) -> Member:
+    """One run of an ensemble."""
+    history = run_up(
+        *(task.system, task.fills, task.drive, task.friction, task.gravity, task.numerics),
+        model=task.model,
+    )
+    return member_of(history)
+
+
+def member_of(history: RunupHistory) -> Member:
+    """What an ensemble keeps of a run."""
+    return Member(history.amplitude, history.largest)
+
+
+def spread_over(members: Iterable[Member], asked: int, count: int, seed: int) -> Spread:
+    """The range of an ensemble.
+
+    Parameters
+    ----------
+    members : the unchanged run first
+    asked : runs that were wanted, this one among them
+    count : times of the unchanged run
+    seed : of the changes
+    """
+    runs = list(members)
+    amplitude = np.full((len(runs), count), np.nan)
+    for row, run in zip(amplitude, runs, strict=True):
+        reached = min(count, run.amplitude.size)
+        row[:reached] = run.amplitude[:reached]
+    known = ~np.isnan(amplitude).all(axis=0)
+    low, high, middle = (np.full(count, np.nan) for _ in range(3))
+    low[known], high[known] = np.nanmin(amplitude[:, known], axis=0), np.nanmax(amplitude[:, known], axis=0)
+    middle[known] = np.nanmedian(amplitude[:, known], axis=0)
+    return Spread(
+        asked=asked,
+        members=len(runs),
+        lost=int(sum(run.amplitude.size < count for run in runs)),
+        change=CHANGE,
+        seed=seed,
+        amplitude_min=low,
+        amplitude_max=high,
+        amplitude_median=middle,
+        peaks=np.array([run.largest.max() for run in runs]),
+    )
