@@ -14,7 +14,7 @@ import numpy as np
 from leblanc.figures.curves import gapped, joined, lag_degrees, link, spans, widened
 from leblanc.figures.page import WIDTH, Caption, Figure, FigureFiles, Frame, lay_out, number, save, style
 from leblanc.figures.response import DRY, SHADE, UNSTABLE, WET
-from leblanc.results.base import one_line
+from leblanc.results.base import one_line, percent
 from leblanc.results.notes import plane_label
 from leblanc.results.runup import RunupResult
 from leblanc.text.runup import describe_model, largest, largest_dry
@@ -34,6 +34,7 @@ DRY_BACK = "#E69F00"
 STEADY, WHIRL, RANGE = "0.45", "#F0E442", "#CC79A7"
 BACK_DASHES = (0, (4.0, 1.2, 1.0, 1.2))
 ARROWS = 3  # along each way
+THIN = 0.015  # of the largest amplitude: a range that hides behind its line
 MARKS = 12  # along the run without liquid
 FAR = 2.5  # times the largest of the run: a steady peak above it is told in words and cut by the axes
 _RATES = (lambda rpm: rpm / RPM, lambda rate: rate * RPM)  # from rpm to rad/s and back
@@ -141,9 +142,10 @@ def _draw_ranges(axes: Axes, result: RunupResult, over_time: bool = False) -> No
     for i, part in enumerate(ways):
         place = result.time[part] if over_time else result.speed[part] * RPM
         edges = spread.amplitude_min[part] * MM, spread.amplitude_max[part] * MM
-        look: dict[str, Any] = {"facecolor": RANGE, "alpha": 0.6, "edgecolor": "0.3", "linewidth": 0.3}
         label = "_" if i else f"range over {spread.members} runs that rounding tells apart"
-        axes.fill_between(place, *edges, **look, zorder=3.5, label=label)
+        if not i and spread.largest_spread < THIN:
+            label += ", thinner than the line"
+        axes.fill_between(place, *edges, facecolor=RANGE, alpha=0.7, linewidth=0, zorder=2.8, label=label)
 
 
 def _shade(axes: Axes, result: RunupResult, limits: tuple[float, float]) -> None:
@@ -394,7 +396,7 @@ def caption(result: RunupResult, text: str) -> Caption:
     error = result.error_estimate
     size = "not estimated" if math.isnan(error) else f"{error:.1%} of the largest"
     if result.spread is not None:
-        size += f"; by rounding alone {result.spread.largest_spread:.2g} of it"
+        size += f"; by rounding alone {percent(result.spread.largest_spread)}"
     assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
     stopped = "" if result.converged else f" Stopped: {one_line(result.reason)}."
     return Caption(

@@ -480,7 +480,7 @@ def rounding(spread: Spread, history: RunupHistory) -> Note:
         "time": float(history.time[when]),
         "speed": float(history.speed[when]),
     }
-    runs = f"over {spread.members} runs whose unbalance differs by {spread.change:.0e} at most"
+    runs = f"over {spread.members} runs with an unbalance within {spread.change:.0e}"
     if spread.largest_spread < SETTLED:
         text = (
             f"Rounding does not matter: {runs} amplitudes differ by {spread.largest_spread:.0e} of the peak."
