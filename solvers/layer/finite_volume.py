@@ -258,20 +258,37 @@ FULL = 0.4995
 GHOSTS = 2
 # Rows of scratch: of cells with ghosts, of faces, and of either side of the faces (area, q, flux of mass and
 # of q, pressure, speeds). Only whole rows are contiguous to the compiler: they are taken one by one.
-WORK = 27
+WORK = 29
 _AREA, _PULL, VELOCITY, _HEAD, SURFACE, _HALF_HEAD, _HALF_VELOCITY, LOG = range(8)
 _BED, _SLOW, _FAST, _MASS, _FLOW = range(8, 13)
 _AFTER, _BEFORE, _ROWS = 13, 20, 7
+_ROLLER, _POWER = 27, 28
+
+# Decay of the fluctuations behind a bore, over their own speed and the depth; from jumps and breaking waves.
+DECAY = 0.48
+# No fluctuations in films thinner than this; their energy is at most this share of Omega^2 A.
+NO_ROLLER, MOST_ROLLER = 1e-5, 0.25
 
 
 @_inlined
-def ring_rates(area, q, spin, euler, pull_cell, pull_face, step, dt, dispersion, work, d_area, d_q):
-    """`rates`, for callers that are compiled themselves: it becomes part of them."""
+def ring_rates(
+    area, q, energy, spin, euler, pull_cell, pull_face, step, dt, dispersion, work, d_area, d_q, d_energy
+):
+    """`rates`, for callers that are compiled themselves: it becomes part of them.
+
+    `energy` is A e of the fluctuations behind bores and `d_energy` its rate of change, of no cells where they
+    are left out.
+    """
     _cells(area, q, spin, pull_cell, work)
-    fastest = _faces(pull_face, spin, work)
+    if energy.size > 0:
+        fluctuations(area, energy, spin, work[_ROLLER])
+    fastest = _faces(pull_face, spin, work, energy.size > 0)
     mass = work[_MASS]
     _drain(area, step, dt, mass, work[_FLOW], work[_BEFORE + 4], work[_AFTER + 4], work[_BED])
     _gather(area, euler, step, work, d_q)
+    if energy.size > 0:
+        # The faces' higher beds are gone by now: next to a dry cell there are no fluctuations.
+        roller_rates(area, d_q, spin, euler, pull_cell, pull_face, step, work, d_energy)
     if dispersion:
         _disperse(area, spin, pull_cell, step, work, d_q)
     for i in range(area.size):
@@ -294,7 +311,10 @@ def rates(area, q, spin, euler, pull_cell, pull_face, step, dt, dispersion, work
     work : scratch, shape (WORK, n + 2 GHOSTS)
     d_area, d_q : results, shape (n,)
     """
-    return ring_rates(area, q, spin, euler, pull_cell, pull_face, step, dt, dispersion, work, d_area, d_q)
+    none = area[:0]
+    return ring_rates(
+        area, q, none, spin, euler, pull_cell, pull_face, step, dt, dispersion, work, d_area, d_q, none
+    )
 
 
 @_inlined
@@ -319,8 +339,11 @@ def _cells(area, q, spin, pull, work):
 
 
 @_inlined
-def _faces(pull_face, spin, work):
-    """Fluxes through each cell's left face, and once more through the first; returns the largest speed."""
+def _faces(pull_face, spin, work, rolling):
+    """Fluxes through each cell's left face, and once more through the first; returns the largest speed.
+
+    `rolling`: the cells have fluctuations.
+    """
     n = pull_face.size
     m = n + 1
     bed = work[_BED, :m]
@@ -349,6 +372,8 @@ def _faces(pull_face, spin, work):
             work[row + 5],
             work[row + 6],
         )
+        if rolling:
+            lifted(work[_ROLLER, cells], work[row], work[row + 3], work[row + 5], work[row + 6], m)
     after, before = _AFTER, _BEFORE
     slow, fast = work[_SLOW, :m], work[_FAST, :m]
     signals(
@@ -382,6 +407,84 @@ def _gather(area, euler, step, work, d_q):
         through = (flow[i + 1] - push_l[i + 1]) - (flow[i] - push_r[i])
         within = (area_l[i + 1] + area_r[i]) * bend[i]
         d_q[i] = -euler * area[i] - (through + within) / step
+
+
+@_face_jit
+def fluctuations(area, energy, spin, rolling):
+    """Energy e of the fluctuations of each cell, all round and a little further [theory: long_wave, eq. 15]."""
+    n = area.size
+    for i in range(n):
+        a = area[i]
+        most = MOST_ROLLER * spin * spin * a
+        rolling[i + GHOSTS] = np.minimum(energy[i] / a, most) if a > NO_ROLLER else 0.0
+    for i in range(GHOSTS):
+        rolling[i] = rolling[n + i]
+        rolling[n + GHOSTS + i] = rolling[GHOSTS + i]
+
+
+@_face_jit
+def lifted(rolling, area, flow, back, ahead, faces):
+    """Add the fluctuations' pressure 2 A e to the momentum flux of a side, and to its waves' speeds."""
+    for i in range(faces):
+        e = rolling[i]
+        flow[i] += 2.0 * area[i] * e
+        mean, half = 0.5 * (back[i] + ahead[i]), 0.5 * (ahead[i] - back[i])
+        half = np.sqrt(half * half + 6.0 * e)
+        back[i], ahead[i] = mean - half, mean + half
+
+
+@_face_jit
+def roller_rates(area, d_q, spin, euler, pull, pull_face, step, work, d_energy):
+    """Rate of change of A e of the fluctuations behind bores [theory: long_wave, eq. 16-17].
+
+    What the fluxes take from the energy of the mean flow feeds them, with numerical fluxes for that energy of
+    the same kind as for mass and momentum; they are carried along, and decay.
+    """
+    n = area.size
+    slow, fast, mass, power = work[_SLOW], work[_FAST], work[_MASS], work[_POWER]
+    rolling, velocity = work[_ROLLER], work[VELOCITY]
+    for i in range(n + 1):
+        bed = pull_face[i] if i < n else pull_face[0]
+        flux_l, held_l = _energy_flux(
+            work[_BEFORE, i], work[_BEFORE + 1, i], work[_BEFORE + 2, i], rolling[i + GHOSTS - 1], spin, bed
+        )
+        flux_r, held_r = _energy_flux(
+            work[_AFTER, i], work[_AFTER + 1, i], work[_AFTER + 2, i], rolling[i + GHOSTS], spin, bed
+        )
+        width = 1.0 / (fast[i] - slow[i] + _NOTHING)
+        left, right, both = fast[i] * width, slow[i] * width, fast[i] * slow[i] * width
+        through = left * work[_BEFORE + 2, i] - right * work[_AFTER + 2, i]
+        through += both * (work[_AFTER, i] - work[_BEFORE, i])
+        # Where a cell runs dry the mass flux was cut, and the energy's with it.
+        kept = mass[i] / through if abs(through) > _NOTHING else 1.0
+        power[i] = kept * (left * flux_l - right * flux_r + both * (held_r - held_l))
+    for i in range(n):
+        a, u, log = area[i], velocity[i + GHOSTS], work[LOG, i + GHOSTS]
+        radius = np.maximum(work[SURFACE, i + GHOSTS], NEAREST)
+        flow = u * log
+        # Derivatives of the mean flow's energy by A and by q.
+        by_area = flow * (2.0 * spin - u / np.maximum(a, DRY)) + 0.5 * u * u / (radius * radius)
+        by_area += spin * spin * a - radius * pull[i]
+        by_q = flow / np.maximum(a, DRY)
+        rate_a, rate_q = (mass[i] - mass[i + 1]) / step, d_q[i] + euler * a
+        lost = -by_area * rate_a - by_q * rate_q - (power[i + 1] - power[i]) / step
+        e = rolling[i + GHOSTS]
+        entered = mass[i] * (rolling[i + GHOSTS - 1] if mass[i] > 0.0 else e)
+        left_it = mass[i + 1] * (e if mass[i + 1] > 0.0 else rolling[i + GHOSTS + 1])
+        depth = 2.0 * a / (1.0 + radius)
+        decay = 0.5 * DECAY * a * 2.0 * e * np.sqrt(2.0 * e) / np.maximum(depth, DRY)
+        d_energy[i] = (entered - left_it) / step + lost - decay if a > NO_ROLLER else 0.0
+
+
+@_face_jit
+def _energy_flux(area, q, mass, rolling, spin, bed):
+    """Flux of the mean flow's energy through a face and that energy itself, with the body force's potential."""
+    radius = np.sqrt(np.maximum(1.0 - 2.0 * area, NEAREST * NEAREST))
+    u = (q + spin * area * area) / area if area > DRY else 0.0
+    level = 0.5 * u * u / (radius * radius) + spin * spin * area - radius * bed
+    lever = (1.0 - radius) * (1.0 + radius + radius * radius) / 3.0
+    energy = 0.5 * u * mass + 0.5 * spin * spin * area * area - bed * lever
+    return mass * (level + spin * mass + 2.0 * rolling), energy
 
 
 @_face_jit

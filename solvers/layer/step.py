@@ -20,7 +20,9 @@ from solvers.layer.finite_volume import (
     DRY,
     FULL,
     GHOSTS,
+    MOST_ROLLER,
     NEAREST,
+    NO_ROLLER,
     SUMMED,
     WORK,
     faded_velocity,
@@ -158,6 +160,28 @@ def predict(area, q, rate_a, rate_q, dt, next_a, next_q):
 
 
 @_part
+def predict_energy(energy, rate, dt, next_energy):
+    """Euler step of the energy of the fluctuations, none below zero."""
+    for i in range(energy.size):
+        next_energy[i] = np.maximum(energy[i] + dt * rate[i], 0.0)
+
+
+@_part
+def correct_energy(energy, rate, dt, next_energy):
+    """Second stage of Heun's method for it."""
+    for i in range(energy.size):
+        energy[i] = 0.5 * (energy[i] + np.maximum(next_energy[i] + dt * rate[i], 0.0))
+
+
+@_part
+def bound_energy(area, energy, spin):
+    """Take from the fluctuations what their cell cannot hold, as `solvers.layer.finite_volume` counts them."""
+    for i in range(energy.size):
+        most = MOST_ROLLER * spin * spin * area[i] * area[i] if area[i] > NO_ROLLER else 0.0
+        energy[i] = np.minimum(energy[i], most)
+
+
+@_part
 def correct(area, q, rate_a, rate_q, dt, next_a, next_q):
     """Second stage of Heun's method."""
     for i in range(area.size):
@@ -175,19 +199,36 @@ def pull(x, y, angles, pull_cell, pull_face):
 
 @_inner
 def stage_rates(
-    area, q, spin, euler, x, y, angles, dt, dispersion, pull_cell, pull_face, spare, rate_a, rate_q
+    area,
+    q,
+    energy,
+    spin,
+    euler,
+    x,
+    y,
+    angles,
+    dt,
+    dispersion,
+    pull_cell,
+    pull_face,
+    spare,
+    rate_a,
+    rate_q,
+    rate_e,
 ):
     """Rates of change at one stage of a time step, for callers that are compiled themselves.
 
     Parameters
     ----------
     area, q : state at the stage, shape (n,)
+    energy : A e of the fluctuations behind bores, shape (n,), or (0,) where they are left out
     spin, euler : there, and its rate of change
     x, y : body force in the drum frame
     angles : cosine and sine at the cells' middles and at their left faces, shape (4, n)
     dt : of the step, 0 where only the fastest wave is asked for
     dispersion : as for `solvers.layer.finite_volume.rates`
     pull_cell, pull_face, rate_a, rate_q : results, shape (n,)
+    rate_e : result, of the shape of `energy`
     spare : scratch
 
     Returns
@@ -197,7 +238,7 @@ def stage_rates(
     step = 2.0 * np.pi / area.size
     pull(x, y, angles, pull_cell, pull_face)
     fastest = ring_rates(
-        area, q, spin, euler, pull_cell, pull_face, step, dt, dispersion, spare, rate_a, rate_q
+        area, q, energy, spin, euler, pull_cell, pull_face, step, dt, dispersion, spare, rate_a, rate_q, rate_e
     )
     outcome = Outcome.DONE
     if not fastest < np.inf:
@@ -209,7 +250,7 @@ def stage_rates(
 
 def scratch(cells: int) -> NDArray[np.float64]:
     """Scratch that `advance` wants for a ring of so many cells."""
-    return np.zeros((WORK + 7, cells + 2 * GHOSTS))
+    return np.zeros((WORK + 9, cells + 2 * GHOSTS))
 
 
 @_part
@@ -299,12 +340,13 @@ def tally(area, q, spin, pull, angles, cosine, sine, share, sums):
 
 
 @_jit
-def advance(area, q, pace, stop, drive, wall, angles, courant, most, spare, loads):
+def advance(area, q, energy, pace, stop, drive, wall, angles, courant, most, spare, loads):
     """Advance a layer under a prescribed whirl and integrate its loads over time.
 
     Parameters
     ----------
     area, q : state, changed in place, shape (n,)
+    energy : A e of the fluctuations behind bores, changed in place, shape (n,), or (0,) where they are left out
     pace : record PACE, shape (1,): how far it has come, changed in place; after RAN_OUT the next call goes on
         as if there had been none between
     stop : time
@@ -326,6 +368,7 @@ def advance(area, q, pace, stop, drive, wall, angles, courant, most, spare, load
     pull_cell, pull_face = spare[WORK, :n], spare[WORK + 1, :n]
     rate_a, rate_q = spare[WORK + 2, :n], spare[WORK + 3, :n]
     next_a, next_q, begin_q = spare[WORK + 4, :n], spare[WORK + 5, :n], spare[WORK + 6, :n]
+    next_e, rate_e = spare[WORK + 7, : energy.size], spare[WORK + 8, : energy.size]
     time, steps, dt, fastest = pace[0].time, 0, 0.0, pace[0].fastest
     # 0: only the largest speed is asked for; 1 and 2: the two stages of Heun's method.
     stage = 1 if fastest > 0.0 else 0
@@ -342,11 +385,13 @@ def advance(area, q, pace, stop, drive, wall, angles, courant, most, spare, load
         if stage < 2:
             for i in range(n):
                 next_a[i], next_q[i] = area[i], q[i]
+            for i in range(energy.size):
+                next_e[i] = energy[i]
         x, y = _whirl(time + dt if stage == 2 else time, drive)
         limit = dt if stage > 0 else 0.0
         outcome, fastest = stage_rates(
-            next_a, next_q, spin, 0.0, x, y, angles, limit, dispersion,
-            pull_cell, pull_face, spare, rate_a, rate_q,
+            next_a, next_q, next_e, spin, 0.0, x, y, angles, limit, dispersion,
+            pull_cell, pull_face, spare, rate_a, rate_q, rate_e,
         )  # fmt: skip
         if outcome == Outcome.AT_AXIS:
             return outcome, steps
@@ -362,6 +407,7 @@ def advance(area, q, pace, stop, drive, wall, angles, courant, most, spare, load
         if stage == 1:
             if not predict(area, q, rate_a, rate_q, dt, next_a, next_q):
                 return Outcome.AT_AXIS, steps
+            predict_energy(energy, rate_e, dt, next_e)
         elif stage == 2:
             x, y = _whirl(time, drive)
             pull(x, y, angles, pull_cell, pull_face)
@@ -370,6 +416,8 @@ def advance(area, q, pace, stop, drive, wall, angles, courant, most, spare, load
             sums.push_x += (x * cosine + y * sine) * dt
             sums.push_y += (y * cosine - x * sine) * dt
             correct(area, q, rate_a, rate_q, dt, next_a, next_q)
+            correct_energy(energy, rate_e, dt, next_e)
+            bound_energy(area, energy, spin)
             wall_friction(area, q, spin, law, coefficient, lid, 0.5 * dt, spare)
             time += dt
             steps += 1
@@ -390,6 +438,7 @@ def march(
     spare: Array,
     loads: Record,
     most: int | None = None,
+    energy: Array | None = None,
 ) -> tuple[Outcome, int]:
     """`advance` from one time to another in slices, between which Python sees a Ctrl-C.
 
@@ -398,6 +447,7 @@ def march(
     area, q, stop, drive, wall, angles, courant, spare, loads : as for `advance`
     start : time
     most : most steps; by default `solvers.slices.step_budget`
+    energy : as for `advance`; left out if None
 
     Returns
     -------
@@ -405,11 +455,12 @@ def march(
     """
     pace, outcome, taken = records(PACE), Outcome.RAN_OUT, 0
     pace[0].time = start
+    rolling = np.empty(0) if energy is None else energy
     if most is None:
         most = step_budget(stop - start, drive.spin, area.size, courant)
     for steps in slices(most, area.size):
         reached, tried = compiled(
-            advance, area, q, pace, stop, drive, wall, angles, courant, steps, spare, loads
+            advance, area, q, rolling, pace, stop, drive, wall, angles, courant, steps, spare, loads
         )
         outcome, taken = Outcome(reached), taken + tried
         if outcome is not Outcome.RAN_OUT:

@@ -17,12 +17,15 @@ from fluid.friction import NONE, STOKES
 from solvers.layer.finite_volume import COMPILED, GHOSTS, LOG, NEAREST, SUMMED, SURFACE, VELOCITY, WORK
 from solvers.layer.records import Outcome
 from solvers.layer.step import (
+    bound_energy,
     calm,
     copy,
     correct,
+    correct_energy,
     decelerate,
     kept_speed,
     predict,
+    predict_energy,
     profile,
     stage_rates,
 )
@@ -94,11 +97,13 @@ def flow_inertia(measures, layer, c, s, out):
 # stage, share of the velocity that friction leaves; velocity, radius of the surface and L at the step's end.
 _PULL_CELL, _PULL_FACE, _RATE_A, _RATE_Q, _NEXT_A, _NEXT_Q, _KEPT = range(WORK, WORK + 7)
 _VELOCITY, _SURFACE, _LOG = range(WORK + 7, WORK + 10)
+# The same of the fluctuations behind bores: rate of change, second stage.
+_RATE_E, _NEXT_E = WORK + 10, WORK + 11
 
 
 def layer_scratch(layers: int, cells: int) -> NDArray[np.float64]:
     """Scratch that `layer_step` wants for each of so many layers."""
-    return np.zeros((layers, WORK + 10, cells + 2 * GHOSTS))
+    return np.zeros((layers, WORK + 12, cells + 2 * GHOSTS))
 
 
 @_jit
@@ -221,12 +226,13 @@ def _half_friction(area, q, spin, layer, coefficient, dt, spare, gains):
 
 
 @_unwrapped
-def layer_step(area, q, spins, force, layer, coefficient, dt, angles, spare, gains):
+def layer_step(area, q, rolling, spins, force, layer, coefficient, dt, angles, spare, gains):
     """Advance a layer by one time step, in place; a step that fails leaves nothing to go on with.
 
     Parameters
     ----------
     area, q : state, shape (n,)
+    rolling : A e of the fluctuations behind bores, shape (n,), or (0,) where they are left out
     spins : spin at the beginning and at the end
     force : body force over R in the drum frame at the beginning (two parts) and at the end (two)
     layer : its record LAYER
@@ -245,17 +251,19 @@ def layer_step(area, q, spins, force, layer, coefficient, dt, angles, spare, gai
     pull_cell, pull_face = spare[_PULL_CELL, :n], spare[_PULL_FACE, :n]
     rate_a, rate_q = spare[_RATE_A, :n], spare[_RATE_Q, :n]
     next_a, next_q = spare[_NEXT_A, :n], spare[_NEXT_Q, :n]
+    rate_e, next_e = spare[_RATE_E, : rolling.size], spare[_NEXT_E, : rolling.size]
     velocity, surface, log = spare[VELOCITY, GHOSTS:], spare[SURFACE, GHOSTS:], spare[LOG, GHOSTS:]
     gains.torque, gains.heat, gains.loss, gains.missed = 0.0, 0.0, 0.0, 0.0
     _, gains.loss = _half_friction(area, q, spins[0], layer, coefficient, dt, spare, gains)
     copy(area, next_a)
     copy(q, next_q)
+    copy(rolling, next_e)
     fastest = 0.0
     for stage in range(2):
         spin, x, y = spins[stage], force[2 * stage], force[2 * stage + 1]
         outcome, speed = stage_rates(
-            next_a, next_q, spin, euler, x, y, angles, dt, dispersion,
-            pull_cell, pull_face, spare, rate_a, rate_q,
+            next_a, next_q, next_e, spin, euler, x, y, angles, dt, dispersion,
+            pull_cell, pull_face, spare, rate_a, rate_q, rate_e,
         )  # fmt: skip
         fastest = max(fastest, speed)
         if outcome != Outcome.DONE:
@@ -266,8 +274,11 @@ def layer_step(area, q, spins, force, layer, coefficient, dt, angles, spare, gai
         if stage == 0:
             if not predict(area, q, rate_a, rate_q, dt, next_a, next_q):
                 return Outcome.AT_AXIS, fastest
+            predict_energy(rolling, rate_e, dt, next_e)
         else:
             correct(area, q, rate_a, rate_q, dt, next_a, next_q)
+            correct_energy(rolling, rate_e, dt, next_e)
+            bound_energy(area, rolling, spin)
             calm(area, q, spin)
     energy, _ = _half_friction(area, q, spins[1], layer, coefficient, dt, spare, gains)
     gains.loss -= energy + gains.missed
@@ -288,6 +299,7 @@ def _move_layers(machine, state, room, dt):
     fastest, spins, turn, force = 0.0, room.spins, room.turn, room.force
     copy(room.area, state.area)
     copy(room.momentum, state.momentum)
+    copy(room.rolling, state.rolling)
     for j in range(machine.layers.shape[0]):
         layer = machine.layers[j]
         x = (machine.gravity[0] - room.guess[j, 0]) / layer.radius
@@ -300,7 +312,7 @@ def _move_layers(machine, state, room, dt):
             # Stokes' friction at the frequency of a free wave goes with the root of the spin.
             coefficient *= np.sqrt(0.5 * (spins[0] + spins[1]))
         status, speed = layer_step(
-            *(state.area[j], state.momentum[j], spins, force, layer, coefficient, dt, machine.angles),
+            *(state.area[j], state.momentum[j], state.rolling[j], spins, force, layer, coefficient, dt, machine.angles),
             *(room.spare[j], room.gains[j]),
         )
         fastest = max(fastest, speed)
@@ -542,6 +554,7 @@ def advance(machine, state, room, stop, courant, most, resumed):
             dt = 0.5 * left
         copy(state.area, room.area)
         copy(state.momentum, room.momentum)
+        copy(state.rolling, room.rolling)
         _guess(state, room, dt)
         status, fastest, gap = _couple(machine, state, room, dt)
         if status == Outcome.NOT_COUPLED and pace.share <= _SHORTEST and gap <= _PASSABLE:
@@ -549,6 +562,7 @@ def advance(machine, state, room, stop, courant, most, resumed):
         if status == Outcome.TOO_LONG or (status == Outcome.NOT_COUPLED and pace.share > _SHORTEST):
             copy(room.area, state.area)
             copy(room.momentum, state.momentum)
+            copy(room.rolling, state.rolling)
             pace.fastest, pace.share = max(pace.fastest, fastest), 0.5 * pace.share
             if pace.share < _LEAST:
                 return status, taken
@@ -556,6 +570,7 @@ def advance(machine, state, room, stop, courant, most, resumed):
         if status != Outcome.DONE:
             copy(room.area, state.area)
             copy(room.momentum, state.momentum)
+            copy(room.rolling, state.rolling)
             return status, taken
         _tally(machine, state, room, dt)
         _accept(state, room, dt, fastest)

@@ -163,11 +163,12 @@ def couple_linear(
     gravity: float,
     cells: int,
     dispersion: bool,
+    enstrophy: bool = False,
 ) -> LinearCoupled:
     """Rotor without deflection, liquid at rest in the drum.
 
     Parameters are those of `solvers.runup.long_wave.couple`; `cells` sets the length of the steps alone, and
-    the exact linear theory has all dispersion.
+    the exact linear theory has all dispersion and no bores.
 
     Raises
     ------

@@ -46,6 +46,7 @@ class Coupled(CoupledRotor):
     ----------
     layers : properties of each chamber's layer, records LAYER, shape (l,)
     area, momentum : of all layers, shape (l, c)
+    rolling : A e of the fluctuations behind bores of all layers, shape (l, c), or (l, 0) where they are left out
     active : which of them are layers now, shape (l,)
     machine, state, room : of those
     kept : steps written down since `followed` was asked last, rows of the state's trace
@@ -54,6 +55,7 @@ class Coupled(CoupledRotor):
     layers: Record
     area: Array
     momentum: Array
+    rolling: Array
     active: Flags
     machine: Machine
     state: State
@@ -102,6 +104,7 @@ class Coupled(CoupledRotor):
             if outcome is not Outcome.RAN_OUT:
                 break
         self.area[self.active], self.momentum[self.active] = self.state.area, self.state.momentum
+        self.rolling[self.active] = self.state.rolling
         return outcome
 
     def follow(self, rows: int) -> None:
@@ -196,6 +199,7 @@ class Coupled(CoupledRotor):
         anew = wanted != self.active
         self.area[anew] = mean[anew]
         self.momentum[anew] = -self.spin * np.square(self.area[anew])
+        self.rolling[anew] = 0.0
         self.active = wanted
         self._assemble()
         whole = self.machine.matrices[0].copy()
@@ -219,11 +223,12 @@ class Coupled(CoupledRotor):
         self.state = old._replace(
             area=self.area[active],
             momentum=self.momentum[active],
+            rolling=self.rolling[active],
             push=np.zeros((count, 2, 2)),
             pace=_fresh_pace(),
         )
         self.follow(old.trace.shape[0])
-        self.room = _room(old.place.size, count, cells)
+        self.room = _room(old.place.size, count, cells, self.rolling.shape[1])
 
     def read(self) -> Reading:
         """The moment as the history keeps it."""
@@ -267,6 +272,7 @@ def couple(
     gravity: float,
     cells: int,
     dispersion: bool,
+    enstrophy: bool = False,
 ) -> Coupled:
     """Rotor without deflection, liquid at rest in the drum.
 
@@ -275,6 +281,7 @@ def couple(
     system, fills, friction, gravity : as for `solvers.runup.runup.run_up`
     spin : at the beginning, rad/s
     cells, dispersion : of the layers
+    enstrophy : their bores carry fluctuations behind them [theory: long_wave, eq. 15-17]
 
     Raises
     ------
@@ -294,6 +301,7 @@ def couple(
         pool=rest.pool,
         area=area,
         momentum=-spin * np.square(area),
+        rolling=np.zeros((count, cells if enstrophy else 0)),
         active=rest.capture < spin,
         machine=Machine(
             matrices=np.zeros((4, n, n)),
@@ -311,13 +319,14 @@ def couple(
             shaft=rest.shaft,
             area=area[:0],
             momentum=area[:0],
+            rolling=area[:0, :0],
             push=np.zeros((0, 2, 2)),
             pace=_fresh_pace(),
             sums=records(SUMS),
             crest=records(CREST),
             trace=np.zeros((0, 2 + n)),
         ),
-        room=_room(n, 0, cells),
+        room=_room(n, 0, cells, 0),
     )
     found._assemble()
     return found
@@ -330,14 +339,15 @@ def _fresh_pace() -> Record:
     return pace
 
 
-def _room(coordinates: int, layers: int, cells: int) -> Room:
-    """Scratch for a machine of that size."""
+def _room(coordinates: int, layers: int, cells: int, rolling: int) -> Room:
+    """Scratch for a machine of that size; `rolling`: cells with fluctuations."""
     from solvers.runup.kernel import layer_scratch
 
     n, count = coordinates, layers
     return Room(
         area=np.zeros((count, cells)),
         momentum=np.zeros((count, cells)),
+        rolling=np.zeros((count, rolling)),
         begin=records(MEASURES, count),
         end=records(MEASURES, count),
         gains=records(GAINS, count),

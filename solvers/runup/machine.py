@@ -221,5 +221,6 @@ class RunupModel(Protocol):
         gravity: float,
         cells: int,
         dispersion: bool,
+        enstrophy: bool = False,
     ) -> RunupMachine:
         """As `solvers.runup.long_wave.couple`."""

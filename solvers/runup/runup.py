@@ -33,6 +33,7 @@ class RunupNumerics:
     cells : finite volumes round each wall, from 8
     samples : how many times are recorded, at least 2
     dispersion : add the finite depth's dispersion to the layers [theory: long_wave, eq. 13]
+    enstrophy : the layers' bores carry fluctuations behind them [theory: long_wave, eq. 15]
     courant : Courant number of the layers; the rotor turns by at most this share of a cell in a step
     companion : run once more with half the cells, hence twice the steps, to estimate the error; from 16 cells
     """
@@ -40,6 +41,7 @@ class RunupNumerics:
     cells: int = 128
     samples: int = 2000
     dispersion: bool = False
+    enstrophy: bool = False
     courant: float = 0.8
     companion: bool = True
 
@@ -218,7 +220,8 @@ def run_up(
     start = drive.corners()[1, 0]
 
     def machine(cells: int) -> RunupMachine:
-        return model(system, fills, start, friction, gravity, cells, numerics.dispersion)
+        resolved = cells, numerics.dispersion, numerics.enstrophy
+        return model(system, fills, start, friction, gravity, *resolved)
 
     share = 0.8 if numerics.companion else 1.0
     wanted = np.asarray(snapshots, dtype=float)

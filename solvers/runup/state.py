@@ -157,6 +157,7 @@ class State(NamedTuple):
     place, rate : of the coordinates, shape (n,)
     shaft : record SHAFT, shape (1,)
     area, momentum : A/R^2 and q/R^2 of the layers' cells, shape (l, c)
+    rolling : A e/R^4 of the fluctuations behind bores, shape (l, c), or (l, 0) where they are left out
     push : mean accelerations of the axes over the last step and over the one before, shape (l, 2, 2)
     pace : record PACE, shape (1,)
     sums : record SUMS, shape (1,)
@@ -170,6 +171,7 @@ class State(NamedTuple):
     shaft: Record
     area: Array
     momentum: Array
+    rolling: Array
     push: Array
     pace: Record
     sums: Record
@@ -182,7 +184,7 @@ class Room(NamedTuple):
 
     Parameters
     ----------
-    area, momentum : the layers at the beginning of the step, shape (l, c)
+    area, momentum, rolling : the layers at the beginning of the step, as in `State`
     begin, end : records MEASURES of the layers at both ends, shape (l,)
     gains : records GAINS of the layers, shape (l,)
     inertia : of the layers' flows (xx, xy, yy), shape (l, 3)
@@ -198,6 +200,7 @@ class Room(NamedTuple):
 
     area: Array
     momentum: Array
+    rolling: Array
     begin: Record
     end: Record
     gains: Record
