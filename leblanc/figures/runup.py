@@ -402,6 +402,6 @@ def caption(result: RunupResult, text: str) -> Caption:
     return Caption(
         f"{text}{stopped}",
         f"Scene: {one_line(result.name)}, {result.axis} axis. Liquid model: "
-        f"{describe_model(result.model, result.cells, result.dispersion)}; liquid friction: "
+        f"{describe_model(result.model, result.cells, result.dispersion, result.bore)}; liquid friction: "
         f"{friction_words(result.friction)}. Error of the amplitude: {size}. Assumed: {assumed}.",
     )

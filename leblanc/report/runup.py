@@ -184,7 +184,8 @@ def why(result: RunupResult) -> Table:
     """The liquid model of the run, its error and the reason for it."""
     span = rpm_range(float(result.speed.min()), float(result.speed.max())).removesuffix(" rpm")
     error = "not known" if math.isnan(result.model_error) else percent(result.model_error)
-    text, taken = one_line(result.model_reason), describe_model(result.model, result.cells, result.dispersion)
+    resolved = result.cells, result.dispersion, result.bore
+    text, taken = one_line(result.model_reason), describe_model(result.model, *resolved)
     reason = f"{text[:1].upper()}{text[1:]} Taken as {taken}."
     head = ("Speeds (rpm)", "Model", "Estimated error", "Why")
     return table("", head, [(span, result.model, error, reason)], sentences=True)

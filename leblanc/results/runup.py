@@ -106,6 +106,7 @@ class RunupResult(Result):
     notes : limits of validity and findings
     frames : the layers at regular times; None if they were not kept
     history_dry : of the same rotor on the same way without liquid; None if it was not run
+    bore : what bores leave behind, "none" or "enstrophy"
     spread : over an ensemble of runs that rounding tells apart; None if it was not asked for
 
     Examples
@@ -142,6 +143,7 @@ class RunupResult(Result):
     frames: RunupFrames | None = None
     history_dry: RunupHistory | None = None
     spread: Spread | None = None
+    bore: str = "none"
 
     figure = "leblanc.figures.runup:speed_figure"
     summary = "leblanc.text.runup:summary"
@@ -422,6 +424,7 @@ class RunupResult(Result):
             "model_error": self.model_error,
             "cells": np.int32(self.cells),
             "dispersion": "with" if self.dispersion else "without",
+            **({} if self.bore == "none" else {"bore": self.bore}),
             "energy": json.dumps(self._energy()),
             "mass_error": self.mass_error,
             "error_estimate": self.error_estimate,

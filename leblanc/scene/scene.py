@@ -251,7 +251,7 @@ class Scene(Part):
                 "friction": asdict(model.friction),
                 "tolerance": model.tolerance,
             },
-            "runup": None if self.runup is None else self.runup.model_dump(),
+            "runup": None if self.runup is None else runup_content(self.runup),
         }
         # Results on disk are known by it: a scene without a part that came later keeps the one it had.
         if self.optimise is not None:
@@ -445,6 +445,16 @@ def _kinds(law: object) -> list[str]:
     """Which laws these are, where their numbers may be alike."""
     inside = [getattr(law, name, None) for name in ("density", "viscosity")]
     return [type(part).__name__ for part in (law, *inside)]
+
+
+def runup_content(plan: Runup) -> dict[str, Any]:
+    """How the speed goes and how that is resolved.
+
+    Parameters
+    ----------
+    plan : of a scene
+    """
+    return plan.model_dump(exclude={"bore"} if plan.bore == "none" else set())
 
 
 def optimise_content(wanted: Optimisation) -> dict[str, Any]:

@@ -188,6 +188,9 @@ class Motor(Part):
             yield Conflict(("torques",), text)
 
 
+BORES = ("none", "enstrophy")
+
+
 class Runup(Part):
     """A ramp of the spin speed, then held; or the speed that a motor reaches."""
 
@@ -203,6 +206,11 @@ class Runup(Part):
     cells: Annotated[int, whole(8, 65536)] = Field(128, description="of each liquid layer round its wall")
     back: Truth = Field(False, description="true: down again at the same rate")
     dispersion: Truth = Field(False, description="whether the waves of the layers disperse")
+    bore: Annotated[str, one_of(*BORES)] = Field(
+        "none",
+        description="what the bores of the layers leave behind: nothing (none), or fluctuations that press "
+        "on the liquid, are carried along and decay (enstrophy)",
+    )
     samples: Annotated[int, whole(10, 1_000_000)] = Field(2000, description="of the results over time")
 
     @classmethod

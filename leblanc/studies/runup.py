@@ -354,6 +354,7 @@ def runup_scene(
         frames=runup_frames(history),
         history_dry=dry,
         spread=spread,
+        bore=plan.bore,
     )
 
 
@@ -495,6 +496,7 @@ def numerics_of(
         cells=plan.cells if cells is None else cells,
         samples=plan.samples if samples is None else samples,
         dispersion=plan.dispersion,
+        enstrophy=plan.bore == "enstrophy",
         companion=check,
     )
 

@@ -12,7 +12,7 @@ from leblanc.units import LENGTH, TIME, in_rpm, with_unit
 from solvers.runup.ensemble import Spread
 
 
-def describe_model(model: str, cells: int, dispersion: bool) -> str:
+def describe_model(model: str, cells: int, dispersion: bool, bore: str = "none") -> str:
     """Liquid model of a run-up with its resolution.
 
     Parameters
@@ -20,11 +20,13 @@ def describe_model(model: str, cells: int, dispersion: bool) -> str:
     model : "long_wave" or "linear"
     cells : round each wall
     dispersion : of the finite depth
+    bore : what bores leave behind
     """
     if model == "linear":
         return f"exact linear theory in time, steps as of {cells} cells"
     shallow = "with dispersion" if dispersion else "without dispersion"
-    return f"annular long waves in time, {cells} cells, {shallow}"
+    behind = "" if bore == "none" else f", bores with {bore}"
+    return f"annular long waves in time, {cells} cells, {shallow}{behind}"
 
 
 def moments(result: RunupResult) -> list[tuple[str, Moment]]:
@@ -126,6 +128,6 @@ def summary(result: RunupResult) -> list[tuple[str, str]]:
     return [
         *plane,
         *answer_rows(result),
-        ("Liquid model", describe_model(result.model, result.cells, result.dispersion)),
+        ("Liquid model", describe_model(result.model, result.cells, result.dispersion, result.bore)),
         ("End", result.reason or "it came to its end"),
     ]

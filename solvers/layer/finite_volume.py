@@ -411,7 +411,7 @@ def _gather(area, euler, step, work, d_q):
 
 @_face_jit
 def fluctuations(area, energy, spin, rolling):
-    """Energy e of the fluctuations of each cell, all round and a little further [theory: long_wave, eq. 15]."""
+    """Energy e of the fluctuations of each cell, with ghosts [theory: long_wave, eq. 15]."""
     n = area.size
     for i in range(n):
         a = area[i]
@@ -478,7 +478,7 @@ def roller_rates(area, d_q, spin, euler, pull, pull_face, step, work, d_energy):
 
 @_face_jit
 def _energy_flux(area, q, mass, rolling, spin, bed):
-    """Flux of the mean flow's energy through a face and that energy itself, with the body force's potential."""
+    """Flux of the mean flow's energy through a face and that energy, with the body force's potential."""
     radius = np.sqrt(np.maximum(1.0 - 2.0 * area, NEAREST * NEAREST))
     u = (q + spin * area * area) / area if area > DRY else 0.0
     level = 0.5 * u * u / (radius * radius) + spin * spin * area - radius * bed

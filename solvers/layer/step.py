@@ -175,7 +175,7 @@ def correct_energy(energy, rate, dt, next_energy):
 
 @_part
 def bound_energy(area, energy, spin):
-    """Take from the fluctuations what their cell cannot hold, as `solvers.layer.finite_volume` counts them."""
+    """Take from the fluctuations what their cell cannot hold."""
     for i in range(energy.size):
         most = MOST_ROLLER * spin * spin * area[i] * area[i] if area[i] > NO_ROLLER else 0.0
         energy[i] = np.minimum(energy[i], most)
@@ -238,7 +238,20 @@ def stage_rates(
     step = 2.0 * np.pi / area.size
     pull(x, y, angles, pull_cell, pull_face)
     fastest = ring_rates(
-        area, q, energy, spin, euler, pull_cell, pull_face, step, dt, dispersion, spare, rate_a, rate_q, rate_e
+        area,
+        q,
+        energy,
+        spin,
+        euler,
+        pull_cell,
+        pull_face,
+        step,
+        dt,
+        dispersion,
+        spare,
+        rate_a,
+        rate_q,
+        rate_e,
     )
     outcome = Outcome.DONE
     if not fastest < np.inf:
@@ -346,7 +359,7 @@ def advance(area, q, energy, pace, stop, drive, wall, angles, courant, most, spa
     Parameters
     ----------
     area, q : state, changed in place, shape (n,)
-    energy : A e of the fluctuations behind bores, changed in place, shape (n,), or (0,) where they are left out
+    energy : A e of the fluctuations behind bores, changed in place, shape (n,), or (0,) without them
     pace : record PACE, shape (1,): how far it has come, changed in place; after RAN_OUT the next call goes on
         as if there had been none between
     stop : time

@@ -312,7 +312,17 @@ def _move_layers(machine, state, room, dt):
             # Stokes' friction at the frequency of a free wave goes with the root of the spin.
             coefficient *= np.sqrt(0.5 * (spins[0] + spins[1]))
         status, speed = layer_step(
-            *(state.area[j], state.momentum[j], state.rolling[j], spins, force, layer, coefficient, dt, machine.angles),
+            *(
+                state.area[j],
+                state.momentum[j],
+                state.rolling[j],
+                spins,
+                force,
+                layer,
+                coefficient,
+                dt,
+                machine.angles,
+            ),
             *(room.spare[j], room.gains[j]),
         )
         fastest = max(fastest, speed)

@@ -46,7 +46,7 @@ class Coupled(CoupledRotor):
     ----------
     layers : properties of each chamber's layer, records LAYER, shape (l,)
     area, momentum : of all layers, shape (l, c)
-    rolling : A e of the fluctuations behind bores of all layers, shape (l, c), or (l, 0) where they are left out
+    rolling : A e of the fluctuations behind bores of all layers, shape (l, c), or (l, 0) without them
     active : which of them are layers now, shape (l,)
     machine, state, room : of those
     kept : steps written down since `followed` was asked last, rows of the state's trace

@@ -6,6 +6,8 @@ alone, in a process of its own in which numba compiles nothing.
 
 from __future__ import annotations
 
+from unittest import mock
+
 import mpmath as mp
 import numpy as np
 
@@ -91,6 +93,92 @@ def test_rates() -> None:
     # Second order quarters the error; at the few extrema of either wave the limiter leaves more.
     assert np.all(np.array(errors[1]) < np.array(errors[0]) / 3.0), errors
     assert errors[1][0] < 2e-5 and errors[1][1] < 1e-5, errors
+
+
+def rolling_rates(
+    area: np.ndarray, q: np.ndarray, energy: np.ndarray, pull: float = PULL, euler: float = 0.0
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Rates of A, q and A e."""
+    n = area.size
+    theta, step = middles(n), 2 * np.pi / n
+    found = np.empty((3, n))
+    work = np.zeros((finite_volume.WORK, n + 2 * finite_volume.GHOSTS))
+    cell, face = pull * np.cos(theta - TURNED), pull * np.cos(theta - 0.5 * step - TURNED)
+    finite_volume.ring_rates(
+        *(area, q, energy, SPIN, euler, cell, face, step, 0.0, False, work, found[0], found[1], found[2])
+    )
+    return found[0], found[1], found[2]
+
+
+@kills("solvers.layer.finite_volume:roller_rates", "d_q[i] + euler * a", "d_q[i]")
+@kills("solvers.layer.finite_volume:roller_rates", "- radius * pull[i]", "+ radius * pull[i]")
+@kills("solvers.layer.finite_volume:roller_rates", "both * (held_r - held_l)", "0.0")
+@kills("solvers.layer.finite_volume:_energy_flux", "+ 2.0 * rolling", "")
+@kills("solvers.layer.finite_volume:_energy_flux", "spin * mass", "0.0")
+def test_fluctuations_take_what_the_mean_flow_loses() -> None:
+    """Without decay a bore turns the energy of the mean flow into theirs; a smooth flow loses none."""
+    losses, n = [], 96
+    with mock.patch.object(finite_volume, "DECAY", 0.0):
+        for cells in (n, 2 * n):
+            area, u = smooth(cells)
+            energy = 0.02 * area**3 * (1.0 + 0.3 * np.cos(middles(cells)))
+            rate = rolling_rates(area, u * area - SPIN * area**2, energy, euler=0.3)[2]
+            carried = -slope(u * lw.layer_log(area) * energy / area)
+            pressed = -2.0 * energy * slope(u * lw.layer_log(area) / area)
+            losses.append(np.abs(rate - carried - pressed).mean())
+        # The fluctuations themselves are carried by their cells' values: first order.
+        assert losses[1] < 0.6 * losses[0] and losses[1] < 0.2 * np.abs(pressed).mean(), losses
+        area, u = smooth(n)
+        q = u * area - SPIN * area**2
+        # A step of depth and speed that is no jump of the equations: fluxes alone decide what is lost.
+        area[: n // 2] *= 1.6
+        d_area, d_q, gained = rolling_rates(area, q, 0.01 * area**3, euler=0.3)
+        made = rolling_rates(area, q, 0.0 * area)[2]
+    assert gained.sum() > 0.0
+    # A front feeds them in every cell of its own.
+    assert made.min() > -0.02 * made.max(), (made.min(), made.max())
+    log, r = lw.layer_log(area), lw.free_surface_radius(area)
+    v = (q + SPIN * area**2) / area
+    f_r = PULL * np.cos(middles(n) - TURNED)
+    by_area = v * log * (2.0 * SPIN - v / area) + 0.5 * (v / r) ** 2 + SPIN**2 * area - r * f_r
+    lost = by_area @ d_area + (v * log / area) @ (d_q + 0.3 * area)
+    assert abs(gained.sum() + lost) < 1e-12 * np.abs(d_q).sum()
+
+
+@kills("solvers.layer.finite_volume:lifted", "2.0 * area[i] * e", "area[i] * e")
+@kills("solvers.layer.finite_volume:lifted", "half * half + 6.0 * e", "half * half")
+@kills("solvers.layer.finite_volume:ring_rates", "fluctuations(area, energy, spin, work[_ROLLER])", "pass")
+def test_fluctuations_press() -> None:
+    """Their pressure moves no momentum out of the ring, and in it as the equation says."""
+    n = 192
+    area, u = smooth(n)
+    q = u * area - SPIN * area**2
+    energy = 0.05 * area**3
+    d_area, d_q, _ = rolling_rates(area, q, energy, pull=0.0)
+    _, bare_q, _ = rolling_rates(area, q, 0.0 * energy, pull=0.0)
+    assert abs(d_q.sum() - bare_q.sum()) < 1e-14 and abs(d_area.sum()) < 1e-14
+    assert np.abs(d_q - bare_q + slope(2.0 * energy)).max() < 0.05 * np.abs(slope(2.0 * energy)).max()
+    # Waves run faster by them.
+    mean, half = lw.wave_celerity(u / (1.0 - 2.0 * area), lw.layer_log(area), SPIN)
+    cells = slice(finite_volume.GHOSTS, n + finite_volume.GHOSTS)
+    rolling, side = np.zeros(n + 2 * finite_volume.GHOSTS), np.zeros((4, n))
+    finite_volume.fluctuations(area, energy, SPIN, rolling)
+    side[0], side[2], side[3] = area, mean - half, mean + half
+    finite_volume.lifted(rolling[cells], *side, n)
+    np.testing.assert_allclose(side[3] - side[2], 2.0 * np.sqrt(half**2 + 0.3 * area**2), rtol=1e-12)
+    np.testing.assert_allclose(0.5 * (side[3] + side[2]), mean, atol=1e-14)
+    # None come to be in a layer at rest.
+    at_rest = np.full(n, 0.1)
+    assert np.all(rolling_rates(at_rest, -SPIN * at_rest**2, 0.0 * at_rest, pull=0.0)[2] == 0.0)
+
+
+@kills("solvers.layer.finite_volume:roller_rates", "0.5 * DECAY * a * 2.0 * e", "DECAY * a * 2.0 * e")
+def test_fluctuations_decay() -> None:
+    """In a uniform layer at rest alone they die as de/dt = -(C/2) (2 e)^(3/2)/h."""
+    area = np.full(16, 0.1)
+    e, depth = 1e-3, 1.0 - np.sqrt(0.8)
+    rate = rolling_rates(area, -SPIN * area**2, area * e, pull=0.0)[2]
+    np.testing.assert_allclose(rate / 0.1, -0.5 * finite_volume.DECAY * (2.0 * e) ** 1.5 / depth, rtol=1e-12)
 
 
 @kills("solvers.layer.finite_volume:_disperse", "_LESS / (_CONSTANT", "-_LESS / (_CONSTANT")
