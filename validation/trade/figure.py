@@ -42,7 +42,7 @@ LOOKS: dict[str, tuple[str, str, str]] = {
     "integration": ("#0072B2", "^", "-"),
     "long_wave": ("#0072B2", "^", "-"),
     "long_wave, dispersion": ("#56B4E9", "P", "--"),
-    "long_wave, held": ("#56B4E9", "P", "--"),
+    "long_wave, held": ("#882255", "h", "-."),
     "fem, order 1": ("#D55E00", "D", "-"),
     "fem, order 2": ("#CC79A7", "X", "--"),
     "long_wave, finite_volume": ("#0072B2", "^", "-"),
