@@ -110,6 +110,6 @@ def test_a_solver_for_motions_that_nobody_holds() -> None:
     """A solver is named for motions held in time: where the scene forbids them it would go unheard."""
     with pytest.raises(InputError, match=r"solver.*scipy.*\[model\] held"):
         lb.run(lb.example("runup"), solver="scipy")
-    asked = lb.example("runup").replace({"model.liquid": "long_wave", "speeds.count": 1})
+    asked = lb.example("runup").replace({"model.liquid": "long_wave", "speeds.count": 2})
     with pytest.raises(InputError, match=r"solver.*nosuch.*runge-kutta"):
         lb.run(asked, solver="nosuch")
