@@ -100,7 +100,7 @@ def facts(result: RunupResult) -> list[tuple[str, str]]:
         ("Resolution", f"{result.cells} cells, {result.steps} steps, {result.time.size} samples kept"),
         ("Error by half the cells, of the largest", _share(result.error_estimate)),
         ("Error of model and steps", _share(result.model_error)),
-        *([] if result.spread is None else [("By rounding alone", rounding(result.spread))]),
+        *([] if result.spread is None else [("By rounding alone", rounding(result))]),
         ("Energy not accounted for, of the work", _share(result.energy.closure)),
         ("Largest change of a layer's mass", _share(result.mass_error)),
     ]

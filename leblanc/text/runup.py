@@ -9,7 +9,6 @@ from leblanc.results.notes import SETTLED
 from leblanc.results.response import peak
 from leblanc.results.runup import Moment, RunupResult
 from leblanc.units import LENGTH, TIME, in_rpm, with_unit
-from solvers.runup.ensemble import Spread
 
 
 def describe_model(model: str, cells: int, dispersion: bool, bore: str = "none") -> str:
@@ -81,7 +80,7 @@ def answer_rows(result: RunupResult) -> list[tuple[str, str]]:
         for label, moment in moments(result)
     ]
     if result.spread is not None:
-        rows.append(("By rounding alone", rounding(result.spread)))
+        rows.append(("By rounding alone", rounding(result)))
     if largest_dry(result):
         peak = result.peak_dry
         size, when = with_unit(peak["amplitude"], LENGTH), with_unit(peak["time"], TIME)
@@ -89,8 +88,11 @@ def answer_rows(result: RunupResult) -> list[tuple[str, str]]:
     return rows
 
 
-def rounding(spread: Spread) -> str:
-    """What rounding alone does to the largest amplitude and to that at one time, in words."""
+def rounding(result: RunupResult) -> str:
+    """What rounding alone does to the largest amplitude and to that at one time, in words; or nothing."""
+    spread = result.spread
+    if spread is None:
+        return ""
     return (
         f"largest amplitude {_share(spread.peak_spread)}, at one time up to "
         f"{_share(spread.largest_spread)} of it, {spread.members} runs"
