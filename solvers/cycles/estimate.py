@@ -19,8 +19,8 @@ from solvers.whirl.growth import asynchronous_growth, growth_at
 
 # The whirl drags the liquid back until it turns at about this share of the speed where whirls begin to grow.
 _DRAGGED = 0.955
-# Share of the undamped growth from which on it does, and the power with which the whirl shrinks below: fitted to
-# limit cycles of 74 random machines.
+# Share of the undamped growth from which on it does, and the power with which the whirl shrinks below it:
+# fitted to limit cycles of 74 random machines.
 _WHOLE, _WEAKENING = 0.75, 1.4
 _GRID = 241  # speeds among which bands are looked for
 _BELOW, _ABOVE = 0.6, 1.5  # of the first and of the last speed, where edges of bands are looked for
