@@ -38,7 +38,7 @@ def advance_each(areas, momenta, pace, start, time, parts, drive, wall, angles, 
         for part in range(parts):
             stop = start + time * (part + 1) / parts
             outcome, _ = advance(
-                areas[k], momenta[k], pace, stop, drive, wall, angles, courant, most, spare,
+                areas[k], momenta[k], areas[k, :0], pace, stop, drive, wall, angles, courant, most, spare,
                 loads[k : k + 1],
             )  # fmt: skip
             if outcome != Outcome.DONE:
