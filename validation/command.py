@@ -94,7 +94,7 @@ def _group(name: str) -> Callable[[], list[Case]]:
         "vector_model": vector_model.cases,
         "horizontal_rig": rigs.horizontal_cases,
         "vertical_rig": rigs.vertical_cases,
-        "layer": layer.cases,
+        "layer": lambda: [*layer.cases(), *layer.rotor_cases()],
         "whirl": whirl.cases,
         "tub": tub.cases,
         "two_plane": two_plane.cases,

@@ -10,6 +10,8 @@ import pytest
 from leblanc.cli import main
 from leblanc.scene.scene import jeffcott, load_scene
 from meshes.errors import InputError
+from tests.mutants import kills
+from validation.cases.layer import rotor_cases
 from validation.cases.rigs import horizontal_rig, horizontal_rotor, vertical_rig, vertical_rotor
 from validation.command import GROUPS, all_cases
 
@@ -32,6 +34,17 @@ def test_layer_against_computed_flow() -> None:
         assert found[f"C_0.05_f1-{variant}"].verdict == "agrees"
         # The computed flow is no target there: it depends on its mesh.
         assert found[f"C_0.05_f1-{variant}-late"].verdict == "trend"
+
+
+@kills("solvers.pypde.coupled:RotorLayersPDE.evolution_rate", "damping @ rate", "1.05 * damping @ rate")
+@kills("validation.cases.layer:rotor_cases", "apart[CELLS[-1]])", "apart[CELLS[0]])")
+def test_a_rotor_and_its_layer_by_py_pde_and_by_the_steps_of_run_ups() -> None:
+    """Two codes of one set of equations come together with the second order of both."""
+    found = {case.name.partition("/")[2]: case for case in rotor_cases()}
+    assert [*found] == ["rotor-32-cells", "rotor-64-cells", "rotor-128-cells", "rotor-order"]
+    assert {case.verdict for case in found.values()} == {"agrees"}
+    left = [float(found[f"rotor-{cells}-cells"].difference) for cells in (32, 64, 128)]  # type: ignore[arg-type]
+    assert left[0] > 3.0 * left[1] > 9.0 * left[2] > 0.0
 
 
 def test_finite_elements_agree_with_closed_forms() -> None:

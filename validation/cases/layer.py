@@ -1,7 +1,8 @@
 """The layer under a whirl against computed two-phase flow (interFoam, volume of fluid) and exact theory.
 
 The reference solves the full plane equations with a gas of density 1 inside the layer; its own accuracy is in
-the data file. Case C runs at the retrograde free wave, where a bore goes round.
+the data file. Case C runs at the retrograde free wave, where a bore goes round. Of a rotor with its layer two
+codes of the same equations stand side by side: py-pde's Runge-Kutta and the compiled steps of run-ups.
 """
 
 from __future__ import annotations
@@ -18,10 +19,13 @@ from fluid.friction import NO_FRICTION, Friction, FrictionLaw
 from fluid.liquid import Liquid
 from fluid.waves import force_ratio
 from meshes.chamber import Chamber
+from solvers.layer.records import Outcome
 from solvers.layer.state import LayerHistory, Numerics
 from solvers.liquid_model import Whirl
 from solvers.pypde.settle import settle, simulate
-from validation.cases.case import Case, Effect, shape_verdict
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.runup.long_wave import couple
+from validation.cases.case import Case, Effect, compare, shape_verdict
 from validation.cases.rigs import data
 
 _SOURCE = "interFoam, openfoam_layer.json"
@@ -160,3 +164,64 @@ def _rotation_case(run: dict[str, Any], time: NDArray[np.float64], rotation: NDA
         verdict="agrees" if bool(np.all(off <= _ROTATION)) else "differs",
         note="agrees within 25 %; with dispersion and laminar wall friction",
     )
+
+
+CELLS = (32, 64, 128)
+_SPIN = 40.0  # rad/s
+_ROTOR = Jeffcott(3.0, 3.0 * 15.0**2, 4.0, 2e-3)
+_LAYER = Fill(Chamber(0.15, 0.05), Liquid("water", 1000.0, 1e-6), 8e-4)
+_FRICTION = Friction(FrictionLaw.QUADRATIC, 0.02)
+# Of the square of a cell's angle: what second order leaves between two schemes of one equation here.
+_SHARE = 0.05
+
+
+def deflections(cells: int) -> tuple[complex, complex]:
+    """Deflection of a rotor with its layer after a turn from rest, by py-pde and by the compiled steps, m.
+
+    py-pde takes the rates of `RotorLayersPDE` with its own Runge-Kutta; the compiled steps are those of a
+    run-up, the spin held.
+
+    Parameters
+    ----------
+    cells : of the layer
+
+    Raises
+    ------
+    RuntimeError : the compiled steps did not come to the end
+    """
+    from solvers.pypde.coupled import RotorLayersPDE
+
+    turn = 2.0 * math.pi / _SPIN
+    machine = RotorLayersPDE(_ROTOR.system(), [_LAYER], _SPIN, friction=_FRICTION)
+    begin, step = machine.start(cells), turn / (2 * cells)
+    found = machine.solve(begin, (0.0, turn), dt=step, tracker=None, solver="runge-kutta")
+    kernel = couple(_ROTOR.system(), [_LAYER], _SPIN, _FRICTION, 0.0, cells, False)
+    outcome = kernel.advance(turn, 0.0, 0.8, 10**6)
+    if outcome is not Outcome.DONE:
+        raise RuntimeError(outcome.message)
+    return complex(*machine.parts(found)[2]), complex(*kernel.state.place)
+
+
+def rotor_cases() -> list[Case]:
+    """A rotor and its layer together: two codes on three meshes, and the order of their coming together."""
+    pairs = {cells: deflections(cells) for cells in CELLS}
+    apart = {cells: abs(first - second) / abs(second) for cells, (first, second) in pairs.items()}
+    found = [
+        Case(
+            name=f"layer/rotor-{cells}-cells",
+            source="py-pde, Runge-Kutta of the rates of rotor and layer",
+            quantity=f"deflection of a rotor with its layer after a turn from rest, mm, {cells} cells",
+            printed=1e3 * abs(first),
+            computed=1e3 * abs(second),
+            difference=apart[cells],
+            verdict="agrees" if apart[cells] <= _SHARE * (2.0 * math.pi / cells) ** 2 else "differs",
+            note="computed by the steps of run-ups; the difference is that of the complex deflections",
+        )
+        for cells, (first, second) in pairs.items()
+    ]
+    order = math.log2(apart[CELLS[-2]] / apart[CELLS[-1]])
+    what = "order in which the two come together, from the two finest meshes"
+    return [
+        *found,
+        compare("layer/rotor-order", "second order of both schemes", what, 2.0, order, tolerance=0.1),
+    ]
