@@ -11,7 +11,9 @@ import pytest
 from leblanc.scene.scene import load_scene
 from validation.trade import fingerprint, kept, names
 from validation.trade.__main__ import table
+from validation.trade.answers import FAMILY, WAVES
 from validation.trade.cases import layer_questions, response_question, runup_question
+from validation.trade.cases import questions as all_questions
 from validation.trade.judge import Row, dominates
 from validation.trade.trade import error_table
 
@@ -90,6 +92,22 @@ def test_made_again() -> None:
 def test_table() -> None:
     """One line for each scene and question."""
     assert len(table()) == 2 + len(questions())
+
+
+def test_the_solvers_of_py_pde_are_listed_where_a_scene_asks_for_its_waves() -> None:
+    scene = load_scene(EXAMPLES / "centrifuge.toml")
+    names = {
+        liquid: [
+            question.name for question in all_questions(scene.replace({"model.liquid": liquid}), quick=True)
+        ]
+        for liquid in ("auto", "kdv")
+    }
+    assert names["kdv"] == [*names["auto"], WAVES, FAMILY]
+    assert [one.name for one in all_questions(scene, quick=True, layer=True)] == names["kdv"]
+    empty = scene.replace({"model.liquid": "kdv", "chambers.0.volume": 0.0})
+    assert [one.name for one in all_questions(empty, quick=True)] == names["auto"]
+    no = all_questions(scene.replace({"model.liquid": "kdv"}), quick=True, layer=False)
+    assert [one.name for one in no] == names["auto"]
 
 
 def test_a_layer_alone_by_each_solver_of_py_pde() -> None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fluid.fill import FULL
 from fluid.kdv import coefficients
 from leblanc.scene.scene import Exciter, Runup, Scene
 from leblanc.studies.choose import across_gravity
@@ -71,23 +72,34 @@ class Question:
     ladder: tuple[Case, ...]
 
 
-def questions(scene: Scene, quick: bool = False, layer: bool = False) -> tuple[Question, ...]:
+def questions(scene: Scene, quick: bool = False, layer: bool | None = None) -> tuple[Question, ...]:
     """What can be compared on a scene: its response and, if it has one, its run-up.
 
     Parameters
     ----------
     scene : the machine
     quick : short ladders
-    layer : as well its first layer alone, by every solver that py-pde has for it
+    layer : as well its first layer alone, by every solver that py-pde has for it; None where it `names_waves`
     """
     if isinstance(scene.rotor, Exciter):
         return (exciter_question(scene, quick),)
     found = [response_question(scene, quick)]
     if scene.runup is not None:
         found.append(runup_question(scene, quick))
-    if layer:
+    if names_waves(scene) if layer is None else layer:
         found += layer_questions(scene, quick)
     return tuple(found)
+
+
+def names_waves(scene: Scene) -> bool:
+    """Whether a scene has a layer and asks for waves that py-pde solves.
+
+    Parameters
+    ----------
+    scene : the machine
+    """
+    layers = any(0.0 < fill.volume < FULL * fill.chamber.capacity for fill in scene.fills)
+    return layers and scene.model.liquid in ("long_wave", "kdv")
 
 
 def layer_questions(scene: Scene, quick: bool = False) -> list[Question]:

@@ -17,8 +17,12 @@ def trade(
     scene: Annotated[Path, typer.Argument(help="Scene file (TOML).")],
     quick: Annotated[bool, typer.Option("--quick", help="Short ladders of resolutions.")] = False,
     layer: Annotated[
-        bool, typer.Option("--layer", help="One layer alone as well, by each solver of py-pde.")
-    ] = False,
+        bool | None,
+        typer.Option(
+            "--layer/--no-layer",
+            help="One layer alone by each solver of py-pde [default: where the scene asks for its waves].",
+        ),
+    ] = None,
     repeats: Annotated[int, typer.Option(min=2, help="How often short runs are timed.")] = 5,
     out: Annotated[
         Path | None, typer.Option(help="Folder for the files [default: out/<scene name>].")
@@ -33,6 +37,7 @@ def trade(
 
     from rich.progress import Progress
 
+    from validation.trade.cases import names_waves
     from validation.trade.trade import trade_scene
 
     with Progress(transient=True, disable=not sys.stderr.isatty()) as bar:
@@ -56,6 +61,8 @@ def trade(
         print_json(found)
     else:
         print("\n".join(trade_lines(record)))
+        if layer is None and not names_waves(machine) and machine.chambers:
+            print("Solvers of py-pde on a layer of it alone, their cost and error: --layer")
         print(f"Look at {files.png}; the numbers are in {folder / 'trade.json'}")
     count = sum(len(comparison.rows) for comparison in record.comparisons)
     say(f"{record.name}: {count} models and resolutions done")

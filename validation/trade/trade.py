@@ -54,7 +54,7 @@ def trade_scene(
     quick: bool = False,
     repeats: int = REPEATS,
     progress: Progress | None = None,
-    layer: bool = False,
+    layer: bool | None = None,
 ) -> TradeRecord:
     """Measure every model and resolution on a scene.
 
@@ -64,7 +64,8 @@ def trade_scene(
     quick : short ladders
     repeats : how often what is short is timed
     progress : is called with what runs and the share that is done
-    layer : as well one layer alone, by every solver that py-pde has for it
+    layer : as well one layer alone, by every solver that py-pde has for it; None where the scene asks for
+        waves that py-pde solves
     """
     require_clear(scene, "a comparison of models, most of which know circular walls alone")
     tell = progress or (lambda _, __: None)
