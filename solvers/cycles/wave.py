@@ -230,20 +230,8 @@ class StandingWave:
         for part in range(max(parts, 1)):
             stop = start + time * (part + 1) / max(parts, 1)
             outcome, _ = compiled(
-                *(
-                    advance,
-                    state[:n],
-                    state[n:],
-                    np.empty(0),
-                    pace,
-                    stop,
-                    drive,
-                    wall,
-                    self._angles,
-                    courant,
-                    most,
-                ),
-                *(self._scratch, loads),
+                *(advance, state[:n], state[n:], np.empty(0), pace, stop, drive, wall, self._angles),
+                *(courant, most, self._scratch, loads),
             )
             if outcome != Outcome.DONE:
                 return None
