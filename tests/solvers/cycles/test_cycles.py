@@ -284,9 +284,10 @@ def test_weak_friction_beside_damping() -> None:
         size, turning, _ = stable_at(cycles, rpm * RPM)
         assert 1e3 * size == pytest.approx(amplitude, rel=0.01)
         assert turning / RPM == pytest.approx(whirl_speed, rel=1e-3)
-    # The rule alone, without the share that weak growth leaves, says 4 times the whirl.
-    (estimate,) = whirl_estimate(rotor, fills, np.array([1206.0 * RPM]), Friction("stokes"))
-    assert estimate is not None and 0.5 < 1e3 * estimate.amplitude / 0.1587 < 2.0
+    # The largest of the band: the rule alone, without the share that weak growth leaves, says 6 times as much.
+    rules = whirl_estimate(rotor, fills, np.linspace(1065.0, 1345.0, 15) * RPM, Friction("stokes"))
+    largest = max(rule.amplitude for rule in rules if rule is not None)
+    assert 0.5 < 1e3 * largest / 0.1587 < 2.0
     # Small whirls grow from 1045 to 1415 rpm: the branches reach down to them, and each is told once.
     assert cycles.reason == "" and len(cycles.branches) == 2
     assert min(branch.speed.min() for branch in cycles.branches) < 1055.0 * RPM
