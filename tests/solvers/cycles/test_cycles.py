@@ -284,7 +284,7 @@ def test_weak_friction_beside_damping() -> None:
         size, turning, _ = stable_at(cycles, rpm * RPM)
         assert 1e3 * size == pytest.approx(amplitude, rel=0.01)
         assert turning / RPM == pytest.approx(whirl_speed, rel=1e-3)
-    # The largest of the band: the rule alone, without the share that weak growth leaves, says 6 times as much.
+    # The largest of the band: the rule without the share that weak growth leaves says 6 times as much.
     rules = whirl_estimate(rotor, fills, np.linspace(1065.0, 1345.0, 15) * RPM, Friction("stokes"))
     largest = max(rule.amplitude for rule in rules if rule is not None)
     assert 0.5 < 1e3 * largest / 0.1587 < 2.0
