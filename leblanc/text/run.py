@@ -117,6 +117,8 @@ def _wrong(result: RunResult, index: int) -> list[str]:
     if result.held is not None and r.model[index] == HELD_MODEL:
         state = "limit cycle" if result.cycling[index] else "" if r.converged[index] else "not settled"
         return [*found, state] if state else found
+    if not r.converged[index] and np.isfinite(r.deflection[index]):
+        found.append("not converged")
     if not r.stable[index]:
         found.append("stability not known" if _unknown(result, index) else "unstable")
     return found
