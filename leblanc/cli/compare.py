@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from leblanc.cli.output import load, print_json, print_table, say
+from leblanc.cli.output import load, print_json, print_table, processes, say
 from leblanc.cli.progress import working
 from leblanc.contents import results_dir
 
@@ -20,17 +20,23 @@ def compare(
     out: Annotated[
         Path | None, typer.Option(help="Folder for the files [default: out/<scene name>].")
     ] = None,
+    workers: Annotated[
+        int | None, typer.Option(help="Processes that hold waves in time [default: all cores].")
+    ] = None,
+    fresh: Annotated[
+        bool, typer.Option(help="Hold anew what an earlier run has left, so that all its time counts.")
+    ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """The same scene by several liquid models. Table, figure, cost."""
     from leblanc.studies.compare import compare_models
-    from leblanc.studies.held.holding import Holding, cores
+    from leblanc.studies.held.holding import Holding
 
     machine = load(scene)
     folder = results_dir(machine.name, out, scene, machine.digest, "compare.nc")
     with working("response by several models"):
         names = [name.strip() for name in models.split(",")]
-        found = compare_models(machine, names, Holding(cores(), folder))
+        found = compare_models(machine, names, Holding(processes(workers), folder, fresh))
 
     from leblanc.figures.comparison import comparison_figure, save
     from leblanc.results.netcdf import write_netcdf

@@ -12,6 +12,7 @@ from leblanc.cli import main
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
 from leblanc.studies.compare import compare_models
+from leblanc.studies.held.holding import Holding
 from leblanc.studies.run import run_scene
 from meshes.errors import InputError
 
@@ -131,6 +132,26 @@ def test_a_model_that_does_not_answer_is_a_row_and_a_line(tmp_path: Path, capsys
     assert main(["compare", str(scene), "--models", "kdv,fem", "--out", str(tmp_path / "out")]) == 0
     printed = capsys.readouterr().out
     assert "does not answer" in printed and "kdv: model.liquid = 'kdv'" in printed
+
+
+def test_kept_states_are_held_anew_where_their_time_is_asked_for(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else what an earlier run has left is taken, and costs nothing."""
+    seen: list[Holding] = []
+
+    def looked_at(scene: Scene, models: list[str], holding: Holding) -> object:
+        seen.append(holding)
+        raise InputError("scene", "enough", "seen")
+
+    monkeypatch.setattr("leblanc.studies.compare.compare_models", looked_at)
+    typed = ["compare", "examples/centrifuge.toml", "--models", "long_wave", "--out", str(tmp_path / "out")]
+    assert main(typed) == main([*typed, "--fresh", "--workers", "3"]) == 2
+    assert [holding.fresh for holding in seen] == [False, True] and seen[1].workers == 3
+    assert {holding.folder for holding in seen} == {tmp_path / "out"}
+    capsys.readouterr()
+    assert main([*typed, "--workers", "0"]) == 2
+    assert "--workers" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("models", ["statics,statics", "beauty", ""])
