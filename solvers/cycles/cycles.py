@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -34,6 +35,7 @@ _STRAYED = 0.1  # relative: a first whirl this far from its edge belongs to anot
 _SAME, _THICK = 2e-3, 0.05
 _BEYOND = 2.0  # of the last step of a branch: what it goes on to the edge
 _POINTS = 400
+_LENGTH = 0.1  # of the speed: what counts along a branch as much as its largest amplitude
 _BROKEN = "no further whirl was found"
 _PROMINENT = 1e-4  # relative: a smaller turn of the branch is the scheme's, not a fold
 FAST_LAG = 1.0 / 3.0  # of the spin: beyond that the flow's profile no longer describes the lagging liquid
@@ -97,27 +99,48 @@ class Branch:
     def at(self, speed: float) -> list[HeldWhirl]:
         """Amplitude, whirl speed, lag and stability of every whirl of the branch at a speed.
 
-        Between two whirls of the branch values go in a straight line.
+        Between two whirls of the branch values go along a smooth curve.
 
         Parameters
         ----------
         speed : Omega, rad/s
         """
         found = []
-        lag = np.nanmax(self.lag, axis=1)
         for k in range(self.speed.size - 1):
             first, last = self.speed[k], self.speed[k + 1]
             low, high = min(first, last), max(first, last)
             # A whirl between two pieces of the branch belongs to the first one.
             if low == high or not low <= speed <= high or (k > 0 and speed == first):
                 continue
-            part = (speed - first) / (last - first)
-            size, turning, behind = (
-                float((1.0 - part) * row[k] + part * row[k + 1])
-                for row in (self.amplitude, self.whirl_speed, lag)
-            )
+            place = self._place(k, speed)
+            _, size, turning, behind = self._curve(place).tolist()
             found.append(HeldWhirl(size, turning, behind, bool(self.stable[k] and self.stable[k + 1])))
         return found
+
+    @cached_property
+    def _curve(self) -> Callable[[float], Array]:
+        """Speed, amplitude, whirl speed and lag over the number of the whirl."""
+        rows = np.column_stack([self.speed, self.amplitude, self.whirl_speed, np.nanmax(self.lag, axis=1)])
+        if len(rows) < 3:
+            return lambda place: rows[0] + place * (rows[-1] - rows[0])
+        from scipy.interpolate import Akima1DInterpolator
+
+        # Over the length of the branch, in which its whirls lie as they were followed.
+        scale = np.array([_LENGTH * self.speed.max(), self.amplitude.max()])
+        steps = np.sqrt(np.square(np.diff(rows[:, :2], axis=0) / scale).sum(axis=1))
+        arc = np.concatenate([[0.0], np.cumsum(np.maximum(steps, 1e-9))])
+        curve = Akima1DInterpolator(arc, rows, method="makima")
+        numbers = np.arange(len(arc))
+        return lambda place: np.asarray(curve(np.interp(place, numbers, arc)))
+
+    def _place(self, piece: int, speed: float) -> float:
+        """Number of a whirl, with its part of a piece, at a speed between those of the ends of the piece."""
+        from scipy.optimize import brentq
+
+        ends = [float(self.speed[k]) - speed for k in (piece, piece + 1)]
+        if 0.0 in ends:
+            return float(piece + ends.index(0.0))
+        return float(brentq(lambda place: float(self._curve(place)[0]) - speed, piece, piece + 1, xtol=1e-9))
 
 
 @dataclass(frozen=True)

@@ -66,21 +66,21 @@ def stable_at(cycles: LimitCycles, speed: float) -> tuple[float, float, float]:
 
 @pytest.mark.parametrize(("depth", "zeta"), MARCHED)
 def test_time_marching_comes_to_the_same_whirl(depth: float, zeta: float) -> None:
-    # 0.5 % of cells (64 against 128) and settling; between points straight lines miss the bend by 0.1 %.
+    # 0.3 % of cells (64 against 128) and settling.
     cycles, fill = found(depth, zeta, max(row[0] for row in MARCHED[depth, zeta]))
     for speed, amplitude, whirl_speed in MARCHED[depth, zeta]:
         size, turning, _ = stable_at(cycles, speed * NATURAL)
-        assert size / fill.depth == pytest.approx(amplitude, rel=0.01)
+        assert size / fill.depth == pytest.approx(amplitude, rel=0.004)
         if whirl_speed is not None:
-            assert turning / NATURAL == pytest.approx(whirl_speed, rel=1e-3)
+            assert turning / NATURAL == pytest.approx(whirl_speed, rel=2e-4)
 
 
 def test_the_branch_a_machine_leaves(branches: tuple[LimitCycles, Fill]) -> None:
     cycles, fill = branches
     for speed, amplitude in SEPARATRIX:
         left = [w for branch in cycles.branches for w in branch.at(speed * NATURAL) if not w.stable]
-        # Next to the edge the amplitude rises steeply: 1e-3 of the speed are 2 % of it at 1.503.
-        assert min(abs(w[0] / fill.depth / amplitude - 1.0) for w in left) < (0.03 if speed < 1.52 else 0.01)
+        # Next to the edge the amplitude rises steeply: half a digit of the speed is 2 % of it at 1.503.
+        assert min(abs(w[0] / fill.depth / amplitude - 1.0) for w in left) < (0.02 if speed < 1.52 else 0.005)
 
 
 def test_folds() -> None:
