@@ -37,7 +37,7 @@ _BEYOND = 2.0  # of the last step of a branch: what it goes on to the edge
 _POINTS = 400
 _LENGTH = 0.1  # of the speed: what counts along a branch as much as its largest amplitude
 _BROKEN = "no further whirl was found"
-_PROMINENT = 1e-4  # relative: a smaller turn of the branch is the scheme's, not a fold
+_PROMINENT = 1e-3  # relative: cells move a branch by half of that, a smaller turn is no fold to be told
 FAST_LAG = 1.0 / 3.0  # of the spin: beyond that the flow's profile no longer describes the lagging liquid
 
 
