@@ -98,6 +98,7 @@ CASES: dict[str, tuple[Case, ...]] = {
         case("duration", "back = true\nduration", "runup.back", "false where runup.motor is given"),
         case("samples = 500", "samples = 5", "runup.samples", "from 10 to 1000000"),
         case("dispersion = true", "dispersion = 1", "runup.dispersion", "true or false"),
+        case("dispersion = true", 'bore = "roller"', "runup.bore", "none, enstrophy"),
         case('inertia = "0.5 kg*m^2", ', "", "runup.motor.inertia", "a moment of inertia"),
         case('[0, "1000 rpm", 200]', '[0, "1000 rpm", 100]', "runup.motor.speeds", "above the one before"),
         case('[0, "1000 rpm", 200]', "[0]", "runup.motor.speeds", "2 to 1000"),

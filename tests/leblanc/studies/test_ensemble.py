@@ -15,6 +15,7 @@ from leblanc.figures.runup import speed_figure, time_figure
 from leblanc.results.runup import RunupResult
 from leblanc.scene.scene import load_scene
 from leblanc.studies.runup import runup_scene
+from leblanc.text.runup import summary
 from meshes.errors import InputError
 from solvers.runup.ensemble import CHANGE, Member, ensemble, spread_over
 from tests.mutants import kills
@@ -112,6 +113,16 @@ def test_json_data_and_figures_carry_it(found: RunupResult) -> None:
         labels = {text for axes in figure.axes for text in axes.get_legend_handles_labels()[1]}
         assert "range over 4 runs that rounding tells apart, thinner than the line" in labels
     assert "ensemble" not in runup_scene(SHORT, check=False).to_json()
+
+
+def test_a_scene_says_what_its_bores_leave() -> None:
+    rolling = SHORT.replace({"runup.bore": "enstrophy"})
+    assert rolling.digest != SHORT.digest
+    assert SHORT.replace({"runup.bore": "none"}).digest == SHORT.digest
+    found = runup_scene(rolling, check=False)
+    assert found.bore == "enstrophy" and "bores with enstrophy" in dict(summary(found))["Liquid model"]
+    assert "bores" not in dict(summary(runup_scene(SHORT, check=False)))["Liquid model"]
+    assert found.named_arrays().attrs["bore"] == "enstrophy"
 
 
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
