@@ -97,7 +97,8 @@ def layer_run(law: int, push: complex, n: int = 32) -> tuple[np.ndarray, np.ndar
     layer = records(LAYER)[0]
     layer.law, layer.coefficient = law, 0.5
     status, _ = coupled_layer.layer_step(
-        *(area, q, np.array([SPIN, SPIN]), np.array([push.real, push.imag, there.real, there.imag])),
+        *(area, q, area[:0], np.array([SPIN, SPIN])),
+        np.array([push.real, push.imag, there.real, there.imag]),
         *(layer, layer.coefficient, 0.02, ring(n), spare, gains),
     )
     assert status == Outcome.DONE
