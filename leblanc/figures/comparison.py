@@ -66,11 +66,18 @@ def comparison_figure(found: Comparison) -> Figure:
             parts = [_panels(figure, found, span, f", part {k + 1}") for k, span in enumerate(wider)]
             text = replace(_caption(found), shown=f"{_caption(found).shown} {wider_words()}")
             wide = list(zip(*parts, strict=True))
+            for axes in [*whole, *(axes for part in parts for axes in part)]:
+                axes.set_ylabel(_two_lines(axes.get_ylabel()))
             add_windows(figure, whole, wide, [SHARE * height for height in heights] * 2, text)
         else:
             whole[-1].set_xlabel("Speed (rpm)")
             lay_out(figure, [[axes] for axes in whole], heights, FRAME, _caption(found))
     return figure
+
+
+def _two_lines(label: str) -> str:
+    """A label for a panel that is lower than the label is long."""
+    return label.replace(" at ", "\nat ") if " at " in label else label.replace(" (", "\n(")
 
 
 def _panels(figure: Figure, found: Comparison, limits: Span, part: str) -> list[Axes]:

@@ -60,11 +60,12 @@ def texts(notes: Iterable[Note]) -> tuple[str, ...]:
 
 
 EXACT = 1e-9  # a relative error that is nothing but rounding
+WHOLE = 0.995  # a relative error that is said to be the whole or more
 
 
 def percent(value: float) -> str:
     """A share in per cent, two digits; a text where it is the whole or nothing."""
-    if value >= 0.995:
+    if value >= WHOLE:
         return "about 100 % or more"
     return "rounding" if value < EXACT else f"{100.0 * value:.2g} %"
 

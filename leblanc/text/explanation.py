@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from leblanc.results.base import EXACT, one_line, percent
+from leblanc.results.base import EXACT, WHOLE, one_line, percent
 from leblanc.results.choice import HeldCost, ModelSpan, SpeedEstimate
 from leblanc.results.explanation import (
     Comparison,
@@ -243,7 +243,9 @@ def _estimate(answer: ModelAnswer) -> str:
         return "not known"
     if math.isinf(error):
         return "no bound"
-    return "rounding" if error < EXACT else f"{100.0 * error:.2g}"
+    if error < EXACT:
+        return "rounding"
+    return "100 or more" if error >= WHOLE else f"{100.0 * error:.2g}"
 
 
 def held_words(answer: ModelAnswer) -> str:

@@ -44,7 +44,7 @@ _BEFORE, _BEYOND, _MOTOR = 0.7, 1.2, 1.2  # of its speed, where a run-up begins 
 # Of the speed of capture, from where on gravity does not throw the liquid about; of the run-up's end, where
 # the start lies at most; the least end over the start.
 _HELD, _LATEST, _WIDEST = 2.0, 0.8, 1.6
-_CALM = 3.0  # of the speed of capture, from where on a motion held in time mostly repeats with the turn
+_CALM = 4.0  # of the speed of capture, from where on a motion held in time mostly repeats with the turn
 _DIES = 4e-3  # in a turn, the logarithm by which a small whirl dies at least: e times in 250 turns
 _EXCITED = (0.25, 0.9)  # of the exciter's critical speed, between which its speeds lie
 
@@ -166,7 +166,7 @@ def response_question(scene: Scene, quick: bool = False) -> Question:
         return Question(RESPONSE, at_speeds(scene, chosen), about, cases, best, (best,))
     held = tuple(Case(RESPONSE, "long_wave", n, HELD) for n in (QUICK_HELD if quick else HELD_CELLS))
     about = (
-        f"response with gravity across the axis at {where}, from three times that of capture on and where no "
+        f"response with gravity across the axis at {where}, from four times that of capture on and where no "
         f"whirl grows by itself; {_ERROR}, its mean over time"
     )
     return Question(RESPONSE, at_speeds(scene, chosen), about, (*cases, *held), held[-1], held[:-4:-1])
@@ -178,8 +178,8 @@ _ERROR = "error: largest relative one of the amplitude"
 def stands_lying(scene: Scene) -> Flags:
     """At which speeds gravity across the axis shows in an answer that is steady on the whole, shape (n,).
 
-    Closer to the speed of capture gravity throws rotor and layer into limit cycles, whose size no mesh
-    decides; where a whirl grows by itself no steady model answers what it grows to, and where it dies too
+    Closer to the speed of capture gravity throws rotor and layer into limit cycles, on one mesh and not on
+    the next; where a whirl grows by itself no steady model answers what it grows to, and where it dies too
     slowly nothing settles.
 
     Parameters

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import json
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from leblanc.cli import main
+from leblanc.figures.comparison import comparison_figure
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
 from leblanc.studies.compare import compare_models
 from leblanc.studies.held.holding import Holding
 from leblanc.studies.run import run_scene
+from leblanc.text.explanation import comparison_rows
 from meshes.errors import InputError
+from tests.mutants import kills
 
 Capture = pytest.CaptureFixture[str]
 
@@ -47,6 +52,20 @@ def test_an_empty_machine_is_the_same_by_every_model() -> None:
     for one in found.results.values():
         # Rounding of the two ways to write the same quotient.
         np.testing.assert_allclose(one.amplitude, dry, rtol=1e-12)
+
+
+@kills("leblanc.figures.comparison:_two_lines", 'label.replace(" at ", "\\nat ")', "label")
+@kills("leblanc.text.explanation:_estimate", "error >= WHOLE", "error < 0.0")
+def test_a_tub_fits_its_low_panels_and_no_error_is_thousands() -> None:
+    """Resonances drawn wider halve the panels: no label reaches the next one. 100 % and more are words."""
+    found = compare_models(example("tub"), ["linear", "statics"])
+    figure = comparison_figure(found)
+    FigureCanvasAgg(figure).draw()
+    labels = [axes.yaxis.label.get_window_extent() for axes in figure.axes if axes.get_ylabel()]
+    assert len(labels) == 4
+    assert not any(one.overlaps(other) for one, other in combinations(labels, 2))
+    rows = comparison_rows(found)
+    assert found.answers[0].largest_error > 1.0 and "100 or more" in rows[0]  # type: ignore[operator]
 
 
 def test_a_model_by_itself_has_no_difference() -> None:
