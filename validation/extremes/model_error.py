@@ -45,6 +45,7 @@ WATER = KNOWN_LIQUIDS["water"]
 GRAVITY = 9.81
 # Of the calibration; the tests take others.
 SEEDS = {"linear": 1, "gravity": 2, "run_up": 2, "held": 11}
+HELD = {"jeffcott": 500, "two_plane": 400, "tub": 400}  # machines drawn to be held in time, by kind of rotor
 
 
 @dataclass(frozen=True)
@@ -438,12 +439,12 @@ def random_run_up(
 def main() -> None:
     """Print the coverage of all estimates on the calibration's seeds."""
     linear = linear_sample(SEEDS["linear"], 3000)
-    held = held_sample(SEEDS["held"], 500)
+    held = {kind: held_sample(SEEDS["held"], count, kind=kind) for kind, count in HELD.items()}
     samples = {
-        "held, mean amplitude": held.amplitude,
-        "held, mean of the liquid": held.liquid,
-        "held, ripple": held.ripple,
-        "held, liquid's ripple": held.liquid_ripple,
+        f"{kind}, {name.replace('_', ' ')}": getattr(found, name)
+        for kind, found in held.items()
+        for name in ("amplitude", "liquid", "ripple", "liquid_ripple")
+    } | {
         "linear, amplitude": linear.amplitude,
         "linear, liquid": linear.liquid,
         "gravity": gravity_sample(SEEDS["gravity"], 100),
