@@ -21,7 +21,7 @@ from solvers.held.branch import HeldBranches, HeldTask, held_branches
 from solvers.held.hold import require_known_solver, start
 from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics
 from solvers.rotor.vibration import orbit
-from solvers.synchronous.response import Response, joined
+from solvers.synchronous.response import Response, joined, response
 from solvers.whirl.growth import asynchronous_growth
 
 _KICK = 0.1  # of the layer's depth times the spin: what a whirl that grows by itself begins with
@@ -72,9 +72,25 @@ def hold_answer(
     held = held_result(own, machine, rows, holding.solver)
     answer = _placed(began.answer, every.at(np.arange(rows.size)), rows)
     models, error = choice.models.astype("U9"), choice.error.copy()
-    models[rows], error[rows] = "long_wave", held.error[rows]
+    models[rows], error[rows] = "long_wave", held.error[rows] + _left_out(machine, began.answer.at(rows))
     kept = every.at(np.arange(rows.size, total)) if began.at.all() else began.refined.at(_far(began))
     return replace(choice, models=models, error=error), answer, kept, held
+
+
+def _left_out(machine: Prepared, steady: Response) -> Array:
+    """Relative change of amplitude or liquid, the larger, by gravity along the axis, shape (n,).
+
+    No held wave has it. Nothing where the answer with it or without is not known.
+    """
+    if machine.axial_gravity == 0.0:
+        return np.zeros(steady.speed.size)
+    flat = response(machine.rotor, machine.scene.fills, steady.speed, 0.0, position=steady.position)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        change = np.maximum(
+            np.abs(flat.amplitude / steady.amplitude - 1.0),
+            np.abs(flat.liquid_offset / steady.liquid_offset - 1.0),
+        )
+    return np.where(np.isfinite(change), change, 0.0)
 
 
 def _between(began: Began) -> Index:

@@ -16,6 +16,7 @@ from leblanc.scene.scene import load_scene, scene_from_table
 from leblanc.studies.run import run_scene
 from meshes.errors import InputError
 from tests.leblanc.studies.test_explain import table
+from tests.mutants import kills
 
 KEYS = {
     "speed", "amplitude", "amplitude_dry", "phase", "liquid_offset", "liquid_angle", "dry_patch",
@@ -113,3 +114,17 @@ def test_a_solver_for_motions_that_nobody_holds() -> None:
     asked = lb.example("runup").replace({"model.liquid": "long_wave", "speeds.count": 2})
     with pytest.raises(InputError, match=r"solver.*nosuch.*runge-kutta"):
         lb.run(asked, solver="nosuch")
+
+
+@kills("leblanc.studies.held.held:hold_answer", " + _left_out(machine, began.answer.at(rows))", "")
+def test_held_waves_know_that_they_leave_out_gravity_along_the_axis() -> None:
+    """Where the wall begins to run dry, the depth along the axis counts for more than the cells do."""
+    scene = lb.example("runup").replace(
+        {"speeds.start": "186 rpm", "speeds.stop": "187 rpm", "speeds.count": 2, "model.cells": 32}
+    )
+    exact = lb.run(scene.replace({"model.liquid": "statics"}))
+    found = lb.run(scene.replace({"model.liquid": "long_wave"}))
+    assert found.error_estimate is not None
+    change = np.abs(found.amplitude / exact.amplitude - 1.0)
+    assert (change < found.error_estimate).all()
+    assert (found.error_estimate > found.held_error + 0.01).all()
