@@ -14,6 +14,7 @@ from leblanc.cli import main
 from leblanc.results.notes import RunCode
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
+from leblanc.studies.batch import answer_scenes
 from leblanc.studies.choose import prepare
 from leblanc.studies.explain import explain_scene
 from leblanc.studies.run import run_scene
@@ -99,6 +100,18 @@ def test_every_rotor_is_answered(name: str) -> None:
     assert ("no wave" in str(note)) == (not result.converged.all())
     (span, *_) = explain_scene(scene).models[-1:]
     assert span.model == "kdv" and "off the exact equilibrium" in span.reason
+
+
+def test_many_machines_at_once_are_each_one_alone() -> None:
+    """As sweeps answer them: by the same laws."""
+    scenes = [few("runup"), few("centrifuge")]
+    found = answer_scenes(scenes)
+    for k, scene in enumerate(scenes):
+        alone = run_scene(scene)
+        np.testing.assert_allclose(found.amplitude[k], alone.amplitude, rtol=1e-12)
+        np.testing.assert_allclose(found.liquid_offset[k], alone.liquid_offset, rtol=1e-12)
+        np.testing.assert_array_equal(found.converged[k], alone.converged)
+        assert not found.in_range[k].any()
 
 
 def test_where_no_wave_stands_the_answer_says_so(tmp_path: Path, capsys: Capture) -> None:
