@@ -10,7 +10,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from meshes.arrays import Array, Complex
 from solvers.cycles.balance import Circular
@@ -81,6 +80,8 @@ def _modes(machine: Circular, spin: float, before: Complex | None) -> tuple[Comp
                 if moved < 1e-6 * spin:
                     break
     if before is not None:
+        from scipy.optimize import linear_sum_assignment
+
         _, order = linear_sum_assignment(np.abs(before[:, None] - roots[None, :]))
         roots, vectors = roots[order], vectors[:, order]
     return roots, vectors[: len(machine.mass)]
