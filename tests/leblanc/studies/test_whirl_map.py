@@ -320,4 +320,4 @@ def test_validation_agrees() -> None:
     from validation.cases.whirl import cases
 
     found = cases()
-    assert len(found) == 17 and {one.verdict for one in found} == {"agrees"}
+    assert len(found) == 22 and {one.verdict for one in found} == {"agrees"}
