@@ -120,7 +120,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
 def test_explain_estimates_it(machine: Scene, found: WhirlMap) -> None:
     explanation = explain_scene(machine)
     assert explanation.whirl is not None
-    # The whirl grows up to the last speed; the rule lets it shrink as the growth does towards the band's edge.
+    # The whirl grows up to the last speed; by the rule it shrinks with the growth towards the band's edge.
     assert 0.97 * 140.0 <= explanation.whirl.speed <= 140.0
     solved = max(row["amplitude"] for row in found.cycles if row["stable"] and row["speed"] <= 140.0)
     assert explanation.whirl.amplitude == approx(solved, rel=0.1)
