@@ -24,6 +24,9 @@ _ELSEWHERE = 20.0  # times the tolerance, that the axis may be off after a turn 
 _LINES = 2  # multiples of the spin that are no whirl of their own, either way
 _RESTS = 1e-7  # of the amplitude, that a stable equilibrium may move in a turn
 _GROWN = 8.0  # logarithm by which a whirl that grows has to have grown
+_QUICK = (
+    2.0  # logarithm by which small motions grow or die in the shortest window, beyond which they are quick
+)
 _FALL = 0.5  # logarithm by which a motion that dies does so in a window
 _MARKS = 8  # turns from which it is guessed where a motion is bound for
 _TRIES = 8  # how often
@@ -70,6 +73,7 @@ class Watch:
         if slowest != 0.0:
             self.window = max(_LONG, math.ceil(_FALL / abs(self.slowest)))
         self.window = min(self.window, numerics.turns // 2)
+        self.quick = abs(self.slowest) * _LONG > _QUICK
         self.count, self.steps = 0, 0
         self.forget()
 
@@ -233,9 +237,10 @@ class Watch:
         means = abs(weight @ (late - soon)[:, 0]) / scale
         ends = max(abs(late[:, 1].min() - soon[:, 1].min()), abs(late[:, 2].max() - soon[:, 2].max())) / scale
         moves = np.ptp(late[:, 0]) < _DIES * np.ptp(soon[:, 0])
-        # A whirl that is small beside the amplitude still grows or dies while the extremes look alike.
+        # A whirl that is small beside the amplitude may still grow or die while the extremes look alike; one
+        # that grows or dies within a window is through with it.
         swings = [float(part[:, 2].max() - part[:, 1].min()) for part in (late, soon)]
-        moves |= abs(swings[0] - swings[1]) > _SWING * swings[1]
+        moves |= not self.quick and abs(swings[0] - swings[1]) > _SWING * swings[1]
         repeats = np.ptp(late, axis=0).max() <= self.numerics.tolerance * scale and not self._elsewhere(scale)
         if repeats or moves or means > _MEANS * self.numerics.tolerance or ends > _ALIKE:
             return False
