@@ -24,9 +24,7 @@ _ELSEWHERE = 20.0  # times the tolerance, that the axis may be off after a turn 
 _LINES = 2  # multiples of the spin that are no whirl of their own, either way
 _RESTS = 1e-7  # of the amplitude, that a stable equilibrium may move in a turn
 _GROWN = 8.0  # logarithm by which a whirl that grows has to have grown
-_QUICK = (
-    2.0  # logarithm by which small motions grow or die in the shortest window, beyond which they are quick
-)
+_QUICK = 2.0  # logarithm by which quick small motions grow or die in the shortest window
 _FALL = 0.5  # logarithm by which a motion that dies does so in a window
 _MARKS = 8  # turns from which it is guessed where a motion is bound for
 _TRIES = 8  # how often
@@ -208,9 +206,8 @@ class Watch:
         parts = sizes[-SHORT:], sizes[-2 * SHORT : -SHORT]
         late, soon = (float(np.ptp(part, axis=0).max()) / scale for part in parts)
         # A whirl that linear theory lets grow has had its time, or has died all the same.
-        if self.slowest * self.count < (_GROWN if self.slowest > 0.0 else 0.0) and not self._died(
-            sizes, scale
-        ):
+        wanted = _GROWN if self.slowest > 0.0 else 0.0
+        if self.slowest * self.count < wanted and not self._died(sizes, scale):
             return math.inf
         if late <= 0.25 * self.numerics.tolerance:
             return late

@@ -47,6 +47,19 @@ def test_what_repeats_is_no_limit_cycle() -> None:
         assert found._bounded(sizes, SIZE) is bounded
 
 
+@kills("solvers.held.turns:Watch._bounded", "swings[0] - swings[1]", "0.0")
+def test_a_small_whirl_that_still_grows_is_no_cycle_yet() -> None:
+    """Its swing is 1e-3 of the amplitude, so that the extremes of two windows look alike within 2 %."""
+    for rate, bounded in ((0.0, True), (0.01, False)):
+        found = watch(0.01)
+        turns(found, 2 * found.window, 0.7)
+        k = np.arange(2 * found.window)
+        swing = 1e-3 * SIZE * np.exp(rate * (k - k[-1]))
+        beat = swing * np.cos(0.7 * k)
+        sizes = np.stack([SIZE + beat, SIZE + beat - 0.1 * swing, SIZE + beat + 0.1 * swing], axis=1)
+        assert found._bounded(sizes, SIZE) is bounded
+
+
 @kills("solvers.held.turns:Watch._left", "self.slowest * self.count <", "0.0 <")
 def test_a_whirl_that_has_had_its_time() -> None:
     """Linear growth of more than e^8 that moves nothing: the motion is settled, by a circle or by a whirl."""
