@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import Friction, FrictionLaw
+from fluid.friction.laws import Friction, FrictionLaw
 from fluid.liquid import known_liquid
-from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
 from leblanc.units import RPM
 from meshes.arrays import Array, Complex
 from meshes.chamber import Chamber

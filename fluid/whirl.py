@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fluid.fill import FULL, Fill
-from fluid.friction import LINEAR, STOKES, Friction, FrictionLaw, damping_rate
+from fluid.friction.laws import LINEAR, STOKES, Friction, FrictionLaw, damping_rate
 from meshes.arrays import Array, Complex
 
 

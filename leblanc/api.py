@@ -18,7 +18,7 @@ from leblanc.scene.scene import Scene, load_scene
 from meshes.errors import InputError
 
 if TYPE_CHECKING:
-    from fluid.friction import Friction
+    from fluid.friction.laws import Friction
     from fluid.liquid import Liquid
     from leblanc.questions import Quantity
     from leblanc.results.exciter import ExciterResult

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from fluid.fill import Fill
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from fluid.liquid import Liquid, known_liquid
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import OBJECTIVES, Optimisation
@@ -114,7 +114,7 @@ def layer_question(
     InputError : a value that cannot be read, or is out of its range
     """
     from leblanc.studies.layer import as_options  # bring the solvers of layers, which no other question needs
-    from leblanc.studies.liquid import wave_model
+    from leblanc.studies.models.liquid import wave_model
 
     plates = baffle_plates(baffles, baffle_tip_radius, baffle_wall_gap)
     chamber = Chamber(

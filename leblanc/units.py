@@ -18,7 +18,7 @@ from functools import partial
 from numbers import Real
 from typing import Any
 
-from fluid.friction import Friction, FrictionLaw
+from fluid.friction.laws import Friction, FrictionLaw
 from meshes.errors import InputError, require_not_negative
 
 _LONGEST = 64  # characters; no quantity needs more, and pint evaluates what it is given

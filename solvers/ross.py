@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import make_interp_spline
 
 from fluid.fill import Fill
-from fluid.friction import NO_FRICTION, Friction
+from fluid.friction.laws import NO_FRICTION, Friction
 from fluid.whirl import offset_with_friction, plane_layer, stokes_rate, wave_function
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, get_args
 from validation.cases.case import Case, Value, Verdict
 
 if TYPE_CHECKING:
-    from leblanc.figures.page import Figure
+    from leblanc.figures.drawing.page import Figure
 
 _DPI, _WIDE = 160, 110  # dots of a file and of the screen to an inch
 _PLAIN = 10.0  # relative differences below are told in per cent, larger ones as factors
@@ -141,7 +141,7 @@ def picture(figure: Figure | Path) -> Picture:
     """
     from PIL import Image
 
-    from leblanc.figures.page import WIDTH, style
+    from leblanc.figures.drawing.page import WIDTH, style
 
     width = round(WIDTH * _WIDE)
     if isinstance(figure, Path):

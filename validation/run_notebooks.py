@@ -58,7 +58,7 @@ def notebooks(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> int:
     """Execute the validation notebooks. With outputs as .ipynb and HTML; exit code 1 if one fails."""
-    from leblanc.cli.output import print_json, say
+    from leblanc.cli.terminal.output import print_json, say
     from leblanc.files import out_dir
 
     chosen = [_text(name) for name in names] if names else texts()

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from fluid.waves import free_wave_frequencies
 from meshes.arrays import Array
 from meshes.errors import InputError, require_positive

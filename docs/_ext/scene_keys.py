@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic.fields import FieldInfo
 
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from leblanc.scene.scene import Scene
 from leblanc.scene.schema.part import Part, parts_of, rule_of
 from leblanc.scene.schema.paths import entry_rule, tables_of

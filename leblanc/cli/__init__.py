@@ -19,7 +19,7 @@ import typer
 from typer.main import get_command
 
 from leblanc.cli import compare, explain, layer, map, modes, new, optimise, run, runup, sweep, view, volume
-from leblanc.cli.output import drop, ready_streams, say
+from leblanc.cli.terminal.output import drop, ready_streams, say
 from leblanc.contents import recording
 from leblanc.interrupts import INTERRUPTED, TERMINATED, Terminated, behind, heard, leave, said
 from leblanc.scene.schema.load import NotConverged, SceneError, escaped

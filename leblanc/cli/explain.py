@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.output import load, print_json, print_table
+from leblanc.cli.terminal.output import load, print_json, print_table
 
 if TYPE_CHECKING:
     from leblanc.results.explanation import Explanation

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.output import print_json, print_table, say
-from leblanc.cli.progress import working
+from leblanc.cli.terminal.output import print_json, print_table, say
+from leblanc.cli.terminal.progress import working
 from leblanc.files import out_dir, require_writable
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ def layer(
     question = ask(layer_question, given)
     folder = None if out is None or question.duration is not None else out_dir("layer", out)
     if animate is not None:
-        from leblanc.figures.page import require_film
+        from leblanc.figures.drawing.page import require_film
 
         require_film(animate)
         require_writable(animate)
@@ -133,7 +133,7 @@ def _tell(result: LayerResult | LayerPeriodsResult, profile: bool) -> None:
 
 def _draw(result: LayerResult, folder: Path) -> None:
     """The wave as it stands in the frame of the deflection."""
-    from leblanc.figures.page import save
+    from leblanc.figures.drawing.page import save
     from leblanc.figures.wave import wave_figure
 
     files = save(wave_figure(result.wave()), folder, "wave", "Wave on the annulus")

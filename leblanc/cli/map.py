@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from leblanc.cli.output import load, print_json, print_table, say
-from leblanc.cli.progress import working
+from leblanc.cli.terminal.output import load, print_json, print_table, say
+from leblanc.cli.terminal.progress import working
 from leblanc.contents import results_dir
 
 MOST_LOST = 0.01  # of the points, at which a map still is one; they are marked

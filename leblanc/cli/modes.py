@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.output import print_json, say
-from leblanc.cli.progress import working
+from leblanc.cli.terminal.output import print_json, say
+from leblanc.cli.terminal.progress import working
 from leblanc.files import out_dir
 
 if TYPE_CHECKING:

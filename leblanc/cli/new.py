@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from leblanc.cli.output import say
+from leblanc.cli.terminal.output import say
 from leblanc.files import writing
 
 

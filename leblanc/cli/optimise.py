@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.output import load, print_json, say
+from leblanc.cli.terminal.output import load, print_json, say
 from leblanc.contents import results_dir
 
 if TYPE_CHECKING:

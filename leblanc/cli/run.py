@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.output import load, print_json, print_table, processes, say
-from leblanc.cli.progress import working
+from leblanc.cli.terminal.output import load, print_json, print_table, processes, say
+from leblanc.cli.terminal.progress import working
 from leblanc.contents import results_dir
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.output import load, print_json, print_table, processes, say
-from leblanc.cli.progress import working
+from leblanc.cli.terminal.output import load, print_json, print_table, processes, say
+from leblanc.cli.terminal.progress import working
 from leblanc.contents import results_dir
 from leblanc.files import require_writable
 
@@ -48,7 +48,7 @@ def runup(
 
     planned(machine)
     if animate is not None:
-        from leblanc.figures.page import require_film
+        from leblanc.figures.drawing.page import require_film
         from leblanc.studies.runup import require_layers
 
         require_film(animate)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from leblanc.cli.output import print_json, say
+from leblanc.cli.terminal.output import print_json, say
 from leblanc.contents import results_dir
 
 if TYPE_CHECKING:
@@ -40,9 +40,9 @@ def sweep(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Answers of many scenes that differ in a few values. The same command goes on after a stop."""
+    from leblanc.studies.models.validity import doubts
     from leblanc.studies.sweep.sampling import sampling_note
     from leblanc.studies.sweep.study import load_sweep
-    from leblanc.studies.validity import doubts
 
     plan = load_sweep(study)
     for doubt in doubts(plan.scene, plan.table):

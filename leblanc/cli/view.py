@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.output import load, print_json, say
-from leblanc.cli.progress import working
+from leblanc.cli.terminal.output import load, print_json, say
+from leblanc.cli.terminal.progress import working
 from leblanc.contents import results_dir
 from leblanc.files import require_writable
 

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from leblanc.cli.output import print_json, print_table
+from leblanc.cli.terminal.output import print_json, print_table
 
 
 def volume(

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.page import (
+from leblanc.figures.drawing.page import (
     MOST_LINES,
     RIGHT,
     WIDTH,

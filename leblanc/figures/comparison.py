@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.curves import COLUMNS, Span, spans, thin, windows
-from leblanc.figures.page import (
+from leblanc.figures.drawing.curves import COLUMNS, Span, spans, thin, windows
+from leblanc.figures.drawing.page import (
     Caption,
     Figure,
     Frame,
@@ -18,11 +18,11 @@ from leblanc.figures.page import (
     number,
     style,
 )
-from leblanc.figures.page import save as save  # a figure is drawn and written together
+from leblanc.figures.drawing.page import save as save  # a figure is drawn and written together
 from leblanc.figures.response import DRY, OUT_OF_RANGE, SHADE, SHARE, value_axis, wider_words
 from leblanc.results.base import one_line
 from leblanc.results.explanation import Comparison
-from leblanc.results.notes import plane_label
+from leblanc.results.notes.response import plane_label
 from leblanc.results.response import RunResult
 from leblanc.text.explanation import comparison_alt
 from leblanc.units import MM, RPM

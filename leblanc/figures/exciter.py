@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.page import (
+from leblanc.figures.drawing.page import (
     Caption,
     Figure,
     FigureFiles,

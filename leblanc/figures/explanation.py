@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from leblanc.figures.page import Caption, Figure, Frame, add_rate_axis, lay_out, number, style
+from leblanc.figures.drawing.page import Caption, Figure, Frame, add_rate_axis, lay_out, number, style
 from leblanc.results.base import EXACT, one_line
 from leblanc.results.explanation import ExciterExplanation, Explanation
 from leblanc.text.run import error_words, speeds_words

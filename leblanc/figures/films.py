@@ -10,7 +10,17 @@ from typing import Any
 import numpy as np
 
 from leblanc.figures import wave
-from leblanc.figures.page import FILM_DPI, RIGHT, WIDTH, Figure, Frame, lay_out, number, style, write_film
+from leblanc.figures.drawing.page import (
+    FILM_DPI,
+    RIGHT,
+    WIDTH,
+    Figure,
+    Frame,
+    lay_out,
+    number,
+    style,
+    write_film,
+)
 from leblanc.figures.runup import caption
 from leblanc.results.base import FilledChamber
 from leblanc.results.drawn import film_factor, pool

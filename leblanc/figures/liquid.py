@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.figures.chambers import liquid_outline
-from leblanc.figures.page import Caption, Figure, Frame, lay_out, number, style
-from leblanc.figures.page import save as save  # a figure is drawn and written together
+from leblanc.figures.drawing.page import Caption, Figure, Frame, lay_out, number, style
+from leblanc.figures.drawing.page import save as save  # a figure is drawn and written together
 from leblanc.results.base import FilledChamber
 from leblanc.results.drawn import rounded_down
 from leblanc.results.liquid import ModesResult, VolumeResult

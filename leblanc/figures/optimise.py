@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from fluid.temperature import CELSIUS
-from leblanc.figures.page import (
+from leblanc.figures.drawing.page import (
     RIGHT,
     WIDTH,
     Caption,
@@ -22,7 +22,7 @@ from leblanc.figures.page import (
     style,
 )
 from leblanc.results.base import one_line, texts
-from leblanc.results.notes import plane_label
+from leblanc.results.notes.response import plane_label
 from leblanc.results.optimum import ConditionTable, OptimumResult
 from leblanc.text.optimum import amplitude_plane, load_words, worst_condition
 from leblanc.units import DEGREE, LENGTH, MM, UNBALANCE, VOLUME, in_rpm, unit_for, with_unit

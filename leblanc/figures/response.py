@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from leblanc.figures.chambers import chamber_figure
-from leblanc.figures.curves import (
+from leblanc.figures.drawing.curves import (
     NARROW,
     Curves,
     HeldCurves,
@@ -23,7 +23,7 @@ from leblanc.figures.curves import (
     widened,
     windows,
 )
-from leblanc.figures.page import (
+from leblanc.figures.drawing.page import (
     Figure,
     FigureFiles,
     Frame,
@@ -37,7 +37,7 @@ from leblanc.figures.page import (
     style,
     zero_of,
 )
-from leblanc.results.notes import plane_label
+from leblanc.results.notes.response import plane_label
 from leblanc.results.response import RunResult
 from leblanc.text.run import alts, amplitude_place
 from leblanc.units import MM, RPM, in_rpm

@@ -11,11 +11,21 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.curves import gapped, joined, lag_degrees, link, spans, widened
-from leblanc.figures.page import WIDTH, Caption, Figure, FigureFiles, Frame, lay_out, number, save, style
+from leblanc.figures.drawing.curves import gapped, joined, lag_degrees, link, spans, widened
+from leblanc.figures.drawing.page import (
+    WIDTH,
+    Caption,
+    Figure,
+    FigureFiles,
+    Frame,
+    lay_out,
+    number,
+    save,
+    style,
+)
 from leblanc.figures.response import DRY, SHADE, UNSTABLE, WET
 from leblanc.results.base import one_line, percent
-from leblanc.results.notes import plane_label
+from leblanc.results.notes.response import plane_label
 from leblanc.results.runup import RunupResult
 from leblanc.text.runup import describe_model, largest, largest_dry
 from leblanc.units import LENGTH, MM, RPM, friction_words, with_unit

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.curves import COLUMNS, Span, thin, windows
-from leblanc.figures.page import (
+from leblanc.figures.drawing.curves import COLUMNS, Span, thin, windows
+from leblanc.figures.drawing.page import (
     Caption,
     Figure,
     Frame,
@@ -19,7 +19,7 @@ from leblanc.figures.page import (
 )
 from leblanc.figures.response import DRY, SHARE, WET, value_axis, wider_words
 from leblanc.results.base import one_line
-from leblanc.results.notes import plane_label
+from leblanc.results.notes.response import plane_label
 from leblanc.results.sweep import SweepResult
 from leblanc.text.sweep import alt
 from leblanc.units import MM, RPM

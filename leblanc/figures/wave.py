@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.figures.page import (
+from leblanc.figures.drawing.page import (
     FILM_DPI,
     RIGHT,
     WIDTH,

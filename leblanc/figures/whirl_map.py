@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.page import (
+from leblanc.figures.drawing.page import (
     RIGHT,
     WIDTH,
     Caption,
@@ -18,7 +18,7 @@ from leblanc.figures.page import (
     part_of,
     style,
 )
-from leblanc.figures.page import save as save  # a figure is drawn and written together
+from leblanc.figures.drawing.page import save as save  # a figure is drawn and written together
 from leblanc.results.base import one_line
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.text.whirl_map import alt, cycles_alt

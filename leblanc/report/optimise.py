@@ -19,7 +19,7 @@ from leblanc.text.optimum import amplitude_plane, answer, over_conditions, quali
 from leblanc.units import LENGTH, MASS, ML, VOLUME, in_rpm, unit_for, with_unit
 
 if TYPE_CHECKING:
-    from leblanc.figures.page import FigureFiles
+    from leblanc.figures.drawing.page import FigureFiles
 
 LISTED = 12  # points of the front
 ONE_MODEL = (

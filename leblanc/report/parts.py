@@ -14,7 +14,7 @@ from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import Optimisation
 
 if TYPE_CHECKING:
-    from leblanc.figures.page import FigureFiles
+    from leblanc.figures.drawing.page import FigureFiles
 
 
 LIGHT = 300_000  # bytes up to which a drawing is kept as lines; beyond it the smaller of the two files

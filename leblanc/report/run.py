@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from leblanc.report.page import About, models, notes, why, write_page
 from leblanc.report.parts import Cell, Table, doubt, picture, table
 from leblanc.results.exciter import ExciterResult
-from leblanc.results.notes import OF_MODELS, RunCode
+from leblanc.results.notes.response import OF_MODELS, RunCode
 from leblanc.results.response import RunResult
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.text.exciter import NUMBERS
@@ -29,7 +29,7 @@ from leblanc.units import LENGTH, RPM, VOLUME, unit_for
 from meshes.arrays import Array, Flags, Index
 
 if TYPE_CHECKING:
-    from leblanc.figures.page import FigureFiles
+    from leblanc.figures.drawing.page import FigureFiles
 
 
 SHOWN = 4  # figures, of which the phase stands in its own file only; with more, all

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from leblanc.report.page import About, models, notes, write_page
 from leblanc.report.parts import Cell, Table, doubt, picture, table
 from leblanc.results.base import one_line, percent
-from leblanc.results.notes import CLOSURE, ERROR, IN_TABLES
+from leblanc.results.notes.runup import CLOSURE, ERROR, IN_TABLES
 from leblanc.results.response import peak
 from leblanc.results.runup import RunupResult
 from leblanc.text.numbers import MOST_RANGES, number
@@ -23,7 +23,7 @@ from leblanc.text.runup import moments as main_moments
 from leblanc.units import LENGTH, MASS, MINUS, RPM, rpm_bands, rpm_range, unit_for, with_unit
 
 if TYPE_CHECKING:
-    from leblanc.figures.page import FigureFiles
+    from leblanc.figures.drawing.page import FigureFiles
 
 DRY = 1e-3  # of the layer's mean depth: a wall with less on it counts as dry
 MASS_CHANGE = 1e-6  # relative change of a layer's volume to speak of

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from leblanc.results.base import Note, NoteCode, Result, attributes, texts
 from leblanc.results.choice import ModelSpan
 from leblanc.results.netcdf import NamedArrays, Variable, flags

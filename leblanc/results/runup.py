@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from leblanc.results.base import FilledChamber, Note, Result, attributes, one_line, texts
 from leblanc.results.netcdf import NamedArrays, flags, variable
-from leblanc.results.notes import plane_words
+from leblanc.results.notes.response import plane_words
 from leblanc.results.response import phase
 from leblanc.units import friction_words
 from meshes.arrays import Array, Complex, Flags

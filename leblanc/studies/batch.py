@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from leblanc.results.response import phase
 from leblanc.scene.scene import JeffcottRotor, Scene
-from leblanc.studies.choose import choose_all, prepare
-from leblanc.studies.liquid import synchronous_model
+from leblanc.studies.models.choose import choose_all, prepare
+from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.peaks import responses_between
 from leblanc.studies.run import run_scene
 from meshes.arrays import Array, Flags

@@ -15,9 +15,9 @@ from leblanc.results.motion.tilting import RestMode
 from leblanc.scene.rotors import Exciter as ExciterOfScene
 from leblanc.scene.rows import baffle_words
 from leblanc.scene.scene import Scene
-from leblanc.studies.choose import Prepared, choose_all, costed, held_cost, prepare
 from leblanc.studies.exciter import printed_critical
-from leblanc.studies.liquid import synchronous_model
+from leblanc.studies.models.choose import Prepared, choose_all, costed, held_cost, prepare
+from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.run import rest_modes
 from meshes.arrays import Array
 from meshes.errors import InputError

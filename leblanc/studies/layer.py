@@ -26,7 +26,7 @@ from leblanc.results.layer import (
     no_answer,
     out_of_range,
 )
-from leblanc.studies.validity import judge
+from leblanc.studies.models.validity import judge
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.liquid_model import LiquidWave, WaveModel, Whirl
 from solvers.pypde.models import LongWave, OneFamily, Progress
@@ -53,7 +53,7 @@ def answer_layer(
     whirl_speed : omega_w in space, rad/s, not 0; negative against the spin
     whirl_amplitude : A, m; without any, statics, linear theory and elements give the limit of the force
         ratio, the others no force
-    model : of the liquid, with its friction and resolution; `leblanc.studies.liquid.wave_model` names them
+    model : of the liquid, with its friction and resolution, as by `leblanc.studies.models.liquid.wave_model`
     gravity : across the axis, m/s^2; for the linear and the long-wave model
     progress : called with the share of the longest time that is done, by models that go through time
 

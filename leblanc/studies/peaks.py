@@ -15,8 +15,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.studies.choose import Prepared, models_at, models_of
-from leblanc.studies.liquid import synchronous_model
+from leblanc.studies.models.choose import Prepared, models_at, models_of
+from leblanc.studies.models.liquid import synchronous_model
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import orbit, unbalance_response

@@ -9,16 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from leblanc.results import notes
 from leblanc.results.base import FilledChamber, Note
 from leblanc.results.choice import Choice, model_spans
 from leblanc.results.motion.held import Held
 from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.results.motion.tilting import Motion, RestMode
+from leblanc.results.notes import response as notes
 from leblanc.results.response import RunResult
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
-from leblanc.studies.choose import (
+from leblanc.studies.held.holding import HERE, Began, Holding
+from leblanc.studies.models.choose import (
     Prepared,
     by_elements,
     choose_all,
@@ -29,10 +30,9 @@ from leblanc.studies.choose import (
     may_hold,
     prepare,
 )
-from leblanc.studies.held.holding import HERE, Began, Holding
-from leblanc.studies.liquid import element_model, synchronous_model
+from leblanc.studies.models.liquid import element_model, synchronous_model
+from leblanc.studies.models.validity import doubts
 from leblanc.studies.peaks import responses_between
-from leblanc.studies.validity import doubts
 from leblanc.studies.whirl_map import large_whirl, small_whirl_friction
 from meshes.arrays import Array, Complex
 from meshes.chamber_section import liquid_of

@@ -12,17 +12,17 @@ from numpy.typing import ArrayLike
 from fluid.fill import Fill
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
-from leblanc.results import notes
 from leblanc.results.base import FilledChamber, Note, percent
-from leblanc.results.notes import RunupCode
+from leblanc.results.notes import runup as notes
+from leblanc.results.notes.runup import RunupCode
 from leblanc.results.runup import Bands, RunupFrames, RunupResult
 from leblanc.scene.inputs import runup_rows
 from leblanc.scene.scene import JeffcottRotor, Runup, Scene, dry_rotor, jeffcott, require_clear
-from leblanc.studies.choose import across_gravity as across_gravity  # of a run-up, asked for with it
-from leblanc.studies.choose import axial_gravity, is_cut, prepare
-from leblanc.studies.liquid import RUNUP_MODELS, runup_model
+from leblanc.studies.models.choose import across_gravity as across_gravity  # of a run-up, asked for with it
+from leblanc.studies.models.choose import axial_gravity, is_cut, prepare
+from leblanc.studies.models.liquid import RUNUP_MODELS, runup_model
+from leblanc.studies.models.validity import doubts
 from leblanc.studies.peaks import responses_between
-from leblanc.studies.validity import doubts
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.layer.records import Outcome

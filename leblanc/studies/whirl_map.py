@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
-from leblanc.results import notes
 from leblanc.results.base import Note
 from leblanc.results.motion.cycles import DEEP, FAST_LAG, LargeWhirl
+from leblanc.results.notes import whirl_map as notes
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import Scene
-from leblanc.studies.choose import Prepared, prepare
-from leblanc.studies.validity import doubts
+from leblanc.studies.models.choose import Prepared, prepare
+from leblanc.studies.models.validity import doubts
 from leblanc.units import friction_words
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError

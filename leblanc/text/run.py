@@ -11,7 +11,7 @@ import numpy as np
 from leblanc.results.base import one_line, percent
 from leblanc.results.choice import ModelSpan
 from leblanc.results.motion.held import HELD_MODEL, Held
-from leblanc.results.notes import plane_words
+from leblanc.results.notes.response import plane_words
 from leblanc.results.response import RunResult, grade_words
 from leblanc.text.numbers import NOT_FOUND, number, ranges
 from leblanc.units import LENGTH, MASS, RPM, VOLUME, in_rpm, rpm_bands, rpm_range, unit_for, with_unit

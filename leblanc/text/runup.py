@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from leblanc.results.base import percent
-from leblanc.results.notes import SETTLED
+from leblanc.results.notes.runup import SETTLED
 from leblanc.results.response import peak
 from leblanc.results.runup import Moment, RunupResult
 from leblanc.units import LENGTH, TIME, in_rpm, with_unit

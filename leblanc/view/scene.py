@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.figures.chambers import plates
-from leblanc.figures.page import zero_of
+from leblanc.figures.drawing.page import zero_of
 from leblanc.results.base import one_line
 from leblanc.results.drawn import DrawnLiquid, LiquidBodies, LiquidShape, MachineMotion, Scale, strips
 from leblanc.text.run import amplitude_place

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from fluid.whirl import Layer, is_full, plane_layer
 from meshes.arrays import Array, Complex
 from solvers.rotor.system import Rotor, RotorSystem

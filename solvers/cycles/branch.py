@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import lu_factor, lu_solve
 
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from meshes.arrays import Array, Complex
 from solvers.cycles.balance import Circular
 from solvers.cycles.wave import Answer, Derivatives, StandingWave, Whirling

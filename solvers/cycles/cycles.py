@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from fluid.whirl import plane_layer
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError

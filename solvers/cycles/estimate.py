@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import NO_FRICTION, QUADRATIC, Friction, FrictionLaw, damping_rate
+from fluid.friction.laws import NO_FRICTION, QUADRATIC, Friction, FrictionLaw, damping_rate
 from meshes.arrays import Array, Complex
 from solvers.cycles.balance import Circular, NotCircularError, Place, circular
 from solvers.rotor.jeffcott import Jeffcott

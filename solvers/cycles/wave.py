@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import Friction, FrictionLaw
+from fluid.friction.laws import Friction, FrictionLaw
 from meshes.arrays import Array, Complex
 from solvers.layer.records import LOADS, PACE, Drive, Outcome, Wall, records
 from solvers.layer.state import ring
@@ -39,7 +39,7 @@ class Whirling(NamedTuple):
     ----------
     ratio : r = omega_w/Omega
     size : w = W/R
-    drag : coefficient of the friction as `fluid.friction.damping_rate` takes it, over Omega if it is a rate
+    drag : of the friction, as `fluid.friction.laws.damping_rate` takes it, over Omega if it is a rate
     """
 
     ratio: float

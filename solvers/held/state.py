@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from fluid.fill import Fill
-from fluid.friction import NO_FRICTION, Friction
+from fluid.friction.laws import NO_FRICTION, Friction
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.rotor.system import RotorSystem

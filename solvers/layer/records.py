@@ -51,7 +51,7 @@ class Wall(NamedTuple):
 
     Parameters
     ----------
-    law, coefficient : of the friction, as from `fluid.friction.Friction.at`; rates in the unit of the spin
+    law, coefficient : of the friction, as by `fluid.friction.laws.Friction.at`; rates in the unit of the spin
     lid : 2 R/h_c, floor and lid under Stokes' friction
     dispersion : whether its waves disperse
     """

@@ -13,7 +13,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from fluid import friction, long_wave
+from fluid import long_wave
+from fluid.friction import laws as friction
 from meshes.arrays import Array
 from solvers.layer.finite_volume import (
     COMPILED,
@@ -77,7 +78,7 @@ def kept_speed(area, velocity, surface, law, coefficient, lid, dt, kept):
     Parameters
     ----------
     area, velocity, surface : as `profile` gives them, shape (n,)
-    law, coefficient, lid : as for `fluid.friction.damping_rate`
+    law, coefficient, lid : as for `fluid.friction.laws.damping_rate`
     dt : time
     kept : result, shape (n,)
     """

@@ -21,7 +21,7 @@ from pde.trackers.base import FinishedSimulation, TrackerBase
 
 from fluid import long_wave
 from fluid.fill import Fill
-from fluid.friction import NO_FRICTION, STOKES, Friction, damping_rate
+from fluid.friction.laws import NO_FRICTION, STOKES, Friction, damping_rate
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.layer.finite_volume import DRY, GHOSTS, WORK, rates

@@ -22,7 +22,7 @@ from pde.solvers.base import ConvergenceError, SolverBase
 
 from fluid import long_wave
 from fluid.fill import Fill
-from fluid.friction import NO_FRICTION, Friction
+from fluid.friction.laws import NO_FRICTION, Friction
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError
 from solvers.layer.records import LOADS, Outcome, records

@@ -14,7 +14,7 @@ import numpy as np
 
 from fluid import kdv
 from fluid.fill import Fill, Fills
-from fluid.friction import NO_FRICTION, Friction, FrictionLaw, damping_rate
+from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw, damping_rate
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.layer.state import LayerHistory, Numerics

@@ -17,7 +17,7 @@ from pde.trackers.interrupts import FixedInterrupts
 from pde.trackers.trackers import CallbackTracker
 
 from fluid.fill import Fill
-from fluid.friction import NO_FRICTION, Friction, FrictionLaw
+from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw
 from meshes.arrays import Complex
 from meshes.errors import InputError, require_positive
 from solvers.layer.state import LayerFilm, LayerHistory, Numerics, resting_area

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from fluid import long_wave
 from fluid.fill import Fill
-from fluid.friction import NO_FRICTION, Friction, damping_rate
+from fluid.friction.laws import NO_FRICTION, Friction, damping_rate
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative
 from solvers.layer.finite_volume import DRY, FULL, GHOSTS, THIN, WORK, rates
@@ -59,7 +59,7 @@ class LongWaveTerms:
             raise InputError("spin_rate", self.spin_rate, "a finite number")
 
     def drag(self) -> tuple[int, float]:
-        """Law and coefficient of the friction as `fluid.friction.damping_rate` takes them."""
+        """Law and coefficient of the friction as `fluid.friction.laws.damping_rate` takes them."""
         return self.friction.at(self.fill.liquid.viscosity, self.whirl.slip, self.fill.chamber.radius)
 
     def spin(self, time: float) -> float:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.rotor.system import RotorSystem

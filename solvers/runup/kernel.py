@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from fluid.friction import NONE, STOKES
+from fluid.friction.laws import NONE, STOKES
 from solvers.layer.finite_volume import COMPILED, GHOSTS, LOG, NEAREST, SUMMED, SURFACE, VELOCITY, WORK
 from solvers.layer.records import Outcome
 from solvers.layer.step import (

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import Friction, FrictionLaw, damping_rate
+from fluid.friction.laws import Friction, FrictionLaw, damping_rate
 from meshes.arrays import Array
 from solvers.layer.records import Outcome, records
 from solvers.layer.state import ring

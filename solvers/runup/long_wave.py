@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from meshes.arrays import Array, Flags
 from solvers.layer.records import Outcome, Record, records
 from solvers.layer.state import ring

@@ -15,7 +15,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from meshes.arrays import Array, Complex, Flags, Index
 from meshes.errors import InputError, require_positive
 from solvers.layer.records import Outcome

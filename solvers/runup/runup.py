@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
-from fluid.friction import NO_FRICTION, Friction
+from fluid.friction.laws import NO_FRICTION, Friction
 from fluid.whirl import is_full
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError

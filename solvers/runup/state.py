@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from fluid.friction import Friction, FrictionLaw
+from fluid.friction.laws import Friction, FrictionLaw
 from fluid.waves import free_wave_frequencies
 from meshes.arrays import Array
 from meshes.errors import require_not_negative

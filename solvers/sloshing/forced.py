@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array
 
-from fluid.friction import decay_rate, edge_weight, layer_thickness, plate_drags, stokes_coefficient
+from fluid.friction.laws import decay_rate, edge_weight, layer_thickness, plate_drags, stokes_coefficient
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative, require_positive
 from meshes.liquid_section import LiquidSection

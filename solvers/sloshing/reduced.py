@@ -13,7 +13,7 @@ import scipy
 from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
-from fluid.friction import Friction, FrictionLaw, layer_thickness
+from fluid.friction.laws import Friction, FrictionLaw, layer_thickness
 from fluid.whirl import is_full, plane_layer
 from meshes.arrays import Array, Complex
 from meshes.baffles import Baffles

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fluid.fill import Fill, Fills
-from fluid.friction import NO_FRICTION
+from fluid.friction.laws import NO_FRICTION
 from fluid.waves import force_ratio
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.liquid_model import LiquidModel, Whirls

@@ -9,7 +9,7 @@ from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
-from fluid.friction import NO_FRICTION, Friction
+from fluid.friction.laws import NO_FRICTION, Friction
 from fluid.whirl import Layer, neutral_stiffness
 from meshes.arrays import Array, Index
 from solvers.rotor.jeffcott import Jeffcott

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
-from fluid.friction import NO_FRICTION, Friction
+from fluid.friction.laws import NO_FRICTION, Friction
 from fluid.whirl import Layer, is_full, plane_layer
 from meshes.arrays import Array, Complex, Index
 from meshes.errors import InputError

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from fluid import friction
 from fluid import long_wave as lw
+from fluid.friction import laws as friction
 from fluid.waves import free_wave_frequencies
 from tests.mutants import kills
 
@@ -104,9 +104,9 @@ def test_linear_waves() -> None:
     assert 5.8 < np.log2(error[1] / error[0]) < 6.1
 
 
-@kills("fluid.friction:damping_rate", "(1.0 + lid * depth)", "(1.0 + lid)")
-@kills("fluid.friction:damping_rate", "np.abs(velocity) / area", "velocity / area")
-@kills("fluid.friction:stokes_coefficient", "0.5 * np.asarray(viscosity", "2.0 * np.asarray(viscosity")
+@kills("fluid.friction.laws:damping_rate", "(1.0 + lid * depth)", "(1.0 + lid)")
+@kills("fluid.friction.laws:damping_rate", "np.abs(velocity) / area", "velocity / area")
+@kills("fluid.friction.laws:stokes_coefficient", "0.5 * np.asarray(viscosity", "2.0 * np.asarray(viscosity")
 def test_friction_rates() -> None:
     """tau R/(rho u A) of each law, and the Stokes layer's k with floor and lid."""
     depth, area, velocity = 0.2, 0.18, -0.3

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy import linalg
 
 from fluid.fill import Fill
-from fluid.friction import Friction, stokes_coefficient
+from fluid.friction.laws import Friction, stokes_coefficient
 from fluid.liquid import Liquid
 from fluid.waves import force_ratio, free_wave_frequencies, offset_ratio
 from fluid.whirl import (

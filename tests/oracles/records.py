@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results import notes as run_notes
 from leblanc.results.base import FilledChamber
 from leblanc.results.motion.held import HELD_MODEL, Held
+from leblanc.results.notes import response as run_notes
 from leblanc.results.response import RunResult
 from meshes.arrays import Array
 from solvers.synchronous.response import Response

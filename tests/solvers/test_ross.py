@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fluid.fill import Fill
-from fluid.friction import LINEAR, STOKES, Friction, damping_rate
+from fluid.friction.laws import LINEAR, STOKES, Friction, damping_rate
 from fluid.liquid import Liquid
 from fluid.waves import force_ratio
 from meshes.chamber import Chamber

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fluid.fill import Fill
-from fluid.friction import Friction, FrictionLaw
+from fluid.friction.laws import Friction, FrictionLaw
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers import slices

@@ -11,7 +11,7 @@ import pytest
 
 from leblanc.scene.examples import example
 from leblanc.scene.scene import jeffcott
-from leblanc.studies.choose import axial_gravity
+from leblanc.studies.models.choose import axial_gravity
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.response import response
 from tests.mutants import kills

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import NO_FRICTION, Friction, FrictionLaw
+from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw
 from fluid.liquid import Liquid
 from meshes.arrays import Array
 from meshes.chamber import Chamber

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fluid.friction import Friction, FrictionLaw
+from fluid.friction.laws import Friction, FrictionLaw
 from meshes.arrays import Array, Complex
 from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from fluid import kdv
 from fluid.exact import TravellingWave, cnoidal_wave
 from fluid.fill import Fill
-from fluid.friction import Friction, FrictionLaw, damping_rate
+from fluid.friction.laws import Friction, FrictionLaw, damping_rate
 from fluid.kdv import KdvCoefficients
 from fluid.liquid import Liquid
 from meshes.arrays import Array, Complex

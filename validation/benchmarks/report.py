@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.page import Figure, Frame, lay_out, save, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, save, style
 from validation.benchmarks import growth, ours
 from validation.benchmarks import ours as layers
 from validation.benchmarks.growth import Growth

@@ -15,7 +15,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import QUADRATIC, Friction, FrictionLaw
+from fluid.friction.laws import QUADRATIC, Friction, FrictionLaw
 from fluid.liquid import known_liquid
 from meshes.arrays import Array
 from meshes.chamber import Chamber

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene, jeffcott
-from leblanc.studies.choose import axial_gravity
+from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.optimise.wetting import wetting_volumes
 from leblanc.units import MM

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from fluid.friction import NO_FRICTION, Friction, FrictionLaw
+from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw
 from fluid.liquid import Liquid
 from fluid.waves import force_ratio
 from meshes.chamber import Chamber

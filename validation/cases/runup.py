@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import Friction, FrictionLaw
+from fluid.friction.laws import Friction, FrictionLaw
 from fluid.liquid import known_liquid
 from leblanc.units import LITRE, MM
 from meshes.arrays import Array

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import Friction, FrictionLaw
+from fluid.friction.laws import Friction, FrictionLaw
 from fluid.liquid import Liquid
 from meshes.arrays import Array
 from meshes.chamber import Chamber

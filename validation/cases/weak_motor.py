@@ -38,7 +38,7 @@ def draw(wet: RunupHistory, dry: RunupHistory, scene: Scene, directory: Path) ->
     scene : whose machine it is
     directory : where the figure goes
     """
-    from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
+    from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
 
     looks: list[tuple[RunupHistory, dict[str, Any]]] = [
         (wet, {"color": "#0072B2", "linewidth": 1.8, "label": "with liquid"}),

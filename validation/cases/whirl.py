@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import NO_FRICTION, Friction, FrictionLaw
+from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw
 from fluid.liquid import known_liquid
 from meshes.arrays import Array
 from meshes.chamber import Chamber

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fluid.fill import Fill, Fills
-from fluid.friction import Friction, FrictionLaw
+from fluid.friction.laws import Friction, FrictionLaw
 from fluid.liquid import KNOWN_LIQUIDS
 from meshes.arrays import Array, Flags
 from meshes.chamber import Chamber

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import NO_FRICTION, Friction, FrictionLaw
-from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
+from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
 from meshes.baffles import Baffles
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.whirl.edges import unstable_bands

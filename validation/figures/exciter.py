@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
 from leblanc.figures.exciter import exciter_figure
-from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
 from leblanc.studies.exciter import answer_exciter
 from meshes.arrays import Array
 from solvers.rotor.exciter.machine import Dimensionless, Exciter, characteristic_speeds

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.page import Figure, Frame, lay_out, number, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, style
 from validation.cases.fill_sweep import model_curves
 from validation.cases.rigs import data
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from fluid.waves import force_ratio
-from leblanc.figures.page import Figure, Frame, lay_out, number, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, style
 from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl
 from solvers.pypde.settle import settle

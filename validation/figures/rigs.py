@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.page import Figure, Frame, lay_out, number, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, style
 from leblanc.units import RPM
 from validation.cases.rigs import data
 from validation.figures.runup_lag import steady

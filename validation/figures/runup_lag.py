@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from fluid.friction import Friction, FrictionLaw
+from fluid.friction.laws import Friction, FrictionLaw
 from leblanc.results.runup import turn_mean
 from meshes.arrays import Array, Complex
 from solvers.runup.machine import Ramp
@@ -155,7 +155,7 @@ def draw(lags: Sequence[Lag], damping_ratio: float, directory: Path) -> Path:
     damping_ratio : of the steady response drawn with them
     directory : where the figure goes
     """
-    from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
+    from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
 
     with style():
         figure = Figure()
@@ -181,7 +181,7 @@ def draw(lags: Sequence[Lag], damping_ratio: float, directory: Path) -> Path:
 
 def _draw_angles(axes: Any, lags: Sequence[Lag], damping_ratio: float) -> None:
     """Angle of the liquid over speed: measured, steady, and at each rate."""
-    from leblanc.figures.curves import gapped
+    from leblanc.figures.drawing.curves import gapped
 
     measured = data("dr18_fig24.json")
     speed = np.linspace(LOOKED[0], BEYOND[1], 400)

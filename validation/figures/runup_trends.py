@@ -66,7 +66,7 @@ def draw(points: Sequence[Point], dry: Point, directory: Path) -> Path:
     dry : the run-up without liquid
     directory : where the figure goes
     """
-    from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
+    from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
 
     volumes = list(dict.fromkeys(point.volume for point in points))
     litres = np.array(volumes) * LITRE

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
 from solvers.rotor.tub import Tub
 from validation.cases.tub import FARTHEST, amplitude, suspended_tub
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
 from leblanc.units import MM
 from solvers.rotor.balls.balancers import simulate
 from solvers.rotor.two_plane import TwoPlane

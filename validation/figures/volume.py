@@ -8,7 +8,7 @@ import numpy as np
 
 from fluid.fill import Fill, Fills
 from fluid.liquid import known_liquid
-from leblanc.figures.page import Figure, Frame, lay_out, number, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, style
 from leblanc.studies.volume import answer_volume
 from leblanc.units import MM
 from meshes.chamber import Chamber

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from fluid.friction import NO_FRICTION, Friction, FrictionLaw
-from leblanc.figures.page import Figure, Frame, lay_out, number, style
+from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, style
 from validation.cases.case import Case
 from validation.cases.whirl import NATURAL, RANGE, growth_over_speed
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
 from meshes.arrays import Array
 from solvers.cycles.cycles import Branch, LimitCycles, limit_cycles
 from solvers.runup.runup import RunupNumerics

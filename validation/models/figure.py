@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from leblanc.figures.page import Figure, Frame, lay_out, number, save, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
 from validation.models import ModelRow, ModelTable, kept
 
 _FRAME = Frame(left=0.72, top=0.15, between=0.12, below=0.42)

@@ -10,10 +10,10 @@ import numpy as np
 from pydantic import Field
 
 from fluid.fill import Fill
-from fluid.friction import Friction, FrictionLaw
+from fluid.friction.laws import Friction, FrictionLaw
 from leblanc.results.choice import Choice
 from leblanc.scene.scene import Exciter, Scene, dry_rotor
-from leblanc.studies.choose import across_gravity, axial_gravity, choose, liquid_models, prepare
+from leblanc.studies.models.choose import across_gravity, axial_gravity, choose, liquid_models, prepare
 from leblanc.studies.runup import RunupChoice, chosen_run, drive_of, judged, planned
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError

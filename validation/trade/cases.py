@@ -10,7 +10,7 @@ import numpy as np
 from fluid.fill import FULL
 from fluid.kdv import coefficients
 from leblanc.scene.scene import Exciter, Runup, Scene
-from leblanc.studies.choose import across_gravity
+from leblanc.studies.models.choose import across_gravity
 from leblanc.studies.runup import planned
 from meshes.arrays import Array, Flags
 from solvers.runup.state import layer_capture

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from leblanc.cli.output import print_json, say
+from leblanc.cli.terminal.output import print_json, say
 from leblanc.contents import results_dir
 from leblanc.files import writing
 
@@ -30,7 +30,7 @@ def trade(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Accuracy against cost of every model and resolution. The best choices among them, a figure."""
-    from leblanc.cli.output import load
+    from leblanc.cli.terminal.output import load
 
     machine = load(scene)
     folder = results_dir(machine.name, out, scene, machine.digest, "trade.json")

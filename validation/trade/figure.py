@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from leblanc.figures.page import Figure, Frame, lay_out, style
-from leblanc.figures.page import save as save  # a figure is drawn and written together
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, style
+from leblanc.figures.drawing.page import save as save  # a figure is drawn and written together
 from leblanc.results.base import one_line
 
 if TYPE_CHECKING:

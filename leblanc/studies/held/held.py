@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from fluid.whirl import covering_speed
 from leblanc.results.choice import Choice
 from leblanc.results.motion.held import Held
-from leblanc.studies.choose import Prepared
 from leblanc.studies.held.holding import Began, Holding
 from leblanc.studies.held.store import FOLDER, kept
 from leblanc.studies.held.workers import runner
+from leblanc.studies.models.choose import Prepared
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.held.branch import HeldBranches, HeldTask, held_branches
 from solvers.held.hold import require_known_solver, start

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, dry_rotor, jeffcott
-from leblanc.studies.choose import axial_gravity, models_at, prepare
-from leblanc.studies.liquid import synchronous_model
+from leblanc.studies.models.choose import axial_gravity, models_at, prepare
+from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.peaks import responses_between, wet_resonances
 from meshes.arrays import Array, Flags
 from solvers.rotor.vibration import orbit

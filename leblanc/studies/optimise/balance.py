@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from leblanc.scene.scene import dry_rotor, jeffcott
-from leblanc.studies.choose import axial_gravity
-from leblanc.studies.liquid import synchronous_model
+from leblanc.studies.models.choose import axial_gravity
+from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from meshes.arrays import Array
 from solvers.rotor.balance_quality import balance_quality

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction import Friction, FrictionLaw
+from fluid.friction.laws import Friction, FrictionLaw
 from leblanc.results.optimum import ConstraintValue
 from leblanc.scene.scene import Scene, dry_rotor
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes

@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from leblanc.scene.scene import Scene, Speeds
-from leblanc.studies.liquid import runup_model
+from leblanc.studies.models.liquid import runup_model
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from meshes.arrays import Array
 

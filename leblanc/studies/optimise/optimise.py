@@ -28,8 +28,9 @@ from leblanc.results.optimum import (
 )
 from leblanc.scene.scene import Scene, Speeds, require_clear
 from leblanc.scene.tasks import Optimisation
-from leblanc.studies.choose import axial_gravity
-from leblanc.studies.liquid import SYNCHRONOUS_MODELS
+from leblanc.studies.models.choose import axial_gravity
+from leblanc.studies.models.liquid import SYNCHRONOUS_MODELS
+from leblanc.studies.models.validity import doubts
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.balance import QualityAtSpeed
 from leblanc.studies.optimise.constraints import growth
@@ -54,7 +55,6 @@ from leblanc.studies.optimise.search import (
 )
 from leblanc.studies.optimise.wetting import WettedWalls, wet_walls, wetting_volumes
 from leblanc.studies.run import run_scene
-from leblanc.studies.validity import doubts
 from leblanc.units import in_rpm
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError

@@ -10,7 +10,7 @@ import numpy as np
 
 from leblanc.scene.scene import JeffcottRotor, Scene, jeffcott
 from leblanc.scene.tasks import Optimisation
-from leblanc.studies.choose import axial_gravity
+from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.optimise.objectives import PeakOver, RunupPeak
 from leblanc.studies.optimise.problem import Problem
 from leblanc.studies.optimise.wetting import wetting_volumes

@@ -11,7 +11,7 @@ from fluid.fill import Fill
 from leblanc.results.base import Note
 from leblanc.results.optimum import ConstraintValue, WettingVolumes, given_deflection
 from leblanc.scene.scene import Scene
-from leblanc.studies.choose import axial_gravity
+from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.optimise.answers import with_volumes
 from meshes.arrays import Array
 from meshes.chamber import Chamber

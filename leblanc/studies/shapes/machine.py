@@ -25,7 +25,7 @@ from leblanc.results.drawn import (
 from leblanc.results.response import RunResult
 from leblanc.results.runup import RunupFrames, RunupResult
 from leblanc.scene.scene import Exciter, JeffcottRotor, Scene, Speeds, dry_rotor
-from leblanc.studies.choose import across_gravity, axial_gravity, choose, liquid_models
+from leblanc.studies.models.choose import across_gravity, axial_gravity, choose, liquid_models
 from leblanc.studies.run import run_scene
 from leblanc.studies.runup import runup_scene
 from leblanc.studies.shapes.bodies import bodies_at_rest, is_cut, wall_is_dry

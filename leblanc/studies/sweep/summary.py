@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from leblanc.results.notes import plane_words
+from leblanc.results.notes.response import plane_words
 from leblanc.results.sweep import QUANTILES, Sensitivity, Statistics, SweepResult
 from leblanc.studies.sweep.block import DONE, FAILED, NOT_CONVERGED, SINGLE
 from leblanc.studies.sweep.sampling import sample_rows

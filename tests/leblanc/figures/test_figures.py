@@ -20,7 +20,7 @@ from matplotlib.transforms import Bbox
 
 from leblanc import figures
 from leblanc.figures import chambers as chamber
-from leblanc.figures import curves
+from leblanc.figures.drawing import curves
 from leblanc.results.base import FilledChamber
 from tests.oracles.records import EXTREMES, RPM, dry_deflection, folded, record_of, response_of, rig
 

@@ -12,7 +12,7 @@ from matplotlib.collections import FillBetweenPolyCollection
 from matplotlib.figure import Figure
 
 from leblanc import figures
-from leblanc.figures import curves
+from leblanc.figures.drawing import curves
 from tests.oracles.records import RPM, held_rig, record_of, response_of, rig
 
 

@@ -14,13 +14,13 @@ import numpy as np
 import pytest
 
 from leblanc.cli import main
-from leblanc.figures.page import FigureFiles
+from leblanc.figures.drawing.page import FigureFiles
 from leblanc.report import page as report
 from leblanc.report import run as report_run
 from leblanc.report.parts import LIGHT, picture
 from leblanc.results.base import FilledChamber, Note
 from leblanc.results.motion.self_excited import SelfExcited
-from leblanc.results.notes import OF_MODELS, RunCode
+from leblanc.results.notes.response import OF_MODELS, RunCode
 from leblanc.results.response import RunResult
 from leblanc.scene.scene import load_scene
 from leblanc.studies.run import run_scene

@@ -12,10 +12,10 @@ import pytest
 import leblanc as lb
 from leblanc.cli import main
 from leblanc.report.run import held_motions
-from leblanc.results import notes
 from leblanc.results.motion.held import MOTIONS
 from leblanc.results.motion.self_excited import SelfExcited
-from leblanc.results.notes import RunCode
+from leblanc.results.notes import response as notes
+from leblanc.results.notes.response import RunCode
 from leblanc.results.response import RunResult
 from leblanc.text import run as words
 from meshes.errors import InputError
@@ -131,7 +131,7 @@ def test_what_has_not_settled_on_the_way_down_is_no_hysteresis() -> None:
     assert len(held_motions(result)) == 1
 
 
-@kills("leblanc.results.notes:plane", 'turns = ", of', 'turns = "" and ", of')
+@kills("leblanc.results.notes.response:plane", 'turns = ", of', 'turns = "" and ", of')
 def test_the_plane_says_that_an_amplitude_is_a_mean() -> None:
     """Where motions are held in time every turn has a largest radius of its own."""
     for held in (False, True):

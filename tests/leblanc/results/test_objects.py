@@ -16,18 +16,18 @@ import pytest
 
 from leblanc.api import layer, modes, optimise, run_up
 from leblanc.cli import main
-from leblanc.cli.output import print_json
+from leblanc.cli.terminal.output import print_json
+from leblanc.figures.drawing.page import Figure
 from leblanc.figures.liquid import surface_figure
-from leblanc.figures.page import Figure
 from leblanc.results.base import Result
 from leblanc.results.liquid import Coverage
 from leblanc.results.response import RunResult
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.scene.tasks import Optimisation
-from leblanc.studies.choose import choose_all, prepare
 from leblanc.studies.compare import compare_models
 from leblanc.studies.exciter import run_exciter
 from leblanc.studies.explain import explain_exciter, explain_scene
+from leblanc.studies.models.choose import choose_all, prepare
 from leblanc.studies.run import run_scene
 from leblanc.studies.volume import answer_volume
 from leblanc.studies.whirl_map import map_scene

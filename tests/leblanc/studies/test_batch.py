@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from leblanc.results.response import RunResult, phase
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.studies.batch import Answers, answer_scenes

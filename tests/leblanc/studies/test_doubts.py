@@ -13,7 +13,7 @@ import leblanc as lb
 from leblanc.cli import main
 from leblanc.scene.examples import example_names, example_path
 from leblanc.scene.scene import Scene, scene_from_table
-from leblanc.studies.validity import doubts
+from leblanc.studies.models.validity import doubts
 
 SCENES = [name for name in example_names() if "rotor" in tomllib.loads(example_path(name).read_text())]
 

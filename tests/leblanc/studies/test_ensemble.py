@@ -67,7 +67,7 @@ def test_any_number_of_workers_gives_the_same(found: RunupResult) -> None:
 )
 @kills("solvers.runup.ensemble:ensemble", "default_rng([seed, member])", "default_rng([0, member])")
 def test_changes_are_seeded_and_small() -> None:
-    from fluid.friction import NO_FRICTION
+    from fluid.friction.laws import NO_FRICTION
     from leblanc.scene.scene import dry_rotor
     from solvers.runup.long_wave import couple
     from solvers.runup.machine import Ramp

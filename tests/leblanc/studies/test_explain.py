@@ -14,8 +14,8 @@ from fluid.liquid import Liquid
 from fluid.numbers import layer_numbers
 from leblanc.cli import main
 from leblanc.scene.scene import Scene, scene_from_table
-from leblanc.studies.choose import choose
 from leblanc.studies.explain import explain_scene
+from leblanc.studies.models.choose import choose
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from tests.mutants import kills
@@ -72,7 +72,7 @@ def test_numbers() -> None:
     np.testing.assert_allclose(n.skin, np.sqrt([4e-3, 4e-4]) / 0.8)
 
 
-@kills("leblanc.studies.choose:_carried", "speed > captured_from", "speed < captured_from")
+@kills("leblanc.studies.models.choose:_carried", "speed > captured_from", "speed < captured_from")
 def test_a_horizontal_axis_needs_capture() -> None:
     """The liquid of a horizontal axis is captured where Omega^2 a exceeds g; a vertical axis needs none."""
     lying = choose(scene())

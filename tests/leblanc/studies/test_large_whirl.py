@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from leblanc.figures.response import amplitude_figure
-from leblanc.results.notes import MapCode, RunCode
+from leblanc.results.notes.response import RunCode
+from leblanc.results.notes.whirl_map import MapCode
 from leblanc.results.response import RunResult
 from leblanc.scene.scene import Scene, load_scene
-from leblanc.studies.choose import prepare
+from leblanc.studies.models.choose import prepare
 from leblanc.studies.run import run_scene
 from validation.whirl_in_time import large_whirl_in_time
 

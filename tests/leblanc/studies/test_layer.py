@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from fluid.fill import Fill
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from fluid.liquid import known_liquid
 from leblanc.cli import main
 from leblanc.results.layer import LayerResult
 from leblanc.studies.layer import answer_layer, steady_film
-from leblanc.studies.liquid import wave_model
+from leblanc.studies.models.liquid import wave_model
 from meshes.chamber import Chamber
 from solvers.liquid_model import Whirl
 from solvers.pypde.models import OneFamily

@@ -14,7 +14,7 @@ from leblanc.cli import main
 from leblanc.questions import layer_question
 from leblanc.results.layer import LayerResult
 from leblanc.studies.layer import answer_layer
-from leblanc.studies.liquid import wave_model
+from leblanc.studies.models.liquid import wave_model
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.errors import InputError

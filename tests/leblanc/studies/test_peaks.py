@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from leblanc.results.notes import RunCode
+from leblanc.results.notes.response import RunCode
 from leblanc.results.response import RunResult
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.batch import answer_scenes
-from leblanc.studies.choose import choose_all, liquid_models, prepare
 from leblanc.studies.compare import compare_models
+from leblanc.studies.models.choose import choose_all, liquid_models, prepare
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.objectives import PeakOver
 from leblanc.studies.optimise.optimise import optimise_scene

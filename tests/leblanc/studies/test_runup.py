@@ -22,7 +22,7 @@ from leblanc.figures import films as film_figures
 from leblanc.figures import runup as figures
 from leblanc.results.drawn import film_factor, half_angle
 from leblanc.results.netcdf import write_netcdf
-from leblanc.results.notes import RunupCode
+from leblanc.results.notes.runup import RunupCode
 from leblanc.results.runup import RunupFrames, RunupResult, turn_mean
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.schema.load import NotConverged
@@ -416,7 +416,7 @@ def test_json(capsys: pytest.CaptureFixture[str] | None = None) -> None:
 
 
 def test_json_is_one_object_of_lists(capsys: pytest.CaptureFixture[str], record: RunupResult) -> None:
-    from leblanc.cli.output import print_json
+    from leblanc.cli.terminal.output import print_json
 
     print_json(record.to_json())
     got = json.loads(capsys.readouterr().out)
@@ -657,7 +657,7 @@ def shoelace(edge: np.ndarray) -> float:
 
 
 @kills(
-    "leblanc.studies.choose:across_gravity",
+    "leblanc.studies.models.choose:across_gravity",
     'scene.gravity if scene.rotor.axis == "horizontal"',
     'scene.gravity if scene.rotor.axis == "vertical"',
 )

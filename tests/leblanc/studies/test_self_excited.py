@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from leblanc.results.motion.self_excited import SelfExcited
-from leblanc.results.notes import self_excited as note_of
+from leblanc.results.notes.response import self_excited as note_of
 from leblanc.scene.scene import dry_rotor, load_scene
-from leblanc.studies.choose import prepare
+from leblanc.studies.models.choose import prepare
 from leblanc.studies.run import run_scene, self_excited
 from leblanc.text.run import limits
 from meshes.arrays import Array
@@ -83,7 +83,7 @@ def test_what_is_not_known_is_not_stable(monkeypatch: pytest.MonkeyPatch) -> Non
     assert [meaning[value] for value in flag.values.tolist()] == result.stability.tolist()
 
 
-@kills("leblanc.results.notes:self_excited", "np.nanargmax(whirl", "np.nanargmin(whirl")
+@kills("leblanc.results.notes.response:self_excited", "np.nanargmax(whirl", "np.nanargmin(whirl")
 def test_words() -> None:
     """Edges and the fastest whirl in rpm."""
     text = note_of(found([-1.0, 0.25, 0.5], ((20.0 * np.pi, 30.0 * np.pi),))).text

@@ -10,11 +10,11 @@ from typing import Any
 import pytest
 from pde.solvers.controller import Controller
 
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
 from leblanc.studies.layer import answer_layer
-from leblanc.studies.liquid import wave_model
+from leblanc.studies.models.liquid import wave_model
 from leblanc.studies.run import run_scene
 from solvers.pypde import family_law
 from tests.leblanc.studies.test_compare import by

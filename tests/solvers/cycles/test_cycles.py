@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fluid.fill import Fill
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from fluid.liquid import Liquid
 from fluid.whirl import force_with_friction, plane_layer
 from meshes.chamber import Chamber

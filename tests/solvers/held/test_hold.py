@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fluid.fill import Fill
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from meshes.errors import InputError

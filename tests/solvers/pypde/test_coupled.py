@@ -11,7 +11,7 @@ from pde import ScalarField
 from pde.trackers import CallbackTracker
 
 from fluid.fill import Fill
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from fluid.liquid import Liquid
 from meshes.arrays import Array
 from meshes.chamber import Chamber

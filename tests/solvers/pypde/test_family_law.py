@@ -10,7 +10,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from fluid.fill import Fill, Fills
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from fluid.liquid import known_liquid
 from meshes.chamber import Chamber
 from solvers.liquid_model import Whirl, Whirls

@@ -27,7 +27,7 @@ from pde.solvers import registered_solvers
 from pde.solvers.base import ConvergenceError
 
 from fluid.fill import Fill
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from meshes.errors import InputError

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from fluid.fill import Fill
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from fluid.liquid import Liquid
-from leblanc.studies.liquid import runup_model
+from leblanc.studies.models.liquid import runup_model
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.layer.records import Outcome

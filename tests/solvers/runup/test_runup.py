@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from fluid.fill import Fill
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from meshes.errors import InputError

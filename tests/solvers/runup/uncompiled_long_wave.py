@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fluid.fill import Fill
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers.layer import finite_volume
@@ -372,7 +372,7 @@ def test_gravity() -> None:
     "lid = 2.0 * chamber.radius / chamber.height",
     "lid = chamber.radius / chamber.height",
 )
-@kills("fluid.friction:Friction.at", "frequency)) / radius", "frequency))")
+@kills("fluid.friction.laws:Friction.at", "frequency)) / radius", "frequency))")
 def test_stokes() -> None:
     """Stokes' friction takes the frequency of the slower free wave, with floor and lid."""
     viscous = Fill(FILL.chamber, Liquid("oil", 1000.0, 1e-3), FILL.volume)

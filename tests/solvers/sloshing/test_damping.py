@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fluid.friction import edge_weight, layer_thickness, plate_drags, stokes_coefficient
+from fluid.friction.laws import edge_weight, layer_thickness, plate_drags, stokes_coefficient
 from meshes.baffles import Baffles
 from meshes.errors import InputError
 from meshes.rings.quadrilaterals import ring
@@ -23,9 +23,11 @@ R, A, SPIN, HEIGHT, WATER = 0.15, 0.135, 40.0, 0.05, 1e-6
 
 
 @kills(
-    "fluid.friction:decay_rate", "first * (k + c) + second * (k - c)", "first * (k - c) + second * (k + c)"
+    "fluid.friction.laws:decay_rate",
+    "first * (k + c) + second * (k - c)",
+    "first * (k - c) + second * (k + c)",
 )
-@kills("fluid.friction:decay_rate", "lost / (k + potential)", "lost / (2.0 * k)")
+@kills("fluid.friction.laws:decay_rate", "lost / (k + potential)", "lost / (2.0 * k)")
 @kills("solvers.sloshing.forced:mode_damping", "modes.spin / modes.frequency", "modes.frequency / modes.spin")
 def test_ring_by_hand() -> None:
     """Both rates of the ring's slowest modes against the integrals of (r/R)^n - (R/r)^n."""
@@ -42,8 +44,8 @@ def test_ring_by_hand() -> None:
         assert np.all(found.edge_spread == 0.0)
 
 
-@kills("fluid.friction:plate_drags", "(viscosity, twice - sigma), ", "(viscosity, twice + sigma), ")
-@kills("fluid.friction:plate_drags", "2.0 * np.asarray(spin", "1.0 * np.asarray(spin")
+@kills("fluid.friction.laws:plate_drags", "(viscosity, twice - sigma), ", "(viscosity, twice + sigma), ")
+@kills("fluid.friction.laws:plate_drags", "2.0 * np.asarray(spin", "1.0 * np.asarray(spin")
 def test_plate_layer() -> None:
     """Loss in the layers on a plate against the defect solved as a system: mean of shear times velocity."""
     sigma, nu, along = -17.0, 3e-6, np.array([0.3 - 0.1j, 0.2 + 0.5j])
@@ -74,7 +76,11 @@ def test_thin_layer() -> None:
         assert np.all(found.rate > found.plain_rate)
 
 
-@kills("fluid.friction:edge_weight", "1.0 / (1.0 + np.asarray(thickness", "1.0 / (0.0 + np.asarray(thickness")
+@kills(
+    "fluid.friction.laws:edge_weight",
+    "1.0 / (1.0 + np.asarray(thickness",
+    "1.0 / (0.0 + np.asarray(thickness",
+)
 @kills("solvers.sloshing.forced:baffle_edges", "before[wall[:, 1]] = ", "before[wall[:, 0]] = ")
 @kills("solvers.sloshing.forced:baffle_edges", "< _BACK * size", "> -_BACK * size")
 def test_edges() -> None:
@@ -99,7 +105,7 @@ def test_edges() -> None:
 
 
 @kills(
-    "fluid.friction:layer_thickness",
+    "fluid.friction.laws:layer_thickness",
     "np.sqrt(2.0 * np.asarray(viscosity",
     "np.sqrt(0.5 * np.asarray(viscosity",
 )

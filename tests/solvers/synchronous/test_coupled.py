@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from fluid.fill import Fill
 from fluid.liquid import Liquid
 from fluid.waves import offset_ratio
-from leblanc.studies.liquid import synchronous_model
+from leblanc.studies.models.liquid import synchronous_model
 from meshes.arrays import Array
 from meshes.chamber import Chamber
 from meshes.errors import InputError

@@ -7,9 +7,9 @@ import math
 import numpy as np
 
 from fluid.fill import Fill, Fills
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from fluid.liquid import Liquid
-from leblanc.studies.liquid import synchronous_model
+from leblanc.studies.models.liquid import synchronous_model
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
 from solvers.statics.hydrostatics import equilibrium

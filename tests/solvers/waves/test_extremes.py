@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fluid import kdv
-from fluid.friction import STOKES, damping_rate, stokes_coefficient
+from fluid.friction.laws import STOKES, damping_rate, stokes_coefficient
 from solvers.waves.modes import System, split
 from solvers.waves.newton import SteadyWave
 from solvers.waves.steady import family_problem, solve

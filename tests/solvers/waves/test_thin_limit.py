@@ -15,7 +15,7 @@ import pytest
 
 from fluid import kdv
 from fluid.fill import Fill
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from fluid.liquid import Liquid
 from fluid.long_wave import PADE
 from meshes.chamber import Chamber

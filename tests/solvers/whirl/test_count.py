@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from fluid.whirl import is_full, plane_layer
 from leblanc.scene.scene import dry_rotor, scene_from_table
 from solvers.whirl import laminar

@@ -14,7 +14,7 @@ from mpmath import mp, polyroots
 from scipy.linalg import expm
 
 from fluid.fill import Fill
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from fluid.liquid import Liquid
 from fluid.whirl import Layer, plane_layer, stokes_rate
 from meshes.chamber import Chamber

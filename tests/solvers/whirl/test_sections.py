@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fluid.fill import Fill, Fills, compartment_share
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from fluid.liquid import known_liquid
 from fluid.waves import force_ratio
 from meshes.baffles import Baffles

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fluid.fill import Fill
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from leblanc.results.optimum import OptimumCode, OptimumResult
 from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.scene.tasks import Optimisation

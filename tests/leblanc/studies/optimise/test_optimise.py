@@ -14,7 +14,7 @@ from fluid.fill import Fill
 from fluid.liquid import known_liquid
 from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.scene.tasks import Optimisation
-from leblanc.studies.choose import prepare
+from leblanc.studies.models.choose import prepare
 from leblanc.studies.optimise.answers import FilledMachine
 from leblanc.studies.optimise.constraints import growth, stability
 from leblanc.studies.optimise.objectives import AtSpeed, PeakOver

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from leblanc import figures
-from leblanc.figures import chambers, curves
+from leblanc.figures import chambers
+from leblanc.figures.drawing import curves
 from leblanc.results.base import FilledChamber
 from tests.oracles.records import folded, rig
 

@@ -69,7 +69,7 @@ def load(path: Path) -> Scene:
     """
     from leblanc.scene.scene import scene_from_table
     from leblanc.scene.schema.load import escaped, given_at, read_scene, with_lines
-    from leblanc.studies.validity import doubts
+    from leblanc.studies.models.validity import doubts
 
     table = read_scene(path)
     with with_lines(path):

@@ -8,13 +8,13 @@ import math
 import pytest
 
 from fluid.fill import Fill
-from fluid.friction import NO_FRICTION, Friction
+from fluid.friction.laws import NO_FRICTION, Friction
 from fluid.liquid import known_liquid
 from leblanc.cli import main
 from leblanc.results.layer import LayerResult
 from leblanc.studies.layer import answer_layer
-from leblanc.studies.liquid import wave_model
-from leblanc.studies.validity import MEANING
+from leblanc.studies.models.liquid import wave_model
+from leblanc.studies.models.validity import MEANING
 from meshes.chamber import Chamber
 from solvers.synchronous.models import LINEAR
 

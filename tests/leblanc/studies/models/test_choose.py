@@ -9,15 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fluid.friction import Friction, FrictionLaw
+from fluid.friction.laws import Friction, FrictionLaw
 from leblanc.cli import main
 from leblanc.results.base import percent
 from leblanc.results.choice import model_spans, seconds_words
-from leblanc.results.notes import RunCode
+from leblanc.results.notes.response import RunCode
 from leblanc.scene.scene import Scene, dry_rotor, jeffcott, load_scene
-from leblanc.studies.choose import axial_gravity, choose, choose_all, prepare
 from leblanc.studies.explain import explain_scene
-from leblanc.studies.liquid import synchronous_model
+from leblanc.studies.models.choose import axial_gravity, choose, choose_all, prepare
+from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.run import run_scene
 from leblanc.studies.runup import runup_outlook, runup_scene
 from leblanc.text.explanation import machine_rows
@@ -44,7 +44,9 @@ def strong(unbalance: float = 6e-3) -> Scene:
     return small_scene(axis="vertical", unbalance=unbalance)
 
 
-@kills("leblanc.studies.choose:_choice", "linear.wet & (linear.worst <= tolerance)", "linear.worst <= 9.0")
+@kills(
+    "leblanc.studies.models.choose:_choice", "linear.wet & (linear.worst <= tolerance)", "linear.worst <= 9.0"
+)
 def test_auto_is_within_its_tolerance() -> None:
     """What `auto` takes differs from the exact equilibrium by no more than it says and no more than asked.
 
@@ -82,10 +84,12 @@ def test_a_model_that_is_asked_for_is_taken_and_its_error_told() -> None:
 
 
 @kills(
-    "leblanc.studies.choose:_choice", "linear.worst, ROUNDING) + gravity.amplitude", "linear.worst, ROUNDING)"
+    "leblanc.studies.models.choose:_choice",
+    "linear.worst, ROUNDING) + gravity.amplitude",
+    "linear.worst, ROUNDING)",
 )
 @kills(
-    "leblanc.studies.choose:across_gravity",
+    "leblanc.studies.models.choose:across_gravity",
     'scene.rotor.axis == "horizontal"',
     'scene.rotor.axis == "vertical"',
 )
@@ -107,9 +111,9 @@ def test_where_the_tolerance_is_not_met() -> None:
     assert "does not ride" in spans[0].reason
 
 
-@kills("leblanc.studies.choose:held_cost", 'scene.model.altered(held="auto")', "scene.model")
-@kills("leblanc.studies.choose:held_cost", "choice.holding[at].sum()", "choice.holding.sum()")
-@kills("leblanc.studies.choose:costed", "machine.across_gravity", "machine.axial_gravity")
+@kills("leblanc.studies.models.choose:held_cost", 'scene.model.altered(held="auto")', "scene.model")
+@kills("leblanc.studies.models.choose:held_cost", "choice.holding[at].sum()", "choice.holding.sum()")
+@kills("leblanc.studies.models.choose:costed", "machine.across_gravity", "machine.axial_gravity")
 def test_what_motions_held_in_time_would_take_is_told_in_seconds() -> None:
     """`explain` and the note of `run` name the speeds that auto would hold and the time that takes."""
     lying = small_scene()

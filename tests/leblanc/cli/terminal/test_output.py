@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from leblanc.cli import output
+from leblanc.cli.terminal import output
 
 Capture = pytest.CaptureFixture[str]
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from leblanc.results.base import Note
 from leblanc.results.layer import Number
-from leblanc.results.notes import DoubtCode, doubt
+from leblanc.results.notes.doubts import DoubtCode, doubt
 from leblanc.scene.rotors import JeffcottRotor, TubRotor, TwoPlaneRotor
 from leblanc.scene.scene import Exciter, Scene
 from leblanc.units import DENSITY, LENGTH, MASS, UNBALANCE, VISCOSITY, in_rpm, number, rpm_range, with_unit

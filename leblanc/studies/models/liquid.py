@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from fluid.friction import NO_FRICTION, Friction, FrictionLaw
+from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw
 from meshes.errors import InputError
 from solvers.liquid_model import LiquidModel, WaveModel
 from solvers.synchronous.models import LINEAR, STATICS

@@ -13,7 +13,7 @@ import pytest
 
 pty = pytest.importorskip("pty")
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 CHAMBER = ["--radius", "0.1", "--height", "0.05", "--volume", "1e-4", "--speed", "50"]
 # What stands on the terminal while the command works.
 SHOWN = {

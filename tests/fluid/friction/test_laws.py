@@ -6,7 +6,16 @@ import json
 
 import pytest
 
-from fluid.friction import LINEAR, NO_FRICTION, NONE, QUADRATIC, STOKES, Friction, FrictionLaw, damping_rate
+from fluid.friction.laws import (
+    LINEAR,
+    NO_FRICTION,
+    NONE,
+    QUADRATIC,
+    STOKES,
+    Friction,
+    FrictionLaw,
+    damping_rate,
+)
 from meshes.errors import InputError
 
 

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from fluid.friction import Friction
+from fluid.friction.laws import Friction
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed
 from leblanc.results.choice import Choice, HeldCost
 from leblanc.scene.scene import Scene, dry_rotor
-from leblanc.studies.liquid import synchronous_model
+from leblanc.studies.models.liquid import synchronous_model
 from meshes.arrays import Array, Flags
 from meshes.chamber_section import rest_offset, surface_is_whole
 from meshes.errors import InputError

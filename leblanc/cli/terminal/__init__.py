@@ -1,0 +1,1 @@
+"""The terminal: what commands print and write, and what they show while they work."""

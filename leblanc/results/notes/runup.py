@@ -1,0 +1,227 @@
+"""Notes of a run-up: the largest amplitude, errors, capture, limits of validity."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fluid.friction.laws import Friction
+from leblanc.results.base import Note, NoteCode, percent
+from leblanc.results.response import peak
+from leblanc.units import (
+    LENGTH,
+    TIME,
+    friction_words,
+    in_rpm,
+    rpm_bands,
+    with_unit,
+)
+from meshes.arrays import Flags
+
+if TYPE_CHECKING:
+    from solvers.runup.ensemble import Spread
+    from solvers.runup.runup import RunupHistory
+    from solvers.synchronous.response import Response
+
+
+CLOSURE = 1e-3  # of the work: what the energy balance may leave
+SETTLED = 1e-6  # of the largest amplitude: what rounding may change without being spoken of
+ERROR = 0.02  # of the largest amplitude: an error estimate to speak of
+
+
+class RunupCode(NoteCode):
+    """What the notes of a run-up say."""
+
+    LIQUID_MODEL = "liquid_model"
+    STOPPED = "stopped"
+    ERROR_UNKNOWN = "error_unknown"
+    ROUGH = "rough"
+    ROUNDING = "rounding"
+    ENERGY = "energy"
+    PEAK = "peak"
+    PEAK_STEADY = "peak_steady"
+    CAPTURED = "captured"
+    FALLS_BACK = "falls_back"
+    SELF_EXCITED = "self_excited"
+    TOO_SLOW = "too_slow"
+    INNER_WALL = "inner_wall"
+    TOO_DEEP = "too_deep"
+    TOO_HIGH = "too_high"
+
+
+# What the tables of a report say as well.
+IN_TABLES = (
+    RunupCode.LIQUID_MODEL,
+    RunupCode.ROUGH,
+    RunupCode.ENERGY,
+    RunupCode.PEAK_STEADY,
+    RunupCode.CAPTURED,
+    RunupCode.FALLS_BACK,
+    RunupCode.SELF_EXCITED,
+)
+
+
+def liquid_model(model: str, reason: str) -> Note:
+    """Which liquid model the run-up took, and why."""
+    return Note(RunupCode.LIQUID_MODEL, {"model": model}, f"Liquid model: {reason}")
+
+
+def stopped(reason: str) -> Note:
+    """The run did not come to its end."""
+    return Note(RunupCode.STOPPED, {}, f"The run stopped: {reason}.")
+
+
+def numerical_error(error: float) -> Note | None:
+    """Error of the amplitude over its largest; None where it is small."""
+    if math.isnan(error):
+        return Note(RunupCode.ERROR_UNKNOWN, {}, "The error of the amplitude was not estimated.")
+    if error <= ERROR:
+        return None
+    text = (
+        f"With half the cells the amplitude differs by up to {error:.1%} of its largest: "
+        "more cells would sharpen it."
+    )
+    return Note(RunupCode.ROUGH, {"error": error}, text)
+
+
+def rounding(spread: Spread, history: RunupHistory) -> Note:
+    """What rounding alone does to a run-up, beside its error estimate.
+
+    Parameters
+    ----------
+    spread : over the ensemble
+    history : of the unchanged run
+    """
+    width = spread.amplitude_max - spread.amplitude_min
+    when = int(np.nanargmax(width))
+    data = {
+        "members": spread.members,
+        "change": spread.change,
+        "peak_spread": spread.peak_spread,
+        "largest_spread": spread.largest_spread,
+        "time": float(history.time[when]),
+        "speed": float(history.speed[when]),
+    }
+    runs = f"over {spread.members} runs with an unbalance within {spread.change:.0e}"
+    if spread.largest_spread < SETTLED:
+        text = (
+            f"Rounding does not matter: {runs} amplitudes differ by {spread.largest_spread:.0e} of the peak."
+        )
+        return Note(RunupCode.ROUNDING, data, text)
+    error = history.error_estimate
+    beside = ""
+    if not math.isnan(error):
+        than = "less" if spread.largest_spread < error else "more"
+        beside = f", {than} than the {percent(error)} that half the cells change"
+    text = (
+        f"By rounding alone, {runs}, the largest amplitude differs by {percent(spread.peak_spread)} and the "
+        f"amplitude at one time by up to {percent(spread.largest_spread)} of it, after "
+        f"{with_unit(data['time'], TIME)} at {in_rpm(data['speed'])}{beside}."
+    )
+    return Note(RunupCode.ROUNDING, data, text)
+
+
+def energy_left(closure: float) -> Note | None:
+    """What the energy balance leaves over the work; None where that is little."""
+    if closure <= CLOSURE:
+        return None
+    text = f"The energy balance leaves {closure:.1%} of the work unaccounted for."
+    return Note(RunupCode.ENERGY, {"closure": closure}, text)
+
+
+def largest_amplitude(history: RunupHistory, steady: Response | None) -> Note:
+    """The largest amplitude beside that of the steady response, where there is one."""
+    k = int(np.argmax(history.largest))
+    size, speed = float(history.largest[k]), float(history.largest_speed[k])
+    data = {"amplitude": size, "speed": speed}
+    text = f"Largest amplitude {with_unit(size, LENGTH)} at {in_rpm(speed)}"
+    highest = None if steady is None else peak(steady.deflection)
+    if steady is None or highest is None:
+        return Note(RunupCode.PEAK, data, f"{text}.")
+    most, at = float(abs(steady.deflection[highest])), float(steady.speed[highest])
+    text = f"{text}; in the steady response it is {with_unit(most, LENGTH)} at {in_rpm(at)}."
+    return Note(RunupCode.PEAK_STEADY, data | {"steady_amplitude": most, "steady_speed": at}, text)
+
+
+def capture(chamber: int, captured: bool, time: float, speed: float) -> Note:
+    """When the liquid of a chamber, counted from 0, began or ceased to ride with the drum."""
+    text = (
+        f"Chamber {chamber + 1}: its liquid {'is captured' if captured else 'falls back'} at "
+        f"{time:.4g} s, {in_rpm(speed)}."
+    )
+    code = RunupCode.CAPTURED if captured else RunupCode.FALLS_BACK
+    return Note(code, {"chamber": chamber + 1, "time": time, "speed": speed}, text)
+
+
+def self_excited_on_the_way(
+    bands: tuple[tuple[float, float], ...],
+    friction: Friction,
+    whirl: tuple[float, float] | None = None,
+) -> Note | None:
+    """Speeds at which whirl grows by itself, rad/s; None where there are none.
+
+    Parameters
+    ----------
+    bands : of those speeds, rad/s
+    friction : of the liquid
+    whirl : estimated amplitude of the largest of them, m, and its spin speed, rad/s
+    """
+    if not bands:
+        return None
+    listed = rpm_bands(bands)
+    law = friction_words(friction)
+    text = f"By linear theory with liquid friction {law}, some whirl grows by itself at {listed}."
+    found: dict[str, Any] = {"bands": bands}
+    if whirl is not None:
+        size, speed = whirl
+        found |= {"amplitude": size, "speed": speed}
+        text += (
+            f" Given time, it grows to about {with_unit(size, LENGTH)} at {in_rpm(speed)} by an estimate, "
+            "and may be carried beyond the band; `leblanc map --cycles` solves for it."
+        )
+    return Note(RunupCode.SELF_EXCITED, found, text)
+
+
+def out_of_range(code: RunupCode, chamber: int, holds: Flags, limit: float = math.nan) -> Note | None:
+    """At what share of the samples the layer of a chamber does not describe its liquid; None if nowhere.
+
+    Parameters
+    ----------
+    code : TOO_SLOW, INNER_WALL, TOO_DEEP or TOO_HIGH
+    chamber : index from 0
+    holds : where the layer describes the liquid, shape (k,)
+    limit : depth over radius, or rise over depth, that is too much
+    """
+    if holds.all():
+        return None
+    label, high = f"chamber {chamber + 1}", f"higher than {limit:g} of the depth"
+    why = {
+        RunupCode.TOO_SLOW: f"the liquid in {label} turns too slowly to stand round the wall against gravity",
+        RunupCode.INNER_WALL: f"the surface reaches the inner wall of {label}",
+        RunupCode.TOO_DEEP: f"the layer in {label} is deeper than {limit:g} of its radius",
+        RunupCode.TOO_HIGH: f"the wave in {label} is {high}, beyond linear theory",
+    }[code]
+    share = float(1.0 - np.mean(holds))
+    text = f"Out of range for {1.0 - np.mean(holds):.0%} of the samples: {why}."
+    return Note(code, {"chamber": chamber + 1, "share": share}, text)
+
+
+def linear_layers(wave: float, lag: float, touches: bool, error: float, limits: tuple[float, float]) -> str:
+    """What a run with linear layers says of its own error.
+
+    Parameters
+    ----------
+    wave, lag : rise of the surface over the depth; lag of the liquid over the spin; largest each
+    touches : a surface comes to an inner wall
+    error : estimated from them; infinite where there is none
+    limits : of wave and lag up to which an error is estimated
+    """
+    size = f"waves reach {percent(wave)} of the depth and the liquid lags by up to {percent(lag)} of the spin"
+    if touches:
+        return f"{size}, and a surface touches an inner wall, beyond any estimate"
+    if math.isfinite(error):
+        return f"{size}, an estimated error of {percent(error)} against long waves"
+    most = " and ".join(map(percent, limits))
+    return f"{size}, beyond the {most} up to which an error is estimated"
