@@ -35,6 +35,7 @@ REST = {
     "runup": {
         "start": "30 rpm", "stop": "900 rpm", "rate": "2 rad/s^2", "duration": "9 s", "cells": 32,
         "back": True, "dispersion": True, "bore": "enstrophy", "samples": 77,
+        "capture": "drum",
     },
     "optimise": {
         "objective": "robust", "working_speed": "600 rpm", "steady": True,
