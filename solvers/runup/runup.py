@@ -15,12 +15,13 @@ from numpy.typing import ArrayLike
 from fluid.fill import Fill
 from fluid.friction.laws import NO_FRICTION, Friction
 from fluid.whirl import is_full
-from meshes.arrays import Array, Complex, Flags
+from meshes.arrays import Array, Complex, Flags, Index
 from meshes.errors import InputError
 from solvers.layer.records import Outcome
 from solvers.rotor.system import RotorSystem
+from solvers.runup.course import highest, legs, marked
 from solvers.runup.long_wave import couple
-from solvers.runup.machine import Drive, LayerSnapshots, Ramp, Reading, RunupMachine, RunupModel, torque_curve
+from solvers.runup.machine import Drive, LayerSnapshots, Reading, RunupMachine, RunupModel
 from solvers.slices import step_budget
 
 
@@ -123,6 +124,7 @@ class RunupHistory:
     outcome : how it ended
     reason : why it did not come to the end, and when; or empty
     snapshots : of the layers, cell by cell, at the times asked for; None where none were
+    stage : of its programme in which each time was reached, from 0, shape (k,)
     """
 
     time: Array
@@ -148,6 +150,7 @@ class RunupHistory:
     outcome: Outcome
     reason: str
     snapshots: LayerSnapshots | None = None
+    stage: Index | None = None
 
     @property
     def converged(self) -> bool:
@@ -235,21 +238,11 @@ def run_up(
         progress(1.0)
     if not other.converged:
         return history
-    gap = np.abs(history.amplitude - other.amplitude).max()
+    # Where the speed was free the two ways have corners of their own; the other times are the same.
+    _, ours, theirs = np.intersect1d(history.time, other.time, assume_unique=True, return_indices=True)
+    gap = np.abs(history.amplitude[ours] - other.amplitude[theirs]).max()
     largest = history.amplitude.max()
     return replace(history, error_estimate=float(gap / largest) if largest > 0.0 else 0.0)
-
-
-def _times(drive: Drive, samples: int) -> tuple[Array, Array]:
-    """Sampled times with all corners of the ramp among them, and the rate from each to the next."""
-    corners = drive.corners()
-    time = np.unique(np.concatenate((np.linspace(0.0, corners[0, -1], samples), corners[0])))
-    rate = np.zeros(time.size - 1)
-    if isinstance(drive, Ramp):
-        slopes = np.diff(corners[1]) / np.diff(corners[0])
-        middle = 0.5 * (time[:-1] + time[1:])
-        rate = slopes[np.searchsorted(corners[0], middle) - 1]
-    return time, rate
 
 
 def _march(
@@ -260,29 +253,31 @@ def _march(
     snapshots: Array,
 ) -> RunupHistory:
     """The run itself, sample by sample."""
-    time, rate = _times(drive, numerics.samples)
-    highest = _highest(drive)
-    machine.drive(torque_curve(drive), 0.0 if isinstance(drive, Ramp) else drive.inertia)
+    top, last = highest(drive), float(drive.corners()[0, -1])
     energy, captured, outcome = machine.energy(), 0.0, Outcome.DONE
-    wanted = np.unique([np.abs(time - moment).argmin() for moment in snapshots]).astype(np.intp)
-    readings, depths = [machine.read()], [machine.depth()] if 0 in wanted else []
-    for k, stop in enumerate(time[1:].tolist()):
+    wanted, kept, depths = marked(drive, numerics.samples, snapshots), [0], [machine.depth()]
+    if 0.0 not in wanted:
+        kept, depths = [], []
+    readings, stages = [machine.read()], [0]
+    for leg in legs(drive, machine, numerics.samples):
         machine.watch()
         try:
             captured += machine.switch()
-            fastest = max(machine.spin, highest)
-            most = step_budget(stop - machine.time, fastest, numerics.cells, numerics.courant)
-            outcome, brought = _advance(machine, stop, float(rate[k]), numerics.courant, most)
+            fastest = max(machine.spin, top)
+            most = step_budget(leg.stop - machine.time, fastest, numerics.cells, numerics.courant)
+            outcome, brought = _advance(machine, leg.stop, leg.rate, numerics.courant, most)
             captured += brought
         except KeyboardInterrupt:
             outcome = Outcome.INTERRUPTED
         if outcome is not Outcome.DONE:
             break
         readings.append(machine.read())
-        if k + 1 in wanted:
+        stages.append(leg.stage)
+        if leg.stop in wanted:
+            kept.append(len(readings) - 1)
             depths.append(machine.depth())
-        if k % 64 == 0:
-            progress((k + 1) / rate.size)
+        if len(readings) % 64 == 2:
+            progress(min(leg.stop / last, 1.0))
     when = f"at {machine.time:.6g} s, {machine.spin:.6g} rad/s"
     sums = machine.sums
     audit = EnergyAudit(
@@ -290,7 +285,7 @@ def _march(
         change=machine.energy() - energy,
         **{name: float(sums[name]) for name in _WORKS},
     )
-    kept = LayerSnapshots(wanted[: len(depths)], machine.theta, np.array(depths)) if wanted.size else None
+    shots = LayerSnapshots(np.array(kept, dtype=np.intp), machine.theta, np.array(depths)) if wanted else None
     return RunupHistory(
         **{field.name: np.array([getattr(r, field.name) for r in readings]) for field in fields(Reading)},
         layer_mass=machine.masses,
@@ -302,17 +297,12 @@ def _march(
         disagreement=float(sums.disagreement),
         outcome=outcome,
         reason="" if outcome is Outcome.DONE else f"{outcome.message} {when}",
-        snapshots=kept,
+        snapshots=shots,
+        stage=np.array(stages),
     )
 
 
 _WORKS = ("unbalance", "drive", "gravity", "support", "friction", "bores", "profile", "motor")
-
-
-def _highest(drive: Drive) -> float:
-    """Largest speed that a drive asks for, rad/s."""
-    speeds = drive.corners()[1] if isinstance(drive, Ramp) else np.array(drive.speeds)
-    return float(speeds.max())
 
 
 def _advance(
