@@ -512,6 +512,18 @@ class Exciter(Part):
 AnyRotor = JeffcottRotor | TwoPlaneRotor | TubRotor | Exciter
 
 
+def polar_inertia_of(rotor: AnyRotor) -> float | None:
+    """Moment of inertia about the axis of what spins, without the liquid, kg m^2; None where it is not told.
+
+    Parameters
+    ----------
+    rotor : of a scene
+    """
+    if isinstance(rotor, TubRotor):
+        return rotor.drum_polar_inertia
+    return rotor.polar_inertia if isinstance(rotor, TwoPlaneRotor) else None
+
+
 def unbalances_of(rotor: AnyRotor) -> tuple[float, ...]:
     """Size of each unbalance of a rotor, kg m.
 

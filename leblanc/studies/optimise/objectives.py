@@ -57,7 +57,7 @@ class RunupPeak:
         from leblanc.studies.runup import across_gravity, drive_of, liquid_model, numerics_of, planned
 
         plan = planned(scene)
-        self.scene, self.drive, self.gravity = scene, drive_of(plan), across_gravity(scene)
+        self.scene, self.drive, self.gravity = scene, drive_of(plan, scene.rotor), across_gravity(scene)
         self.numerics = numerics_of(plan, cells, check=False)
         self.model = runup_model(liquid_model(scene))
         self._known: dict[bytes, float] = {}
