@@ -110,6 +110,7 @@ class RunupResult(Result):
     bore : what bores leave behind, "none" or "enstrophy"
     spread : over an ensemble of runs that rounding tells apart; None if it was not asked for
     passages : the steps of a programme that were reached; none of a run-up
+    unbalance_left : sizes of all unbalances over what they were at first, shape (k,); None where none leaves
 
     Examples
     --------
@@ -147,6 +148,7 @@ class RunupResult(Result):
     spread: Spread | None = None
     bore: str = "none"
     passages: tuple[Passage, ...] = ()
+    unbalance_left: Array | None = None
 
     figure = "leblanc.figures.runup:speed_figure"
     summary = "leblanc.text.runup:summary"
@@ -407,6 +409,7 @@ class RunupResult(Result):
         own = ("model_error", "name", "digest", "assumed", "bands", *(("ensemble",) if self.spread else ()))
         return {name: getattr(self, name) for name in (*over, *rest, *own)} | {
             **({"passages": [asdict(passage) for passage in self.passages]} if self.passages else {}),
+            **({} if self.unbalance_left is None else {"unbalance_left": self.unbalance_left}),
             "energy": self._energy(),
             "notes": texts(self.notes),
         }
@@ -504,6 +507,9 @@ def _columns(result: RunupResult) -> dict[str, Any]:
         "mean_rotation": each(h.mean_rotation, "rad s-1", "mean rotation of the liquid in the drum"),
         "layer_mass": variable(("chamber",), h.layer_mass, "kg", "mass of the liquid"),
     }
+    if result.unbalance_left is not None:
+        words = "sizes of all unbalances over what they were at first"
+        columns["unbalance_left"] = variable(over, result.unbalance_left, "1", words)
     if result.spread is not None:
         for part in ("min", "max", "median"):
             name, words = f"amplitude_{part}", f"amplitude, {part} over runs that rounding tells apart"

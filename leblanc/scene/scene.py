@@ -17,7 +17,7 @@ from fluid.friction.laws import Friction, FrictionLaw
 from leblanc import units
 from leblanc.scene.chambers import Chamber
 from leblanc.scene.programme.table import Programme as Programme
-from leblanc.scene.rotors import AnyRotor, polar_inertia_of
+from leblanc.scene.rotors import AnyRotor, polar_inertia_of, sheds_of
 from leblanc.scene.rotors import Exciter as Exciter  # what a scene's rotor may be
 from leblanc.scene.rotors import JeffcottRotor as JeffcottRotor
 from leblanc.scene.rotors import TubRotor as TubRotor
@@ -260,7 +260,7 @@ class Scene(Part):
             "source": self.source,
             "assumed": self.assumed,
             "gravity": self.gravity,
-            "rotor": rotor_content(self.rotor),
+            "rotor": rotor_content(self.rotor) | _leaving(self.rotor),
             "chambers": [chamber_content(fill) for fill in self.fills],
             "speeds": self.speeds.model_dump(),
             "model": {
@@ -431,7 +431,16 @@ def rotor_content(rotor: AnyRotor) -> dict[str, Any]:
         balls = rotor.balls.model_dump()
         balls |= {"kind": rotor.balls.name, "pendulum_inertia": rotor.balls.pendulum_inertia or 0.0}
         return rotor.model_dump(exclude={"balls"}) | {"balls": balls}
-    return {"kind": rotor.kind, "machine": asdict(rotor.machine()), "axis": rotor.axis}
+    machine = asdict(rotor.machine())
+    if not machine.get("loads", True):
+        del machine["loads"]
+    return {"kind": rotor.kind, "machine": machine, "axis": rotor.axis}
+
+
+def _leaving(rotor: AnyRotor) -> dict[str, Any]:
+    """What leaves of its unbalances; nothing where nothing does."""
+    sheds = [None if part is None else part.model_dump() for part in sheds_of(rotor)]
+    return {"sheds": sheds} if any(part is not None for part in sheds) else {}
 
 
 def chamber_content(fill: Fill) -> dict[str, Any]:

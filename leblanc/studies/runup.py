@@ -19,7 +19,7 @@ from leblanc.results.notes.runup import RunupCode
 from leblanc.results.runup import Bands, RunupFrames, RunupResult
 from leblanc.scene.inputs import runup_rows
 from leblanc.scene.programme.steps import Step
-from leblanc.scene.rotors import AnyRotor, polar_inertia_of
+from leblanc.scene.rotors import AnyRotor, polar_inertia_of, sheds_of, unbalances_of, with_unbalances
 from leblanc.scene.scene import JeffcottRotor, Programme, Runup, Scene, dry_rotor, jeffcott, require_clear
 from leblanc.studies.models.choose import across_gravity as across_gravity  # of a run-up, asked for with it
 from leblanc.studies.models.choose import axial_gravity, is_cut, prepare
@@ -30,6 +30,7 @@ from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.layer.records import Outcome
 from solvers.liquid_model import LONG
+from solvers.rotor.system import RotorSystem, Shed
 from solvers.runup import programme
 from solvers.runup.ensemble import EnsembleTask, Member, Spread, member_of, run_member, spread_over
 from solvers.runup.ensemble import ensemble as made_ensemble
@@ -212,7 +213,7 @@ def chosen_run(
     InputError : the scene names a model that does not go through time
     """
     model, tolerance = liquid_model(scene), scene.model.tolerance
-    system, friction = dry_rotor(scene).system(), scene.model.friction
+    system, friction = rotor_in_time(scene), scene.model.friction
 
     def run(name: str, resolved: RunupNumerics, report: Progress) -> RunupHistory:
         model = runup_model(name)
@@ -334,7 +335,7 @@ def runup_scene(
     steady, bands = steady_response(scene, history.speed), whirl_bands(scene, history.speed)
     in_range, limits = judged(scene, history, taken.model)
     steps = () if scene.programme is None else tuple(step.words() for step in scene.programme.steps)
-    passages = passages_of(history, dry, steps)
+    passages, left = passages_of(history, dry, steps), unbalance_left(scene, history)
     fastest = np.flatnonzero(history.speed == history.speed.max())
     return RunupResult(
         name=scene.name,
@@ -361,6 +362,7 @@ def runup_scene(
         notes=(
             *_notes(scene, taken, steady, bands, spread),
             *programme_notes(scene, history, drive, passages),
+            *([] if left is None else [notes.unbalance_left(float(left[-1]))]),
             *limits,
             *doubts(scene),
         ),
@@ -369,7 +371,24 @@ def runup_scene(
         spread=spread,
         bore=plan.bore,
         passages=passages,
+        unbalance_left=left,
     )
+
+
+def unbalance_left(scene: Scene, history: RunupHistory) -> Array | None:
+    """Sizes of all unbalances over what they were at first, shape (k,); None where none of them leaves.
+
+    Parameters
+    ----------
+    scene : the machine
+    history : of its run-up
+    """
+    sizes = unbalances_of(scene.rotor)
+    pairs = zip(sizes, sheds_of(scene.rotor), strict=True)
+    leaving = np.array([size * sheds.share for size, sheds in pairs if sheds is not None])
+    if history.left is None or not leaving.size or not sum(sizes) > 0.0:
+        return None
+    return np.asarray(1.0 - (1.0 - history.left) @ leaving / sum(sizes))
 
 
 def programme_notes(
@@ -400,6 +419,23 @@ def programme_notes(
     return tuple(found)
 
 
+def rotor_in_time(scene: Scene) -> RotorSystem:
+    """The dry rotor of a scene with what leaves of its unbalances.
+
+    Parameters
+    ----------
+    scene : the machine
+    """
+    system, sizes, found = dry_rotor(scene).system(), unbalances_of(scene.rotor), []
+    for k, sheds in enumerate(sheds_of(scene.rotor)):
+        if sheds is None:
+            continue
+        alone = [sheds.share * size * (j == k) for j, size in enumerate(sizes)]
+        part = scene.altered(rotor=with_unbalances(scene.rotor, alone))
+        found.append(Shed(dry_rotor(part).system().unbalance, sheds.time_constant, sheds.above))
+    return replace(system, sheds=tuple(found)) if found else system
+
+
 def ensemble_tasks(
     scene: Scene, drive: Drive, gravity: float, numerics: RunupNumerics, count: int, seed: int
 ) -> list[EnsembleTask]:
@@ -417,7 +453,7 @@ def ensemble_tasks(
     """
     if count == 0:
         return []
-    system, friction, model = dry_rotor(scene).system(), scene.model.friction, runup_model("long_wave")
+    system, friction, model = rotor_in_time(scene), scene.model.friction, runup_model("long_wave")
     return made_ensemble(system, scene.fills, drive, friction, gravity, numerics, model, count, seed)
 
 
@@ -481,7 +517,7 @@ def dry_run(
     # Without liquid both models step the rotor alike; this one is the quicker.
     empty, model = [replace(fill, volume=0.0) for fill in scene.fills], runup_model("linear")
     alone = replace(numerics, companion=False)
-    return run_up(dry_rotor(scene).system(), empty, drive, scene.model.friction, gravity, alone, None, model)
+    return run_up(rotor_in_time(scene), empty, drive, scene.model.friction, gravity, alone, None, model)
 
 
 def _notes(

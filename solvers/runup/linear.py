@@ -11,7 +11,7 @@ import numpy as np
 
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw, damping_rate
-from meshes.arrays import Array
+from meshes.arrays import Array, Complex
 from solvers.layer.records import Outcome, records
 from solvers.layer.state import ring
 from solvers.rotor.system import RotorSystem
@@ -64,6 +64,10 @@ class LinearCoupled(CoupledRotor):
         """Set a motor's torque curve and moment of inertia; an empty curve leaves the spin to its ramp."""
         self.machine = self.machine._replace(curve=curve)
         self.shaft.inertia = inertia
+
+    def load(self, unbalance: Complex) -> None:
+        """Set the unbalance from here on, kg m and kg m^2, shape (n,)."""
+        self.machine.unbalance[:] = unbalance
 
     def advance(self, stop: float, rate: float, courant: float, most: int) -> Outcome:
         """Advance to a time while the spin changes at a rate, in at most so many steps."""

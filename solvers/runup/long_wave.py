@@ -10,7 +10,7 @@ import numpy as np
 
 from fluid.fill import Fill
 from fluid.friction.laws import Friction
-from meshes.arrays import Array, Flags
+from meshes.arrays import Array, Complex, Flags
 from solvers.layer.records import Outcome, Record, records
 from solvers.layer.state import ring
 from solvers.rotor.system import RotorSystem
@@ -89,6 +89,10 @@ class Coupled(CoupledRotor):
         """Set a motor's torque curve and moment of inertia; an empty curve leaves the spin to its ramp."""
         self.machine = self.machine._replace(curve=curve)
         self.shaft.inertia = inertia
+
+    def load(self, unbalance: Complex) -> None:
+        """Set the unbalance from here on, kg m and kg m^2, shape (n,)."""
+        self.machine.unbalance[:] = unbalance
 
     def advance(self, stop: float, rate: float, courant: float, most: int) -> Outcome:
         """Advance to a time while the spin changes at a rate, in at most so many steps."""

@@ -179,6 +179,9 @@ class RunupMachine(Protocol):
     def drive(self, curve: Array, inertia: float) -> None:
         """Set a motor's torque curve and moment of inertia; an empty curve leaves the spin to its ramp."""
 
+    def load(self, unbalance: Complex) -> None:
+        """Set the unbalance from here on, kg m and kg m^2, shape (n,)."""
+
     def advance(self, stop: float, rate: float, courant: float, most: int) -> Outcome:
         """Advance to a time while the spin changes at a rate, in at most so many steps."""
 

@@ -22,6 +22,7 @@ from solvers.rotor.system import RotorSystem
 from solvers.runup.course import highest, legs, marked
 from solvers.runup.long_wave import couple
 from solvers.runup.machine import Drive, LayerSnapshots, Reading, RunupMachine, RunupModel
+from solvers.runup.shedding import Shedding
 from solvers.slices import step_budget
 
 
@@ -125,6 +126,7 @@ class RunupHistory:
     reason : why it did not come to the end, and when; or empty
     snapshots : of the layers, cell by cell, at the times asked for; None where none were
     stage : of its programme in which each time was reached, from 0, shape (k,)
+    left : share that is left of each part of the unbalance that leaves, shape (k, s)
     """
 
     time: Array
@@ -151,6 +153,7 @@ class RunupHistory:
     reason: str
     snapshots: LayerSnapshots | None = None
     stage: Index | None = None
+    left: Array | None = None
 
     @property
     def converged(self) -> bool:
@@ -229,11 +232,14 @@ def run_up(
     share = 0.8 if numerics.companion else 1.0
     wanted = np.asarray(snapshots, dtype=float)
     whole = machine(numerics.cells)
-    history = _march(whole, drive, numerics, lambda part: progress and progress(share * part), wanted)
+    history = _march(
+        whole, Shedding(system), drive, numerics, lambda part: progress and progress(share * part), wanted
+    )
     if not numerics.companion or not history.converged or numerics.cells < 16:
         return history
     cells = numerics.cells // 2
-    other = _march(machine(cells), drive, replace(numerics, cells=cells), lambda _: None, np.empty(0))
+    coarse = replace(numerics, cells=cells)
+    other = _march(machine(cells), Shedding(system), drive, coarse, lambda _: None, np.empty(0))
     if progress:
         progress(1.0)
     if not other.converged:
@@ -247,6 +253,7 @@ def run_up(
 
 def _march(
     machine: RunupMachine,
+    shedding: Shedding,
     drive: Drive,
     numerics: RunupNumerics,
     progress: Callable[[float], object],
@@ -258,21 +265,25 @@ def _march(
     wanted, kept, depths = marked(drive, numerics.samples, snapshots), [0], [machine.depth()]
     if 0.0 not in wanted:
         kept, depths = [], []
-    readings, stages = [machine.read()], [0]
+    readings, stages, left = [machine.read()], [0], [shedding.left]
     for leg in legs(drive, machine, numerics.samples):
         machine.watch()
         try:
             captured += machine.switch()
             fastest = max(machine.spin, top)
             most = step_budget(leg.stop - machine.time, fastest, numerics.cells, numerics.courant)
-            outcome, brought = _advance(machine, leg.stop, leg.rate, numerics.courant, most)
-            captured += brought
+            for stop in shedding.pieces(machine, leg.stop):
+                outcome, brought = _advance(machine, stop, leg.rate, numerics.courant, most)
+                captured += brought
+                if outcome is not Outcome.DONE:
+                    break
         except KeyboardInterrupt:
             outcome = Outcome.INTERRUPTED
         if outcome is not Outcome.DONE:
             break
         readings.append(machine.read())
         stages.append(leg.stage)
+        left.append(shedding.left)
         if leg.stop in wanted:
             kept.append(len(readings) - 1)
             depths.append(machine.depth())
@@ -299,6 +310,7 @@ def _march(
         reason="" if outcome is Outcome.DONE else f"{outcome.message} {when}",
         snapshots=shots,
         stage=np.array(stages),
+        left=np.array(left),
     )
 
 

@@ -52,6 +52,7 @@ class RunupCode(NoteCode):
     STANDING = "standing"
     NO_DRAG = "no_drag"
     COAST_NOT_ENDED = "coast_not_ended"
+    UNBALANCE_LEFT = "unbalance_left"
 
 
 # What the tables of a report say as well.
@@ -100,6 +101,15 @@ def coast_not_ended(step: int, wanted: float, reached: float, limit: float) -> N
         f"{in_rpm(reached)} instead of {in_rpm(wanted)}."
     )
     return Note(RunupCode.COAST_NOT_ENDED, {"step": step, "wanted": wanted, "reached": reached}, text)
+
+
+def unbalance_left(share: float) -> Note:
+    """How much of the unbalances is left at the end, over what they were at first."""
+    text = (
+        f"{percent(share)} of the unbalance is left at the end; the mass of what has left still counts as "
+        "the drum's, and what leaves takes its momentum along."
+    )
+    return Note(RunupCode.UNBALANCE_LEFT, {"share": share}, text)
 
 
 def stopped(reason: str) -> Note:
