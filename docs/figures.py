@@ -94,6 +94,7 @@ RECIPES = (
         runup_horizontal_rig_speed="runup_speed",
         runup_horizontal_rig_time="runup_time",
     ),
+    _example("runup", "programme", programme_speed="runup_speed", programme_time="runup_time"),
     _example("optimise", "runup", optimise_objective="objective"),
     _example("optimise", "washing_machine", "--objective", "peak", "--steady", optimise_front="front"),
     Recipe(

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def runup(
-    scene: Annotated[Path, typer.Argument(help="Scene file (TOML) with a table [runup].")],
+    scene: Annotated[Path, typer.Argument(help="Scene file (TOML) with a table [runup] or [programme].")],
     cells: Annotated[int | None, typer.Option(help="Cells round each wall [default: the scene's].")] = None,
     samples: Annotated[
         int | None, typer.Option(help="How many times are recorded [default: the scene's].")
@@ -97,9 +97,9 @@ def _film(result: RunupResult, path: Path) -> None:
 
 def _tell(result: RunupResult, folder: Path) -> None:
     """The run as text."""
-    from leblanc.text.runup import answer_rows
+    from leblanc.text.runup import answer_rows, passage_rows
 
-    print_table(answer_rows(result))
+    print_table([*answer_rows(result), *passage_rows(result)])
     if result.plane:
         print(f"Amplitudes are those {result.plane}.")
     for note in result.notes:

@@ -87,7 +87,9 @@ def speed_figure(result: RunupResult) -> Figure:
                 marks = {"markevery": max(1, x.size // MARKS)} if dry else {}
                 axes.plot(x, y, label=label, **look, **marks)
                 if not dry:
-                    _arrows(axes, x, y, scale, look["color"])
+                    for part in np.split(np.arange(x.size), np.flatnonzero(np.isnan(x))):
+                        known = part[~np.isnan(x[part])]
+                        _arrows(axes, x[known], y[known], scale, look["color"])
         _draw_ranges(axes, result)
         axes.set_xlim(low - room, high + room)
         axes.set_ylim(0.0, top)
@@ -147,8 +149,8 @@ def _draw_ranges(axes: Axes, result: RunupResult, over_time: bool = False) -> No
     spread = result.spread
     if spread is None:
         return
-    ways = [slice(0, result.turning + 1)]
-    ways += [slice(result.turning, None)] if result.turns_back else []
+    ways = result.pieces(result.history, False)
+    ways += result.pieces(result.history, True) if result.turns_back else []
     for i, part in enumerate(ways):
         place = result.time[part] if over_time else result.speed[part] * RPM
         edges = spread.amplitude_min[part] * MM, spread.amplitude_max[part] * MM
@@ -223,7 +225,7 @@ def steady_lines(rpm: Array, branches: Any, calm: Flags) -> tuple[Line, Line]:
 def _arrows(axes: Axes, x: Array, y: Array, scale: tuple[float, float], color: str) -> None:
     """Heads along a line, evenly spaced over its length on the page."""
     length = np.concatenate(([0.0], np.cumsum(np.hypot(np.diff(x) / scale[0], np.diff(y) / scale[1]))))
-    if length[-1] <= 0.02:
+    if not length.size or length[-1] <= 0.02:
         return
     for share in (np.arange(ARROWS) + 0.5) / ARROWS:
         head = min(int(np.searchsorted(length, share * length[-1])), x.size - 1)
@@ -275,6 +277,9 @@ def _mark_time(axes: Axes, result: RunupResult) -> None:
     for i, (left, right) in enumerate(spans(time, ~result.in_range, limits)):
         label = "_" if i else "model out of range"
         axes.axvspan(left, right, color=SHADE, linewidth=0, zorder=0, label=label)
+    for i, passage in enumerate(part for part in result.passages if part.text.startswith("coast")):
+        label, look = "_" if i else "motor off", {"facecolor": WHIRL, "alpha": 0.25, "linewidth": 0}
+        axes.axvspan(passage.begin, passage.end, zorder=0.2, label=label, **look)
     for k, _, caught in result.captures:
         label, dashes = ("liquid captured", (0, (8, 3))) if caught else ("liquid falls back", (0, (2, 2)))
         axes.axvline(time[k], color="0.3", linewidth=0.9, linestyle=dashes, label=label, zorder=1)

@@ -80,6 +80,24 @@ def moments(result: RunupResult) -> Table:
     return table("", ("", f"amplitude ({unit.name})", "at (rpm)", "after (s)"), rows)
 
 
+def passages(result: RunupResult) -> Table:
+    """The steps of a programme with the largest amplitude of each; no rows for a run-up."""
+    unit = unit_for(LENGTH, *(passage.amplitude for passage in result.passages))
+    head = ("Step", "", "ends after (s)", f"largest amplitude ({unit.name})", "at (rpm)", "without liquid")
+    rows = [
+        (
+            f"{passage.step}",
+            passage.text,
+            number(passage.end),
+            unit.number(passage.amplitude),
+            number(passage.speed * RPM),
+            unit.number(passage.amplitude_dry),
+        )
+        for passage in result.passages
+    ]
+    return table("", head, rows)
+
+
 def facts(result: RunupResult) -> list[tuple[str, str]]:
     """The end of the run, its resolution and its errors: label and value.
 
@@ -124,7 +142,8 @@ def energy(result: RunupResult) -> Table:
     ]
     rows.append(row("= not accounted for", audit.remainder))
     if audit.motor != 0.0:
-        rows.append(row("of which the motor did", audit.motor))
+        who = "drag on the coasting drum" if result.passages else "the motor"
+        rows.append(row(f"of which {who} did", audit.motor))
     return table("", ("Energy", "J", "% of the work"), rows)
 
 
@@ -203,6 +222,8 @@ def write_runup_report(result: RunupResult, what: About, figures: Sequence[Figur
     """
     count, low, high = len(result.chambers), float(result.speed[0]) * RPM, float(result.speed.max()) * RPM
     back = " and back" if result.turns_back else ""
+    if result.passages:
+        back = f" and to {number(float(result.speed[-1]) * RPM)} rpm in {len(result.passages)} steps"
     machine = (
         f"A rotor with a {result.axis} axis and {count} chamber{'' if count == 1 else 's'} goes from "
         f"{number(low)} to {number(high)} rpm{back}, {number(float(result.time[-1]))} s in all."
@@ -213,6 +234,7 @@ def write_runup_report(result: RunupResult, what: About, figures: Sequence[Figur
         "doubt": doubt(checks(result)),
         "machine": machine,
         "moments": moments(result),
+        "passages": passages(result),
         "facts": table("", (), facts(result)),
         "energy": energy(result),
         "checks": checks(result),

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from fluid.friction.laws import Friction
 from leblanc.results.base import FilledChamber, Note, Result, attributes, one_line, texts
+from leblanc.results.motion.passages import Passage, falling, pieces
 from leblanc.results.netcdf import NamedArrays, flags, variable
 from leblanc.results.notes.response import plane_words
 from leblanc.results.response import phase
@@ -111,6 +112,8 @@ class RunupResult(Result):
     history_dry : of the same rotor on the same way without liquid; None if it was not run
     bore : what bores leave behind, "none" or "enstrophy"
     spread : over an ensemble of runs that rounding tells apart; None if it was not asked for
+    passages : the steps of a programme that were reached; none of a run-up
+    unbalance_left : sizes of all unbalances over what they were at first, shape (k,); None where none leaves
 
     Examples
     --------
@@ -147,6 +150,8 @@ class RunupResult(Result):
     history_dry: RunupHistory | None = None
     spread: Spread | None = None
     bore: str = "none"
+    passages: tuple[Passage, ...] = ()
+    unbalance_left: Array | None = None
 
     figure = "leblanc.figures.runup:speed_figure"
     summary = "leblanc.text.runup:summary"
@@ -268,8 +273,13 @@ class RunupResult(Result):
 
     @property
     def turns_back(self) -> bool:
-        """The speed falls again."""
-        return self.turning < self.time.size - 1
+        """The speed falls again after it has risen."""
+        return bool(self.falling.any()) and not bool(self.falling[1:].all())
+
+    @property
+    def falling(self) -> Flags:
+        """The speed falls on the way to a sample, shape (k,)."""
+        return falling(self.history, self.passages, self.turning)
 
     @property
     def captures(self) -> tuple[Capture, ...]:
@@ -313,7 +323,7 @@ class RunupResult(Result):
         """The largest amplitude on the way up without liquid; nan if that was not run."""
         if self.history_dry is None:
             return asdict(Moment(math.nan, math.nan, math.nan))
-        return asdict(_crest(self.history_dry, self._way(False)))
+        return asdict(_crest(self.history_dry, self._way(self.history_dry, False)))
 
     @property
     def ensemble(self) -> dict[str, Any] | None:
@@ -332,7 +342,7 @@ class RunupResult(Result):
 
     def crest(self, back: bool = False) -> Moment:
         """Largest amplitude of all steps on the way up, or on the way back, kept or not."""
-        return _crest(self.history, self._way(back))
+        return _crest(self.history, self._way(self.history, back))
 
     def curve(self, back: bool = False, dry: bool = False) -> tuple[Array, Array, Array]:
         """Time, speed and amplitude of the samples on the way up or back, with the largest among them.
@@ -344,36 +354,49 @@ class RunupResult(Result):
 
         Returns
         -------
-        s, rad/s and m, each of shape (p,), in order of time
+        s, rad/s and m, each of shape (p,), in order of time; nan between parts of a programme
         """
-        history, part = self.history_dry if dry else self.history, self._way(back)
-        if history is None or (back and not self.turns_back) or not history.time[part].size:
+        history = self.history_dry if dry else self.history
+        if history is None or (back and not self.turns_back):
             return np.empty(0), np.empty(0), np.empty(0)
-        crest = _crest(history, part)
+        way = self._way(history, back)
+        if not way.any():
+            return np.empty(0), np.empty(0), np.empty(0)
+        crest, gap = _crest(history, way), np.full((3, 1), np.nan)
+        found: list[Array] = []
         # The way back is drawn from where it turns.
-        shown = slice(max(part.start - 1, 0), part.stop)
-        time, speed, amplitude = (getattr(history, name)[shown] for name in ("time", "speed", "amplitude"))
-        if crest.time in time:
-            return time, speed, amplitude
-        place = int(np.searchsorted(time, crest.time))
-        return (
-            np.insert(time, place, crest.time),
-            np.insert(speed, place, crest.speed),
-            np.insert(amplitude, place, crest.amplitude),
-        )
+        for shown in self.pieces(history, back):
+            rows = np.array([history.time[shown], history.speed[shown], history.amplitude[shown]])
+            if rows[0, 0] <= crest.time <= rows[0, -1] and crest.time not in rows[0]:
+                place = int(np.searchsorted(rows[0], crest.time))
+                rows = np.insert(rows, place, (crest.time, crest.speed, crest.amplitude), axis=1)
+            found += [gap, rows] if found else [rows]
+        time, speed, amplitude = np.concatenate(found, axis=1)
+        return time, speed, amplitude
 
     def whole_curve(self, dry: bool = False) -> tuple[Array, Array, Array]:
         """The same on both ways, one after the other."""
-        up, down = self.curve(False, dry), self.curve(True, dry)
-        # They share the sample at which the run turns.
-        time, speed, amplitude = (np.concatenate((a, b[1:])) for a, b in zip(up, down, strict=True))
+        ways = np.concatenate((self.curve(False, dry), self.curve(True, dry)), axis=1)
+        # They share the samples at which the run turns.
+        _, first = np.unique(ways[0], return_index=True)
+        time, speed, amplitude = ways[:, first[~np.isnan(ways[0, first])]]
         return time, speed, amplitude
 
-    def _way(self, back: bool) -> slice:
-        """Samples of the way up, or of the way back."""
-        if back and self.turns_back:
-            return slice(self.turning + 1, self.time.size)
-        return slice(0, self.turning + 1)
+    def pieces(self, history: RunupHistory, back: bool) -> list[slice]:
+        """Parts of the way up or of the way back, each from where it turns.
+
+        Parameters
+        ----------
+        history : with liquid or without
+        back : on the way back
+        """
+        return pieces(self._way(history, back))
+
+    def _way(self, history: RunupHistory, back: bool) -> Flags:
+        """Which samples are of the way up, or of the way back; all of a run that only falls or only rises."""
+        if not self.turns_back:
+            return np.ones(history.time.size, dtype=bool)
+        return np.asarray(falling(history, self.passages, self.turning) == back)
 
     def moment(self, index: int) -> Moment:
         """Amplitude, speed and time of one sample."""
@@ -393,17 +416,23 @@ class RunupResult(Result):
         rest = ("error_estimate", "converged", "reason", "steps", "cells", "model", "model_reason")
         own = ("model_error", "name", "digest", "assumed", "bands", *(("ensemble",) if self.spread else ()))
         return {name: getattr(self, name) for name in (*over, *rest, *own)} | {
+            **({"passages": [asdict(passage) for passage in self.passages]} if self.passages else {}),
+            **({} if self.unbalance_left is None else {"unbalance_left": self.unbalance_left}),
             "energy": self._energy(),
             "notes": texts(self.notes),
         }
 
     def _dry(self, name: str) -> Array:
         """What the run without liquid had at the times of the run, nan where it had not come so far."""
-        found = np.full(self.time.shape, np.nan)
-        if self.history_dry is not None:
-            known = getattr(self.history_dry, name)[: found.size]
-            found[: known.size] = known
-        return found
+        found, dry = np.full(self.time.shape, np.nan), self.history_dry
+        if dry is None:
+            return found
+        known = getattr(dry, name)
+        if not self.passages:
+            found[: known.size] = known[: found.size]
+            return found
+        # A drum without liquid coasts for another time: it has corners of its own.
+        return np.asarray(np.interp(self.time, dry.time, known, right=np.nan))
 
     def _energy(self) -> dict[str, float]:
         """Terms of the balance, J, what it leaves, and that over the work."""
@@ -449,7 +478,7 @@ class RunupResult(Result):
         return attributes(self, "runup", own, self.notes)
 
 
-def _crest(history: RunupHistory, part: slice) -> Moment:
+def _crest(history: RunupHistory, part: Flags) -> Moment:
     """Largest amplitude of the steps that lead to some of the samples."""
     amplitude, speed, time = history.largest[part], history.largest_speed[part], history.largest_time[part]
     k = int(np.argmax(amplitude))
@@ -486,6 +515,9 @@ def _columns(result: RunupResult) -> dict[str, Any]:
         "mean_rotation": each(h.mean_rotation, "rad s-1", "mean rotation of the liquid in the drum"),
         "layer_mass": variable(("chamber",), h.layer_mass, "kg", "mass of the liquid"),
     }
+    if result.unbalance_left is not None:
+        words = "sizes of all unbalances over what they were at first"
+        columns["unbalance_left"] = variable(over, result.unbalance_left, "1", words)
     if result.spread is not None:
         for part in ("min", "max", "median"):
             name, words = f"amplitude_{part}", f"amplitude, {part} over runs that rounding tells apart"

@@ -65,6 +65,7 @@ def inputs_of(scene: Scene, optimise: Optimisation | None = None) -> SceneInputs
         row("Gravity", f"{number(scene.gravity)} m/s²", "gravity"),
         *_study(scene),
         *(() if scene.runup is None else _runup(scene.runup)),
+        *(() if scene.programme is None else scene.programme.rows()),
     ]
     marked = [
         Row(entry.label, tuple(value.marked(scene.assumed) for value in entry.values)) for entry in rows
@@ -108,9 +109,11 @@ def runup_rows(scene: Scene, cells: int, dispersion: bool) -> tuple[tuple[str, s
     cells : of each layer, in place of the scene's
     dispersion : in place of the scene's
     """
-    assert scene.runup is not None
-    taken = scene.altered(runup=scene.runup.altered(cells=cells, dispersion=dispersion))
-    return input_rows(taken, ("rotor", "runup", "model.friction", "chambers"))
+    assert scene.speed_plan is not None
+    plan, name = scene.speed_plan.altered(cells=cells, dispersion=dispersion), "runup"
+    if scene.programme is not None:
+        name = "programme"
+    return input_rows(scene.altered(**{name: plan}), ("rotor", name, "model.friction", "chambers"))
 
 
 def _chambers(scene: Scene) -> Iterator[RowTable]:

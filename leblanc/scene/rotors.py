@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import Field, PlainValidator
 
 from leblanc import units
-from leblanc.scene.rows import Row, RowTable, Value, degrees, mm, row, three, unbalance
+from leblanc.scene.loads import Load, PlaneUnbalance, Sheds, unbalance_table
+from leblanc.scene.rows import Row, RowTable, Value, mm, row, three, unbalance
 from leblanc.scene.schema.part import Conflict, Part
 from leblanc.scene.schema.rules import (
     DAMPING,
@@ -36,7 +37,7 @@ from leblanc.scene.schema.rules import (
     quantity,
     whole,
 )
-from leblanc.units import MASS, MM, UNBALANCE, in_rpm, number, unit_for, with_unit
+from leblanc.units import MASS, MM, in_rpm, number, with_unit
 
 if TYPE_CHECKING:
     from solvers.rotor.exciter.machine import Exciter as ExciterMachine
@@ -51,6 +52,12 @@ _Three = tuple[float, float, float]
 
 _AXIS = "horizontal: gravity lies across the axis; vertical: along it"
 _WITHOUT = "of the rotor without the liquid"
+_SHEDS = "part of the unbalance that leaves while the drum turns fast; none if left out"
+
+
+def _sheds(sheds: Sheds | None) -> list[Row]:
+    """What leaves of the unbalance."""
+    return [] if sheds is None else [row("Of it leaves", sheds.words(), "rotor.sheds")]
 
 
 def _kind(rotor: AnyRotor) -> Row:
@@ -89,6 +96,7 @@ class JeffcottRotor(Part):
     )
     unbalance: Unbalance = Field(description="mass times its distance from the axis, m e")
     axis: Axis = Field(description=_AXIS)
+    sheds: Sheds | None = Field(None, description=_SHEDS)
 
     @cached_property
     def _machine(self) -> Jeffcott:
@@ -120,6 +128,7 @@ class JeffcottRotor(Part):
             row("Damping ratio", ratio, "rotor.damping_ratio", "rotor.damping"),
             row("Damping", damping, "rotor.damping", "rotor.damping_ratio"),
             row("Unbalance", unbalance(self.unbalance), "rotor.unbalance"),
+            *_sheds(self.sheds),
         ]
 
     def tables(self) -> list[RowTable]:
@@ -135,16 +144,6 @@ class Support(Part):
         description="the same in all directions across the axis"
     )
     damping: Damping = Field(description="likewise")
-
-
-class PlaneUnbalance(Part):
-    """An unbalance in one plane across the axis."""
-
-    position: Position = Field(description="of the plane, along the axis from the rotor's centre of mass")
-    size: Unbalance = Field(description="mass times its distance from the axis")
-    angle: Annotated[float, quantity(units.ANGLE, -1e3, 1e3)] = Field(
-        0.0, description="fixed in the rotor, positive with the spin"
-    )
 
 
 class TwoPlaneRotor(Part):
@@ -234,19 +233,9 @@ class TwoPlaneRotor(Part):
             )
             for k, support in enumerate(self.supports)
         )
-        unit = unit_for(UNBALANCE, *(part.size for part in self.unbalances))
-        unbalances = tuple(
-            (
-                Value(f"{k + 1}"),
-                Value(number(part.position * MM), (f"rotor.unbalances.{k}.position",)),
-                Value(unit.number(part.size), (f"rotor.unbalances.{k}.size",)),
-                Value(degrees(part.angle), (f"rotor.unbalances.{k}.angle",)),
-            )
-            for k, part in enumerate(self.unbalances)
-        )
         found = [RowTable(("Support", "at (mm)", "stiffness (N/m)", "damping (N s/m)"), supports)]
-        if unbalances:
-            found.append(RowTable(("Unbalance", "at (mm)", f"size ({unit.name})", "angle (deg)"), unbalances))
+        if self.unbalances:
+            found.append(unbalance_table("Unbalance", "rotor.unbalances", self.unbalances))
         return found
 
 
@@ -347,9 +336,15 @@ class TubRotor(Part):
     drum_polar_inertia: Inertia = Field(description="of the drum about its axis")
     drum_transverse_inertia: Inertia = Field(description="of the drum across its axis, about its own centre")
     drum_position: Place = Field((0.0, 0.0, 0.0), description="of the drum's centre, x, y, z")
-    unbalance: Unbalance = Field(description="of the laundry, mass times its distance from the axis")
+    unbalance: Unbalance = Field(
+        0.0, description="of the laundry, mass times its distance from the axis; or loads, or both"
+    )
     unbalance_position: Annotated[float | None, POSITION] = Field(
         None, description="y of the unbalance; that of the drum's centre if left out"
+    )
+    sheds: Sheds | None = Field(None, description=_SHEDS)
+    loads: Annotated[tuple[Load, ...], entries(0, MAX_PARTS, "tables headed [[rotor.loads]]")] = Field(
+        (), description="laundry spread over the drum's length, one table each"
     )
     springs: Annotated[tuple[Spring, ...], entries(1, MAX_PARTS, "tables headed [[rotor.springs]]")] = Field(
         description="between the tub and the ground, one table each"
@@ -359,9 +354,22 @@ class TubRotor(Part):
     )
     axis: Axis = Field("horizontal", description=_AXIS)
 
+    @classmethod
+    def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """There is an unbalance, in one place or in several."""
+        if "unbalance" not in given and "loads" not in given:
+            text = 'given: an unbalance such as "0.6 kg*mm" (a plain number is in kg*m)'
+            yield Conflict(("unbalance",), f"{text}, or tables headed [[rotor.loads]]")
+
+    @property
+    def has_own_unbalance(self) -> bool:
+        """Not all of the laundry is in its loads."""
+        return "unbalance" in self.model_fields_set or not self.loads
+
     @cached_property
     def _machine(self) -> Tub:
         from solvers.rotor.tub import Tub
+        from solvers.rotor.two_plane import PlaneUnbalance as Turning
 
         return Tub(
             tub_mass=self.tub_mass,
@@ -372,6 +380,7 @@ class TubRotor(Part):
             drum_position=self.drum_position,
             unbalance=self.unbalance,
             unbalance_position=self.unbalance_position,
+            loads=tuple(Turning(load.position, load.size, load.angle) for load in self.loads),
             springs=tuple(spring.mount() for spring in self.springs),
             dampers=tuple(damper.mount() for damper in self.dampers),
         )
@@ -392,12 +401,18 @@ class TubRotor(Part):
             row("Drum inertia about its axis", f"{about} kg m²", "rotor.drum_polar_inertia"),
             row("Drum inertia across it", f"{across} kg m²", "rotor.drum_transverse_inertia"),
             row("Drum's centre", f"({three(self.drum_position, MM)}) mm", "rotor.drum_position"),
-            row("Unbalance", unbalance(self.unbalance), "rotor.unbalance"),
-            row("Unbalance at y", mm(heavy), "rotor.unbalance_position"),
+            *(
+                [
+                    row("Unbalance", unbalance(self.unbalance), "rotor.unbalance"),
+                    row("Unbalance at y", mm(heavy), "rotor.unbalance_position"),
+                    *_sheds(self.sheds),
+                ]
+                * self.has_own_unbalance
+            ),
         ]
 
     def tables(self) -> list[RowTable]:
-        """Its springs and dampers, for readers."""
+        """Its springs, dampers and loads, for readers."""
         mounts: tuple[tuple[str, str, Sequence[_Mounted]], ...] = (
             ("Spring", "N/m", self.springs),
             ("Damper", "N s/m", self.dampers),
@@ -411,6 +426,8 @@ class TubRotor(Part):
             if lines:
                 head = (name, "at x, y, z (mm)", f"{parts[0].COEFFICIENT} ({unit})", "direction")
                 found.append(RowTable(head, lines))
+        if self.loads:
+            found.append(unbalance_table("Load", "rotor.loads", self.loads))
         return found
 
 
@@ -512,6 +529,18 @@ class Exciter(Part):
 AnyRotor = JeffcottRotor | TwoPlaneRotor | TubRotor | Exciter
 
 
+def polar_inertia_of(rotor: AnyRotor) -> float | None:
+    """Moment of inertia about the axis of what spins, without the liquid, kg m^2; None where it is not told.
+
+    Parameters
+    ----------
+    rotor : of a scene
+    """
+    if isinstance(rotor, TubRotor):
+        return rotor.drum_polar_inertia
+    return rotor.polar_inertia if isinstance(rotor, TwoPlaneRotor) else None
+
+
 def unbalances_of(rotor: AnyRotor) -> tuple[float, ...]:
     """Size of each unbalance of a rotor, kg m.
 
@@ -521,7 +550,24 @@ def unbalances_of(rotor: AnyRotor) -> tuple[float, ...]:
     """
     if isinstance(rotor, TwoPlaneRotor):
         return tuple(part.size for part in rotor.unbalances)
-    return (rotor.unbalance,)
+    own = (rotor.unbalance,)
+    if isinstance(rotor, TubRotor):
+        return own * rotor.has_own_unbalance + tuple(load.size for load in rotor.loads)
+    return own
+
+
+def sheds_of(rotor: AnyRotor) -> tuple[Sheds | None, ...]:
+    """What leaves of each unbalance of a rotor, in the order of `unbalances_of`.
+
+    Parameters
+    ----------
+    rotor : of a scene
+    """
+    if isinstance(rotor, TwoPlaneRotor):
+        return tuple(part.sheds for part in rotor.unbalances)
+    if isinstance(rotor, TubRotor):
+        return (rotor.sheds,) * rotor.has_own_unbalance + tuple(load.sheds for load in rotor.loads)
+    return (rotor.sheds if isinstance(rotor, JeffcottRotor) else None,)
 
 
 def with_unbalances(rotor: AnyRotor, sizes: Sequence[float]) -> AnyRotor:
@@ -535,5 +581,10 @@ def with_unbalances(rotor: AnyRotor, sizes: Sequence[float]) -> AnyRotor:
     if isinstance(rotor, TwoPlaneRotor):
         parts = zip(rotor.unbalances, sizes, strict=True)
         return rotor.altered(unbalances=tuple(part.altered(size=size) for part, size in parts))
+    if isinstance(rotor, TubRotor) and rotor.loads:
+        first = int(rotor.has_own_unbalance)
+        pairs = zip(rotor.loads, sizes[first:], strict=True)
+        loads = tuple(load.altered(size=size) for load, size in pairs)
+        return rotor.altered(loads=loads, **({"unbalance": sizes[0]} if first else {}))
     (size,) = sizes
     return rotor.altered(unbalance=size)

@@ -16,7 +16,8 @@ from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
 from leblanc import units
 from leblanc.scene.chambers import Chamber
-from leblanc.scene.rotors import AnyRotor
+from leblanc.scene.programme.table import Programme as Programme
+from leblanc.scene.rotors import AnyRotor, polar_inertia_of, sheds_of
 from leblanc.scene.rotors import Exciter as Exciter  # what a scene's rotor may be
 from leblanc.scene.rotors import JeffcottRotor as JeffcottRotor
 from leblanc.scene.rotors import TubRotor as TubRotor
@@ -178,16 +179,27 @@ class Scene(Part):
     speeds: Speeds = Field(description="at which the machine is studied")
     model: Model = Field(Model(), description="of the liquid")
     runup: Runup | None = Field(None, description="run-up for `leblanc runup`")
+    programme: Programme | None = Field(
+        None, description="spin programme for `leblanc runup`, in place of a run-up"
+    )
     optimise: Optimisation | None = Field(
         None, description="what the liquid is chosen for by `leblanc optimise`"
     )
 
     @classmethod
     def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
-        """A planar rotor has liquid, and what is assumed stands in the file."""
+        """A planar rotor has liquid, one table drives it, and what is assumed stands in the file."""
         if values.get("chambers") == () and _kind(given.get("rotor")) in (None, "jeffcott"):
             missing = "chambers" not in given
             yield Conflict(("chambers",), f"{'given: ' if missing else ''}{_SOME_CHAMBERS.allowed}")
+        programme, rotor = values.get("programme"), values.get("rotor")
+        if programme is not None:
+            if given.get("runup") is not None:
+                yield Conflict(("runup",), "left out where [programme] is given, which takes its place")
+            told = programme.inertia is not None or rotor is None or polar_inertia_of(rotor)
+            if programme.coasts and not told:
+                text = "given where a step coasts and the rotor has no moment of inertia about its axis"
+                yield Conflict(("programme", "inertia"), text)
         for number, path in enumerate(values.get("assumed", ())):
             if not _holds(given, path):
                 text = "the path of a value that stands in this file, such as "
@@ -197,6 +209,11 @@ class Scene(Part):
     def fills(self) -> tuple[Fill, ...]:
         """The chambers with their liquids, as the solvers take them."""
         return tuple(chamber.fill() for chamber in self.chambers)
+
+    @property
+    def speed_plan(self) -> Runup | Programme | None:
+        """What takes the machine through its speeds in time: its run-up or its programme."""
+        return self.runup if self.programme is None else self.programme
 
     def speed_array(self) -> NDArray[np.float64]:
         """Spin speeds, rad/s, shape (count,)."""
@@ -243,7 +260,7 @@ class Scene(Part):
             "source": self.source,
             "assumed": self.assumed,
             "gravity": self.gravity,
-            "rotor": rotor_content(self.rotor),
+            "rotor": rotor_content(self.rotor) | _leaving(self.rotor),
             "chambers": [chamber_content(fill) for fill in self.fills],
             "speeds": self.speeds.model_dump(),
             "model": {
@@ -254,6 +271,8 @@ class Scene(Part):
             "runup": None if self.runup is None else runup_content(self.runup),
         }
         # Results on disk are known by it: a scene without a part that came later keeps the one it had.
+        if self.programme is not None:
+            content["programme"] = self.programme.content()
         if self.optimise is not None:
             content["optimise"] = optimise_content(self.optimise)
         return fingerprint(content)
@@ -412,7 +431,16 @@ def rotor_content(rotor: AnyRotor) -> dict[str, Any]:
         balls = rotor.balls.model_dump()
         balls |= {"kind": rotor.balls.name, "pendulum_inertia": rotor.balls.pendulum_inertia or 0.0}
         return rotor.model_dump(exclude={"balls"}) | {"balls": balls}
-    return {"kind": rotor.kind, "machine": asdict(rotor.machine()), "axis": rotor.axis}
+    machine = asdict(rotor.machine())
+    if not machine.get("loads", True):
+        del machine["loads"]
+    return {"kind": rotor.kind, "machine": machine, "axis": rotor.axis}
+
+
+def _leaving(rotor: AnyRotor) -> dict[str, Any]:
+    """What leaves of its unbalances; nothing where nothing does."""
+    sheds = [None if part is None else part.model_dump() for part in sheds_of(rotor)]
+    return {"sheds": sheds} if any(part is not None for part in sheds) else {}
 
 
 def chamber_content(fill: Fill) -> dict[str, Any]:

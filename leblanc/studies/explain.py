@@ -149,7 +149,7 @@ def _walls(fill: Fill) -> str:
 
 
 def _runup(scene: Scene) -> str:
-    if scene.runup is None:
+    if scene.speed_plan is None:
         return ""
     from leblanc.studies.runup import runup_outlook
 

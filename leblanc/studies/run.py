@@ -17,6 +17,7 @@ from leblanc.results.motion.tilting import Motion, RestMode
 from leblanc.results.notes import response as notes
 from leblanc.results.response import RunResult
 from leblanc.scene.inputs import input_rows
+from leblanc.scene.rotors import sheds_of
 from leblanc.scene.scene import Scene, TubRotor
 from leblanc.studies.held.holding import HERE, Began, Holding
 from leblanc.studies.models.choose import (
@@ -318,6 +319,8 @@ def _notes(
     """Limits of validity and findings."""
     cost = held_cost(machine, choice, whirl.growth)
     found = [notes.liquid_models(choice), notes.tolerance_missed(choice, machine.speed, cost)]
+    if any(sheds is not None for sheds in sheds_of(machine.scene.rotor)):
+        found.append(notes.unbalance_leaves())
     if choice.captured_from is not None:
         found.append(notes.not_carried(choice.captured_from))
     found.append(notes.one_family(answer))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,11 +14,14 @@ from fluid.pool import balance_speed, pool_of
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
 from leblanc.results.base import FilledChamber, Note, percent
+from leblanc.results.motion.passages import Passage, passages_of
 from leblanc.results.notes import runup as notes
 from leblanc.results.notes.runup import RunupCode
 from leblanc.results.runup import Bands, RunupFrames, RunupResult
 from leblanc.scene.inputs import runup_rows
-from leblanc.scene.scene import JeffcottRotor, Runup, Scene, dry_rotor, jeffcott, require_clear
+from leblanc.scene.programme.steps import Step
+from leblanc.scene.rotors import AnyRotor, polar_inertia_of, sheds_of, unbalances_of, with_unbalances
+from leblanc.scene.scene import JeffcottRotor, Programme, Runup, Scene, dry_rotor, jeffcott, require_clear
 from leblanc.studies.models.choose import across_gravity as across_gravity  # of a run-up, asked for with it
 from leblanc.studies.models.choose import axial_gravity, is_cut, prepare
 from leblanc.studies.models.liquid import RUNUP_MODELS, runup_model
@@ -28,6 +31,8 @@ from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.layer.records import Outcome
 from solvers.liquid_model import LONG
+from solvers.rotor.system import RotorSystem, Shed
+from solvers.runup import programme
 from solvers.runup.ensemble import EnsembleTask, Member, Spread, member_of, run_member, spread_over
 from solvers.runup.ensemble import ensemble as made_ensemble
 from solvers.runup.machine import Drive, Handover, Motor, Ramp
@@ -214,7 +219,7 @@ def chosen_run(
     InputError : the scene names a model that does not go through time
     """
     model, tolerance = liquid_model(scene), scene.model.tolerance
-    system, friction = dry_rotor(scene).system(), scene.model.friction
+    system, friction = rotor_in_time(scene), scene.model.friction
 
     def run(name: str, resolved: RunupNumerics, report: Progress) -> RunupHistory:
         model = runup_model(name)
@@ -245,7 +250,7 @@ def chosen_run(
 def runup_outlook(scene: Scene) -> str:
     """Which liquid model the run-up of a scene will take, as far as that is known before, in words."""
     liquid, tolerance = scene.model.liquid, scene.model.tolerance
-    if scene.runup is None:
+    if scene.speed_plan is None:
         return ""
     if liquid not in ("auto", *RUNUP_MODELS):
         return f"none: {liquid} does not go through time; ask for auto, long_wave or linear"
@@ -264,6 +269,8 @@ def _ruled_out(scene: Scene) -> str:
     """Why linear layers are not tried, or nothing."""
     if scene.runup is not None and scene.runup.motor is not None:
         return "a motor feels the torque of the waves, which linear layers leave out"
+    if scene.programme is not None and scene.programme.coasts:
+        return "a coasting drum feels the torque of the waves, which linear layers leave out"
     if scene.model.friction.law == "quadratic":
         return "linear layers do not feel quadratic friction"
     if largest_wave(scene.model.tolerance) == 0.0:
@@ -321,7 +328,7 @@ def runup_scene(
         require_frames(frames)
         require_layers(scene)
     numerics = numerics_of(plan, cells, samples, check)
-    drive, gravity = drive_of(plan), across_gravity(scene)
+    drive, gravity = drive_of(plan, scene.rotor), across_gravity(scene)
     times = () if frames is None else np.linspace(0.0, float(drive.corners()[0, -1]), frames)
     share = 1.0 / (1.0 + 0.8 * ensemble / workers)
     first = None if progress is None else lambda part: progress(share * part)
@@ -333,6 +340,8 @@ def runup_scene(
     dry = dry_run(scene, history, drive, gravity, numerics)
     steady, bands = steady_response(scene, history.speed), whirl_bands(scene, history.speed)
     in_range, limits = judged(scene, history, taken.model)
+    steps = () if scene.programme is None else tuple(step.words() for step in scene.programme.steps)
+    passages, left = passages_of(history, dry, steps), unbalance_left(scene, history)
     fastest = np.flatnonzero(history.speed == history.speed.max())
     return RunupResult(
         name=scene.name,
@@ -350,18 +359,87 @@ def runup_scene(
         cells=numerics.cells,
         dispersion=numerics.dispersion,
         history=history,
-        turning=int(fastest[-1]) if plan.back else history.time.size - 1,
+        turning=int(fastest[-1]) if isinstance(plan, Runup) and plan.back else history.time.size - 1,
         in_range=in_range,
         steady=steady,
         bands=bands,
         chambers=tuple(_chamber(fill) for fill in scene.fills),
         planes=tuple(fill.chamber.plane for fill in scene.fills),
-        notes=(*_notes(scene, taken, steady, bands, spread), *limits, *doubts(scene)),
+        notes=(
+            *_notes(scene, taken, steady, bands, spread),
+            *programme_notes(scene, history, drive, passages),
+            *([] if left is None else [notes.unbalance_left(float(left[-1]))]),
+            *limits,
+            *doubts(scene),
+        ),
         frames=runup_frames(history),
         history_dry=dry,
         spread=spread,
         bore=plan.bore,
+        passages=passages,
+        unbalance_left=left,
     )
+
+
+def unbalance_left(scene: Scene, history: RunupHistory) -> Array | None:
+    """Sizes of all unbalances over what they were at first, shape (k,); None where none of them leaves.
+
+    Parameters
+    ----------
+    scene : the machine
+    history : of its run-up
+    """
+    sizes = unbalances_of(scene.rotor)
+    pairs = zip(sizes, sheds_of(scene.rotor), strict=True)
+    leaving = np.array([size * sheds.share for size, sheds in pairs if sheds is not None])
+    if history.left is None or not leaving.size or not sum(sizes) > 0.0:
+        return None
+    return np.asarray(1.0 - (1.0 - history.left) @ leaving / sum(sizes))
+
+
+def programme_notes(
+    scene: Scene, history: RunupHistory, drive: Drive, passages: Sequence[Passage]
+) -> tuple[Note, ...]:
+    """What was assumed of a spin programme, and which of its steps did not come to their speeds.
+
+    Parameters
+    ----------
+    scene : the machine
+    history : of its programme
+    drive : that it is
+    passages : steps that were reached
+    """
+    plan = scene.programme
+    if plan is None or not isinstance(drive, programme.Programme):
+        return ()
+    stands = plan.start < drive.floor or bool((history.speed <= drive.floor * (1.0 + 1e-3)).any())
+    found = [notes.standing(drive.floor)] if stands else []
+    if plan.coasts and drive.drag_torque == 0.0 and drive.drag_rate == 0.0:
+        found.append(notes.without_drag())
+    for passage in passages:
+        step, stage = plan.steps[passage.step - 1], drive.stages[passage.step - 1]
+        if step.kind != "coast" or step.speed is None or passage.end - passage.begin < plan.coast_limit:
+            continue
+        stop = drive.target(stage, passage.speed_begin)
+        found.append(notes.coast_not_ended(passage.step, stop, passage.speed_end, plan.coast_limit))
+    return tuple(found)
+
+
+def rotor_in_time(scene: Scene) -> RotorSystem:
+    """The dry rotor of a scene with what leaves of its unbalances.
+
+    Parameters
+    ----------
+    scene : the machine
+    """
+    system, sizes, found = dry_rotor(scene).system(), unbalances_of(scene.rotor), []
+    for k, sheds in enumerate(sheds_of(scene.rotor)):
+        if sheds is None:
+            continue
+        alone = [sheds.share * size * (j == k) for j, size in enumerate(sizes)]
+        part = scene.altered(rotor=with_unbalances(scene.rotor, alone))
+        found.append(Shed(dry_rotor(part).system().unbalance, sheds.time_constant, sheds.above))
+    return replace(system, sheds=tuple(found)) if found else system
 
 
 def ensemble_tasks(
@@ -381,7 +459,7 @@ def ensemble_tasks(
     """
     if count == 0:
         return []
-    system, friction, model = dry_rotor(scene).system(), scene.model.friction, runup_model("long_wave")
+    system, friction, model = rotor_in_time(scene), scene.model.friction, runup_model("long_wave")
     return made_ensemble(system, scene.fills, drive, friction, gravity, numerics, model, count, seed)
 
 
@@ -445,7 +523,7 @@ def dry_run(
     # Without liquid both models step the rotor alike; this one is the quicker.
     empty, model = [replace(fill, volume=0.0) for fill in scene.fills], runup_model("linear")
     alone = replace(numerics, companion=False)
-    return run_up(dry_rotor(scene).system(), empty, drive, scene.model.friction, gravity, alone, None, model)
+    return run_up(rotor_in_time(scene), empty, drive, scene.model.friction, gravity, alone, None, model)
 
 
 def _notes(
@@ -477,24 +555,40 @@ def _never_caught(scene: Scene, history: RunupHistory) -> Iterator[Note]:
         yield notes.not_carried(k, top, balance_speed(fill, pool, scene.model.friction, gravity))
 
 
-def planned(scene: Scene) -> Runup:
-    """The run-up of a scene.
+def planned(scene: Scene) -> Runup | Programme:
+    """The run-up or the programme of a scene.
 
     Raises
     ------
     InputError : it has none
     """
-    if scene.runup is None:
+    if scene.speed_plan is None:
         allowed = (
             "a table [runup] in the scene with start, stop, duration, and rate or motor; "
             "what `leblanc new` writes has one, commented out"
         )
         raise InputError("runup", "missing", allowed)
-    return scene.runup
+    return scene.speed_plan
 
 
-def drive_of(plan: Runup) -> Drive:
-    """Ramp or motor of a run-up."""
+def drive_of(plan: Runup | Programme, rotor: AnyRotor | None = None) -> Drive:
+    """Ramp or motor of a run-up, or the stages of a programme.
+
+    Parameters
+    ----------
+    plan : of a scene
+    rotor : of the scene, whose moment of inertia a coasting drum has where the programme names none
+    """
+    if isinstance(plan, Programme):
+        own = None if rotor is None else polar_inertia_of(rotor)
+        inertia = own or None if plan.inertia is None else plan.inertia
+        return programme.Programme(
+            plan.start,
+            tuple(_stage(step, plan.coast_limit) for step in plan.steps),
+            inertia,
+            plan.drag_torque,
+            plan.drag_rate,
+        )
     if plan.motor is not None:
         motor = plan.motor
         return Motor(plan.start, motor.inertia, motor.speeds, motor.torques, plan.duration)
@@ -503,8 +597,14 @@ def drive_of(plan: Runup) -> Drive:
     return Ramp(plan.start, plan.stop, plan.rate, plan.duration, plan.back)
 
 
+def _stage(step: Step, limit: float) -> programme.Stage:
+    """A step of a programme as the solvers take it; a coast to a speed lasts no longer than a limit, s."""
+    free = step.kind == "coast"
+    return programme.Stage(step.speed, step.rate, limit if free and step.time is None else step.time, free)
+
+
 def numerics_of(
-    plan: Runup, cells: int | None = None, samples: int | None = None, check: bool = True
+    plan: Runup | Programme, cells: int | None = None, samples: int | None = None, check: bool = True
 ) -> RunupNumerics:
     """Resolution of a run-up; the scene's where nothing else is given."""
     return RunupNumerics(

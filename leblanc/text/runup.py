@@ -88,6 +88,24 @@ def answer_rows(result: RunupResult) -> list[tuple[str, str]]:
     return rows
 
 
+def passage_rows(result: RunupResult) -> list[tuple[str, str]]:
+    """The largest amplitude of each step of a programme: label and value; none of a run-up.
+
+    Parameters
+    ----------
+    result : the run-up
+    """
+    rows = []
+    for passage in result.passages:
+        moment = Moment(passage.amplitude, passage.speed, passage.time)
+        bare = ""
+        if not math.isnan(passage.amplitude_dry) and result.layer_mass.sum() > 0.0:
+            bare = f", without liquid {with_unit(passage.amplitude_dry, LENGTH)}"
+        text = f"{_amplitude(result, moment)}{bare}; ends after {with_unit(passage.end, TIME)}"
+        rows.append((f"Step {passage.step}, {passage.text}", text))
+    return rows
+
+
 def rounding(result: RunupResult) -> str:
     """What rounding alone does to the largest amplitude and to that at one time, in words; or nothing."""
     spread = result.spread
@@ -130,6 +148,7 @@ def summary(result: RunupResult) -> list[tuple[str, str]]:
     return [
         *plane,
         *answer_rows(result),
+        *passage_rows(result),
         ("Liquid model", describe_model(result.model, result.cells, result.dispersion, result.bore)),
         ("End", result.reason or "it came to its end"),
     ]

@@ -56,6 +56,22 @@ def cage_speed(
 
 
 @dataclass(frozen=True)
+class Shed:
+    """A part of the unbalance that leaves with time, as water from laundry [theory: coupling, eq. 15].
+
+    Parameters
+    ----------
+    unbalance : that leaves in the end, complex, shape (n,)
+    time_constant : s
+    above : spin speed from which it leaves, rad/s
+    """
+
+    unbalance: Complex
+    time_constant: float
+    above: float
+
+
+@dataclass(frozen=True)
 class RotorSystem:
     """M q'' + (C + Omega G) q' + K q = Re[(Omega^2 - i Omega') U e^{i phi}] [theory: rotor, eq. 15].
 
@@ -70,6 +86,7 @@ class RotorSystem:
     unbalance : U; what turns with the rotor acts with the force Omega^2 Re(U e^{i phi}), complex, shape (n,)
     centre : in-plane displacement of the spin axis at position 0 for unit coordinates, shape (2, n)
     lean : its change with the position along the axis, 1/m times `centre`, shape (2, n)
+    sheds : parts of the unbalance that leave in a run-up; whatever stands still has all of it
 
     Raises
     ------
@@ -84,6 +101,7 @@ class RotorSystem:
     unbalance: Complex
     centre: Array
     lean: Array
+    sheds: tuple[Shed, ...] = ()
 
     def __post_init__(self) -> None:
         n = len(self.coordinates)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import dataclass
 
@@ -10,6 +11,7 @@ import numpy as np
 from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.rotor.system import RotorSystem
+from solvers.rotor.two_plane import PlaneUnbalance
 
 Vector = tuple[float, float, float]
 
@@ -73,6 +75,7 @@ class Tub:
     unbalance : of the laundry, mass times its distance from the drum's axis, kg m
     drum_position : centre of the drum (x_D, y_D, z_D), m; its axis runs through it along y
     unbalance_position : y of the unbalance, m; that of the drum's centre if None
+    loads : further unbalances, their positions along y
 
     Raises
     ------
@@ -90,6 +93,7 @@ class Tub:
     unbalance: float
     drum_position: Vector = (0.0, 0.0, 0.0)
     unbalance_position: float | None = None
+    loads: tuple[PlaneUnbalance, ...] = ()
 
     def __post_init__(self) -> None:
         require_positive("tub_mass", self.tub_mass)
@@ -117,14 +121,18 @@ class Tub:
         centre, unit = (displacement((x, position, z))[[2, 0]] for position in (0.0, 1.0))
         lean = unit - centre
         heavy = y if self.unbalance_position is None else self.unbalance_position
-        none = np.zeros((6, 6))
+        none, turning = np.zeros((6, 6)), np.array([1.0, -1j])
+        unbalance = self.unbalance * (centre + heavy * lean).T @ turning
+        for load in self.loads:
+            size = load.size * cmath.exp(1j * load.angle)
+            unbalance = unbalance + size * (centre + load.position * lean).T @ turning
         return RotorSystem(
             coordinates=("x", "y", "z", "alpha", "beta", "gamma"),
             mass=inertia,
             damping=sum((damper.matrix() for damper in self.dampers), none),
             gyroscopic=gyroscopic,
             stiffness=sum((spring.matrix() for spring in self.springs), none),
-            unbalance=self.unbalance * (centre + heavy * lean).T @ np.array([1.0, -1j]),
+            unbalance=unbalance,
             centre=centre,
             lean=lean,
         )

@@ -103,6 +103,10 @@ class Coupled(CoupledRotor):
         self.machine = self.machine._replace(curve=curve)
         self.shaft.inertia = inertia
 
+    def load(self, unbalance: Complex) -> None:
+        """Set the unbalance from here on, kg m and kg m^2, shape (n,)."""
+        self.machine.unbalance[:] = unbalance
+
     def advance(self, stop: float, rate: float, courant: float, most: int) -> Outcome:
         """Advance to a time while the spin changes at a rate, in at most so many steps."""
         from solvers.runup.kernel import advance

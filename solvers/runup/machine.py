@@ -1,6 +1,7 @@
 """What turns the rotor in a run-up, and what a run-up asks of a liquid model.
 
-The speed over time is given, or follows from a motor with its torque curve. A liquid model is a function
+The speed over time is given, follows from a motor with its torque curve, or does both in turn in a
+programme. A liquid model is a function
 that makes a rotor with its liquid at one moment; `solvers.runup.runup.run_up` drives any such machine
 through time.
 """
@@ -21,6 +22,7 @@ from meshes.arrays import Array, Complex, Flags, Index
 from meshes.errors import InputError, require_positive
 from solvers.layer.records import Outcome
 from solvers.rotor.system import RotorSystem
+from solvers.runup.programme import Programme
 
 
 @dataclass(frozen=True)
@@ -100,14 +102,7 @@ class Motor:
         return np.array([[0.0, self.duration], [self.start, self.start]])
 
 
-Drive = Ramp | Motor
-
-
-def torque_curve(drive: Drive) -> Array:
-    """Speeds and torques of a motor, shape (2, k); k = 0 for a ramp."""
-    if isinstance(drive, Ramp):
-        return np.zeros((2, 0))
-    return np.array([drive.speeds, drive.torques], dtype=float)
+Drive = Ramp | Motor | Programme
 
 
 class Handover(StrEnum):
@@ -227,6 +222,9 @@ class RunupMachine(Protocol):
 
     def drive(self, curve: Array, inertia: float) -> None:
         """Set a motor's torque curve and moment of inertia; an empty curve leaves the spin to its ramp."""
+
+    def load(self, unbalance: Complex) -> None:
+        """Set the unbalance from here on, kg m and kg m^2, shape (n,)."""
 
     def advance(self, stop: float, rate: float, courant: float, most: int) -> Outcome:
         """Advance to a time while the spin changes at a rate, in at most so many steps."""

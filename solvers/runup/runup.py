@@ -15,22 +15,22 @@ from numpy.typing import ArrayLike
 from fluid.fill import Fill
 from fluid.friction.laws import NO_FRICTION, Friction
 from fluid.whirl import is_full
-from meshes.arrays import Array, Complex, Flags
+from meshes.arrays import Array, Complex, Flags, Index
 from meshes.errors import InputError
 from solvers.layer.records import Outcome
 from solvers.rotor.system import RotorSystem
+from solvers.runup.course import highest, legs, marked
 from solvers.runup.long_wave import couple
 from solvers.runup.machine import (
     Drive,
     Handover,
     LayerSnapshots,
-    Ramp,
     Reading,
     RunupMachine,
     RunupModel,
     Transfer,
-    torque_curve,
 )
+from solvers.runup.shedding import Shedding
 from solvers.slices import step_budget
 
 
@@ -137,6 +137,8 @@ class RunupHistory:
     snapshots : of the layers, cell by cell, at the times asked for; None where none were
     transfers : liquid that became a layer or fell, in the order of time
     handover : how liquid at the bottom of a lying chamber becomes a layer
+    stage : of its programme in which each time was reached, from 0, shape (k,)
+    left : share that is left of each part of the unbalance that leaves, shape (k, s)
     """
 
     time: Array
@@ -164,6 +166,8 @@ class RunupHistory:
     snapshots: LayerSnapshots | None = None
     transfers: tuple[Transfer, ...] = ()
     handover: Handover = Handover.RIDING
+    stage: Index | None = None
+    left: Array | None = None
 
     @property
     def converged(self) -> bool:
@@ -242,63 +246,63 @@ def run_up(
     share = 0.8 if numerics.companion else 1.0
     wanted = np.asarray(snapshots, dtype=float)
     whole = machine(numerics.cells)
-    history = _march(whole, drive, numerics, lambda part: progress and progress(share * part), wanted)
+    history = _march(
+        whole, Shedding(system), drive, numerics, lambda part: progress and progress(share * part), wanted
+    )
     if not numerics.companion or not history.converged or numerics.cells < 16:
         return history
     cells = numerics.cells // 2
-    other = _march(machine(cells), drive, replace(numerics, cells=cells), lambda _: None, np.empty(0))
+    coarse = replace(numerics, cells=cells)
+    other = _march(machine(cells), Shedding(system), drive, coarse, lambda _: None, np.empty(0))
     if progress:
         progress(1.0)
     if not other.converged:
         return history
-    gap = np.abs(history.amplitude - other.amplitude).max()
+    # Where the speed was free the two ways have corners of their own; the other times are the same.
+    _, ours, theirs = np.intersect1d(history.time, other.time, assume_unique=True, return_indices=True)
+    gap = np.abs(history.amplitude[ours] - other.amplitude[theirs]).max()
     largest = history.amplitude.max()
     return replace(history, error_estimate=float(gap / largest) if largest > 0.0 else 0.0)
 
 
-def _times(drive: Drive, samples: int) -> tuple[Array, Array]:
-    """Sampled times with all corners of the ramp among them, and the rate from each to the next."""
-    corners = drive.corners()
-    time = np.unique(np.concatenate((np.linspace(0.0, corners[0, -1], samples), corners[0])))
-    rate = np.zeros(time.size - 1)
-    if isinstance(drive, Ramp):
-        slopes = np.diff(corners[1]) / np.diff(corners[0])
-        middle = 0.5 * (time[:-1] + time[1:])
-        rate = slopes[np.searchsorted(corners[0], middle) - 1]
-    return time, rate
-
-
 def _march(
     machine: RunupMachine,
+    shedding: Shedding,
     drive: Drive,
     numerics: RunupNumerics,
     progress: Callable[[float], object],
     snapshots: Array,
 ) -> RunupHistory:
     """The run itself, sample by sample."""
-    time, rate = _times(drive, numerics.samples)
-    highest = _highest(drive)
-    machine.drive(torque_curve(drive), 0.0 if isinstance(drive, Ramp) else drive.inertia)
+    top, last = highest(drive), float(drive.corners()[0, -1])
     energy, captured, outcome = machine.energy(), 0.0, Outcome.DONE
-    wanted = np.unique([np.abs(time - moment).argmin() for moment in snapshots]).astype(np.intp)
-    readings, depths = [machine.read()], [machine.depth()] if 0 in wanted else []
-    for k, stop in enumerate(time[1:].tolist()):
+    wanted, kept, depths = marked(drive, numerics.samples, snapshots), [0], [machine.depth()]
+    if 0.0 not in wanted:
+        kept, depths = [], []
+    readings, stages, left = [machine.read()], [0], [shedding.left]
+    for leg in legs(drive, machine, numerics.samples):
         machine.watch()
         try:
             captured += machine.switch()
-            fastest = max(machine.spin, highest)
-            most = step_budget(stop - machine.time, fastest, numerics.cells, numerics.courant)
-            outcome, brought = _advance(machine, stop, float(rate[k]), numerics.courant, most)
-            captured += brought
+            fastest = max(machine.spin, top)
+            most = step_budget(leg.stop - machine.time, fastest, numerics.cells, numerics.courant)
+            for stop in shedding.pieces(machine, leg.stop):
+                outcome, brought = _advance(machine, stop, leg.rate, numerics.courant, most)
+                captured += brought
+                if outcome is not Outcome.DONE:
+                    break
         except KeyboardInterrupt:
             outcome = Outcome.INTERRUPTED
         if outcome is not Outcome.DONE:
             break
         readings.append(machine.read())
-        if k + 1 in wanted:
+        stages.append(leg.stage)
+        left.append(shedding.left)
+        if leg.stop in wanted:
+            kept.append(len(readings) - 1)
             depths.append(machine.depth())
-        if k % 64 == 0:
-            progress((k + 1) / rate.size)
+        if len(readings) % 64 == 2:
+            progress(min(leg.stop / last, 1.0))
     when = f"at {machine.time:.6g} s, {machine.spin:.6g} rad/s"
     sums = machine.sums
     audit = EnergyAudit(
@@ -306,7 +310,7 @@ def _march(
         change=machine.energy() - energy,
         **{name: float(sums[name]) for name in _WORKS},
     )
-    kept = LayerSnapshots(wanted[: len(depths)], machine.theta, np.array(depths)) if wanted.size else None
+    shots = LayerSnapshots(np.array(kept, dtype=np.intp), machine.theta, np.array(depths)) if wanted else None
     return RunupHistory(
         **{field.name: np.array([getattr(r, field.name) for r in readings]) for field in fields(Reading)},
         layer_mass=machine.masses,
@@ -318,19 +322,15 @@ def _march(
         disagreement=float(sums.disagreement),
         outcome=outcome,
         reason="" if outcome is Outcome.DONE else f"{outcome.message} {when}",
-        snapshots=kept,
+        snapshots=shots,
+        stage=np.array(stages),
+        left=np.array(left),
         transfers=tuple(machine.transfers),
         handover=numerics.handover,
     )
 
 
 _WORKS = ("unbalance", "drive", "gravity", "support", "friction", "bores", "profile", "motor")
-
-
-def _highest(drive: Drive) -> float:
-    """Largest speed that a drive asks for, rad/s."""
-    speeds = drive.corners()[1] if isinstance(drive, Ramp) else np.array(drive.speeds)
-    return float(speeds.max())
 
 
 def _advance(

@@ -102,6 +102,8 @@ def _runups() -> Iterator[Case]:
     pieces = {name: f"small/{name}.toml" for name in SMALL if name.endswith(("_fallen", "_caught", "_above"))}
     for name, scene in (pieces | {name: _scene(name) for name in WHOLE}).items():
         yield _case(f"runup-{name}", f"runup {scene} --cells 32 --samples 201 --no-check --json --out out")
+    typed = f"runup {_scene('programme')} --cells 16 --samples 401 --no-check --json --out out"
+    yield _case("runup-programme", typed)
     yield _case("runup-check", "runup small/runup.toml --samples 51 --json --out out")
 
 

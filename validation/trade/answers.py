@@ -12,7 +12,7 @@ from pydantic import Field
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
 from leblanc.results.choice import Choice
-from leblanc.scene.scene import Exciter, Scene, dry_rotor
+from leblanc.scene.scene import Exciter, Runup, Scene, dry_rotor
 from leblanc.studies.models.choose import across_gravity, axial_gravity, choose, liquid_models, prepare
 from leblanc.studies.runup import RunupChoice, chosen_run, drive_of, judged, planned
 from meshes.arrays import Array, Flags
@@ -312,6 +312,7 @@ def taste(scene: Scene, case: Case) -> None:
     """A small piece of a case, which imports and compiles all that the whole takes."""
     if case.question == RUNUP:
         plan = planned(scene)
+        assert isinstance(plan, Runup)
         bit = scene.altered(runup=plan.altered(duration=1e-3 * plan.duration, samples=2))
         answer(bit, case)
         if case.model == "auto":  # of which so small a piece takes one model alone

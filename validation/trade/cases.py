@@ -268,6 +268,7 @@ def passage(scene: Scene) -> tuple[Runup, str]:
     stays up on the next, and no mesh is fine enough to show it.
     """
     plan = planned(scene)
+    assert isinstance(plan, Runup)
     whole = scene.altered(runup=plan.altered(back=False, samples=SAMPLES))
     history = taken_run(whole, "long_wave", _SCOUT, plan.dispersion).history
     top = int(np.argmax(history.amplitude))

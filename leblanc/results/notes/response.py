@@ -45,6 +45,7 @@ class RunCode(NoteCode):
     ONE_FAMILY = "one_family"
     NOT_SETTLED = "not_settled"
     LARGE_WHIRL = "large_whirl"
+    UNBALANCE_LEAVES = "unbalance_leaves"
 
 
 # What a page that shows the table of models says there already.
@@ -69,6 +70,12 @@ def liquid_models(choice: Choice) -> Note | None:
         text = f"Liquid model: long waves held in time at all {count} speeds."
     data = {"linear": linear, "statics": exact} | ({HELD_MODEL: held} if held else {})
     return Note(RunCode.LIQUID_MODEL, data, text)
+
+
+def unbalance_leaves() -> Note:
+    """A steady answer has all of the unbalance, though a part of it leaves with time."""
+    text = "A part of the unbalance leaves with time; the steady answer has all of it, as at the beginning."
+    return Note(RunCode.UNBALANCE_LEAVES, {}, text)
 
 
 def tolerance_missed(choice: Choice, speed: Array, cost: HeldCost | None = None) -> Note | None:

@@ -53,6 +53,10 @@ class RunupCode(NoteCode):
     INNER_WALL = "inner_wall"
     TOO_DEEP = "too_deep"
     TOO_HIGH = "too_high"
+    STANDING = "standing"
+    NO_DRAG = "no_drag"
+    COAST_NOT_ENDED = "coast_not_ended"
+    UNBALANCE_LEFT = "unbalance_left"
 
 
 # What the tables of a report say as well.
@@ -70,6 +74,46 @@ IN_TABLES = (
 def liquid_model(model: str, reason: str) -> Note:
     """Which liquid model the run-up took, and why."""
     return Note(RunupCode.LIQUID_MODEL, {"model": model}, f"Liquid model: {reason}")
+
+
+def standing(floor: float) -> Note:
+    """Below which speed, rad/s, a drum counts as standing."""
+    text = f"The programme takes a drum slower than {in_rpm(floor)}, 0.005 of its highest speed, as standing."
+    return Note(RunupCode.STANDING, {"floor": floor}, text)
+
+
+def without_drag() -> Note:
+    """A coast without drag."""
+    text = (
+        "No drag is given: only the liquid and the supports brake the coasting drum; programme.drag_torque "
+        "and programme.drag_rate are those of bearings and belt."
+    )
+    return Note(RunupCode.NO_DRAG, {}, text)
+
+
+def coast_not_ended(step: int, wanted: float, reached: float, limit: float) -> Note:
+    """A coast that its limit of time ended.
+
+    Parameters
+    ----------
+    step : its number, from 1
+    wanted, reached : speeds, rad/s
+    limit : s
+    """
+    text = (
+        f"Step {step}: the drum coasts for {with_unit(limit, TIME)}, programme.coast_limit, down to "
+        f"{in_rpm(reached)} instead of {in_rpm(wanted)}."
+    )
+    return Note(RunupCode.COAST_NOT_ENDED, {"step": step, "wanted": wanted, "reached": reached}, text)
+
+
+def unbalance_left(share: float) -> Note:
+    """How much of the unbalances is left at the end, over what they were at first."""
+    text = (
+        f"{percent(share)} of the unbalance is left at the end; the mass of what has left still counts as "
+        "the drum's, and what leaves takes its momentum along."
+    )
+    return Note(RunupCode.UNBALANCE_LEFT, {"share": share}, text)
 
 
 def stopped(reason: str) -> Note:

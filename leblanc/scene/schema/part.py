@@ -159,8 +159,12 @@ def _line(conflict: Conflict, given: Mapping[str, Any]) -> InitErrorDetails:
     """A conflict as pydantic keeps it."""
     value: Any = given
     for key in conflict.keys:
-        value = value.get(key) if isinstance(value, Mapping) else value[key]
-    kind = _TOGETHER if conflict.keys[0] in given else _ABSENT
+        if isinstance(value, Part):
+            value = getattr(value, str(key))
+        else:
+            value = value.get(key) if isinstance(value, Mapping) else value[key]
+    missing = len(conflict.keys) > 1 and value is None
+    kind = _TOGETHER if conflict.keys[0] in given and not missing else _ABSENT
     custom = PydanticCustomError(kind, "{allowed}", {"allowed": conflict.allowed})
     return InitErrorDetails(type=custom, loc=conflict.keys, input=value)
 

@@ -91,6 +91,8 @@ def _rotor(scene: Scene) -> Iterator[Note]:
         yield from _free(scene)
     elif isinstance(rotor, TubRotor):
         yield from _eccentricity(scene, "rotor.unbalance", rotor.unbalance, rotor.drum_mass)
+        for k, load in enumerate(rotor.loads):
+            yield from _eccentricity(scene, f"rotor.loads.{k}.size", load.size, rotor.drum_mass)
         gyration = math.sqrt(max(rotor.tub_inertia) / rotor.tub_mass)
         places = [
             (f"rotor.{name}.{k}.position", float(np.linalg.norm(part.position)))
@@ -99,6 +101,7 @@ def _rotor(scene: Scene) -> Iterator[Note]:
         ]
         if rotor.unbalance_position is not None:
             places.append(("rotor.unbalance_position", rotor.unbalance_position))
+        places += [(f"rotor.loads.{k}.position", load.position) for k, load in enumerate(rotor.loads)]
         yield from _far(scene, places, gyration)
         yield from _free(scene)
     else:

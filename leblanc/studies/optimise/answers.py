@@ -50,7 +50,8 @@ class FilledMachine:
     def __init__(self, scene: Scene) -> None:
         # One model for all volumes: a change of model within its tolerance would look like a better volume.
         liquid = "statics" if scene.model.liquid == "auto" else scene.model.liquid
-        self.scene = scene.altered(optimise=None, runup=None, model=scene.model.altered(liquid=liquid))
+        model = scene.model.altered(liquid=liquid)
+        self.scene = scene.altered(optimise=None, runup=None, programme=None, model=model)
         self._rotor = dry_rotor(self.scene)
         self._known: dict[tuple[bytes, float], tuple[float, float, float]] = {}
         self._peaks: dict[tuple[bytes, float, float], float] = {}

@@ -86,7 +86,7 @@ def _output(scene: Scene, task: Optimisation) -> str:
     """Output of a sweep that is the vibration of the objective."""
     if task.objective == "working_speed" and task.working_speed in (None, scene.speeds.stop):
         return "last_amplitude"
-    if task.objective == "peak" and (task.steady or scene.runup is None):
+    if task.objective == "peak" and (task.steady or scene.speed_plan is None):
         return "peak_amplitude"
     allowed = "working_speed at the last speed, or peak of the steady response, with an emulator"
     raise InputError("--objective", task.objective, allowed)

@@ -57,7 +57,7 @@ class RunupPeak:
         from leblanc.studies.runup import across_gravity, drive_of, liquid_model, numerics_of, planned
 
         plan = planned(scene)
-        self.scene, self.drive, self.gravity = scene, drive_of(plan), across_gravity(scene)
+        self.scene, self.drive, self.gravity = scene, drive_of(plan, scene.rotor), across_gravity(scene)
         self.numerics = numerics_of(plan, cells, check=False)
         self.model = runup_model(liquid_model(scene))
         self._known: dict[bytes, float] = {}
@@ -67,13 +67,13 @@ class RunupPeak:
         return np.array([self._one(np.ascontiguousarray(row)) for row in volumes])
 
     def _one(self, volumes: Array) -> float:
-        from leblanc.scene.scene import dry_rotor
+        from leblanc.studies.runup import rotor_in_time
         from solvers.runup.runup import run_up
 
         key = volumes.tobytes()
         if key not in self._known:
             friction, fills = self.scene.model.friction, with_volumes(self.scene, volumes).fills
-            system = dry_rotor(self.scene).system()
+            system = rotor_in_time(self.scene)
             numerics, drive = self.numerics, self.drive
             run = run_up(system, fills, drive, friction, self.gravity, numerics, None, self.model)
             self._known[key] = float(run.largest.max()) if run.converged else math.inf

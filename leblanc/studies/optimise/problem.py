@@ -208,12 +208,13 @@ def _working_speed(
 
 
 def _peak(scene: Scene, task: Optimisation, machine: FilledMachine, problem: Problem, _: object) -> Problem:
-    if scene.runup is not None and not task.steady:
-        few = min(_COARSE_CELLS, scene.runup.cells)
+    plan = scene.speed_plan
+    if plan is not None and not task.steady:
+        few = min(_COARSE_CELLS, plan.cells)
         text = "largest amplitude of the run-up in time"
         evaluate = replace(problem.evaluate, vibration=RunupPeak(scene, few))
-        fewer = optimum.few_cells(few, scene.runup.cells)
-        notes = (*problem.notes, *((fewer,) if few < scene.runup.cells else ()))
+        fewer = optimum.few_cells(few, plan.cells)
+        notes = (*problem.notes, *((fewer,) if few < plan.cells else ()))
         return replace(problem, evaluate=evaluate, meaning=text, costly=True, notes=notes)
     speeds = scene.speeds
     text = f"largest steady amplitude from {rpm_range(speeds.start, speeds.stop)}"

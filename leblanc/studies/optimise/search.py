@@ -155,8 +155,8 @@ def _alike(scene: Scene, low: Array, high: Array) -> list[list[int]]:
 
 def on_all_cells(scene: Scene, problem: Problem) -> Problem:
     """The problem with run-ups on all of the scene's cells; itself if it has no others."""
-    coarse = problem.evaluate.vibration
-    if scene.runup is None or not isinstance(coarse, RunupPeak) or coarse.numerics.cells >= scene.runup.cells:
+    coarse, plan = problem.evaluate.vibration, scene.speed_plan
+    if plan is None or not isinstance(coarse, RunupPeak) or coarse.numerics.cells >= plan.cells:
         return problem
     return replace(problem, evaluate=replace(problem.evaluate, vibration=RunupPeak(scene)))
 

@@ -141,7 +141,7 @@ def values_of(answers: Answers) -> dict[str, NDArray[Any]]:
     return values
 
 
-_WORDS_ONLY = ("source", "assumed", "runup")  # no answer of a sweep depends on them
+_WORDS_ONLY = ("source", "assumed", "runup", "programme")  # no answer of a sweep depends on them
 
 _Tables = Mapping[tuple[str, ...], type[Part]]
 

@@ -1,0 +1,140 @@
+"""From one sample of a run to the next: to which time, at which rate of the spin, driven or free."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from meshes.arrays import Array
+from solvers.runup.machine import Drive, Motor, Ramp, RunupMachine
+from solvers.runup.programme import Programme, Stage
+
+# A grid point this near to a corner, of the distance between two, is no sample of its own.
+_SLIVER = 1e-6
+# A coast has come to its speed within this share of it.
+_REACHED = 1e-6
+
+
+class Leg(NamedTuple):
+    """The way to the next sample.
+
+    Parameters
+    ----------
+    stop : its time, s
+    rate : of the spin, rad/s^2; 0 where the spin is free
+    stage : of the programme, from 0
+    """
+
+    stop: float
+    rate: float
+    stage: int
+
+
+def highest(drive: Drive) -> float:
+    """Largest speed that a drive asks for, rad/s."""
+    if isinstance(drive, Programme):
+        return drive.highest
+    speeds = drive.corners()[1] if isinstance(drive, Ramp) else np.array(drive.speeds)
+    return float(speeds.max())
+
+
+def marked(drive: Drive, samples: int, moments: Array) -> list[float]:
+    """Times of samples next to some moments, s, ascending, each once.
+
+    Parameters
+    ----------
+    drive, samples : of the run
+    moments : s
+    """
+    if isinstance(drive, Programme):
+        step = _step(drive, samples)
+        return [float(time) for time in np.unique(np.round(moments / step) * step)]
+    time, _ = _times(drive, samples)
+    return sorted({float(time[np.abs(time - moment).argmin()]) for moment in moments})
+
+
+def legs(drive: Drive, machine: RunupMachine, samples: int) -> Iterator[Leg]:
+    """The legs of a run; each is to be gone before the next is asked for.
+
+    Parameters
+    ----------
+    drive : what turns the rotor
+    machine : that is driven; where a drum coasts its spin decides what is next
+    samples : how many there are about
+    """
+    if isinstance(drive, Programme):
+        yield from _programme(drive, machine, _step(drive, samples))
+        return
+    curve = np.array([drive.speeds, drive.torques], dtype=float) if isinstance(drive, Motor) else _GIVEN
+    machine.drive(curve, drive.inertia if isinstance(drive, Motor) else 0.0)
+    time, rate = _times(drive, samples)
+    for stop, slope in zip(time[1:].tolist(), rate.tolist(), strict=True):
+        yield Leg(stop, slope, 0)
+
+
+_GIVEN = np.zeros((2, 0))  # the torque curve of a speed that is given
+
+
+def _step(drive: Programme, samples: int) -> float:
+    """Time between two samples of a programme, s."""
+    return float(drive.corners()[0, -1]) / (samples - 1)
+
+
+def _times(drive: Ramp | Motor, samples: int) -> tuple[Array, Array]:
+    """Sampled times with all corners of the ramp among them, and the rate from each to the next."""
+    corners = drive.corners()
+    time = np.unique(np.concatenate((np.linspace(0.0, corners[0, -1], samples), corners[0])))
+    rate = np.zeros(time.size - 1)
+    if isinstance(drive, Ramp):
+        slopes = np.diff(corners[1]) / np.diff(corners[0])
+        middle = 0.5 * (time[:-1] + time[1:])
+        rate = slopes[np.searchsorted(corners[0], middle) - 1]
+    return time, rate
+
+
+def _programme(drive: Programme, machine: RunupMachine, step: float) -> Iterator[Leg]:
+    """Stage after stage, each from the time and the speed that were reached."""
+    for number, stage in enumerate(drive.stages):
+        spin, stop = machine.spin, drive.target(stage, machine.spin)
+        if stage.free:
+            assert drive.inertia is not None
+            machine.drive(drive.drag(), drive.inertia)
+            yield from _coast(drive, machine, step, number, stage, stop)
+            continue
+        machine.drive(_GIVEN, 0.0)
+        lasts = stage.lasts(spin, stop)
+        if lasts <= 0.0:
+            continue
+        end, rate = machine.time + lasts, (stop - spin) / lasts
+        while machine.time < end:
+            yield Leg(min(_after(machine.time, step, end), end), rate, number)
+
+
+def _coast(
+    drive: Programme, machine: RunupMachine, step: float, number: int, stage: Stage, stop: float
+) -> Iterator[Leg]:
+    """Until the drum has come down to a speed or its time is over.
+
+    Where a straight line through the last leg comes down to the speed before the next sample, the leg ends
+    there: a drum that is slowed ever less comes to its speed in a few ever shorter ones.
+    """
+    assert stage.duration is not None and drive.inertia is not None
+    end = machine.time + stage.duration
+    torque = float(np.interp(machine.spin, *drive.drag()))
+    slope = torque / drive.inertia
+    while machine.time < end and machine.spin > stop * (1.0 + _REACHED):
+        time, spin = machine.time, machine.spin
+        until = min(_after(time, step, end), end)
+        if slope < 0.0:
+            until = min(until, time + max((stop - spin) / slope, _SLIVER * step))
+        yield Leg(until, 0.0, number)
+        slope = (machine.spin - spin) / (until - time)
+
+
+def _after(time: float, step: float, end: float) -> float:
+    """The next point of the grid; the end where only a sliver would be left before it."""
+    found = (math.floor(time / step + _SLIVER) + 1.0) * step
+    return end if end - found < _SLIVER * step else found

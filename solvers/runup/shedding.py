@@ -1,0 +1,64 @@
+"""The unbalance of a run-up as parts of it leave [theory: coupling, eq. 15]."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from meshes.arrays import Array
+from solvers.rotor.system import RotorSystem
+from solvers.runup.machine import RunupMachine
+
+# A drum held at the speed itself is fast enough, whatever rounding makes of it.
+_HELD = 1e-9
+# Of the shortest time constant: for so long the unbalance stands at what it is in the middle.
+_PIECE = 1e-3
+
+
+class Shedding:
+    """What is left of the parts that leave, and the pieces of time in which it is set anew.
+
+    Parameters
+    ----------
+    system : of the rotor, with its s parts that leave
+    """
+
+    def __init__(self, system: RotorSystem) -> None:
+        self._system = system
+        self._time = np.array([shed.time_constant for shed in system.sheds])
+        self._above = (1.0 - _HELD) * np.array([shed.above for shed in system.sheds])
+        self.left: Array = np.ones(len(system.sheds))
+
+    def pieces(self, machine: RunupMachine, stop: float) -> Iterator[float]:
+        """Times on the way to another one; the unbalance is set before each, and what has left is gone after.
+
+        Parameters
+        ----------
+        machine : that is advanced to each time before the next is asked for
+        stop : the last of them, s
+        """
+        if not self.left.size:
+            yield stop
+            return
+        begin = machine.time
+        count = max(1, math.ceil((stop - begin) / (_PIECE * float(self._time.min()))))
+        for until in [begin + (stop - begin) * k / count for k in range(1, count)] + [stop]:
+            spin, step = machine.spin, until - machine.time
+            middle = self.left * np.exp(-0.5 * step / self._time * (spin > self._above))
+            machine.load(self._system.unbalance - sum(self._gone(middle)))
+            yield until
+            self.left = self.left * np.exp(-step / self._time * self._share(spin, machine.spin))
+
+    def _gone(self, left: Array) -> list[Array]:
+        """What has left of each part, kg m, for the shares that are left."""
+        pairs = zip(self._system.sheds, left.tolist(), strict=True)
+        return [(1.0 - share) * shed.unbalance for shed, share in pairs]
+
+    def _share(self, before: float, after: float) -> Array:
+        """Share of a piece of time in which the drum is fast enough, its speed on a straight line."""
+        low, high = min(before, after), max(before, after)
+        if high <= low:
+            return np.asarray(low > self._above, dtype=float)
+        return np.clip((high - self._above) / (high - low), 0.0, 1.0)

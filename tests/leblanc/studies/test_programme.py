@@ -1,0 +1,127 @@
+"""A scene's spin programme: its passages up and down, told in JSON, text, figures and report."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import leblanc as lb
+from leblanc.cli import main
+from leblanc.figures.runup import speed_figure, time_figure
+from leblanc.results.notes.runup import RunupCode
+from leblanc.results.runup import RunupResult
+from leblanc.scene.examples import example_path
+from leblanc.scene.scene import Scene, scene_from_table
+from leblanc.studies.optimise.objectives import RunupPeak
+from leblanc.text.runup import summary
+from tests.mutants import kills
+
+STEPS = ["to 60 rad/s in 4 s", "hold 1 s", "to 20 rad/s in 3 s", "to 45 rad/s in 3 s", "coast to 8 rad/s"]
+
+
+def machine(**changes: object) -> Scene:
+    """The machine of examples/runup.toml through a programme with two ways up and two down."""
+    table = lb.example("runup").table()
+    del table["runup"]
+    own = {
+        "start": "5 rad/s",
+        "steps": STEPS,
+        "inertia": 0.5,
+        "drag_torque": 3.0,
+        "cells": 32,
+        "samples": 400,
+    }
+    table |= {"programme": own | changes, "assumed": []}
+    return scene_from_table(table)
+
+
+@pytest.fixture(scope="module")
+def result() -> RunupResult:
+    return lb.run_up(machine())
+
+
+@kills("leblanc.results.motion.passages:falling", 'passage.way == "down"', 'passage.way != "up"')
+def test_each_passage_has_its_peak(result: RunupResult) -> None:
+    """Those up and those down, apart; the largest of all is that of every step kept in the run."""
+    ways = [passage.way for passage in result.passages]
+    assert ways == ["up", "hold", "down", "up", "down"] and result.turns_back
+    # Each begins where the one before ends, the first at the beginning.
+    for one, other in zip(result.passages, result.passages[1:], strict=False):
+        assert one.end == other.begin and one.speed_end == other.speed_begin
+    assert result.passages[0].begin == 0.0 and result.passages[-1].end == result.time[-1]
+    down = max(passage.amplitude for passage in result.passages if passage.way == "down")
+    up = max(passage.amplitude for passage in result.passages if passage.way != "down")
+    assert result.peak["amplitude"] == up and result.peak_back["amplitude"] == down
+    assert max(up, down) == result.history.largest.max()
+    # The resonance at 25 rad/s is passed each time but while the speed is held.
+    assert all(20.0 < passage.speed < 35.0 for passage in result.passages if passage.way != "hold")
+    np.testing.assert_array_equal(result.falling[1:], np.diff(result.speed) < 0.0)
+
+
+def test_curves_have_every_sample_once(result: RunupResult) -> None:
+    time, speed, amplitude = result.whole_curve()
+    assert set(result.time) <= set(time) and time.size <= result.time.size + 2 and (np.diff(time) > 0.0).all()
+    assert np.nanmax(amplitude) == result.history.largest.max()
+    for back in (False, True):
+        time, speed, _ = result.curve(back)
+        assert np.isnan(time).sum() == 1
+        for part in result.pieces(result.history, back):
+            inner = np.diff(result.speed[part])
+            assert (inner <= 0.0).all() if back else (inner >= -1e-9).all()
+    assert np.isnan(speed).sum() == 1
+
+
+def test_without_liquid_at_the_same_times(result: RunupResult) -> None:
+    """While the speed is given both have it; a coast of another length is told at the times of this one."""
+    given = result.time <= result.passages[-1].begin
+    np.testing.assert_allclose(result.speed_dry[given], result.speed[given], rtol=1e-9)
+    dry = result.history_dry
+    assert dry is not None and dry.time[-1] != result.time[-1]
+    common, ours, theirs = np.intersect1d(result.time, dry.time, return_indices=True)
+    assert common.size > 0.9 * result.time.size
+    np.testing.assert_array_equal(result.speed_dry[ours], dry.speed[theirs])
+    assert all(np.isfinite(passage.amplitude_dry) for passage in result.passages)
+
+
+def test_notes(result: RunupResult) -> None:
+    codes = {note.code for note in result.notes}
+    assert not codes & {RunupCode.STANDING, RunupCode.NO_DRAG, RunupCode.COAST_NOT_ENDED}
+    short = ["to 40 rad/s in 2 s", "coast to 0"]
+    free = lb.run_up(machine(start=0, steps=short, drag_torque=0.0, coast_limit=2.0), check=False)
+    codes = {note.code for note in free.notes}
+    assert codes >= {RunupCode.STANDING, RunupCode.NO_DRAG, RunupCode.COAST_NOT_ENDED}
+    assert free.time[-1] == pytest.approx(4.0, rel=1e-12)
+
+
+def test_what_is_shown(result: RunupResult) -> None:
+    told = json.loads(json.dumps(result.to_json()["passages"]))
+    assert [part["way"] for part in told] == [part.way for part in result.passages]
+    assert told[4]["text"] == STEPS[4].replace("8 rad/s", "76.39 rpm")
+    labels = dict(summary(result))
+    assert "mm at" in labels["Step 5, coast to 76.39 rpm"]
+    axes = speed_figure(result).axes[0]
+    drawn = {line.get_label() for line in axes.get_lines()}
+    assert {"run-up", "run-down", "run-down, without liquid"} <= drawn
+    texts = {text.get_text() for legend in time_figure(result).legends for text in legend.get_texts()}
+    assert "motor off" in texts
+
+
+def test_the_objective_takes_the_way_down_too() -> None:
+    """Largest over the whole programme, with the cells of the scene."""
+    scene = machine()
+    found = RunupPeak(scene).exact(np.array([[5e-4]]))
+    assert found[0] == lb.run_up(scene, check=False).history.largest.max()
+
+
+def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene = tmp_path / "scene.toml"
+    text = example_path("programme").read_text(encoding="utf-8")
+    scene.write_text(text.replace('"to 1000 rpm at', '"to 500 rpm at'), encoding="utf-8")
+    assert main(["runup", str(scene), "--no-check", "--out", str(tmp_path / "out")]) == 0
+    said = capsys.readouterr().out
+    assert "Step 7, coast to a stand" in said and "Largest on the way down" in said
+    report = (tmp_path / "out" / "runup.html").read_text(encoding="utf-8")
+    assert "Steps of the programme" in report and "coast to a stand" in report
