@@ -86,7 +86,7 @@ class Programme(Part):
         """What it says, for readers."""
         found = [row("Programme from", rpm(self.start), "programme.start")]
         found += [
-            row(f"Programme step {k + 1}", step.words(), f"programme.steps.{k}", "programme.steps")
+            row(f"Programme step {k + 1}", step.words(), f"programme.steps.{k}")
             for k, step in enumerate(self.steps)
         ]
         if self.coasts:

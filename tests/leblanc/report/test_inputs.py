@@ -48,21 +48,36 @@ REST = {
         "balance_quality": "G 6.3",
     },
 }  # fmt: skip
+PROGRAMME = {
+    "start": "20 rpm",
+    "steps": ["to 900 rpm in 7 s", "hold 3 s", "coast to 100 rpm"],
+    "inertia": "0.6 kg*m^2",
+    "drag_torque": "1.7 N*m",
+    "drag_rate": "0.03 1/s",
+    "coast_limit": "80 s",
+    "cells": 48,
+    "dispersion": True,
+    "bore": "enstrophy",
+    "samples": 123,
+}  # fmt: skip
+SHEDS = {"share": 0.35, "time_constant": "13 s", "above": "340 rpm"}
 MOTOR = {"inertia": "0.3 kg*m^2", "speeds": [0.0, "1200 rpm"], "torques": ["2 N*m", 0.0]}
 ROTORS: dict[str, dict[str, Any]] = {
     "jeffcott": {
         "kind": "jeffcott", "mass": "4 kg", "critical_speed": "1000 rpm", "damping_ratio": 0.1,
-        "unbalance": "0.6 kg*mm", "axis": "vertical",
+        "unbalance": "0.6 kg*mm", "axis": "vertical", "sheds": SHEDS,
     },
     "two_plane": {
         "kind": "two_plane", "mass": "20 kg", "transverse_inertia": 0.7, "polar_inertia": 0.2,
         "supports": [{"position": "-30 cm", "stiffness": 4e4, "damping": 80}],
-        "unbalances": [{"position": "10 cm", "size": "1.5 kg*mm", "angle": "120 deg"}], "axis": "horizontal",
+        "unbalances": [{"position": "10 cm", "size": "1.5 kg*mm", "angle": "120 deg", "sheds": SHEDS}],
+        "axis": "horizontal",
     },
     "tub": {
         "kind": "tub", "tub_mass": 48, "drum_mass": 12.5, "tub_inertia": [1.3, 1.5, 1.4],
         "drum_polar_inertia": 0.32, "drum_transverse_inertia": 0.2, "drum_position": [0, "90 mm", 0],
-        "unbalance": "185 kg*mm", "unbalance_position": "80 mm",
+        "unbalance": "185 kg*mm", "unbalance_position": "80 mm", "sheds": SHEDS,
+        "loads": [{"position": "-40 mm", "size": "70 kg*mm", "angle": "20 deg", "sheds": SHEDS}],
         "springs": [
             {"position": ["200 mm", 0, "200 mm"], "direction": [0.26, 0, 0.97], "stiffness": 4800},
             {"position": [0, 0.1, 0], "stiffness": [1200, 1300, 1400]},
@@ -91,13 +106,21 @@ OTHERS = {
 }  # fmt: skip
 # What stands above the inputs, is their mark, or is told by the cell of another path.
 ELSEWHERE = {"name", "source", "assumed"}
-TOLD_BY = {"rotor.kind": "rotor.axis", "runup.motor.speeds": "runup.motor.torques"}
+TOLD_BY = {
+    "rotor.kind": "rotor.axis",
+    "runup.motor.speeds": "runup.motor.torques",
+    "programme.steps": "programme.steps.2",
+}
+WAYS = ["ramp", "motor", "programme"]
 
 
-def full(kind: str, motor: bool = False) -> dict[str, Any]:
-    """A scene with every key that such a file may have."""
+def full(kind: str, way: str = "ramp") -> dict[str, Any]:
+    """A scene with every key that such a file may have, driven in one of the ways."""
     table = copy.deepcopy(REST | {"rotor": ROTORS[kind]})
-    if motor:
+    if way == "programme":
+        del table["runup"]
+        table["programme"] = copy.deepcopy(PROGRAMME)
+    if way == "motor":
         del table["runup"]["rate"], table["runup"]["back"]
         table["runup"]["motor"] = MOTOR
     return table
@@ -126,9 +149,9 @@ def covered(path: str, paths: set[str]) -> bool:
 
 
 @pytest.mark.parametrize("kind", list(ROTORS))
-@pytest.mark.parametrize("motor", [False, True])
-def test_every_value_has_its_cell(kind: str, motor: bool) -> None:
-    table = full(kind, motor)
+@pytest.mark.parametrize("way", WAYS)
+def test_every_value_has_its_cell(kind: str, way: str) -> None:
+    table = full(kind, way)
     paths = shown(scene_inputs(scene_from_table(table)))
     lost = [path for path in leaves(table) if path not in ELSEWHERE and not covered(path, paths)]
     assert not lost
@@ -137,7 +160,7 @@ def test_every_value_has_its_cell(kind: str, motor: bool) -> None:
 @pytest.mark.parametrize("kind", list(ROTORS))
 def test_the_full_scene_has_every_key_there_is(kind: str) -> None:
     """So that a key that comes new is not forgotten in the report."""
-    given = set(leaves(full(kind))) | set(leaves(full(kind, motor=True)))
+    given = {leaf for way in WAYS for leaf in leaves(full(kind, way))}
     pattern = {".".join("*" if part.isdecimal() else part for part in path.split(".")) for path in given}
     for place, model in tables_of(Scene, kind).items():
         if place[-1:] == ("friction",) or place[-2:] == ("optimise", "duty"):
@@ -150,8 +173,9 @@ def test_the_full_scene_has_every_key_there_is(kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", list(ROTORS))
-def test_each_assumed_value_marks_its_cell_and_no_other(kind: str) -> None:
-    table = full(kind)
+@pytest.mark.parametrize("way", ["ramp", "programme"])
+def test_each_assumed_value_marks_its_cell_and_no_other(kind: str, way: str) -> None:
+    table = full(kind, way)
     bare = scene_inputs(scene_from_table(table))
     assert not bare.assumed
     derived = {
@@ -159,6 +183,7 @@ def test_each_assumed_value_marks_its_cell_and_no_other(kind: str) -> None:
         "rotor.damping_ratio": {"rotor.damping"},
         "rotor.kind": {"rotor.axis"},
         "runup.motor.speeds": {"runup.motor.torques"},
+        "programme.steps": {f"programme.steps.{k}" for k in range(3)},
     }
     for path in leaves(table):
         if path in ELSEWHERE:
@@ -274,7 +299,7 @@ def test_units() -> None:
 
 
 def test_units_of_other_rotors() -> None:
-    planes = told(scene_inputs(scene_from_table(full("two_plane", motor=True))))
+    planes = told(scene_inputs(scene_from_table(full("two_plane", "motor"))))
     for path, value in {
         "rotor.transverse_inertia": 0.7, "rotor.polar_inertia": 0.2, "rotor.supports.0.position": -300.0,
         "rotor.supports.0.stiffness": 4e4, "rotor.supports.0.damping": 80.0,
