@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from fluid.friction.laws import Friction
 from leblanc.results.base import FilledChamber, Note, Result, attributes, one_line, texts
+from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.netcdf import NamedArrays, flags, variable
 from leblanc.results.notes.response import plane_words
 from leblanc.results.response import phase
@@ -108,6 +109,7 @@ class RunupResult(Result):
     history_dry : of the same rotor on the same way without liquid; None if it was not run
     bore : what bores leave behind, "none" or "enstrophy"
     spread : over an ensemble of runs that rounding tells apart; None if it was not asked for
+    loads : forces and clearances of each interval; None where the scene asks for none
 
     Examples
     --------
@@ -143,6 +145,7 @@ class RunupResult(Result):
     frames: RunupFrames | None = None
     history_dry: RunupHistory | None = None
     spread: Spread | None = None
+    loads: MachineLoads | None = None
     bore: str = "none"
 
     figure = "leblanc.figures.runup:speed_figure"
@@ -387,6 +390,7 @@ class RunupResult(Result):
         return {name: getattr(self, name) for name in (*over, *rest, *own)} | {
             "energy": self._energy(),
             "notes": texts(self.notes),
+            **({} if self.loads is None else self.loads.to_json()),
         }
 
     def _dry(self, name: str) -> Array:
@@ -478,6 +482,8 @@ def _columns(result: RunupResult) -> dict[str, Any]:
         "mean_rotation": each(h.mean_rotation, "rad s-1", "mean rotation of the liquid in the drum"),
         "layer_mass": variable(("chamber",), h.layer_mass, "kg", "mass of the liquid"),
     }
+    if result.loads is not None:
+        columns |= result.loads.variables()
     if result.spread is not None:
         for part in ("min", "max", "median"):
             name, words = f"amplitude_{part}", f"amplitude, {part} over runs that rounding tells apart"

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from fluid.fill import Fill
 from fluid.liquid import KNOWN_LIQUIDS, Liquid
 from fluid.temperature import Expansion, GivenLaw, PropertyLaw, Tabulated, Vogel, Walther
+from leblanc.scene.cabinet import point_table
 from leblanc.scene.rotors import JeffcottRotor
 from leblanc.scene.rows import Row, RowTable, Value, degrees, mm, row, rpm
 from leblanc.scene.scene import Model, Scene
@@ -62,6 +63,7 @@ def inputs_of(scene: Scene, optimise: Optimisation | None = None) -> SceneInputs
     """
     rows = [
         *scene.rotor.rows(),
+        *(() if scene.cabinet is None else scene.cabinet.rows()),
         row("Gravity", f"{number(scene.gravity)} m/s²", "gravity"),
         *_study(scene),
         *(() if scene.runup is None else _runup(scene.runup)),
@@ -74,13 +76,13 @@ def inputs_of(scene: Scene, optimise: Optimisation | None = None) -> SceneInputs
         marked += _optimise(wanted, scene)
     tables = [
         RowTable(table.head, tuple(tuple(v.marked(scene.assumed) for v in line) for line in table.rows))
-        for table in (*scene.rotor.tables(), *_chambers(scene))
+        for table in (*scene.rotor.tables(), *_around(scene), *_chambers(scene))
     ]
     return SceneInputs(tuple(marked), tuple(tables))
 
 
 def input_rows(
-    scene: Scene, roots: tuple[str, ...] = ("rotor", "chambers", "speeds")
+    scene: Scene, roots: tuple[str, ...] = ("rotor", "cabinet", "points", "chambers", "speeds")
 ) -> tuple[tuple[str, str, str], ...]:
     """Label, value with its unit and field path of each value of some tables, as data files keep them.
 
@@ -110,7 +112,15 @@ def runup_rows(scene: Scene, cells: int, dispersion: bool) -> tuple[tuple[str, s
     """
     assert scene.runup is not None
     taken = scene.altered(runup=scene.runup.altered(cells=cells, dispersion=dispersion))
-    return input_rows(taken, ("rotor", "runup", "model.friction", "chambers"))
+    return input_rows(taken, ("rotor", "cabinet", "points", "runup", "model.friction", "chambers"))
+
+
+def _around(scene: Scene) -> Iterator[RowTable]:
+    """Feet of the cabinet and named points."""
+    if scene.cabinet is not None:
+        yield from scene.cabinet.tables()
+    if scene.points:
+        yield point_table(scene.points)
 
 
 def _chambers(scene: Scene) -> Iterator[RowTable]:

@@ -327,6 +327,12 @@ class Damper(_Mounted):
     )
 
 
+class Bearing(Part):
+    """A bearing of the drum in its tub."""
+
+    position: Position = Field(description="along the axis: y, from the tub's centre of mass")
+
+
 class TubRotor(Part):
     """A suspended tub with its drum, which spins about y.
 
@@ -357,7 +363,17 @@ class TubRotor(Part):
     dampers: Annotated[tuple[Damper, ...], entries(0, MAX_PARTS, "tables headed [[rotor.dampers]]")] = Field(
         (), description="between the tub and the ground, one table each"
     )
+    bearings: Annotated[tuple[Bearing, ...], entries(2, 2, "tables headed [[rotor.bearings]]")] = Field(
+        (), description="of the drum in the tub, two of them; their forces are not told if left out"
+    )
     axis: Axis = Field("horizontal", description=_AXIS)
+
+    @classmethod
+    def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """Two bearings are at two places."""
+        places = [bearing.position for bearing in values.get("bearings", ())]
+        if len(places) == 2 and places[0] == places[1]:
+            yield Conflict(("bearings", 1, "position"), "another place than that of the first bearing")
 
     @cached_property
     def _machine(self) -> Tub:
@@ -411,6 +427,12 @@ class TubRotor(Part):
             if lines:
                 head = (name, "at x, y, z (mm)", f"{parts[0].COEFFICIENT} ({unit})", "direction")
                 found.append(RowTable(head, lines))
+        if self.bearings:
+            places = tuple(
+                (Value(f"{k + 1}"), Value(number(part.position * MM), (f"rotor.bearings.{k}.position",)))
+                for k, part in enumerate(self.bearings)
+            )
+            found.append(RowTable(("Bearing", "at y (mm)"), places))
         return found
 
 

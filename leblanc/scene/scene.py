@@ -15,6 +15,7 @@ from pydantic import Field, PlainValidator, ValidationError
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
 from leblanc import units
+from leblanc.scene.cabinet import MAX_POINTS, Cabinet, Point, cabinet_conflicts
 from leblanc.scene.chambers import Chamber
 from leblanc.scene.rotors import AnyRotor
 from leblanc.scene.rotors import Exciter as Exciter  # what a scene's rotor may be
@@ -175,6 +176,12 @@ class Scene(Part):
     chambers: Annotated[tuple[Chamber, ...], entries(0, MAX_CHAMBERS, "tables headed [[chambers]]")] = Field(
         (), description="each with its liquid; at least one with a jeffcott"
     )
+    cabinet: Cabinet | None = Field(
+        None, description="that stands on the floor around the rotor; forces under its feet are told if given"
+    )
+    points: Annotated[tuple[Point, ...], entries(0, MAX_POINTS, "tables headed [[points]]")] = Field(
+        (), description="named points whose orbits and clearances are told, one table each"
+    )
     speeds: Speeds = Field(description="at which the machine is studied")
     model: Model = Field(Model(), description="of the liquid")
     runup: Runup | None = Field(None, description="run-up for `leblanc runup`")
@@ -188,6 +195,7 @@ class Scene(Part):
         if values.get("chambers") == () and _kind(given.get("rotor")) in (None, "jeffcott"):
             missing = "chambers" not in given
             yield Conflict(("chambers",), f"{'given: ' if missing else ''}{_SOME_CHAMBERS.allowed}")
+        yield from cabinet_conflicts(values, _kind(given.get("rotor")))
         for number, path in enumerate(values.get("assumed", ())):
             if not _holds(given, path):
                 text = "the path of a value that stands in this file, such as "
@@ -254,6 +262,7 @@ class Scene(Part):
             "runup": None if self.runup is None else runup_content(self.runup),
         }
         # Results on disk are known by it: a scene without a part that came later keeps the one it had.
+        content |= machine_content(self)
         if self.optimise is not None:
             content["optimise"] = optimise_content(self.optimise)
         return fingerprint(content)
@@ -455,6 +464,22 @@ def runup_content(plan: Runup) -> dict[str, Any]:
     plan : of a scene
     """
     return plan.model_dump(exclude={"bore"} if plan.bore == "none" else set())
+
+
+def machine_content(scene: Scene) -> dict[str, Any]:
+    """Cabinet, points and bearings, as far as there are any.
+
+    Parameters
+    ----------
+    scene : the machine
+    """
+    bearings = getattr(scene.rotor, "bearings", ())
+    parts = {
+        "cabinet": scene.cabinet and scene.cabinet.model_dump(),
+        "points": [point.model_dump() for point in scene.points],
+        "bearings": [bearing.position for bearing in bearings],
+    }
+    return {name: part for name, part in parts.items() if part}
 
 
 def optimise_content(wanted: Optimisation) -> dict[str, Any]:

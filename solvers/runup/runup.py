@@ -21,6 +21,7 @@ from solvers.layer.records import Outcome
 from solvers.rotor.system import RotorSystem
 from solvers.runup.long_wave import couple
 from solvers.runup.machine import Drive, LayerSnapshots, Ramp, Reading, RunupMachine, RunupModel, torque_curve
+from solvers.runup.path import Recorder, RotorPath, fastest_frequency
 from solvers.slices import step_budget
 
 
@@ -123,6 +124,7 @@ class RunupHistory:
     outcome : how it ended
     reason : why it did not come to the end, and when; or empty
     snapshots : of the layers, cell by cell, at the times asked for; None where none were
+    path : of the rotor all along; None where nobody asked for it
     """
 
     time: Array
@@ -148,6 +150,7 @@ class RunupHistory:
     outcome: Outcome
     reason: str
     snapshots: LayerSnapshots | None = None
+    path: RotorPath | None = None
 
     @property
     def converged(self) -> bool:
@@ -180,6 +183,7 @@ def run_up(
     progress: Callable[[float], None] | None = None,
     model: RunupModel = couple,
     snapshots: ArrayLike = (),
+    follow: bool = False,
 ) -> RunupHistory:
     """Run a rotor with liquid layers through its speeds; at first liquid and rotor are at rest in the drum.
 
@@ -197,6 +201,7 @@ def run_up(
         at a hundredth of the cost
     snapshots : times at which the layers are kept cell by cell, s, each at the recorded time next to it; they
         change nothing in the run, so that a film needs no second one
+    follow : keep the path of the rotor, which changes nothing in the run either
 
     Returns
     -------
@@ -226,7 +231,9 @@ def run_up(
     share = 0.8 if numerics.companion else 1.0
     wanted = np.asarray(snapshots, dtype=float)
     whole = machine(numerics.cells)
-    history = _march(whole, drive, numerics, lambda part: progress and progress(share * part), wanted)
+    recorder = Recorder(fastest_frequency(system), len(system.coordinates)) if follow else None
+    tell = lambda part: progress and progress(share * part)  # noqa: E731
+    history = _march(whole, drive, numerics, tell, wanted, recorder)
     if not numerics.companion or not history.converged or numerics.cells < 16:
         return history
     cells = numerics.cells // 2
@@ -258,6 +265,7 @@ def _march(
     numerics: RunupNumerics,
     progress: Callable[[float], object],
     snapshots: Array,
+    recorder: Recorder | None = None,
 ) -> RunupHistory:
     """The run itself, sample by sample."""
     time, rate = _times(drive, numerics.samples)
@@ -266,19 +274,23 @@ def _march(
     energy, captured, outcome = machine.energy(), 0.0, Outcome.DONE
     wanted = np.unique([np.abs(time - moment).argmin() for moment in snapshots]).astype(np.intp)
     readings, depths = [machine.read()], [machine.depth()] if 0 in wanted else []
+    if recorder is not None:
+        recorder.begin(machine)
     for k, stop in enumerate(time[1:].tolist()):
         machine.watch()
         try:
             captured += machine.switch()
             fastest = max(machine.spin, highest)
             most = step_budget(stop - machine.time, fastest, numerics.cells, numerics.courant)
-            outcome, brought = _advance(machine, stop, float(rate[k]), numerics.courant, most)
+            outcome, brought = _advance(machine, stop, float(rate[k]), numerics.courant, most, recorder)
             captured += brought
         except KeyboardInterrupt:
             outcome = Outcome.INTERRUPTED
         if outcome is not Outcome.DONE:
             break
         readings.append(machine.read())
+        if recorder is not None:
+            recorder.sample(machine)
         if k + 1 in wanted:
             depths.append(machine.depth())
         if k % 64 == 0:
@@ -303,6 +315,7 @@ def _march(
         outcome=outcome,
         reason="" if outcome is Outcome.DONE else f"{outcome.message} {when}",
         snapshots=kept,
+        path=None if recorder is None else recorder.path(),
     )
 
 
@@ -316,12 +329,14 @@ def _highest(drive: Drive) -> float:
 
 
 def _advance(
-    machine: RunupMachine, stop: float, rate: float, courant: float, most: int
+    machine: RunupMachine, stop: float, rate: float, courant: float, most: int, recorder: Recorder | None
 ) -> tuple[Outcome, float]:
     """Advance to a time, letting liquid fall where gravity has won; the energy that this brought in, J."""
     brought = 0.0
     while True:
         outcome = machine.advance(stop, rate, courant, most)
+        if recorder is not None:
+            recorder.steps(machine)
         fallen = machine.fall(outcome)
         if fallen is None:
             return outcome, brought

@@ -11,7 +11,7 @@ from solvers.rotor.loads.machine import LoadedMachine, Loads
 
 ANGLES = 180  # of a turn at which sizes are looked at: a maximum of a sine is within 1.6e-4 of its size
 _AT_ONCE = 200  # speeds
-_LEAST = ("clearance", "floor_force_least", "lift_off", "slip", "walking")
+LEAST = ("clearance", "floor_force_least", "lift_off", "slip", "walking")
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ def _without(found: Extremes, known: Flags, endless: Flags) -> Extremes:
     values = {}
     for name in Extremes.__dataclass_fields__:
         value = getattr(found, name)
-        worst = -np.inf if name in _LEAST else np.inf
+        worst = -np.inf if name in LEAST else np.inf
         shape = (-1, *[1] * (value.ndim - 1))
         unknown, without = ~known.reshape(shape), endless.reshape(shape) & ~np.isnan(value)
         values[name] = np.where(without, worst, np.where(unknown, np.nan, value))

@@ -55,7 +55,7 @@ def _moving(seed: int, n: int, count: int = 7) -> np.ndarray:
 
 
 @kills(f"{LOADS}.turn:turn_extremes", "(1j * spin * turned).real", "(-1j * turned).real")
-@kills(f"{LOADS}.frame:holders_of", "s.damping * across", "0.0 * across")
+@kills(f"{LOADS}.frame:holders_of", "rotor.damping * across", "0.0 * across")
 @kills(f"{LOADS}.machine:LoadedMachine.holding", "rate @ (holder.damping", "0.5 * rate @ (holder.damping")
 def test_jeffcott_rotor_presses_with_its_turning_force() -> None:
     """|K + i C Omega| |w| up and down around the weight: spring and damper at right angles."""
