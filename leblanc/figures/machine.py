@@ -52,8 +52,7 @@ def machine_figure(loads: MachineLoads, caption: Callable[[str], Caption]) -> Fi
         rows[-1][0].set_xlabel("Time (s)" if loads.in_time else "Speed (rpm)")
         if not loads.in_time:
             add_rate_axis(rows[0][0])
-        span = "since the sample before" if loads.in_time else "over a turn"
-        text = f"Least clearance, largest force under each foot (thin: at rest) and least margin {span}."
+        text = "Least clearance, largest force under each foot (thin: at rest) and least margin over a turn."
         frame = OVER_TIME if loads.in_time else FRAME
         lay_out(figure, rows, [height for height, _ in panels], frame, caption(text))
         figure.alt = f"Curves of clearances, floor forces, margin and torque. {verdict(loads)}".strip()
@@ -72,14 +71,15 @@ def _look(k: int) -> dict[str, Any]:
 def _draw_clearances(axes: Axes, loads: MachineLoads, across: Array) -> None:
     known = [k for k, gap in enumerate(loads.gaps) if not math.isnan(gap)]
     for i, k in enumerate(known[:MOST]):
-        axes.plot(across, loads.worst.clearance[:, k] * MM, label=loads.points[k], **_look(i))
+        size = loads.over_turn(loads.worst.clearance[:, k], least=True)
+        axes.plot(across, size * MM, label=loads.points[k], **_look(-1 - i))
     _limit(axes, "touches")
     axes.set_ylabel("Clearance (mm)")
 
 
 def _draw_movements(axes: Axes, loads: MachineLoads, across: Array) -> None:
     for k, name in enumerate(loads.points[:MOST]):
-        axes.plot(across, loads.worst.moved[:, k] * MM, label=name, **_look(k))
+        axes.plot(across, loads.over_turn(loads.worst.moved[:, k]) * MM, label=name, **_look(-1 - k))
     axes.set_ylim(bottom=0.0)
     axes.set_ylabel("Movement (mm)")
 
@@ -87,18 +87,20 @@ def _draw_movements(axes: Axes, loads: MachineLoads, across: Array) -> None:
 def _draw_feet(axes: Axes, loads: MachineLoads, across: Array) -> None:
     for k, rest in enumerate(loads.rest[:MOST].tolist()):
         look = _look(k)
-        axes.plot(across, loads.worst.floor_force[:, k], label=f"foot {k + 1}", **look)
+        axes.plot(across, loads.over_turn(loads.worst.floor_force[:, k]), label=f"foot {k + 1}", **look)
         axes.axhline(rest, color=look["color"], linewidth=0.5, zorder=1)
     axes.set_ylabel("Floor force (N)")
 
 
 def _draw_walking(axes: Axes, loads: MachineLoads, across: Array) -> None:
-    axes.plot(across, 100.0 * loads.worst.walking, color="0.15", linewidth=1.4, label="margin, least")
-    axes.plot(across, 100.0 * loads.worst.lift_off, color="0.45", linewidth=0.9, label="lift-off")
-    axes.plot(
-        *(across, 100.0 * loads.worst.slip),
-        **{"color": "0.45", "linewidth": 0.9, "linestyle": (0, (2, 1.5)), "label": "slip"},
+    w = loads.worst
+    lines: tuple[tuple[str, Array, dict[str, Any]], ...] = (
+        ("lift-off", w.lift_off, {"color": "0.45", "linewidth": 0.9}),
+        ("slip", w.slip, {"color": "0.45", "linewidth": 0.9, "linestyle": (0, (2, 1.5))}),
+        ("margin against walking", w.walking, {"color": "0.15", "linewidth": 1.4}),
     )
+    for label, values, look in lines:
+        axes.plot(across, 100.0 * loads.over_turn(values, least=True), label=label, **look)
     _limit(axes, "walks")
     axes.set_ylim(top=104.0)
     axes.set_ylabel("Margin (%)")

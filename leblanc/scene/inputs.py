@@ -311,6 +311,9 @@ def optimise_rows(wanted: Optimisation) -> list[Row]:
         ("spill", "Inner edge", "may be reached at the working speed"),
         ("operating", "Operating speeds", _span(wanted.operating, ANGULAR_SPEED)),
         ("clearance", "Clearance", _length(wanted.clearance)),
+        ("floor_force", "Largest force under a foot", _plain(wanted.floor_force, " N")),
+        ("walking_margin", "Least margin against walking", _plain(wanted.walking_margin)),
+        ("point_clearance", "Least clearance of a point", _length(wanted.point_clearance)),
         ("balance_quality", "Balance quality", _grade(wanted.balance_quality)),
         ("volumes", "Volumes", _volumes(wanted)),
     ):
@@ -336,6 +339,10 @@ def _speed(value: float | None) -> str:
 
 def _length(value: float | None) -> str:
     return "" if value is None else mm(value)
+
+
+def _plain(value: float | None, unit: str = "") -> str:
+    return "" if value is None else f"{number(value)}{unit}"
 
 
 def _grade(value: float | None) -> str:

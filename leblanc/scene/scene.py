@@ -490,7 +490,8 @@ def optimise_content(wanted: Optimisation) -> dict[str, Any]:
     wanted : of a scene
     """
     duty = [(stage.speed, stage.weight) for stage in wanted.duty]
-    later = {"balance_quality"} if wanted.balance_quality is None else set()
+    later = {"balance_quality", "floor_force", "walking_margin", "point_clearance"}
+    later = {name for name in later if getattr(wanted, name) is None}
     return wanted.model_dump(exclude={"duty", *later}) | {"duty": duty}
 
 

@@ -58,7 +58,7 @@ def loads_over_speed(
     return _loads(
         machine,
         turn_extremes(machine, coordinates, speed),
-        *(speed, np.zeros(0), power / speed, power),
+        *(speed, np.zeros(0), np.zeros(0), power / speed, power),
         np.stack(orbits(machine, coordinates)),
         asked,
     )
@@ -80,7 +80,7 @@ def loads_over_time(scene: Scene, machine: LoadedMachine, history: RunupHistory)
     return _loads(
         machine,
         path_extremes(machine, history.path, h.time, h.captured),
-        *(h.speed, h.time, torque, torque * h.speed),
+        *(h.speed, h.time, h.angle, torque, torque * h.speed),
         np.zeros((2, 0, len(machine.points))),
         np.arange(h.time.size),
     )
@@ -104,6 +104,7 @@ def _loads(
     worst: Extremes,
     speed: Array,
     time: Array,
+    angle: Array,
     torque: Array,
     power: Array,
     orbit: Array,
@@ -114,6 +115,7 @@ def _loads(
     return MachineLoads(
         speed=speed,
         time=time,
+        angle=angle,
         worst=worst,
         rest=np.zeros(0) if cabinet is None else machine.resting.vertical,
         friction=float("nan") if cabinet is None else cabinet.friction,

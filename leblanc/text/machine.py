@@ -43,7 +43,7 @@ def load_rows(loads: MachineLoads) -> list[LoadRow]:
     found = [_clearance(loads, name, worst) for name, worst in loads.clearances.items()]
     if loads.stands:
         walking = loads.walking
-        size = f"{number(100.0 * walking.value)} %" if math.isfinite(walking.value) else NOT_FOUND
+        size = _percent(walking.value) if math.isfinite(walking.value) else NOT_FOUND
         text = "100 % at rest; at 0 a foot slips or lifts off"
         found.append(_row("Margin against walking", walking, size, text, walking.value <= 0.0))
         for k, worst in enumerate(loads.feet):
@@ -98,6 +98,11 @@ def _length(value: float) -> str:
     return with_unit(value, LENGTH) if math.isfinite(value) else _sized(value, "")
 
 
+def _percent(value: float) -> str:
+    size = 100.0 * value
+    return f"{size:.0f} %" if abs(size) >= 10.0 else f"{number(float(f'{size:.2g}'))} %"
+
+
 def _newton(worst: Worst) -> str:
     return _sized(worst.value, "N")
 
@@ -117,7 +122,7 @@ def verdict(loads: MachineLoads) -> str:
     """
     told = []
     if loads.stands and not math.isnan(loads.walking.value):
-        left = f"{number(100.0 * loads.walking.value)} % of its hold left at {in_rpm(loads.walking.speed)}"
+        left = f"{_percent(loads.walking.value)} of its hold left at {in_rpm(loads.walking.speed)}"
         if loads.walking.value <= 0.0:
             told.append(f"The machine walks: a foot slips or lifts off at {in_rpm(loads.walking.speed)}.")
         elif loads.walking.value < LITTLE:

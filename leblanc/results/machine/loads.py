@@ -45,7 +45,7 @@ class MachineLoads:
     Parameters
     ----------
     speed : spin speed, rad/s, shape (k,)
-    time : s, shape (k,); empty over speed
+    time, angle : s, and rad by which the drum has turned, shape (k,); empty over speed
     worst : of each turn or interval
     rest : force under each foot at rest, N, shape (f,)
     friction : coefficient of the feet; nan without a cabinet
@@ -58,6 +58,7 @@ class MachineLoads:
 
     speed: Array
     time: Array
+    angle: Array
     worst: Extremes
     rest: Array
     friction: float
@@ -79,6 +80,26 @@ class MachineLoads:
     def in_time(self) -> bool:
         """Over time, not over speed."""
         return self.time.size > 0
+
+    def over_turn(self, values: Array, least: bool = False) -> Array:
+        """The largest, or the least, of some values over the turn that ends at each time, as figures draw it.
+
+        Parameters
+        ----------
+        values : shape (k,)
+        least : the least of them
+
+        Returns
+        -------
+        shape (k,); over speed the values themselves
+        """
+        if not self.in_time:
+            return values
+        begins = np.searchsorted(self.angle, self.angle - 2.0 * math.pi)
+        worst = np.fmin if least else np.fmax
+        # Pairs of begin and end as `reduceat` takes them; every second result is that of a turn.
+        pairs = np.stack([begins, np.arange(1, begins.size + 1)], axis=1).reshape(-1)
+        return np.asarray(worst.reduceat(np.append(values, np.nan), pairs)[::2])
 
     def least(self, values: Array) -> Worst:
         """The least of some values, shape (k,)."""
