@@ -23,7 +23,8 @@ def optimise(
     objective: Annotated[
         str | None,
         typer.Option(
-            help="working_speed, peak, mean, least_mass or robust [default: the scene's, or working_speed]."
+            help="working_speed, peak, mean, least_mass, robust or floor_force [default: the scene's, or "
+            "working_speed]."
         ),
     ] = None,
     deflection: Annotated[

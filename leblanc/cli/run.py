@@ -56,6 +56,7 @@ def run(
     from leblanc.report.page import about, command_line
     from leblanc.report.run import write_run_report
     from leblanc.results.netcdf import write_netcdf
+    from leblanc.text.machine import load_table
     from leblanc.text.run import amplitude_place, comparisons, limit_rows, unanswered
 
     write_netcdf(result.named_arrays(), folder / "response.nc")
@@ -74,6 +75,10 @@ def run(
         print_table(rows, ("", "with liquid", "without", "ratio"), right=True)
         if place := amplitude_place(result):
             print(f"Amplitudes are those {place}.")
+        if result.loads is not None:
+            head, lines = load_table(result.loads)
+            print()
+            print_table(lines, head)
         print("\nLimits of the answer")
         print_table(limit_rows(result), indent=2)
         print(f"Read {folder / 'summary.html'}; the data are in {folder / 'response.nc'}")

@@ -97,11 +97,16 @@ def _film(result: RunupResult, path: Path) -> None:
 
 def _tell(result: RunupResult, folder: Path) -> None:
     """The run as text."""
+    from leblanc.text.machine import load_table
     from leblanc.text.runup import answer_rows, passage_rows
 
     print_table([*answer_rows(result), *passage_rows(result)])
     if result.plane:
         print(f"Amplitudes are those {result.plane}.")
+    if result.loads is not None:
+        head, lines = load_table(result.loads)
+        print()
+        print_table(lines, head)
     for note in result.notes:
         print(f"note: {note.text}")
     print(f"Read {folder / 'runup.html'}; the data are in {folder / 'runup.nc'}")

@@ -37,6 +37,7 @@ from leblanc.figures.drawing.page import (
     style,
     zero_of,
 )
+from leblanc.figures.machine import machine_figure
 from leblanc.results.notes.response import plane_label
 from leblanc.results.response import RunResult
 from leblanc.text.run import alts, amplitude_place
@@ -97,7 +98,15 @@ def write_figures(result: RunResult, directory: Path) -> tuple[FigureFiles, ...]
     ]
     if result.motion is not None:
         figures.append(("campbell", "Natural frequencies over speed", campbell_figure))
+    if result.loads is not None:
+        figures.append(("machine", "Clearances and forces on the floor", loads_figure))
     return tuple(save(draw(result), directory, name, title) for name, title, draw in figures)
+
+
+def loads_figure(result: RunResult) -> Figure:
+    """Clearances, forces under the feet, margin against walking and torque over speed."""
+    assert result.loads is not None
+    return machine_figure(result.loads, lambda text: caption(result, text))
 
 
 def amplitude_figure(result: RunResult) -> Figure:

@@ -23,6 +23,7 @@ from leblanc.figures.drawing.page import (
     save,
     style,
 )
+from leblanc.figures.machine import machine_figure
 from leblanc.figures.response import DRY, SHADE, UNSTABLE, WET
 from leblanc.results.base import one_line, percent
 from leblanc.results.notes.response import plane_label
@@ -59,14 +60,20 @@ def write_figures(result: RunupResult, directory: Path) -> tuple[FigureFiles, ..
     result : the run-up
     directory : where the files go; made if it is missing
     """
-    return tuple(
-        save(draw(result), directory, name, title)
-        for name, title, draw in (
-            ("runup_speed", "Amplitude over speed on the run-up", speed_figure),
-            ("runup_time", "Run-up over time", time_figure),
-            ("runup_energy", "Where the energy of the run-up went", energy_figure),
-        )
-    )
+    figures = [
+        ("runup_speed", "Amplitude over speed on the run-up", speed_figure),
+        ("runup_time", "Run-up over time", time_figure),
+        ("runup_energy", "Where the energy of the run-up went", energy_figure),
+    ]
+    if result.loads is not None:
+        figures.append(("runup_machine", "Clearances and forces on the floor", loads_figure))
+    return tuple(save(draw(result), directory, name, title) for name, title, draw in figures)
+
+
+def loads_figure(result: RunupResult) -> Figure:
+    """Clearances, forces under the feet, margin against walking and torque over time."""
+    assert result.loads is not None
+    return machine_figure(result.loads, lambda text: caption(result, text))
 
 
 def speed_figure(result: RunupResult) -> Figure:

@@ -8,10 +8,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from leblanc.results.base import one_line
+from leblanc.results.machine.loads import MachineLoads
 from leblanc.scene.inputs import inputs_of
 from leblanc.scene.rows import Value
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import Optimisation
+from leblanc.text.machine import load_rows, verdict
 
 if TYPE_CHECKING:
     from leblanc.figures.drawing.page import FigureFiles
@@ -68,6 +70,27 @@ def table(
     """
     cells = tuple(tuple(cell if isinstance(cell, Cell) else Cell(cell) for cell in row) for row in rows)
     return Table(title, tuple(head), cells, sentences)
+
+
+def load_part(loads: MachineLoads | None) -> Table | None:
+    """What a machine is judged by, as one table; None where the scene asks for nothing.
+
+    Parameters
+    ----------
+    loads : of a machine
+    """
+    if loads is None:
+        return None
+    time = ("after (s)",) if loads.in_time else ()
+    rows = [
+        (
+            *(row.label, Cell(row.size, warning=row.failed), row.speed),
+            *((row.time,) if time else ()),
+            row.remark,
+        )
+        for row in load_rows(loads)
+    ]
+    return table(verdict(loads), ("Machine", "worst", "at (rpm)", *time, ""), rows)
 
 
 _CLAUSES = 2  # of the sentence of doubt

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.report.page import About, models, notes, why, write_page
-from leblanc.report.parts import Cell, Table, doubt, picture, table
+from leblanc.report.parts import Cell, Table, doubt, load_part, picture, table
 from leblanc.results.exciter import ExciterResult
 from leblanc.results.notes.response import OF_MODELS, RunCode
 from leblanc.results.response import RunResult
@@ -70,6 +70,7 @@ def write_run_report(result: RunResult, what: About, figures: Sequence[FigureFil
             ("", "with liquid", "without", "ratio"),
             [(row.label, row.wet, row.dry, row.ratio) for row in comparisons(result)],
         ),
+        "loads": load_part(result.loads),
         "facts": table("", (), facts(result)),
         "checks": response_checks(result),
         "pictures": [picture(files) for files in shown],

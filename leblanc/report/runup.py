@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.report.page import About, models, notes, write_page
-from leblanc.report.parts import Cell, Table, doubt, picture, table
+from leblanc.report.parts import Cell, Table, doubt, load_part, picture, table
 from leblanc.results.base import one_line, percent
 from leblanc.results.notes.runup import CLOSURE, ERROR, IN_TABLES
 from leblanc.results.response import peak
@@ -235,6 +235,7 @@ def write_runup_report(result: RunupResult, what: About, figures: Sequence[Figur
         "machine": machine,
         "moments": moments(result),
         "passages": passages(result),
+        "loads": load_part(result.loads),
         "facts": table("", (), facts(result)),
         "energy": energy(result),
         "checks": checks(result),

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from leblanc.results.base import FilledChamber, Note, Result, attributes, carried, one_line, texts
 from leblanc.results.choice import ModelSpan
+from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.motion.encoding import finite, pair
 from leblanc.results.motion.held import HELD_MODEL, MOTIONS, Held, numbered
 from leblanc.results.motion.self_excited import SelfExcited
@@ -106,6 +107,7 @@ class RunResult(Result):
         motion is; shape (n,); None where no mass spins
     axial_gravity : gravity along the axis, m/s^2
     held : of speeds at which the motion was held in time; None where it was at none
+    loads : forces and clearances at the speeds of `curve`; None where the scene asks for none
 
     Raises
     ------
@@ -145,6 +147,7 @@ class RunResult(Result):
     balance_quality_dry: Array | None = None
     axial_gravity: float = 0.0
     held: Held | None = None
+    loads: MachineLoads | None = None
 
     def __post_init__(self) -> None:
         if self.axis not in ("horizontal", "vertical"):
@@ -387,6 +390,7 @@ class RunResult(Result):
             **({} if self.whirl is None else self.whirl.to_json()),
             **_refined_json(self.refined),
             **({} if self.held is None else self.held.to_json()),
+            **({} if self.loads is None else self.loads.to_json()),
         }
 
     def named_arrays(self) -> NamedArrays:
@@ -475,6 +479,7 @@ def _variables(result: RunResult) -> dict[str, Variable]:
         **({} if result.motion is None else result.motion.variables()),
         **({} if result.whirl is None else result.whirl.variables()),
         **({} if result.held is None else result.held.variables()),
+        **({} if result.loads is None else result.loads.variables()),
     }
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from fluid.friction.laws import Friction
 from leblanc.results.base import FilledChamber, Note, Result, attributes, one_line, texts
+from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.motion.passages import Passage, falling, pieces
 from leblanc.results.netcdf import NamedArrays, flags, variable
 from leblanc.results.notes.response import plane_words
@@ -114,6 +115,7 @@ class RunupResult(Result):
     spread : over an ensemble of runs that rounding tells apart; None if it was not asked for
     passages : the steps of a programme that were reached; none of a run-up
     unbalance_left : sizes of all unbalances over what they were at first, shape (k,); None where none leaves
+    loads : forces and clearances of each interval; None where the scene asks for none
 
     Examples
     --------
@@ -149,6 +151,7 @@ class RunupResult(Result):
     frames: RunupFrames | None = None
     history_dry: RunupHistory | None = None
     spread: Spread | None = None
+    loads: MachineLoads | None = None
     bore: str = "none"
     passages: tuple[Passage, ...] = ()
     unbalance_left: Array | None = None
@@ -420,6 +423,7 @@ class RunupResult(Result):
             **({} if self.unbalance_left is None else {"unbalance_left": self.unbalance_left}),
             "energy": self._energy(),
             "notes": texts(self.notes),
+            **({} if self.loads is None else self.loads.to_json()),
         }
 
     def _dry(self, name: str) -> Array:
@@ -518,6 +522,8 @@ def _columns(result: RunupResult) -> dict[str, Any]:
     if result.unbalance_left is not None:
         words = "sizes of all unbalances over what they were at first"
         columns["unbalance_left"] = variable(over, result.unbalance_left, "1", words)
+    if result.loads is not None:
+        columns |= result.loads.variables()
     if result.spread is not None:
         for part in ("min", "max", "median"):
             name, words = f"amplitude_{part}", f"amplitude, {part} over runs that rounding tells apart"

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from fluid.fill import Fill
 from fluid.liquid import KNOWN_LIQUIDS, Liquid
 from fluid.temperature import Expansion, GivenLaw, PropertyLaw, Tabulated, Vogel, Walther
+from leblanc.scene.cabinet import point_table
 from leblanc.scene.rotors import JeffcottRotor
 from leblanc.scene.rows import Row, RowTable, Value, degrees, mm, row, rpm
 from leblanc.scene.scene import Model, Scene
@@ -62,6 +63,7 @@ def inputs_of(scene: Scene, optimise: Optimisation | None = None) -> SceneInputs
     """
     rows = [
         *scene.rotor.rows(),
+        *(() if scene.cabinet is None else scene.cabinet.rows()),
         row("Gravity", f"{number(scene.gravity)} m/s²", "gravity"),
         *_study(scene),
         *(() if scene.runup is None else _runup(scene.runup)),
@@ -75,13 +77,13 @@ def inputs_of(scene: Scene, optimise: Optimisation | None = None) -> SceneInputs
         marked += _optimise(wanted, scene)
     tables = [
         RowTable(table.head, tuple(tuple(v.marked(scene.assumed) for v in line) for line in table.rows))
-        for table in (*scene.rotor.tables(), *_chambers(scene))
+        for table in (*scene.rotor.tables(), *_around(scene), *_chambers(scene))
     ]
     return SceneInputs(tuple(marked), tuple(tables))
 
 
 def input_rows(
-    scene: Scene, roots: tuple[str, ...] = ("rotor", "chambers", "speeds")
+    scene: Scene, roots: tuple[str, ...] = ("rotor", "cabinet", "points", "chambers", "speeds")
 ) -> tuple[tuple[str, str, str], ...]:
     """Label, value with its unit and field path of each value of some tables, as data files keep them.
 
@@ -113,7 +115,17 @@ def runup_rows(scene: Scene, cells: int, dispersion: bool) -> tuple[tuple[str, s
     plan, name = scene.speed_plan.altered(cells=cells, dispersion=dispersion), "runup"
     if scene.programme is not None:
         name = "programme"
-    return input_rows(scene.altered(**{name: plan}), ("rotor", name, "model.friction", "chambers"))
+    return input_rows(
+        scene.altered(**{name: plan}), ("rotor", "cabinet", "points", name, "model.friction", "chambers")
+    )
+
+
+def _around(scene: Scene) -> Iterator[RowTable]:
+    """Feet of the cabinet and named points."""
+    if scene.cabinet is not None:
+        yield from scene.cabinet.tables()
+    if scene.points:
+        yield point_table(scene.points)
 
 
 def _chambers(scene: Scene) -> Iterator[RowTable]:
@@ -305,6 +317,9 @@ def optimise_rows(wanted: Optimisation) -> list[Row]:
         ("spill", "Inner edge", "may be reached at the working speed"),
         ("operating", "Operating speeds", _span(wanted.operating, ANGULAR_SPEED)),
         ("clearance", "Clearance", _length(wanted.clearance)),
+        ("floor_force", "Largest force under a foot", _plain(wanted.floor_force, " N")),
+        ("walking_margin", "Least margin against walking", _plain(wanted.walking_margin)),
+        ("point_clearance", "Least clearance of a point", _length(wanted.point_clearance)),
         ("balance_quality", "Balance quality", _grade(wanted.balance_quality)),
         ("volumes", "Volumes", _volumes(wanted)),
     ):
@@ -330,6 +345,10 @@ def _speed(value: float | None) -> str:
 
 def _length(value: float | None) -> str:
     return "" if value is None else mm(value)
+
+
+def _plain(value: float | None, unit: str = "") -> str:
+    return "" if value is None else f"{number(value)}{unit}"
 
 
 def _grade(value: float | None) -> str:

@@ -316,6 +316,12 @@ class Damper(_Mounted):
     )
 
 
+class Bearing(Part):
+    """A bearing of the drum in its tub."""
+
+    position: Position = Field(description="along the axis: y, from the tub's centre of mass")
+
+
 class TubRotor(Part):
     """A suspended tub with its drum, which spins about y.
 
@@ -352,14 +358,21 @@ class TubRotor(Part):
     dampers: Annotated[tuple[Damper, ...], entries(0, MAX_PARTS, "tables headed [[rotor.dampers]]")] = Field(
         (), description="between the tub and the ground, one table each"
     )
+    bearings: Annotated[tuple[Bearing, ...], entries(2, 2, "tables headed [[rotor.bearings]]")] = Field(
+        (), description="of the drum in the tub, two of them; their forces are not told if left out"
+    )
     axis: Axis = Field("horizontal", description=_AXIS)
 
     @classmethod
     def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
-        """There is an unbalance, in one place or in several."""
+        """There is an unbalance, in one place or in several; two bearings are at two places."""
         if "unbalance" not in given and "loads" not in given:
             text = 'given: an unbalance such as "0.6 kg*mm" (a plain number is in kg*m)'
             yield Conflict(("unbalance",), f"{text}, or tables headed [[rotor.loads]]")
+
+        places = [bearing.position for bearing in values.get("bearings", ())]
+        if len(places) == 2 and places[0] == places[1]:
+            yield Conflict(("bearings", 1, "position"), "another place than that of the first bearing")
 
     @property
     def has_own_unbalance(self) -> bool:
@@ -428,6 +441,12 @@ class TubRotor(Part):
                 found.append(RowTable(head, lines))
         if self.loads:
             found.append(unbalance_table("Load", "rotor.loads", self.loads))
+        if self.bearings:
+            places = tuple(
+                (Value(f"{k + 1}"), Value(number(part.position * MM), (f"rotor.bearings.{k}.position",)))
+                for k, part in enumerate(self.bearings)
+            )
+            found.append(RowTable(("Bearing", "at y (mm)"), places))
         return found
 
 

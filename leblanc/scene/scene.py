@@ -15,6 +15,7 @@ from pydantic import Field, PlainValidator, ValidationError
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
 from leblanc import units
+from leblanc.scene.cabinet import MAX_POINTS, Cabinet, Point, cabinet_conflicts
 from leblanc.scene.chambers import Chamber
 from leblanc.scene.programme.table import Programme as Programme
 from leblanc.scene.rotors import AnyRotor, polar_inertia_of, sheds_of
@@ -176,6 +177,12 @@ class Scene(Part):
     chambers: Annotated[tuple[Chamber, ...], entries(0, MAX_CHAMBERS, "tables headed [[chambers]]")] = Field(
         (), description="each with its liquid; at least one with a jeffcott"
     )
+    cabinet: Cabinet | None = Field(
+        None, description="that stands on the floor around the rotor; forces under its feet are told if given"
+    )
+    points: Annotated[tuple[Point, ...], entries(0, MAX_POINTS, "tables headed [[points]]")] = Field(
+        (), description="named points whose orbits and clearances are told, one table each"
+    )
     speeds: Speeds = Field(description="at which the machine is studied")
     model: Model = Field(Model(), description="of the liquid")
     runup: Runup | None = Field(None, description="run-up for `leblanc runup`")
@@ -192,6 +199,7 @@ class Scene(Part):
         if values.get("chambers") == () and _kind(given.get("rotor")) in (None, "jeffcott"):
             missing = "chambers" not in given
             yield Conflict(("chambers",), f"{'given: ' if missing else ''}{_SOME_CHAMBERS.allowed}")
+        yield from cabinet_conflicts(values, _kind(given.get("rotor")))
         programme, rotor = values.get("programme"), values.get("rotor")
         if programme is not None:
             if given.get("runup") is not None:
@@ -273,6 +281,7 @@ class Scene(Part):
         # Results on disk are known by it: a scene without a part that came later keeps the one it had.
         if self.programme is not None:
             content["programme"] = self.programme.content()
+        content |= machine_content(self)
         if self.optimise is not None:
             content["optimise"] = optimise_content(self.optimise)
         return fingerprint(content)
@@ -486,6 +495,22 @@ def runup_content(plan: Runup) -> dict[str, Any]:
     return plan.model_dump(exclude={key for key, value in usual.items() if getattr(plan, key) == value})
 
 
+def machine_content(scene: Scene) -> dict[str, Any]:
+    """Cabinet, points and bearings, as far as there are any.
+
+    Parameters
+    ----------
+    scene : the machine
+    """
+    bearings = getattr(scene.rotor, "bearings", ())
+    parts = {
+        "cabinet": scene.cabinet and scene.cabinet.model_dump(),
+        "points": [point.model_dump() for point in scene.points],
+        "bearings": [bearing.position for bearing in bearings],
+    }
+    return {name: part for name, part in parts.items() if part}
+
+
 def optimise_content(wanted: Optimisation) -> dict[str, Any]:
     """What the liquid is chosen for.
 
@@ -494,7 +519,8 @@ def optimise_content(wanted: Optimisation) -> dict[str, Any]:
     wanted : of a scene
     """
     duty = [(stage.speed, stage.weight) for stage in wanted.duty]
-    later = {"balance_quality"} if wanted.balance_quality is None else set()
+    later = {"balance_quality", "floor_force", "walking_margin", "point_clearance"}
+    later = {name for name in later if getattr(wanted, name) is None}
     return wanted.model_dump(exclude={"duty", *later}) | {"duty": duty}
 
 

@@ -45,7 +45,7 @@ class GradeRule:
             raise Refused(self.allowed) from refused
 
 
-OBJECTIVES = ("working_speed", "peak", "mean", "least_mass", "robust")
+OBJECTIVES = ("working_speed", "peak", "mean", "least_mass", "robust", "floor_force")
 MAX_DUTY = 1000
 MAX_SAMPLES = 100_000
 
@@ -75,7 +75,8 @@ class Optimisation(Part):
     objective: Annotated[str, one_of(*OBJECTIVES)] = Field(
         "working_speed",
         description="what is made least: the amplitude at the working speed, its peak or its mean over the "
-        "duty cycle, the mass of liquid that keeps a limit, or the amplitude over ranges (robust)",
+        "duty cycle, the mass of liquid that keeps a limit, the amplitude over ranges (robust), or the "
+        "largest force under a foot of the cabinet at the operating speeds (floor_force)",
     )
     working_speed: Annotated[float | None, SPEED] = Field(
         None, description="the last of the scene's speeds if left out"
@@ -138,6 +139,19 @@ class Optimisation(Part):
     )
     clearance: Annotated[float | None, _LENGTH] = Field(
         None, description="largest amplitude at the operating speeds; no limit if left out"
+    )
+    floor_force: Annotated[float | None, quantity(units.FORCE, 1e-9, 1e15)] = Field(
+        None,
+        description="largest force under any foot at the operating speeds; no limit if left out",
+    )
+    walking_margin: Annotated[float | None, quantity(units.NUMBER, 0.0, 1.0)] = Field(
+        None,
+        description="least margin against walking at the operating speeds: 1 at rest, 0 where a foot slips "
+        "or lifts off; no limit if left out",
+    )
+    point_clearance: Annotated[float | None, quantity(units.LENGTH, 0.0, 1e3)] = Field(
+        None,
+        description="least clearance of every point with a gap at the operating speeds; no limit if left out",
     )
     balance_quality: Annotated[float | None, PlainValidator(GradeRule())] = Field(
         None,

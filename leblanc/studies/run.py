@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from fluid.fill import Fill
 from leblanc.results.base import FilledChamber, Note
 from leblanc.results.choice import Choice, model_spans
+from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.motion.held import Held
 from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.results.motion.tilting import Motion, RestMode
@@ -20,6 +21,7 @@ from leblanc.scene.inputs import input_rows
 from leblanc.scene.rotors import sheds_of
 from leblanc.scene.scene import Scene, TubRotor
 from leblanc.studies.held.holding import HERE, Began, Holding
+from leblanc.studies.machine import loaded_machine, loads_over_speed
 from leblanc.studies.models.choose import (
     Prepared,
     by_elements,
@@ -278,8 +280,20 @@ def run_scene(
         refined=refined,
         axial_gravity=machine.axial_gravity,
         held=held,
+        loads=_loads(scene, answer, refined),
         **_balance(machine, answer),
     )
+
+
+def _loads(scene: Scene, answer: Response, refined: Response) -> MachineLoads | None:
+    """Forces and clearances at the speeds of the scene and between them; None where it asks for none."""
+    machine = loaded_machine(scene)
+    if machine is None:
+        return None
+    every = by_speed([answer, refined])
+    order = np.argsort(np.concatenate((answer.speed, refined.speed)), kind="stable")
+    asked = np.argsort(order, kind="stable")[: answer.speed.size]
+    return loads_over_speed(machine, every.speed, every.coordinates, asked)
 
 
 def _balance(machine: Prepared, answer: Response) -> dict[str, Array]:

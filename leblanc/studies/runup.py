@@ -22,6 +22,7 @@ from leblanc.scene.inputs import runup_rows
 from leblanc.scene.programme.steps import Step
 from leblanc.scene.rotors import AnyRotor, polar_inertia_of, sheds_of, unbalances_of, with_unbalances
 from leblanc.scene.scene import JeffcottRotor, Programme, Runup, Scene, dry_rotor, jeffcott, require_clear
+from leblanc.studies.machine import loaded_machine, loads_over_time
 from leblanc.studies.models.choose import across_gravity as across_gravity  # of a run-up, asked for with it
 from leblanc.studies.models.choose import axial_gravity, is_cut, prepare
 from leblanc.studies.models.liquid import RUNUP_MODELS, runup_model
@@ -202,6 +203,7 @@ def chosen_run(
     numerics: RunupNumerics,
     progress: Progress = None,
     snapshots: ArrayLike = (),
+    follow: bool = False,
 ) -> RunupChoice:
     """Run a scene up with the cheapest liquid model whose estimated error is within its tolerance.
 
@@ -212,7 +214,7 @@ def chosen_run(
     Parameters
     ----------
     scene : the machine
-    drive, gravity, numerics, progress, snapshots : as in `solvers.runup.runup.run_up`
+    drive, gravity, numerics, progress, snapshots, follow : as in `solvers.runup.runup.run_up`
 
     Raises
     ------
@@ -223,7 +225,8 @@ def chosen_run(
 
     def run(name: str, resolved: RunupNumerics, report: Progress) -> RunupHistory:
         model = runup_model(name)
-        return run_up(system, scene.fills, drive, friction, gravity, resolved, report, model, snapshots)
+        given = system, scene.fills, drive, friction, gravity, resolved, report, model, snapshots, follow
+        return run_up(*given)
 
     if scene.model.liquid == "long_wave":
         history = run(model, numerics, progress)
@@ -333,7 +336,8 @@ def runup_scene(
     share = 1.0 / (1.0 + 0.8 * ensemble / workers)
     first = None if progress is None else lambda part: progress(share * part)
     tasks = ensemble_tasks(scene, drive, gravity, numerics, ensemble, seed)
-    taken = chosen_run(scene, drive, gravity, numerics, first, times)
+    machine = loaded_machine(scene)
+    taken = chosen_run(scene, drive, gravity, numerics, first, times, machine is not None)
     history = taken.history
     rest = None if progress is None else lambda part: progress(share + (1.0 - share) * part)
     spread = rounding_spread(taken, tasks, seed, workers, rest)
@@ -378,6 +382,7 @@ def runup_scene(
         bore=plan.bore,
         passages=passages,
         unbalance_left=left,
+        loads=None if machine is None else loads_over_time(scene, machine, history),
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -40,10 +40,14 @@ class LinearCoupled(CoupledRotor):
     ----------
     cells : the rotor turns in a step by a cell times the Courant number
     machine : matrices, state and scratch of the steps
+    rows : above 0 where the steps are written down
+    kept : those written down since `followed` was asked last
     """
 
     cells: int
     machine: LinearMachine
+    rows: int = 0
+    kept: list[Array] = field(default_factory=list)
 
     @property
     def gravity(self) -> Array:
@@ -89,11 +93,25 @@ class LinearCoupled(CoupledRotor):
 
         self.shaft.rate = rate
         angle_step, outcome = courant * (2.0 * math.pi / self.cells), Outcome.RAN_OUT
-        for steps in slices(most, self.machine.left.size):
+        # A step at a time where each is written down: it costs little beside what a step of waves does.
+        for steps in slices(most, self.machine.left.size, 1 if self.rows else 0):
             outcome = Outcome(compiled(advance_linear, self.machine, stop, angle_step, steps))
+            if self.rows:
+                place = self.machine.place[: len(self.system.coordinates)]
+                self.kept.append(np.array([self.time, self.shaft.angle, *place]))
             if outcome is not Outcome.RAN_OUT:
                 break
         return outcome
+
+    def follow(self, rows: int) -> None:
+        """See `solvers.runup.long_wave.Coupled.follow`."""
+        self.rows, self.kept = rows, []
+
+    def followed(self) -> Array:
+        """Time, angle and coordinates of the steps since this was asked last, shape (k, 2 + n)."""
+        found = np.array(self.kept).reshape(-1, 2 + len(self.system.coordinates))
+        self.kept = []
+        return found
 
     def mass_error(self) -> float:
         """None: the layer keeps its mass by construction."""

@@ -250,6 +250,12 @@ class RunupMachine(Protocol):
     def depth(self) -> Array:
         """Depth of the layers cell by cell, m, nan where the liquid is none, shape (l, c)."""
 
+    def follow(self, rows: int) -> None:
+        """Write the steps down from here on, so many between two looks; 0 writes none."""
+
+    def followed(self) -> Array:
+        """Time, angle and coordinates of the steps since this was asked last, shape (k, 2 + n or more)."""
+
 
 class RunupModel(Protocol):
     """A liquid model through time: makes a rotor without deflection with its liquid at rest in the drum."""

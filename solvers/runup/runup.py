@@ -30,6 +30,7 @@ from solvers.runup.machine import (
     RunupModel,
     Transfer,
 )
+from solvers.runup.path import Recorder, RotorPath, fastest_frequency
 from solvers.runup.shedding import Shedding
 from solvers.slices import step_budget
 
@@ -139,6 +140,7 @@ class RunupHistory:
     handover : how liquid at the bottom of a lying chamber becomes a layer
     stage : of its programme in which each time was reached, from 0, shape (k,)
     left : share that is left of each part of the unbalance that leaves, shape (k, s)
+    path : of the rotor all along; None where nobody asked for it
     """
 
     time: Array
@@ -168,6 +170,7 @@ class RunupHistory:
     handover: Handover = Handover.RIDING
     stage: Index | None = None
     left: Array | None = None
+    path: RotorPath | None = None
 
     @property
     def converged(self) -> bool:
@@ -200,6 +203,7 @@ def run_up(
     progress: Callable[[float], None] | None = None,
     model: RunupModel = couple,
     snapshots: ArrayLike = (),
+    follow: bool = False,
 ) -> RunupHistory:
     """Run a rotor with liquid layers through its speeds; at first liquid and rotor are at rest in the drum.
 
@@ -217,6 +221,7 @@ def run_up(
         at a hundredth of the cost
     snapshots : times at which the layers are kept cell by cell, s, each at the recorded time next to it; they
         change nothing in the run, so that a film needs no second one
+    follow : keep the path of the rotor, which changes nothing in the run either
 
     Returns
     -------
@@ -246,9 +251,9 @@ def run_up(
     share = 0.8 if numerics.companion else 1.0
     wanted = np.asarray(snapshots, dtype=float)
     whole = machine(numerics.cells)
-    history = _march(
-        whole, Shedding(system), drive, numerics, lambda part: progress and progress(share * part), wanted
-    )
+    recorder = Recorder(fastest_frequency(system), len(system.coordinates)) if follow else None
+    tell = lambda part: progress and progress(share * part)  # noqa: E731
+    history = _march(whole, Shedding(system), drive, numerics, tell, wanted, recorder)
     if not numerics.companion or not history.converged or numerics.cells < 16:
         return history
     cells = numerics.cells // 2
@@ -272,6 +277,7 @@ def _march(
     numerics: RunupNumerics,
     progress: Callable[[float], object],
     snapshots: Array,
+    recorder: Recorder | None = None,
 ) -> RunupHistory:
     """The run itself, sample by sample."""
     top, last = highest(drive), float(drive.corners()[0, -1])
@@ -280,6 +286,8 @@ def _march(
     if 0.0 not in wanted:
         kept, depths = [], []
     readings, stages, left = [machine.read()], [0], [shedding.left]
+    if recorder is not None:
+        recorder.begin(machine)
     for leg in legs(drive, machine, numerics.samples):
         machine.watch()
         try:
@@ -287,7 +295,7 @@ def _march(
             fastest = max(machine.spin, top)
             most = step_budget(leg.stop - machine.time, fastest, numerics.cells, numerics.courant)
             for stop in shedding.pieces(machine, leg.stop):
-                outcome, brought = _advance(machine, stop, leg.rate, numerics.courant, most)
+                outcome, brought = _advance(machine, stop, leg.rate, numerics.courant, most, recorder)
                 captured += brought
                 if outcome is not Outcome.DONE:
                     break
@@ -298,6 +306,8 @@ def _march(
         readings.append(machine.read())
         stages.append(leg.stage)
         left.append(shedding.left)
+        if recorder is not None:
+            recorder.sample(machine)
         if leg.stop in wanted:
             kept.append(len(readings) - 1)
             depths.append(machine.depth())
@@ -327,6 +337,7 @@ def _march(
         left=np.array(left),
         transfers=tuple(machine.transfers),
         handover=numerics.handover,
+        path=None if recorder is None else recorder.path(),
     )
 
 
@@ -334,12 +345,14 @@ _WORKS = ("unbalance", "drive", "gravity", "support", "friction", "bores", "prof
 
 
 def _advance(
-    machine: RunupMachine, stop: float, rate: float, courant: float, most: int
+    machine: RunupMachine, stop: float, rate: float, courant: float, most: int, recorder: Recorder | None
 ) -> tuple[Outcome, float]:
     """Advance to a time, letting liquid fall where gravity has won; the energy that this brought in, J."""
     brought = 0.0
     while True:
         outcome = machine.advance(stop, rate, courant, most)
+        if recorder is not None:
+            recorder.steps(machine)
         fallen = machine.fall(outcome)
         if fallen is None:
             return outcome, brought

@@ -16,7 +16,7 @@ from solvers.rotor.vibration import orbit
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.peaks import highest, seeds
 from solvers.synchronous.resonances import planar_tops
-from solvers.synchronous.response import by_speed, fill_responses, machine_responses
+from solvers.synchronous.response import Response, by_speed, fill_responses, machine_responses, response
 
 AT_ONCE = 4000  # pairs; more at once would only take memory
 FEW = 24  # speeds from which the peak of a rotor that tilts is refined
@@ -142,6 +142,27 @@ class FilledMachine:
         between = responses_between(machines, answers, dry=False)
         found = [by_speed(pair) for pair in zip(answers, between, strict=True)]
         return np.array([highest(own.speed, own.amplitude).amplitude for own in found])
+
+    def answer_over(self, volumes: Array, speeds: Speeds) -> Response:
+        """Response with one set of volumes over a range of speeds, its peaks among them.
+
+        Parameters
+        ----------
+        volumes : of the chambers, m^3, shape (c,)
+        speeds : the range; how many there are does not matter
+        """
+        start, stop = speeds.start, speeds.stop
+        few = np.linspace(start, stop, FEW) if stop > start else np.array([start])
+        machine = replace(prepare(with_volumes(self.scene, volumes)), speed=few)
+        if not self.planar:
+            near = wet_resonances(machine)
+            own = seeds(near.speed, near.half_width, start, stop, few, whole=False)
+            machine = replace(machine, speed=np.union1d(few, own))
+        models = [synchronous_model(name) for name in models_at([machine])[0][0].tolist()]
+        fills, gravity = machine.scene.fills, machine.axial_gravity
+        answer = response(machine.rotor, fills, machine.speed, gravity, models)
+        (between,) = responses_between([machine], [answer], dry=False)
+        return by_speed([answer, between])
 
     def _reach(self, volumes: Array, speed: Array, moved: Array) -> Array:
         """See `FillAnswers`, at deflections of the chambers, m, shape (m, c)."""

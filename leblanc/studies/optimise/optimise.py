@@ -35,6 +35,7 @@ from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.balance import QualityAtSpeed
 from leblanc.studies.optimise.constraints import growth
 from leblanc.studies.optimise.emulated import EmulatedVibration
+from leblanc.studies.optimise.loads import require_loads
 from leblanc.studies.optimise.objectives import RunupPeak
 from leblanc.studies.optimise.problem import (
     Evaluator,
@@ -108,6 +109,7 @@ def optimise_scene(
     require_clear(scene, "a search over volumes, which rests on the exact equilibrium in a clear ring")
     low, high = bounds_of(scene, task)
     machine = FilledMachine(scene)
+    require_loads(scene, task)
     if task.deflection is not None:
         result = _at_deflection(scene, task, wet_walls(scene, task.deflection, working_speed(scene, task)))
         return _with_response(result, scene, machine) if response else result
@@ -174,6 +176,9 @@ def _result(
     evaluate, volume = problem.evaluate, found.point
     nothing = np.zeros((1, volume.size))
     vibration, dry = (float(evaluate.vibration.exact(row)[0]) for row in (volume[None], nothing))
+    value, bare = vibration, dry
+    if evaluate.sized is not None:
+        value, bare = (float(evaluate.sized.exact(row)[0]) for row in (volume[None], nothing))
     constraints = {
         "capacity": _capacity(scene, volume),
         **{
@@ -188,11 +193,11 @@ def _result(
         in_time=isinstance(evaluate.vibration, RunupPeak),
         objective=task.objective,
         meaning=problem.meaning,
-        unit="kg" if evaluate.by_mass else "m",
+        unit=_unit(evaluate),
         working_speed=problem.working_speed,
         volume=volume,
-        value=mass if evaluate.by_mass else vibration,
-        baseline=0.0 if evaluate.by_mass else dry,
+        value=mass if evaluate.by_mass else value,
+        baseline=0.0 if evaluate.by_mass else bare,
         vibration=vibration,
         vibration_baseline=dry,
         constraints=constraints,
@@ -239,6 +244,13 @@ def _findings(problem: Problem, found: Found) -> tuple[Note, ...]:
     ]
     notes.append(optimum.no_liquid(evaluate.by_mass, tuple(forbidden)))
     return tuple(notes)
+
+
+def _unit(evaluate: Evaluator) -> str:
+    """Unit of what is made small."""
+    if evaluate.by_mass:
+        return "kg"
+    return "m" if evaluate.sized is None else "N"
 
 
 def _at_deflection(scene: Scene, task: Optimisation, found: WettedWalls) -> OptimumResult:

@@ -29,6 +29,7 @@ from leblanc.studies.optimise.constraints import (
     whirl_friction,
     whirl_size,
 )
+from leblanc.studies.optimise.loads import LoadsOver, limits_loads, load_constraints
 from leblanc.studies.optimise.objectives import (
     AtSpeed,
     PeakOver,
@@ -64,6 +65,7 @@ class Evaluator:
     constraints : to keep to
     by_mass : the liquid's mass is to be small; the vibration is then one of the constraints
     estimated : the vibration is an estimate, by an emulator
+    sized : what is to be small in place of the vibration, N
     """
 
     vibration: Vibration
@@ -71,6 +73,7 @@ class Evaluator:
     constraints: tuple[Constraint, ...]
     by_mass: bool = False
     estimated: bool = False
+    sized: Vibration | None = None
 
     def __call__(self, volumes: Array) -> Judgement:
         """Evaluate m sets of volumes, m^3, shape (m, c).
@@ -85,7 +88,8 @@ class Evaluator:
         vibration = found["vibration"] if self.by_mass else self.vibration.exact(volumes)
         sure = np.full(over.shape, 0.0 if self.estimated else 1.0)
         details = found | {"mass": mass, "vibration": vibration, "sure": sure}
-        return Judgement(mass if self.by_mass else vibration, over, details)
+        value = vibration if self.sized is None else self.sized.exact(volumes)
+        return Judgement(mass if self.by_mass else value, over, details)
 
 
 @dataclass(frozen=True)
@@ -152,7 +156,7 @@ def problem_of(
     at_work = AtSpeed(machine, np.array([speed]), np.ones(1))
     constraints = _constraints(scene, task, machine, speed)
     rpm = in_rpm(speed)
-    costly = not planar or task.whirl_limit is not None
+    costly = not planar or task.whirl_limit is not None or limits_loads(task)
     evaluate = Evaluator(at_work, density, constraints)
     notes = (optimum.laminar(),) if whirl_friction(scene) != scene.model.friction else ()
     problem = Problem(evaluate, f"amplitude at {rpm}", speed, (speed,), costly, notes)
@@ -174,6 +178,7 @@ def _constraints(
         found.append(whirl_size(scene, growth_speeds(scene, task), task.whirl_limit))
     if task.clearance is not None:
         found.append(clearance(PeakOver(machine, operating_speeds(scene, task)), task.clearance))
+    found += load_constraints(scene, task, machine, operating_speeds(scene, task))
     if task.balance_quality is not None:
         found.append(balanced(QualityAtSpeed(machine, speed), task.balance_quality))
     return tuple(found)
@@ -315,10 +320,22 @@ def _at_any_temperature(
     return Constraint(constraint.name, text, constraint.unit, constraint.limit, constraint.scale, value)
 
 
+def _floor_force(
+    scene: Scene, task: Optimisation, machine: FilledMachine, problem: Problem, _: object
+) -> Problem:
+    speeds = operating_speeds(scene, task)
+    text = f"largest force under a foot from {rpm_range(speeds.start, speeds.stop)}"
+    evaluate = replace(problem.evaluate, sized=LoadsOver(machine, speeds))
+    return replace(
+        problem, evaluate=evaluate, meaning=text, speeds=(speeds.stop, *_resonances(scene)), costly=True
+    )
+
+
 _MAKERS: dict[str, _Make] = {
     "working_speed": _working_speed,
     "peak": _peak,
     "mean": _mean,
     "least_mass": _least_mass,
     "robust": _robust,
+    "floor_force": _floor_force,
 }

@@ -59,6 +59,7 @@ PROGRAMME = {
     "dispersion": True,
     "bore": "enstrophy",
     "samples": 123,
+    "capture": "drum",
 }  # fmt: skip
 SHEDS = {"share": 0.35, "time_constant": "13 s", "above": "340 rpm"}
 MOTOR = {"inertia": "0.3 kg*m^2", "speeds": [0.0, "1200 rpm"], "torques": ["2 N*m", 0.0]}

@@ -1,0 +1,167 @@
+"""Directions of a rotor in space, what holds it, and where its masses are. SI units."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fluid.fill import Fill
+from meshes.arrays import Array
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.tub import Mount, Tub, Vector, displacement
+from solvers.rotor.two_plane import TwoPlane
+
+AnyRotor = Jeffcott | TwoPlane | Tub
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Directions of a rotor with n coordinates.
+
+    Parameters
+    ----------
+    body : shift along and turn about x, y, z of the body for unit coordinates, shape (6, n)
+    along : number of the direction along the spin axis, 0 for x
+    across : numbers of the two directions across it; the spin turns the first into the second
+    up : number of the direction against gravity
+    axis : (x, y, z) of a point of the spin axis, m
+    """
+
+    body: Array
+    along: int
+    across: tuple[int, int]
+    up: int
+    axis: Vector
+
+    def moving(self, position: Vector) -> Array:
+        """Displacement of a point of the body for unit coordinates [theory: loads, eq. 1].
+
+        Parameters
+        ----------
+        position : (x, y, z) at rest, m
+
+        Returns
+        -------
+        Along x, y, z, shape (3, n)
+        """
+        return np.asarray(displacement(position) @ self.body)
+
+    def on_axis(self, place: float) -> Vector:
+        """The point of the spin axis at a place along it.
+
+        Parameters
+        ----------
+        place : m
+        """
+        point = list(self.axis)
+        point[self.along] = place
+        return (point[0], point[1], point[2])
+
+
+def frame_of(rotor: AnyRotor, vertical: bool = False) -> Frame:
+    """Directions of a rotor.
+
+    Parameters
+    ----------
+    rotor : dry
+    vertical : gravity acts along its axis, not across it
+    """
+    if isinstance(rotor, Tub):
+        x, _, z = rotor.drum_position
+        return Frame(np.eye(6), 1, (2, 0), 1 if vertical else 2, (x, 0.0, z))
+    # Only a rotor in two planes leans: about x and y.
+    rows = [0, 1, 3, 4] if isinstance(rotor, TwoPlane) else [0, 1]
+    return Frame(np.eye(6)[:, rows], 2, (0, 1), 2 if vertical else 0, (0.0, 0.0, 0.0))
+
+
+@dataclass(frozen=True)
+class Holder:
+    """A spring, a damper or a support between the rotor and its cabinet.
+
+    Parameters
+    ----------
+    name : for reports, such as "spring 1"
+    position : where it holds the rotor, m
+    stiffness, damping : force over displacement and over velocity, shape (3, 3), N/m and N s/m
+    """
+
+    name: str
+    position: Vector
+    stiffness: Array
+    damping: Array
+
+
+def holders_of(rotor: AnyRotor) -> tuple[Holder, ...]:
+    """What holds a rotor: the springs and dampers of a tub, the supports of any other.
+
+    Parameters
+    ----------
+    rotor : dry
+    """
+    none, across = np.zeros((3, 3)), np.diag([1.0, 1.0, 0.0])
+    if isinstance(rotor, Tub):
+        springs = [
+            Holder(f"spring {k + 1}", mount.position, tensor(mount), none)
+            for k, mount in enumerate(rotor.springs)
+        ]
+        dampers = [
+            Holder(f"damper {k + 1}", mount.position, none, tensor(mount))
+            for k, mount in enumerate(rotor.dampers)
+        ]
+        return (*springs, *dampers)
+    if isinstance(rotor, TwoPlane):
+        return tuple(
+            Holder(f"support {k + 1}", (0.0, 0.0, s.position), s.stiffness * across, s.damping * across)
+            for k, s in enumerate(rotor.supports)
+        )
+    return (Holder("support", (0.0, 0.0, 0.0), rotor.stiffness * across, rotor.damping * across),)
+
+
+def tensor(mount: Mount) -> Array:
+    """Force of a spring or damper over the displacement or velocity of its point [theory: rotor, eq. 21].
+
+    Parameters
+    ----------
+    mount : of a tub
+
+    Returns
+    -------
+    shape (3, 3), N/m or N s/m
+    """
+    unit = np.array(mount.direction) / math.hypot(*mount.direction)
+    return np.asarray(mount.coefficient * np.outer(unit, unit) + np.diag(mount.along_axes))
+
+
+@dataclass(frozen=True)
+class Weight:
+    """A mass at its place at rest.
+
+    Parameters
+    ----------
+    mass : kg
+    position : m
+    turns : it hangs on the drum, not on the tub
+    """
+
+    mass: float
+    position: Vector
+    turns: bool = True
+
+
+def weights_of(rotor: AnyRotor, fills: Sequence[Fill], frame: Frame) -> tuple[Weight, ...]:
+    """Masses of a rotor and of the liquid in its chambers, which counts at its chamber's centre.
+
+    Parameters
+    ----------
+    rotor : dry
+    fills : its chambers with their liquid
+    frame : of the rotor
+    """
+    liquid = [Weight(fill.mass, frame.on_axis(fill.chamber.plane)) for fill in fills if fill.volume > 0.0]
+    if isinstance(rotor, Tub):
+        tub = Weight(rotor.tub_mass, (0.0, 0.0, 0.0), turns=False)
+        return (tub, Weight(rotor.drum_mass, rotor.drum_position), *liquid)
+    return (Weight(rotor.mass, (0.0, 0.0, 0.0)), *liquid)

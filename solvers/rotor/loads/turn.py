@@ -1,0 +1,161 @@
+"""What one turn of a steady motion holds: the largest forces, the least clearances, the orbits. SI units."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshes.arrays import Array, Complex, Flags
+from solvers.rotor.loads.machine import LoadedMachine, Loads
+
+ANGLES = 180  # of a turn at which sizes are looked at: a maximum of a sine is within 1.6e-4 of its size
+_AT_ONCE = 200  # speeds
+LEAST = ("clearance", "floor_force_least", "lift_off", "slip", "walking")
+
+
+@dataclass(frozen=True)
+class Extremes:
+    """The worst of each of k turns or intervals; f feet, h holders, b bearings, p points.
+
+    Parameters
+    ----------
+    holder : largest size of the force in each spring, damper or support, N, shape (k, h)
+    bearing : in each bearing across the axis, N, shape (k, b)
+    moved : largest distance of each point from where it rests, m, shape (k, p)
+    clearance : least of each point, nan without a gap, m, shape (k, p)
+    floor_force, floor_force_least : of each foot, N, shape (k, f)
+    lift_off, slip, walking : least margins, shape (k,); nan without a cabinet
+    """
+
+    holder: Array
+    bearing: Array
+    moved: Array
+    clearance: Array
+    floor_force: Array
+    floor_force_least: Array
+    lift_off: Array
+    slip: Array
+    walking: Array
+
+
+def extremes(loads: Loads) -> Extremes:
+    """The worst over the last axis of moments.
+
+    Parameters
+    ----------
+    loads : at moments, shape (k, m)
+    """
+    count = loads.holder.shape[0]
+    floor, margin, none = loads.floor, loads.margins, np.full(count, np.nan)
+    nobody = np.zeros((count, 0))
+    return Extremes(
+        holder=loads.holder.max(axis=1),
+        bearing=loads.bearing.max(axis=1),
+        moved=loads.moved.max(axis=1),
+        clearance=loads.clearance.min(axis=1),
+        floor_force=nobody if floor is None else floor.vertical.max(axis=1),
+        floor_force_least=nobody if floor is None else floor.vertical.min(axis=1),
+        lift_off=none if margin is None else margin.lift_off.min(axis=1),
+        slip=none if margin is None else margin.slip.min(axis=1),
+        walking=none if margin is None else margin.walking.min(axis=1),
+    )
+
+
+def joined(parts: list[Extremes]) -> Extremes:
+    """Several of them one after the other.
+
+    Parameters
+    ----------
+    parts : of one machine, at least one
+    """
+    names = Extremes.__dataclass_fields__
+    return Extremes(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
+
+
+def turn_extremes(machine: LoadedMachine, coordinates: Complex, speed: Array) -> Extremes:
+    """The worst over a turn of steady motions q = Re(coordinates e^{i Omega t}) [theory: loads, eq. 14].
+
+    Parameters
+    ----------
+    machine : whose rotor moves
+    coordinates : complex amplitudes, shape (s, n)
+    speed : Omega, rad/s, shape (s,)
+
+    Returns
+    -------
+    Extremes of each speed; not a number where the motion is not known, infinite where it has no bound
+    """
+    angle = np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False)
+    known = np.asarray(np.isfinite(coordinates).all(axis=1))
+    parts = []
+    for first in range(0, speed.size, _AT_ONCE):
+        part = slice(first, first + _AT_ONCE)
+        size = np.where(known[part, None], coordinates[part], 0.0)[:, None, :]
+        turned = size * np.exp(1j * angle)[:, None]
+        spin = speed[part, None, None]
+        loads = machine.loads(
+            *(turned.real, (1j * spin * turned).real, (-np.square(spin) * turned).real),
+            np.broadcast_to(angle, turned.shape[:2]),
+        )
+        parts.append(extremes(loads))
+    return _without(joined(parts), known, np.asarray(np.isinf(coordinates).any(axis=1)))
+
+
+def _without(found: Extremes, known: Flags, endless: Flags) -> Extremes:
+    """Nothing in place of what is not known; no bound where the motion has none."""
+    values = {}
+    for name in Extremes.__dataclass_fields__:
+        value = getattr(found, name)
+        worst = -np.inf if name in LEAST else np.inf
+        shape = (-1, *[1] * (value.ndim - 1))
+        unknown, without = ~known.reshape(shape), endless.reshape(shape) & ~np.isnan(value)
+        values[name] = np.where(without, worst, np.where(unknown, np.nan, value))
+    return Extremes(**values)
+
+
+def orbits(machine: LoadedMachine, coordinates: Complex) -> tuple[Array, Array]:
+    """Semi-axes of the ellipse on which each point goes round [theory: loads, eq. 15].
+
+    Of a point on the drum it is the ellipse of the middle of its circle.
+
+    Parameters
+    ----------
+    machine : whose rotor moves
+    coordinates : complex amplitudes, shape (s, n)
+
+    Returns
+    -------
+    The larger and the smaller one, m, shape (s, p) each
+    """
+    large, small = np.zeros((2, coordinates.shape[0], len(machine.points)))
+    for k, point in enumerate(machine.points):
+        place = point.position
+        if point.on != "tub":
+            place = machine.frame.on_axis(place[machine.frame.along])
+        moved = np.where(np.isfinite(coordinates), coordinates, np.nan) @ machine.frame.moving(place).T
+        size, pair = np.square(np.abs(moved)).sum(axis=1), np.abs(np.square(moved).sum(axis=1))
+        large[:, k] = np.sqrt(0.5 * (size + pair))
+        small[:, k] = np.sqrt(0.5 * np.maximum(size - pair, 0.0))
+    return large, small
+
+
+def damping_power(machine: LoadedMachine, coordinates: Complex, speed: Array) -> Array:
+    """Mean power that the supports turn into heat, which the motor replaces [theory: loads, eq. 16].
+
+    In a steady turn with the spin the liquid rests in its drum and takes none.
+
+    Parameters
+    ----------
+    machine : whose rotor moves
+    coordinates : complex amplitudes, shape (s, n)
+    speed : Omega, rad/s, shape (s,)
+
+    Returns
+    -------
+    W, shape (s,)
+    """
+    damping = machine.rotor.system().damping
+    moved = np.where(np.isfinite(coordinates), coordinates, np.nan)
+    heat = np.einsum("si,ij,sj->s", moved.conj(), damping, moved).real
+    return np.asarray(0.5 * np.square(speed) * heat)
