@@ -84,7 +84,7 @@ def map_scene(
     carried = np.array([_held(scene, fills, speed) for fills in rows])
     large = _limit_cycles(machine, law, found) if cycles else None
     pairs = zip(rows, whirl_speed - speed, strict=True)
-    thin = np.array([_thin_layers(fills, slip) for fills, slip in pairs]) | (law.law != "stokes")
+    thin = np.array([_thin_layers(fills, slip) for fills, slip in pairs]) | (not law.law.laminar)
     return WhirlMap(
         name=scene.name,
         source=scene.source,
@@ -193,6 +193,8 @@ def small_whirl_friction(friction: Friction) -> str:
     """Law of friction as a small whirl meets it, in words."""
     if friction.law == "quadratic":
         return "none (the quadratic law does not act on small whirls)"
+    if friction.law == "wall":
+        return "laminar (Stokes, with the drum's rotation in the layers on floor and lid)"
     return friction_words(friction)
 
 

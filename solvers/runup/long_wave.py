@@ -31,6 +31,7 @@ from solvers.runup.state import (
     layer_properties,
     mean_area,
     planes_of,
+    wall_tables,
 )
 from solvers.slices import compiled, slices
 
@@ -45,6 +46,7 @@ class Coupled(CoupledRotor):
     Parameters
     ----------
     layers : properties of each chamber's layer, records LAYER, shape (l,)
+    tables : of the law of the wall, shape (l, m, 2)
     area, momentum : of all layers, shape (l, c)
     rolling : A e of the fluctuations behind bores of all layers, shape (l, c), or (l, 0) without them
     active : which of them are layers now, shape (l,)
@@ -53,6 +55,7 @@ class Coupled(CoupledRotor):
     """
 
     layers: Record
+    tables: Array
     area: Array
     momentum: Array
     rolling: Array
@@ -217,7 +220,10 @@ class Coupled(CoupledRotor):
                 mass += weight * plane.T @ plane
         matrices = [mass, self.system.damping, self.system.gyroscopic, self.system.stiffness]
         self.machine = self.machine._replace(
-            matrices=np.stack(matrices).astype(float), planes=planes[active], layers=self.layers[active]
+            matrices=np.stack(matrices).astype(float),
+            planes=planes[active],
+            layers=self.layers[active],
+            tables=self.tables[active],
         )
         count, cells = int(active.sum()), self.area.shape[1]
         self.state = old._replace(
@@ -292,11 +298,13 @@ def couple(
     layers = records(LAYER, count)
     for j, fill in enumerate(fills):
         layers[j] = layer_properties(fill, friction, dispersion)
+    tables = wall_tables(fills, friction)
     area = np.repeat(np.array([mean_area(fill) for fill in fills]).reshape(-1, 1), cells, axis=1)
     found = Coupled(
         system=system,
         fills=tuple(fills),
         layers=layers,
+        tables=tables,
         capture=rest.capture,
         pool=rest.pool,
         area=area,
@@ -308,6 +316,7 @@ def couple(
             unbalance=system.unbalance.astype(complex),
             planes=np.zeros((0, 2, n)),
             layers=layers[:0],
+            tables=tables[:0],
             gravity=rest.gravity,
             angles=ring(cells),
             curve=np.zeros((2, 0)),
