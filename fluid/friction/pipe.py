@@ -96,6 +96,40 @@ def drag_speed(velocity: ArrayLike, diameter: ArrayLike, viscosity: ArrayLike, r
     )
 
 
+def steady_lag(
+    acceleration: float, radius: float, diameter: float, viscosity: float, roughness: float = 0.0
+) -> float:
+    """Velocity against the wall at which friction gives the liquid the drum's acceleration, m/s.
+
+    dOmega/dt R = (f_D/2) u^2/D_h [theory: friction, eq. 4].
+
+    Parameters
+    ----------
+    acceleration : of the drum, rad/s^2, 0 or above
+    radius : of the wall R, m
+    diameter, viscosity, roughness : as for `spin_up_time`
+
+    Returns
+    -------
+    inf where there is no friction
+    """
+    from scipy.optimize import brentq
+
+    wanted = acceleration * radius
+    if wanted == 0.0:
+        return 0.0
+
+    def excess(log: float) -> float:
+        velocity = math.exp(log)
+        drag = float(drag_speed(velocity, diameter, viscosity, roughness))
+        return 4.0 * drag * velocity / diameter - wanted
+
+    low, high = math.log(1e-60), math.log(1e60)
+    if excess(low) > 0.0 or excess(high) < 0.0:
+        return math.inf if excess(high) < 0.0 else 0.0
+    return math.exp(float(brentq(excess, low, high, xtol=1e-12)))
+
+
 def spin_up_time(
     share: ArrayLike, velocity: float, diameter: float, viscosity: float, roughness: float = 0.0
 ) -> Array:

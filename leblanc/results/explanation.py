@@ -26,6 +26,29 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
+class SpinUp:
+    """How a smooth or rough wall carries the liquid of a chamber along [theory: friction, eq. 1-5].
+
+    Parameters
+    ----------
+    regime : laminar, transition or turbulent
+    reynolds : of the flow against the wall, by the hydraulic diameter
+    lag : of that flow, rad/s: what the ramp asks of the wall, but no more than the whole last speed; that
+        speed itself where there is no ramp
+    ramp : whether a ramp asks
+    time : in which the lag comes down to a tenth at the last speed, the liquid being at rest in space, s
+    ramp_time : of the ramp, s; None without
+    """
+
+    regime: str
+    reynolds: float
+    lag: float
+    ramp: bool
+    time: float
+    ramp_time: float | None
+
+
+@dataclass(frozen=True)
 class LayerExplanation:
     """One chamber in numbers, at the first and the last speed where they change.
 
@@ -38,6 +61,7 @@ class LayerExplanation:
     optimal_volume : that just covers the wall at the dry rotor's deflection at the last speed, m^3; nan where
         baffles cut the liquid or the section is no circle
     walls : baffles, or the file of the section, in words; empty for a plain ring
+    spin_up : by the law of the wall; None under another law of friction, and where it does not know the walls
     """
 
     numbers: LayerNumbers
@@ -46,6 +70,7 @@ class LayerExplanation:
     liquid_mass_ratio: float
     optimal_volume: float
     walls: str = ""
+    spin_up: SpinUp | None = None
 
 
 @dataclass(frozen=True)

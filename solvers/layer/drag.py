@@ -35,27 +35,43 @@ def mean_rate(table, top, slip):
 
 
 @_inner_part
-def _slow_mean(area, velocity, surface, lid, top, table, dt, kept):
-    """Share of each cell's velocity that the mean part leaves: (1 + p x)^(-1/p) to second order in x."""
+def _slow_mean(area, velocity, surface, lid, top, table, dt, kept, spare):
+    """Share of each cell's velocity that the mean part leaves: (1 + p x)^(-1/p) to second order in x.
+
+    In three passes, as only the middle one, which reads the table as `mean_rate` does, cannot take several
+    cells at once. Divisions are dear, so one stands for 1/h and 1/(1 - A).
+    """
+    last = table.shape[0] - 1
+    slowness, pace = 1.0 / top, top * dt
     for i in range(area.size):
-        depth = np.maximum(2.0 * area[i] / (1.0 + surface[i]), DRY)
-        rate, bend = mean_rate(table, top, abs(velocity[i]) / (1.0 - area[i]))
-        x = rate * (1.0 / depth + lid) * dt
-        kept[i] = 1.0 / (1.0 + x * (1.0 + bend * x))
+        held, rest = np.maximum(area[i], DRY), 1.0 - area[i]
+        over = 1.0 / (held * rest)
+        ratio = abs(velocity[i]) * held * over * slowness
+        # h = 2 A/(1 + r).
+        sides = 0.5 * (1.0 + surface[i]) * rest * over + lid
+        spare[i] = sides * (ratio if ratio > 1.0 else 1.0) * pace
+        kept[i] = np.sqrt(np.sqrt(ratio if ratio < 1.0 else 1.0)) * last
+    for i in range(area.size):
+        k = min(int(kept[i]), last - 1)
+        rate = table[k, 0] + (kept[i] - k) * (table[k + 1, 0] - table[k, 0])
+        kept[i], spare[i] = rate * spare[i], table[k, 1]
+    for i in range(area.size):
+        kept[i] = 1.0 / (1.0 + kept[i] * (1.0 + spare[i] * kept[i]))
 
 
 @_sum_part
 def _weigh(area, velocity, surface, coefficient, plates, thin, dt, kept, gone):
-    """Share of its velocity beside the mean that a cell loses; sums of momentum and mass, so weighted."""
+    """Share of its velocity beside the mean that a cell loses; sums of momentum and mass, so weighted.
+
+    x + x^2/2 over 1 + x + x^2/2, x the rate times the step, as one fraction.
+    """
     momentum, mass = 0.0, 0.0
     for i in range(area.size):
-        depth = 2.0 * area[i] / (1.0 + surface[i])
-        area_i = np.maximum(area[i], DRY)
-        # depth/(depth + thin), which a dry cell without waves has as well.
-        faded = depth / np.maximum(depth + thin, DRY)
-        x = coefficient * (1.0 + plates * depth) / area_i * faded * dt
-        x = x * (1.0 + 0.5 * x)
-        share = x / (1.0 + x)
+        above = coefficient * dt * (1.0 + plates * (1.0 - surface[i]))
+        # A (h + delta)/h, h = 2 A/(1 + r).
+        below = np.maximum(area[i], DRY) + 0.5 * thin * (1.0 + surface[i])
+        lost = above * (below + 0.5 * above)
+        share = lost / (below * below + lost)
         gone[i] = share
         momentum += share * area[i] * kept[i] * velocity[i]
         mass += share * area[i]
@@ -75,7 +91,7 @@ def wall_kept(area, velocity, surface, coefficient, wall, dt, kept, pushed):
     kept, pushed : results, shape (n,)
     """
     lid, plates, thin, top, table = wall
-    _slow_mean(area, velocity, surface, lid, top, table, dt, kept)
+    _slow_mean(area, velocity, surface, lid, top, table, dt, kept, pushed)
     momentum, mass = _weigh(area, velocity, surface, coefficient, plates, thin, dt, kept, pushed)
     mean = momentum / np.maximum(mass, 1e-300)
     for i in range(area.size):

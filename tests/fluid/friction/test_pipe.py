@@ -18,6 +18,7 @@ from fluid.friction.pipe import (
     hydraulic_diameter,
     regime,
     spin_up_time,
+    steady_lag,
 )
 from tests.mutants import kills
 
@@ -132,3 +133,14 @@ def test_spin_up_by_an_ode_and_by_numbers_from_elsewhere(
 def test_without_a_lag_or_without_friction() -> None:
     assert spin_up_time(0.5, 0.0, 0.03, 1e-6) == 0.0
     assert spin_up_time([1.0, 0.5], 1.0, 0.03, 0.0).tolist() == [0.0, math.inf]
+
+
+@kills("fluid.friction.pipe:steady_lag", "4.0 * drag", "2.0 * drag")
+@kills("fluid.friction.pipe:steady_lag", "acceleration * radius", "acceleration")
+def test_a_lag_that_keeps_up_with_a_ramp() -> None:
+    """dOmega/dt R = (f_D/2) u^2/D_h, turbulent; in laminar flow it is 32 nu u/D_h^2."""
+    u, diameter = steady_lag(7.0, 0.24, 0.0376, 1.6e-6), 0.0376
+    factor = float(friction_factor(u * diameter / 1.6e-6))
+    assert 0.5 * factor * u**2 / diameter == pytest.approx(7.0 * 0.24, rel=1e-9)
+    assert steady_lag(1e-6, 0.2, 0.03, 1e-3) == pytest.approx(2e-7 * 0.03**2 / 32e-3, rel=1e-9)
+    assert (steady_lag(0.0, 0.2, 0.03, 1e-6), steady_lag(1.0, 0.2, 0.03, 0.0)) == (0.0, math.inf)
