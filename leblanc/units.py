@@ -558,5 +558,14 @@ def friction_words(friction: Friction) -> str:
         FrictionLaw.LINEAR: f"linear, {friction.coefficient:g} 1/s",
         FrictionLaw.QUADRATIC: f"quadratic, {friction.coefficient:g}",
         FrictionLaw.WALL: "laminar to turbulent, "
-        + (f"wall rough by {1e6 * friction.roughness:g} um" if friction.roughness else "smooth wall"),
+        + (f"wall rough by {1e6 * friction.roughness:g} µm" if friction.roughness else "smooth wall"),
     }[friction.law]
+
+
+def small_whirl_friction(friction: Friction) -> str:
+    """Law of friction as a small whirl meets it, in words."""
+    if friction.law is FrictionLaw.QUADRATIC:
+        return "none (the quadratic law does not act on small whirls)"
+    if friction.law is FrictionLaw.WALL:
+        return "laminar (Stokes, with the drum's rotation in the layers on floor and lid)"
+    return friction_words(friction)

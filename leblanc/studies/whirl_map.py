@@ -19,7 +19,7 @@ from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import Scene
 from leblanc.studies.models.choose import Prepared, prepare
 from leblanc.studies.models.validity import doubts
-from leblanc.units import friction_words
+from leblanc.units import small_whirl_friction
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.liquid_model import THIN_LAYERS
@@ -187,15 +187,6 @@ def _check(scene: Scene, volumes: int, speeds: int) -> None:
         raise InputError("speeds.stop", scene.speeds.stop, "above speeds.start for a map")
     if not scene.fills:
         raise InputError("chambers", "none", "at least one for a map over volume")
-
-
-def small_whirl_friction(friction: Friction) -> str:
-    """Law of friction as a small whirl meets it, in words."""
-    if friction.law == "quadratic":
-        return "none (the quadratic law does not act on small whirls)"
-    if friction.law == "wall":
-        return "laminar (Stokes, with the drum's rotation in the layers on floor and lid)"
-    return friction_words(friction)
 
 
 def fills_over_volume(
