@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from fluid.fill import FULL, Fill
 from fluid.friction.laws import Friction, FrictionLaw, stokes_coefficient
+from fluid.friction.pipe import drag_speed
 from meshes.arrays import Array
 
 # Of the slowest mode on the strip: shape functions, length of the strip, points of Gauss. Twice as many of
@@ -138,6 +139,12 @@ def wall_torque(fill: Fill, pool: Pool, friction: Friction, rotation: ArrayLike)
         return np.asarray(density * shear * turn * (walls_2 + 2.0 * pool.square))
     if friction.law is FrictionLaw.QUADRATIC:
         return np.asarray(density * friction.coefficient * turn * np.abs(turn) * walls_3)
+    if friction.law is FrictionLaw.WALL:
+        # The factor of the speed at the wall; within floor and lid the shear falls with r^2.
+        wet = 2.0 * height * (pool.half_angle * radius + pool.inner_half_angle * inner) + 2.0 * pool.area
+        diameter = 4.0 * pool.area * height / wet
+        shear = drag_speed(radius * turn, diameter, fill.liquid.viscosity, friction.roughness)
+        return np.asarray(density * shear / radius * turn * (walls_3 + 2.0 * pool.cube))
     return 0.0 * turn
 
 

@@ -39,7 +39,9 @@ class Layer:
 def plane_layer(fill: Fill, friction: Friction) -> Layer | None:
     """Layer of a fill under a law of friction; None without liquid or without a free surface.
 
-    Quadratic friction damps in proportion to the motion, so it is no friction to an infinitesimal whirl.
+    Quadratic friction damps in proportion to the motion, so it is no friction to an infinitesimal whirl, and
+    of the law of the wall it feels the part of the waves, whose drag by floor and lid is that at the
+    frequency of the slower free wave [theory: friction, eq. 9].
 
     Parameters
     ----------
@@ -51,14 +53,26 @@ def plane_layer(fill: Fill, friction: Friction) -> Layer | None:
         return None
     # R^2 - a^2 and, twice the area per radian, over R^2.
     film = fill.volume / (math.pi * fill.chamber.height) / radius**2
-    rate, stokes = 0.0, 0.0
-    depth, area, lid = fill.depth / radius, 0.5 * film, 2.0 * radius / fill.chamber.height
+    tanh, rate, stokes = film / (2.0 - film), 0.0, 0.0
+    depth, area = fill.depth / radius, 0.5 * film
     if friction.law is FrictionLaw.LINEAR:
         rate = float(damping_rate(LINEAR, friction.coefficient, 0.0, depth, area, 0.0))
-    elif friction.law is FrictionLaw.STOKES:
+    elif friction.law.laminar:
         shear = math.sqrt(fill.liquid.viscosity) / radius
+        lid = friction.lid(radius, fill.chamber.height, slower_slip(tanh), 1.0)
         stokes = float(damping_rate(STOKES, shear, lid, depth, area, 0.0))
-    return Layer(fill.mass, film / (2.0 - film), rate, stokes)
+    return Layer(fill.mass, tanh, rate, stokes)
+
+
+def slower_slip(layer_tanh: float) -> float:
+    """Size of the slower free wave's frequency seen from the drum over the spin, sqrt(T^2 + T) - T.
+
+    Parameters
+    ----------
+    layer_tanh : T, from 0 to 1
+    """
+    # Without the difference of what is nearly alike.
+    return layer_tanh / (math.sqrt(layer_tanh * (layer_tanh + 1.0)) + layer_tanh)
 
 
 def is_full(fill: Fill) -> bool:

@@ -166,7 +166,7 @@ def map_whirl(
     scene : the machine, or the path of its file
     volumes, speeds : how many of each
     max_volume : most liquid in all chambers together, m^3; what fits if None
-    friction : none, stokes, linear:RATE or quadratic:NUMBER; the scene's if None
+    friction : none, stokes, wall[:ROUGHNESS], linear:RATE or quadratic:NUMBER; the scene's if None
     cycles : find how large the whirls of the scene as it stands grow as well, in `cycles` and `folds`
     progress : called with the number of volumes done and of all
 
@@ -339,7 +339,7 @@ def layer(
     baffles : number of radial baffles, for fem
     baffle_tip_radius, baffle_wall_gap : of their edges from the axis and from the wall, m
     dispersion : exact linear dispersion, for long_wave and kdv
-    friction : none, stokes, linear:RATE or quadratic:NUMBER
+    friction : none, stokes, wall[:ROUGHNESS], linear:RATE or quadratic:NUMBER
     gravity : across the axis, m/s^2
     liquid : a known name, or a `leblanc.Liquid`
     duration : start from rest and answer period by period, s; for long_wave

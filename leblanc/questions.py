@@ -258,7 +258,7 @@ def liquid_of(liquid: str | Liquid) -> Liquid:
 
 
 def friction_of(friction: str | Friction) -> Friction:
-    """A friction law, or the one typed as none, stokes, linear:RATE or quadratic:NUMBER."""
+    """A friction law, or the one typed as none, stokes, wall[:ROUGHNESS], linear:RATE or quadratic:NUMBER."""
     return friction if isinstance(friction, Friction) else parse_friction(friction, "--friction")
 
 

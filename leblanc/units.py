@@ -531,21 +531,25 @@ def _registry() -> Any:
 
 
 def parse_friction(text: str, field: str) -> Friction:
-    """Friction law typed on the command line: none, stokes, linear:RATE or quadratic:NUMBER.
+    """Friction law as typed: none, stokes, wall, wall:ROUGHNESS, linear:RATE or quadratic:NUMBER.
 
     Raises
     ------
     InputError : no such law, a coefficient missing, misplaced or negative
     """
     law, colon, coefficient = text.partition(":")
-    if law in (FrictionLaw.NONE, FrictionLaw.STOKES) and not colon:
+    if law in (FrictionLaw.NONE, FrictionLaw.STOKES, FrictionLaw.WALL) and not colon:
         return Friction(FrictionLaw(law))
+    if law == FrictionLaw.WALL and coefficient:
+        roughness = parse_option(coefficient, LENGTH, field)
+        require_not_negative(field, roughness)
+        return Friction(FrictionLaw.WALL, roughness=roughness)
     if law in (FrictionLaw.LINEAR, FrictionLaw.QUADRATIC) and coefficient:
         unit = RATE if law == FrictionLaw.LINEAR else NUMBER
         value = parse_option(coefficient, unit, field)
         require_not_negative(field, value)
         return Friction(FrictionLaw(law), value)
-    raise InputError(field, text, "none, stokes, linear:RATE or quadratic:NUMBER")
+    raise InputError(field, text, "none, stokes, wall, wall:ROUGHNESS, linear:RATE or quadratic:NUMBER")
 
 
 def friction_words(friction: Friction) -> str:
@@ -555,4 +559,15 @@ def friction_words(friction: Friction) -> str:
         FrictionLaw.STOKES: "laminar (Stokes)",
         FrictionLaw.LINEAR: f"linear, {friction.coefficient:g} 1/s",
         FrictionLaw.QUADRATIC: f"quadratic, {friction.coefficient:g}",
+        FrictionLaw.WALL: "laminar to turbulent, "
+        + (f"wall rough by {1e6 * friction.roughness:g} µm" if friction.roughness else "smooth wall"),
     }[friction.law]
+
+
+def small_whirl_friction(friction: Friction) -> str:
+    """Law of friction as a small whirl meets it, in words."""
+    if friction.law is FrictionLaw.QUADRATIC:
+        return "none (the quadratic law does not act on small whirls)"
+    if friction.law is FrictionLaw.WALL:
+        return "laminar (Stokes, with the drum's rotation in the layers on floor and lid)"
+    return friction_words(friction)

@@ -155,7 +155,8 @@ def _bounds(rule: Any) -> str:
         return f"{_bounds(rule.each)}; or three of them"
     if isinstance(rule, Text):
         return f"a text of at most {rule.longest} characters"
-    return str(rule.allowed).replace("{", "`{").replace("}", "}`").removeprefix("one of: ")
+    # A table in a table is one piece of code.
+    return re.sub(r"\{(?:[^{}]|\{[^{}]*\})*\}", r"`\g<0>`", str(rule.allowed)).removeprefix("one of: ")
 
 
 def _default(field: FieldInfo) -> str:

@@ -7,6 +7,7 @@ frame of the drum. These layers are thin beside the liquid.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
@@ -25,6 +26,12 @@ class FrictionLaw(StrEnum):
     LINEAR = "linear"
     STOKES = "stokes"
     QUADRATIC = "quadratic"
+    WALL = "wall"
+
+    @property
+    def laminar(self) -> bool:
+        """Whether waves feel Stokes' oscillating layers under it."""
+        return self in (FrictionLaw.STOKES, FrictionLaw.WALL)
 
     @property
     def number(self) -> int:
@@ -33,7 +40,11 @@ class FrictionLaw(StrEnum):
 
 
 # The numbers of the laws, which compiled code compares.
-NONE, LINEAR, STOKES, QUADRATIC = (law.number for law in FrictionLaw)
+NONE, LINEAR, STOKES, QUADRATIC, WALL = (law.number for law in FrictionLaw)
+
+
+# Share of the spin below which the frequency of a wave counts as this one.
+_SLOWEST = 1e-9
 
 
 @dataclass(frozen=True)
@@ -44,11 +55,14 @@ class Friction:
     ----------
     law : a `FrictionLaw` or its name
     coefficient : k for the linear law, 1/s; c_f for the quadratic one, a number; 0 for the others. Stokes'
-        (laminar) law takes the liquid's viscosity and the frequency of the motion, see `at`.
+        (laminar) law takes the liquid's viscosity and the frequency of the motion, see `at`, and so do the
+        waves under the law of the wall, see `fluid.friction.wall`
+    roughness : height of the wall's roughness for that one, m; 0 for the others
 
     Raises
     ------
-    InputError : no such law, a coefficient that is negative or not finite
+    InputError : no such law, a coefficient or a roughness that is negative or not finite, a roughness that
+        the law does not know
 
     Examples
     --------
@@ -58,25 +72,45 @@ class Friction:
 
     law: FrictionLaw = FrictionLaw.NONE
     coefficient: float = 0.0
+    roughness: float = 0.0
 
     def __post_init__(self) -> None:
         if self.law not in list(FrictionLaw):
             raise InputError("friction", self.law, "one of " + ", ".join(FrictionLaw))
         require_not_negative("friction", self.coefficient)
+        require_not_negative("friction", self.roughness)
         object.__setattr__(self, "law", FrictionLaw(self.law))
+        if self.roughness and self.law is not FrictionLaw.WALL:
+            raise InputError("friction", self.roughness, "a roughness with the law of the wall alone")
 
     def at(self, viscosity: float, frequency: float, radius: float) -> tuple[int, float]:
         """Law and coefficient as `damping_rate` and compiled code take them [theory: long_wave, eq. 10].
 
+        Of the law of the wall the part of the waves.
+
         Parameters
         ----------
         viscosity : of the liquid, nu, m^2/s
-        frequency : of the motion seen from the drum, s, rad/s; only the laminar law depends on it
+        frequency : of the motion seen from the drum, s, rad/s; only the laminar ones depend on it
         radius : of the wall R, m
         """
-        if self.law is not FrictionLaw.STOKES:
+        if not self.law.laminar:
             return self.law.number, self.coefficient
         return self.law.number, float(stokes_coefficient(viscosity, frequency)) / radius
+
+    def lid(self, radius: float, height: float, frequency: float, spin: float) -> float:
+        """Floor and lid as `damping_rate` takes them, 2 R/h_c, for the law of the wall with `plate_factor`.
+
+        Parameters
+        ----------
+        radius, height : of the chamber, m
+        frequency : of the motion seen from the drum, s, rad/s
+        spin : Omega, rad/s
+        """
+        plain = 2.0 * radius / height
+        if self.law is FrictionLaw.WALL:
+            return plain * plate_factor(frequency, spin)
+        return plain if self.law is FrictionLaw.STOKES else 0.0
 
 
 NO_FRICTION = Friction()
@@ -85,23 +119,25 @@ NO_FRICTION = Friction()
 def damping_rate(law: int, coefficient: float, lid: float, depth: Any, area: Any, velocity: Any) -> Any:
     """Rate of decay of u, tau R/(rho u A) in the units of the coefficient [theory: long_wave, eq. 9].
 
-    Serves arrays and, compiled, scalars.
+    Serves arrays and, compiled, scalars. Under the law of the wall it is the rate of small waves.
 
     Parameters
     ----------
     law : number of the `FrictionLaw`
-    coefficient : k of the linear law, 1/s; sqrt(nu |s|/2)/R of Stokes', 1/s; c_f of the quadratic one
-    lid : 2 R/h_c, floor and lid for Stokes' law; 0 without them
+    coefficient : k of the linear law, 1/s; sqrt(nu |s|/2)/R of Stokes' and of the wall's, 1/s; c_f of
+        the quadratic one
+    lid : 2 R/h_c, floor and lid for Stokes' law, see `Friction.lid`; 0 without them
     depth : h/R
     area : A/R^2 > 0
     velocity : u, in units that make c_f |u| a rate
     """
     if law == LINEAR:
         return coefficient * depth / area
-    if law == STOKES:
-        return coefficient * (1.0 + lid * depth) / area
     if law == QUADRATIC:
         return coefficient * np.abs(velocity) / area
+    if law != NONE:
+        # Stokes' law, and what is left of the law of the wall for small waves.
+        return coefficient * (1.0 + lid * depth) / area
     return 0.0 * area
 
 
@@ -142,6 +178,22 @@ def plate_drags(viscosity: ArrayLike, frequency: ArrayLike, spin: ArrayLike) -> 
     """
     sigma, twice = np.asarray(frequency, dtype=float), 2.0 * np.asarray(spin, dtype=float)
     return stokes_coefficient(viscosity, twice - sigma), stokes_coefficient(viscosity, twice + sigma)
+
+
+def plate_factor(frequency: float, spin: float) -> float:
+    """Drag of floor and lid on waves in a thin layer over that of the wall [theory: friction, eq. 9].
+
+    Floor and lid bound a flow that goes to and fro on straight lines: both circles have equal weight. Not
+    below a billionth of the spin is the frequency told from 0, where no wave is.
+
+    Parameters
+    ----------
+    frequency : of the waves seen from the drum, s, rad/s
+    spin : Omega, rad/s; 0 for 1
+    """
+    slow = max(abs(frequency), _SLOWEST * abs(spin), 1e-300)
+    twice = 2.0 * abs(spin)
+    return 0.5 * (math.sqrt(abs(twice - slow) / slow) + math.sqrt((twice + slow) / slow))
 
 
 def edge_weight(distance: ArrayLike, thickness: ArrayLike) -> Array:

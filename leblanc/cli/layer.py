@@ -35,7 +35,9 @@ def layer(
     dispersion: Annotated[
         bool, typer.Option("--dispersion", help="Exact linear dispersion (long_wave, kdv).")
     ] = False,
-    friction: Annotated[str, typer.Option(help="none, stokes, linear:RATE or quadratic:NUMBER.")] = "none",
+    friction: Annotated[
+        str, typer.Option(help="none, stokes, wall[:ROUGHNESS], linear:RATE or quadratic:NUMBER.")
+    ] = "none",
     gravity: Annotated[str, typer.Option(help="Gravity across the axis.")] = "0",
     liquid: Annotated[str, typer.Option(help="Name of the liquid.")] = "water",
     duration: Annotated[

@@ -23,7 +23,9 @@ def map(
     ] = None,
     friction: Annotated[
         str | None,
-        typer.Option(help="none, stokes, linear:RATE or quadratic:NUMBER [default: the scene's]."),
+        typer.Option(
+            help="none, stokes, wall[:ROUGHNESS], linear:RATE or quadratic:NUMBER [default: the scene's]."
+        ),
     ] = None,
     cycles: Annotated[
         bool, typer.Option("--cycles", help="Find how large the whirls of the scene as it stands grow.")

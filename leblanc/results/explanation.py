@@ -26,6 +26,29 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
+class SpinUp:
+    """How a smooth or rough wall carries the liquid of a chamber along [theory: friction, eq. 1-5].
+
+    Parameters
+    ----------
+    regime : laminar, transition or turbulent
+    reynolds : of the flow against the wall, by the hydraulic diameter
+    lag : of that flow, rad/s: what the ramp asks of the wall, but no more than the whole last speed; that
+        speed itself where there is no ramp
+    ramp : whether a ramp asks
+    time : in which the lag comes down to a tenth at the last speed, the liquid being at rest in space, s
+    ramp_time : of the ramp, s; None without
+    """
+
+    regime: str
+    reynolds: float
+    lag: float
+    ramp: bool
+    time: float
+    ramp_time: float | None
+
+
+@dataclass(frozen=True)
 class LayerExplanation:
     """One chamber in numbers, at the first and the last speed where they change.
 
@@ -40,6 +63,7 @@ class LayerExplanation:
     walls : baffles, or the file of the section, in words; empty for a plain ring
     carried_from : speed from which the walls carry the liquid round from rest, rad/s, inf where they never
         do; None if the axis stands, or the section is no circle
+    spin_up : by the law of the wall; None under another law of friction, and where it does not know the walls
     """
 
     numbers: LayerNumbers
@@ -49,6 +73,7 @@ class LayerExplanation:
     optimal_volume: float
     walls: str = ""
     carried_from: float | None = None
+    spin_up: SpinUp | None = None
 
 
 @dataclass(frozen=True)

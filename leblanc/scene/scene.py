@@ -48,7 +48,7 @@ MAX_ASSUMED = 10_000
 HELD = ("auto", "never", "always")
 MAX_CELLS = 4096
 LIQUID_MODELS = ("auto", "statics", "linear", "long_wave", "kdv", "fem")
-_LAWS = ("none", "stokes")
+_LAWS = ("none", "stokes", "wall")
 _SOME_CHAMBERS = Entries(1, MAX_CHAMBERS, "tables headed [[chambers]]")
 
 _Path = Annotated[str, PlainValidator(Text(200))]
@@ -83,8 +83,16 @@ class Speeds(Part):
             yield Conflict(("count",), "at least 2 where speeds.start and speeds.stop differ")
 
 
+class WallRoughness(Part):
+    """The law of the wall on a wall that is not smooth."""
+
+    roughness: Annotated[float, quantity(units.LENGTH, 0.0, 0.1)] = Field(
+        description="height of the wall's roughness, as that of the sand in rough pipes"
+    )
+
+
 class FrictionCoefficient(Part):
-    """A friction law with its coefficient; one of the two."""
+    """A friction law with its coefficient; one of the three."""
 
     linear: Annotated[float | None, quantity(units.RATE, 0.0, 1e6)] = Field(
         None, description="force over mass and velocity"
@@ -92,13 +100,20 @@ class FrictionCoefficient(Part):
     quadratic: Annotated[float | None, quantity(units.NUMBER, 0.0, 1e3)] = Field(
         None, description="c_f, wall stress over density and velocity squared"
     )
+    wall: WallRoughness | None = Field(
+        None,
+        description="mean flow as in a pipe, laminar to turbulent, and laminar layers for the waves",
+    )
 
 
 class FrictionRule:
     """A friction law by its name, or with its coefficient."""
 
     table = FrictionCoefficient
-    allowed = 'one of: none, stokes, { linear = "0.5 1/s" }, { quadratic = 0.01 }'
+    allowed = (
+        'one of: none, stokes, wall, { linear = "0.5 1/s" }, { quadratic = 0.01 }, '
+        '{ wall = { roughness = "2 um" } }'
+    )
 
     def __call__(self, value: object) -> Friction:
         """Law and coefficient, 0 where there is none."""
@@ -112,6 +127,8 @@ class FrictionRule:
                 return Friction(FrictionLaw.LINEAR, found.linear)
             if len(value) == 1 and found.quadratic is not None:
                 return Friction(FrictionLaw.QUADRATIC, found.quadratic)
+            if len(value) == 1 and found.wall is not None:
+                return Friction(FrictionLaw.WALL, roughness=found.wall.roughness)
         raise Refused(self.allowed + meant(value, _LAWS))
 
     @staticmethod
@@ -122,6 +139,8 @@ class FrictionRule:
         ----------
         value : law and coefficient
         """
+        if value.roughness:
+            return {value.law.value: {"roughness": value.roughness}}
         return value.law.value if value.law in _LAWS else {value.law.value: value.coefficient}
 
 
@@ -273,7 +292,7 @@ class Scene(Part):
             "speeds": self.speeds.model_dump(),
             "model": {
                 "liquid": model.liquid,
-                "friction": asdict(model.friction),
+                "friction": _friction_content(model.friction),
                 "tolerance": model.tolerance,
             },
             "runup": None if self.runup is None else runup_content(self.runup),
@@ -285,6 +304,12 @@ class Scene(Part):
         if self.optimise is not None:
             content["optimise"] = optimise_content(self.optimise)
         return fingerprint(content)
+
+
+def _friction_content(friction: Friction) -> dict[str, object]:
+    """What a fingerprint takes of it; a smooth wall has what was there before walls could be rough."""
+    rough = {"roughness": friction.roughness} if friction.roughness else {}
+    return {"law": friction.law, "coefficient": friction.coefficient, **rough}
 
 
 def _kind(rotor: object) -> object:

@@ -8,10 +8,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from fluid.fill import Fill
+from fluid.friction.laws import FrictionLaw
+from fluid.friction.pipe import hydraulic_diameter, regime, spin_up_time, steady_lag
 from fluid.numbers import layer_numbers
 from fluid.pool import balance_speed, pool_of
+from fluid.whirl import is_full
 from leblanc.results.choice import model_spans, speed_estimates
-from leblanc.results.explanation import ExciterExplanation, Explanation, LayerExplanation, WhirlOutlook
+from leblanc.results.explanation import (
+    ExciterExplanation,
+    Explanation,
+    LayerExplanation,
+    SpinUp,
+    WhirlOutlook,
+)
 from leblanc.results.motion.tilting import RestMode
 from leblanc.scene.rotors import Exciter as ExciterOfScene
 from leblanc.scene.rows import baffle_words
@@ -87,6 +96,7 @@ def explain_scene(scene: Scene) -> Explanation:
                 optimal_volume=_covering(fill, dry, ends[1], gravity),
                 walls=_walls(fill),
                 carried_from=_carried_from(scene, fill),
+                spin_up=_spin_up(scene, fill),
             )
         )
     return Explanation(
@@ -134,6 +144,33 @@ def _carried_from(scene: Scene, fill: Fill) -> float | None:
     if gravity == 0.0 or pool is None or fill.chamber.section is not None:
         return None
     return balance_speed(fill, pool, scene.model.friction, gravity)
+
+
+# Share of the first lag at which the liquid counts as carried along.
+_CARRIED = 0.1
+
+
+def _spin_up(scene: Scene, fill: Fill) -> SpinUp | None:
+    """How the wall carries the liquid along; None unless its law acts on a layer in a clear ring."""
+    friction, chamber, run = scene.model.friction, fill.chamber, scene.runup
+    if friction.law is not FrictionLaw.WALL or fill.uneven or is_full(fill):
+        return None
+    viscosity = fill.liquid.viscosity
+    last = scene.speeds.stop if run is None else run.stop
+    given = float(hydraulic_diameter(fill.depth, chamber.height)), viscosity, friction.roughness
+    lag, ramp_time = last, None
+    if run is not None and run.rate is not None:
+        lag = min(last, steady_lag(run.rate, chamber.radius, *given) / chamber.radius)
+        ramp_time = (run.stop - run.start) / run.rate
+    reynolds = lag * chamber.radius * given[0] / viscosity if viscosity > 0.0 else math.inf
+    return SpinUp(
+        regime=str(regime(reynolds)),
+        reynolds=reynolds,
+        lag=lag,
+        ramp=ramp_time is not None,
+        time=float(spin_up_time(_CARRIED, last * chamber.radius, *given)),
+        ramp_time=ramp_time,
+    )
 
 
 def _walls(fill: Fill) -> str:

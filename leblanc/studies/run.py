@@ -36,7 +36,8 @@ from leblanc.studies.models.choose import (
 from leblanc.studies.models.liquid import element_model, synchronous_model
 from leblanc.studies.models.validity import doubts
 from leblanc.studies.peaks import responses_between
-from leblanc.studies.whirl_map import large_whirl, small_whirl_friction
+from leblanc.studies.whirl_map import large_whirl
+from leblanc.units import small_whirl_friction
 from meshes.arrays import Array, Complex
 from meshes.chamber_section import liquid_of
 from meshes.errors import InputError

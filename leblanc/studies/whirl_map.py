@@ -19,7 +19,7 @@ from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import Scene
 from leblanc.studies.models.choose import Prepared, prepare
 from leblanc.studies.models.validity import doubts
-from leblanc.units import friction_words
+from leblanc.units import small_whirl_friction
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.liquid_model import THIN_LAYERS
@@ -84,7 +84,7 @@ def map_scene(
     carried = np.array([_held(scene, fills, speed) for fills in rows])
     large = _limit_cycles(machine, law, found) if cycles else None
     pairs = zip(rows, whirl_speed - speed, strict=True)
-    thin = np.array([_thin_layers(fills, slip) for fills, slip in pairs]) | (law.law != "stokes")
+    thin = np.array([_thin_layers(fills, slip) for fills, slip in pairs]) | (not law.law.laminar)
     return WhirlMap(
         name=scene.name,
         source=scene.source,
@@ -187,13 +187,6 @@ def _check(scene: Scene, volumes: int, speeds: int) -> None:
         raise InputError("speeds.stop", scene.speeds.stop, "above speeds.start for a map")
     if not scene.fills:
         raise InputError("chambers", "none", "at least one for a map over volume")
-
-
-def small_whirl_friction(friction: Friction) -> str:
-    """Law of friction as a small whirl meets it, in words."""
-    if friction.law == "quadratic":
-        return "none (the quadratic law does not act on small whirls)"
-    return friction_words(friction)
 
 
 def fills_over_volume(

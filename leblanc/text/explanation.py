@@ -12,6 +12,7 @@ from leblanc.results.explanation import (
     Explanation,
     LayerExplanation,
     ModelAnswer,
+    SpinUp,
 )
 from leblanc.results.motion.tilting import RestMode
 from leblanc.text.numbers import NOT_FOUND, number
@@ -93,6 +94,7 @@ def layer_rows(layer: LayerExplanation | None) -> Rows:
         ("steepness", steepness),
         ("Reynolds number", _ends(n.reynolds)),
         ("wall layer", f"{_ends(n.skin)} of the depth"),
+        *(_spin_up_rows(layer.spin_up) if layer.spin_up is not None else []),
         ("covers the wall", covers),
         *([] if layer.carried_from is None else [("carried from rest", _carried(layer.carried_from))]),
     ]
@@ -103,6 +105,21 @@ def _carried(speed: float) -> str:
     if math.isinf(speed):
         return "never: no friction acts on it"
     return f"from {in_rpm(speed)}, where the walls' drag on the liquid at the bottom beats gravity"
+
+
+def _spin_up_rows(found: SpinUp) -> Rows:
+    """How the wall carries the liquid along."""
+    asked = "that the ramp asks of the wall" if found.ramp else "of liquid at rest in space at the last speed"
+    flow = f"{found.regime}, Re = {number(found.reynolds)} with a lag of {in_rpm(found.lag)}, {asked}"
+    if math.isinf(found.time):
+        return [("flow at the wall", flow), ("carried along", "never: nothing drags on the liquid")]
+    carried = f"to a tenth of its lag in {number(found.time)} s at the last speed, without gravity"
+    if found.ramp_time is not None:
+        slow = found.time > found.ramp_time
+        carried += f"; the ramp takes {number(found.ramp_time)} s: the liquid " + (
+            "stays behind" if slow else "can follow"
+        )
+    return [("flow at the wall", flow), ("carried along", carried)]
 
 
 def span_rows(span: ModelSpan) -> Rows:

@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction.laws import NO_FRICTION, QUADRATIC, Friction, FrictionLaw, damping_rate
+from fluid.friction.laws import NO_FRICTION, QUADRATIC, WALL, Friction, FrictionLaw, damping_rate
+from fluid.friction.pipe import drag_speed, hydraulic_diameter
 from meshes.arrays import Array, Complex
 from solvers.cycles.balance import Circular, NotCircularError, Place, circular
 from solvers.rotor.jeffcott import Jeffcott
@@ -98,9 +99,15 @@ def _wall_torque(place: Place, friction: Friction, lag: float, spin: float, slip
     fill = place.fill
     radius, depth = fill.chamber.radius, fill.depth / fill.chamber.radius
     law, coefficient = friction.at(fill.liquid.viscosity, slip, radius)
+    area = depth * (1.0 - 0.5 * depth)
+    if law == WALL:
+        # The mean part alone: that of the waves has no torque. It takes the lag as that of a solid layer.
+        diameter = hydraulic_diameter(fill.depth, fill.chamber.height)
+        given = lag * radius, diameter, fill.liquid.viscosity, friction.roughness
+        rate = 4.0 * float(drag_speed(*given)) / float(diameter)
+        return place.mass * rate * lag * radius**2 * (1.0 - area)
     velocity = lag * (1.0 - depth)  # over R, at the surface: the profile R/r of the long waves
     lid = 2.0 * radius / fill.chamber.height if friction.law is FrictionLaw.STOKES else 0.0
-    area = depth * (1.0 - 0.5 * depth)
     rate = float(damping_rate(law, coefficient, lid, depth, area, velocity if law == QUADRATIC else 0.0))
     return place.mass * rate * velocity * radius**2
 
@@ -135,7 +142,8 @@ def whirl_estimate(
     shares = _shares(rotor, fills, speeds[list(whirls)], friction)
     found: list[Estimate | None] = [None] * len(speeds)
     # The torque goes with the square of the amplitude, and with the lag or, by the quadratic law, its square.
-    power = 1.0 if friction.law is FrictionLaw.QUADRATIC else 2.0
+    # The wall's is nearly quadratic.
+    power = 1.0 if friction.law in (FrictionLaw.QUADRATIC, FrictionLaw.WALL) else 2.0
     for (k, whirl), share in zip(whirls.items(), shares.tolist(), strict=True):
         if share > 0.0:
             size, lag = share * whirl.amplitude, share**power * whirl.lag
@@ -185,9 +193,7 @@ def unsettled(machine: Circular, friction: Friction) -> str:
     machine : the rotor and its layers
     friction : on the walls
     """
-    if friction.law is FrictionLaw.NONE or (
-        friction.law is not FrictionLaw.STOKES and friction.coefficient == 0.0
-    ):
+    if friction.law is FrictionLaw.NONE or (not friction.law.laminar and friction.coefficient == 0.0):
         return "without friction of the liquid nothing keeps it turning: a whirl drags it back and dies down"
     if not np.abs(machine.damping).max() > 0.0:
         return "without damping of the supports nothing bounds the whirl"

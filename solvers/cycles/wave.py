@@ -15,7 +15,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction.laws import Friction, FrictionLaw
+from fluid.friction.laws import Friction, FrictionLaw, layer_thickness, plate_factor
+from fluid.friction.pipe import hydraulic_diameter
+from fluid.friction.wall import drag_table
 from meshes.arrays import Array, Complex
 from solvers.layer.records import LOADS, PACE, Drive, Outcome, Wall, records
 from solvers.layer.state import ring
@@ -39,7 +41,8 @@ class Whirling(NamedTuple):
     ----------
     ratio : r = omega_w/Omega
     size : w = W/R
-    drag : of the friction, as `fluid.friction.laws.damping_rate` takes it, over Omega if it is a rate
+    drag : of the friction, as `fluid.friction.laws.damping_rate` takes it, over Omega if it is a rate; under
+        the law of the wall 1/Omega, s, with which all of the law changes
     """
 
     ratio: float
@@ -96,7 +99,11 @@ class StandingWave:
         chamber = fill.chamber
         self.fill, self.friction, self.cells = fill, friction, cells
         self.mean = fill.volume / (2.0 * math.pi * chamber.height * chamber.radius**2)
-        self._lid = 2.0 * chamber.radius / chamber.height if friction.law is FrictionLaw.STOKES else 0.0
+        self._lid = 2.0 * chamber.radius / chamber.height if friction.law.laminar else 0.0
+        self._table: tuple[float, Array] | None = None
+        if friction.law is FrictionLaw.WALL:
+            diameter = float(hydraulic_diameter(fill.depth, chamber.height))
+            self._table = drag_table(diameter, fill.liquid.viscosity, friction.roughness)
         self._step, self._angles, self._scratch = 2.0 * math.pi / cells, ring(cells), scratch(cells)
         self._parts, self._fastest = 1, 0.0
         area = np.full(cells, self.mean)
@@ -116,6 +123,8 @@ class StandingWave:
     def drag(self, spin: float, whirl_speed: float) -> float:
         """Coefficient of the friction, over the spin if it is a rate; both speeds in rad/s."""
         slip, radius = whirl_speed - spin, self.fill.chamber.radius
+        if self.friction.law is FrictionLaw.WALL:
+            return 1.0 / spin
         _, found = self.friction.at(self.fill.liquid.viscosity, slip, radius)
         return found if self.friction.law is FrictionLaw.QUADRATIC else found / spin
 
@@ -243,8 +252,20 @@ class StandingWave:
     def _posed(self, given: Whirling, time: float, courant: float) -> tuple[Drive, Wall, int]:
         """Drive, wall, and most steps through a time."""
         drive = Drive(max(given.size, _LEAST), given.ratio - 1.0, 0.0, given.ratio, 0.0, 1.0)
-        wall = Wall(self.friction.law.number, max(given.drag, 0.0), self._lid, False)
+        wall = self._wall(given)
         return drive, wall, step_budget(time, 1.0, self.cells, courant)
+
+    def _wall(self, given: Whirling) -> Wall:
+        """What the steps know of the wall, rates over the spin."""
+        if self._table is None:
+            return Wall(self.friction.law.number, max(given.drag, 0.0), self._lid, False)
+        spin, radius = 1.0 / given.drag, self.fill.chamber.radius
+        slip, (top, table) = (given.ratio - 1.0) * spin, self._table
+        law, coefficient = self.friction.at(self.fill.liquid.viscosity, slip, radius)
+        thin = float(layer_thickness(self.fill.liquid.viscosity, slip)) / radius
+        plates = self._lid * plate_factor(slip, spin)
+        rates = coefficient / spin, self._lid, False, plates, thin, top / (radius * spin)
+        return Wall(law, *rates, table)
 
     def _force(self, offset: Any, amplitude: float) -> Any:
         """G by Newton's law for all liquid, of which the mean area is half the share of a full drum's."""

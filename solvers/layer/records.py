@@ -11,6 +11,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from fluid.friction.wall import NO_TABLE
+from meshes.arrays import Array
+
 # A `numpy.recarray`; its stubs forget the fields of what is picked from it.
 Record = Any
 
@@ -52,14 +55,19 @@ class Wall(NamedTuple):
     Parameters
     ----------
     law, coefficient : of the friction, as by `fluid.friction.laws.Friction.at`; rates in the unit of the spin
-    lid : 2 R/h_c, floor and lid under Stokes' friction
+    lid : 2 R/h_c, floor and lid under Stokes' friction and the law of the wall
     dispersion : whether its waves disperse
+    plates, thin, top, table : of the law of the wall, see `fluid.friction.wall.WallDrag`
     """
 
     law: int
     coefficient: float
     lid: float
     dispersion: bool
+    plates: float = 0.0
+    thin: float = 0.0
+    top: float = 0.0
+    table: Array = NO_TABLE
 
 
 # Integrals over time: force by the pressure on the wall over rho h_c R^3, offset, turning, least and largest

@@ -1,6 +1,7 @@
 """Time steps of a finite-volume layer: their parts, and a layer's way under a prescribed whirl.
 
-Heun's method in two stages between two exact half steps of friction [theory: long_wave, eq. 11]. The coupled
+Heun's method in two stages between two half steps of friction, exact but for the law of the wall
+[theory: long_wave, eq. 11]. The coupled
 machine takes the parts and puts its own forces to them. Lengths over R, times in the unit of the spin given.
 Compiled by numba with its cache on disk.
 """
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from fluid import long_wave
 from fluid.friction import laws as friction
 from meshes.arrays import Array
+from solvers.layer.drag import wall_kept
 from solvers.layer.finite_volume import (
     COMPILED,
     DRY,
@@ -112,17 +114,23 @@ def kept_speed(area, velocity, surface, law, coefficient, lid, dt, kept):
 
 
 @_part
-def wall_friction(area, q, spin, law, coefficient, lid, dt, spare):
+def wall_friction(area, q, spin, wall, dt, spare):
     """Friction alone over a time dt; `spare`: scratch of at least four rows."""
-    n = area.size
-    velocity, surface, kept = spare[0, :n], spare[1, :n], spare[2, :n]
+    n, law = area.size, wall.law
+    velocity, surface, kept, pushed = spare[0, :n], spare[1, :n], spare[2, :n], spare[3, :n]
     if law == friction.NONE:
         return
     for i in range(n):
         surface[i] = surface_radius(area[i])
         velocity[i] = (q[i] + spin * area[i] * area[i]) / np.maximum(area[i], DRY)
-    kept_speed(area, velocity, surface, law, coefficient, lid, dt, kept)
-    decelerate(area, q, spin, kept)
+    if law == friction.WALL:
+        known = (wall.lid, wall.plates, wall.thin, wall.top, wall.table)
+        wall_kept(area, velocity, surface, wall.coefficient, known, dt, kept, pushed)
+        decelerate(area, q, spin, kept)
+        add_velocity(area, q, pushed)
+    else:
+        kept_speed(area, velocity, surface, law, wall.coefficient, wall.lid, dt, kept)
+        decelerate(area, q, spin, kept)
 
 
 @_part
@@ -132,6 +140,13 @@ def decelerate(area, q, spin, kept):
         square = spin * area[i] * area[i]
         moved = (q[i] + square) * kept[i]
         q[i] = (moved if area[i] > DRY else 0.0) - square
+
+
+@_part
+def add_velocity(area, q, pushed):
+    """Add to each cell's velocity; dry ones stay at rest."""
+    for i in range(area.size):
+        q[i] += area[i] * pushed[i] if area[i] > DRY else 0.0
 
 
 @_part
@@ -378,7 +393,7 @@ def advance(area, q, energy, pace, stop, drive, wall, angles, courant, most, spa
     n = area.size
     step = 2.0 * np.pi / n
     slip, spin, sums = drive.slip, drive.spin, loads[0]
-    law, coefficient, lid, dispersion = wall.law, wall.coefficient, wall.lid, wall.dispersion
+    dispersion = wall.dispersion
     pull_cell, pull_face = spare[WORK, :n], spare[WORK + 1, :n]
     rate_a, rate_q = spare[WORK + 2, :n], spare[WORK + 3, :n]
     next_a, next_q, begin_q = spare[WORK + 4, :n], spare[WORK + 5, :n], spare[WORK + 6, :n]
@@ -395,7 +410,7 @@ def advance(area, q, energy, pace, stop, drive, wall, angles, courant, most, spa
             dt = min(courant * step / (1.1 * fastest), stop - time)
             for i in range(n):
                 begin_q[i] = q[i]
-            wall_friction(area, q, spin, law, coefficient, lid, 0.5 * dt, spare)
+            wall_friction(area, q, spin, wall, 0.5 * dt, spare)
         if stage < 2:
             for i in range(n):
                 next_a[i], next_q[i] = area[i], q[i]
@@ -432,7 +447,7 @@ def advance(area, q, energy, pace, stop, drive, wall, angles, courant, most, spa
             correct(area, q, rate_a, rate_q, dt, next_a, next_q)
             correct_energy(energy, rate_e, dt, next_e)
             bound_energy(area, energy, spin)
-            wall_friction(area, q, spin, law, coefficient, lid, 0.5 * dt, spare)
+            wall_friction(area, q, spin, wall, 0.5 * dt, spare)
             time += dt
             steps += 1
         stage = 2 if stage == 1 else 1

@@ -21,7 +21,8 @@ from pde.trackers.base import FinishedSimulation, TrackerBase
 
 from fluid import long_wave
 from fluid.fill import Fill
-from fluid.friction.laws import NO_FRICTION, STOKES, Friction, damping_rate
+from fluid.friction.laws import NO_FRICTION, STOKES, WALL, Friction, damping_rate
+from fluid.friction.wall import WallDrag, wall_shear
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.layer.finite_volume import DRY, GHOSTS, WORK, rates
@@ -263,7 +264,7 @@ class _Layer:
         ray = self.surface * (self.angles[0] + 1j * self.angles[1])
         self.across = 0.5 * (np.roll(ray, -1) - np.roll(ray, 1))
         self.inertia = self._flow_inertia()
-        self.shear = self._shear()
+        self.shear = self._shear(machine.machine.tables[j])
         self.d_area, self.d_momentum, self.momentum_rate = area, momentum, np.zeros(2)
 
     def _flow_inertia(self) -> Array:
@@ -281,15 +282,20 @@ class _Layer:
         r, rays = self.surface, self.angles[0] + 1j * self.angles[1]
         return complex(np.sum((1.0 - r) * (1.0 + r + r * r) / 3.0 * rays) * 2.0 * math.pi / self.a.size)
 
-    def _shear(self) -> Array:
+    def _shear(self, table: Array) -> Array:
         """Rate at which friction takes q [theory: long_wave, eq. 9]."""
         layer, coefficient = self.layer, float(self.layer.coefficient)
-        if layer.law == STOKES:
+        if layer.law in (STOKES, WALL):
             coefficient *= math.sqrt(self.spin)
         lost: Array = np.zeros(self.a.size)
         wet = self.a > DRY
         a, u = self.a[wet], self.u[wet]
         depth = 2.0 * a / (1.0 + self.surface[wet])
+        if layer.law == WALL:
+            thin = float(layer.thin) / math.sqrt(self.spin)
+            known = float(layer.plates), float(layer.lid), thin, float(layer.top), table
+            lost[wet] = wall_shear(WallDrag(coefficient, *known), depth, a, u)
+            return lost
         lost[wet] = damping_rate(int(layer.law), coefficient, float(layer.lid), depth, a, u) * a * u
         return lost
 

@@ -265,5 +265,5 @@ class OneFamily(WaveModel):
         radius = fill.chamber.radius
         law, coefficient = self.friction.at(fill.liquid.viscosity, whirl.slip, radius)
         area = fill.volume / (2.0 * math.pi * fill.chamber.height * radius**2)
-        lid = 2.0 * radius / fill.chamber.height
+        lid = self.friction.lid(radius, fill.chamber.height, whirl.slip, whirl.spin)
         return float(damping_rate(law, coefficient, lid, fill.depth / radius, area, 0.0))

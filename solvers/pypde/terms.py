@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from fluid import long_wave
 from fluid.fill import Fill
-from fluid.friction.laws import NO_FRICTION, Friction, damping_rate
+from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw, damping_rate
+from fluid.friction.wall import WallDrag, wall_drag, wall_shear
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative
 from solvers.layer.finite_volume import DRY, FULL, GHOSTS, THIN, WORK, rates
@@ -62,6 +63,20 @@ class LongWaveTerms:
         """Law and coefficient of the friction as `fluid.friction.laws.damping_rate` takes them."""
         return self.friction.at(self.fill.liquid.viscosity, self.whirl.slip, self.fill.chamber.radius)
 
+    def wall_drag(self) -> WallDrag | None:
+        """The law of the wall at the spin at time 0, rates in 1/s; None under another law."""
+        if self.friction.law is not FrictionLaw.WALL:
+            return None
+        return _wall_drag(self.friction, self.fill, self.whirl.slip, self.whirl.spin)
+
+    def wall(self) -> Wall:
+        """What the compiled steps know of the wall, rates in 1/s."""
+        law, coefficient = self.drag()
+        drag = self.wall_drag()
+        if drag is None:
+            return Wall(law, coefficient, _lid(self), self.dispersion)
+        return Wall(law, coefficient, drag.lid, self.dispersion, drag.plates, drag.thin, drag.top, drag.table)
+
     def spin(self, time: float) -> float:
         """Omega at a time, rad/s.
 
@@ -73,6 +88,13 @@ class LongWaveTerms:
         if spin <= 0.0:
             raise InputError("time", time, "one at which the drum spins forward")
         return spin
+
+
+@lru_cache(maxsize=64)
+def _wall_drag(friction: Friction, fill: Fill, slip: float, spin: float) -> WallDrag:
+    chamber = fill.chamber
+    given = fill.liquid.viscosity, fill.depth, chamber.radius, chamber.height
+    return wall_drag(friction, *given, slip, spin)
 
 
 def body_force(terms: LongWaveTerms, time: float) -> complex:
@@ -154,7 +176,7 @@ class Marcher:
             weight=whirl.gravity / radius,
             spin=whirl.spin,
         )
-        self._wall = Wall(*terms.drag(), _lid(terms), terms.dispersion)
+        self._wall = terms.wall()
         # The state as the last march left it: scaled, and as it was told, m^2 and m^4/s.
         self._kept: tuple[Array, Array] | None = None
         self._told = np.zeros((2, cells))
@@ -293,6 +315,10 @@ def _shear(terms: LongWaveTerms, a: Array, q: Array, spin: float) -> Array:
     shear, wet = np.zeros_like(a), a > DRY
     u, held = faded_velocity(a, q, spin)[wet], a[wet]
     depth = 2.0 * held / (1.0 + long_wave.free_surface_radius(held))
+    drag = terms.wall_drag()
+    if drag is not None:
+        shear[wet] = wall_shear(drag, depth, held, u)
+        return shear
     shear[wet] = damping_rate(law, coefficient, _lid(terms), depth, held, u) * held * u
     return shear
 

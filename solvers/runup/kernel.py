@@ -13,10 +13,12 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from fluid.friction.laws import NONE, STOKES
+from fluid.friction.laws import NONE, STOKES, WALL
+from solvers.layer.drag import wall_kept
 from solvers.layer.finite_volume import COMPILED, GHOSTS, LOG, NEAREST, SUMMED, SURFACE, VELOCITY, WORK
 from solvers.layer.records import Outcome
 from solvers.layer.step import (
+    add_velocity,
     bound_energy,
     calm,
     copy,
@@ -99,11 +101,13 @@ _PULL_CELL, _PULL_FACE, _RATE_A, _RATE_Q, _NEXT_A, _NEXT_Q, _KEPT = range(WORK, 
 _VELOCITY, _SURFACE, _LOG = range(WORK + 7, WORK + 10)
 # The same of the fluctuations behind bores: rate of change, second stage.
 _RATE_E, _NEXT_E = WORK + 10, WORK + 11
+# What the law of the wall adds to the velocity; of other laws it stays nothing.
+_PUSHED = WORK + 12
 
 
 def layer_scratch(layers: int, cells: int) -> NDArray[np.float64]:
     """Scratch that `layer_step` wants for each of so many layers."""
-    return np.zeros((layers, WORK + 12, cells + 2 * GHOSTS))
+    return np.zeros((layers, WORK + 13, cells + 2 * GHOSTS))
 
 
 @_jit
@@ -184,8 +188,8 @@ def _power(area, velocity, surface, log, rate_a, spin, x, y, cosine, sine):
 
 
 @_summed
-def _rub(area, velocity, log, kept, spin):
-    """Let friction leave its share of the velocities; sums over the cells.
+def _rub(area, velocity, log, kept, pushed, spin):
+    """Let friction leave its share of the velocities and add to them; sums over the cells.
 
     Returns
     -------
@@ -194,7 +198,7 @@ def _rub(area, velocity, log, kept, spin):
     """
     torque, heat, before, after = 0.0, 0.0, 0.0, 0.0
     for i in range(area.size):
-        u, v = velocity[i], velocity[i] * kept[i]
+        u, v = velocity[i], velocity[i] * kept[i] + pushed[i]
         velocity[i] = v
         torque += area[i] * (v - u)
         lost = 0.5 * log[i] * (u - v) * (u + v)
@@ -207,26 +211,32 @@ def _rub(area, velocity, log, kept, spin):
 
 
 @_unwrapped
-def _half_friction(area, q, spin, layer, coefficient, dt, spare, gains):
+def _half_friction(area, q, spin, layer, coefficient, thin, table, dt, spare, gains):
     """Half a step of friction; the energy before and after, with the profile left in the scratch."""
     n, step = area.size, 2.0 * np.pi / area.size
     velocity, surface, log = spare[_VELOCITY, :n], spare[_SURFACE, :n], spare[_LOG, :n]
-    kept = spare[_KEPT, :n]
+    kept, pushed = spare[_KEPT, :n], spare[_PUSHED, :n]
     profile(area, q, spin, velocity, surface, log)
     if layer.law == NONE:
         for i in range(n):
             kept[i] = 1.0
     else:
-        kept_speed(area, velocity, surface, layer.law, coefficient, layer.lid, 0.5 * dt, kept)
+        if layer.law == WALL:
+            known = (layer.lid, layer.plates, thin, layer.top, table)
+            wall_kept(area, velocity, surface, coefficient, known, 0.5 * dt, kept, pushed)
+        else:
+            kept_speed(area, velocity, surface, layer.law, coefficient, layer.lid, 0.5 * dt, kept)
         decelerate(area, q, spin, kept)
-    torque, heat, before, after = _rub(area, velocity, log, kept, spin)
+        if layer.law == WALL:
+            add_velocity(area, q, pushed)
+    torque, heat, before, after = _rub(area, velocity, log, kept, pushed, spin)
     gains.torque += torque * step
     gains.heat += heat * step
     return before * step, after * step
 
 
 @_unwrapped
-def layer_step(area, q, rolling, spins, force, layer, coefficient, dt, angles, spare, gains):
+def layer_step(area, q, rolling, spins, force, layer, coefficient, thin, table, dt, angles, spare, gains):
     """Advance a layer by one time step, in place; a step that fails leaves nothing to go on with.
 
     Parameters
@@ -237,6 +247,7 @@ def layer_step(area, q, rolling, spins, force, layer, coefficient, dt, angles, s
     force : body force over R in the drum frame at the beginning (two parts) and at the end (two)
     layer : its record LAYER
     coefficient : of its friction at these spins
+    thin, table : of the law of the wall at these spins, see `fluid.friction.wall.WallDrag`
     dt : time step
     angles : cosine and sine at the cells' middles and at their left faces, shape (4, n)
     spare : scratch of this layer, from `layer_scratch`; the profile at the end is left in it
@@ -254,7 +265,7 @@ def layer_step(area, q, rolling, spins, force, layer, coefficient, dt, angles, s
     rate_e, next_e = spare[_RATE_E, : rolling.size], spare[_NEXT_E, : rolling.size]
     velocity, surface, log = spare[VELOCITY, GHOSTS:], spare[SURFACE, GHOSTS:], spare[LOG, GHOSTS:]
     gains.torque, gains.heat, gains.loss, gains.missed = 0.0, 0.0, 0.0, 0.0
-    _, gains.loss = _half_friction(area, q, spins[0], layer, coefficient, dt, spare, gains)
+    _, gains.loss = _half_friction(area, q, spins[0], layer, coefficient, thin, table, dt, spare, gains)
     copy(area, next_a)
     copy(q, next_q)
     copy(rolling, next_e)
@@ -280,7 +291,7 @@ def layer_step(area, q, rolling, spins, force, layer, coefficient, dt, angles, s
             correct_energy(rolling, rate_e, dt, next_e)
             bound_energy(area, rolling, spin)
             calm(area, q, spin)
-    energy, _ = _half_friction(area, q, spins[1], layer, coefficient, dt, spare, gains)
+    energy, _ = _half_friction(area, q, spins[1], layer, coefficient, thin, table, dt, spare, gains)
     gains.loss -= energy + gains.missed
     return Outcome.DONE, fastest
 
@@ -338,10 +349,11 @@ def _move_layers(machine, state, room, dt):
         for end in range(2):
             cosine, sine = turn[2 * end], turn[2 * end + 1]
             force[2 * end], force[2 * end + 1] = x * cosine + y * sine, y * cosine - x * sine
-        coefficient = layer.coefficient
-        if layer.law == STOKES:
+        coefficient, thin = layer.coefficient, layer.thin
+        if layer.law == STOKES or layer.law == WALL:
             # Stokes' friction at the frequency of a free wave goes with the root of the spin.
-            coefficient *= np.sqrt(0.5 * (spins[0] + spins[1]))
+            root = np.sqrt(0.5 * (spins[0] + spins[1]))
+            coefficient, thin = coefficient * root, thin / root
         status, speed = layer_step(
             *(
                 state.area[j],
@@ -351,6 +363,8 @@ def _move_layers(machine, state, room, dt):
                 force,
                 layer,
                 coefficient,
+                thin,
+                machine.tables[j],
                 dt,
                 machine.angles,
             ),

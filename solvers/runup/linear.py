@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction.laws import Friction, FrictionLaw, damping_rate
+from fluid.friction.laws import Friction, damping_rate
 from meshes.arrays import Array, Complex
 from solvers.layer.records import Outcome, records
 from solvers.layer.state import ring
@@ -23,8 +23,10 @@ from solvers.runup.state import (
     CoupledRotor,
     at_rest,
     drag_curves,
+    layer_drag,
     layer_properties,
     mean_area,
+    wall_tables,
 )
 from solvers.slices import compiled, slices
 
@@ -262,6 +264,7 @@ def couple_linear(
         unbalance=system.unbalance.astype(complex),
         planes=rest.planes,
         layers=layers,
+        tables=wall_tables(fills, friction),
         active=np.zeros(count),
         pools=pools,
         drags=drags,
@@ -298,12 +301,15 @@ def _layer(fill: Fill, friction: Friction) -> tuple[float, ...]:
     """Record LINEAR_LAYER in its order; the quadratic law has no friction to offer a small motion."""
     chamber = fill.chamber
     if fill.surface_radius <= 0.0:
-        return fill.mass, 1.0, 0.0, 0.0, 0.0
+        return fill.mass, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0
     kappa = (chamber.radius / fill.surface_radius) ** 2
-    area, rate = mean_area(fill), 0.0
+    area, rate, top, sides = mean_area(fill), 0.0, 0.0, 0.0
     inertia = fill.liquid.density * chamber.height * 2.0 * math.pi * chamber.radius**4 * area * (1.0 - area)
     if area > 0.0:
-        layer = layer_properties(fill, friction, False)
-        depth = fill.depth / chamber.radius
-        rate = float(damping_rate(layer.law, layer.coefficient, layer.lid, depth, area, 0.0))
-    return fill.mass, kappa, rate, 0.5 if friction.law is FrictionLaw.STOKES else 0.0, inertia
+        layer, drag = layer_properties(fill, friction, False), layer_drag(fill, friction)
+        depth, lid = fill.depth / chamber.radius, layer.lid
+        if drag is not None:
+            # Its waves feel the drag of small ones, the layer as a whole that of the mean flow.
+            lid, top, sides = layer.plates, layer.top, 1.0 / depth + layer.lid
+        rate = float(damping_rate(layer.law, layer.coefficient, lid, depth, area, 0.0))
+    return fill.mass, kappa, rate, 0.5 if friction.law.laminar else 0.0, inertia, top, sides

@@ -12,14 +12,16 @@ from numba import njit
 from numpy.typing import NDArray
 
 from meshes.arrays import Array
+from solvers.layer.drag import mean_rate
 from solvers.layer.finite_volume import COMPILED
 from solvers.layer.records import Outcome, Record, floats
 from solvers.runup.kernel import motor_torque, solve, watch
 
 _jit: Any = njit(**COMPILED)
 
-# Of a layer: mass, curvature, friction rate, power of the spin that it goes with, moment of inertia.
-LINEAR_LAYER = floats("mass", "curvature", "rate", "power", "inertia")
+# Of a layer: mass, curvature, friction rate, power of the spin that it goes with, moment of inertia; under
+# the law of the wall last velocity of its table, R/h + 2 R/h_c, otherwise 0 both.
+LINEAR_LAYER = floats("mass", "curvature", "rate", "power", "inertia", "top", "sides")
 
 
 class LinearMachine(NamedTuple):
@@ -31,6 +33,7 @@ class LinearMachine(NamedTuple):
     unbalance : U, complex, shape (n,)
     planes : displacement of each layer's axis for unit coordinates, shape (l, 2, n)
     layers : records LINEAR_LAYER, shape (l,)
+    tables : of the law of the wall, shape (l, m, 2); m = 0 under other laws
     active : 1 for a layer, 0 for liquid that lies at the bottom or is solid, shape (l,)
     pools : records POOL of `solvers.runup.state`, the mass 0 for liquid that does not swing, shape (l,)
     drags : relative rotation of the walls and their torque on each pool, shape (l, 2, k)
@@ -50,6 +53,7 @@ class LinearMachine(NamedTuple):
     unbalance: NDArray[np.complex128]
     planes: Array
     layers: Record
+    tables: Array
     active: Array
     pools: Record
     drags: Array
@@ -148,12 +152,23 @@ def _rotor_rows(m, spin, first, last, spins, dt):
 
 
 @_jit
+def _mean_drag(m, j, spin, dt):
+    """Rate of the friction on a layer as a whole: by the law of the wall at the middle of the step."""
+    layer = m.layers[j]
+    if layer.top == 0.0:
+        return layer.rate * spin**layer.power
+    lag = abs(spin - m.carried[j])
+    first, _ = mean_rate(m.tables[j], layer.top, lag)
+    middle, _ = mean_rate(m.tables[j], layer.top, lag / (1.0 + 0.5 * dt * first * layer.sides))
+    return middle * layer.sides
+
+
+@_jit
 def _carry(m, j, spin, spins, dt):
     """Rotation of a layer as a whole at the end of the step: wall friction takes it to the drum's."""
     if m.active[j] == 0.0:
         return spins[1]
-    layer = m.layers[j]
-    share = 0.5 * dt * layer.rate * spin**layer.power
+    share = 0.5 * dt * _mean_drag(m, j, spin, dt)
     return (m.carried[j] * (1.0 - share) + share * (spins[0] + spins[1])) / (1.0 + share)
 
 
@@ -180,7 +195,7 @@ def _tally(m, spin, spins, dt):
             continue
         layer = m.layers[j]
         mass, kappa = layer.mass, layer.curvature
-        rate = layer.rate * spin**layer.power
+        rate, held = layer.rate * spin**layer.power, _mean_drag(m, j, spin, dt)
         after = _carry(m, j, spin, spins, dt)
         whole, gained = 0.5 * (m.carried[j] + after), after - m.carried[j]
         u, v = m.rate[row] + 0.5 * m.change[row], m.rate[row + 1] + 0.5 * m.change[row + 1]
@@ -188,7 +203,7 @@ def _tally(m, spin, spins, dt):
         # Velocity relative to the liquid that turns as a whole.
         p, q = u + whole * y, v - whole * x
         drag = mass * rate * (1.0 + kappa)
-        sums.friction += dt * (drag * (p * p + q * q) + layer.inertia * rate * (spin - whole) ** 2)
+        sums.friction += dt * (drag * (p * p + q * q) + layer.inertia * held * (spin - whole) ** 2)
         sums.drive -= dt * drag * whole * (x * q - y * p)
         sums.drive += 2.0 * mass * kappa * gained * (x * v - y * u - whole * (x * x + y * y))
         sums.drive += layer.inertia * spin * gained

@@ -32,6 +32,7 @@ from solvers.runup.state import (
     layer_properties,
     mean_area,
     planes_of,
+    wall_tables,
 )
 from solvers.slices import compiled, slices
 
@@ -46,6 +47,7 @@ class Coupled(CoupledRotor):
     Parameters
     ----------
     layers : properties of each chamber's layer, records LAYER, shape (l,)
+    tables : of the law of the wall, shape (l, m, 2)
     area, momentum : of all layers, shape (l, c)
     rolling : A e of the fluctuations behind bores of all layers, shape (l, c), or (l, 0) without them
     active : which of them are layers now, shape (l,)
@@ -55,6 +57,7 @@ class Coupled(CoupledRotor):
     """
 
     layers: Record
+    tables: Array
     area: Array
     momentum: Array
     rolling: Array
@@ -300,6 +303,7 @@ class Coupled(CoupledRotor):
             layers=self.layers[active],
             pools=pools,
             drags=self.drags[pooled],
+            tables=self.tables[active],
         )
         count, cells = int(active.sum()), self.area.shape[1]
         self.state = old._replace(
@@ -386,6 +390,7 @@ def couple(
     layers = records(LAYER, count)
     for j, fill in enumerate(fills):
         layers[j] = layer_properties(fill, friction, dispersion)
+    tables = wall_tables(fills, friction)
     area = np.repeat(np.array([mean_area(fill) for fill in fills]).reshape(-1, 1), cells, axis=1)
     found = Coupled(
         system=system,
@@ -393,6 +398,7 @@ def couple(
         layers=layers,
         friction=friction,
         handover=handover,
+        tables=tables,
         capture=rest.capture,
         pools=rest.pools,
         lean=np.zeros(count),
@@ -409,6 +415,7 @@ def couple(
             layers=layers[:0],
             pools=records(POOL, 0),
             drags=np.zeros((0, 2, 1)),
+            tables=tables[:0],
             gravity=rest.gravity,
             angles=ring(cells),
             curve=np.zeros((2, 0)),

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
+from fluid.friction.wall import NO_TABLE, WallDrag, wall_drag
 from fluid.pool import Pool, balance_speed, pool_of, wall_torque
 from fluid.waves import free_wave_frequencies
 from meshes.arrays import Array, Complex, Flags
@@ -44,8 +45,10 @@ class LayerProperties(NamedTuple):
     weight : rho h_c, kg/m^2
     mass : kg
     law, coefficient : of the friction: number of the law; k, 1/s, Stokes' over the root of the spin, or c_f
-    lid : 2 R/h_c under Stokes' friction, otherwise 0
+    lid : 2 R/h_c under Stokes' friction and the law of the wall, otherwise 0
     dispersion : whether its waves disperse
+    plates, thin, top : of the law of the wall, see `fluid.friction.wall.WallDrag`, of unit spin: the
+        coefficient goes with the root of the spin and `thin` with its inverse
     """
 
     radius: float
@@ -55,6 +58,9 @@ class LayerProperties(NamedTuple):
     coefficient: float
     lid: float
     dispersion: bool
+    plates: float = 0.0
+    thin: float = 0.0
+    top: float = 0.0
 
 
 # The same as a record.
@@ -71,14 +77,41 @@ def layer_properties(fill: Fill, friction: Friction, dispersion: bool) -> LayerP
     friction : on the walls; the laminar law takes the frequency of the slower free wave
     dispersion : add the finite depth's dispersion
     """
-    chamber = fill.chamber
-    log = math.log(chamber.radius / fill.surface_radius) if fill.surface_radius > 0.0 else math.inf
-    # Of unit spin: the coefficient goes with the root of it.
-    slip = abs(float(free_wave_frequencies(1, log, 1.0)[1])) if 0.0 < log < math.inf else 0.0
+    chamber, slip = fill.chamber, unit_slip(fill)
     law, coefficient = friction.at(fill.liquid.viscosity, slip, chamber.radius)
-    lid = 2.0 * chamber.radius / chamber.height if friction.law is FrictionLaw.STOKES and slip > 0.0 else 0.0
+    laminar = friction.law.laminar and slip > 0.0
+    lid = 2.0 * chamber.radius / chamber.height if laminar else 0.0
     weight = fill.liquid.density * chamber.height
-    return LayerProperties(chamber.radius, weight, fill.mass, law, coefficient, lid, dispersion)
+    found = LayerProperties(chamber.radius, weight, fill.mass, law, coefficient, lid, dispersion)
+    drag = layer_drag(fill, friction)
+    if drag is None:
+        return found
+    return found._replace(plates=drag.plates, thin=drag.thin, top=drag.top)
+
+
+def unit_slip(fill: Fill) -> float:
+    """Frequency of the slower free wave seen from the drum over the spin; 0 without a layer."""
+    log = math.log(fill.chamber.radius / fill.surface_radius) if fill.surface_radius > 0.0 else math.inf
+    return abs(float(free_wave_frequencies(1, log, 1.0)[1])) if 0.0 < log < math.inf else 0.0
+
+
+def layer_drag(fill: Fill, friction: Friction) -> WallDrag | None:
+    """The law of the wall for a layer at unit spin; None under another law or without a layer."""
+    slip, chamber = unit_slip(fill), fill.chamber
+    if friction.law is not FrictionLaw.WALL or slip == 0.0:
+        return None
+    return wall_drag(friction, fill.liquid.viscosity, fill.depth, chamber.radius, chamber.height, slip, 1.0)
+
+
+def wall_tables(fills: Sequence[Fill], friction: Friction) -> Array:
+    """Tables of the law of the wall for every layer, shape (l, m, 2); zeros for liquid that is none."""
+    drags = [layer_drag(fill, friction) for fill in fills]
+    found = [NO_TABLE if drag is None else drag.table for drag in drags]
+    longest = max((len(table) for table in found), default=0)
+    tables = np.zeros((len(fills), longest, 2))
+    for j, table in enumerate(found):
+        tables[j, : len(table)] = table
+    return tables
 
 
 def layer_capture(fill: Fill, gravity: float) -> float:
@@ -149,6 +182,7 @@ class Machine(NamedTuple):
     layers : records LAYER, shape (l,)
     pools : records POOL of liquid that swings at the bottom, shape (p,)
     drags : of each pool, relative rotation of its walls, rising from 0, and their torque, shape (p, 2, k)
+    tables : of the law of the wall, shape (l, m, 2); m = 0 under other laws
     gravity : acceleration across the axis, shape (2,)
     angles : cosine and sine at the cells' middles and at their left faces, shape (4, c)
     curve : the motor's speeds and torques, shape (2, k); k = 0 for a ramp
@@ -161,6 +195,7 @@ class Machine(NamedTuple):
     layers: Record
     pools: Record
     drags: Array
+    tables: Array
     gravity: Array
     angles: Array
     curve: Array

@@ -13,8 +13,8 @@ import scipy
 from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
-from fluid.friction.laws import Friction, FrictionLaw, layer_thickness
-from fluid.whirl import is_full, plane_layer
+from fluid.friction.laws import Friction, layer_thickness
+from fluid.whirl import is_full, plane_layer, slower_slip
 from meshes.arrays import Array, Complex
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
@@ -176,7 +176,7 @@ def section_layer(fill: Fill, friction: Friction) -> SectionLayer | None:
     """
     if fill.volume == 0.0 or is_full(fill):
         return None
-    chamber, stokes = fill.chamber, friction.law is FrictionLaw.STOKES
+    chamber, stokes = fill.chamber, friction.law.laminar
     density = fill.liquid.density * chamber.height
     plain = plane_layer(_clear(fill), friction)
     assert plain is not None
@@ -189,7 +189,9 @@ def section_layer(fill: Fill, friction: Friction) -> SectionLayer | None:
     laminar = np.zeros_like(drag)
     if stokes:
         # Walls and baffles; then floor and lid, which drag on all of the liquid.
-        plates = 2.0 / chamber.height * liquid.inertia
+        film = fill.volume / (math.pi * chamber.height) / _clear(fill).chamber.radius ** 2
+        slip = slower_slip(film / (2.0 - film))
+        plates = friction.lid(1.0, chamber.height, slip, 1.0) * liquid.inertia
         laminar = math.sqrt(fill.liquid.viscosity) * (drag + plates)
     return SectionLayer(density, liquid, plain.rate, laminar)
 

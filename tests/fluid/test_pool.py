@@ -13,6 +13,7 @@ from scipy.linalg import eigh
 
 from fluid.fill import Fill
 from fluid.friction.laws import Friction
+from fluid.friction.pipe import friction_factor
 from fluid.liquid import Liquid
 from fluid.pool import Pool, balance_speed, pool_of, sloshing_number, wall_torque
 from meshes.chamber import Chamber
@@ -127,6 +128,13 @@ def drag(fill: Fill, pool: Pool, friction: Friction, turn: float) -> float:
     wall = fill.chamber
 
     def shear(speed: float) -> float:
+        if friction.law == "wall":
+            # By the factor of the speed at the outer wall.
+            area, edge = pool.area * wall.height, pool.half_angle * wall.radius
+            wet = 2.0 * wall.height * (edge + pool.inner_half_angle * wall.inner_radius) + 2.0 * pool.area
+            reynolds = turn * wall.radius * 4.0 * area / wet / BRINE.viscosity
+            rough = friction.roughness * wet / (4.0 * area)
+            return BRINE.density * float(friction_factor(reynolds, rough)) / 8.0 * speed**2
         if friction.law == "quadratic":
             return BRINE.density * friction.coefficient * speed**2
         return BRINE.density * math.sqrt(0.5 * BRINE.viscosity * turn) * speed
@@ -136,11 +144,14 @@ def drag(fill: Fill, pool: Pool, friction: Friction, turn: float) -> float:
         found += shear(turn * radius) * radius * 2.0 * half * radius * wall.height
     if friction.law == "stokes":
         found += 2.0 * shear(turn) * section_integral(fill, wall.radius * math.cos(pool.half_angle), 2.0)
+    if friction.law == "wall":
+        found += 2.0 * shear(turn) * section_integral(fill, wall.radius * math.cos(pool.half_angle), 3.0)
     return found
 
 
 @kills("fluid.pool:wall_torque", "shear * turn * (walls_2 + 2.0 * pool.square)", "shear * turn * walls_2")
 @kills("fluid.pool:wall_torque", "height * arc * r**4", "height * arc * r**3")
+@kills("fluid.pool:wall_torque", "(walls_3 + 2.0 * pool.cube)", "(walls_3 + pool.cube)")
 @kills("fluid.pool:balance_speed", "pool.mass * gravity * pool.arm", "pool.mass * gravity")
 def test_drag_and_balance() -> None:
     """The torque is the sum of the shear; at the speed of balance it holds the pool at the axis' height."""
@@ -148,7 +159,7 @@ def test_drag_and_balance() -> None:
         fill = ring(6e-4, inner)
         pool = pool_of(fill)
         assert pool is not None
-        for friction in (Friction("quadratic", 0.0025), Friction("stokes")):
+        for friction in (Friction("quadratic", 0.0025), Friction("stokes"), Friction("wall", roughness=1e-5)):
             found = float(wall_torque(fill, pool, friction, 12.0))
             assert found == pytest.approx(drag(fill, pool, friction, 12.0), rel=1e-6)
             assert float(wall_torque(fill, pool, friction, -12.0)) == -found

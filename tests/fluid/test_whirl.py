@@ -119,8 +119,8 @@ def test_force_is_newtons_law(kappa: float, ratio: float, growth: float, rate: f
     assert abs(force_with_friction(t, 1.0, omega, rate) - numerator / d) <= slack + 1e-9 * abs(numerator / d)
 
 
-@kills("fluid.whirl:plane_layer", "0.5 * film, 2.0 * radius", "1.0 * film, 2.0 * radius")
-@kills("fluid.whirl:plane_layer", "2.0 * radius / fill.chamber.height", "1.0 * radius / fill.chamber.height")
+@kills("fluid.whirl:plane_layer", "0.5 * film", "1.0 * film")
+@kills("fluid.friction.laws:Friction.lid", "2.0 * radius / height", "1.0 * radius / height")
 @kills("fluid.whirl:plane_layer", "math.sqrt(fill.liquid.viscosity)", "fill.liquid.viscosity")
 @kills("fluid.whirl:plane_layer", "film / (2.0 - film)", "film / (2.0 + film)")
 def test_laws() -> None:

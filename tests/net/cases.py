@@ -128,6 +128,8 @@ def _maps() -> Iterator[Case]:
         yield _case(f"map-{name}", f"map {_scene(name)} {_GRID} --json --out out")
     friction = "--friction linear:0.5 --max-volume 20ml"
     yield _case("map-friction", f"map small/horizontal_rig.toml {_GRID} {friction} --json --out out")
+    wall = "--friction wall --max-volume 20ml"
+    yield _case("map-wall", f"map small/horizontal_rig.toml {_GRID} {wall} --json --out out")
 
 
 def _sweeps() -> Iterator[Case]:
@@ -151,6 +153,7 @@ def _layers() -> Iterator[Case]:
         "brine": f"{_WHIRL} --model linear --liquid brine",
         "kdv": f"{_WHIRL} --model kdv",
         "kdv-stokes": f"{_WHIRL} --model kdv --friction stokes",
+        "kdv-wall": f"{_WHIRL} --model kdv --friction wall",
         "kdv-linear": f"{_WHIRL} --model kdv --friction linear:0.5",
         "kdv-large": f"{_LAYER} 1.5e-2 --model kdv --friction linear:0.5",
         "kdv-dispersion": f"{_WHIRL} --model kdv --friction linear:0.5 --dispersion",
@@ -176,7 +179,7 @@ def _layers() -> Iterator[Case]:
     yield _case("layer-figure", f"{_WHIRL} --model linear --json --out out")
 
 
-_FRICTION = ("none", "stokes", "linear:0.5", "quadratic:0.01")
+_FRICTION = ("none", "stokes", "linear:0.5", "quadratic:0.01", "wall:2e-6")
 _MODES = "modes --radius 0.15 --volume 6.7e-4 --height 0.05 --speed 40"
 
 

@@ -15,7 +15,12 @@ ROOT = Path(__file__).parents[2]
 @pytest.mark.parametrize(
     "name",
     [
-        *("layer/uncompiled_layer", "runup/uncompiled_long_wave", "runup/uncompiled_linear"),
+        *(
+            "layer/uncompiled_layer",
+            "layer/uncompiled_drag",
+            "runup/uncompiled_long_wave",
+            "runup/uncompiled_linear",
+        ),
         *("runup/uncompiled_pool", "statics/uncompiled_statics"),
     ],
 )

@@ -13,10 +13,10 @@ from leblanc.results.response import peak
 from leblanc.units import (
     LENGTH,
     TIME,
-    friction_words,
     in_rpm,
     number,
     rpm_bands,
+    small_whirl_friction,
     with_unit,
 )
 from meshes.arrays import Flags
@@ -253,7 +253,7 @@ def self_excited_on_the_way(
     if not bands:
         return None
     listed = rpm_bands(bands)
-    law = friction_words(friction)
+    law = small_whirl_friction(friction)
     text = f"By linear theory with liquid friction {law}, some whirl grows by itself at {listed}."
     found: dict[str, Any] = {"bands": bands}
     if whirl is not None:

@@ -12,6 +12,7 @@ from fluid.friction.laws import (
     NONE,
     QUADRATIC,
     STOKES,
+    WALL,
     Friction,
     FrictionLaw,
     damping_rate,
@@ -20,7 +21,7 @@ from meshes.errors import InputError
 
 
 def test_laws_are_known_by_name_and_number() -> None:
-    assert [law.number for law in FrictionLaw] == [NONE, LINEAR, STOKES, QUADRATIC]
+    assert [law.number for law in FrictionLaw] == [NONE, LINEAR, STOKES, QUADRATIC, WALL]
     assert Friction("linear", 0.5) == Friction(FrictionLaw.LINEAR, 0.5)  # type: ignore[arg-type]
     assert Friction() == NO_FRICTION
     # As scenes write it into their digest and results into their JSON.

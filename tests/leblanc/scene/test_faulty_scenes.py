@@ -210,6 +210,8 @@ CASES = (
     case('"stokes"', "{ linear = -1 }", "model.friction.linear", "= -1", "a rate"),
     case('"stokes"', "{ quadratic = true }", "model.friction.quadratic", "true", "a pure number"),
     case('"stokes"', "{ cubic = 1 }", "model.friction.cubic", "linear, quadratic"),
+    case('"stokes"', '{ wall = { roughness = "-1 um" } }', "model.friction.wall.roughness", "a length"),
+    case('"stokes"', "{ wall = 1 }", "model.friction.wall", "= 1", "table"),
 )
 
 

@@ -136,6 +136,8 @@ def test_damping_may_be_zero(key: str, unit: str) -> None:
         ('"stokes"', Friction("stokes", 0.0)),
         ("{ linear = 3 }", Friction("linear", 3.0)),
         ("{ quadratic = 0.01 }", Friction("quadratic", 0.01)),
+        ('"wall"', Friction("wall")),
+        ('{ wall = { roughness = "2 um" } }', Friction("wall", roughness=2e-6)),
     ],
 )
 def test_friction_laws(text: str, friction: Friction) -> None:

@@ -16,6 +16,7 @@ from leblanc.cli import main
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.studies.explain import explain_scene
 from leblanc.studies.models.choose import choose
+from leblanc.text.explanation import layer_rows
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from tests.mutants import kills
@@ -115,3 +116,28 @@ def test_words_and_json(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> N
     assert main(["explain", "examples/horizontal_rig.toml", "--json"]) == 0
     answer = json.loads(capsys.readouterr().out)
     assert answer["layers"][0]["numbers"]["relative_depth"] == pytest.approx(0.01902, rel=1e-3)
+
+
+def test_the_wall_is_told_how_it_carries_the_liquid_along() -> None:
+    """By the law of the wall: regime and Reynolds number of the lag that the ramp asks, spin-up beside it."""
+    given = table()
+    given["chambers"] = [{"radius": 0.15, "height": 0.05, "volume": 6.715e-4, "liquid": "water"}]
+    given["runup"] = {"start": 5.0, "stop": 40.0, "rate": 2.0, "duration": 20.0}
+    assert explain_scene(scene_from_table(given)).layers[0].spin_up is None  # type: ignore[union-attr]
+    given["model"] = {"friction": "wall"}
+    layer = explain_scene(scene_from_table(given)).layers[0]
+    assert layer is not None and layer.spin_up is not None
+    found = layer.spin_up
+    # 15 mm deep at 40 rad/s in water: 5.37 s; the Reynolds number by its definition.
+    assert found.time == pytest.approx(5.37, rel=0.01)
+    diameter = 4.0 * 0.015 * 0.05 / 0.08
+    assert found.reynolds == pytest.approx(found.lag * 0.15 * diameter / 1.0e-6, rel=0.01)
+    assert (found.regime, found.ramp, found.ramp_time) == ("turbulent", True, pytest.approx(17.5))
+    # What the ramp asks: dOmega/dt R = (f_D/2) u^2/D_h with f_D of 0.02 to 0.04.
+    speed = found.lag * 0.15
+    assert 0.01 < 2.0 * 0.15 * diameter / speed**2 < 0.02
+    rows = dict(layer_rows(layer))
+    assert "turbulent" in rows["flow at the wall"] and "can follow" in rows["carried along"]
+    del given["runup"]
+    still = explain_scene(scene_from_table(given)).layers[0]
+    assert still is not None and still.spin_up is not None and still.spin_up.lag == pytest.approx(200.0)

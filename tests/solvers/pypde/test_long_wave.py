@@ -564,8 +564,8 @@ def test_manufactured_solution_with_linear_friction() -> None:
 
 @kills("solvers.pypde.terms:Marcher.__init__", "slip=whirl.slip", "slip=-whirl.slip")
 @kills("solvers.pypde.terms:Marcher.__init__", "weight=whirl.gravity / radius", "weight=whirl.gravity")
-@kills("solvers.pypde.terms:Marcher.__init__", "_lid(terms), terms.dispersion)", "0.0, terms.dispersion)")
-@kills("solvers.pypde.terms:Marcher.__init__", "_lid(terms), terms.dispersion)", "_lid(terms), False)")
+@kills("solvers.pypde.terms:LongWaveTerms.wall", "_lid(self), self.dispersion)", "0.0, self.dispersion)")
+@kills("solvers.pypde.terms:LongWaveTerms.wall", "_lid(self), self.dispersion)", "_lid(self), False)")
 @kills("solvers.pypde.terms:load_means", "offsets[0] / radius, offsets[1] / radius", "0j, 0j")
 @kills("solvers.pypde.terms:load_means", "terms.fill.chamber.height * radius**2", "radius**2")
 def test_history_with_stokes_friction() -> None:

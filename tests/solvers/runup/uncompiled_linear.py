@@ -9,6 +9,7 @@ import pytest
 
 from fluid.fill import Fill
 from fluid.friction.laws import Friction
+from fluid.friction.pipe import hydraulic_diameter, spin_up_time
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers.layer.records import Outcome
@@ -172,3 +173,24 @@ def test_inertia() -> None:
     inner = FILL.surface_radius
     assert layer.inertia == pytest.approx(0.5 * FILL.mass * (0.25**2 + inner**2), rel=1e-12)
     assert layer.curvature == pytest.approx((0.25 / inner) ** 2, rel=1e-12)
+
+
+@kills("solvers.runup.linear_kernel:_mean_drag", "return middle * layer.sides", "return first * layer.sides")
+@kills("solvers.runup.linear_kernel:_mean_drag", "0.5 * dt * first", "1.5 * dt * first")
+@kills("solvers.layer.drag:mean_rate", "else 1.0)) * last", "else 1.0))")
+@kills("solvers.layer.drag:mean_rate", "* beyond * top", "* beyond")
+@kills("solvers.runup.linear:_layer", "1.0 / depth + layer.lid", "1.0 / depth")
+def test_the_law_of_the_wall_carries_the_layer_along() -> None:
+    """From rest in space, by the integral of the channel's law; few long steps, of second order."""
+    law = Friction("wall")  # type: ignore[arg-type]
+    diameter = float(hydraulic_diameter(FILL.depth, FILL.chamber.height))
+    time = float(spin_up_time(0.5, 30.0 * 0.25, diameter, 1e-6))
+    left = []
+    for cells in (4, 8):
+        found = couple_linear(ROTOR.system(), [FILL], 30.0, law, 0.0, cells, False)
+        found.machine.carried[:] = 0.0
+        assert found.advance(time, 0.0, 0.8, 10**5) == Outcome.DONE
+        left.append(abs(found.machine.carried[0] / 30.0 - 0.5))
+    # The table's 1e-4, and the square of a step's share of the decay.
+    assert left[0] < 5e-3
+    assert left[1] < 1.5e-3

@@ -9,6 +9,7 @@ import pytest
 
 from fluid.fill import Fill
 from fluid.friction.laws import Friction
+from fluid.friction.wall import NO_TABLE
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers.layer import finite_volume
@@ -99,7 +100,7 @@ def layer_run(law: int, push: complex, n: int = 32) -> tuple[np.ndarray, np.ndar
     status, _ = coupled_layer.layer_step(
         *(area, q, area[:0], np.array([SPIN, SPIN])),
         np.array([push.real, push.imag, there.real, there.imag]),
-        *(layer, layer.coefficient, 0.02, ring(n), spare, gains),
+        *(layer, layer.coefficient, 0.0, NO_TABLE, 0.02, ring(n), spare, gains),
     )
     assert status == Outcome.DONE
     return area, q, gains
@@ -361,7 +362,7 @@ def test_gravity() -> None:
     assert abs(relative[1]) < 0.1 * abs(relative[0])
 
 
-@kills("solvers.runup.kernel:_move_layers", "coefficient *= np.sqrt(", "coefficient *= (")
+@kills("solvers.runup.kernel:_move_layers", "root = np.sqrt(", "root = (")
 @kills(
     "solvers.runup.long_wave:couple",
     "momentum=-spin * np.square(area)",
