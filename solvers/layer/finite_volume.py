@@ -19,6 +19,7 @@ import numpy as np
 from numba import njit
 
 from fluid import long_wave
+from solvers.layer.baffles import FACE, OPEN, obstruct, take
 
 # Products and sums may be contracted, zeros lose their signs; the order of sums stays. Views of arrays need
 # no reference counts here, and what only compiled code calls no wrappers: less to compile.
@@ -272,32 +273,49 @@ NO_ROLLER, MOST_ROLLER = 1e-5, 0.25
 
 @_inlined
 def ring_rates(
-    area, q, energy, spin, euler, pull_cell, pull_face, step, dt, dispersion, work, d_area, d_q, d_energy
+    area,
+    q,
+    energy,
+    spin,
+    euler,
+    pull_cell,
+    pull_face,
+    plates,
+    step,
+    dt,
+    dispersion,
+    work,
+    d_area,
+    d_q,
+    d_energy,
 ):
     """`rates`, for callers that are compiled themselves: it becomes part of them.
 
     `energy` is A e of the fluctuations behind bores and `d_energy` its rate of change, of no cells where they
-    are left out.
+    are left out; `plates`, as by `solvers.layer.baffles.table_of`, are the baffles.
     """
     _cells(area, q, spin, pull_cell, work)
     if energy.size > 0:
         fluctuations(area, energy, spin, work[_ROLLER])
     fastest = _faces(pull_face, spin, work, energy.size > 0)
     mass = work[_MASS]
+    if plates.shape[0] > 0:
+        obstruct(plates, area, spin, pull_face, work[_BEFORE:], work[_AFTER:], mass, work[_FLOW])
     _drain(area, step, dt, mass, work[_FLOW], work[_BEFORE + 4], work[_AFTER + 4], work[_BED])
     _gather(area, euler, step, work, d_q)
+    take(plates, step, d_q)
     if energy.size > 0:
         # The faces' higher beds are gone by now: next to a dry cell there are no fluctuations.
         roller_rates(area, d_q, spin, euler, pull_cell, pull_face, step, work, d_energy)
     if dispersion:
-        _disperse(area, spin, pull_cell, step, work, d_q)
+        _disperse(area, spin, pull_cell, plates, step, work, d_q)
     for i in range(area.size):
         d_area[i] = (mass[i] - mass[i + 1]) / step
     return fastest
 
 
 @_jit
-def rates(area, q, spin, euler, pull_cell, pull_face, step, dt, dispersion, work, d_area, d_q):
+def rates(area, q, spin, euler, pull_cell, pull_face, plates, step, dt, dispersion, work, d_area, d_q):
     """Rates of change of A and q; returns the largest characteristic speed.
 
     Parameters
@@ -305,6 +323,7 @@ def rates(area, q, spin, euler, pull_cell, pull_face, step, dt, dispersion, work
     area, q : state, shape (n,)
     spin : Omega; euler : its rate of change
     pull_cell, pull_face : f_r at the cells' middles and at their left faces, shape (n,)
+    plates : baffles, as by `solvers.layer.baffles.table_of`
     step : cell width, rad
     dt : time step in which no cell may lose more than it has
     dispersion : whether the waves disperse
@@ -313,8 +332,9 @@ def rates(area, q, spin, euler, pull_cell, pull_face, step, dt, dispersion, work
     """
     none = area[:0]
     return ring_rates(
-        area, q, none, spin, euler, pull_cell, pull_face, step, dt, dispersion, work, d_area, d_q, none
-    )
+        area, q, none, spin, euler, pull_cell, pull_face, plates,
+        step, dt, dispersion, work, d_area, d_q, none,
+    )  # fmt: skip
 
 
 @_inlined
@@ -488,7 +508,7 @@ def _energy_flux(area, q, mass, rolling, spin, bed):
 
 
 @_face_jit
-def _disperse(area, spin, pull, step, work, d_q):
+def _disperse(area, spin, pull, plates, step, work, d_q):
     """Add what the finite depth takes from the flux of momentum [theory: long_wave, eq. 12-14].
 
     Serre's pressure over the layer is A L^2 (2 u'^2 - a')/3, a = y - g* being the acceleration that moves
@@ -512,6 +532,12 @@ def _disperse(area, spin, pull, step, work, d_q):
         before = i - 1 if i > 0 else n - 1
         face[i] = 2.0 * reach[i] * reach[before] / (reach[i] + reach[before] + _NOTHING)
         push[i] = face[i] * (head[i] - head[before])
+    # A baffle holds the waves' own pressure back as it does the flow.
+    for k in range(plates.shape[0]):
+        i = int(plates[k, FACE])
+        if i >= 0:
+            face[i] *= plates[k, OPEN]
+            push[i] *= plates[k, OPEN]
     face[n], push[n] = face[0], push[0]
     for i in range(n):
         # Of the two sides' differences the deeper one's counts: a film has none of its own.
@@ -589,5 +615,7 @@ def _drain(area, step, dt, mass, flow, push_l, push_r, share):
     share[0], share[n + 1] = share[n], share[1]
     for face in range(n + 1):
         kept = share[face] if mass[face] > 0.0 else share[face + 1]
+        # Where nothing passes, as at a closed baffle, there is nothing to cut.
+        kept = 1.0 if mass[face] == 0.0 else kept
         mass[face] *= kept
         flow[face] -= (1.0 - kept) * (flow[face] - 0.5 * (push_l[face] + push_r[face]))

@@ -14,6 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from fluid.friction.laws import NONE, STOKES
+from solvers.layer.baffles import taken
 from solvers.layer.finite_volume import COMPILED, GHOSTS, LOG, NEAREST, SUMMED, SURFACE, VELOCITY, WORK
 from solvers.layer.records import Outcome
 from solvers.layer.step import (
@@ -226,7 +227,7 @@ def _half_friction(area, q, spin, layer, coefficient, dt, spare, gains):
 
 
 @_unwrapped
-def layer_step(area, q, rolling, spins, force, layer, coefficient, dt, angles, spare, gains):
+def layer_step(area, q, rolling, spins, force, layer, coefficient, dt, angles, plates, spare, gains):
     """Advance a layer by one time step, in place; a step that fails leaves nothing to go on with.
 
     Parameters
@@ -239,6 +240,7 @@ def layer_step(area, q, rolling, spins, force, layer, coefficient, dt, angles, s
     coefficient : of its friction at these spins
     dt : time step
     angles : cosine and sine at the cells' middles and at their left faces, shape (4, n)
+    plates : its baffles, as by `solvers.layer.baffles.table_of`
     spare : scratch of this layer, from `layer_scratch`; the profile at the end is left in it
     gains : results, a record GAINS
 
@@ -253,7 +255,7 @@ def layer_step(area, q, rolling, spins, force, layer, coefficient, dt, angles, s
     next_a, next_q = spare[_NEXT_A, :n], spare[_NEXT_Q, :n]
     rate_e, next_e = spare[_RATE_E, : rolling.size], spare[_NEXT_E, : rolling.size]
     velocity, surface, log = spare[VELOCITY, GHOSTS:], spare[SURFACE, GHOSTS:], spare[LOG, GHOSTS:]
-    gains.torque, gains.heat, gains.loss, gains.missed = 0.0, 0.0, 0.0, 0.0
+    gains.torque, gains.heat, gains.loss, gains.missed, gains.baffles = 0.0, 0.0, 0.0, 0.0, 0.0
     _, gains.loss = _half_friction(area, q, spins[0], layer, coefficient, dt, spare, gains)
     copy(area, next_a)
     copy(q, next_q)
@@ -262,7 +264,7 @@ def layer_step(area, q, rolling, spins, force, layer, coefficient, dt, angles, s
     for stage in range(2):
         spin, x, y = spins[stage], force[2 * stage], force[2 * stage + 1]
         outcome, speed = stage_rates(
-            next_a, next_q, next_e, spin, euler, x, y, angles, dt, dispersion,
+            next_a, next_q, next_e, spin, euler, x, y, angles, plates, dt, dispersion,
             pull_cell, pull_face, spare, rate_a, rate_q, rate_e,
         )  # fmt: skip
         fastest = max(fastest, speed)
@@ -271,6 +273,11 @@ def layer_step(area, q, rolling, spins, force, layer, coefficient, dt, angles, s
         done, missed = _power(next_a, velocity, surface, log, rate_a, spin, x, y, angles[0], angles[1])
         gains.loss += 0.5 * dt * step * done
         gains.missed += 0.5 * dt * step * euler * missed
+        held, power = taken(plates)
+        gains.torque -= 0.5 * dt * held
+        gains.baffles += 0.5 * dt * power
+        # The drum's work by the baffles enters, their heat leaves.
+        gains.loss -= 0.5 * dt * (spin * held + power)
         if stage == 0:
             if not predict(area, q, rate_a, rate_q, dt, next_a, next_q):
                 return Outcome.AT_AXIS, fastest
@@ -322,6 +329,7 @@ def _move_layers(machine, state, room, dt):
                 coefficient,
                 dt,
                 machine.angles,
+                machine.plates[j],
             ),
             *(room.spare[j], room.gains[j]),
         )
@@ -430,6 +438,7 @@ def _tally(machine, state, room, dt):
             sums.gravity += 0.5 * dt * machine.gravity[i] * (room.before[j, i] + room.after[j, i])
         sums.friction += scale * gains.heat
         sums.bores += scale * gains.loss
+        sums.baffles += scale * gains.baffles
         sums.profile += scale * gains.missed
     if machine.curve.shape[1] > 0:
         sums.motor += dt * spin * motor_torque(machine.curve, spin)

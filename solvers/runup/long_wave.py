@@ -11,6 +11,7 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from meshes.arrays import Array, Flags
+from solvers.layer.baffles import tables_of
 from solvers.layer.records import Outcome, Record, records
 from solvers.layer.state import ring
 from solvers.rotor.system import RotorSystem
@@ -217,7 +218,12 @@ class Coupled(CoupledRotor):
                 mass += weight * plane.T @ plane
         matrices = [mass, self.system.damping, self.system.gyroscopic, self.system.stiffness]
         self.machine = self.machine._replace(
-            matrices=np.stack(matrices).astype(float), planes=planes[active], layers=self.layers[active]
+            matrices=np.stack(matrices).astype(float),
+            planes=planes[active],
+            layers=self.layers[active],
+            plates=tables_of(
+                [fill for fill, on in zip(self.fills, active, strict=True) if on], self.area.shape[1]
+            ),
         )
         count, cells = int(active.sum()), self.area.shape[1]
         self.state = old._replace(
@@ -312,6 +318,7 @@ def couple(
             angles=ring(cells),
             curve=np.zeros((2, 0)),
             watched=rest.watched,
+            plates=tables_of([], cells),
         ),
         state=State(
             place=np.zeros(n),

@@ -45,7 +45,9 @@ def rates(
     d_area, d_q = np.empty(n), np.empty(n)
     work = np.zeros((finite_volume.WORK, n + 2 * finite_volume.GHOSTS))
     cell, face = pull * np.cos(theta - TURNED), pull * np.cos(theta - 0.5 * step - TURNED)
-    fastest = finite_volume.rates(area, q, SPIN, euler, cell, face, step, dt, dispersion, work, d_area, d_q)
+    fastest = finite_volume.rates(
+        *(area, q, SPIN, euler, cell, face, np.zeros((0, 7)), step, dt, dispersion, work, d_area, d_q)
+    )
     return d_area, d_q, fastest
 
 
@@ -105,7 +107,7 @@ def rolling_rates(
     work = np.zeros((finite_volume.WORK, n + 2 * finite_volume.GHOSTS))
     cell, face = pull * np.cos(theta - TURNED), pull * np.cos(theta - 0.5 * step - TURNED)
     finite_volume.ring_rates(
-        *(area, q, energy, SPIN, euler, cell, face, step, 0.0, False, work, found[0], found[1], found[2])
+        *(area, q, energy, SPIN, euler, cell, face, np.zeros((0, 7)), step, 0.0, False, work, *found)
     )
     return found[0], found[1], found[2]
 
