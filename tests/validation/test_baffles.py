@@ -10,7 +10,7 @@ from validation.cases.baffles.computed_flow import lagging, reference
 
 
 def test_decays_and_losses() -> None:
-    """The lag within 0.03 of the spin where the plates leave half open, the driven losses within a quarter."""
+    """Lag within 0.03 of the spin where the plates leave half open, the driven losses within a quarter."""
     found = {case.name.partition("/")[2]: case for case in cases()}
     assert set(found) == {"n0", "w6", "w6f", "w6n4", "w9", "d3", "d6", "d9", "d6s", "s6"}
     for name in ("n0", "w6", "w6f", "w6n4", "d3", "d6", "d9"):

@@ -148,7 +148,7 @@ def test_given_loss() -> None:
 @kills("solvers.runup.kernel:layer_step", "(spin * held + power)", "power")
 @kills("solvers.layer.baffles:obstruct", "max(held, 0.0) * abs(passed) * passed * passed", "0.5 * abs(held)")
 def test_gains() -> None:
-    """The drum gets what the layer loses of its angular momentum; its work goes into the layer and into heat."""
+    """The drum gets what the layer loses of angular momentum; its work goes into the layer and into heat."""
     n, spins = 32, np.array([SPIN, SPIN])
     area = 0.06 + 0.01 * np.cos(middles(n))
     q = -0.15 * area - SPIN * area**2

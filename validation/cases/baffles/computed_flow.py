@@ -76,7 +76,7 @@ def plane_ring(run: dict[str, Any]) -> Fill:
 def lagging(name: str, cells: int = 128) -> Lagging:
     """The long waves through a computed run, without friction on the wall.
 
-    Heun's steps of the compiled rates of change, the drive of the driven runs acting as the force of a spin-up
+    Heun's steps of the compiled rates of change; the drive of the driven runs acts as the force of a spin-up
     does, over the whole radius. The impulse by which the reference's projection starts the flow between the
     baffles is taken over: the long waves have no inertia of blocked flow.
 
