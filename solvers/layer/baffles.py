@@ -35,7 +35,7 @@ _jit: Any = njit(**_OPTIONS)
 FACE, TIP, GAP, LOSS, TORQUE, POWER, OPEN = range(7)
 COLUMNS = 7
 # Waves between two baffles need so many cells.
-FEWEST_CELLS = 8
+FEWEST_CELLS = 4
 # A thin side of a face takes waves at least as fast as a layer of this share of the other's depth.
 _THINNEST = 0.25
 
@@ -59,7 +59,7 @@ def table_of(fill: Fill, cells: int) -> Array:
 
     Raises
     ------
-    InputError : baffles with less than eight cells between two
+    InputError : baffles with less than four cells between two
     """
     plates, radius = fill.chamber.baffles, fill.chamber.radius
     if plates is None:

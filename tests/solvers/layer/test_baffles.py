@@ -37,7 +37,7 @@ def test_table() -> None:
     np.testing.assert_allclose(table[:, LOSS], 2.0 / (fill.depth / 0.15))
     assert table_of(layer(None), 64).shape == (0, 7)
     with pytest.raises(InputError):
-        table_of(fill, 31)
+        table_of(fill, 15)
 
 
 def test_budgets() -> None:
