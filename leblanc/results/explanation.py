@@ -26,6 +26,29 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
+class BaffleOutlook:
+    """Whether baffles carry a layer round on the ramp of a run-up, by their law [theory: baffles, eq. 4].
+
+    Parameters
+    ----------
+    speed : at which they can least, where the run-up finds a layer first, rad/s
+    available : largest torque that they exert there before the liquid shoots over them, N m
+    asked : torque that the ramp asks to take the liquid along, N m
+    enough_from : speed above which they suffice, rad/s
+    """
+
+    speed: float
+    available: float
+    asked: float
+    enough_from: float
+
+    @property
+    def left_behind(self) -> bool:
+        """The ramp asks for more than they can."""
+        return self.asked > self.available
+
+
+@dataclass(frozen=True)
 class LayerExplanation:
     """One chamber in numbers, at the first and the last speed where they change.
 
@@ -38,6 +61,8 @@ class LayerExplanation:
     optimal_volume : that just covers the wall at the dry rotor's deflection at the last speed, m^3; nan where
         baffles cut the liquid or the section is no circle
     walls : baffles, or the file of the section, in words; empty for a plain ring
+    carrying : what the baffles can do on the ramp of the run-up; None without one of both, and for baffles
+        that part the liquid
     """
 
     numbers: LayerNumbers
@@ -46,6 +71,7 @@ class LayerExplanation:
     liquid_mass_ratio: float
     optimal_volume: float
     walls: str = ""
+    carrying: BaffleOutlook | None = None
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fluid.baffles import most_torque
 from fluid.fill import Fill
 from fluid.numbers import layer_numbers
 from leblanc.results.choice import model_spans, speed_estimates
-from leblanc.results.explanation import ExciterExplanation, Explanation, LayerExplanation, WhirlOutlook
+from leblanc.results.explanation import (
+    BaffleOutlook,
+    ExciterExplanation,
+    Explanation,
+    LayerExplanation,
+    WhirlOutlook,
+)
 from leblanc.results.motion.tilting import RestMode
 from leblanc.scene.rotors import Exciter as ExciterOfScene
 from leblanc.scene.rows import baffle_words
@@ -85,6 +92,7 @@ def explain_scene(scene: Scene) -> Explanation:
                 liquid_mass_ratio=fill.mass / bare.mass,
                 optimal_volume=_covering(fill, dry, ends[1], gravity),
                 walls=_walls(fill),
+                carrying=_carrying(scene, fill, choice.captured_from),
             )
         )
     return Explanation(
@@ -136,6 +144,21 @@ def _walls(fill: Fill) -> str:
     if fill.compartments < 2:
         effect = "at rest in the drum the liquid lies as without them"
     return f"baffles: {baffle_words(fill.chamber.baffles)}; {effect}"
+
+
+def _carrying(scene: Scene, fill: Fill, captured_from: float | None) -> BaffleOutlook | None:
+    """What the baffles of a chamber can do on the ramp, None where nothing is asked of them."""
+    plan = scene.runup
+    if plan is None or plan.rate is None or not fill.uneven or fill.chamber.baffles is None:
+        return None
+    if fill.compartments > 1:
+        return None
+    speed = min(max(plan.start, captured_from or 0.0), plan.stop)
+    # Both the flow and what holds it to the wall go with the speed.
+    able = most_torque(fill, speed)
+    asked = plan.rate * 0.5 * fill.mass * (fill.chamber.radius**2 + fill.surface_radius**2)
+    enough = speed * math.sqrt(asked / able) if able > 0.0 else math.inf
+    return BaffleOutlook(speed, able, asked, enough)
 
 
 def _runup(scene: Scene) -> str:
