@@ -30,7 +30,7 @@ class Baffles:
     wall_gap : distance of the outer edge from the wall, m; 0 if attached
     first_angle : angle of the first, rad
     loss : coefficient of the head lost at each, referred to the mean depth; None takes the law of
-        `fluid.baffles`
+        `fluid.friction.baffles`
 
     Raises
     ------

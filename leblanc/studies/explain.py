@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fluid.baffles import most_torque
 from fluid.fill import Fill
+from fluid.friction.baffles import most_torque
 from fluid.numbers import layer_numbers
 from leblanc.results.choice import model_spans, speed_estimates
 from leblanc.results.explanation import (

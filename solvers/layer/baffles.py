@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from fluid import baffles, long_wave
+from fluid import long_wave
 from fluid.fill import Fill
+from fluid.friction import baffles
 from meshes.arrays import Array
 from meshes.errors import InputError
 
@@ -103,17 +104,21 @@ def resistance(depth, row):
 
 
 @_jit
-def _side(area, q, full, spin, bed, other):
+def _side(area, q, share, spin, full, slot, bed, other):
     """One side of a face: velocity, head, half the waves' speed over L, and that speed."""
     radius = np.sqrt(max(1.0 - 2.0 * area, 1e-3))
-    velocity = full * (q + spin * area * area) / area if area > 1e-13 else 0.0
+    velocity = share * (q + spin * area * area) / area if area > 1e-13 else 0.0
     turning = velocity / (radius * radius)
     log = _log(area)
     head = 0.5 * turning * velocity + spin * spin * area + 2.0 * spin * velocity * log - radius * bed
+    stiff = slot if area > full else 0.0
+    head += stiff * (area - full)
     # Where one side is a film the waves' speed of the other side counts: the film will be as deep.
     deep = max(log, _THINNEST * _log(other))
     half = _celerity(turning, log, spin)[1]
-    return velocity, head, _celerity(turning, deep, spin)[1] / max(deep, 1e-12), half
+    wave = _celerity(turning, deep, spin)[1]
+    half, wave = np.sqrt(half * half + log * stiff), np.sqrt(wave * wave + deep * stiff)
+    return velocity, head, wave / max(deep, 1e-12), half
 
 
 @_jit
@@ -123,7 +128,7 @@ def _log(area):
 
 
 @_jit
-def obstruct(table, area, spin, pull_face, before, after, mass, flow):
+def obstruct(table, area, spin, full, slot, pull_face, before, after, mass, flow):
     """Put a layer's baffles in the way: mass and momentum fluxes through their faces, in place.
 
     The flux of momentum that stays is that of the cell before the face; the one after it gets less by what
@@ -134,6 +139,7 @@ def obstruct(table, area, spin, pull_face, before, after, mass, flow):
     table : as by `table_of`; its last columns are results
     area : of the cells, shape (n,)
     spin : Omega
+    full, slot : area of a full gap, and how the head rises with more
     pull_face : radial force at the faces, shape (n,)
     before, after : states on the two sides of each face, rows A, q, flux of mass and of momentum,
         pressure, shape (5 or more, n + 1)
@@ -151,8 +157,12 @@ def obstruct(table, area, spin, pull_face, before, after, mass, flow):
         full_l = min(1.0, 2.0 * area[i - 1] / max(area_l, 1e-300))
         full_r = min(1.0, 2.0 * area[i] / max(area_r, 1e-300))
         mass_l, mass_r = full_l * before[2, i], full_r * after[2, i]
-        u_l, head_l, wave_l, half_l = _side(area_l, before[1, i], full_l, spin, pull_face[i], area_r)
-        u_r, head_r, wave_r, half_r = _side(area_r, after[1, i], full_r, spin, pull_face[i], area_l)
+        u_l, head_l, wave_l, half_l = _side(
+            area_l, before[1, i], full_l, spin, full, slot, pull_face[i], area_r
+        )
+        u_r, head_r, wave_r, half_r = _side(
+            area_r, after[1, i], full_r, spin, full, slot, pull_face[i], area_l
+        )
         own_l = before[4, i] + full_l * (before[3, i] - before[4, i])
         own_r = after[4, i] + full_r * (after[3, i] - after[4, i])
         # The waves that leave the face link head and flow: dB = (Omega -+ c/L) dQ.

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from fluid.friction.laws import NONE, STOKES
 from solvers.layer.baffles import taken
 from solvers.layer.finite_volume import COMPILED, GHOSTS, LOG, NEAREST, SUMMED, SURFACE, VELOCITY, WORK
+from solvers.layer.inside import SLOT_SPEED, Inside
 from solvers.layer.records import Outcome
 from solvers.layer.step import (
     bound_energy,
@@ -227,7 +228,7 @@ def _half_friction(area, q, spin, layer, coefficient, dt, spare, gains):
 
 
 @_unwrapped
-def layer_step(area, q, rolling, spins, force, layer, coefficient, dt, angles, plates, spare, gains):
+def layer_step(area, q, rolling, spins, force, layer, coefficient, dt, angles, inside, spare, gains):
     """Advance a layer by one time step, in place; a step that fails leaves nothing to go on with.
 
     Parameters
@@ -240,7 +241,7 @@ def layer_step(area, q, rolling, spins, force, layer, coefficient, dt, angles, p
     coefficient : of its friction at these spins
     dt : time step
     angles : cosine and sine at the cells' middles and at their left faces, shape (4, n)
-    plates : its baffles, as by `solvers.layer.baffles.table_of`
+    inside : its baffles and inner wall, a `solvers.layer.inside.Inside`
     spare : scratch of this layer, from `layer_scratch`; the profile at the end is left in it
     gains : results, a record GAINS
 
@@ -264,7 +265,7 @@ def layer_step(area, q, rolling, spins, force, layer, coefficient, dt, angles, p
     for stage in range(2):
         spin, x, y = spins[stage], force[2 * stage], force[2 * stage + 1]
         outcome, speed = stage_rates(
-            next_a, next_q, next_e, spin, euler, x, y, angles, plates, dt, dispersion,
+            next_a, next_q, next_e, spin, euler, x, y, angles, inside, dt, dispersion,
             pull_cell, pull_face, spare, rate_a, rate_q, rate_e,
         )  # fmt: skip
         fastest = max(fastest, speed)
@@ -273,7 +274,7 @@ def layer_step(area, q, rolling, spins, force, layer, coefficient, dt, angles, p
         done, missed = _power(next_a, velocity, surface, log, rate_a, spin, x, y, angles[0], angles[1])
         gains.loss += 0.5 * dt * step * done
         gains.missed += 0.5 * dt * step * euler * missed
-        held, power = taken(plates)
+        held, power = taken(inside.plates)
         gains.torque -= 0.5 * dt * held
         gains.baffles += 0.5 * dt * power
         # The drum's work by the baffles enters, their heat leaves.
@@ -360,7 +361,7 @@ def _move_layers(machine, state, room, dt):
                 coefficient,
                 dt,
                 machine.angles,
-                machine.plates[j],
+                Inside(machine.plates[j], machine.gaps[j], SLOT_SPEED * SLOT_SPEED),
             ),
             *(room.spare[j], room.gains[j]),
         )

@@ -12,6 +12,7 @@ from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from meshes.arrays import Array, Complex, Flags
 from solvers.layer.baffles import tables_of
+from solvers.layer.inside import full_area
 from solvers.layer.records import Outcome, Record, records
 from solvers.layer.state import ring
 from solvers.rotor.system import RotorSystem
@@ -291,15 +292,15 @@ class Coupled(CoupledRotor):
             pool = self.pools[j]
             assert pool is not None
             pools[k] = pool.mass, pool.arm, pool.length, pool.inertia
+        riding = [fill for fill, on in zip(self.fills, active, strict=True) if on]
         self.machine = self.machine._replace(
             matrices=np.stack(matrices).astype(float),
             planes=np.concatenate((planes[active], planes[pooled])),
             layers=self.layers[active],
             pools=pools,
             drags=self.drags[pooled],
-            plates=tables_of(
-                [fill for fill, on in zip(self.fills, active, strict=True) if on], self.area.shape[1]
-            ),
+            plates=tables_of(riding, self.area.shape[1]),
+            gaps=np.array([full_area(fill) for fill in riding]),
         )
         count, cells = int(active.sum()), self.area.shape[1]
         self.state = old._replace(
@@ -414,6 +415,7 @@ def couple(
             curve=np.zeros((2, 0)),
             watched=rest.watched,
             plates=tables_of([], cells),
+            gaps=np.zeros(0),
         ),
         state=State(
             place=np.zeros(n),

@@ -154,6 +154,7 @@ class Machine(NamedTuple):
     curve : the motor's speeds and torques, shape (2, k); k = 0 for a ramp
     watched : displacement of the axis whose amplitude counts, for unit coordinates, shape (2, n)
     plates : baffles of each layer, as by `solvers.layer.baffles.tables_of`, shape (l, k, COLUMNS)
+    gaps : area of the full gap of each layer over R^2, 1 without an inner wall, shape (l,)
     """
 
     matrices: Array
@@ -167,6 +168,7 @@ class Machine(NamedTuple):
     curve: Array
     watched: Array
     plates: Array
+    gaps: Array
 
 
 class State(NamedTuple):

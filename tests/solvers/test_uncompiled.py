@@ -16,7 +16,12 @@ ROOT = Path(__file__).parents[2]
     "name",
     [
         *("layer/uncompiled_layer", "runup/uncompiled_long_wave", "runup/uncompiled_linear"),
-        *("runup/uncompiled_pool", "statics/uncompiled_statics", "layer/uncompiled_baffles"),
+        *(
+            "runup/uncompiled_pool",
+            "statics/uncompiled_statics",
+            "layer/uncompiled_baffles",
+            "layer/uncompiled_inside",
+        ),
     ],
 )
 def test_compiled_lines_are_held_by_oracles(name: str) -> None:

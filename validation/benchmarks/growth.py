@@ -132,8 +132,8 @@ def right_hand_side(cells: int) -> float:
     ----------
     cells : of the layer, not uniform and moving
     """
-    from solvers.layer.baffles import COLUMNS
     from solvers.layer.finite_volume import GHOSTS, WORK, rates
+    from solvers.layer.inside import NOTHING
 
     step = 2.0 * np.pi / cells
     middle = step * (np.arange(cells) + 0.5)
@@ -141,11 +141,11 @@ def right_hand_side(cells: int) -> float:
     q = 0.01 * np.sin(2.0 * middle) * area - area**2
     pull = 0.003 * np.cos(middle)
     work, d_area, d_q = np.zeros((WORK, cells + 2 * GHOSTS)), np.zeros(cells), np.zeros(cells)
-    none, times = np.zeros((0, COLUMNS)), max(1, 200_000 // cells)
+    times = max(1, 200_000 // cells)
 
     def run() -> None:
         for _ in range(times):
-            rates(area, q, 1.0, 0.0, pull, pull, none, step, 1e-4 * step, 0.0, work, d_area, d_q)
+            rates(area, q, 1.0, 0.0, pull, pull, NOTHING, step, 1e-4 * step, 0.0, work, d_area, d_q)
 
     return best(run, 5) / times
 

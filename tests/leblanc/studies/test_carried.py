@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import leblanc as lb
-from fluid.baffles import baffle_torque
+from fluid.friction.baffles import baffle_torque
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.studies.explain import explain_scene
 from leblanc.studies.runup import runup_scene

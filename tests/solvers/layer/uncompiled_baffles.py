@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from fluid import baffles as law
 from fluid import long_wave as lw
+from fluid.friction import baffles as law
 from solvers.layer import baffles, finite_volume
+from solvers.layer.inside import Inside
 from solvers.layer.records import Outcome, records
 from solvers.layer.state import ring
 from solvers.layer.step import calm
@@ -35,7 +36,9 @@ def rates(
     step, d_area, d_q = 2 * np.pi / n, np.empty(n), np.empty(n)
     work = np.zeros((finite_volume.WORK, n + 2 * finite_volume.GHOSTS))
     cell, face = pull * np.cos(middles(n)), pull * np.cos(middles(n) - 0.5 * step)
-    finite_volume.rates(area, q, SPIN, 0.0, cell, face, plates, step, dt, False, work, d_area, d_q)
+    finite_volume.rates(
+        area, q, SPIN, 0.0, cell, face, Inside(plates, 1.0, 0.0), step, dt, False, work, d_area, d_q
+    )
     return d_area, d_q, work[finite_volume._MASS, : n + 1].copy()
 
 
@@ -95,7 +98,7 @@ def test_compartments_rest() -> None:
 @kills("solvers.layer.baffles:obstruct", "u_l - spin * area_l", "u_l + spin * area_l")
 @kills("solvers.layer.baffles:obstruct", "+ area_r * wave_r", "- area_r * wave_r")
 @kills("solvers.layer.baffles:resistance", "0.5 * lost * lost", "lost * lost")
-@kills("fluid.baffles:open_share", "held - tip", "tip")
+@kills("fluid.friction.baffles:open_share", "held - tip", "tip")
 def test_weak_flow() -> None:
     """A weak uniform flow loses K Q^2/(2 h^2) of its head; the two waves that this sends out say the rest."""
     area, n, face = 0.08, 16, 5
@@ -157,7 +160,7 @@ def test_gains() -> None:
     plates = table([0, 8, 16, 24], 0.03)
     done = kernel.layer_step(
         *(area, q, area[:0], spins, np.zeros(4), records(LAYER)[0], 0.0, 0.02, ring(n)),
-        *(plates, spare, gains),
+        *(Inside(plates, 1.0, 0.0), spare, gains),
     )
     assert done[0] == Outcome.DONE
     kernel.measure(area, q, SPIN, ring(n), spare, ends[1])

@@ -9,13 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from fluid.baffles import SUPERCRITICAL, baffle_torque
 from fluid.fill import Fill
+from fluid.friction.baffles import SUPERCRITICAL, baffle_torque
 from fluid.liquid import Liquid
 from meshes.arrays import Array
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
-from solvers.layer.baffles import TORQUE, table_of
+from solvers.layer.baffles import TORQUE
+from solvers.layer.inside import inside_of
 from validation.cases.case import Case, Effect, compare
 from validation.cases.rigs import data
 
@@ -115,7 +116,7 @@ class _Ring:
     def __init__(self, fill: Fill, cells: int, drive: float) -> None:
         from solvers.layer.finite_volume import GHOSTS, WORK
 
-        self.table, self.drive, self.step = table_of(fill, cells), drive, 2.0 * math.pi / cells
+        self.inside, self.drive, self.step = inside_of(fill, cells), drive, 2.0 * math.pi / cells
         self.work, self.none = np.zeros((WORK, cells + 2 * GHOSTS)), np.zeros(cells)
 
     def rates(self, area: Array, q: Array, dt: float) -> tuple[Array, Array, float, float]:
@@ -123,10 +124,10 @@ class _Ring:
         from solvers.layer.finite_volume import rates
 
         d_area, d_q, still = np.empty_like(area), np.empty_like(q), self.none
-        given = area, q, 1.0, 0.0, still, still, self.table, self.step, dt, False, self.work
+        given = area, q, 1.0, 0.0, still, still, self.inside, self.step, dt, False, self.work
         fastest = rates(*given, d_area, d_q)
         d_q -= self.drive * area * (1.0 - area)
-        return d_area, d_q, float(fastest), -float(self.table[:, TORQUE].sum())
+        return d_area, d_q, float(fastest), -float(self.inside.plates[:, TORQUE].sum())
 
 
 def loss(name: str) -> float:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fluid import baffles as law
 from fluid.fill import Fill
+from fluid.friction import baffles as law
 from fluid.liquid import Liquid
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
@@ -23,9 +23,9 @@ def ring(run: dict[str, float], loss: float | None = None) -> Fill:
     return Fill(chamber, Liquid("water", run["liquid_mass_per_m_whole_drum"] / volume, 1e-6), volume)
 
 
-@kills("fluid.baffles:open_share", "+ np.minimum(held, gap)", "")
-@kills("fluid.baffles:contraction", "(1.0 - _LEAST) * share", "share")
-@kills("fluid.baffles:loss_coefficient", "1.0 / jet - 1.0", "1.0 / jet")
+@kills("fluid.friction.baffles:open_share", "+ np.minimum(held, gap)", "")
+@kills("fluid.friction.baffles:contraction", "(1.0 - _LEAST) * share", "share")
+@kills("fluid.friction.baffles:loss_coefficient", "1.0 / jet - 1.0", "1.0 / jet")
 def test_limits() -> None:
     """Open: no loss. Nearly closed: that of a sharp slot, 1/(C_c s)^2. A gap and a tip add up."""
     assert law.loss_coefficient(1.0) == 0.0
@@ -37,8 +37,8 @@ def test_limits() -> None:
     assert law.contraction(0.0) == 0.5 and law.contraction(1.0) == 1.0
 
 
-@kills("fluid.baffles:_mean_loss", "* depth / before", "")
-@kills("fluid.baffles:_missing", "1e300) * head", "1e300) * 2.0 * head")
+@kills("fluid.friction.baffles:_mean_loss", "* depth / before", "")
+@kills("fluid.friction.baffles:_missing", "1e300) * head", "1e300) * 2.0 * head")
 def test_pile_up() -> None:
     """The depth before the baffles is the fixed point; still liquid does not pile up, a dam overflows."""
     depth, head = np.full(4, 0.0137), np.array([0.0, 1e-4, 1e-3, 1e-2])
@@ -51,8 +51,8 @@ def test_pile_up() -> None:
     assert loss[0] == np.inf and before[0] == pytest.approx(0.0137) and before[1] > 0.02
 
 
-@kills("fluid.baffles:baffle_torque", "(4.0 * math.pi * radius)", "(2.0 * math.pi * radius)")
-@kills("fluid.baffles:baffle_torque", "(1.0 - np.asarray(lag, dtype=float))", "1.0")
+@kills("fluid.friction.baffles:baffle_torque", "(4.0 * math.pi * radius)", "(2.0 * math.pi * radius)")
+@kills("fluid.friction.baffles:baffle_torque", "(1.0 - np.asarray(lag, dtype=float))", "1.0")
 def test_torque_of_computed_flow() -> None:
     """At the lag of the computed flow the closure has its loss within a quarter, and its torque with it."""
     for name in ("d3", "d6", "d9"):
@@ -68,7 +68,7 @@ def test_torque_of_computed_flow() -> None:
         assert found.torque[0] == pytest.approx(drive, rel=0.3)
 
 
-@kills("fluid.baffles:most_torque", "found.froude <= SUPERCRITICAL", "found.froude <= 3.0")
+@kills("fluid.friction.baffles:most_torque", "found.froude <= SUPERCRITICAL", "found.froude <= 3.0")
 def test_most_torque() -> None:
     """Eight baffles of 6 mm cannot follow a spin-up of 40 rad/s^2, as in the computed flow; 10 they can."""
     fill = ring(RUNS["d6s"])
