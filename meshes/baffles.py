@@ -29,6 +29,8 @@ class Baffles:
         baffles meet on the axis
     wall_gap : distance of the outer edge from the wall, m; 0 if attached
     first_angle : angle of the first, rad
+    loss : coefficient of the head lost at each, referred to the mean depth; None takes the law of
+        `fluid.friction.baffles`
 
     Raises
     ------
@@ -39,6 +41,7 @@ class Baffles:
     tip_radius: float = 0.0
     wall_gap: float = 0.0
     first_angle: float = 0.0
+    loss: float | None = None
 
     def __post_init__(self) -> None:
         if self.count != int(self.count) or self.count < 1:
@@ -47,6 +50,8 @@ class Baffles:
         require_not_negative("wall_gap", self.wall_gap)
         if not math.isfinite(self.first_angle):
             raise InputError("first_angle", self.first_angle, "a finite angle in radians")
+        if self.loss is not None:
+            require_not_negative("loss", self.loss)
 
     @property
     def angles(self) -> Array:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 GROUPS = (
     *("errata", "optimal_volume", "vector_model", "horizontal_rig", "vertical_rig", "layer", "whirl", "tub"),
-    *("two_plane", "exciter", "runup", "fill_sweep"),
+    *("two_plane", "exciter", "runup", "fill_sweep", "baffles"),
 )
 
 
@@ -75,6 +75,7 @@ def all_cases(
 def _group(name: str) -> Callable[[], list[Case]]:
     """The function that computes a group."""
     from validation.cases import (
+        baffles,
         errata,
         exciter,
         fill_sweep,
@@ -101,6 +102,7 @@ def _group(name: str) -> Callable[[], list[Case]]:
         "exciter": exciter.cases,
         "runup": runup.cases,
         "fill_sweep": fill_sweep.cases,
+        "baffles": baffles.cases,
     }[name]
 
 

@@ -1,1 +1,1 @@
-"""Friction of the liquid on its walls: laws of the wall's shear, laminar layers under an oscillation."""
+"""Friction of the liquid: laws of the wall's shear, laminar layers under an oscillation, loss at baffles."""

@@ -379,6 +379,7 @@ def energy_figure(result: RunupResult) -> Figure:
         ("heat in the supports", audit.support, False),
         ("heat by wall friction", audit.friction, False),
         ("loss in bores", audit.bores, False),
+        *([("loss at baffles", audit.baffles, False)] if audit.baffles else []),
         ("missed by the flow's profile", audit.profile, False),
         ("left in rotor and liquid", audit.change, False),
         ("not accounted for", audit.remainder, False),

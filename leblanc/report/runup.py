@@ -37,6 +37,7 @@ TERMS = {
     "support": "heat in the supports",
     "friction": "heat by wall friction",
     "bores": "loss in bores",
+    "baffles": "loss at baffles",
     "profile": "missed by the flow's profile",
     "change": "left in rotor and liquid",
 }
@@ -132,13 +133,15 @@ def energy(result: RunupResult) -> Table:
     """The balance of energy, and each term over the work that the closure is measured by."""
     audit = result.energy
     values = asdict(audit)
-    work = max(abs(audit.unbalance), audit.support + audit.friction + audit.bores)
+    work = audit.scale
 
     def row(label: str, value: float) -> tuple[str, str, str]:
         return label, number(value), number(100.0 * value / work) if work > 0.0 else ""
 
     rows = [
-        row(("+ " if name in GAINS else f"{MINUS} ") + text, values[name]) for name, text in TERMS.items()
+        row(("+ " if name in GAINS else f"{MINUS} ") + text, values[name])
+        for name, text in TERMS.items()
+        if name != "baffles" or audit.baffles != 0.0
     ]
     rows.append(row("= not accounted for", audit.remainder))
     if audit.motor != 0.0:

@@ -49,6 +49,29 @@ class SpinUp:
 
 
 @dataclass(frozen=True)
+class BaffleOutlook:
+    """Whether baffles carry a layer round on the ramp of a run-up, by their law [theory: baffles, eq. 4].
+
+    Parameters
+    ----------
+    speed : at which they can least, where the run-up finds a layer first, rad/s
+    available : largest torque that they exert there before the liquid shoots over them, N m
+    asked : torque that the ramp asks to take the liquid along, N m
+    enough_from : speed above which they suffice, rad/s
+    """
+
+    speed: float
+    available: float
+    asked: float
+    enough_from: float
+
+    @property
+    def left_behind(self) -> bool:
+        """The ramp asks for more than they can."""
+        return self.asked > self.available
+
+
+@dataclass(frozen=True)
 class LayerExplanation:
     """One chamber in numbers, at the first and the last speed where they change.
 
@@ -64,6 +87,8 @@ class LayerExplanation:
     carried_from : speed from which the walls carry the liquid round from rest, rad/s, inf where they never
         do; None if the axis stands, or the section is no circle
     spin_up : by the law of the wall; None under another law of friction, and where it does not know the walls
+    carrying : what the baffles can do on the ramp of the run-up; None without one of both, and for baffles
+        that part the liquid
     """
 
     numbers: LayerNumbers
@@ -74,6 +99,7 @@ class LayerExplanation:
     walls: str = ""
     carried_from: float | None = None
     spin_up: SpinUp | None = None
+    carrying: BaffleOutlook | None = None
 
 
 @dataclass(frozen=True)

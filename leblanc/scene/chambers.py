@@ -387,6 +387,11 @@ class Baffles(Part):
     first_angle: Annotated[float, quantity(units.ANGLE, -7.0, 7.0)] = Field(
         0.0, description="of the first baffle"
     )
+    loss: Annotated[float | None, quantity(units.NUMBER, 0.0, 1e6)] = Field(
+        None,
+        description="coefficient of the head that the flow loses at each, referred to the mean depth; by "
+        "depth and flow if left out",
+    )
 
 
 class SectionRule:
@@ -459,7 +464,10 @@ class Chamber(Part):
             "liquid": given.liquid,
             "volume": given.volume,
         }
-        return table if walls.baffles is None else table | {"baffles": asdict(walls.baffles)}
+        if walls.baffles is None:
+            return table
+        plates = {key: value for key, value in asdict(walls.baffles).items() if value is not None}
+        return table | {"baffles": plates}
 
     @classmethod
     def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
@@ -500,7 +508,7 @@ class Chamber(Part):
         assert self.radius is not None
         baffles = self.baffles
         if baffles is not None:
-            parts = (baffles.count, baffles.tip_radius, baffles.wall_gap, baffles.first_angle)
+            parts = (baffles.count, baffles.tip_radius, baffles.wall_gap, baffles.first_angle, baffles.loss)
         plates = None if baffles is None else Plates(*parts)
         return Walls(self.radius, self.height, self.inner_radius, self.plane, plates)
 

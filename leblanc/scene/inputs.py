@@ -35,7 +35,7 @@ from meshes.chamber_section import ChamberSection
 
 MOST = 6  # speeds of a duty cycle or of a motor's curve that are listed one by one
 
-_BAFFLES = ("Chamber", "baffles", "tips at (mm)", "gap at the wall (mm)", "first at (deg)")
+_BAFFLES = ("Chamber", "baffles", "tips at (mm)", "gap at the wall (mm)", "first at (deg)", "loss")
 _SECTIONS = ("Chamber", "section", "area (cm²)", "farthest wall (mm)", "cells at the wall (mm)")
 
 
@@ -222,6 +222,7 @@ def _baffle(baffles: Baffles, k: int) -> tuple[Value, ...]:
         Value(number(baffles.tip_radius * MM), (f"{at}.tip_radius",)),
         Value(number(baffles.wall_gap * MM), (f"{at}.wall_gap",)),
         Value(degrees(baffles.first_angle), (f"{at}.first_angle",)),
+        Value("by depth and flow" if baffles.loss is None else number(baffles.loss), (f"{at}.loss",)),
     )
 
 

@@ -406,22 +406,23 @@ def jeffcott(scene: Scene) -> Jeffcott:
     return scene.rotor.machine()
 
 
-def require_clear(scene: Scene, what: str) -> None:
-    """Refuse baffles and sections of other shapes where nothing knows them.
+def require_clear(scene: Scene, what: str, baffles: bool = False) -> None:
+    """Refuse sections of other shapes, and baffles, where nothing knows them.
 
     Parameters
     ----------
     scene : the machine
     what : what is asked for, in words that follow "left out for"
+    baffles : these are known
 
     Raises
     ------
-    InputError : a chamber with baffles or a section from a file
+    InputError : a chamber with a section from a file, or with baffles that are not known
     """
     for k, fill in enumerate(scene.fills):
         if fill.chamber.section is not None:
             raise InputError(f"chambers.{k}.section", fill.chamber.section.name, f"left out for {what}")
-        if fill.chamber.baffles is not None:
+        if fill.chamber.baffles is not None and not baffles:
             raise InputError(
                 f"chambers.{k}.baffles", f"{fill.chamber.baffles.count} of them", f"left out for {what}"
             )
@@ -492,7 +493,10 @@ def chamber_content(fill: Fill) -> dict[str, Any]:
         "plane": chamber.plane,
     }
     if chamber.baffles is not None:
-        walls["baffles"] = asdict(chamber.baffles)
+        plates = asdict(chamber.baffles)
+        if chamber.baffles.loss is None:
+            del plates["loss"]
+        walls["baffles"] = plates
     if chamber.section is not None:
         walls["section"] = chamber.section.digest
     liquid = asdict(fill.liquid)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fluid.fill import Fill
+from fluid.friction.baffles import most_torque
 from fluid.friction.laws import FrictionLaw
 from fluid.friction.pipe import hydraulic_diameter, regime, spin_up_time, steady_lag
 from fluid.numbers import layer_numbers
@@ -15,6 +16,7 @@ from fluid.pool import balance_speed, pool_of
 from fluid.whirl import is_full
 from leblanc.results.choice import model_spans, speed_estimates
 from leblanc.results.explanation import (
+    BaffleOutlook,
     ExciterExplanation,
     Explanation,
     LayerExplanation,
@@ -97,6 +99,7 @@ def explain_scene(scene: Scene) -> Explanation:
                 walls=_walls(fill),
                 carried_from=_carried_from(scene, fill),
                 spin_up=_spin_up(scene, fill),
+                carrying=_carrying(scene, fill, choice.captured_from),
             )
         )
     return Explanation(
@@ -183,6 +186,21 @@ def _walls(fill: Fill) -> str:
     if fill.compartments < 2:
         effect = "at rest in the drum the liquid lies as without them"
     return f"baffles: {baffle_words(fill.chamber.baffles)}; {effect}"
+
+
+def _carrying(scene: Scene, fill: Fill, captured_from: float | None) -> BaffleOutlook | None:
+    """What the baffles of a chamber can do on the ramp, None where nothing is asked of them."""
+    plan = scene.runup
+    if plan is None or plan.rate is None or not fill.uneven or fill.chamber.baffles is None:
+        return None
+    if fill.compartments > 1:
+        return None
+    speed = min(max(plan.start, captured_from or 0.0), plan.stop)
+    # Both the flow and what holds it to the wall go with the speed.
+    able = most_torque(fill, speed)
+    asked = plan.rate * 0.5 * fill.mass * (fill.chamber.radius**2 + fill.surface_radius**2)
+    enough = speed * math.sqrt(asked / able) if able > 0.0 else math.inf
+    return BaffleOutlook(speed, able, asked, enough)
 
 
 def _runup(scene: Scene) -> str:

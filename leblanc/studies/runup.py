@@ -65,6 +65,17 @@ def require_layers(scene: Scene) -> None:
         raise InputError("model.liquid", "linear", "auto or long_wave for a film")
 
 
+def require_room(scene: Scene) -> None:
+    """Baffles are for long waves.
+
+    Raises
+    ------
+    InputError : linear layers with baffles in the liquid
+    """
+    if scene.model.liquid == "linear" and any(fill.uneven for fill in scene.fills):
+        raise InputError("model.liquid", "linear", "auto or long_wave with baffles in the liquid")
+
+
 def require_frames(frames: int) -> None:
     """A number of frames that a film can have.
 
@@ -270,6 +281,8 @@ less than {percent(wave)} of the depth and the liquid hardly lags, otherwise lon
 
 def _ruled_out(scene: Scene) -> str:
     """Why linear layers are not tried, or nothing."""
+    if any(fill.uneven for fill in scene.fills):
+        return "baffles stand in the liquid, past which linear layers do not flow"
     if scene.runup is not None and scene.runup.motor is not None:
         return "a motor feels the torque of the waves, which linear layers leave out"
     if scene.programme is not None and scene.programme.coasts:
@@ -325,7 +338,8 @@ def runup_scene(
     ------
     InputError : no run-up in the scene, a rotor without linear equations of motion, a value out of its range
     """
-    require_clear(scene, "a run-up, whose waves run in a clear ring; model.friction may stand for baffles")
+    require_clear(scene, "a run-up, whose waves run in a ring with circular walls", baffles=True)
+    require_room(scene)
     plan = planned(scene)
     if frames is not None:
         require_frames(frames)
@@ -628,11 +642,9 @@ def steady_response(scene: Scene, speed: Array) -> Response | None:
     None unless the rotor is a Jeffcott rotor.
     """
     passed = _passed(speed, STEADY_SPEEDS)
-    if not isinstance(scene.rotor, JeffcottRotor) or passed.size == 0:
+    if not isinstance(scene.rotor, JeffcottRotor) or passed.size == 0 or is_cut(scene):
         return None
     answer = response(jeffcott(scene), scene.fills, passed, axial_gravity(scene))
-    if is_cut(scene):
-        return answer
     exact = scene.altered(model=scene.model.altered(liquid="statics"))
     return by_speed(
         [answer, *responses_between([replace(prepare(exact), speed=passed)], [answer], drawn=True)]
@@ -640,11 +652,11 @@ def steady_response(scene: Scene, speed: Array) -> Response | None:
 
 
 def whirl_bands(scene: Scene, speed: Array) -> Bands:
-    """Bands of the speeds that were passed in which some whirl grows by itself, rad/s."""
+    """Bands of the speeds that were passed in which some whirl grows by itself, rad/s; none with baffles."""
     from solvers.whirl.edges import unstable_bands
 
     passed = _passed(speed, BAND_SPEEDS)
-    if not scene.fills or passed.size == 0:
+    if not scene.fills or passed.size == 0 or any(fill.uneven for fill in scene.fills):
         return ()
     return unstable_bands(dry_rotor(scene), [scene.fills], passed, scene.model.friction)[0]
 
@@ -676,6 +688,5 @@ def _passed(speed: Array, count: int) -> Array:
 
 def _chamber(fill: Fill) -> FilledChamber:
     chamber, name = fill.chamber, fill.liquid.name
-    return FilledChamber(
-        chamber.radius, chamber.inner_radius, chamber.height, fill.volume, name, fill.surface_radius
-    )
+    sizes = chamber.radius, chamber.inner_radius, chamber.height, fill.volume, name, fill.surface_radius
+    return FilledChamber(*sizes, baffles=chamber.baffles)

@@ -7,6 +7,7 @@ import math
 from leblanc.results.base import EXACT, WHOLE, one_line, percent
 from leblanc.results.choice import HeldCost, ModelSpan, SpeedEstimate
 from leblanc.results.explanation import (
+    BaffleOutlook,
     Comparison,
     ExciterExplanation,
     Explanation,
@@ -17,7 +18,7 @@ from leblanc.results.explanation import (
 from leblanc.results.motion.tilting import RestMode
 from leblanc.text.numbers import NOT_FOUND, number
 from leblanc.text.run import amplitude_place, error_words, speeds_words
-from leblanc.units import LENGTH, RPM, VOLUME, Unit, in_rpm, rpm_range, unit_for, with_unit
+from leblanc.units import LENGTH, RPM, TORQUE, VOLUME, Unit, in_rpm, rpm_range, unit_for, with_unit
 from meshes.arrays import Array
 
 Rows = list[tuple[str, str]]
@@ -85,6 +86,7 @@ def layer_rows(layer: LayerExplanation | None) -> Rows:
         covers = f"from {with_unit(layer.optimal_volume, VOLUME)} at the dry rotor's last deflection"
     return [
         *([("walls", layer.walls)] if layer.walls else []),
+        *([("carried by baffles", carrying_words(layer.carrying))] if layer.carrying else []),
         ("fill", f"{n.fill:.4g} of the capacity"),
         ("layer at fast spin", f"{with_unit(layer.depth, LENGTH)} deep, h0/R = {n.relative_depth:.4g}"),
         ("curvature", f"kappa = {n.curvature:.5g}"),
@@ -120,6 +122,20 @@ def _spin_up_rows(found: SpinUp) -> Rows:
             "stays behind" if slow else "can follow"
         )
     return [("flow at the wall", flow), ("carried along", carried)]
+
+
+def carrying_words(found: BaffleOutlook) -> str:
+    """Torque that the baffles can exert against what the ramp asks.
+
+    Parameters
+    ----------
+    found : of a layer
+    """
+    able = f"{with_unit(found.available, TORQUE)} at {in_rpm(found.speed)}"
+    text = f"the ramp asks for {with_unit(found.asked, TORQUE)}, they can {able}"
+    if not found.left_behind:
+        return text
+    return f"{text}: the liquid is left behind up to {in_rpm(found.enough_from)}"
 
 
 def span_rows(span: ModelSpan) -> Rows:

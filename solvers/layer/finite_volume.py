@@ -19,6 +19,7 @@ import numpy as np
 from numba import njit
 
 from fluid import long_wave
+from solvers.layer.baffles import FACE, OPEN, obstruct, take
 
 # Products and sums may be contracted, zeros lose their signs; the order of sums stays. Views of arrays need
 # no reference counts here, and what only compiled code calls no wrappers: less to compile.
@@ -101,12 +102,16 @@ def faded_velocity(area: float, q: float, spin: float) -> float:
 
 
 @_face_jit
-def primitives(area, q, spin, pull, velocity, head, surface):
-    """Fill velocity, static head and radius of the surface of each cell; arrays of one shape."""
+def primitives(area, q, spin, pull, full, slot, velocity, head, surface):
+    """Fill velocity, static head and radius of the surface of each cell; arrays of one shape.
+
+    Beyond the area `full` the head rises by `slot` times what is more [theory: long_wave, eq. 18].
+    """
     for i in range(area.size):
         surface[i] = _surface(area[i])
         velocity[i] = faded_velocity(area[i], q[i], spin)
-        head[i] = _head(area[i], surface[i], spin, pull[i])
+        pressed = slot * np.maximum(area[i] - full, 0.0)
+        head[i] = _head(area[i], surface[i], spin, pull[i]) + pressed
 
 
 @_face_jit
@@ -119,7 +124,7 @@ def _half_slope(back: float, ahead: float) -> float:
 
 
 @_face_jit
-def half_slopes(area, head, velocity, surface, spin, half_head, half_velocity, log):
+def half_slopes(area, head, velocity, surface, spin, full, slot, half_head, half_velocity, log):
     """Half of the slopes of a ring's cells but the first and the last, limited wave by wave; and their L.
 
     Differences of head and velocity are split into those that the two waves of the cell carry, of which
@@ -137,9 +142,11 @@ def half_slopes(area, head, velocity, surface, spin, half_head, half_velocity, l
         # In a film the split has no digits, and it is not used.
         length = log[i] if wet else 1.0
         _, half = _celerity(velocity_m[i] * inverse, length, spin)
+        stiff = slot if area_m[i] > full else 0.0
+        half = np.sqrt(half * half + length * stiff)
         # Velocity over head of the wave that runs ahead and of the other one, times Omega^2 L; the inverse of
         # their difference.
-        carried, weight = spin * length, spin * spin * length
+        carried, weight = spin * length, (spin * spin + stiff) * length
         ahead, behind = carried + half, carried - half
         quotient = 1.0 / (half * weight)
         share = 0.5 * weight * quotient
@@ -170,6 +177,8 @@ def side(
     bed,
     way,
     spin,
+    full,
+    slot,
     area,
     momentum,
     mass,
@@ -186,22 +195,32 @@ def side(
     bed : radial force at the faces
     way : 1 for the cell before the face, -1 for the one after it
     spin : Omega
+    full, slot : as for `primitives`
     area, momentum : results, the state A and q at the face
     mass, flow, push : results, its fluxes of mass and of momentum, and the pressure's share of the latter
     back, ahead : results, its characteristic speeds
     """
+    rim = np.sqrt(np.maximum(1.0 - 2.0 * full, 0.0)) if full < 0.5 else -1.0
     for i in range(bed.size):
         wet = cell_area[i] > DRY
         # Where the push exceeds the centrifugal force no surface has this head: the least radius stands in.
-        level = np.maximum(_at_head(head[i] + way * half_head[i], spin, bed[i]), NEAREST)
+        here = head[i] + way * half_head[i]
+        level = np.maximum(_at_head(here, spin, bed[i]), NEAREST)
+        # Beyond the full gap the head is that of the slot, on a straight line.
+        beyond = here - spin * spin * full + rim * bed[i]
+        pressed = full + beyond / (slot + spin * spin + bed[i] / rim)
+        level = np.sqrt(np.maximum(1.0 - 2.0 * pressed, NEAREST * NEAREST)) if level < rim else level
         r = level if wet else 1.0
         u = velocity[i] + way * half_velocity[i] if wet else 0.0
         a = 0.5 * (1.0 - r) * (1.0 + r)
         log, inverse = log_and_inverse(a, r)
         area[i], momentum[i] = a, u * a - spin * a * a
         mass[i], push[i] = _mass(u, log), _pressure(a, r, spin, bed[i])
+        stiff = slot if a > full else 0.0
+        push[i] += 0.5 * stiff * (a - full) * (a + full)
         flow[i] = _momentum(u, log, a, inverse) + push[i]
         mean, half = _celerity(u * inverse, log, spin)
+        half = np.sqrt(half * half + log * stiff)
         back[i], ahead[i] = mean - half, mean + half
 
 
@@ -272,32 +291,50 @@ NO_ROLLER, MOST_ROLLER = 1e-5, 0.25
 
 @_inlined
 def ring_rates(
-    area, q, energy, spin, euler, pull_cell, pull_face, step, dt, dispersion, work, d_area, d_q, d_energy
+    area,
+    q,
+    energy,
+    spin,
+    euler,
+    pull_cell,
+    pull_face,
+    inside,
+    step,
+    dt,
+    dispersion,
+    work,
+    d_area,
+    d_q,
+    d_energy,
 ):
     """`rates`, for callers that are compiled themselves: it becomes part of them.
 
     `energy` is A e of the fluctuations behind bores and `d_energy` its rate of change, of no cells where they
-    are left out.
+    are left out; `inside` are baffles and inner wall, a `solvers.layer.inside.Inside`.
     """
-    _cells(area, q, spin, pull_cell, work)
+    plates, full, slot = inside.plates, inside.full, inside.slot * spin * spin
+    _cells(area, q, spin, pull_cell, full, slot, work)
     if energy.size > 0:
         fluctuations(area, energy, spin, work[_ROLLER])
-    fastest = _faces(pull_face, spin, work, energy.size > 0)
+    fastest = _faces(pull_face, spin, full, slot, work, energy.size > 0)
     mass = work[_MASS]
+    if plates.shape[0] > 0:
+        obstruct(plates, area, spin, full, slot, pull_face, work[_BEFORE:], work[_AFTER:], mass, work[_FLOW])
     _drain(area, step, dt, mass, work[_FLOW], work[_BEFORE + 4], work[_AFTER + 4], work[_BED])
     _gather(area, euler, step, work, d_q)
+    take(plates, step, d_q)
     if energy.size > 0:
         # The faces' higher beds are gone by now: next to a dry cell there are no fluctuations.
         roller_rates(area, d_q, spin, euler, pull_cell, pull_face, step, work, d_energy)
     if dispersion:
-        _disperse(area, spin, pull_cell, step, work, d_q)
+        _disperse(area, spin, pull_cell, plates, step, work, d_q)
     for i in range(area.size):
         d_area[i] = (mass[i] - mass[i + 1]) / step
     return fastest
 
 
 @_jit
-def rates(area, q, spin, euler, pull_cell, pull_face, step, dt, dispersion, work, d_area, d_q):
+def rates(area, q, spin, euler, pull_cell, pull_face, inside, step, dt, dispersion, work, d_area, d_q):
     """Rates of change of A and q; returns the largest characteristic speed.
 
     Parameters
@@ -305,6 +342,7 @@ def rates(area, q, spin, euler, pull_cell, pull_face, step, dt, dispersion, work
     area, q : state, shape (n,)
     spin : Omega; euler : its rate of change
     pull_cell, pull_face : f_r at the cells' middles and at their left faces, shape (n,)
+    inside : baffles and inner wall, a `solvers.layer.inside.Inside`
     step : cell width, rad
     dt : time step in which no cell may lose more than it has
     dispersion : whether the waves disperse
@@ -313,12 +351,13 @@ def rates(area, q, spin, euler, pull_cell, pull_face, step, dt, dispersion, work
     """
     none = area[:0]
     return ring_rates(
-        area, q, none, spin, euler, pull_cell, pull_face, step, dt, dispersion, work, d_area, d_q, none
-    )
+        area, q, none, spin, euler, pull_cell, pull_face, inside,
+        step, dt, dispersion, work, d_area, d_q, none,
+    )  # fmt: skip
 
 
 @_inlined
-def _cells(area, q, spin, pull, work):
+def _cells(area, q, spin, pull, full, slot, work):
     """Primitive variables of the cells and their half slopes, all round and a little further."""
     n = area.size
     end = n + GHOSTS
@@ -326,20 +365,22 @@ def _cells(area, q, spin, pull, work):
         work[_AREA, i + GHOSTS] = area[i]
         work[_PULL, i + GHOSTS] = pull[i]
     cells = slice(GHOSTS, end)
-    primitives(area, q, spin, pull, work[VELOCITY, cells], work[_HEAD, cells], work[SURFACE, cells])
+    primitives(
+        area, q, spin, pull, full, slot, work[VELOCITY, cells], work[_HEAD, cells], work[SURFACE, cells]
+    )
     for row in range(SURFACE + 1):
         for i in range(GHOSTS):
             work[row, i] = work[row, n + i]
             work[row, end + i] = work[row, GHOSTS + i]
     inner = slice(1, n + 3)
     half_slopes(
-        *(work[_AREA], work[_HEAD], work[VELOCITY], work[SURFACE], spin),
+        *(work[_AREA], work[_HEAD], work[VELOCITY], work[SURFACE], spin, full, slot),
         *(work[_HALF_HEAD, inner], work[_HALF_VELOCITY, inner], work[LOG, inner]),
     )
 
 
 @_inlined
-def _faces(pull_face, spin, work, rolling):
+def _faces(pull_face, spin, full, slot, work, rolling):
     """Fluxes through each cell's left face, and once more through the first; returns the largest speed.
 
     `rolling`: the cells have fluctuations.
@@ -364,6 +405,8 @@ def _faces(pull_face, spin, work, rolling):
             bed,
             way,
             spin,
+            full,
+            slot,
             work[row],
             work[row + 1],
             work[row + 2],
@@ -488,7 +531,7 @@ def _energy_flux(area, q, mass, rolling, spin, bed):
 
 
 @_face_jit
-def _disperse(area, spin, pull, step, work, d_q):
+def _disperse(area, spin, pull, plates, step, work, d_q):
     """Add what the finite depth takes from the flux of momentum [theory: long_wave, eq. 12-14].
 
     Serre's pressure over the layer is A L^2 (2 u'^2 - a')/3, a = y - g* being the acceleration that moves
@@ -512,6 +555,12 @@ def _disperse(area, spin, pull, step, work, d_q):
         before = i - 1 if i > 0 else n - 1
         face[i] = 2.0 * reach[i] * reach[before] / (reach[i] + reach[before] + _NOTHING)
         push[i] = face[i] * (head[i] - head[before])
+    # A baffle holds the waves' own pressure back as it does the flow.
+    for k in range(plates.shape[0]):
+        i = int(plates[k, FACE])
+        if i >= 0:
+            face[i] *= plates[k, OPEN]
+            push[i] *= plates[k, OPEN]
     face[n], push[n] = face[0], push[0]
     for i in range(n):
         # Of the two sides' differences the deeper one's counts: a film has none of its own.
@@ -589,5 +638,7 @@ def _drain(area, step, dt, mass, flow, push_l, push_r, share):
     share[0], share[n + 1] = share[n], share[1]
     for face in range(n + 1):
         kept = share[face] if mass[face] > 0.0 else share[face + 1]
+        # Where nothing passes, as at a closed baffle, there is nothing to cut.
+        kept = 1.0 if mass[face] == 0.0 else kept
         mass[face] *= kept
         flow[face] -= (1.0 - kept) * (flow[face] - 0.5 * (push_l[face] + push_r[face]))

@@ -32,6 +32,7 @@ from solvers.layer.finite_volume import (
     log_of_surface,
     ring_rates,
 )
+from solvers.layer.inside import NOTHING, Inside
 from solvers.layer.records import PACE, Drive, Outcome, Record, Wall, records
 from solvers.slices import FASTEST, RUNAWAY, compiled, slices, step_budget
 
@@ -223,6 +224,7 @@ def stage_rates(
     x,
     y,
     angles,
+    inside,
     dt,
     dispersion,
     pull_cell,
@@ -241,6 +243,7 @@ def stage_rates(
     spin, euler : there, and its rate of change
     x, y : body force in the drum frame
     angles : cosine and sine at the cells' middles and at their left faces, shape (4, n)
+    inside : baffles and inner wall, a `solvers.layer.inside.Inside`
     dt : of the step, 0 where only the fastest wave is asked for
     dispersion : as for `solvers.layer.finite_volume.rates`
     pull_cell, pull_face, rate_a, rate_q : results, shape (n,)
@@ -261,6 +264,7 @@ def stage_rates(
         euler,
         pull_cell,
         pull_face,
+        inside,
         step,
         dt,
         dispersion,
@@ -369,7 +373,7 @@ def tally(area, q, spin, pull, angles, cosine, sine, share, sums):
 
 
 @_jit
-def advance(area, q, energy, pace, stop, drive, wall, angles, courant, most, spare, loads):
+def advance(area, q, energy, pace, stop, drive, wall, angles, inside, courant, most, spare, loads):
     """Advance a layer under a prescribed whirl and integrate its loads over time.
 
     Parameters
@@ -381,6 +385,7 @@ def advance(area, q, energy, pace, stop, drive, wall, angles, courant, most, spa
     stop : time
     drive, wall : `solvers.layer.records`'s
     angles : cosine and sine at the cells' middles and at their left faces, shape (4, n)
+    inside : baffles and inner wall, a `solvers.layer.inside.Inside`
     courant : Courant number
     most : most steps
     spare : as from `scratch`, whose rows are reused
@@ -419,7 +424,7 @@ def advance(area, q, energy, pace, stop, drive, wall, angles, courant, most, spa
         x, y = _whirl(time + dt if stage == 2 else time, drive)
         limit = dt if stage > 0 else 0.0
         outcome, fastest = stage_rates(
-            next_a, next_q, next_e, spin, 0.0, x, y, angles, limit, dispersion,
+            next_a, next_q, next_e, spin, 0.0, x, y, angles, inside, limit, dispersion,
             pull_cell, pull_face, spare, rate_a, rate_q, rate_e,
         )  # fmt: skip
         if outcome == Outcome.AT_AXIS:
@@ -468,6 +473,7 @@ def march(
     loads: Record,
     most: int | None = None,
     energy: Array | None = None,
+    inside: Inside = NOTHING,
 ) -> tuple[Outcome, int]:
     """`advance` from one time to another in slices, between which Python sees a Ctrl-C.
 
@@ -476,7 +482,7 @@ def march(
     area, q, stop, drive, wall, angles, courant, spare, loads : as for `advance`
     start : time
     most : most steps; by default `solvers.slices.step_budget`
-    energy : as for `advance`; left out if None
+    energy, inside : as for `advance`; fluctuations are left out if None
 
     Returns
     -------
@@ -489,7 +495,8 @@ def march(
         most = step_budget(stop - start, drive.spin, area.size, courant)
     for steps in slices(most, area.size):
         reached, tried = compiled(
-            advance, area, q, rolling, pace, stop, drive, wall, angles, courant, steps, spare, loads
+            *(advance, area, q, rolling, pace, stop, drive, wall, angles, inside),
+            *(courant, steps, spare, loads),
         )
         outcome, taken = Outcome(reached), taken + tried
         if outcome is not Outcome.RAN_OUT:

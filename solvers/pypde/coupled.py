@@ -26,6 +26,7 @@ from fluid.friction.wall import WallDrag, wall_shear
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.layer.finite_volume import DRY, GHOSTS, WORK, rates
+from solvers.layer.inside import SLOT_SPEED, Inside
 from solvers.layer.records import Outcome
 from solvers.layer.state import ring
 from solvers.pypde.grid import CirclePDE, circle
@@ -255,6 +256,8 @@ class _Layer:
         self, machine: Coupled, j: int, area: Array, momentum: Array, spin: float, angle: float
     ) -> None:
         layer = machine.machine.layers[j]
+        known = machine.machine
+        self.inside = Inside(known.plates[j], known.gaps[j], SLOT_SPEED**2)
         self.layer, self.spin, self.turn = layer, spin, cmath.exp(1j * angle)
         self.a = np.maximum(area / layer.radius**2, 0.0)
         self.q = momentum / layer.radius**4
@@ -307,7 +310,8 @@ class _Layer:
             force.real * self.angles[k] + force.imag * self.angles[k + 1] for k in (0, 2)
         )  # fmt: skip
         d_a, d_q, work = np.zeros(n), np.zeros(n), np.zeros((WORK, n + 2 * GHOSTS))
-        rates(self.a, self.q, spin, 0.0, cell, face, 2.0 * math.pi / n, 0.0, layer.dispersion, work, d_a, d_q)
+        still = self.a, self.q, spin, 0.0, cell, face, self.inside
+        rates(*still, 2.0 * math.pi / n, 0.0, layer.dispersion, work, d_a, d_q)
         d_q -= self.shear
         self.d_area, self.d_momentum = d_a * layer.radius**2, d_q * layer.radius**4
         self.momentum_rate = self._momentum_rate(d_a, d_q)

@@ -60,6 +60,7 @@ class LongWave(WaveModel):
     progress: Progress = field(default=None, compare=False, repr=False)
 
     name = "long_wave"
+    takes_baffles = True
     ranges: ClassVar[Mapping[str, Range]] = {
         "relative_depth": LONG, "centrifuge": CAPTURED, "wall_layer": THIN_LAYERS, "force_gap": (0.0, 0.1),
     }  # fmt: skip

@@ -24,6 +24,7 @@ from fluid.friction.wall import WallDrag, wall_drag, wall_shear
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative
 from solvers.layer.finite_volume import DRY, FULL, GHOSTS, THIN, WORK, rates
+from solvers.layer.inside import inside_of
 from solvers.layer.records import LOADS, Drive, Outcome, Record, Wall, records
 from solvers.layer.state import means, ring
 from solvers.layer.step import centre, scratch, tally
@@ -141,7 +142,8 @@ def layer_rates(terms: LongWaveTerms, area: Array, momentum: Array, time: float)
         cell, face = radial_force(terms, n, time)
         work, step = np.zeros((WORK, n + 2 * GHOSTS)), 2.0 * math.pi / n
         compiled(
-            rates, a, q, spin, terms.spin_rate, cell, face, step, 0.0, terms.dispersion, work, d_area, d_q
+            *(rates, a, q, spin, terms.spin_rate, cell, face, inside_of(terms.fill, n)),
+            *(step, 0.0, terms.dispersion, work, d_area, d_q),
         )
         d_q -= _shear(terms, a, q, spin)
     return d_area * radius**2, d_q * radius**4
@@ -176,6 +178,7 @@ class Marcher:
             weight=whirl.gravity / radius,
             spin=whirl.spin,
         )
+        self._inside = inside_of(terms.fill, cells)
         self._wall = terms.wall()
         # The state as the last march left it: scaled, and as it was told, m^2 and m^4/s.
         self._kept: tuple[Array, Array] | None = None
@@ -205,7 +208,7 @@ class Marcher:
             self._kept = scaled(self.terms, state[0], state[1])
         a, q = self._kept
         args = start, stop, self._drive, self._wall, self._ring, self.courant, self._spare, self._loads
-        outcome, steps = march_layer(a, q, *args)
+        outcome, steps = march_layer(a, q, *args, inside=self._inside)
         square = self.terms.fill.chamber.radius**2
         np.multiply(a, square, out=self._told[0])
         np.multiply(q, square * square, out=self._told[1])

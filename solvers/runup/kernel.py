@@ -14,8 +14,10 @@ from numba import njit
 from numpy.typing import NDArray
 
 from fluid.friction.laws import NONE, STOKES, WALL
+from solvers.layer.baffles import taken
 from solvers.layer.drag import wall_kept
 from solvers.layer.finite_volume import COMPILED, GHOSTS, LOG, NEAREST, SUMMED, SURFACE, VELOCITY, WORK
+from solvers.layer.inside import SLOT_SPEED, Inside
 from solvers.layer.records import Outcome
 from solvers.layer.step import (
     add_velocity,
@@ -236,7 +238,9 @@ def _half_friction(area, q, spin, layer, coefficient, thin, table, dt, spare, ga
 
 
 @_unwrapped
-def layer_step(area, q, rolling, spins, force, layer, coefficient, thin, table, dt, angles, spare, gains):
+def layer_step(
+    area, q, rolling, spins, force, layer, coefficient, thin, table, dt, angles, inside, spare, gains
+):
     """Advance a layer by one time step, in place; a step that fails leaves nothing to go on with.
 
     Parameters
@@ -250,6 +254,7 @@ def layer_step(area, q, rolling, spins, force, layer, coefficient, thin, table, 
     thin, table : of the law of the wall at these spins, see `fluid.friction.wall.WallDrag`
     dt : time step
     angles : cosine and sine at the cells' middles and at their left faces, shape (4, n)
+    inside : its baffles and inner wall, a `solvers.layer.inside.Inside`
     spare : scratch of this layer, from `layer_scratch`; the profile at the end is left in it
     gains : results, a record GAINS
 
@@ -264,7 +269,7 @@ def layer_step(area, q, rolling, spins, force, layer, coefficient, thin, table, 
     next_a, next_q = spare[_NEXT_A, :n], spare[_NEXT_Q, :n]
     rate_e, next_e = spare[_RATE_E, : rolling.size], spare[_NEXT_E, : rolling.size]
     velocity, surface, log = spare[VELOCITY, GHOSTS:], spare[SURFACE, GHOSTS:], spare[LOG, GHOSTS:]
-    gains.torque, gains.heat, gains.loss, gains.missed = 0.0, 0.0, 0.0, 0.0
+    gains.torque, gains.heat, gains.loss, gains.missed, gains.baffles = 0.0, 0.0, 0.0, 0.0, 0.0
     _, gains.loss = _half_friction(area, q, spins[0], layer, coefficient, thin, table, dt, spare, gains)
     copy(area, next_a)
     copy(q, next_q)
@@ -273,7 +278,7 @@ def layer_step(area, q, rolling, spins, force, layer, coefficient, thin, table, 
     for stage in range(2):
         spin, x, y = spins[stage], force[2 * stage], force[2 * stage + 1]
         outcome, speed = stage_rates(
-            next_a, next_q, next_e, spin, euler, x, y, angles, dt, dispersion,
+            next_a, next_q, next_e, spin, euler, x, y, angles, inside, dt, dispersion,
             pull_cell, pull_face, spare, rate_a, rate_q, rate_e,
         )  # fmt: skip
         fastest = max(fastest, speed)
@@ -282,6 +287,11 @@ def layer_step(area, q, rolling, spins, force, layer, coefficient, thin, table, 
         done, missed = _power(next_a, velocity, surface, log, rate_a, spin, x, y, angles[0], angles[1])
         gains.loss += 0.5 * dt * step * done
         gains.missed += 0.5 * dt * step * euler * missed
+        held, power = taken(inside.plates)
+        gains.torque -= 0.5 * dt * held
+        gains.baffles += 0.5 * dt * power
+        # The drum's work by the baffles enters, their heat leaves.
+        gains.loss -= 0.5 * dt * (spin * held + power)
         if stage == 0:
             if not predict(area, q, rate_a, rate_q, dt, next_a, next_q):
                 return Outcome.AT_AXIS, fastest
@@ -367,6 +377,7 @@ def _move_layers(machine, state, room, dt):
                 machine.tables[j],
                 dt,
                 machine.angles,
+                Inside(machine.plates[j], machine.gaps[j], SLOT_SPEED * SLOT_SPEED),
             ),
             *(room.spare[j], room.gains[j]),
         )
@@ -480,6 +491,7 @@ def _tally(machine, state, room, dt):
             sums.gravity += 0.5 * dt * machine.gravity[i] * (room.before[j, i] + room.after[j, i])
         sums.friction += scale * gains.heat
         sums.bores += scale * gains.loss
+        sums.baffles += scale * gains.baffles
         sums.profile += scale * gains.missed
     first = machine.layers.shape[0]
     for j in range(machine.pools.shape[0]):

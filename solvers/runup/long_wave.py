@@ -11,6 +11,8 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from meshes.arrays import Array, Complex, Flags
+from solvers.layer.baffles import tables_of
+from solvers.layer.inside import full_area
 from solvers.layer.records import Outcome, Record, records
 from solvers.layer.state import ring
 from solvers.rotor.system import RotorSystem
@@ -297,6 +299,7 @@ class Coupled(CoupledRotor):
             pool = self.pools[j]
             assert pool is not None
             pools[k] = pool.mass, pool.arm, pool.length, pool.inertia
+        riding = [fill for fill, on in zip(self.fills, active, strict=True) if on]
         self.machine = self.machine._replace(
             matrices=np.stack(matrices).astype(float),
             planes=np.concatenate((planes[active], planes[pooled])),
@@ -304,6 +307,8 @@ class Coupled(CoupledRotor):
             pools=pools,
             drags=self.drags[pooled],
             tables=self.tables[active],
+            plates=tables_of(riding, self.area.shape[1]),
+            gaps=np.array([full_area(fill) for fill in riding]),
         )
         count, cells = int(active.sum()), self.area.shape[1]
         self.state = old._replace(
@@ -420,6 +425,8 @@ def couple(
             angles=ring(cells),
             curve=np.zeros((2, 0)),
             watched=rest.watched,
+            plates=tables_of([], cells),
+            gaps=np.zeros(0),
         ),
         state=State(
             place=np.zeros(n),

@@ -80,6 +80,7 @@ class EnergyAudit:
     bores : lost in bores and by the scheme
     profile : missed by the assumed profile of the flow while the spin changes
     motor : work of the motor, 0 for a given speed
+    baffles : lost at the baffles
     """
 
     unbalance: float
@@ -92,12 +93,23 @@ class EnergyAudit:
     bores: float
     profile: float
     motor: float
+    baffles: float = 0.0
+
+    @property
+    def dissipated(self) -> float:
+        """Heat in supports, at walls and baffles and in bores, J."""
+        return self.support + self.friction + self.bores + self.baffles
+
+    @property
+    def scale(self) -> float:
+        """The larger of the unbalance's work and all that was dissipated, J."""
+        return max(abs(self.unbalance), self.dissipated)
 
     @property
     def remainder(self) -> float:
         """What the balance leaves, J."""
         gained = self.unbalance + self.drive + self.gravity + self.captured
-        return gained - self.change - self.support - self.friction - self.bores - self.profile
+        return gained - self.change - self.profile - self.dissipated
 
     @property
     def closure(self) -> float:
@@ -105,7 +117,7 @@ class EnergyAudit:
 
         What it takes to spin the liquid up as a whole does not count.
         """
-        work = max(abs(self.unbalance), self.support + self.friction + self.bores)
+        work = self.scale
         return abs(self.remainder) / work if work > 0.0 else 0.0
 
 
@@ -341,7 +353,7 @@ def _march(
     )
 
 
-_WORKS = ("unbalance", "drive", "gravity", "support", "friction", "bores", "profile", "motor")
+_WORKS = ("unbalance", "drive", "gravity", "support", "friction", "bores", "baffles", "profile", "motor")
 
 
 def _advance(

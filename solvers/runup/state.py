@@ -148,9 +148,9 @@ def drag_curves(fills: Sequence[Fill], pools: Sequence[Pool | None], friction: F
 # What a layer is measured by: moment and its rate of change by the flow, inertia of the flow, angular
 # momentum and energy in the frame that does not turn [theory: coupling, eq. 2, 4 and 7].
 MEASURES = floats("moment_x", "moment_y", "flow_x", "flow_y", "xx", "xy", "yy", "spinning", "energy")
-# What a layer's step adds up: impulse of the wall's torque, heat by friction, loss in bores and by the
-# scheme, energy that the flow's profile misses.
-GAINS = floats("torque", "heat", "loss", "missed")
+# What a layer's step adds up: impulse of the torque of wall and baffles, heat by friction, loss in bores and
+# by the scheme, energy that the flow's profile misses, heat at the baffles.
+GAINS = floats("torque", "heat", "loss", "missed", "baffles")
 # The rotation: speed, angle turned, time; rate of change of the speed on its ramp, moment of inertia about
 # the axis with a motor.
 SHAFT = floats("spin", "angle", "time", "rate", "inertia")
@@ -161,11 +161,11 @@ CREST = floats("amplitude", "speed", "time")
 # A pool as a pendulum about its chamber's axis: mass, distance of its centre of mass, length, inertia.
 POOL = floats("mass", "arm", "length", "inertia")
 # What is summed up over time [theory: coupling, eq. 9-10]: work of the unbalance, of the drive on the liquid,
-# of gravity; heat in the supports and by wall friction, loss in bores and by the scheme, what the assumed
-# profile of the flow misses while the spin changes; work of the motor; steps, layer steps, largest
-# disagreement left.
+# of gravity; heat in the supports and by wall friction, loss in bores and by the scheme, loss at the baffles,
+# what the assumed profile of the flow misses while the spin changes; work of the motor; steps, layer steps,
+# largest disagreement left.
 SUMS = floats(
-    *("unbalance", "drive", "gravity", "support", "friction", "bores", "profile", "motor"),
+    *("unbalance", "drive", "gravity", "support", "friction", "bores", "baffles", "profile", "motor"),
     *("steps", "layer_steps", "disagreement"),
 )
 
@@ -187,6 +187,8 @@ class Machine(NamedTuple):
     angles : cosine and sine at the cells' middles and at their left faces, shape (4, c)
     curve : the motor's speeds and torques, shape (2, k); k = 0 for a ramp
     watched : displacement of the axis whose amplitude counts, for unit coordinates, shape (2, n)
+    plates : baffles of each layer, as by `solvers.layer.baffles.tables_of`, shape (l, k, COLUMNS)
+    gaps : area of the full gap of each layer over R^2, 1 without an inner wall, shape (l,)
     """
 
     matrices: Array
@@ -200,6 +202,8 @@ class Machine(NamedTuple):
     angles: Array
     curve: Array
     watched: Array
+    plates: Array
+    gaps: Array
 
 
 class State(NamedTuple):

@@ -18,10 +18,13 @@ ROOT = Path(__file__).parents[2]
         *(
             "layer/uncompiled_layer",
             "layer/uncompiled_drag",
+            "layer/uncompiled_baffles",
+            "layer/uncompiled_inside",
             "runup/uncompiled_long_wave",
             "runup/uncompiled_linear",
+            "runup/uncompiled_pool",
+            "statics/uncompiled_statics",
         ),
-        *("runup/uncompiled_pool", "statics/uncompiled_statics"),
     ],
 )
 def test_compiled_lines_are_held_by_oracles(name: str) -> None:

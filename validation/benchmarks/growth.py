@@ -133,6 +133,7 @@ def right_hand_side(cells: int) -> float:
     cells : of the layer, not uniform and moving
     """
     from solvers.layer.finite_volume import GHOSTS, WORK, rates
+    from solvers.layer.inside import NOTHING
 
     step = 2.0 * np.pi / cells
     middle = step * (np.arange(cells) + 0.5)
@@ -144,7 +145,7 @@ def right_hand_side(cells: int) -> float:
 
     def run() -> None:
         for _ in range(times):
-            rates(area, q, 1.0, 0.0, pull, pull, step, 1e-4 * step, 0.0, work, d_area, d_q)
+            rates(area, q, 1.0, 0.0, pull, pull, NOTHING, step, 1e-4 * step, 0.0, work, d_area, d_q)
 
     return best(run, 5) / times
 

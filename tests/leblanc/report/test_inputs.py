@@ -24,7 +24,7 @@ from tests.oracles.pages import printed
 CHAMBER = {
     "radius": "65 mm", "inner_radius": "5 mm", "height": "20 mm", "plane": "3 mm", "volume": "10 ml",
     "liquid": {"density": 900.0, "viscosity": "2 mm^2/s"},
-    "baffles": {"count": 6, "tip_radius": "40 mm", "wall_gap": "2 mm", "first_angle": "30 deg"},
+    "baffles": {"count": 6, "tip_radius": "40 mm", "wall_gap": "2 mm", "first_angle": "30 deg", "loss": 2.5},
 }  # fmt: skip
 REST = {
     "name": "full", "source": "nowhere", "gravity": 3.7, "chambers": [CHAMBER],
@@ -278,6 +278,7 @@ def test_units() -> None:
         "chambers.0.height": 20.0, "chambers.0.plane": 3.0, "chambers.0.volume": 10.0,
         "chambers.0.baffles.count": 6.0, "chambers.0.baffles.tip_radius": 40.0,
         "chambers.0.baffles.wall_gap": 2.0, "chambers.0.baffles.first_angle": 30.0,
+        "chambers.0.baffles.loss": 2.5,
         "speeds.start": 60.0, "model.tolerance": 2.0, "model.cells": 64.0,
         "runup.start": 30.0, "runup.stop": 900.0,
         "runup.rate": 2.0, "runup.duration": 9.0, "runup.cells": 32.0, "runup.samples": 77.0,

@@ -16,7 +16,6 @@ from leblanc.scene.schema.load import SceneError, read_toml
 from leblanc.studies.batch import answer_scenes
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.run import run_scene
-from leblanc.studies.runup import runup_scene
 from leblanc.studies.whirl_map import map_scene
 from meshes.baffles import Baffles
 from meshes.errors import InputError
@@ -114,9 +113,7 @@ def test_the_map_runs_from_empty_to_full() -> None:
     assert np.all(record.growth[[0, -1]] <= 0.0)
 
 
-@pytest.mark.parametrize(
-    "action", [optimise_scene, runup_scene, trade_scene], ids=["optimise", "runup", "trade"]
-)
+@pytest.mark.parametrize("action", [optimise_scene, trade_scene], ids=["optimise", "trade"])
 def test_what_knows_no_baffles_says_so(action: Any) -> None:
     runup = {"start": 10.0, "stop": 100.0, "rate": 10.0, "duration": 10.0, "cells": 32}
     with pytest.raises(InputError, match=r"chambers\.0\.baffles"):

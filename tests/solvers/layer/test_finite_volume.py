@@ -12,6 +12,7 @@ from numba import njit
 
 from fluid import long_wave as lw
 from solvers.layer.finite_volume import DRY, FULL, GHOSTS, WORK, log_and_inverse, rates, solve_ring
+from solvers.layer.inside import NOTHING
 from solvers.layer.records import LOADS, Drive, Outcome, Wall, records
 from solvers.layer.step import kept_speed, march, scratch
 
@@ -352,7 +353,7 @@ def test_euler_force_spins_the_liquid_back() -> None:
     area = np.full(n, 0.08)
     q, work = -SPIN * area**2, np.zeros((WORK, n + 2 * GHOSTS))
     d_area, d_q, still = np.zeros(n), np.zeros(n), np.zeros(n)
-    rates(area, q, SPIN, 0.7, still, still, 2 * np.pi / n, 1e-3, False, work, d_area, d_q)
+    rates(area, q, SPIN, 0.7, still, still, NOTHING, 2 * np.pi / n, 1e-3, False, work, d_area, d_q)
     np.testing.assert_allclose(d_q, -0.7 * area, rtol=1e-13)
     np.testing.assert_allclose(d_area, 0.0, atol=1e-15)
     assert DRY < 1e-12

@@ -16,6 +16,7 @@ from solvers.layer import finite_volume
 from solvers.layer import finite_volume as face_flux
 from solvers.layer import state as layer_loads
 from solvers.layer import step as forced_layer
+from solvers.layer.inside import NOTHING
 from solvers.layer.records import LOADS, Drive, Outcome, Wall, records
 from tests.mutants import kills
 
@@ -45,7 +46,9 @@ def rates(
     d_area, d_q = np.empty(n), np.empty(n)
     work = np.zeros((finite_volume.WORK, n + 2 * finite_volume.GHOSTS))
     cell, face = pull * np.cos(theta - TURNED), pull * np.cos(theta - 0.5 * step - TURNED)
-    fastest = finite_volume.rates(area, q, SPIN, euler, cell, face, step, dt, dispersion, work, d_area, d_q)
+    fastest = finite_volume.rates(
+        *(area, q, SPIN, euler, cell, face, NOTHING, step, dt, dispersion, work, d_area, d_q)
+    )
     return d_area, d_q, fastest
 
 
@@ -105,7 +108,7 @@ def rolling_rates(
     work = np.zeros((finite_volume.WORK, n + 2 * finite_volume.GHOSTS))
     cell, face = pull * np.cos(theta - TURNED), pull * np.cos(theta - 0.5 * step - TURNED)
     finite_volume.ring_rates(
-        *(area, q, energy, SPIN, euler, cell, face, step, 0.0, False, work, found[0], found[1], found[2])
+        *(area, q, energy, SPIN, euler, cell, face, NOTHING, step, 0.0, False, work, *found)
     )
     return found[0], found[1], found[2]
 
@@ -325,12 +328,12 @@ def test_slopes() -> None:
     head, velocity = np.empty(5), np.empty(5)
     # At the fourth of them half of the central slope, 0.5, is cut back to the lesser difference, 0.1.
     limited = [0.75, 0.0, 0.0, 0.1, 0.0]
-    face_flux.half_slopes(deep, value, still, rim(deep), SPIN, head, velocity, np.empty(5))
+    face_flux.half_slopes(deep, value, still, rim(deep), SPIN, 1.0, 0.0, head, velocity, np.empty(5))
     np.testing.assert_allclose([head, velocity], [limited, np.zeros(5)], atol=1e-14)
-    face_flux.half_slopes(deep, still, value, rim(deep), SPIN, head, velocity, np.empty(5))
+    face_flux.half_slopes(deep, still, value, rim(deep), SPIN, 1.0, 0.0, head, velocity, np.empty(5))
     np.testing.assert_allclose([head, velocity], [np.zeros(5), limited], atol=1e-14)
     deep[5] = 0.0
-    face_flux.half_slopes(deep, value, still, rim(deep), SPIN, head, velocity, np.empty(5))
+    face_flux.half_slopes(deep, value, still, rim(deep), SPIN, 1.0, 0.0, head, velocity, np.empty(5))
     np.testing.assert_allclose(head, [0.75, 0.0, 0.0, 0.0, 0.0], atol=1e-14)
 
 
@@ -356,11 +359,11 @@ def test_waves() -> None:
     # Static head is Omega^2 A here.
     for first, second in ((one, other), (other, one)):
         heads, speeds = np.array([-1.0, 0.0, 1.0]), u + np.array([-first, 0.0, second])
-        face_flux.half_slopes(three, heads, speeds, rim(three), SPIN, head, velocity, log)
+        face_flux.half_slopes(three, heads, speeds, rim(three), SPIN, 1.0, 0.0, head, velocity, log)
         np.testing.assert_allclose([head[0], velocity[0]], 0.0, atol=1e-8)
         # One wave on both sides, three times as steep on one of them, where the other wave comes in.
         heads, speeds = np.array([-1.0, 0.0, 4.0]), u + np.array([-first, 0.0, 3.0 * first + second])
-        face_flux.half_slopes(three, heads, speeds, rim(three), SPIN, head, velocity, log)
+        face_flux.half_slopes(three, heads, speeds, rim(three), SPIN, 1.0, 0.0, head, velocity, log)
         np.testing.assert_allclose([head[0], velocity[0]], [1.0, first], atol=1e-8)
 
 

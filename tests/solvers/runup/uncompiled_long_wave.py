@@ -13,6 +13,7 @@ from fluid.friction.wall import NO_TABLE
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers.layer import finite_volume
+from solvers.layer.inside import NOTHING
 from solvers.layer.records import Outcome, records
 from solvers.layer.state import ring
 from solvers.rotor.jeffcott import Jeffcott
@@ -47,7 +48,7 @@ def rates(area: np.ndarray, q: np.ndarray, push: complex = 0j) -> tuple[np.ndarr
     d_area, d_q = np.empty(n), np.empty(n)
     work = np.zeros((finite_volume.WORK, n + 2 * finite_volume.GHOSTS))
     cell, face = (push.real * angles[k] + push.imag * angles[k + 1] for k in (0, 2))
-    finite_volume.rates(area, q, SPIN, 0.0, cell, face, step, 0.0, 0.0, work, d_area, d_q)
+    finite_volume.rates(area, q, SPIN, 0.0, cell, face, NOTHING, step, 0.0, 0.0, work, d_area, d_q)
     return d_area, d_q
 
 
@@ -100,7 +101,7 @@ def layer_run(law: int, push: complex, n: int = 32) -> tuple[np.ndarray, np.ndar
     status, _ = coupled_layer.layer_step(
         *(area, q, area[:0], np.array([SPIN, SPIN])),
         np.array([push.real, push.imag, there.real, there.imag]),
-        *(layer, layer.coefficient, 0.0, NO_TABLE, 0.02, ring(n), spare, gains),
+        *(layer, layer.coefficient, 0.0, NO_TABLE, 0.02, ring(n), NOTHING, spare, gains),
     )
     assert status == Outcome.DONE
     return area, q, gains

@@ -1,0 +1,16 @@
+"""Layers with baffles against computed two-phase flow: ten runs of a ring in the plane [theory: baffles].
+
+`computed_flow` runs the compiled long waves as the reference ran: a lag that decays, one that a steady
+spin-up holds.
+"""
+
+from __future__ import annotations
+
+from validation.cases.case import Case
+
+
+def cases() -> list[Case]:
+    """Decays, driven losses, and the spin-up that leaves the liquid behind."""
+    from validation.cases.baffles import computed_flow
+
+    return computed_flow.cases()
