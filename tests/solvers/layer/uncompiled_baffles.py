@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fluid import long_wave as lw
+from fluid.friction.wall import NO_TABLE
 from fluid.friction import baffles as law
 from solvers.layer import baffles, finite_volume
 from solvers.layer.inside import Inside
@@ -159,7 +160,7 @@ def test_gains() -> None:
     kernel.measure(area, q, SPIN, ring(n), spare, ends[0])
     plates = table([0, 8, 16, 24], 0.03)
     done = kernel.layer_step(
-        *(area, q, area[:0], spins, np.zeros(4), records(LAYER)[0], 0.0, 0.02, ring(n)),
+        *(area, q, area[:0], spins, np.zeros(4), records(LAYER)[0], 0.0, 0.0, NO_TABLE, 0.02, ring(n)),
         *(Inside(plates, 1.0, 0.0), spare, gains),
     )
     assert done[0] == Outcome.DONE
