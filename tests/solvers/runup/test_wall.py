@@ -9,6 +9,7 @@ import pytest
 
 from fluid.fill import Fill
 from fluid.friction.laws import STOKES, Friction, damping_rate
+from fluid.friction.pipe import friction_factor, hydraulic_diameter
 from fluid.friction.wall import mean_rates
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
@@ -105,3 +106,25 @@ def test_small_waves_feel_their_own_part_of_the_law() -> None:
     wanted = (own * faded + slow) / stokes
     assert wanted > 1.6
     assert (rates[0] - rates[2]) / (rates[1] - rates[2]) == pytest.approx(wanted, rel=0.01)
+
+
+@pytest.mark.parametrize("model", [couple, couple_linear])
+def test_without_viscosity_and_roughness_nothing_is_dragged(model: RunupModel) -> None:
+    fill = Fill(Chamber(0.15, 0.05), Liquid("ideal", 1000.0, 0.0), 6.7e-4)
+    machine = at_rest_in_space(model, fill, 40.0)
+    assert machine.advance(1.0, 0.0, 0.8, 10**6) == Outcome.DONE
+    assert machine.sums.friction == 0.0
+    # The long waves' mean rotation, u L/A, is a third of A^2 off that of a solid layer.
+    assert -float(machine.read().mean_rotation[0]) / 40.0 == pytest.approx(1.0, rel=5e-3)
+
+
+def test_a_rough_wall_drags_by_the_quadratic_law() -> None:
+    """Without viscosity the lag falls as 1/(1 + t/T), T = 2 D_h/(f_D Omega R)."""
+    fill = Fill(Chamber(0.15, 0.05), Liquid("ideal", 1000.0, 0.0), 6.7e-4)
+    rough, diameter = 1e-4, float(hydraulic_diameter(fill.depth, 0.05))
+    machine = couple_linear(RIGID.system(), [fill], 40.0, Friction("wall", roughness=rough), 0.0, 64, False)  # type: ignore[arg-type]
+    machine.machine.carried[:] = 0.0
+    pace = 2.0 * diameter / (float(friction_factor(math.inf, rough / diameter)) * 40.0 * 0.15)
+    assert machine.advance(3.0 * pace, 0.0, 0.8, 10**6) == Outcome.DONE
+    # The table's 1e-4, and second order in a step of pace/20 or less.
+    assert 1.0 - machine.machine.carried[0] / 40.0 == pytest.approx(0.25, rel=1e-3)
