@@ -63,6 +63,8 @@ class LayerExplanation:
     walls : baffles, or the file of the section, in words; empty for a plain ring
     carrying : what the baffles can do on the ramp of the run-up; None without one of both, and for baffles
         that part the liquid
+    carried_from : speed from which the walls carry the liquid round from rest, rad/s, inf where they never
+        do; None if the axis stands, or the section is no circle
     """
 
     numbers: LayerNumbers
@@ -72,6 +74,7 @@ class LayerExplanation:
     optimal_volume: float
     walls: str = ""
     carrying: BaffleOutlook | None = None
+    carried_from: float | None = None
 
 
 @dataclass(frozen=True)
@@ -220,13 +223,19 @@ def _estimate_variables(estimates: tuple[SpeedEstimate, ...]) -> dict[str, Varia
     }
 
 
+def _or_nan(value: float | None) -> float:
+    """A number for an array."""
+    return math.nan if value is None else value
+
+
 def _layer_variables(layers: tuple[LayerExplanation | None, ...]) -> dict[str, Variable]:
     """Numbers of every chamber, nan for an empty one."""
     units = {"depth": "m", "optimal_volume": "m3", "added_mass_ratio": "1", "liquid_mass_ratio": "1"}
+    units["carried_from"] = "rad s-1"
     found = {
         name: var(
             ("chamber",),
-            np.array([math.nan if layer is None else getattr(layer, name) for layer in layers]),
+            np.array([_or_nan(None if layer is None else getattr(layer, name)) for layer in layers]),
             unit,
             name.replace("_", " "),
         )

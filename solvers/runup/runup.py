@@ -148,6 +148,7 @@ class RunupHistory:
     reason : why it did not come to the end, and when; or empty
     snapshots : of the layers, cell by cell, at the times asked for; None where none were
     transfers : liquid that became a layer or fell, in the order of time
+    handover : how liquid at the bottom of a lying chamber becomes a layer
     """
 
     time: Array
@@ -174,6 +175,7 @@ class RunupHistory:
     reason: str
     snapshots: LayerSnapshots | None = None
     transfers: tuple[Transfer, ...] = ()
+    handover: Handover = Handover.RIDING
 
     @property
     def converged(self) -> bool:
@@ -330,6 +332,7 @@ def _march(
         reason="" if outcome is Outcome.DONE else f"{outcome.message} {when}",
         snapshots=kept,
         transfers=tuple(machine.transfers),
+        handover=numerics.handover,
     )
 
 

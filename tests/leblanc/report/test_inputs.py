@@ -35,6 +35,7 @@ REST = {
     "runup": {
         "start": "30 rpm", "stop": "900 rpm", "rate": "2 rad/s^2", "duration": "9 s", "cells": 32,
         "back": True, "dispersion": True, "bore": "enstrophy", "samples": 77,
+        "capture": "drum",
     },
     "optimise": {
         "objective": "robust", "working_speed": "600 rpm", "steady": True,
@@ -250,7 +251,8 @@ def test_units() -> None:
         "rotor.unbalance": 600.0, "gravity": 3.7, "chambers.0.radius": 65.0, "chambers.0.inner_radius": 5.0,
         "chambers.0.height": 20.0, "chambers.0.plane": 3.0, "chambers.0.volume": 10.0,
         "chambers.0.baffles.count": 6.0, "chambers.0.baffles.tip_radius": 40.0,
-        "chambers.0.baffles.wall_gap": 2.0, "chambers.0.baffles.first_angle": 30.0, "chambers.0.baffles.loss": 2.5,
+        "chambers.0.baffles.wall_gap": 2.0, "chambers.0.baffles.first_angle": 30.0,
+        "chambers.0.baffles.loss": 2.5,
         "speeds.start": 60.0, "model.tolerance": 2.0, "model.cells": 64.0,
         "runup.start": 30.0, "runup.stop": 900.0,
         "runup.rate": 2.0, "runup.duration": 9.0, "runup.cells": 32.0, "runup.samples": 77.0,
