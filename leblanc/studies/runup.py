@@ -132,7 +132,8 @@ def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tup
     """Where the layer describes the liquid, and why it does not elsewhere.
 
     A layer must turn fast enough itself, whatever the drum does, must not be deep beside its radius
-    [theory: long_wave, eq. 4], and must leave the inner wall clear.
+    [theory: long_wave, eq. 4], and a linear one must leave the inner wall clear; long waves fill the gap
+    there [theory: long_wave, eq. 18].
 
     Parameters
     ----------
@@ -166,12 +167,13 @@ def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tup
         for code, holds, limit in (
             (RunupCode.TOO_SLOW, carried, math.nan),
             (RunupCode.TUMBLES, lies, math.nan),
-            (RunupCode.INNER_WALL, ~touches, math.nan),
+            (RunupCode.INNER_WALL, ~(touches & linear), math.nan),
             (RunupCode.TOO_DEEP, np.full(good.shape, shallow), deepest),
             (RunupCode.TOO_HIGH, small, highest),
         ):
             good &= holds
             found.append(notes.out_of_range(code, k, holds, limit))
+        found.append(None if linear else notes.full_gap(k, touches))
     return good, tuple(note for note in found if note is not None)
 
 

@@ -129,14 +129,15 @@ def half_slopes(area, head, velocity, surface, spin, full, slot, half_head, half
 
     Differences of head and velocity are split into those that the two waves of the cell carry, of which
     du/dA = (lambda - u/r^2)/L = Omega +- c/L, c half the difference of the speeds [theory: long_wave, eq. 3].
-    Next to a dry cell there is no slope.
+    Next to a dry cell there is no slope, nor where the gap begins to be full.
     """
     n = half_head.size
     area_b, area_m, area_a = area[:n], area[1 : n + 1], area[2 : n + 2]
     head_b, head_m, head_a = head[:n], head[1 : n + 1], head[2 : n + 2]
     velocity_b, velocity_m, velocity_a = velocity[:n], velocity[1 : n + 1], velocity[2 : n + 2]
     for i in range(n):
-        wet = min(area_b[i], area_m[i], area_a[i]) > DRY
+        least, most = min(area_b[i], area_m[i], area_a[i]), max(area_b[i], area_m[i], area_a[i])
+        wet = least > DRY and (most <= full or least > full)
         r = np.maximum(surface[i + 1], NEAREST)
         log[i], inverse = log_and_inverse(area_m[i], r)
         # In a film the split has no digits, and it is not used.
@@ -220,7 +221,8 @@ def side(
         push[i] += 0.5 * stiff * (a - full) * (a + full)
         flow[i] = _momentum(u, log, a, inverse) + push[i]
         mean, half = _celerity(u * inverse, log, spin)
-        half = np.sqrt(half * half + log * stiff)
+        # Where the gap fills and empties from step to step the waves in it count twice as fast.
+        half = np.sqrt(half * half + 4.0 * log * stiff)
         back[i], ahead[i] = mean - half, mean + half
 
 

@@ -80,7 +80,7 @@ def _long() -> Iterator[Case]:
     )
     for group in (
         *("two_plane", "whirl", "layer", "runup", "fill_sweep", "exciter", "errata", "optimal_volume"),
-        *("vector_model", "horizontal_rig", "vertical_rig", "tub"),
+        *("vector_model", "horizontal_rig", "vertical_rig", "tub", "baffles"),
     ):
         yield _case(f"validate-{group}", f"validate {group} --json")
 

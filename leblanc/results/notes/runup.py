@@ -51,6 +51,7 @@ class RunupCode(NoteCode):
     TOO_SLOW = "too_slow"
     TUMBLES = "tumbles"
     INNER_WALL = "inner_wall"
+    FULL_GAP = "full_gap"
     TOO_DEEP = "too_deep"
     TOO_HIGH = "too_high"
     STANDING = "standing"
@@ -289,6 +290,24 @@ def out_of_range(code: RunupCode, chamber: int, holds: Flags, limit: float = mat
     share = float(1.0 - np.mean(holds))
     text = f"Out of range for {1.0 - np.mean(holds):.0%} of the samples: {why}."
     return Note(code, {"chamber": chamber + 1, "share": share}, text)
+
+
+def full_gap(chamber: int, full: Flags) -> Note | None:
+    """At what share of the samples the layer of a chamber fills its gap; None if nowhere.
+
+    Parameters
+    ----------
+    chamber : index from 0
+    full : where it does, shape (k,)
+    """
+    if not full.any():
+        return None
+    share = float(np.mean(full))
+    text = (
+        f"The liquid in chamber {chamber + 1} fills the gap to its inner wall somewhere in {share:.0%} of "
+        "the samples: there it is a full pipe under pressure, and air that it shuts in is let out."
+    )
+    return Note(RunupCode.FULL_GAP, {"chamber": chamber + 1, "share": share}, text)
 
 
 def linear_layers(wave: float, lag: float, touches: bool, error: float, limits: tuple[float, float]) -> str:

@@ -96,3 +96,17 @@ def test_a_layer_with_baffles() -> None:
 def test_the_digest_counts_a_loss_alone() -> None:
     """A scene with baffles keeps its digest; with a loss coefficient it has another."""
     assert ring(PLATES).digest != ring(PLATES | {"loss": 2.0}).digest
+
+
+def test_a_gap_that_fills() -> None:
+    """A layer thrown against its inner wall stays in range, and the run tells how often it was there."""
+    scene = ring(None, 2.0, liquid="long_wave", friction={"linear": 5.0})
+    scene = scene.replace({"rotor.unbalance": "0.3 kg*m", "chambers.0.volume": "2.4 l"})
+    found = runup_scene(scene, check=False)
+    told = {note.code: note.data for note in found.notes}
+    assert told["full_gap"]["chamber"] == 1 and 0.0 < told["full_gap"]["share"] <= 1.0
+    assert "inner_wall" not in told
+    gap = 0.04
+    deepest = np.nanmax(found.history.depth_max)
+    # The slot takes the rise of the head over it: a few per cent of the gap under a deflection as large.
+    assert gap < deepest < 1.03 * gap and found.mass_error < 1e-12

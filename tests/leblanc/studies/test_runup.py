@@ -357,10 +357,12 @@ def test_gravity_along() -> None:
     "leblanc.studies.runup:judged", ">= wall.radius - wall.inner_radius", ">= wall.radius + wall.inner_radius"
 )
 def test_inner_wall() -> None:
-    """The surface must stay off the inner wall, where there is one."""
+    """The surface of linear layers must stay off the inner wall; long waves fill their gap, and say so."""
     ring = scene(chambers=[_chamber(0.5e-3, inner_radius=0.2)])
     depth = np.array([[0.049], [0.051]])
-    assert judged(ring, history_of(2, 1, depth_max=depth))[0].tolist() == [True, False]
+    assert judged(ring, history_of(2, 1, depth_max=depth), "linear")[0].tolist() == [True, False]
+    good, notes = judged(ring, history_of(2, 1, depth_max=depth))
+    assert good.all() and [(note.code, note.data["share"]) for note in notes] == [("full_gap", 0.5)]
     assert judged(scene(), history_of(2, 1, depth_max=5.0 * depth))[0].all()
 
 

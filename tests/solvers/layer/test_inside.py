@@ -51,14 +51,14 @@ def exact_centre() -> float:
     return float(((1 - at**3) / 3 * np.cos(theta)).mean() / MEAN)
 
 
-def settled(slot: float, cells: int = 128) -> tuple[complex, float]:
+def settled(slot: float, cells: int = 64) -> tuple[complex, float]:
     """Centre of mass and change of volume of a layer that has come to rest under a synchronous whirl."""
     area = np.full(cells, MEAN)
     q, loads = -np.square(area), records(LOADS)
     inside = Inside(NOTHING.plates, 0.5 * (1 - RIM**2), slot)
     drive, wall = Drive(AMPLITUDE, 0.0, 30.0, 1.0, 0.0, 1.0), Wall(1, 0.08, 0.0, False)
     done, _ = march(
-        *(area, q, 0.0, 120.0, drive, wall, ring(cells), 0.8, scratch(cells), loads), inside=inside
+        *(area, q, 0.0, 120.0, drive, wall, ring(cells), 0.4, scratch(cells), loads), inside=inside
     )
     assert done == Outcome.DONE
     return complex(*centre(area, ring(cells))), float(abs(area.mean() / MEAN - 1.0))
@@ -67,14 +67,13 @@ def settled(slot: float, cells: int = 128) -> tuple[complex, float]:
 def test_at_rest() -> None:
     """The exact equilibrium of the annular chamber, to what the slot takes, whatever its speed."""
     exact, found = exact_centre(), {}
-    for factor in (0.5, 1.0, 2.0):
+    for factor in (1.0, 2.0, 4.0):
         found[factor], lost = settled((factor * SLOT_SPEED) ** 2)
         assert lost < 1e-12
-    # The slot takes the head's rise over it, at most 0.05/64 of 0.12, and the drum's cells 1e-3.
+    # The slot takes the head's rise over it, at most 0.05/64 of 0.12; the rest is the cells' and the time's.
     assert abs(found[1.0] - exact) < 0.01 * exact, (found, exact)
-    assert abs(found[2.0] - exact) < abs(found[0.5] - exact)
-    # Four times the speed from one end to the other.
-    assert abs(found[2.0] - found[0.5]) < 0.01 * exact
+    assert abs(found[4.0] - exact) < abs(found[1.0] - exact)
+    assert abs(found[4.0] - found[1.0]) < 0.01 * exact
 
 
 def test_mass_in_a_run() -> None:

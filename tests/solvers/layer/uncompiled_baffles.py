@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from fluid import long_wave as lw
-from fluid.friction.wall import NO_TABLE
 from fluid.friction import baffles as law
+from fluid.friction.wall import NO_TABLE
 from solvers.layer import baffles, finite_volume
 from solvers.layer.inside import Inside
 from solvers.layer.records import Outcome, records
