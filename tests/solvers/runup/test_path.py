@@ -3,6 +3,7 @@
 from dataclasses import fields
 
 import numpy as np
+
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
 from fluid.liquid import Liquid
@@ -38,7 +39,7 @@ def _run(model: RunupModel, follow: bool, samples: int = 1200, cells: int = 32) 
 
 
 def _unbalanced(history: RunupHistory) -> float:
-    """What the force on the cabinet and the change of all momentum leave, over the force: roots of squares."""
+    """What force on the cabinet and change of all momentum leave, over the force: roots of squares."""
     path = history.path
     assert path is not None
     _, place, rate, _ = path.motion(history.time)
@@ -59,8 +60,8 @@ def _unbalanced(history: RunupHistory) -> float:
 )
 def test_floor_takes_the_momentum() -> None:
     """Force on the cabinet is minus the second derivative of the first moment of all masses."""
-    # Splines through samples 2 ms apart leave (Omega dt)^2/12, 2e-4; a step turns the drum by 0.08, its scheme
-    # leaves 0.08^2/12, 5e-4.
+    # Splines through samples 2 ms apart leave (Omega dt)^2/12, 2e-4; a step turns the drum by 0.08 and leaves
+    # 0.08^2/12, 5e-4.
     assert _unbalanced(_run(couple_linear, follow=True)) < 1e-3
 
 
