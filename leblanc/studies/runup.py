@@ -338,6 +338,7 @@ def runup_scene(
     steady, bands = steady_response(scene, history.speed), whirl_bands(scene, history.speed)
     in_range, limits = judged(scene, history, taken.model)
     fastest = np.flatnonzero(history.speed == history.speed.max())
+    stands = () if machine is None else (notes.loads(),)
     return RunupResult(
         name=scene.name,
         source=scene.source,
@@ -360,7 +361,7 @@ def runup_scene(
         bands=bands,
         chambers=tuple(_chamber(fill) for fill in scene.fills),
         planes=tuple(fill.chamber.plane for fill in scene.fills),
-        notes=(*_notes(scene, taken, steady, bands, spread), *limits, *doubts(scene)),
+        notes=(*_notes(scene, taken, steady, bands, spread), *limits, *stands, *doubts(scene)),
         frames=runup_frames(history),
         history_dry=dry,
         spread=spread,

@@ -9,6 +9,7 @@ import numpy as np
 
 from fluid.friction.laws import Friction
 from leblanc.results.base import Note, NoteCode, percent
+from leblanc.results.notes.response import STANDS
 from leblanc.results.response import peak
 from leblanc.units import (
     LENGTH,
@@ -53,6 +54,7 @@ class RunupCode(NoteCode):
     INNER_WALL = "inner_wall"
     TOO_DEEP = "too_deep"
     TOO_HIGH = "too_high"
+    LOADS = "loads"
 
 
 # What the tables of a report say as well.
@@ -65,6 +67,12 @@ IN_TABLES = (
     RunupCode.FALLS_BACK,
     RunupCode.SELF_EXCITED,
 )
+
+
+def loads() -> Note:
+    """What forces and clearances of a run-up leave out."""
+    text = f"{STANDS}; bearing forces are left out around moments at which liquid is caught or let go."
+    return Note(RunupCode.LOADS, {}, text)
 
 
 def liquid_model(model: str, reason: str) -> Note:
