@@ -81,6 +81,7 @@ RECIPES = (
         horizontal_rig_chamber="chamber",
     ),
     _example("run", "washing_machine", washing_machine_amplitude="amplitude"),
+    _example("run", "tub", machine_loads="machine"),
     _example("map", "horizontal_rig", whirl_map="map"),
     Recipe(
         ("leblanc", "map", "docs/examples/self_excited.toml", "--cycles", "--volumes", "21"),

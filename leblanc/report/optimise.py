@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from leblanc.report.page import About, models, notes, why, write_page
-from leblanc.report.parts import Cell, Table, doubt, picture, table
+from leblanc.report.parts import Cell, Table, doubt, load_part, picture, table
 from leblanc.report.run import response_checks as response_checks
 from leblanc.results.base import texts
 from leblanc.results.optimum import OptimumResult
@@ -175,7 +175,8 @@ def write_optimise_report(
     path : the file to write or replace
     """
     names = [span.model for span in result.models] + (["long_wave"] if result.in_time else [])
-    place = amplitude_plane(result)
+    place = "" if result.unit == "N" else amplitude_plane(result)
+    loads = None if result.response is None else result.response.loads
     paste = ", ".join(f'"{volume * ML:.6g} ml"' for volume in result.volume.tolist())
     parts = {
         "title": "Best volume of liquid",
@@ -186,6 +187,7 @@ def write_optimise_report(
         "facts": table("", (), facts(result)),
         "volumes": volumes(result),
         "constraints": constraints(result),
+        "loads": load_part(loads),
         "front": front(result),
         "conditions": conditions(result),
         "worst": None if result.robust is None else worst_condition(result.robust),

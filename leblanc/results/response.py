@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from leblanc.results.base import FilledChamber, Note, Result, attributes, carried, one_line, texts
 from leblanc.results.choice import ModelSpan
+from leblanc.results.machine.keys import Loaded
 from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.motion.encoding import finite, pair
 from leblanc.results.motion.held import HELD_MODEL, MOTIONS, Held, numbered
@@ -77,7 +78,7 @@ def peak(deflection: NDArray[np.complex128] | Array) -> int | None:
 
 
 @dataclass(frozen=True)
-class RunResult(Result):
+class RunResult(Loaded, Result):
     """Response to the unbalance at each speed, the machine it belongs to, and what a reader must know.
 
     Parameters

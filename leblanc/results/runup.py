@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from fluid.friction.laws import Friction
 from leblanc.results.base import FilledChamber, Note, Result, attributes, one_line, texts
+from leblanc.results.machine.keys import Loaded
 from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.motion.passages import Passage, falling, pieces
 from leblanc.results.netcdf import NamedArrays, flags, variable
@@ -87,7 +88,7 @@ class RunupFrames:
 
 
 @dataclass(frozen=True)
-class RunupResult(Result):
+class RunupResult(Loaded, Result):
     """A run-up of a scene; k times, l chambers.
 
     Parameters

@@ -70,7 +70,7 @@ class Cabinet(Part):
     def tables(self) -> list[RowTable]:
         """Its feet, for readers."""
         lines = tuple(
-            (Value(f"{k + 1}"), Value(f"({three(foot, MM)})", (f"cabinet.feet.{k}", "cabinet.feet")))
+            (Value(f"{k + 1}"), Value(f"({three(foot, MM)})", ("cabinet.feet",)))
             for k, foot in enumerate(self.feet)
         )
         return [RowTable(("Foot", "at x, y, z (mm)"), lines)]
@@ -128,7 +128,7 @@ def point_table(points: tuple[Point, ...]) -> RowTable:
         along = "across the axis" if point.direction is None else f"({three(point.direction)})"
         lines.append(
             (
-                Value(point.name),
+                Value(point.name, (f"{at}.name",)),
                 Value(point.on, (f"{at}.on",)),
                 Value(f"({three(point.position, MM)})", (f"{at}.position",)),
                 Value("not given" if point.gap is None else mm(point.gap), (f"{at}.gap",)),
@@ -154,7 +154,7 @@ def cabinet_conflicts(values: Mapping[str, Any], kind: object) -> Iterator[Confl
         for key in ("cabinet", "points"):
             if values.get(key):
                 yield Conflict((key,), "left out for an exciter")
-    elif kind != "tub":
+    elif kind in ("jeffcott", "two_plane"):
         for k, point in enumerate(values.get("points", ())):
             if point.on == "tub":
                 yield Conflict(("points", k, "on"), "drum or axis: this rotor has no tub")

@@ -259,6 +259,8 @@ def run_scene(
     refined = replace(refined, stable=np.where(refined.model == "long_wave", refined.stable, steady))
     if motion is not None:
         motion = replace(motion, refined_forward=_at_chambers(machine.system, scene.fills, refined))
+    loads = _loads(scene, answer, refined)
+    stands = () if loads is None else (notes.loads(held),)
     return RunResult(
         name=scene.name,
         source=scene.source,
@@ -267,7 +269,7 @@ def run_scene(
         digest=scene.digest,
         response=answer,
         liquid_mass=sum(fill.mass for fill in scene.fills),
-        notes=(*_notes(machine, choice, answer, refined, motion, whirl, held), *grown),
+        notes=(*_notes(machine, choice, answer, refined, motion, whirl, held), *grown, *stands),
         axis=scene.rotor.axis,
         chambers=tuple(_chamber(fill, motion) for fill in scene.fills),
         capture_speed=choice.captured_from,
@@ -281,7 +283,7 @@ def run_scene(
         refined=refined,
         axial_gravity=machine.axial_gravity,
         held=held,
-        loads=_loads(scene, answer, refined),
+        loads=loads,
         **_balance(machine, answer),
     )
 

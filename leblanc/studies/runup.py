@@ -363,6 +363,7 @@ def runup_scene(
     steps = () if scene.programme is None else tuple(step.words() for step in scene.programme.steps)
     passages, left = passages_of(history, dry, steps), unbalance_left(scene, history)
     fastest = np.flatnonzero(history.speed == history.speed.max())
+    stands = () if machine is None else (notes.loads(),)
     return RunupResult(
         name=scene.name,
         source=scene.source,
@@ -390,6 +391,7 @@ def runup_scene(
             *programme_notes(scene, history, drive, passages),
             *([] if left is None else [notes.unbalance_left(float(left[-1]))]),
             *limits,
+            *stands,
             *doubts(scene),
         ),
         frames=runup_frames(history),

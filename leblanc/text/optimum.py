@@ -67,7 +67,8 @@ def answer(result: OptimumResult) -> str:
     else:
         gives = f"the {result.meaning} is {shown(result.value, result.unit)}"
         gives += f" instead of {shown(result.baseline, result.unit)}" if result.baseline > 0.0 else ""
-    return f"With {liquid}{kept}, {gives}{f' {place}' if (place := amplitude_plane(result)) else ''}."
+    place = "" if result.unit == "N" else amplitude_plane(result)
+    return f"With {liquid}{kept}, {gives}{f' {place}' if place else ''}."
 
 
 def amplitude_plane(result: OptimumResult) -> str:

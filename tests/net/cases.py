@@ -115,6 +115,8 @@ def _optimums() -> Iterator[Case]:
             f"optimise-{objective}",
             f"optimise small/horizontal_rig.toml --objective {objective} --steady --no-front --json",
         )
+    typed = "optimise examples/tub.toml --objective floor_force --no-front --json --out out"
+    yield _case("optimise-floor_force", typed)
     yield _case("optimise-front", "optimise small/centrifuge.toml --json --out out")
     limits = "--deflection 1mm --objective least_mass --limit 1.5mm"
     yield _case("optimise-deflection", f"optimise small/centrifuge.toml {limits} --json --out out")

@@ -46,6 +46,7 @@ class RunCode(NoteCode):
     NOT_SETTLED = "not_settled"
     LARGE_WHIRL = "large_whirl"
     UNBALANCE_LEAVES = "unbalance_leaves"
+    LOADS = "loads"
 
 
 # What a page that shows the table of models says there already.
@@ -130,6 +131,23 @@ def slow_disturbances(held: Held | None = None) -> Note | None:
     where = "Branches" if held is None else "Where no motion was held in time branches"
     text = f"{where} are judged against slow disturbances, the liquid always in equilibrium."
     return Note(RunCode.SLOW_DISTURBANCES, {}, text)
+
+
+STANDS = "Forces on the floor take the cabinet as rigid and standing still on feet that do not pull"
+
+
+def loads(held: Held | None = None) -> Note:
+    """What forces and clearances leave out.
+
+    Parameters
+    ----------
+    held : motions held in time
+    """
+    count = 0 if held is None else int(np.count_nonzero(held.at))
+    told = (
+        f"; at {count} speeds held in time they are those of the mean motion with the spin" if count else ""
+    )
+    return Note(RunCode.LOADS, {"held": count}, f"{STANDS}{told}.")
 
 
 def held_motions(held: Held, speed: Array) -> list[Note]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from fluid.friction.laws import Friction
 from leblanc.results.base import Note, NoteCode, percent
+from leblanc.results.notes.response import STANDS
 from leblanc.results.response import peak
 from leblanc.units import (
     LENGTH,
@@ -58,6 +59,7 @@ class RunupCode(NoteCode):
     NO_DRAG = "no_drag"
     COAST_NOT_ENDED = "coast_not_ended"
     UNBALANCE_LEFT = "unbalance_left"
+    LOADS = "loads"
 
 
 # What the tables of a report say as well.
@@ -70,6 +72,12 @@ IN_TABLES = (
     RunupCode.FALLS_BACK,
     RunupCode.SELF_EXCITED,
 )
+
+
+def loads() -> Note:
+    """What forces and clearances of a run-up leave out."""
+    text = f"{STANDS}; bearing forces are left out around moments at which liquid is caught or let go."
+    return Note(RunupCode.LOADS, {}, text)
 
 
 def liquid_model(model: str, reason: str) -> Note:

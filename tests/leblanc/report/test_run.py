@@ -252,6 +252,8 @@ def test_numbers_are_those_of_the_json(name: str, tmp_path: Path, capsys) -> Non
             x is not None and x <= 1e-3 for x in answer["error_estimate"]
         ),
     }
+    for name_of, least in answer.get("worst", {}).get("clearance", {}).items():
+        flags[f"Clearance of {name_of}"] = least["value"] <= 0.0
     assert page.warnings() == {heading for heading, flag in flags.items() if flag}
     # The models and why, as `explain` says them.
     assert main(["explain", f"examples/{name}.toml", "--json"]) == 0

@@ -60,8 +60,8 @@ def _unbalanced(history: RunupHistory) -> float:
 )
 def test_floor_takes_the_momentum() -> None:
     """Force on the cabinet is minus the second derivative of the first moment of all masses."""
-    # Splines through samples 2 ms apart leave (Omega dt)^2/12, 2e-4; a step turns the drum by 0.08, which
-    # leaves 0.08^2/12, 5e-4.
+    # Splines through samples 2 ms apart leave (Omega dt)^2/12, 2e-4; a step turns the drum by 0.08 and leaves
+    # 0.08^2/12, 5e-4.
     assert _unbalanced(_run(couple_linear, follow=True)) < 1e-3
 
 
