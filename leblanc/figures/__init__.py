@@ -11,7 +11,7 @@ from typing import Any
 
 # Names handed on, and their modules, each loaded when its name is first used.
 _HOMES = {
-    **dict.fromkeys(("FigureFiles", "save", "style"), "page"),
+    **dict.fromkeys(("FigureFiles", "save", "style"), "drawing.page"),
     **dict.fromkeys(
         ("amplitude_figure", "campbell_figure", "liquid_figure", "phase_figure", "write_figures"), "response"
     ),

@@ -163,10 +163,10 @@ def _draw_group(
         middle.set_data([centre.real], [centre.imag])
         heavy.set_data([centre.real + widest], [centre.imag])
         if result.gravity > 0.0:
-            low = centre + DOWN * widest * np.exp(1j * frames.pool[index])
+            low = centre + DOWN * widest * np.exp(1j * frames.down[index])
             down.set_data([low.real], [low.imag])
             # matplotlib's triangle points up.
-            down.set_marker((3, 0, math.degrees(frames.pool[index]) - 90.0))
+            down.set_marker((3, 0, math.degrees(frames.down[index]) - 90.0))
 
     return show
 
@@ -193,7 +193,7 @@ def liquid_shape(
         x, y = wave.outline(radius, angle, layer)
         return x + 1j * y, layer * np.exp(1j * angle)
     area = chamber.volume / chamber.height
-    found, _ = pool(chamber.radius, chamber.inner_radius, area, float(frames.pool[index]))
+    found, _ = pool(chamber.radius, chamber.inner_radius, area, float(frames.pool[index, j]))
     # Where the liquid surrounds the inner wall, the outlines are joined by a line there and back.
     edge = np.concatenate([np.append(loop, [loop[0], found.loops[0][0]]) for loop in found.loops])
     gaps = [np.append(arc, np.nan) for arc in found.arcs]

@@ -38,6 +38,8 @@ class LayerExplanation:
     optimal_volume : that just covers the wall at the dry rotor's deflection at the last speed, m^3; nan where
         baffles cut the liquid or the section is no circle
     walls : baffles, or the file of the section, in words; empty for a plain ring
+    carried_from : speed from which the walls carry the liquid round from rest, rad/s, inf where they never
+        do; None if the axis stands, or the section is no circle
     """
 
     numbers: LayerNumbers
@@ -46,6 +48,7 @@ class LayerExplanation:
     liquid_mass_ratio: float
     optimal_volume: float
     walls: str = ""
+    carried_from: float | None = None
 
 
 @dataclass(frozen=True)
@@ -194,13 +197,19 @@ def _estimate_variables(estimates: tuple[SpeedEstimate, ...]) -> dict[str, Varia
     }
 
 
+def _or_nan(value: float | None) -> float:
+    """A number for an array."""
+    return math.nan if value is None else value
+
+
 def _layer_variables(layers: tuple[LayerExplanation | None, ...]) -> dict[str, Variable]:
     """Numbers of every chamber, nan for an empty one."""
     units = {"depth": "m", "optimal_volume": "m3", "added_mass_ratio": "1", "liquid_mass_ratio": "1"}
+    units["carried_from"] = "rad s-1"
     found = {
         name: var(
             ("chamber",),
-            np.array([math.nan if layer is None else getattr(layer, name) for layer in layers]),
+            np.array([_or_nan(None if layer is None else getattr(layer, name)) for layer in layers]),
             unit,
             name.replace("_", " "),
         )

@@ -20,6 +20,7 @@ from leblanc.units import friction_words
 from meshes.arrays import Array, Complex, Flags
 from solvers.layer.records import Outcome
 from solvers.runup.ensemble import Spread
+from solvers.runup.machine import Transfer
 from solvers.runup.runup import EnergyAudit, RunupHistory
 from solvers.synchronous.response import Response
 
@@ -70,7 +71,8 @@ class RunupFrames:
     amplitude : of the first of them, m, shape (f,)
     theta : angle from the drum's zero mark of the cells, rad, shape (c,)
     depth : of the layers, m, nan where the liquid is none, shape (f, l, c)
-    pool : angle of liquid that lies at the bottom, rad, shape (f,)
+    down : angle of gravity's direction, rad, shape (f,)
+    pool : angle of the middle of liquid that is no layer, rad, shape (f, l)
     """
 
     time: Array
@@ -79,6 +81,7 @@ class RunupFrames:
     amplitude: Array
     theta: Array
     depth: Array
+    down: Array
     pool: Array
 
 
@@ -262,6 +265,11 @@ class RunupResult(Result):
     def steps(self) -> int:
         """Steps of time."""
         return self.history.steps
+
+    @property
+    def transfers(self) -> tuple[Transfer, ...]:
+        """Liquid that became a layer or fell, with what was handed over."""
+        return self.history.transfers
 
     @property
     def turns_back(self) -> bool:

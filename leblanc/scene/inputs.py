@@ -267,6 +267,7 @@ def _runup(plan: Runup) -> list[Row]:
         row("Run-up cells", f"{plan.cells} round each wall", "runup.cells"),
         row("Run-up dispersion", "with" if plan.dispersion else "without", "runup.dispersion"),
         *([] if plan.bore == "none" else [row("Run-up bores", f"with {plan.bore}", "runup.bore")]),
+        *([] if plan.capture == "carried" else [row("Liquid captured", plan.capture, "runup.capture")]),
         row("Run-up samples", f"{plan.samples}", "runup.samples"),
     ]
 

@@ -482,7 +482,8 @@ def runup_content(plan: Runup) -> dict[str, Any]:
     ----------
     plan : of a scene
     """
-    return plan.model_dump(exclude={"bore"} if plan.bore == "none" else set())
+    usual = {"bore": "none", "capture": "carried"}
+    return plan.model_dump(exclude={key for key, value in usual.items() if getattr(plan, key) == value})
 
 
 def optimise_content(wanted: Optimisation) -> dict[str, Any]:

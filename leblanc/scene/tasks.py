@@ -189,6 +189,7 @@ class Motor(Part):
 
 
 BORES = ("none", "enstrophy")
+CAPTURES = ("carried", "drum", "riding")
 
 
 class Runup(Part):
@@ -210,6 +211,12 @@ class Runup(Part):
         "none",
         description="what the bores of the layers leave behind: nothing (none), or fluctuations that press "
         "on the liquid, are carried along and decay (enstrophy)",
+    )
+    capture: Annotated[str, one_of(*CAPTURES)] = Field(
+        "carried",
+        description="how liquid at the bottom of a lying chamber becomes a ring: dragged over the top by its "
+        "walls (carried); taken along by the drum at once where their drag beats gravity (drum); or in any "
+        "case where the drum's centrifugal field beats gravity (riding)",
     )
     samples: Annotated[int, whole(10, 1_000_000)] = Field(2000, description="of the results over time")
 

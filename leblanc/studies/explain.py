@@ -9,6 +9,7 @@ import numpy as np
 
 from fluid.fill import Fill
 from fluid.numbers import layer_numbers
+from fluid.pool import balance_speed, pool_of
 from leblanc.results.choice import model_spans, speed_estimates
 from leblanc.results.explanation import ExciterExplanation, Explanation, LayerExplanation, WhirlOutlook
 from leblanc.results.motion.tilting import RestMode
@@ -16,7 +17,7 @@ from leblanc.scene.rotors import Exciter as ExciterOfScene
 from leblanc.scene.rows import baffle_words
 from leblanc.scene.scene import Scene
 from leblanc.studies.exciter import printed_critical
-from leblanc.studies.models.choose import Prepared, choose_all, costed, held_cost, prepare
+from leblanc.studies.models.choose import Prepared, across_gravity, choose_all, costed, held_cost, prepare
 from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.run import rest_modes
 from meshes.arrays import Array
@@ -85,6 +86,7 @@ def explain_scene(scene: Scene) -> Explanation:
                 liquid_mass_ratio=fill.mass / bare.mass,
                 optimal_volume=_covering(fill, dry, ends[1], gravity),
                 walls=_walls(fill),
+                carried_from=_carried_from(scene, fill),
             )
         )
     return Explanation(
@@ -124,6 +126,14 @@ def _covering(fill: Fill, deflection: float, speed: float, gravity: float) -> fl
     if fill.compartments > 1 or fill.chamber.section is not None:
         return math.nan
     return float(optimal_volume(fill.chamber, deflection, speed, gravity))
+
+
+def _carried_from(scene: Scene, fill: Fill) -> float | None:
+    """Speed above which gravity cannot hold the liquid at the bottom against the walls, rad/s."""
+    gravity, pool = across_gravity(scene), pool_of(fill)
+    if gravity == 0.0 or pool is None or fill.chamber.section is not None:
+        return None
+    return balance_speed(fill, pool, scene.model.friction, gravity)
 
 
 def _walls(fill: Fill) -> str:

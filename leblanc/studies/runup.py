@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
+from fluid.pool import balance_speed, pool_of
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
 from leblanc.results.base import FilledChamber, Note, percent
@@ -34,7 +35,7 @@ from solvers.rotor.system import RotorSystem, Shed
 from solvers.runup import programme
 from solvers.runup.ensemble import EnsembleTask, Member, Spread, member_of, run_member, spread_over
 from solvers.runup.ensemble import ensemble as made_ensemble
-from solvers.runup.machine import Drive, Motor, Ramp
+from solvers.runup.machine import Drive, Handover, Motor, Ramp
 from solvers.runup.runup import (
     MOST_LAG,
     MOST_WAVE,
@@ -97,7 +98,8 @@ def runup_frames(history: RunupHistory) -> RunupFrames | None:
         theta=kept.theta,
         depth=kept.depth,
         # Gravity points against the first direction.
-        pool=np.angle(-turn),
+        down=np.angle(-turn),
+        pool=np.angle(history.offset[kept.sample] * turn[:, None]),
     )
 
 
@@ -139,7 +141,10 @@ def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tup
             continue
         wall = fill.chamber
         own = history.speed + history.mean_rotation[:, k]
-        carried = history.captured[:, k] & (np.abs(own) > held_from(scene, fill))
+        ring, swings = history.captured[:, k], history.handover is not Handover.RIDING
+        carried = (ring & (np.abs(own) > held_from(scene, fill))) | (swings & ~ring)
+        # A pool above the axis is on its way over the top, neither pool nor ring.
+        lies = ring | ~np.asarray(swings) | (history.offset[:, k].real < 0.0)
         reached = np.nan_to_num(history.depth_max[:, k]) >= wall.radius - wall.inner_radius
         touches = reached & (wall.inner_radius > 0.0)
         # The exact linear theory holds at any depth.
@@ -148,6 +153,7 @@ def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tup
         small = ~(linear & (rise > highest * fill.depth))
         for code, holds, limit in (
             (RunupCode.TOO_SLOW, carried, math.nan),
+            (RunupCode.TUMBLES, lies, math.nan),
             (RunupCode.INNER_WALL, ~touches, math.nan),
             (RunupCode.TOO_DEEP, np.full(good.shape, shallow), deepest),
             (RunupCode.TOO_HIGH, small, highest),
@@ -525,8 +531,6 @@ def _notes(
 ) -> list[Note]:
     """What happened and how far it can be trusted."""
     h = taken.history
-    after, which = np.nonzero(np.diff(h.captured.astype(np.int8), axis=0))
-    switched = [(k + 1, j) for k, j in zip(after.tolist(), which.tolist(), strict=True)]
     found = [
         notes.liquid_model(taken.model, taken.reason),
         None if h.converged else notes.stopped(h.reason),
@@ -534,10 +538,21 @@ def _notes(
         None if spread is None else notes.rounding(spread, h),
         notes.energy_left(h.audit.closure),
         notes.largest_amplitude(h, steady),
-        *(notes.capture(j, bool(h.captured[k, j]), float(h.time[k]), float(h.speed[k])) for k, j in switched),
+        *(notes.capture(transfer, h.handover) for transfer in h.transfers),
+        *_never_caught(scene, h),
         notes.self_excited_on_the_way(bands, scene.model.friction, whirl_on_the_way(scene, bands)),
     ]
     return [note for note in found if note is not None]
+
+
+def _never_caught(scene: Scene, history: RunupHistory) -> Iterator[Note]:
+    """Liquid that still lies at the bottom though the drum turns fast enough for a ring."""
+    top = float(history.speed.max())
+    for k, fill in enumerate(scene.fills):
+        pool, gravity = pool_of(fill), across_gravity(scene)
+        if gravity == 0.0 or pool is None or history.captured[:, k].any() or top <= held_from(scene, fill):
+            continue
+        yield notes.not_carried(k, top, balance_speed(fill, pool, scene.model.friction, gravity))
 
 
 def planned(scene: Scene) -> Runup | Programme:
@@ -597,6 +612,7 @@ def numerics_of(
         samples=plan.samples if samples is None else samples,
         dispersion=plan.dispersion,
         enstrophy=plan.bore == "enstrophy",
+        handover=Handover(plan.capture),
         companion=check,
     )
 

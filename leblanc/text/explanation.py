@@ -37,7 +37,7 @@ def machine_rows(answer: Explanation) -> Rows:
         ("speeds", f"{first:.3g} to {last:.3g} times the dry critical speed"),
     ]
     if answer.captured_from is not None:
-        captured = f"above {in_rpm(answer.captured_from)} the liquid rides with the drum"
+        captured = f"above {in_rpm(answer.captured_from)} a ring of liquid stands against gravity"
         rows.append(("captured", captured))
     if answer.whirl is not None:
         size, speed = with_unit(answer.whirl.amplitude, LENGTH), in_rpm(answer.whirl.speed)
@@ -94,7 +94,15 @@ def layer_rows(layer: LayerExplanation | None) -> Rows:
         ("Reynolds number", _ends(n.reynolds)),
         ("wall layer", f"{_ends(n.skin)} of the depth"),
         ("covers the wall", covers),
+        *([] if layer.carried_from is None else [("carried from rest", _carried(layer.carried_from))]),
     ]
+
+
+def _carried(speed: float) -> str:
+    """When the walls take the liquid round."""
+    if math.isinf(speed):
+        return "never: no friction acts on it"
+    return f"from {in_rpm(speed)}, where the walls' drag on the liquid at the bottom beats gravity"
 
 
 def span_rows(span: ModelSpan) -> Rows:

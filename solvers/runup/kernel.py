@@ -293,6 +293,36 @@ _AGREED, _PASSABLE, _STRAIGHT, _ROUNDS, _SHORTEST = 1e-6, 1e-2, 5, 12, 1.0 / 32.
 _LEAST = 1e-6
 
 
+@_unwrapped
+def _move_pools(machine, state, room, dt):
+    """All pools through one step under the guessed accelerations, by the midpoint [theory: pool, eq. 5]."""
+    spin, first = 0.5 * (room.spins[0] + room.spins[1]), machine.layers.shape[0]
+    for j in range(machine.pools.shape[0]):
+        pool, own, drag = machine.pools[j], first + j, machine.drags[j]
+        x, y = machine.gravity[0] - room.guess[own, 0], machine.gravity[1] - room.guess[own, 1]
+        angle, rate = room.lean[j], room.lean_rate[j]
+        middle, turned = rate, angle
+        for _ in range(2):
+            # First to the middle, by the rate at the beginning; then the whole way by the middle's.
+            past = spin - middle
+            torque = np.copysign(motor_torque(drag, abs(past)), past)
+            faster = (x * np.sin(turned) - y * np.cos(turned)) / pool.length + torque / pool.inertia
+            turned, middle = angle + 0.5 * dt * rate, rate + 0.5 * dt * faster
+        state.lean[j], state.lean_rate[j] = angle + dt * (rate + 0.5 * dt * faster), rate + dt * faster
+        room.drag[j] = dt * torque
+        moving = pool.mass * pool.arm
+        room.before[own, 0], room.before[own, 1] = (
+            moving * rate * np.sin(angle),
+            -moving * rate * np.cos(angle),
+        )
+        last, rate = state.lean[j], state.lean_rate[j]
+        room.after[own, 0], room.after[own, 1] = moving * rate * np.sin(last), -moving * rate * np.cos(last)
+        cosine, sine, share = np.cos(turned), np.sin(turned), moving / pool.length
+        room.inertia[own, 0] = share * sine * sine
+        room.inertia[own, 1] = -share * sine * cosine
+        room.inertia[own, 2] = share * cosine * cosine
+
+
 @_inner
 def _move_layers(machine, state, room, dt):
     """All layers through one step under the guessed accelerations; what went wrong, the fastest wave."""
@@ -300,6 +330,7 @@ def _move_layers(machine, state, room, dt):
     copy(room.area, state.area)
     copy(room.momentum, state.momentum)
     copy(room.rolling, state.rolling)
+    _move_pools(machine, state, room, dt)
     for j in range(machine.layers.shape[0]):
         layer = machine.layers[j]
         x = (machine.gravity[0] - room.guess[j, 0]) / layer.radius
@@ -362,8 +393,10 @@ def _move_rotor(machine, state, room, dt):
             left[i, k] = machine.matrices[0, i, k] + 0.5 * dt * damping + 0.25 * dt * dt * stiffness
             x, v = state.place[k], state.rate[k]
             change[i] -= dt * (damping * v + stiffness * (x + 0.5 * dt * v))
-    for j in range(machine.layers.shape[0]):
-        mass, b, guess = machine.layers[j].mass, machine.planes[j], room.guess[j]
+    first = machine.layers.shape[0]
+    for j in range(machine.planes.shape[0]):
+        mass = machine.layers[j].mass if j < first else machine.pools[j - first].mass
+        b, guess = machine.planes[j], room.guess[j]
         xx, xy, yy = room.inertia[j, 0], room.inertia[j, 1], room.inertia[j, 2]
         given_x = room.after[j, 0] - room.before[j, 0] + dt * (xx * guess[0] + xy * guess[1])
         given_y = room.after[j, 1] - room.before[j, 1] + dt * (xy * guess[0] + yy * guess[1])
@@ -378,15 +411,16 @@ def _move_rotor(machine, state, room, dt):
 @_unwrapped
 def _disagreement(machine, room, dt):
     """Mean accelerations that the rotor's change means; their distance from the guess, and their size."""
-    gap, size, spin = 0.0, 0.0, room.spins[0]
-    for j in range(machine.layers.shape[0]):
+    gap, size, spin, first = 0.0, 0.0, room.spins[0], machine.layers.shape[0]
+    for j in range(machine.planes.shape[0]):
+        reach = machine.layers[j].radius if j < first else machine.pools[j - first].length
         for i in range(2):
             total = 0.0
             for k in range(room.change.size):
                 total += machine.planes[j, i, k] * room.change[k]
             room.found[j, i] = total / dt
             gap = max(gap, abs(room.found[j, i] - room.guess[j, i]))
-            size = max(size, abs(room.found[j, i]), 1e-6 * spin * spin * machine.layers[j].radius)
+            size = max(size, abs(room.found[j, i]), 1e-6 * spin * spin * reach)
     return gap, size
 
 
@@ -406,6 +440,8 @@ def _spin_after(machine, state, room, dt):
     for j in range(machine.layers.shape[0]):
         layer = machine.layers[j]
         load += layer.weight * layer.radius**4 * room.gains[j].torque
+    for j in range(machine.pools.shape[0]):
+        load += room.drag[j]
     after = spin
     for _ in range(4):
         after = spin + (dt * motor_torque(machine.curve, 0.5 * (spin + after)) - load) / shaft.inertia
@@ -431,6 +467,15 @@ def _tally(machine, state, room, dt):
         sums.friction += scale * gains.heat
         sums.bores += scale * gains.loss
         sums.profile += scale * gains.missed
+    first = machine.layers.shape[0]
+    for j in range(machine.pools.shape[0]):
+        past = spin - 0.5 * (room.lean_rate[j] + state.lean_rate[j])
+        sums.drive += spin * room.drag[j]
+        sums.friction += past * room.drag[j]
+        for i in range(2):
+            sums.gravity += (
+                0.5 * dt * machine.gravity[i] * (room.before[first + j, i] + room.after[first + j, i])
+            )
     if machine.curve.shape[1] > 0:
         sums.motor += dt * spin * motor_torque(machine.curve, spin)
 
@@ -496,6 +541,7 @@ def _accept(state, room, dt, fastest):
         for i in range(2):
             state.push[j, 1, i] = state.push[j, 0, i]
             state.push[j, 0, i] = room.found[j, i]
+    for j in range(room.begin.shape[0]):
         room.begin[j] = room.end[j]
     pace.before, pace.last, pace.fastest, pace.share = pace.last, dt, fastest, min(1.0, 1.5 * pace.share)
 
@@ -545,7 +591,7 @@ def advance(machine, state, room, stop, courant, most, resumed):
     shaft, pace, sums = state.shaft[0], state.pace[0], state.sums[0]
     cell, taken = 2.0 * np.pi / machine.angles.shape[1], 0
     if not resumed:
-        for j in range(room.guess.shape[0]):
+        for j in range(room.begin.shape[0]):
             measure(
                 *(state.area[j], state.momentum[j], shaft.spin, machine.angles, room.spare[j]), room.begin[j]
             )
@@ -565,6 +611,8 @@ def advance(machine, state, room, stop, courant, most, resumed):
         copy(state.area, room.area)
         copy(state.momentum, room.momentum)
         copy(state.rolling, room.rolling)
+        copy(state.lean, room.lean)
+        copy(state.lean_rate, room.lean_rate)
         _guess(state, room, dt)
         status, fastest, gap = _couple(machine, state, room, dt)
         if status == Outcome.NOT_COUPLED and pace.share <= _SHORTEST and gap <= _PASSABLE:
@@ -573,6 +621,8 @@ def advance(machine, state, room, stop, courant, most, resumed):
             copy(room.area, state.area)
             copy(room.momentum, state.momentum)
             copy(room.rolling, state.rolling)
+            copy(room.lean, state.lean)
+            copy(room.lean_rate, state.lean_rate)
             pace.fastest, pace.share = max(pace.fastest, fastest), 0.5 * pace.share
             if pace.share < _LEAST:
                 return status, taken
@@ -581,6 +631,8 @@ def advance(machine, state, room, stop, courant, most, resumed):
             copy(room.area, state.area)
             copy(room.momentum, state.momentum)
             copy(room.rolling, state.rolling)
+            copy(room.lean, state.lean)
+            copy(room.lean_rate, state.lean_rate)
             return status, taken
         _tally(machine, state, room, dt)
         _accept(state, room, dt, fastest)

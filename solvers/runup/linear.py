@@ -15,8 +15,17 @@ from meshes.arrays import Array, Complex
 from solvers.layer.records import Outcome, records
 from solvers.layer.state import ring
 from solvers.rotor.system import RotorSystem
-from solvers.runup.machine import Reading
-from solvers.runup.state import CREST, RELEASE, SUMS, CoupledRotor, at_rest, layer_properties, mean_area
+from solvers.runup.machine import Handover, Reading, Transfer
+from solvers.runup.state import (
+    CREST,
+    POOL,
+    SUMS,
+    CoupledRotor,
+    at_rest,
+    drag_curves,
+    layer_properties,
+    mean_area,
+)
 from solvers.slices import compiled, slices
 
 if TYPE_CHECKING:
@@ -35,6 +44,11 @@ class LinearCoupled(CoupledRotor):
 
     cells: int
     machine: LinearMachine
+
+    @property
+    def gravity(self) -> Array:
+        """See `CoupledRotor`."""
+        return self.machine.gravity
 
     @property
     def shaft(self) -> np.record:
@@ -94,6 +108,8 @@ class LinearCoupled(CoupledRotor):
             axis, row = m.planes[j] @ v, slice(n + 2 * j, n + 2 * j + 2)
             total += 0.5 * layer.mass * axis @ axis
             if not m.active[j]:
+                momentum, swing = self._momentum(j), m.rate[n + 2 * j]
+                total += momentum @ axis + 0.5 * self.pool_inertia[j] * swing**2 * self.swings[j]
                 continue
             d, rate, kappa = m.place[row], m.rate[row], layer.curvature
             total += layer.mass * (axis @ rate + 0.5 * (1.0 + kappa) * rate @ rate)
@@ -102,21 +118,50 @@ class LinearCoupled(CoupledRotor):
 
     def switch(self) -> float:
         """Catch and let go liquid as `solvers.runup.long_wave.Coupled.switch`; energy brought in, J."""
-        m, n = self.machine, len(self.system.coordinates)
-        limit = np.where(m.active > 0.0, RELEASE * self.capture, self.capture)
-        wanted = (self.spin > limit).astype(float)
-        changed = np.flatnonzero(wanted != m.active)
-        if changed.size == 0:
+        m, n, active = self.machine, len(self.system.coordinates), self.machine.active > 0.0
+        pools = self.swings & ~active
+        self.lean[pools], self.lean_rate[pools] = m.place[n::2][pools], m.rate[n::2][pools]
+        own = self._own_rotation()
+        wanted = self.caught(active, own)
+        anew = wanted != active
+        if not anew.any():
             return 0.0
-        before, lost = self.energy(), np.zeros(n)
+        before, lost, offset = self.energy(), np.zeros(n), self._offset()
         whole = m.matrices[0] + sum(a * b.T @ b for a, b in zip(self.masses, m.planes, strict=True))
-        for j in changed.tolist():
+        for j in np.flatnonzero(anew).tolist():
             row = slice(n + 2 * j, n + 2 * j + 2)
-            lost += self.masses[j] * m.planes[j].T @ m.rate[row]
-            m.place[row], m.rate[row], m.carried[j], m.active[j] = 0.0, 0.0, self.spin, wanted[j]
+            lost += m.planes[j].T @ self._momentum(j)
+            m.place[row], m.rate[row], m.active[j] = 0.0, 0.0, wanted[j]
+            m.carried[j] = own[j] if wanted[j] and self.handover is Handover.CARRIED else self.spin
+            if not wanted[j] and self.swings[j]:
+                m.rate[n + 2 * j] = own[j] * self.spread_inertia[j] / self.pool_inertia[j]
+                self.lean[j], self.lean_rate[j] = 0.0, m.rate[n + 2 * j]
+                lost -= m.planes[j].T @ self._momentum(j)
         # What else moves keeps its momentum: the offsets' rates act on the rotor through their masses.
         m.rate[:n] += np.linalg.solve(whole, lost)
-        return self.energy() - before
+        after, now = self.energy(), self._own_rotation()
+        rise = (self._offset() - offset).real * abs(float(self.gravity[0])) * self.masses
+        for j in np.flatnonzero(anew).tolist():
+            turning = float(own[j] * self.spread_inertia[j]), float(now[j] * self.spread_inertia[j])
+            there = bool(wanted[j])
+            self.transfers.append(
+                Transfer(j, there, self.time, self.spin, turning, (before, after), float(rise[j]))
+            )
+        return after - before
+
+    def _own_rotation(self) -> Array:
+        """Rotation of the liquid itself, of a pool as if it were spread, rad/s, shape (l,)."""
+        m, n = self.machine, len(self.system.coordinates)
+        inertia = np.maximum(self.spread_inertia, 1e-300)
+        return np.where(m.active > 0.0, m.carried, self.pool_inertia * self.swings * m.rate[n::2] / inertia)
+
+    def _momentum(self, j: int) -> Array:
+        """Momentum of a liquid relative to its chamber's axis, standing frame, kg m/s, shape (2,)."""
+        m, row = self.machine, len(self.system.coordinates) + 2 * j
+        if m.active[j] > 0.0:
+            return np.asarray(self.masses[j] * m.rate[row : row + 2])
+        moving = 1j * m.rate[row] * complex(self._offset()[j]) * self.masses[j] * self.swings[j]
+        return np.array([moving.real, moving.imag])
 
     def fall(self, outcome: Outcome) -> None:
         """Nothing falls: small waves are not thrown down."""
@@ -128,6 +173,7 @@ class LinearCoupled(CoupledRotor):
         deflection = np.array([complex(*(plane @ q)) for plane in self.seen])
         offset = self._offset()
         depth = np.array([fill.depth for fill in self.fills])
+        swing = self.swings * (m.rate[n::2] - self.spin)
         rise = (m.layers.curvature - 1.0) * np.abs(offset)
         nothing = np.full(len(self.fills), np.nan)
         return Reading(
@@ -137,11 +183,11 @@ class LinearCoupled(CoupledRotor):
             coordinates=q,
             deflection=deflection,
             **self.largest(abs(deflection[0])),
-            offset=np.where(active, offset, self.pool),
+            offset=offset,
             captured=active,
             depth_min=np.where(active, depth - rise, nothing),
             depth_max=np.where(active, depth + rise, nothing),
-            mean_rotation=np.where(active, m.carried - self.spin, 0.0),
+            mean_rotation=np.where(active, m.carried - self.spin, swing),
         )
 
     def depth(self) -> Array:
@@ -153,10 +199,11 @@ class LinearCoupled(CoupledRotor):
         rise = (m.layers.curvature - 1.0)[:, None] * wave
         return np.where(m.active[:, None] > 0.0, depth + rise, np.nan)
 
-    def _offset(self) -> Array:
-        """Offset of each layer's centre of mass from its chamber's axis, standing frame, complex, m."""
+    def _offset(self) -> Complex:
+        """Offset of each liquid's centre of mass from its chamber's axis, standing frame, complex, m."""
         m, n = self.machine, len(self.system.coordinates)
-        return np.asarray(m.place[n::2] + 1j * m.place[n + 1 :: 2])
+        self.lean[:] = np.where(m.active > 0.0, self.lean, m.place[n::2])
+        return np.where(m.active > 0.0, m.place[n::2] + 1j * m.place[n + 1 :: 2], self.pool_offset)
 
 
 def couple_linear(
@@ -168,6 +215,7 @@ def couple_linear(
     cells: int,
     dispersion: bool,
     enstrophy: bool = False,
+    handover: Handover = Handover.RIDING,
 ) -> LinearCoupled:
     """Rotor without deflection, liquid at rest in the drum.
 
@@ -186,12 +234,19 @@ def couple_linear(
     layers = records(LINEAR_LAYER, count)
     for j, fill in enumerate(fills):
         layers[j] = _layer(fill, friction)
+    drags = drag_curves(fills, rest.pools, friction)
+    pools = records(POOL, count)
+    for j, pool in enumerate(rest.pools):
+        if pool is not None and handover is not Handover.RIDING:
+            pools[j] = pool.mass, pool.arm, pool.length, pool.inertia
     machine = LinearMachine(
         matrices=np.stack([system.mass, system.damping, system.gyroscopic, system.stiffness]).astype(float),
         unbalance=system.unbalance.astype(complex),
         planes=rest.planes,
         layers=layers,
-        active=(rest.capture < spin).astype(float),
+        active=np.zeros(count),
+        pools=pools,
+        drags=drags,
         gravity=rest.gravity,
         curve=np.zeros((2, 0)),
         watched=rest.watched,
@@ -205,7 +260,20 @@ def couple_linear(
         change=np.zeros(size),
         swing=np.zeros(n),
     )
-    return LinearCoupled(system, tuple(fills), rest.capture, rest.pool, cells, machine)
+    found = LinearCoupled(
+        system=system,
+        fills=tuple(fills),
+        friction=friction,
+        handover=handover,
+        capture=rest.capture,
+        pools=rest.pools,
+        lean=np.zeros(count),
+        lean_rate=np.zeros(count),
+        cells=cells,
+        machine=machine,
+    )
+    machine.active[:] = found.begins_as_layer(spin)
+    return found
 
 
 def _layer(fill: Fill, friction: Friction) -> tuple[float, ...]:

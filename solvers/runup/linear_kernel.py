@@ -31,11 +31,14 @@ class LinearMachine(NamedTuple):
     unbalance : U, complex, shape (n,)
     planes : displacement of each layer's axis for unit coordinates, shape (l, 2, n)
     layers : records LINEAR_LAYER, shape (l,)
-    active : 1 for a layer, 0 for liquid that moves with the drum as a mass, shape (l,)
+    active : 1 for a layer, 0 for liquid that lies at the bottom or is solid, shape (l,)
+    pools : records POOL of `solvers.runup.state`, the mass 0 for liquid that does not swing, shape (l,)
+    drags : relative rotation of the walls and their torque on each pool, shape (l, 2, k)
     gravity : across the axis, shape (2,)
     curve : the motor's, shape (2, k)
     watched : displacement of the axis whose amplitude counts, for unit coordinates, shape (2, n)
-    place, rate : rotor's coordinates and the layers' offsets, two parts each, and their rates, shape (N,)
+    place, rate : rotor's coordinates and the layers' offsets, two parts each, and their rates, shape (N,); of
+        a pool its angle from the bottom, and 0
     shaft : record SHAFT of `solvers.runup.state`, shape (1,)
     carried : rotation of each layer as a whole, rad/s, shape (l,)
     sums : record SUMS, shape (1,)
@@ -48,6 +51,8 @@ class LinearMachine(NamedTuple):
     planes: Array
     layers: Record
     active: Array
+    pools: Record
+    drags: Array
     gravity: Array
     curve: Array
     watched: Array
@@ -77,8 +82,11 @@ def _assemble(m, j, spin, before, after, dt):
         row = n + 2 * j + part
         m.left[row, row] = 1.0
         m.change[row] = 0.0
-        if m.active[j] == 0.0:
-            continue
+    if m.active[j] == 0.0:
+        _swing(m, j, spin, dt)
+        return
+    for part in range(2):
+        row = n + 2 * j + part
         other, sign = n + 2 * j + 1 - part, 1.0 - 2.0 * part
         # Multiplication by -i takes (x, y) to (y, -x).
         coriolis, swirl = (
@@ -94,6 +102,35 @@ def _assemble(m, j, spin, before, after, dt):
         for i in range(n):
             m.left[row, i] = mass * b[part, i]
             m.left[i, row] = mass * b[part, i]
+
+
+@_jit
+def _swing(m, j, spin, dt):
+    """Row and column of a pool, a pendulum about its axis, by the midpoint [theory: pool, eq. 5]."""
+    n = m.unbalance.size
+    pool, b, row = m.pools[j], m.planes[j], n + 2 * j
+    if pool.mass == 0.0:
+        return
+    x, y = m.gravity[0], m.gravity[1]
+    # The middle of the step as it would be with the axis held.
+    angle, rate = m.place[row], m.rate[row]
+    torque = _drag(m, j, spin - rate)
+    faster = (x * np.sin(angle) - y * np.cos(angle)) / pool.length + torque / pool.inertia
+    angle, rate = angle + 0.5 * dt * rate, rate + 0.5 * dt * faster
+    cosine, sine, moving = np.cos(angle), np.sin(angle), pool.mass * pool.arm
+    m.left[row, row] = pool.inertia
+    m.change[row] = dt * (moving * (x * sine - y * cosine) + _drag(m, j, spin - rate))
+    for i in range(n):
+        along = moving * (b[0, i] * sine - b[1, i] * cosine)
+        m.left[row, i] = along
+        m.left[i, row] = along
+        m.change[i] -= dt * moving * rate * rate * (b[0, i] * cosine + b[1, i] * sine)
+
+
+@_jit
+def _drag(m, j, past):
+    """Torque of the walls on a pool."""
+    return np.copysign(motor_torque(m.drags[j], abs(past)), past)
 
 
 @_jit
@@ -130,9 +167,18 @@ def _tally(m, spin, spins, dt):
         for k in range(n):
             sums.support += dt * mean * m.matrices[1, i, k] * (m.rate[k] + 0.5 * m.change[k])
     for j in range(m.layers.shape[0]):
+        row = n + 2 * j
+        if m.active[j] == 0.0 and m.pools[j].mass > 0.0:
+            swing = m.rate[row] + 0.5 * m.change[row]
+            turned, moving = m.place[row] + 0.5 * dt * m.rate[row], m.pools[j].mass * m.pools[j].arm
+            torque = _drag(m, j, spin - swing)
+            sums.drive += dt * spin * torque
+            sums.friction += dt * (spin - swing) * torque
+            x, y = m.gravity[0] * np.sin(turned), m.gravity[1] * np.cos(turned)
+            sums.gravity += dt * moving * swing * (x - y)
         if m.active[j] == 0.0:
             continue
-        layer, row = m.layers[j], n + 2 * j
+        layer = m.layers[j]
         mass, kappa = layer.mass, layer.curvature
         rate = layer.rate * spin**layer.power
         after = _carry(m, j, spin, spins, dt)
@@ -200,6 +246,8 @@ def advance_linear(m, stop, angle_step, most):
                 for j in range(m.layers.shape[0]):
                     gained = _carry(m, j, spin, spins, dt) - m.carried[j]
                     load += m.layers[j].inertia * gained * m.active[j]
+                    if m.active[j] == 0.0 and m.pools[j].mass > 0.0:
+                        load += dt * _drag(m, j, spin - m.rate[n + 2 * j])
                 after = before + (dt * motor_torque(m.curve, spin) - load) / shaft.inertia
                 if after <= 0.0:
                     return Outcome.STOPPED

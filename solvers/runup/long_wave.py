@@ -14,20 +14,21 @@ from meshes.arrays import Array, Complex, Flags
 from solvers.layer.records import Outcome, Record, records
 from solvers.layer.state import ring
 from solvers.rotor.system import RotorSystem
-from solvers.runup.machine import Reading
+from solvers.runup.machine import Handover, Reading, Transfer
 from solvers.runup.state import (
     CREST,
     GAINS,
     LAYER,
     MEASURES,
     PACE,
-    RELEASE,
+    POOL,
     SUMS,
     CoupledRotor,
     Machine,
     Room,
     State,
     at_rest,
+    drag_curves,
     layer_properties,
     mean_area,
     planes_of,
@@ -48,6 +49,7 @@ class Coupled(CoupledRotor):
     area, momentum : of all layers, shape (l, c)
     rolling : A e of the fluctuations behind bores of all layers, shape (l, c), or (l, 0) without them
     active : which of them are layers now, shape (l,)
+    drags : of each pool, as in `Machine`, shape (l, 2, k)
     machine, state, room : of those
     kept : steps written down since `followed` was asked last, rows of the state's trace
     """
@@ -57,10 +59,21 @@ class Coupled(CoupledRotor):
     momentum: Array
     rolling: Array
     active: Flags
+    drags: Array
     machine: Machine
     state: State
     room: Room
     kept: list[Array] = field(default_factory=list)
+
+    @property
+    def gravity(self) -> Array:
+        """See `CoupledRotor`."""
+        return self.machine.gravity
+
+    @property
+    def pooled(self) -> Flags:
+        """Which liquids are pools that swing now, shape (l,)."""
+        return self.swings & ~self.active
 
     @property
     def shaft(self) -> np.record:
@@ -109,6 +122,7 @@ class Coupled(CoupledRotor):
                 break
         self.area[self.active], self.momentum[self.active] = self.state.area, self.state.momentum
         self.rolling[self.active] = self.state.rolling
+        self.lean[self.pooled], self.lean_rate[self.pooled] = self.state.lean, self.state.lean_rate
         return outcome
 
     def follow(self, rows: int) -> None:
@@ -144,7 +158,26 @@ class Coupled(CoupledRotor):
             rate = plane @ v
             total += 0.5 * layer.mass * rate @ rate + momentum @ rate
             total += layer.weight * layer.radius**4 * measures.energy
+        for plane, momentum, j in self._swinging():
+            rate = plane @ v
+            total += 0.5 * self.masses[j] * rate @ rate + momentum @ rate
+            total += 0.5 * self.pool_inertia[j] * self.lean_rate[j] ** 2
         return float(total)
+
+    def _swinging(self) -> list[tuple[Array, Array, int]]:
+        """Plane, relative momentum and number of the chamber of each pool that swings."""
+        found, planes = [], planes_of(self.system, self.fills)
+        for j in np.flatnonzero(self.pooled).tolist():
+            rate = 1j * self.lean_rate[j] * self.pool_offset[j] * self.masses[j]
+            found.append((planes[j], np.array([rate.real, rate.imag]), j))
+        return found
+
+    def _own_rotation(self) -> Array:
+        """Rotation of the liquid itself, of a pool as if it were spread, rad/s, shape (l,)."""
+        turning = self.pool_inertia * self.lean_rate
+        for (layer, _, measures, _), j in zip(self.measured(), np.flatnonzero(self.active), strict=True):
+            turning[j] = layer.weight * layer.radius**4 * measures.spinning
+        return np.divide(turning, self.spread_inertia, out=np.zeros_like(turning), where=turning != 0.0)
 
     def measured(self) -> list[tuple[np.record, Array, np.record, Array]]:
         """Properties, plane, measures and relative momentum of each layer."""
@@ -170,13 +203,14 @@ class Coupled(CoupledRotor):
         return max(errors)
 
     def switch(self) -> float:
-        """Catch the liquid that can ride with the drum by now, let go what cannot; energy brought in, J.
+        """Catch the liquid that can be a layer by now, let go what cannot; energy brought in, J.
 
-        Caught liquid is a uniform layer at rest in the drum; liquid let go lies at the bottom. The momentum
-        of rotor and liquid stays.
+        The momentum of rotor and liquid stays, and, of liquid that the drum does not take along, its angular
+        momentum about the chamber's axis [theory: pool, eq. 8-10].
         """
-        limit = np.where(self.active, RELEASE * self.capture, self.capture)
-        return self._rearrange(self.spin > limit)
+        riding = self.handover is Handover.RIDING
+        own = np.zeros(len(self.fills)) if riding else self._own_rotation()
+        return self._rearrange(self.caught(self.active, own))
 
     def fall(self, outcome: Outcome) -> float | None:
         """Let the deepest layer fall to the bottom where gravity has won; energy brought in, J.
@@ -189,7 +223,10 @@ class Coupled(CoupledRotor):
         deepest = int(np.argmax(np.where(self.active, self.area.max(axis=1), -1.0)))
         wanted = self.active.copy()
         wanted[deepest] = False
-        self.capture[deepest] = _AGAIN * self.spin
+        own = (
+            self.spin if self.handover is Handover.RIDING else max(float(self._own_rotation()[deepest]), 0.0)
+        )
+        self.capture[deepest] = _AGAIN * max(own, float(self.lowest[deepest]))
         return self._rearrange(wanted)
 
     def _rearrange(self, wanted: Flags) -> float:
@@ -197,53 +234,102 @@ class Coupled(CoupledRotor):
         if np.array_equal(wanted, self.active):
             return 0.0
         before, lost = self.energy(), np.zeros(self.state.rate.size)
-        for (_, plane, _, momentum), kept in zip(self.measured(), wanted[self.active], strict=True):
-            lost += plane.T @ momentum * (not kept)
+        anew, own = wanted != self.active, self._own_rotation()
+        offset = self._offsets()
+        for (_, plane, _, momentum), gone in zip(self.measured(), anew[self.active], strict=True):
+            lost += plane.T @ momentum * gone
+        for plane, momentum, j in self._swinging():
+            lost += plane.T @ momentum * anew[j]
+        spread = own * self.spread_inertia
+        fallen = anew & ~wanted & self.swings
+        self.lean_rate[fallen] = spread[fallen] / self.pool_inertia[fallen]
+        # Towards where it was thrown; where that is nowhere, to the bottom.
+        sideways = np.abs(offset) > 1e-9 * np.array([fill.chamber.radius for fill in self.fills])
+        self.lean[fallen] = np.where(sideways, np.angle(-offset), 0.0)[fallen]
         mean = self.area.mean(axis=1, keepdims=True)
-        anew = wanted != self.active
         self.area[anew] = mean[anew]
-        self.momentum[anew] = -self.spin * np.square(self.area[anew])
+        keeps = self.handover is Handover.CARRIED
+        lag = np.where(anew & wanted & keeps, self.spin - own, 0.0)[:, None]
+        self.momentum[anew] = self._uniform(lag)[anew]
         self.rolling[anew] = 0.0
         self.active = wanted
         self._assemble()
+        for plane, momentum, j in self._swinging():
+            lost -= plane.T @ momentum * anew[j]
         whole = self.machine.matrices[0].copy()
-        for mass, plane in zip(self.machine.layers.mass, self.machine.planes, strict=True):
+        weights = np.concatenate((self.masses[self.active], self.masses[self.pooled]))
+        for mass, plane in zip(weights, self.machine.planes, strict=True):
             whole += mass * plane.T @ plane
         self.state.rate[:] += np.linalg.solve(whole, lost)
-        return self.energy() - before
+        after, now, low = self.energy(), self._own_rotation(), abs(float(self.gravity[0]))
+        rise = (self._offsets() - offset).real * low * self.masses
+        for j in np.flatnonzero(anew).tolist():
+            turning = float(spread[j]), float(now[j] * self.spread_inertia[j])
+            there = bool(wanted[j])
+            self.transfers.append(
+                Transfer(j, there, self.time, self.spin, turning, (before, after), float(rise[j]))
+            )
+        return after - before
+
+    def _uniform(self, lag: Array) -> Array:
+        """Relative angular momentum of the cells of layers that turn as a whole, over R^2, shape (l, c).
+
+        Parameters
+        ----------
+        lag : of the rotation behind the drum's, rad/s, shape (l, 1)
+        """
+        # Its own rotation about the axis takes r^2, the profile of the flow R^2: the same angular momentum.
+        return np.asarray(-lag * (1.0 - self.area) * self.area - self.spin * np.square(self.area))
 
     def _assemble(self) -> None:
-        """Make machine, state and room anew for the active layers, the other liquid being masses."""
-        old, active = self.state, self.active
+        """Make machine, state and room anew for the layers and pools of now, other liquid being masses."""
+        old, active, pooled = self.state, self.active, self.pooled
         planes, mass = planes_of(self.system, self.fills), self.system.mass.copy()
-        for weight, plane, moving in zip(self.layers.mass, planes, active, strict=True):
+        for weight, plane, moving in zip(self.layers.mass, planes, active | pooled, strict=True):
             if not moving:
                 mass += weight * plane.T @ plane
         matrices = [mass, self.system.damping, self.system.gyroscopic, self.system.stiffness]
+        pools = records(POOL, int(pooled.sum()))
+        for k, j in enumerate(np.flatnonzero(pooled).tolist()):
+            pool = self.pools[j]
+            assert pool is not None
+            pools[k] = pool.mass, pool.arm, pool.length, pool.inertia
         self.machine = self.machine._replace(
-            matrices=np.stack(matrices).astype(float), planes=planes[active], layers=self.layers[active]
+            matrices=np.stack(matrices).astype(float),
+            planes=np.concatenate((planes[active], planes[pooled])),
+            layers=self.layers[active],
+            pools=pools,
+            drags=self.drags[pooled],
         )
         count, cells = int(active.sum()), self.area.shape[1]
         self.state = old._replace(
             area=self.area[active],
             momentum=self.momentum[active],
             rolling=self.rolling[active],
-            push=np.zeros((count, 2, 2)),
+            lean=self.lean[pooled],
+            lean_rate=self.lean_rate[pooled],
+            push=np.zeros((count + pools.size, 2, 2)),
             pace=_fresh_pace(),
         )
         self.follow(old.trace.shape[0])
-        self.room = _room(old.place.size, count, cells, self.rolling.shape[1])
+        self.room = _room(old.place.size, (count, pools.size), cells, self.rolling.shape[1])
+
+    def _offsets(self) -> Complex:
+        """Centre of mass of each liquid from its chamber's axis, standing frame, complex, m, shape (l,)."""
+        angle, angles = float(self.shaft.angle), self.machine.angles
+        surface = np.sqrt(np.maximum(1.0 - 2.0 * self.area, 0.0))
+        lever = (1.0 - surface) * (1.0 + surface + np.square(surface)) / 3.0
+        whole = np.maximum(self.area.sum(axis=1), 1e-300)
+        turn = complex(math.cos(angle), math.sin(angle))
+        moved = self.layers.radius * (lever @ angles[0] + 1j * (lever @ angles[1])) / whole * turn
+        return np.asarray(np.where(self.active, moved, self.pool_offset))
 
     def read(self) -> Reading:
         """The moment as the history keeps it."""
         x, angle = self.state.place.copy(), float(self.shaft.angle)
-        turn = complex(math.cos(angle), math.sin(angle))
         deflection = np.array([complex(*(plane @ x)) for plane in self.seen])
         surface = np.sqrt(np.maximum(1.0 - 2.0 * self.area, 0.0))
-        lever = (1.0 - surface) * (1.0 + surface + np.square(surface)) / 3.0
-        whole = np.maximum(self.area.sum(axis=1), 1e-300)
-        angles, radius = self.machine.angles, self.layers.radius
-        moved = radius * (lever @ angles[0] + 1j * (lever @ angles[1])) / whole * turn
+        whole, radius = np.maximum(self.area.sum(axis=1), 1e-300), self.layers.radius
         velocity = np.divide(self.momentum, self.area, out=np.zeros_like(surface), where=self.area > 0.0)
         velocity += self.spin * self.area
         flow = velocity * -np.log(np.maximum(surface, 1e-300))
@@ -255,11 +341,13 @@ class Coupled(CoupledRotor):
             coordinates=x,
             deflection=deflection,
             **self.largest(abs(deflection[0])),
-            offset=np.where(self.active, moved, self.pool),
+            offset=self._offsets(),
             captured=self.active.copy(),
             depth_min=np.where(self.active, radius * (1.0 - surface.max(axis=1, initial=0.0)), nothing),
             depth_max=np.where(self.active, radius * (1.0 - surface.min(axis=1, initial=1.0)), nothing),
-            mean_rotation=np.where(self.active, flow.sum(axis=1) / whole, 0.0),
+            mean_rotation=np.where(
+                self.active, flow.sum(axis=1) / whole, self.pooled * (self.lean_rate - self.spin)
+            ),
         )
 
     def depth(self) -> Array:
@@ -277,6 +365,7 @@ def couple(
     cells: int,
     dispersion: bool,
     enstrophy: bool = False,
+    handover: Handover = Handover.RIDING,
 ) -> Coupled:
     """Rotor without deflection, liquid at rest in the drum.
 
@@ -286,6 +375,7 @@ def couple(
     spin : at the beginning, rad/s
     cells, dispersion : of the layers
     enstrophy : their bores carry fluctuations behind them [theory: long_wave, eq. 15-17]
+    handover : how liquid at the bottom becomes a layer
 
     Raises
     ------
@@ -301,17 +391,24 @@ def couple(
         system=system,
         fills=tuple(fills),
         layers=layers,
+        friction=friction,
+        handover=handover,
         capture=rest.capture,
-        pool=rest.pool,
+        pools=rest.pools,
+        lean=np.zeros(count),
+        lean_rate=np.zeros(count),
         area=area,
         momentum=-spin * np.square(area),
         rolling=np.zeros((count, cells if enstrophy else 0)),
-        active=rest.capture < spin,
+        active=np.zeros(count, dtype=bool),
+        drags=drag_curves(fills, rest.pools, friction),
         machine=Machine(
             matrices=np.zeros((4, n, n)),
             unbalance=system.unbalance.astype(complex),
             planes=np.zeros((0, 2, n)),
             layers=layers[:0],
+            pools=records(POOL, 0),
+            drags=np.zeros((0, 2, 1)),
             gravity=rest.gravity,
             angles=ring(cells),
             curve=np.zeros((2, 0)),
@@ -324,14 +421,17 @@ def couple(
             area=area[:0],
             momentum=area[:0],
             rolling=area[:0, :0],
+            lean=np.zeros(0),
+            lean_rate=np.zeros(0),
             push=np.zeros((0, 2, 2)),
             pace=_fresh_pace(),
             sums=records(SUMS),
             crest=records(CREST),
             trace=np.zeros((0, 2 + n)),
         ),
-        room=_room(n, 0, cells, 0),
+        room=_room(n, (0, 0), cells, 0),
     )
+    found.active = found.begins_as_layer(spin)
     found._assemble()
     return found
 
@@ -343,23 +443,27 @@ def _fresh_pace() -> Record:
     return pace
 
 
-def _room(coordinates: int, layers: int, cells: int, rolling: int) -> Room:
-    """Scratch for a machine of that size; `rolling`: cells with fluctuations."""
+def _room(coordinates: int, liquids: tuple[int, int], cells: int, rolling: int) -> Room:
+    """Scratch for a machine of that size; `liquids`: layers and pools; `rolling`: cells with fluctuations."""
     from solvers.runup.kernel import layer_scratch
 
-    n, count = coordinates, layers
+    n, (count, pools) = coordinates, liquids
+    both = count + pools
     return Room(
         area=np.zeros((count, cells)),
         momentum=np.zeros((count, cells)),
         rolling=np.zeros((count, rolling)),
+        lean=np.zeros(pools),
+        lean_rate=np.zeros(pools),
+        drag=np.zeros(pools),
         begin=records(MEASURES, count),
         end=records(MEASURES, count),
         gains=records(GAINS, count),
-        inertia=np.zeros((count, 3)),
-        before=np.zeros((count, 2)),
-        after=np.zeros((count, 2)),
-        guess=np.zeros((count, 2)),
-        found=np.zeros((count, 2)),
+        inertia=np.zeros((both, 3)),
+        before=np.zeros((both, 2)),
+        after=np.zeros((both, 2)),
+        guess=np.zeros((both, 2)),
+        found=np.zeros((both, 2)),
         change=np.zeros(n),
         swing=np.zeros(n),
         left=np.zeros((n, n)),

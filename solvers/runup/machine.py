@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import Any, Protocol
 
 import numpy as np
@@ -104,6 +105,45 @@ class Motor:
 Drive = Ramp | Motor | Programme
 
 
+class Handover(StrEnum):
+    """How liquid at the bottom of a lying chamber becomes a layer round its wall [theory: pool]."""
+
+    # By itself: the walls drag it until it goes over the top without falling. Its angular momentum stays.
+    CARRIED = "carried"
+    # As soon as the walls' drag beats gravity; the drum takes it to its own speed at once.
+    DRUM = "drum"
+    # As soon as the drum's centrifugal field beats gravity, however it would get there.
+    RIDING = "riding"
+
+
+@dataclass(frozen=True)
+class Transfer:
+    """Liquid that became a layer, or fell to the bottom; what was handed over.
+
+    Parameters
+    ----------
+    chamber : its number
+    captured : it became a layer
+    time, speed : s and rad/s
+    angular_momentum : of the liquid about its chamber's axis before and after, N m s
+    energy : kinetic and elastic energy of rotor and liquid before and after, J
+    lifted : change of the liquid's potential energy, J
+    """
+
+    chamber: int
+    captured: bool
+    time: float
+    speed: float
+    angular_momentum: tuple[float, float]
+    energy: tuple[float, float]
+    lifted: float
+
+    @property
+    def lost(self) -> float:
+        """Energy that the sudden change turns into heat, J; below zero what the drum gives."""
+        return self.energy[0] - self.energy[1] - self.lifted
+
+
 @dataclass(frozen=True)
 class Reading:
     """A moment of a run-up with n coordinates and l layers, as `solvers.runup.runup.RunupHistory` keeps it.
@@ -119,7 +159,7 @@ class Reading:
     offset : of each layer's centre of mass from its chamber's axis, standing frame, complex, m, shape (l,)
     captured : the layer rides with the drum, shape (l,)
     depth_min, depth_max : of each layer, m, shape (l,); nan while it is not captured
-    mean_rotation : of each layer relative to its drum, rad/s, shape (l,)
+    mean_rotation : of each layer or pool relative to its drum, rad/s, shape (l,)
     """
 
     time: float
@@ -173,6 +213,10 @@ class RunupMachine(Protocol):
         """Works, heats and counts so far, a record of `solvers.runup.state.SUMS`."""
 
     @property
+    def transfers(self) -> Sequence[Transfer]:
+        """Liquid that has become a layer or fallen so far, in their order."""
+
+    @property
     def theta(self) -> Array:
         """Angle of the cells' middles from the drum's zero mark, rad, shape (c,)."""
 
@@ -220,5 +264,6 @@ class RunupModel(Protocol):
         cells: int,
         dispersion: bool,
         enstrophy: bool = False,
+        handover: Handover = Handover.RIDING,
     ) -> RunupMachine:
         """As `solvers.runup.long_wave.couple`."""

@@ -21,7 +21,15 @@ from solvers.layer.records import Outcome
 from solvers.rotor.system import RotorSystem
 from solvers.runup.course import highest, legs, marked
 from solvers.runup.long_wave import couple
-from solvers.runup.machine import Drive, LayerSnapshots, Reading, RunupMachine, RunupModel
+from solvers.runup.machine import (
+    Drive,
+    Handover,
+    LayerSnapshots,
+    Reading,
+    RunupMachine,
+    RunupModel,
+    Transfer,
+)
 from solvers.runup.shedding import Shedding
 from solvers.slices import step_budget
 
@@ -37,6 +45,7 @@ class RunupNumerics:
     dispersion : add the finite depth's dispersion to the layers [theory: long_wave, eq. 13]
     enstrophy : the layers' bores carry fluctuations behind them [theory: long_wave, eq. 15]
     courant : Courant number of the layers; the rotor turns by at most this share of a cell in a step
+    handover : how liquid at the bottom of a lying chamber becomes a layer
     companion : run once more with half the cells, hence twice the steps, to estimate the error; from 16 cells
     """
 
@@ -45,6 +54,7 @@ class RunupNumerics:
     dispersion: bool = False
     enstrophy: bool = False
     courant: float = 0.8
+    handover: Handover = Handover.RIDING
     companion: bool = True
 
     def __post_init__(self) -> None:
@@ -114,7 +124,7 @@ class RunupHistory:
     offset : of each layer's centre of mass from its chamber's axis, standing frame, complex, m, shape (k, l)
     captured : the layer rides with the drum, shape (k, l)
     depth_min, depth_max : of each layer, m, shape (k, l); nan while it is not captured
-    mean_rotation : of each layer relative to its drum, rad/s, shape (k, l)
+    mean_rotation : of each layer or swinging pool relative to its drum, rad/s, shape (k, l)
     layer_mass : kg, shape (l,)
     mass_error : largest relative change of a layer's volume
     error_estimate : of the amplitude, relative to its largest: difference to the run with half the cells and
@@ -127,6 +137,8 @@ class RunupHistory:
     snapshots : of the layers, cell by cell, at the times asked for; None where none were
     stage : of its programme in which each time was reached, from 0, shape (k,)
     left : share that is left of each part of the unbalance that leaves, shape (k, s)
+    transfers : liquid that became a layer or fell, in the order of time
+    handover : how liquid at the bottom of a lying chamber becomes a layer
     """
 
     time: Array
@@ -154,6 +166,8 @@ class RunupHistory:
     snapshots: LayerSnapshots | None = None
     stage: Index | None = None
     left: Array | None = None
+    transfers: tuple[Transfer, ...] = ()
+    handover: Handover = Handover.RIDING
 
     @property
     def converged(self) -> bool:
@@ -226,7 +240,7 @@ def run_up(
     start = drive.corners()[1, 0]
 
     def machine(cells: int) -> RunupMachine:
-        resolved = cells, numerics.dispersion, numerics.enstrophy
+        resolved = cells, numerics.dispersion, numerics.enstrophy, numerics.handover
         return model(system, fills, start, friction, gravity, *resolved)
 
     share = 0.8 if numerics.companion else 1.0
@@ -311,6 +325,8 @@ def _march(
         snapshots=shots,
         stage=np.array(stages),
         left=np.array(left),
+        transfers=tuple(machine.transfers),
+        handover=numerics.handover,
     )
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
@@ -18,11 +18,13 @@ from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
+from fluid.pool import Pool, balance_speed, pool_of, wall_torque
 from fluid.waves import free_wave_frequencies
-from meshes.arrays import Array
+from meshes.arrays import Array, Complex, Flags
 from meshes.errors import require_not_negative
 from solvers.layer.records import Record, floats, records
 from solvers.rotor.system import RotorSystem
+from solvers.runup.machine import Handover, Transfer
 
 # A layer is let go at this share of the spin speed that captures it, lest it be caught and let go in turns.
 RELEASE = 0.98
@@ -86,19 +88,28 @@ def layer_capture(fill: Fill, gravity: float) -> float:
     return math.sqrt(gravity / fill.surface_radius)
 
 
-def pool_offset(fill: Fill) -> float:
-    """Centre of mass of liquid that lies at the bottom of a chamber, along the first direction, m.
+# Relative rotations at which a pool's torque is kept, rad/s: straight lines between them are right to 3e-4.
+_TURNS = np.concatenate(([0.0], np.geomspace(1e-4, 1e4, 380)))
 
-    A segment of the circle; an inner wall is left out.
+
+def drag_curves(fills: Sequence[Fill], pools: Sequence[Pool | None], friction: Friction) -> Array:
+    """Relative rotation of the walls and their torque on each pool, as the steps take it.
+
+    Parameters
+    ----------
+    fills, pools : chambers, and what lies in them, shape (l,)
+    friction : as for `fluid.pool.wall_torque`
+
+    Returns
+    -------
+    rad/s, rising from 0, and N m, 0 where there is no pool, shape (l, 2, k)
     """
-    from scipy.optimize import brentq
-
-    if fill.volume == 0.0 or fill.volume >= fill.chamber.capacity * (1.0 - 1e-9):
-        return 0.0
-    radius = fill.chamber.radius
-    share = fill.volume / (fill.chamber.height * radius**2)
-    half = brentq(lambda a: a - math.sin(a) * math.cos(a) - share, 0.0, math.pi)
-    return -radius * 2.0 * math.sin(half) ** 3 / (3.0 * share)
+    found = np.zeros((len(fills), 2, _TURNS.size))
+    found[:, 0] = _TURNS
+    for j, (fill, pool) in enumerate(zip(fills, pools, strict=True)):
+        if pool is not None:
+            found[j, 1] = wall_torque(fill, pool, friction, _TURNS)
+    return found
 
 
 # What a layer is measured by: moment and its rate of change by the flow, inertia of the flow, angular
@@ -114,6 +125,8 @@ SHAFT = floats("spin", "angle", "time", "rate", "inertia")
 PACE = floats("last", "before", "fastest", "share", "kept")
 # The largest amplitude since the moment was last read, and the speed and time of it.
 CREST = floats("amplitude", "speed", "time")
+# A pool as a pendulum about its chamber's axis: mass, distance of its centre of mass, length, inertia.
+POOL = floats("mass", "arm", "length", "inertia")
 # What is summed up over time [theory: coupling, eq. 9-10]: work of the unbalance, of the drive on the liquid,
 # of gravity; heat in the supports and by wall friction, loss in bores and by the scheme, what the assumed
 # profile of the flow misses while the spin changes; work of the motor; steps, layer steps, largest
@@ -131,8 +144,11 @@ class Machine(NamedTuple):
     ----------
     matrices : M, C, G, K, shape (4, n, n)
     unbalance : U, complex, shape (n,)
-    planes : in-plane displacement of each layer's axis for unit coordinates, shape (l, 2, n)
+    planes : in-plane displacement of each axis for unit coordinates, the layers' first, then the pools',
+        shape (l + p, 2, n)
     layers : records LAYER, shape (l,)
+    pools : records POOL of liquid that swings at the bottom, shape (p,)
+    drags : of each pool, relative rotation of its walls, rising from 0, and their torque, shape (p, 2, k)
     gravity : acceleration across the axis, shape (2,)
     angles : cosine and sine at the cells' middles and at their left faces, shape (4, c)
     curve : the motor's speeds and torques, shape (2, k); k = 0 for a ramp
@@ -143,6 +159,8 @@ class Machine(NamedTuple):
     unbalance: NDArray[np.complex128]
     planes: Array
     layers: Record
+    pools: Record
+    drags: Array
     gravity: Array
     angles: Array
     curve: Array
@@ -158,7 +176,8 @@ class State(NamedTuple):
     shaft : record SHAFT, shape (1,)
     area, momentum : A/R^2 and q/R^2 of the layers' cells, shape (l, c)
     rolling : A e/R^4 of the fluctuations behind bores, shape (l, c), or (l, 0) where they are left out
-    push : mean accelerations of the axes over the last step and over the one before, shape (l, 2, 2)
+    lean, lean_rate : angle of each pool from the bottom, positive with the spin, and its rate, shape (p,)
+    push : mean accelerations of the axes over the last step and over the one before, shape (l + p, 2, 2)
     pace : record PACE, shape (1,)
     sums : record SUMS, shape (1,)
     crest : record CREST, shape (1,)
@@ -172,6 +191,8 @@ class State(NamedTuple):
     area: Array
     momentum: Array
     rolling: Array
+    lean: Array
+    lean_rate: Array
     push: Array
     pace: Record
     sums: Record
@@ -184,12 +205,13 @@ class Room(NamedTuple):
 
     Parameters
     ----------
-    area, momentum, rolling : the layers at the beginning of the step, as in `State`
+    area, momentum, rolling, lean, lean_rate : the liquid at the beginning of the step, as in `State`
+    drag : impulse of the walls' torque on each pool, shape (p,)
     begin, end : records MEASURES of the layers at both ends, shape (l,)
     gains : records GAINS of the layers, shape (l,)
-    inertia : of the layers' flows (xx, xy, yy), shape (l, 3)
-    before, after : the layers' momenta relative to their axes at both ends, shape (l, 2)
-    guess, found : mean accelerations of the axes put in and come out, shape (l, 2)
+    inertia : of the flows of layers and pools (xx, xy, yy), shape (l + p, 3)
+    before, after : their momenta relative to their axes at both ends, shape (l + p, 2)
+    guess, found : mean accelerations of the axes put in and come out, shape (l + p, 2)
     change, swing : of the velocities over the step; of the unbalance's momentum, shape (n,)
     left : matrix of the rotor's equations, shape (n, n)
     spins : at both ends, shape (2,)
@@ -201,6 +223,9 @@ class Room(NamedTuple):
     area: Array
     momentum: Array
     rolling: Array
+    lean: Array
+    lean_rate: Array
+    drag: Array
     begin: Record
     end: Record
     gains: Record
@@ -223,8 +248,8 @@ class Rest(NamedTuple):
 
     Parameters
     ----------
-    capture : speed above which each liquid rides with the drum as a layer, rad/s, inf for a solid mass, (l,)
-    pool : offset of the centre of mass of liquid that is no layer, along the first direction, m, shape (l,)
+    capture : own rotation above which each liquid stays a layer, rad/s, inf for a solid mass, shape (l,)
+    pools : of the chambers across gravity; None for a solid mass, no liquid, and without gravity
     planes : displacement of each chamber's axis for unit coordinates, shape (l, 2, n)
     watched : that of the first chamber, or of the axis at position 0 without one, shape (2, n)
     shaft : record SHAFT at the spin, shape (1,)
@@ -232,7 +257,7 @@ class Rest(NamedTuple):
     """
 
     capture: Array
-    pool: Array
+    pools: tuple[Pool | None, ...]
     planes: Array
     watched: Array
     shaft: Record
@@ -257,7 +282,7 @@ def at_rest(system: RotorSystem, fills: Sequence[Fill], spin: float, gravity: fl
     planes = planes_of(system, fills)
     return Rest(
         capture=np.array([layer_capture(fill, gravity) for fill in fills]),
-        pool=np.array([pool_offset(fill) if gravity > 0.0 else 0.0 for fill in fills]),
+        pools=tuple(pool_of(fill) if gravity > 0.0 else None for fill in fills),
         planes=planes,
         watched=np.array(planes[0] if fills else system.centre, dtype=float),
         shaft=shaft,
@@ -278,19 +303,90 @@ class CoupledRotor(ABC):
     Parameters
     ----------
     system, fills : what it is made from
-    capture, pool : as of `Rest`, shape (l,)
+    friction : of the liquid on its walls
+    handover : how liquid at the bottom becomes a layer
+    capture, pools : as of `Rest`, shape (l,)
+    lean, lean_rate : angle of each pool from the bottom, positive with the spin, rad, and its rate, (l,)
+    transfers : liquid that has become a layer or fallen so far
     """
 
     system: RotorSystem
     fills: tuple[Fill, ...]
+    friction: Friction
+    handover: Handover
     capture: Array
-    pool: Array
+    pools: tuple[Pool | None, ...]
+    lean: Array
+    lean_rate: Array
+    transfers: list[Transfer] = field(default_factory=list, init=False)
+
+    @cached_property
+    def swings(self) -> Flags:
+        """Liquid that swings as a pool while it is no layer, shape (l,)."""
+        moves = self.handover is not Handover.RIDING
+        return np.array([moves and pool is not None for pool in self.pools], dtype=bool)
+
+    @cached_property
+    def balance(self) -> Array:
+        """Speed at which the walls' drag lifts each pool to the axis' height, rad/s; inf without one."""
+        gravity = abs(float(self.gravity[0]))
+        pairs = zip(self.fills, self.pools, strict=True)
+        return np.array(
+            [np.inf if p is None else balance_speed(f, p, self.friction, gravity) for f, p in pairs]
+        )
+
+    @property
+    def pool_offset(self) -> Complex:
+        """Centre of mass of liquid that is no layer, from its chamber's axis, standing frame, m."""
+        arm = np.array([0.0 if pool is None else pool.arm for pool in self.pools])
+        return np.asarray(-arm * np.exp(1j * self.lean))
+
+    def begins_as_layer(self, spin: float) -> Flags:
+        """Whether each liquid rides with a drum that has always turned at this speed, shape (l,)."""
+        rides = self.capture < spin
+        return rides & (self.balance < spin) if self.swings.any() else rides
+
+    def caught(self, active: Flags, own: Array) -> Flags:
+        """Which liquids are layers from now on [theory: pool, eq. 8-9].
+
+        Parameters
+        ----------
+        active : those that are layers now, shape (l,)
+        own : rotation of the liquid itself: of layers, and of pools once they were spread, rad/s, shape (l,)
+        """
+        if self.handover is Handover.RIDING:
+            return np.asarray(self.spin > np.where(active, RELEASE * self.capture, self.capture))
+        stays = own > RELEASE * self.lowest
+        if self.handover is Handover.DRUM:
+            return np.where(active, stays, (self.spin > self.capture) & (self.spin > self.balance))
+        return np.where(active, stays, (own > self.capture) & (np.cos(self.lean) < 0.0))
 
     @cached_property
     def seen(self) -> Array:
         """Displacement of the axes that are read, for unit coordinates: the chambers', or the one watched."""
         planes = planes_of(self.system, self.fills)
         return planes if len(planes) else np.array([self.system.centre], dtype=float)
+
+    @cached_property
+    def lowest(self) -> Array:
+        """Own rotation below which a layer falls in any case, rad/s, shape (l,)."""
+        gravity = abs(float(self.gravity[0]))
+        return np.array([layer_capture(fill, gravity) for fill in self.fills])
+
+    @cached_property
+    def spread_inertia(self) -> Array:
+        """Moment of inertia of each liquid as a uniform layer, kg m^2, shape (l,)."""
+        return np.array([0.5 * f.mass * (f.chamber.radius**2 + f.surface_radius**2) for f in self.fills])
+
+    @cached_property
+    def pool_inertia(self) -> Array:
+        """Moment of inertia of each pool, kg m^2, 0 without one, shape (l,)."""
+        return np.array([0.0 if pool is None else pool.inertia for pool in self.pools])
+
+    @property
+    @abstractmethod
+    def gravity(self) -> Array:
+        """Acceleration across the axis, shape (2,)."""
 
     @property
     @abstractmethod

@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[2]
     "name",
     [
         *("layer/uncompiled_layer", "runup/uncompiled_long_wave", "runup/uncompiled_linear"),
-        "statics/uncompiled_statics",
+        *("runup/uncompiled_pool", "statics/uncompiled_statics"),
     ],
 )
 def test_compiled_lines_are_held_by_oracles(name: str) -> None:

@@ -15,6 +15,7 @@ from leblanc.units import (
     TIME,
     friction_words,
     in_rpm,
+    number,
     rpm_bands,
     with_unit,
 )
@@ -22,6 +23,7 @@ from meshes.arrays import Flags
 
 if TYPE_CHECKING:
     from solvers.runup.ensemble import Spread
+    from solvers.runup.machine import Transfer
     from solvers.runup.runup import RunupHistory
     from solvers.synchronous.response import Response
 
@@ -44,8 +46,10 @@ class RunupCode(NoteCode):
     PEAK_STEADY = "peak_steady"
     CAPTURED = "captured"
     FALLS_BACK = "falls_back"
+    NOT_CARRIED = "not_carried"
     SELF_EXCITED = "self_excited"
     TOO_SLOW = "too_slow"
+    TUMBLES = "tumbles"
     INNER_WALL = "inner_wall"
     TOO_DEEP = "too_deep"
     TOO_HIGH = "too_high"
@@ -189,14 +193,48 @@ def largest_amplitude(history: RunupHistory, steady: Response | None) -> Note:
     return Note(RunupCode.PEAK_STEADY, data | {"steady_amplitude": most, "steady_speed": at}, text)
 
 
-def capture(chamber: int, captured: bool, time: float, speed: float) -> Note:
-    """When the liquid of a chamber, counted from 0, began or ceased to ride with the drum."""
+def capture(transfer: Transfer, handover: str) -> Note:
+    """When the liquid of a chamber became a ring, or fell, and what was handed over.
+
+    Parameters
+    ----------
+    transfer : of the run-up
+    handover : the rule by which it became a ring
+    """
+    chamber, speed = transfer.chamber + 1, transfer.speed
+    data = {
+        "chamber": chamber,
+        "time": transfer.time,
+        "speed": speed,
+        "angular_momentum": transfer.angular_momentum,
+        "lost": transfer.lost,
+    }
     text = (
-        f"Chamber {chamber + 1}: its liquid {'is captured' if captured else 'falls back'} at "
-        f"{time:.4g} s, {in_rpm(speed)}."
+        f"Chamber {chamber}: its liquid {'is captured' if transfer.captured else 'falls back'} at "
+        f"{transfer.time:.4g} s, {in_rpm(speed)}"
     )
-    code = RunupCode.CAPTURED if captured else RunupCode.FALLS_BACK
-    return Note(code, {"chamber": chamber + 1, "time": time, "speed": speed}, text)
+    if handover != "riding":
+        heat = f"{number(abs(transfer.lost))} J"
+        text += f"; {heat} become heat" if transfer.lost >= 0.0 else f"; the drum gives {heat}"
+    code = RunupCode.CAPTURED if transfer.captured else RunupCode.FALLS_BACK
+    return Note(code, data, f"{text}.")
+
+
+def not_carried(chamber: int, speed: float, balance: float) -> Note:
+    """Liquid that its walls never carry round.
+
+    Parameters
+    ----------
+    chamber : its index from 0
+    speed : the largest of the run, rad/s
+    balance : at which the walls' drag lifts the liquid to the height of the axis, rad/s; inf where none does
+    """
+    text = f"Chamber {chamber + 1}: up to {in_rpm(speed)} its walls do not carry the liquid round: "
+    if math.isinf(balance):
+        text += "without friction nothing does."
+    else:
+        text += f"their drag beats gravity from {in_rpm(balance)} on. Baffles or rough walls would carry it."
+    return Note(RunupCode.NOT_CARRIED, {"chamber": chamber + 1, "balance": balance}, text)
 
 
 def self_excited_on_the_way(
@@ -233,7 +271,7 @@ def out_of_range(code: RunupCode, chamber: int, holds: Flags, limit: float = mat
 
     Parameters
     ----------
-    code : TOO_SLOW, INNER_WALL, TOO_DEEP or TOO_HIGH
+    code : TOO_SLOW, TUMBLES, INNER_WALL, TOO_DEEP or TOO_HIGH
     chamber : index from 0
     holds : where the layer describes the liquid, shape (k,)
     limit : depth over radius, or rise over depth, that is too much
@@ -243,6 +281,7 @@ def out_of_range(code: RunupCode, chamber: int, holds: Flags, limit: float = mat
     label, high = f"chamber {chamber + 1}", f"higher than {limit:g} of the depth"
     why = {
         RunupCode.TOO_SLOW: f"the liquid in {label} turns too slowly to stand round the wall against gravity",
+        RunupCode.TUMBLES: f"the liquid in {label} is on its way over the top, neither pool nor ring",
         RunupCode.INNER_WALL: f"the surface reaches the inner wall of {label}",
         RunupCode.TOO_DEEP: f"the layer in {label} is deeper than {limit:g} of its radius",
         RunupCode.TOO_HIGH: f"the wave in {label} is {high}, beyond linear theory",

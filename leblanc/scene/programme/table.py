@@ -12,7 +12,7 @@ from leblanc.scene.programme.steps import MAX_STEPS, SPEED, Step, StepList, Step
 from leblanc.scene.rows import Row, row, rpm
 from leblanc.scene.schema.part import Conflict, Part
 from leblanc.scene.schema.rules import Inertia, Truth, one_of, quantity, whole
-from leblanc.scene.tasks import BORES
+from leblanc.scene.tasks import BORES, CAPTURES
 from leblanc.units import in_rpm, number
 
 _STEPS = StepList(1, MAX_STEPS, 'steps such as "to 90 rpm in 4 s"')
@@ -46,6 +46,10 @@ class Programme(Part):
     dispersion: Truth = Field(False, description="whether the waves of the layers disperse")
     bore: Annotated[str, one_of(*BORES)] = Field(
         "none", description="what the bores of the layers leave behind, as in runup.bore"
+    )
+    capture: Annotated[str, one_of(*CAPTURES)] = Field(
+        "carried",
+        description="when liquid at the bottom of a lying chamber becomes a layer, as in runup.capture",
     )
     samples: Annotated[int, whole(10, 1_000_000)] = Field(2000, description="of the results over time, about")
 
@@ -98,5 +102,6 @@ class Programme(Part):
             row("Programme cells", f"{self.cells} round each wall", "programme.cells"),
             row("Programme dispersion", "with" if self.dispersion else "without", "programme.dispersion"),
             *([] if self.bore == "none" else [row("Programme bores", f"with {self.bore}", "programme.bore")]),
+            *([row("Liquid captured", self.capture, "programme.capture")] * (self.capture != "carried")),
             row("Programme samples", f"{self.samples}", "programme.samples"),
         ]

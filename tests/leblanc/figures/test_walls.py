@@ -319,7 +319,8 @@ def test_every_frame_of_a_run_up_stays_between_the_walls(seed: int) -> None:
         amplitude=np.full(count, 1e-3),
         theta=theta,
         depth=depth,
-        pool=rng.uniform(0.0, 6.0, count),
+        down=rng.uniform(0.0, 6.0, count),
+        pool=rng.uniform(0.0, 6.0, (count, 1)),
     )
     figure, show = film_figure(replace(record, chambers=(here,)), reel)
     axes = figure.axes[0]

@@ -35,6 +35,7 @@ REST = {
     "runup": {
         "start": "30 rpm", "stop": "900 rpm", "rate": "2 rad/s^2", "duration": "9 s", "cells": 32,
         "back": True, "dispersion": True, "bore": "enstrophy", "samples": 77,
+        "capture": "drum",
     },
     "optimise": {
         "objective": "robust", "working_speed": "600 rpm", "steady": True,
@@ -57,6 +58,7 @@ PROGRAMME = {
     "cells": 48,
     "dispersion": True,
     "bore": "enstrophy",
+    "capture": "drum",
     "samples": 123,
 }  # fmt: skip
 SHEDS = {"share": 0.35, "time_constant": "13 s", "above": "340 rpm"}

@@ -327,7 +327,8 @@ def test_a_given_deflection_has_its_report() -> None:
 @cache
 def run() -> RunupResult:
     """Up and down, lying, so that its liquid is captured and let go."""
-    return runup_scene(lying(runup={"start": 3.0, "stop": 30.0, "rate": 20.0, "back": True, "duration": 2.0}))
+    ramp = {"start": 3.0, "stop": 30.0, "rate": 20.0, "back": True, "duration": 2.0, "capture": "riding"}
+    return runup_scene(lying(runup=ramp))
 
 
 def test_runup_numbers() -> None:

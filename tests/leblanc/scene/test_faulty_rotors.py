@@ -99,6 +99,7 @@ CASES: dict[str, tuple[Case, ...]] = {
         case("samples = 500", "samples = 5", "runup.samples", "from 10 to 1000000"),
         case("dispersion = true", "dispersion = 1", "runup.dispersion", "true or false"),
         case("dispersion = true", 'bore = "roller"', "runup.bore", "none, enstrophy"),
+        case("dispersion = true", 'capture = "late"', "runup.capture", "carried, drum, riding"),
         case('inertia = "0.5 kg*m^2", ', "", "runup.motor.inertia", "a moment of inertia"),
         case('[0, "1000 rpm", 200]', '[0, "1000 rpm", 100]', "runup.motor.speeds", "above the one before"),
         case('[0, "1000 rpm", 200]', "[0]", "runup.motor.speeds", "2 to 1000"),

@@ -205,7 +205,8 @@ def test_a_pool_lies_outside_the_inner_wall(inner: float, share: float) -> None:
         assert (loop * cmath.exp(-1j * down)).real.min() >= level - 1e-4 * RADIUS
     frames = RunupFrames(
         **{name: np.zeros(1) for name in ("time", "speed", "amplitude")},
-        pool=np.array([down]),
+        down=np.array([down]),
+        pool=np.array([[down]]),
         theta=np.zeros(3),
         depth=np.full((1, 1, 3), np.nan),
         deflection=np.zeros((1, 1), dtype=complex),

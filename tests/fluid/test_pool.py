@@ -1,0 +1,161 @@
+"""A pool at the bottom of a lying chamber: its shape, its slowest sloshing, the drag of the walls."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import quad
+from scipy.linalg import eigh
+
+from fluid.fill import Fill
+from fluid.friction.laws import Friction
+from fluid.liquid import Liquid
+from fluid.pool import Pool, balance_speed, pool_of, sloshing_number, wall_torque
+from meshes.chamber import Chamber
+from tests.mutants import kills
+
+BRINE = Liquid("brine", 1200.0, 1.6e-6)
+
+
+def ring(volume: float, inner: float = 0.0) -> Fill:
+    return Fill(Chamber(0.24, 0.06, inner), BRINE, volume)
+
+
+def section_integral(fill: Fill, level: float, power: float, moment: bool = False) -> float:
+    """Integral of r^power over the liquid at least `level` below the axis, or of the depth below the axis."""
+
+    def width(y: float, radius: float) -> float:
+        return math.sqrt(max(radius**2 - y**2, 0.0))
+
+    def strip(y: float) -> float:
+        outer, inner = width(y, fill.chamber.radius), width(y, fill.chamber.inner_radius)
+        if moment:
+            return 2.0 * (outer - inner) * y
+        found, _ = quad(lambda x: (x * x + y * y) ** (0.5 * power), inner, outer, epsabs=1e-14)
+        return 2.0 * found
+
+    # At the inner wall's lowest point the width has a kink.
+    kink = [fill.chamber.inner_radius] if level < fill.chamber.inner_radius else None
+    return quad(strip, level, fill.chamber.radius, points=kink, epsabs=1e-13, limit=200)[0]
+
+
+@kills("fluid.pool:_segment", "c * c + s * s / 3.0", "c * c + s * s")
+@kills("fluid.pool:_segment", "2.0 / 3.0 * (radius * s) ** 3,", "(radius * s) ** 3,")
+@kills("fluid.pool:_cube", "0.375 * s * c**3", "0.25 * s * c**3")
+@kills("fluid.pool:_cube", "0.4 * math.pi - _cube", "0.5 * math.pi - _cube")
+@kills("fluid.pool:pool_of", "outer.moment - hole.moment", "outer.moment + hole.moment")
+def test_shape() -> None:
+    """Area, centre of mass and moments of the section against quadrature, below and above the axis."""
+    for inner in (0.0, 0.20):
+        for share in (0.001, 0.1, 0.4, 0.7, 0.97):
+            fill = ring(share * Chamber(0.24, 0.06, inner).capacity, inner)
+            pool = pool_of(fill)
+            assert pool is not None
+            level = 0.24 * math.cos(pool.half_angle)
+            # Quadrature of square roots at the ends is right to 1e-8 or so.
+            assert section_integral(fill, level, 0.0) == pytest.approx(fill.volume / 0.06, rel=1e-7)
+            first = section_integral(fill, level, 0.0, moment=True)
+            assert pool.arm * pool.area == pytest.approx(first, rel=1e-7)
+            assert pool.square == pytest.approx(section_integral(fill, level, 2.0), rel=1e-7)
+            assert pool.cube == pytest.approx(section_integral(fill, level, 3.0), rel=1e-7)
+            if inner:
+                wet = 0.0 if level >= inner else math.acos(max(level / inner, -1.0))
+                assert pool.inner_half_angle == pytest.approx(wet, abs=1e-9)
+
+
+def ritz(half_angle: float, terms: int) -> float:
+    """Slowest frequency by harmonic polynomials about the middle of the surface, each a flow; from above.
+
+    The wall's condition is natural. The energy of a flow is a sum over the boundary, phi d(phi)/dn.
+    """
+    node, weight = np.polynomial.legendre.leggauss(200)
+    number = np.arange(1, terms + 1)[:, None]
+    middle, size = math.cos(half_angle), math.sin(half_angle)
+
+    def flow(place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        # Im z^n, downwards being the real axis; its gradient is i times the conjugate of n z^(n - 1).
+        z = ((place - middle) / size)[None, :]
+        return (z**number).imag, 1j * np.conj(number * z ** (number - 1)) / size
+
+    wall, chord = np.exp(1j * half_angle * node), middle + 1j * size * node
+    value, gradient = flow(wall)
+    energy = (value * (half_angle * weight)) @ (gradient * np.conj(wall)[None, :]).real.T
+    value, gradient = flow(chord)
+    energy -= (value * (size * weight)) @ gradient.real.T
+    surface = (value * (size * weight)) @ value.T
+    scale = 1.0 / np.sqrt(np.diag(energy))
+    energy, surface = (0.5 * scale[:, None] * (m + m.T) * scale for m in (energy, surface))
+    return 1.0 / float(eigh(surface, energy, eigvals_only=True)[-1])
+
+
+@kills("fluid.pool:sloshing_number", "np.tanh(number * half_angle)", "np.tanh(number)")
+@kills("fluid.pool:sloshing_number", "0.25 * _STRIP", "0.5 * _STRIP")
+def test_slowest_sloshing() -> None:
+    """Against harmonic polynomials, and the half full cylinder's 1.3557 of the literature."""
+    assert sloshing_number(0.5 * math.pi) == pytest.approx(1.3557, abs=5e-5)
+    # From above; polynomials converge the slower, the wider the corners of the surface.
+    for half_angle, terms, tolerance in (
+        (0.3, 6, 1e-6),
+        (1.0, 10, 1e-6),
+        (0.5 * math.pi, 12, 2e-6),
+        (2.0, 16, 2e-5),
+    ):
+        found, above = sloshing_number(half_angle), ritz(half_angle, terms)
+        assert -1e-7 < above / found - 1.0 < tolerance
+    # A shallow pool slides like a point.
+    assert sloshing_number(0.01) == pytest.approx(1.0, abs=1e-4)
+
+
+@given(st.floats(1e-6, 0.999), st.floats(0.0, 0.95))
+def test_pendulums_are_sound(share: float, inner: float) -> None:
+    """At every fill: a centre of mass inside the circle, a length above its distance, finite moments."""
+    chamber = Chamber(0.24, 0.06, 0.24 * inner)
+    pool = pool_of(Fill(chamber, BRINE, share * chamber.capacity))
+    assert pool is not None
+    assert 0.0 < pool.arm < 0.24 and pool.length >= pool.arm
+    assert 0.0 < pool.cube < 0.24 * pool.square < 0.24**3 * pool.area * (1.0 + 1e-9)
+    assert pool_of(Fill(chamber, BRINE, 0.0)) is None
+    assert pool_of(Fill(chamber, BRINE, chamber.capacity)) is None
+
+
+def drag(fill: Fill, pool: Pool, friction: Friction, turn: float) -> float:
+    """The shear of the law summed up over wall, inner wall, floor and lid."""
+    wall = fill.chamber
+
+    def shear(speed: float) -> float:
+        if friction.law == "quadratic":
+            return BRINE.density * friction.coefficient * speed**2
+        return BRINE.density * math.sqrt(0.5 * BRINE.viscosity * turn) * speed
+
+    found = 0.0
+    for radius, half in ((wall.radius, pool.half_angle), (wall.inner_radius, pool.inner_half_angle)):
+        found += shear(turn * radius) * radius * 2.0 * half * radius * wall.height
+    if friction.law == "stokes":
+        found += 2.0 * shear(turn) * section_integral(fill, wall.radius * math.cos(pool.half_angle), 2.0)
+    return found
+
+
+@kills("fluid.pool:wall_torque", "shear * turn * (walls_2 + 2.0 * pool.square)", "shear * turn * walls_2")
+@kills("fluid.pool:wall_torque", "height * arc * r**4", "height * arc * r**3")
+@kills("fluid.pool:balance_speed", "pool.mass * gravity * pool.arm", "pool.mass * gravity")
+def test_drag_and_balance() -> None:
+    """The torque is the sum of the shear; at the speed of balance it holds the pool at the axis' height."""
+    for inner in (0.0, 0.20):
+        fill = ring(6e-4, inner)
+        pool = pool_of(fill)
+        assert pool is not None
+        for friction in (Friction("quadratic", 0.0025), Friction("stokes")):
+            found = float(wall_torque(fill, pool, friction, 12.0))
+            assert found == pytest.approx(drag(fill, pool, friction, 12.0), rel=1e-6)
+            assert float(wall_torque(fill, pool, friction, -12.0)) == -found
+            speed = balance_speed(fill, pool, friction, 9.81)
+            lifted = float(wall_torque(fill, pool, friction, speed))
+            assert lifted == pytest.approx(fill.mass * 9.81 * pool.arm, rel=1e-9)
+        # A rate k takes k times the moment of inertia.
+        rigid = BRINE.density * 0.06 * pool.square
+        assert float(wall_torque(fill, pool, Friction("linear", 2.0), 3.0)) == pytest.approx(6.0 * rigid)
+        assert balance_speed(fill, pool, Friction(), 9.81) == math.inf
