@@ -511,9 +511,9 @@ def _couple(machine, state, room, dt):
     """One step tried until rotor and layers agree; what went wrong, the fastest wave, what is left."""
     shaft = state.shaft[0]
     spin, angle, fastest = shaft.spin, shaft.angle, 0.0
-    room.spins[0], room.spins[1] = spin, spin
-    if machine.curve.shape[1] == 0:
-        room.spins[1] = spin + shaft.rate * dt
+    room.spins[0], room.spins[1] = spin, spin + shaft.rate * dt
+    if machine.curve.shape[1] > 0:
+        room.spins[1] = max(room.spins[1], 0.5 * spin)
     left = 0.0
     for tried in range(_ROUNDS):
         turned = angle + 0.5 * (spin + room.spins[1]) * dt
@@ -532,6 +532,8 @@ def _couple(machine, state, room, dt):
             return Outcome.STOPPED, fastest, left
         left = max(left, abs(after - room.spins[1]) / spin)
         if left <= _AGREED:
+            # Steps that change a free spin by less than that must change it all the same.
+            room.spins[1] = after
             return Outcome.DONE, fastest, left
         if tried == _ROUNDS - 1:
             break
@@ -662,6 +664,8 @@ def advance(machine, state, room, stop, courant, most, resumed):
             return status, taken
         _tally(machine, state, room, dt)
         _accept(state, room, dt, fastest)
+        if machine.curve.shape[1] > 0:
+            shaft.rate = (room.spins[1] - room.spins[0]) / dt
         shaft.time = stop if dt == left else shaft.time + dt
         sums.steps += 1.0
         watch(machine.watched, state.place, shaft, state.crest[0])

@@ -116,7 +116,8 @@ class Coupled(CoupledRotor):
         """Advance to a time while the spin changes at a rate, in at most so many steps."""
         from solvers.runup.kernel import advance
 
-        self.shaft.rate = rate
+        if not self.machine.curve.size:  # a free spin goes on from its last step
+            self.shaft.rate = rate
         outcome, resumed = Outcome.RAN_OUT, False
         rows = self.state.trace.shape[0]
         for steps in slices(most, max(1, self.state.area.size), rows):

@@ -151,8 +151,8 @@ MEASURES = floats("moment_x", "moment_y", "flow_x", "flow_y", "xx", "xy", "yy", 
 # What a layer's step adds up: impulse of the torque of wall and baffles, heat by friction, loss in bores and
 # by the scheme, energy that the flow's profile misses, heat at the baffles.
 GAINS = floats("torque", "heat", "loss", "missed", "baffles")
-# The rotation: speed, angle turned, time; rate of change of the speed on its ramp, moment of inertia about
-# the axis with a motor.
+# The rotation: speed, angle turned, time; rate of change of the speed, on its ramp or in the last step with a
+# motor; moment of inertia about the axis with a motor.
 SHAFT = floats("spin", "angle", "time", "rate", "inertia")
 # Lengths of the last two steps, the fastest wave, by what the next step is shortened; rows of the trace kept.
 PACE = floats("last", "before", "fastest", "share", "kept")

@@ -102,10 +102,6 @@ class Programme(Part):
             row("Programme cells", f"{self.cells} round each wall", "programme.cells"),
             row("Programme dispersion", "with" if self.dispersion else "without", "programme.dispersion"),
             *([] if self.bore == "none" else [row("Programme bores", f"with {self.bore}", "programme.bore")]),
-            *(
-                []
-                if self.capture == "carried"
-                else [row("Liquid captured", self.capture, "programme.capture")]
-            ),
+            *([row("Liquid captured", self.capture, "programme.capture")] * (self.capture != "carried")),
             row("Programme samples", f"{self.samples}", "programme.samples"),
         ]

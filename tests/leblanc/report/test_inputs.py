@@ -58,6 +58,7 @@ PROGRAMME = {
     "cells": 48,
     "dispersion": True,
     "bore": "enstrophy",
+    "capture": "drum",
     "samples": 123,
     "capture": "drum",
 }  # fmt: skip

@@ -16,7 +16,8 @@ from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.linear import couple_linear
-from solvers.runup.machine import Ramp
+from solvers.runup.long_wave import couple
+from solvers.runup.machine import Ramp, RunupModel
 from solvers.runup.programme import FLOOR, Programme, Stage
 from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
 from tests.mutants import kills
@@ -113,6 +114,34 @@ def test_liquid_brakes_and_the_energy_closes() -> None:
         parts.append((found.time[-1], found.largest[free].max(), found.audit.motor))
     # Second order in the step: half the cells are four times as far, a third of this tolerance.
     np.testing.assert_allclose(parts[0], parts[1], rtol=5e-3)
+
+
+@pytest.mark.parametrize("model", [couple_linear, couple])
+def test_what_the_drum_gives_goes_into_drag_and_liquid(model: RunupModel) -> None:
+    """Without unbalance the drum's own energy is what drag takes, less what the liquid brings or takes.
+
+    A ramp leaves the liquid behind; coasting, the drum first drags it on and is then driven by it. Each is a
+    midpoint rule of the same steps; long waves hand the spin over within the square of its change in a step.
+    """
+    stages = (Stage(60.0, duration=1.0), Stage(10.0, duration=60.0, free=True))
+    drive, friction = Programme(20.0, stages, 0.2, 1.0, 0.02), Friction("linear", 1.0)
+    found = run_up(STILL.system(), [FILL], drive, friction, 0.0, ALONE, model=model)
+    free = np.flatnonzero(found.stage == 1)
+    given = run_up(
+        STILL.system(), [FILL], replace(drive, stages=stages[:1]), friction, 0.0, ALONE, model=model
+    )
+    on_liquid = found.audit.drive - given.audit.drive
+    change = 0.5 * 0.2 * (found.speed[-1] ** 2 - found.speed[free[0] - 1] ** 2)
+    assert change == pytest.approx(found.audit.motor - on_liquid, rel=1e-6)
+    assert found.mean_rotation[free[0], 0] < -1.0 and found.mean_rotation[-1, 0] > 0.1
+
+
+def test_a_coast_far_slower_than_its_steps() -> None:
+    """A step takes 3e-7 of the spin, less than rotor and layers agree within: it falls all the same."""
+    drive, numerics = Programme(40.0, (Stage(duration=2.0, free=True),), 0.4, 4e-4), replace(ALONE, cells=512)
+    found = run_up(STILL.system(), [], drive, numerics=numerics)
+    # Rounding of 10^4 steps, each 1e-16 of the spin.
+    assert found.speed[-1] - 40.0 == pytest.approx(-2.0 * 4e-4 / 0.4, rel=1e-7)
 
 
 def test_the_error_compares_equal_times() -> None:
