@@ -160,6 +160,7 @@ RECIPES = (
     Recipe(("validation.figures.whirl_passage",), ("whirl_passage",), minutes=True),
     Recipe(("validation.models.figure",), ("models",)),
     Recipe(("validation.figures.baffles",), ("whirl_baffles",)),
+    Recipe(("validation.cases.baffles.figure",), ("baffles_decay",)),
     Recipe(("validation.figures.runup_trends",), ("runup_trends",), minutes=True),
     Recipe(
         ("validation.figures.exciter",),

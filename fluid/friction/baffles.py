@@ -18,7 +18,9 @@ from meshes.arrays import Array
 Real = Any  # an array or, compiled, a number
 
 # Contraction of the jet behind a baffle, fitted to computed flow [theory: baffles, eq. 2].
-_LEAST, _POWER = 0.5, 1.8
+_LEAST, _POWER = 0.55, 1.8
+# Of the depths before and behind a baffle, the share of the first in the depth at it.
+BEFORE = 0.7
 # A share of the depth that counts as closed.
 CLOSED = 1e-6
 # Above this Froude number the layer shoots over its baffles and their torque falls.
@@ -30,7 +32,7 @@ def open_share(depth: Real, tip: float, gap: float) -> Real:
 
     Parameters
     ----------
-    depth : of the layer in front of them
+    depth : of the layer at them
     tip : distance of their inner edge from the wall
     gap : distance of their outer edge from the wall
     """

@@ -43,7 +43,7 @@ _THINNEST = 0.25
 _share = _jit(baffles.open_share)
 _contraction = _jit(baffles.contraction)
 _celerity = _jit(long_wave.wave_celerity)
-_CLOSED = baffles.CLOSED
+_CLOSED, _BEFORE = baffles.CLOSED, baffles.BEFORE
 
 
 def table_of(fill: Fill, cells: int) -> Array:
@@ -91,7 +91,7 @@ def resistance(depth, row):
 
     Parameters
     ----------
-    depth : h before the baffle
+    depth : h at the baffle
     row : of the table
     """
     if row[LOSS] >= 0.0:
@@ -125,6 +125,12 @@ def _side(area, q, share, spin, full, slot, bed, other):
 def _log(area):
     """L of an area, kept off the axis."""
     return -0.5 * np.log(max(1.0 - 2.0 * area, 1e-3))
+
+
+@_jit
+def _depth(area):
+    """Depth of an area, without cancellation in thin layers."""
+    return 2.0 * area / (1.0 + np.sqrt(max(1.0 - 2.0 * area, 1e-3)))
 
 
 @_jit
@@ -169,9 +175,9 @@ def obstruct(table, area, spin, full, slot, pull_face, before, after, mass, flow
         out_l, out_r = wave_l - spin, wave_r + spin
         whole = wave_l + wave_r
         drive = head_l - head_r + out_l * mass_l + out_r * mass_r
-        surface = area_l if drive > 0.0 else area_r
-        depth = 2.0 * surface / (1.0 + np.sqrt(max(1.0 - 2.0 * surface, 1e-3)))
-        held = resistance(depth, row)
+        deep_l, deep_r = _depth(area_l), _depth(area_r)
+        came, goes = (deep_l, deep_r) if drive > 0.0 else (deep_r, deep_l)
+        held = resistance(_BEFORE * came + (1.0 - _BEFORE) * min(came, goes), row)
         free = drive / whole
         passed, open_ = 0.0, 0.0
         if held >= 0.0:

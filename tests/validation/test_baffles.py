@@ -6,19 +6,15 @@ import numpy as np
 import pytest
 
 from validation.cases.baffles import cases
-from validation.cases.baffles.computed_flow import lagging, reference
+from validation.cases.baffles.computed_flow import lagging
 
 
 def test_decays_and_losses() -> None:
-    """Lag within 0.03 of the spin where the plates leave half open, the driven losses within a quarter."""
+    """The lag of each decay within 0.03 of the spin, the driven losses within a quarter."""
     found = {case.name.partition("/")[2]: case for case in cases()}
     assert set(found) == {"n0", "w6", "w6f", "w6n4", "w9", "d3", "d6", "d9", "d6s", "s6"}
-    for name in ("n0", "w6", "w6f", "w6n4", "d3", "d6", "d9"):
+    for name in ("n0", "w6", "w6f", "w6n4", "w9", "d3", "d6", "d9"):
         assert found[name].verdict == "agrees", found[name]
-    # Struck hard: no quasi-steady law holds at first, and the case says that it differs.
-    assert found["w9"].verdict == "differs"
-    off = lagging("w9").at(np.array(reference("w9")["time"])) - 1 + np.array(reference("w9")["mean_rotation"])
-    assert np.abs(off).max() < 0.045
     assert found["d6s"].verdict == "trend"
 
 

