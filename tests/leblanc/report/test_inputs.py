@@ -173,7 +173,7 @@ def test_the_full_scene_has_every_key_there_is(kind: str) -> None:
     given = {leaf for way in WAYS for leaf in leaves(full(kind, way))}
     pattern = {".".join("*" if part.isdecimal() else part for part in path.split(".")) for path in given}
     for place, model in tables_of(Scene, kind).items():
-        if place[-1:] == ("friction",) or place[-2:] == ("optimise", "duty"):
+        if "friction" in place or place[-2:] == ("optimise", "duty"):
             continue
         if kind == "exciter" and place[:1] in (("cabinet",), ("points",)):
             continue
