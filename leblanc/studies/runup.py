@@ -564,7 +564,7 @@ def planned(scene: Scene) -> Runup | Programme:
     """
     if scene.speed_plan is None:
         allowed = (
-            "a table [runup] in the scene with start, stop, duration, and rate or motor; "
+            "a table [runup] in the scene with start, stop, duration, and rate or motor, or [programme]; "
             "what `leblanc new` writes has one, commented out"
         )
         raise InputError("runup", "missing", allowed)
