@@ -124,6 +124,14 @@ def test_a_programme_of_a_scene_is_that_of_the_solvers() -> None:
     assert found.replace({"programme.steps.1": "hold 2 s"}).digest != found.digest
 
 
+def test_other_words_for_the_same() -> None:
+    """Units and blanks are no part of a scene: the fingerprint is that of the values."""
+    one = {"start": "30 rpm", "steps": ["to 90 rpm in 4 s", "hold 1 min", "to 12 rad/s at 90 rpm/s"]}
+    other = {"start": "0.5 Hz", "steps": ["To  1.5 Hz in 4000 ms", "hold 60 s", "to 12 1/s at 1.5 Hz/s"]}
+    assert scene(one).digest == scene(other).digest
+    assert scene(one).digest != scene(one | {"steps": one["steps"][:2]}).digest
+
+
 @pytest.mark.parametrize(
     "programme, field, told",
     [
