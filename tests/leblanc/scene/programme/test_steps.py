@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from leblanc.scene.programme.steps import MAX_STEPS, Step, parse_step
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.schema.load import SceneError
-from leblanc.studies.runup import drive_of
+from leblanc.studies.drives import drive_of
 from meshes.errors import InputError
 from solvers.runup.programme import Programme, Stage
 from tests.mutants import kills
@@ -108,9 +108,9 @@ def scene(programme: dict[str, object], **changes: object) -> Scene:
 GOOD = ["to 30 rad/s in 2 s", "hold 1 s", "to 20 rad/s at 10 rad/s^2", "coast to 5 rad/s", "coast 2 s"]
 
 
-@kills("leblanc.studies.runup:_stage", "limit if free and step.time is None else", "limit if free else")
+@kills("leblanc.studies.drives:_stage", "limit if free and step.time is None else", "limit if free else")
 @kills(
-    "leblanc.studies.runup:drive_of", "plan.drag_torque,\n            plan.drag_rate", "plan.drag_rate,\n0.0"
+    "leblanc.studies.drives:drive_of", "plan.drag_torque,\n            plan.drag_rate", "plan.drag_rate,\n0.0"
 )
 def test_a_programme_of_a_scene_is_that_of_the_solvers() -> None:
     told = {"steps": GOOD, "inertia": "0.5 kg*m^2", "drag_torque": "2 N*m", "drag_rate": "0.1 1/s"}
