@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,14 +14,16 @@ from fluid.pool import balance_speed, pool_of
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
 from leblanc.results.base import FilledChamber, Note, percent
-from leblanc.results.motion.passages import Passage, passages_of
+from leblanc.results.motion.passages import passages_of
 from leblanc.results.notes import runup as notes
 from leblanc.results.notes.runup import RunupCode
 from leblanc.results.runup import Bands, RunupFrames, RunupResult
 from leblanc.scene.inputs import runup_rows
-from leblanc.scene.programme.steps import Step
-from leblanc.scene.rotors import AnyRotor, polar_inertia_of, sheds_of, unbalances_of, with_unbalances
-from leblanc.scene.scene import JeffcottRotor, Programme, Runup, Scene, dry_rotor, jeffcott, require_clear
+from leblanc.scene.scene import JeffcottRotor, Runup, Scene, dry_rotor, jeffcott, require_clear
+from leblanc.studies.drives import drive_of as drive_of  # asked for with a run-up
+from leblanc.studies.drives import numerics_of as numerics_of
+from leblanc.studies.drives import planned as planned
+from leblanc.studies.drives import programme_notes, rotor_in_time, unbalance_left
 from leblanc.studies.machine import loaded_machine, loads_over_time
 from leblanc.studies.models.choose import across_gravity as across_gravity  # of a run-up, asked for with it
 from leblanc.studies.models.choose import axial_gravity, is_cut, prepare
@@ -32,11 +34,9 @@ from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.layer.records import Outcome
 from solvers.liquid_model import LONG
-from solvers.rotor.system import RotorSystem, Shed
-from solvers.runup import programme
 from solvers.runup.ensemble import EnsembleTask, Member, Spread, member_of, run_member, spread_over
 from solvers.runup.ensemble import ensemble as made_ensemble
-from solvers.runup.machine import Drive, Handover, Motor, Ramp
+from solvers.runup.machine import Drive, Handover
 from solvers.runup.runup import (
     MOST_LAG,
     MOST_WAVE,
@@ -404,67 +404,6 @@ def runup_scene(
     )
 
 
-def unbalance_left(scene: Scene, history: RunupHistory) -> Array | None:
-    """Sizes of all unbalances over what they were at first, shape (k,); None where none of them leaves.
-
-    Parameters
-    ----------
-    scene : the machine
-    history : of its run-up
-    """
-    sizes = unbalances_of(scene.rotor)
-    pairs = zip(sizes, sheds_of(scene.rotor), strict=True)
-    leaving = np.array([size * sheds.share for size, sheds in pairs if sheds is not None])
-    if history.left is None or not leaving.size or not sum(sizes) > 0.0:
-        return None
-    return np.asarray(1.0 - (1.0 - history.left) @ leaving / sum(sizes))
-
-
-def programme_notes(
-    scene: Scene, history: RunupHistory, drive: Drive, passages: Sequence[Passage]
-) -> tuple[Note, ...]:
-    """What was assumed of a spin programme, and which of its steps did not come to their speeds.
-
-    Parameters
-    ----------
-    scene : the machine
-    history : of its programme
-    drive : that it is
-    passages : steps that were reached
-    """
-    plan = scene.programme
-    if plan is None or not isinstance(drive, programme.Programme):
-        return ()
-    stands = plan.start < drive.floor or bool((history.speed <= drive.floor * (1.0 + 1e-3)).any())
-    found = [notes.standing(drive.floor)] if stands else []
-    if plan.coasts and drive.drag_torque == 0.0 and drive.drag_rate == 0.0:
-        found.append(notes.without_drag())
-    for passage in passages:
-        step, stage = plan.steps[passage.step - 1], drive.stages[passage.step - 1]
-        if step.kind != "coast" or step.speed is None or passage.end - passage.begin < plan.coast_limit:
-            continue
-        stop = drive.target(stage, passage.speed_begin)
-        found.append(notes.coast_not_ended(passage.step, stop, passage.speed_end, plan.coast_limit))
-    return tuple(found)
-
-
-def rotor_in_time(scene: Scene) -> RotorSystem:
-    """The dry rotor of a scene with what leaves of its unbalances.
-
-    Parameters
-    ----------
-    scene : the machine
-    """
-    system, sizes, found = dry_rotor(scene).system(), unbalances_of(scene.rotor), []
-    for k, sheds in enumerate(sheds_of(scene.rotor)):
-        if sheds is None:
-            continue
-        alone = [sheds.share * size * (j == k) for j, size in enumerate(sizes)]
-        part = scene.altered(rotor=with_unbalances(scene.rotor, alone))
-        found.append(Shed(dry_rotor(part).system().unbalance, sheds.time_constant, sheds.above))
-    return replace(system, sheds=tuple(found)) if found else system
-
-
 def ensemble_tasks(
     scene: Scene, drive: Drive, gravity: float, numerics: RunupNumerics, count: int, seed: int
 ) -> list[EnsembleTask]:
@@ -576,68 +515,6 @@ def _never_caught(scene: Scene, history: RunupHistory) -> Iterator[Note]:
         if gravity == 0.0 or pool is None or history.captured[:, k].any() or top <= held_from(scene, fill):
             continue
         yield notes.not_carried(k, top, balance_speed(fill, pool, scene.model.friction, gravity))
-
-
-def planned(scene: Scene) -> Runup | Programme:
-    """The run-up or the programme of a scene.
-
-    Raises
-    ------
-    InputError : it has none
-    """
-    if scene.speed_plan is None:
-        allowed = (
-            "a table [runup] in the scene with start, stop, duration, and rate or motor; "
-            "what `leblanc new` writes has one, commented out"
-        )
-        raise InputError("runup", "missing", allowed)
-    return scene.speed_plan
-
-
-def drive_of(plan: Runup | Programme, rotor: AnyRotor | None = None) -> Drive:
-    """Ramp or motor of a run-up, or the stages of a programme.
-
-    Parameters
-    ----------
-    plan : of a scene
-    rotor : of the scene, whose moment of inertia a coasting drum has where the programme names none
-    """
-    if isinstance(plan, Programme):
-        own = None if rotor is None else polar_inertia_of(rotor)
-        inertia = own or None if plan.inertia is None else plan.inertia
-        return programme.Programme(
-            plan.start,
-            tuple(_stage(step, plan.coast_limit) for step in plan.steps),
-            inertia,
-            plan.drag_torque,
-            plan.drag_rate,
-        )
-    if plan.motor is not None:
-        motor = plan.motor
-        return Motor(plan.start, motor.inertia, motor.speeds, motor.torques, plan.duration)
-    if plan.rate is None:
-        raise InputError("runup.rate", None, "given where there is no motor")
-    return Ramp(plan.start, plan.stop, plan.rate, plan.duration, plan.back)
-
-
-def _stage(step: Step, limit: float) -> programme.Stage:
-    """A step of a programme as the solvers take it; a coast to a speed lasts no longer than a limit, s."""
-    free = step.kind == "coast"
-    return programme.Stage(step.speed, step.rate, limit if free and step.time is None else step.time, free)
-
-
-def numerics_of(
-    plan: Runup | Programme, cells: int | None = None, samples: int | None = None, check: bool = True
-) -> RunupNumerics:
-    """Resolution of a run-up; the scene's where nothing else is given."""
-    return RunupNumerics(
-        cells=plan.cells if cells is None else cells,
-        samples=plan.samples if samples is None else samples,
-        dispersion=plan.dispersion,
-        enstrophy=plan.bore == "enstrophy",
-        handover=Handover(plan.capture),
-        companion=check,
-    )
 
 
 def steady_response(scene: Scene, speed: Array) -> Response | None:

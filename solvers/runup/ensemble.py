@@ -45,10 +45,14 @@ class Member:
     ----------
     amplitude : modulus of the first deflection at the times that were reached, m, shape (j,)
     largest : largest amplitude since the time before, m, shape (j,)
+    time : those times, s, shape (j,); None where they are those of all runs
+    ended : it came to its end; None where the number of times says so
     """
 
     amplitude: Array
     largest: Array
+    time: Array | None = None
+    ended: bool | None = None
 
 
 @dataclass(frozen=True)
@@ -138,7 +142,7 @@ def run_member(task: EnsembleTask) -> Member:
 
 def member_of(history: RunupHistory) -> Member:
     """What an ensemble keeps of a run."""
-    return Member(history.amplitude, history.largest)
+    return Member(history.amplitude, history.largest, history.time, history.converged)
 
 
 def spread_over(members: Iterable[Member], asked: int, count: int, seed: int) -> Spread:
@@ -154,8 +158,9 @@ def spread_over(members: Iterable[Member], asked: int, count: int, seed: int) ->
     runs = list(members)
     amplitude = np.full((len(runs), count), np.nan)
     for row, run in zip(amplitude, runs, strict=True):
-        reached = min(count, run.amplitude.size)
-        row[:reached] = run.amplitude[:reached]
+        found = _at_times_of(runs[0], run)
+        reached = min(count, found.size)
+        row[:reached] = found[:reached]
     known = ~np.isnan(amplitude).all(axis=0)
     low, high, middle = (np.full(count, np.nan) for _ in range(3))
     low[known], high[known] = np.nanmin(amplitude[:, known], axis=0), np.nanmax(amplitude[:, known], axis=0)
@@ -163,7 +168,7 @@ def spread_over(members: Iterable[Member], asked: int, count: int, seed: int) ->
     return Spread(
         asked=asked,
         members=len(runs),
-        lost=int(sum(run.amplitude.size < count for run in runs)),
+        lost=sum(_lost(run, count) for run in runs),
         change=CHANGE,
         seed=seed,
         amplitude_min=low,
@@ -171,3 +176,16 @@ def spread_over(members: Iterable[Member], asked: int, count: int, seed: int) ->
         amplitude_median=middle,
         peaks=np.array([run.largest.max() for run in runs]),
     )
+
+
+def _at_times_of(first: Member, run: Member) -> Array:
+    """Amplitudes of a run at the times of the first: a drum that coasts has corners of its own."""
+    if run.time is None or first.time is None or np.array_equal(run.time, first.time[: run.time.size]):
+        return run.amplitude
+    reached = first.time[first.time <= run.time[-1] * (1.0 + 1e-9)]
+    return np.asarray(np.interp(reached, run.time, run.amplitude))
+
+
+def _lost(run: Member, count: int) -> bool:
+    """The run did not come to its end."""
+    return run.amplitude.size < count if run.ended is None else not run.ended

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import astuple
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, PlainValidator
@@ -80,7 +81,7 @@ class Programme(Part):
 
     def content(self) -> dict[str, Any]:
         """What it says, for the fingerprint of a scene."""
-        return self.model_dump(exclude={"steps"}) | {"steps": [step.written() for step in self.steps]}
+        return self.model_dump(exclude={"steps"}) | {"steps": [astuple(step) for step in self.steps]}
 
     def rows(self) -> list[Row]:
         """What it says, for readers."""

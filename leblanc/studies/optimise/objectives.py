@@ -67,7 +67,7 @@ class RunupPeak:
         return np.array([self._one(np.ascontiguousarray(row)) for row in volumes])
 
     def _one(self, volumes: Array) -> float:
-        from leblanc.studies.runup import rotor_in_time
+        from leblanc.studies.drives import rotor_in_time
         from solvers.runup.runup import run_up
 
         key = volumes.tobytes()

@@ -60,7 +60,6 @@ PROGRAMME = {
     "bore": "enstrophy",
     "capture": "drum",
     "samples": 123,
-    "capture": "drum",
 }  # fmt: skip
 SHEDS = {"share": 0.35, "time_constant": "13 s", "above": "340 rpm"}
 AROUND = {

@@ -91,8 +91,8 @@ def test_changes_are_seeded_and_small() -> None:
 
 
 @kills("solvers.runup.ensemble:spread_over", "np.nanmedian", "np.nanmax")
-@kills("solvers.runup.ensemble:spread_over", "row[:reached] = run.amplitude[:reached]", "row[:] = 0.0")
-@kills("solvers.runup.ensemble:spread_over", "run.amplitude.size < count", "run.amplitude.size <= count")
+@kills("solvers.runup.ensemble:spread_over", "row[:reached] = found[:reached]", "row[:] = 0.0")
+@kills("solvers.runup.ensemble:_lost", "run.amplitude.size < count", "run.amplitude.size <= count")
 def test_ranges_by_hand() -> None:
     """A member that ends early counts where it was."""
     rows = [[1.0, 2.0, 4.0], [1.5, 2.5, 5.0], [2.0, 6.0]]

@@ -109,6 +109,27 @@ def test_what_is_shown(result: RunupResult) -> None:
     assert "motor off" in texts
 
 
+def test_films_and_ensembles() -> None:
+    """Frames at regular times, to the end of a coast; runs that rounding tells apart, sample by sample."""
+    scene = machine(steps=STEPS[:2] + STEPS[4:], samples=200)
+    found = lb.run_up(scene, check=False, frames=20, ensemble=2)
+    frames, spread = found.frames, found.spread
+    assert frames is not None and spread is not None
+    assert 17 <= frames.time.size <= 20 and set(frames.time) <= set(found.time)
+    np.testing.assert_array_equal(frames.speed, found.speed[np.isin(found.time, frames.time)])
+    assert np.diff(frames.time).max() < 1.5 * np.diff(frames.time).min()
+    # Until the wall runs dry, in the coast, rounding is all; then a drum coasts for other times as well.
+    width = (spread.amplitude_max - spread.amplitude_min)[found.time < 10.0]
+    assert spread.lost == 0 and width.max() < 1e-9 * found.peak["amplitude"]
+    assert spread.largest_spread < 0.01 and np.isfinite(spread.amplitude_max[:-2]).all()
+
+
+def test_what_explain_says_before() -> None:
+    assert "coasting drum feels the torque" in lb.explain(machine()).runup
+    driven = machine(steps=STEPS[:3]).replace({"model.tolerance": 0.05})
+    assert "linear layers first" in lb.explain(driven).runup
+
+
 def test_the_objective_takes_the_way_down_too() -> None:
     """Largest over the whole programme, with the cells of the scene."""
     scene = machine()

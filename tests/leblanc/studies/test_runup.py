@@ -144,8 +144,8 @@ def test_a_mean_over_turns_of_few_samples() -> None:
 # --- what is asked ---------------------------------------------------------------------------------------
 
 
-@kills("leblanc.studies.runup:drive_of", "plan.rate, plan.duration", "plan.duration, plan.rate")
-@kills("leblanc.studies.runup:drive_of", "Motor(plan.start, motor", "Motor(plan.stop, motor")
+@kills("leblanc.studies.drives:drive_of", "plan.rate, plan.duration", "plan.duration, plan.rate")
+@kills("leblanc.studies.drives:drive_of", "Motor(plan.start, motor", "Motor(plan.stop, motor")
 def test_drive() -> None:
     """The ramp of a scene as its file says it."""
     plan = scene(runup={"back": True}).runup

@@ -14,7 +14,7 @@ from leblanc.scene.inputs import input_rows
 from leblanc.scene.rotors import TubRotor, sheds_of, unbalances_of, with_unbalances
 from leblanc.scene.scene import Scene, dry_rotor, scene_from_table
 from leblanc.scene.schema.load import SceneError
-from leblanc.studies.runup import rotor_in_time
+from leblanc.studies.drives import rotor_in_time
 from tests.mutants import kills
 
 SHEDS = {"share": 0.3, "time_constant": "0.5 s", "above": "20 rad/s"}
@@ -68,7 +68,7 @@ def test_sizes_in_their_order() -> None:
     assert isinstance(both, TubRotor) and both.loads[1].sheds is not None
 
 
-@kills("leblanc.studies.runup:rotor_in_time", "sheds.share * size * (j == k)", "sheds.share * size")
+@kills("leblanc.studies.drives:rotor_in_time", "sheds.share * size * (j == k)", "sheds.share * size")
 def test_what_leaves_has_its_place() -> None:
     """The share of one load, where that lies."""
     loads = {"position": 0.06, "size": 0.05}, {"position": -0.1, "size": 0.03, "angle": 1.0, "sheds": SHEDS}

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from leblanc.scene.programme.steps import MAX_STEPS, Step, parse_step
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.schema.load import SceneError
-from leblanc.studies.runup import drive_of
+from leblanc.studies.drives import drive_of
 from meshes.errors import InputError
 from solvers.runup.programme import Programme, Stage
 from tests.mutants import kills
@@ -108,9 +108,9 @@ def scene(programme: dict[str, object], **changes: object) -> Scene:
 GOOD = ["to 30 rad/s in 2 s", "hold 1 s", "to 20 rad/s at 10 rad/s^2", "coast to 5 rad/s", "coast 2 s"]
 
 
-@kills("leblanc.studies.runup:_stage", "limit if free and step.time is None else", "limit if free else")
+@kills("leblanc.studies.drives:_stage", "limit if free and step.time is None else", "limit if free else")
 @kills(
-    "leblanc.studies.runup:drive_of", "plan.drag_torque,\n            plan.drag_rate", "plan.drag_rate,\n0.0"
+    "leblanc.studies.drives:drive_of", "plan.drag_torque,\n            plan.drag_rate", "plan.drag_rate,\n0.0"
 )
 def test_a_programme_of_a_scene_is_that_of_the_solvers() -> None:
     told = {"steps": GOOD, "inertia": "0.5 kg*m^2", "drag_torque": "2 N*m", "drag_rate": "0.1 1/s"}
@@ -122,6 +122,14 @@ def test_a_programme_of_a_scene_is_that_of_the_solvers() -> None:
     again = scene_from_table(found.table())
     assert again == found and again.digest == found.digest
     assert found.replace({"programme.steps.1": "hold 2 s"}).digest != found.digest
+
+
+def test_other_words_for_the_same() -> None:
+    """Units and blanks are no part of a scene: the fingerprint is that of the values."""
+    one = {"start": "30 rpm", "steps": ["to 90 rpm in 4 s", "hold 1 min", "to 12 rad/s at 90 rpm/s"]}
+    other = {"start": "0.5 Hz", "steps": ["To  1.5 Hz in 4000 ms", "hold 60 s", "to 12 1/s at 1.5 Hz/s"]}
+    assert scene(one).digest == scene(other).digest
+    assert scene(one).digest != scene(one | {"steps": one["steps"][:2]}).digest
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,144 @@
+"""How a scene drives its machine through time: run-up or programme, and what leaves its rotor by then."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from leblanc.results.base import Note
+from leblanc.results.motion.passages import Passage
+from leblanc.results.notes import runup as notes
+from leblanc.scene.programme.steps import Step
+from leblanc.scene.rotors import AnyRotor, polar_inertia_of, sheds_of, unbalances_of, with_unbalances
+from leblanc.scene.scene import Programme, Runup, Scene, dry_rotor
+from meshes.arrays import Array
+from meshes.errors import InputError
+from solvers.rotor.system import RotorSystem, Shed
+from solvers.runup import programme
+from solvers.runup.machine import Drive, Handover, Motor, Ramp
+from solvers.runup.runup import RunupHistory, RunupNumerics
+
+
+def planned(scene: Scene) -> Runup | Programme:
+    """The run-up or the programme of a scene.
+
+    Raises
+    ------
+    InputError : it has none
+    """
+    if scene.speed_plan is None:
+        allowed = (
+            "a table [runup] in the scene with start, stop, duration, and rate or motor, or [programme]; "
+            "what `leblanc new` writes has one, commented out"
+        )
+        raise InputError("runup", "missing", allowed)
+    return scene.speed_plan
+
+
+def drive_of(plan: Runup | Programme, rotor: AnyRotor | None = None) -> Drive:
+    """Ramp or motor of a run-up, or the stages of a programme.
+
+    Parameters
+    ----------
+    plan : of a scene
+    rotor : of the scene, whose moment of inertia a coasting drum has where the programme names none
+    """
+    if isinstance(plan, Programme):
+        own = None if rotor is None else polar_inertia_of(rotor)
+        inertia = own or None if plan.inertia is None else plan.inertia
+        return programme.Programme(
+            plan.start,
+            tuple(_stage(step, plan.coast_limit) for step in plan.steps),
+            inertia,
+            plan.drag_torque,
+            plan.drag_rate,
+        )
+    if plan.motor is not None:
+        motor = plan.motor
+        return Motor(plan.start, motor.inertia, motor.speeds, motor.torques, plan.duration)
+    if plan.rate is None:
+        raise InputError("runup.rate", None, "given where there is no motor")
+    return Ramp(plan.start, plan.stop, plan.rate, plan.duration, plan.back)
+
+
+def _stage(step: Step, limit: float) -> programme.Stage:
+    """A step of a programme as the solvers take it; a coast to a speed lasts no longer than a limit, s."""
+    free = step.kind == "coast"
+    return programme.Stage(step.speed, step.rate, limit if free and step.time is None else step.time, free)
+
+
+def numerics_of(
+    plan: Runup | Programme, cells: int | None = None, samples: int | None = None, check: bool = True
+) -> RunupNumerics:
+    """Resolution of a run-up; the scene's where nothing else is given."""
+    return RunupNumerics(
+        cells=plan.cells if cells is None else cells,
+        samples=plan.samples if samples is None else samples,
+        dispersion=plan.dispersion,
+        enstrophy=plan.bore == "enstrophy",
+        handover=Handover(plan.capture),
+        companion=check,
+    )
+
+
+def rotor_in_time(scene: Scene) -> RotorSystem:
+    """The dry rotor of a scene with what leaves of its unbalances.
+
+    Parameters
+    ----------
+    scene : the machine
+    """
+    system, sizes, found = dry_rotor(scene).system(), unbalances_of(scene.rotor), []
+    for k, sheds in enumerate(sheds_of(scene.rotor)):
+        if sheds is None:
+            continue
+        alone = [sheds.share * size * (j == k) for j, size in enumerate(sizes)]
+        part = scene.altered(rotor=with_unbalances(scene.rotor, alone))
+        found.append(Shed(dry_rotor(part).system().unbalance, sheds.time_constant, sheds.above))
+    return replace(system, sheds=tuple(found)) if found else system
+
+
+def unbalance_left(scene: Scene, history: RunupHistory) -> Array | None:
+    """Sizes of all unbalances over what they were at first, shape (k,); None where none of them leaves.
+
+    Parameters
+    ----------
+    scene : the machine
+    history : of its run-up
+    """
+    sizes = unbalances_of(scene.rotor)
+    pairs = zip(sizes, sheds_of(scene.rotor), strict=True)
+    leaving = np.array([size * sheds.share for size, sheds in pairs if sheds is not None])
+    if history.left is None or not leaving.size or not sum(sizes) > 0.0:
+        return None
+    return np.asarray(1.0 - (1.0 - history.left) @ leaving / sum(sizes))
+
+
+def programme_notes(
+    scene: Scene, history: RunupHistory, drive: Drive, passages: Sequence[Passage]
+) -> tuple[Note, ...]:
+    """What was assumed of a spin programme, and which of its steps did not come to their speeds.
+
+    Parameters
+    ----------
+    scene : the machine
+    history : of its programme
+    drive : that it is
+    passages : steps that were reached
+    """
+    plan = scene.programme
+    if plan is None or not isinstance(drive, programme.Programme):
+        return ()
+    stands = plan.start < drive.floor or bool((history.speed <= drive.floor * (1.0 + 1e-3)).any())
+    found = [notes.standing(drive.floor)] if stands else []
+    if plan.coasts and drive.drag_torque == 0.0 and drive.drag_rate == 0.0:
+        found.append(notes.without_drag())
+    for passage in passages:
+        step, stage = plan.steps[passage.step - 1], drive.stages[passage.step - 1]
+        if step.kind != "coast" or step.speed is None or passage.end - passage.begin < plan.coast_limit:
+            continue
+        stop = drive.target(stage, passage.speed_begin)
+        found.append(notes.coast_not_ended(passage.step, stop, passage.speed_end, plan.coast_limit))
+    return tuple(found)
