@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fluid.fill import FULL, Fill
+from fluid.friction.baffles import loss_coefficient, open_share
 from fluid.friction.laws import Friction, FrictionLaw, stokes_coefficient
 from fluid.friction.pipe import drag_speed
 from meshes.arrays import Array
@@ -112,7 +113,7 @@ def sloshing_number(half_angle: float) -> float:
 
 
 def wall_torque(fill: Fill, pool: Pool, friction: Friction, rotation: ArrayLike) -> Array:
-    """Torque of the walls on a pool past which they move [theory: pool, eq. 6].
+    """Torque of walls and baffles on a pool past which they move [theory: pool, eq. 6-7].
 
     Parameters
     ----------
@@ -126,6 +127,12 @@ def wall_torque(fill: Fill, pool: Pool, friction: Friction, rotation: ArrayLike)
     N m, of the sign of the rotation, shape (...,)
     """
     turn = np.asarray(rotation, dtype=float)
+    pushed = _baffle_factor(fill, pool) * turn * np.abs(turn)
+    return np.asarray(_shear_torque(fill, pool, friction, turn) + pushed)
+
+
+def _shear_torque(fill: Fill, pool: Pool, friction: Friction, turn: Array) -> Array:
+    """Torque of the walls' shear."""
     chamber, density = fill.chamber, fill.liquid.density
     radius, inner, height = chamber.radius, chamber.inner_radius, chamber.height
     # Of the walls the integrals of r^2 and r^3, of floor and lid those of their section.
@@ -148,8 +155,28 @@ def wall_torque(fill: Fill, pool: Pool, friction: Friction, rotation: ArrayLike)
     return 0.0 * turn
 
 
+# Drag coefficient of a plate on a wall under much liquid, and the open share below which more closes nothing.
+_PLATE, _NARROW = 1.2, 0.05
+
+
+def _baffle_factor(fill: Fill, pool: Pool) -> float:
+    """Torque of the baffles under a pool over the rotation squared, kg m^2 [theory: pool, eq. 7]."""
+    chamber = fill.chamber
+    if chamber.baffles is None:
+        return 0.0
+    baffles, radius = chamber.baffles, chamber.radius
+    tip, gap = radius - baffles.tip_radius, baffles.wall_gap
+    depth = pool.area / (2.0 * pool.half_angle * radius)
+    plate = _PLATE * (min(tip, depth) - min(gap, depth))
+    loss = loss_coefficient(max(float(open_share(depth, tip, gap)), _NARROW))
+    width = max(plate, loss * depth) if baffles.loss is None else baffles.loss * depth
+    lever = radius - 0.5 * (min(tip, depth) + min(gap, depth))
+    wet = baffles.count * pool.half_angle / math.pi
+    return float(0.5 * fill.liquid.density * chamber.height * wet * width * lever**3)
+
+
 def balance_speed(fill: Fill, pool: Pool, friction: Friction, gravity: float) -> float:
-    """Spin speed at which the walls' drag lifts a pool to the height of the axis [theory: pool, eq. 7].
+    """Spin speed at which the walls' drag lifts a pool to the height of the axis [theory: pool, eq. 8].
 
     Above it gravity cannot hold the pool: it is carried round.
 

@@ -143,8 +143,9 @@ def _covering(fill: Fill, deflection: float, speed: float, gravity: float) -> fl
 
 def _carried_from(scene: Scene, fill: Fill) -> float | None:
     """Speed above which gravity cannot hold the liquid at the bottom against the walls, rad/s."""
-    gravity, pool = across_gravity(scene), pool_of(fill)
-    if gravity == 0.0 or pool is None or fill.chamber.section is not None:
+    gravity = across_gravity(scene)
+    pool = None if fill.chamber.section is not None else pool_of(fill)
+    if gravity == 0.0 or pool is None:
         return None
     return balance_speed(fill, pool, scene.model.friction, gravity)
 

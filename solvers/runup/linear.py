@@ -254,7 +254,7 @@ def couple_linear(
     layers = records(LINEAR_LAYER, count)
     for j, fill in enumerate(fills):
         layers[j] = _layer(fill, friction)
-    drags = drag_curves(fills, rest.pools, friction)
+    drags = drag_curves(fills, rest.pools, friction, gravity)
     pools = records(POOL, count)
     for j, pool in enumerate(rest.pools):
         if pool is not None and handover is not Handover.RIDING:

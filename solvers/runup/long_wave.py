@@ -212,7 +212,7 @@ class Coupled(CoupledRotor):
         """Catch the liquid that can be a layer by now, let go what cannot; energy brought in, J.
 
         The momentum of rotor and liquid stays, and, of liquid that the drum does not take along, its angular
-        momentum about the chamber's axis [theory: pool, eq. 8-10].
+        momentum about the chamber's axis [theory: pool, eq. 9-11].
         """
         riding = self.handover is Handover.RIDING
         own = np.zeros(len(self.fills)) if riding else self._own_rotation()
@@ -413,7 +413,7 @@ def couple(
         momentum=-spin * np.square(area),
         rolling=np.zeros((count, cells if enstrophy else 0)),
         active=np.zeros(count, dtype=bool),
-        drags=drag_curves(fills, rest.pools, friction),
+        drags=drag_curves(fills, rest.pools, friction, gravity),
         machine=Machine(
             matrices=np.zeros((4, n, n)),
             unbalance=system.unbalance.astype(complex),

@@ -121,27 +121,31 @@ def layer_capture(fill: Fill, gravity: float) -> float:
     return math.sqrt(gravity / fill.surface_radius)
 
 
-# Relative rotations at which a pool's torque is kept, rad/s: straight lines between them are right to 3e-4.
-_TURNS = np.concatenate(([0.0], np.geomspace(1e-4, 1e4, 380)))
+# Relative rotations at which a pool's torque is kept, over the frequency of its pendulum at g: straight lines
+# between them are right to 3e-4.
+_TURNS = np.concatenate(([0.0], np.geomspace(1e-5, 1e4, 430)))
 
 
-def drag_curves(fills: Sequence[Fill], pools: Sequence[Pool | None], friction: Friction) -> Array:
+def drag_curves(
+    fills: Sequence[Fill], pools: Sequence[Pool | None], friction: Friction, gravity: float
+) -> Array:
     """Relative rotation of the walls and their torque on each pool, as the steps take it.
 
     Parameters
     ----------
     fills, pools : chambers, and what lies in them, shape (l,)
     friction : as for `fluid.pool.wall_torque`
+    gravity : across the axis, m/s^2
 
     Returns
     -------
     rad/s, rising from 0, and N m, 0 where there is no pool, shape (l, 2, k)
     """
     found = np.zeros((len(fills), 2, _TURNS.size))
-    found[:, 0] = _TURNS
     for j, (fill, pool) in enumerate(zip(fills, pools, strict=True)):
         if pool is not None:
-            found[j, 1] = wall_torque(fill, pool, friction, _TURNS)
+            found[j, 0] = math.sqrt(gravity / pool.length) * _TURNS
+            found[j, 1] = wall_torque(fill, pool, friction, found[j, 0])
     return found
 
 
@@ -386,7 +390,7 @@ class CoupledRotor(ABC):
         return rides & (self.balance < spin) if self.swings.any() else rides
 
     def caught(self, active: Flags, own: Array) -> Flags:
-        """Which liquids are layers from now on [theory: pool, eq. 8-9].
+        """Which liquids are layers from now on [theory: pool, eq. 9-10].
 
         Parameters
         ----------

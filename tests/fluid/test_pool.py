@@ -16,6 +16,7 @@ from fluid.friction.laws import Friction
 from fluid.friction.pipe import friction_factor
 from fluid.liquid import Liquid
 from fluid.pool import Pool, balance_speed, pool_of, sloshing_number, wall_torque
+from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from tests.mutants import kills
 
@@ -149,9 +150,9 @@ def drag(fill: Fill, pool: Pool, friction: Friction, turn: float) -> float:
     return found
 
 
-@kills("fluid.pool:wall_torque", "shear * turn * (walls_2 + 2.0 * pool.square)", "shear * turn * walls_2")
-@kills("fluid.pool:wall_torque", "height * arc * r**4", "height * arc * r**3")
-@kills("fluid.pool:wall_torque", "(walls_3 + 2.0 * pool.cube)", "(walls_3 + pool.cube)")
+@kills("fluid.pool:_shear_torque", "shear * turn * (walls_2 + 2.0 * pool.square)", "shear * turn * walls_2")
+@kills("fluid.pool:_shear_torque", "height * arc * r**4", "height * arc * r**3")
+@kills("fluid.pool:_shear_torque", "(walls_3 + 2.0 * pool.cube)", "(walls_3 + pool.cube)")
 @kills("fluid.pool:balance_speed", "pool.mass * gravity * pool.arm", "pool.mass * gravity")
 def test_drag_and_balance() -> None:
     """The torque is the sum of the shear; at the speed of balance it holds the pool at the axis' height."""
@@ -170,3 +171,25 @@ def test_drag_and_balance() -> None:
         rigid = BRINE.density * 0.06 * pool.square
         assert float(wall_torque(fill, pool, Friction("linear", 2.0), 3.0)) == pytest.approx(6.0 * rigid)
         assert balance_speed(fill, pool, Friction(), 9.81) == math.inf
+
+
+@kills("fluid.pool:_baffle_factor", "max(plate, loss * depth)", "loss * depth")
+@kills("fluid.pool:_baffle_factor", "baffles.count * pool.half_angle / math.pi", "baffles.count")
+@kills("fluid.pool:wall_torque", "turn * np.abs(turn)", "turn * turn")
+def test_baffles_push() -> None:
+    """Those under the pool, each by the head that the flow past it loses, or as a plate under much liquid."""
+    for tip, high in ((0.21, True), (0.2399, False)):
+        chamber = Chamber(0.24, 0.06, 0.0, baffles=Baffles(8, tip))
+        fill = Fill(chamber, BRINE, 1.2e-3)
+        pool = pool_of(fill)
+        assert pool is not None
+        depth = 0.02 / (2.0 * pool.half_angle * 0.24)
+        open_part = 1.0 - (0.24 - tip) / depth
+        jet = (0.55 + 0.45 * open_part**1.8) * open_part
+        lost = depth * (1.0 / jet - 1.0) ** 2
+        drag_width = 1.2 * (0.24 - tip)
+        assert (lost > drag_width) is high
+        force = 0.5 * BRINE.density * 0.06 * max(lost, drag_width) * (3.0 * 0.5 * (0.24 + tip)) ** 2
+        wet = 8.0 * pool.half_angle / math.pi
+        found = float(wall_torque(fill, pool, Friction(), -3.0))
+        assert found == pytest.approx(-wet * force * 0.5 * (0.24 + tip), rel=1e-12)
