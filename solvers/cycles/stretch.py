@@ -17,7 +17,9 @@ _jit: Any = njit(**COMPILED)
 
 
 @_jit
-def advance_each(areas, momenta, pace, start, time, parts, drive, wall, angles, courant, most, spare, loads):
+def advance_each(
+    areas, momenta, pace, start, time, parts, drive, wall, angles, inside, courant, most, spare, loads
+):
     """Advance states of a layer, one after the other, through a time in equal steps.
 
     Parameters
@@ -26,7 +28,7 @@ def advance_each(areas, momenta, pace, start, time, parts, drive, wall, angles, 
     pace : record PACE, shape (1,), scratch
     start, time : when they begin, and how long they go on
     parts : steps that the time is cut into
-    drive, wall, angles, courant, most, spare : as for `solvers.layer.step.advance`
+    drive, wall, angles, inside, courant, most, spare : as for `solvers.layer.step.advance`
     loads : results, record LOADS, shape (m,): of each state, added to
 
     Returns
@@ -38,8 +40,8 @@ def advance_each(areas, momenta, pace, start, time, parts, drive, wall, angles, 
         for part in range(parts):
             stop = start + time * (part + 1) / parts
             outcome, _ = advance(
-                areas[k], momenta[k], areas[k, :0], pace, stop, drive, wall, angles, courant, most, spare,
-                loads[k : k + 1],
+                areas[k], momenta[k], areas[k, :0], pace, stop, drive, wall, angles, inside, courant, most,
+                spare, loads[k : k + 1],
             )  # fmt: skip
             if outcome != Outcome.DONE:
                 return False

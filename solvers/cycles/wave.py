@@ -19,6 +19,7 @@ from fluid.friction.laws import Friction, FrictionLaw, layer_thickness, plate_fa
 from fluid.friction.pipe import hydraulic_diameter
 from fluid.friction.wall import drag_table
 from meshes.arrays import Array, Complex
+from solvers.layer.inside import NOTHING
 from solvers.layer.records import LOADS, PACE, Drive, Outcome, Wall, records
 from solvers.layer.state import ring
 from solvers.slices import compiled, step_budget
@@ -215,7 +216,7 @@ class StandingWave:
         drive, wall, most = self._posed(given, time, _LONGEST)
         done = compiled(
             *(advance_each, areas, momenta, records(PACE), 0.0, time, self._parts, drive, wall),
-            *(self._angles, _LONGEST, most, self._scratch, loads),
+            *(self._angles, NOTHING, _LONGEST, most, self._scratch, loads),
         )
         if not done:
             return None
@@ -240,7 +241,7 @@ class StandingWave:
             stop = start + time * (part + 1) / max(parts, 1)
             outcome, _ = compiled(
                 *(advance, state[:n], state[n:], np.empty(0), pace, stop, drive, wall, self._angles),
-                *(courant, most, self._scratch, loads),
+                *(NOTHING, courant, most, self._scratch, loads),
             )
             if outcome != Outcome.DONE:
                 return None

@@ -39,6 +39,8 @@ COLUMNS = 7
 FEWEST_CELLS = 4
 # A thin side of a face takes waves at least as fast as a layer of this share of the other's depth.
 _THINNEST = 0.25
+# A face with no more than this on both sides has nothing to let through.
+_DRY = 1e-12
 
 _share = _jit(baffles.open_share)
 _contraction = _jit(baffles.contraction)
@@ -159,6 +161,8 @@ def obstruct(table, area, spin, full, slot, pull_face, before, after, mass, flow
         if i < 0:
             continue
         area_l, area_r = before[0, i], after[0, i]
+        if max(area_l, area_r) <= _DRY:
+            continue
         # A film beside the face has less to give than its state at the face, which slopes with the bed.
         full_l = min(1.0, 2.0 * area[i - 1] / max(area_l, 1e-300))
         full_r = min(1.0, 2.0 * area[i] / max(area_r, 1e-300))

@@ -49,6 +49,16 @@ def wild(n: int) -> tuple[np.ndarray, np.ndarray]:
     return area, (0.2 * np.sin(theta) - 0.1) * area - SPIN * area**2
 
 
+@kills("solvers.layer.baffles:obstruct", "<= _DRY", "< 0.0")
+def test_a_dry_face() -> None:
+    """Where both cells beside a baffle are dry nothing passes, and no rate is lost."""
+    area, q = wild(32)
+    area[6:11], q[6:11] = 0.0, 0.0
+    for height in (0.0, 0.05, 0.5):
+        d_area, d_q, mass = rates(area, q, table([8], height), 0.1)
+        assert np.isfinite(d_area).all() and np.isfinite(d_q).all() and mass[8] == 0.0
+
+
 @kills("solvers.layer.baffles:obstruct", "open_ * (mass[i] - free)", "open_ * mass[i]")
 @kills("solvers.layer.baffles:obstruct", "flow[i] - own_l - slope_l", "flow[i] - slope_l")
 @kills("solvers.layer.baffles:obstruct", "flow[i] - own_r - slope_r", "flow[i] - slope_r")
