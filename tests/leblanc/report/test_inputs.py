@@ -108,8 +108,8 @@ OTHER_WAY = {
 LAWS = {"density": DensityLaw, "viscosity": ViscosityLaw}
 # Checked in a test of their own.
 OTHERS = {
-    "assumed", "model.friction.quadratic", "chambers.*.section", "chambers.*.section_unit",
-    "chambers.*.section_size",
+    "assumed", "model.friction.quadratic", "model.friction.wall.roughness",
+    "chambers.*.section", "chambers.*.section_unit", "chambers.*.section_size",
     *(f"chambers.*.liquid.{key}" for key in ("temperature", "salt", "mass_fraction", "name")),
     *(f"chambers.*.liquid.{part}.{key}" for part, law in LAWS.items() for key in law.model_fields),
 }  # fmt: skip
