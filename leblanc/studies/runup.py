@@ -500,7 +500,7 @@ def _notes(
         None if spread is None else notes.rounding(spread, h),
         notes.energy_left(h.audit.closure),
         notes.largest_amplitude(h, steady),
-        *(notes.capture(transfer, h.handover) for transfer in h.transfers),
+        *notes.captures(h.transfers, h.handover),
         *_never_caught(scene, h),
         notes.self_excited_on_the_way(bands, scene.model.friction, whirl_on_the_way(scene, bands)),
     ]

@@ -154,8 +154,8 @@ class LinearCoupled(CoupledRotor):
             m.place[row], m.rate[row], m.active[j] = 0.0, 0.0, wanted[j]
             m.carried[j] = own[j] if wanted[j] and self.handover is Handover.CARRIED else self.spin
             if not wanted[j] and self.swings[j]:
-                m.rate[n + 2 * j] = own[j] * self.spread_inertia[j] / self.pool_inertia[j]
-                self.lean[j], self.lean_rate[j] = 0.0, m.rate[n + 2 * j]
+                self.lean[j] = 0.0
+                self.lean_rate[j] = m.rate[n + 2 * j] = self.fallen_rate(own)[j]
                 lost -= m.planes[j].T @ self._momentum(j)
         # What else moves keeps its momentum: the offsets' rates act on the rotor through their masses.
         m.rate[:n] += np.linalg.solve(whole, lost)

@@ -248,10 +248,7 @@ class Coupled(CoupledRotor):
             lost += plane.T @ momentum * anew[j]
         spread = own * self.spread_inertia
         fallen = anew & ~wanted & self.swings
-        self.lean_rate[fallen] = spread[fallen] / self.pool_inertia[fallen]
-        # Towards where it was thrown; where that is nowhere, to the bottom.
-        sideways = np.abs(offset) > 1e-9 * np.array([fill.chamber.radius for fill in self.fills])
-        self.lean[fallen] = np.where(sideways, np.angle(-offset), 0.0)[fallen]
+        self.lean[fallen], self.lean_rate[fallen] = 0.0, self.fallen_rate(own)[fallen]
         mean = self.area.mean(axis=1, keepdims=True)
         self.area[anew] = mean[anew]
         keeps = self.handover is Handover.CARRIED

@@ -389,6 +389,21 @@ class CoupledRotor(ABC):
         rides = self.capture < spin
         return rides & (self.balance < spin) if self.swings.any() else rides
 
+    def fallen_rate(self, own: Array) -> Array:
+        """Rate at which layers that fall swing on as pools at the bottom, rad/s [theory: pool, eq. 11].
+
+        Their angular momentum stays, as far as their energy and what the fall gives suffice for that.
+
+        Parameters
+        ----------
+        own : rotation of the liquid itself, rad/s, shape (l,)
+        """
+        arm = np.array([0.0 if pool is None else pool.arm for pool in self.pools])
+        inertia = np.maximum(self.pool_inertia, 1e-300)
+        given = 2.0 * abs(float(self.gravity[0])) * self.masses * arm
+        most = np.sqrt((self.spread_inertia * np.square(own) + given) / inertia)
+        return np.asarray(np.copysign(np.minimum(self.spread_inertia * np.abs(own) / inertia, most), own))
+
     def caught(self, active: Flags, own: Array) -> Flags:
         """Which liquids are layers from now on [theory: pool, eq. 9-10].
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from leblanc.units import (
     in_rpm,
     number,
     rpm_bands,
+    rpm_range,
     small_whirl_friction,
     with_unit,
 )
@@ -200,6 +202,38 @@ def largest_amplitude(history: RunupHistory, steady: Response | None) -> Note:
     most, at = float(abs(steady.deflection[highest])), float(steady.speed[highest])
     text = f"{text}; in the steady response it is {with_unit(most, LENGTH)} at {in_rpm(at)}."
     return Note(RunupCode.PEAK_STEADY, data | {"steady_amplitude": most, "steady_speed": at}, text)
+
+
+FEW = 4  # times that liquid is caught or falls and is told of one by one
+
+
+def captures(transfers: Sequence[Transfer], handover: str) -> list[Note]:
+    """When liquid became rings, or fell: each time, or where it happens again and again all of them at once.
+
+    Parameters
+    ----------
+    transfers : of the run-up, in the order of time
+    handover : the rule by which liquid becomes a ring
+    """
+    found: list[Note] = []
+    for chamber in sorted({transfer.chamber for transfer in transfers}):
+        own = [transfer for transfer in transfers if transfer.chamber == chamber]
+        found += [capture(each, handover) for each in own] if len(own) <= FEW else [_again_and_again(own)]
+    return found
+
+
+def _again_and_again(own: Sequence[Transfer]) -> Note:
+    """Liquid of one chamber that is caught and falls many times."""
+    first, last, caught = own[0], own[-1], sum(each.captured for each in own)
+    speeds, heat = [each.speed for each in own], sum(each.lost for each in own)
+    chamber, shape = first.chamber + 1, "a ring" if last.captured else "a pool"
+    text = (
+        f"Chamber {chamber}: its liquid is caught {caught} times and falls {len(own) - caught} times "
+        f"from {first.time:.4g} s to {last.time:.4g} s, at {rpm_range(min(speeds), max(speeds))}; then it is "
+        f"{shape}. {number(abs(heat))} J {'become heat' if heat >= 0.0 else 'come from the drum'}."
+    )
+    data = {"chamber": chamber, "time": last.time, "speed": last.speed, "times": len(own), "lost": heat}
+    return Note(RunupCode.CAPTURED if last.captured else RunupCode.FALLS_BACK, data, text)
 
 
 def capture(transfer: Transfer, handover: str) -> Note:
