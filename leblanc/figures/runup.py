@@ -148,6 +148,8 @@ def largest_drawn(result: RunupResult) -> float:
     result : the run-up
     """
     ensemble = 0.0 if result.spread is None else float(np.nanmax(result.spread.amplitude_max))
+    if result.spread is None and not np.isnan(result.amplitude_error).all():
+        ensemble = float(np.nanmax(result.amplitude + result.amplitude_error))
     return max(ensemble, *(float(result.whole_curve(dry)[2].max(initial=0.0)) for dry in (False, True)))
 
 
@@ -155,6 +157,7 @@ def _draw_ranges(axes: Axes, result: RunupResult, over_time: bool = False) -> No
     """Between the least and the largest amplitude of an ensemble, over the speed or over time."""
     spread = result.spread
     if spread is None:
+        _draw_error(axes, result, over_time)
         return
     ways = result.pieces(result.history, False)
     ways += result.pieces(result.history, True) if result.turns_back else []
@@ -165,6 +168,26 @@ def _draw_ranges(axes: Axes, result: RunupResult, over_time: bool = False) -> No
         if not i and spread.largest_spread < THIN:
             label += ", thinner than the line"
         axes.fill_between(place, *edges, facecolor=RANGE, alpha=0.7, linewidth=0, zorder=2.8, label=label)
+
+
+def _draw_error(axes: Axes, result: RunupResult, over_time: bool) -> None:
+    """The band that cells, steps and the hand-over of liquid leave about the amplitude."""
+    error = result.amplitude_error
+    if np.isnan(error).all() or float(np.nanmax(error)) < THIN * float(result.amplitude.max()):
+        return
+    ways = result.pieces(result.history, False)
+    ways += result.pieces(result.history, True) if result.turns_back else []
+    for i, part in enumerate(ways):
+        place = result.time[part] if over_time else result.speed[part] * RPM
+        low, high = result.amplitude[part] - error[part], result.amplitude[part] + error[part]
+        label = "_" if i else f"error by {_sources(result)}"
+        look = {"facecolor": RANGE, "alpha": 0.55, "linewidth": 0, "zorder": 2.0}
+        axes.fill_between(place, np.maximum(low, 0.0) * MM, high * MM, label=label, **look)
+
+
+def _sources(result: RunupResult) -> str:
+    """What the error of the amplitude was estimated from."""
+    return "cells and steps" if math.isnan(result.handover_estimate) else "cells, steps and hand-over"
 
 
 def _shade(axes: Axes, result: RunupResult, limits: tuple[float, float]) -> None:
@@ -309,7 +332,7 @@ def _draw_amplitude(axes: Axes, result: RunupResult) -> None:
         axes.plot(*_over_time(result, True), **_BARE)
     _draw_ranges(axes, result, over_time=True)
     axes.set_ylim(0.0, 1.12 * largest_drawn(result) * MM or 1.0)
-    axes.set_ylabel(_label(result))
+    axes.set_ylabel(_label(result).replace(" at ", "\nat ", 1))
 
 
 def _over_time(result: RunupResult, dry: bool) -> Line:
@@ -418,6 +441,8 @@ def caption(result: RunupResult, text: str) -> Caption:
     """What a figure shows, the scene, model, friction, resolution, error and what is assumed."""
     error = result.error_estimate
     size = "not estimated" if math.isnan(error) else f"{error:.1%} of the largest"
+    if not math.isnan(result.handover_estimate):
+        size += f" by cells and steps, {result.handover_estimate:.1%} by the hand-over of the liquid"
     if result.spread is not None:
         size += f"; by rounding alone {percent(result.spread.largest_spread)}"
     assumed = ", ".join(map(one_line, result.assumed)) or "nothing"

@@ -261,6 +261,22 @@ class RunupResult(Loaded, Result):
         return self.history.error_estimate
 
     @property
+    def lag(self) -> Array:
+        """Rotation of each layer or pool behind its drum, rad/s, shape (k, l)."""
+        return np.asarray(-self.mean_rotation)
+
+    @property
+    def handover_estimate(self) -> float:
+        """Error of the amplitude by how liquid becomes a ring, over its largest; nan if none does."""
+        return self.history.handover_estimate
+
+    @property
+    def amplitude_error(self) -> Array:
+        """Error of the amplitude by cells, steps and hand-over, m, nan if not estimated, shape (k,)."""
+        band = self.history.band
+        return np.full(self.time.shape, math.nan) if band is None else band
+
+    @property
     def energy(self) -> EnergyAudit:
         """Where the energy went."""
         return self.history.audit
@@ -415,14 +431,17 @@ class RunupResult(Loaded, Result):
         over = ["time", "speed", "amplitude", "speed_dry", "amplitude_dry"]
         over += ["phase", "liquid_offset", "liquid_angle"]
         over += ["liquid_offset_mean", "liquid_angle_mean", "mass_error", "captured", "in_range"]
-        over += ["depth_max", "depth_min", "mean_rotation", "peak", "peak_dry", "end"]
+        over += ["depth_max", "depth_min", "mean_rotation", "lag", "amplitude_error"]
+        over += ["peak", "peak_dry", "end"]
         over += ["peak_back"] if self.turns_back else []
-        rest = ("error_estimate", "converged", "reason", "steps", "cells", "model", "model_reason")
+        rest = ["error_estimate", "handover_estimate", "converged", "reason"]
+        rest += ["steps", "cells", "model", "model_reason"]
         own = ("model_error", "name", "digest", "assumed", "bands", *(("ensemble",) if self.spread else ()))
         return {name: getattr(self, name) for name in (*over, *rest, *own)} | {
             **({"passages": [asdict(passage) for passage in self.passages]} if self.passages else {}),
             **({} if self.unbalance_left is None else {"unbalance_left": self.unbalance_left}),
             "energy": self._energy(),
+            "transfers": [asdict(transfer) | {"lost": transfer.lost} for transfer in self.transfers],
             "notes": texts(self.notes),
             **({} if self.loads is None else self.loads.to_json()),
         }
@@ -470,6 +489,7 @@ class RunupResult(Loaded, Result):
             "energy": json.dumps(self._energy()),
             "mass_error": self.mass_error,
             "error_estimate": self.error_estimate,
+            "handover_estimate": self.handover_estimate,
             "steps": np.int64(self.steps),
             "converged": "yes" if self.converged else one_line(f"no: {self.reason}"),
         }
@@ -507,6 +527,9 @@ def _columns(result: RunupResult) -> dict[str, Any]:
         "speed": variable(over, h.speed, "rad s-1", "spin speed"),
         "angle": variable(over, h.angle, "rad", "angle of rotation"),
         "amplitude": variable(over, h.amplitude, "m", "deflection of the first chamber's axis, modulus"),
+        "amplitude_error": variable(
+            over, result.amplitude_error, "m", "error of the amplitude by cells, steps and hand-over"
+        ),
         "speed_dry": variable(over, result.speed_dry, "rad s-1", "spin speed without liquid"),
         "amplitude_dry": variable(over, result.amplitude_dry, "m", "that modulus without liquid"),
         "phase": variable(over, result.phase, "rad", f"angle of that deflection {drum}"),

@@ -9,7 +9,7 @@ import numpy as np
 from fluid.fill import Fill
 from leblanc.results.machine.loads import MachineLoads
 from leblanc.scene.scene import JeffcottRotor, Scene, TubRotor, dry_rotor
-from meshes.arrays import Array, Complex, Index
+from meshes.arrays import Array, Complex, Flags, Index
 from solvers.rotor.loads.machine import LoadedMachine
 from solvers.rotor.loads.turn import Extremes, damping_power, orbits, turn_extremes
 from solvers.runup.loads import drive_torque, path_extremes
@@ -77,6 +77,7 @@ def loads_over_time(scene: Scene, machine: LoadedMachine, history: RunupHistory)
     h, plan = history, scene.runup
     motor = plan is not None and plan.motor is not None
     torque = drive_torque(history.path, h.time, h.speed, h.angle, spinning_inertia(scene), motor)
+    torque = np.where(_coasting(scene, history), 0.0, torque)
     return _loads(
         machine,
         path_extremes(machine, history.path, h.time, h.captured),
@@ -84,6 +85,14 @@ def loads_over_time(scene: Scene, machine: LoadedMachine, history: RunupHistory)
         np.zeros((2, 0, len(machine.points))),
         np.arange(h.time.size),
     )
+
+
+def _coasting(scene: Scene, history: RunupHistory) -> Flags:
+    """Where the motor is off, shape (k,)."""
+    if scene.programme is None or history.stage is None:
+        return np.zeros(history.time.shape, dtype=bool)
+    off = np.array([step.kind == "coast" for step in scene.programme.steps])
+    return np.asarray(off[history.stage])
 
 
 def spinning_inertia(scene: Scene) -> float:
@@ -94,6 +103,8 @@ def spinning_inertia(scene: Scene) -> float:
     scene : the machine
     """
     rotor = scene.rotor
+    if scene.programme is not None and scene.programme.inertia is not None:
+        return scene.programme.inertia
     if isinstance(rotor, TubRotor):
         return rotor.drum_polar_inertia
     return 0.0 if isinstance(rotor, JeffcottRotor) else float(getattr(rotor, "polar_inertia", 0.0))

@@ -243,7 +243,7 @@ def chosen_run(
 
     if scene.model.liquid == "long_wave":
         history = run(model, numerics, progress)
-        return RunupChoice(history, model, history.error_estimate, "the scene asks for long waves.")
+        return RunupChoice(history, model, _by_steps(history), "the scene asks for long waves.")
     if scene.model.liquid == "linear":
         history = run(model, numerics, progress)
         found = linear_run_error(history, scene.fills)
@@ -260,7 +260,13 @@ def chosen_run(
             return RunupChoice(history, "linear", error, reason)
         ruled_out = f"with linear layers {_judged_by(found)}, and the tolerance is {percent(tolerance)}"
     history = run(model, numerics, progress)
-    return RunupChoice(history, model, history.error_estimate, f"long waves: {ruled_out}.")
+    return RunupChoice(history, model, _by_steps(history), f"long waves: {ruled_out}.")
+
+
+def _by_steps(history: RunupHistory) -> float:
+    """Error by cells, steps and hand-over together, over the largest amplitude."""
+    handed = history.handover_estimate
+    return history.error_estimate + (0.0 if math.isnan(handed) else handed)
 
 
 def runup_outlook(scene: Scene) -> str:
@@ -497,6 +503,7 @@ def _notes(
         notes.liquid_model(taken.model, taken.reason),
         None if h.converged else notes.stopped(h.reason),
         notes.numerical_error(h.error_estimate),
+        notes.handover_error(h.handover_estimate),
         None if spread is None else notes.rounding(spread, h),
         notes.energy_left(h.audit.closure),
         notes.largest_amplitude(h, steady),

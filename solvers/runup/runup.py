@@ -150,6 +150,10 @@ class RunupHistory:
     snapshots : of the layers, cell by cell, at the times asked for; None where none were
     transfers : liquid that became a layer or fell, in the order of time
     handover : how liquid at the bottom of a lying chamber becomes a layer
+    handover_estimate : of the amplitude, relative to its largest: what another sensible hand-over changes, by
+        the drum that takes the liquid along at once, of the largest value within a turn; nan without it
+    band : of the amplitude, m: what half the cells and that hand-over change of its largest value within a
+        turn about each time, shape (k,); None without those runs
     stage : of its programme in which each time was reached, from 0, shape (k,)
     left : share that is left of each part of the unbalance that leaves, shape (k, s)
     path : of the rotor all along; None where nobody asked for it
@@ -180,6 +184,8 @@ class RunupHistory:
     snapshots: LayerSnapshots | None = None
     transfers: tuple[Transfer, ...] = ()
     handover: Handover = Handover.RIDING
+    handover_estimate: float = math.nan
+    band: Array | None = None
     stage: Index | None = None
     left: Array | None = None
     path: RotorPath | None = None
@@ -256,30 +262,70 @@ def run_up(
     numerics = numerics or RunupNumerics()
     start = drive.corners()[1, 0]
 
-    def machine(cells: int) -> RunupMachine:
-        resolved = cells, numerics.dispersion, numerics.enstrophy, numerics.handover
-        return model(system, fills, start, friction, gravity, *resolved)
+    def machine(resolved: RunupNumerics) -> RunupMachine:
+        how = resolved.cells, resolved.dispersion, resolved.enstrophy, resolved.handover
+        return model(system, fills, start, friction, gravity, *how)
+
+    def alone(resolved: RunupNumerics) -> RunupHistory:
+        return _march(machine(resolved), Shedding(system), drive, resolved, lambda _: None, np.empty(0))
 
     share = 0.8 if numerics.companion else 1.0
     wanted = np.asarray(snapshots, dtype=float)
-    whole = machine(numerics.cells)
     recorder = Recorder(fastest_frequency(system), len(system.coordinates)) if follow else None
     tell = lambda part: progress and progress(share * part)  # noqa: E731
-    history = _march(whole, Shedding(system), drive, numerics, tell, wanted, recorder)
+    history = _march(machine(numerics), Shedding(system), drive, numerics, tell, wanted, recorder)
     if not numerics.companion or not history.converged or numerics.cells < 16:
         return history
-    cells = numerics.cells // 2
-    coarse = replace(numerics, cells=cells)
-    other = _march(machine(cells), Shedding(system), drive, coarse, lambda _: None, np.empty(0))
+    coarse = replace(numerics, cells=numerics.cells // 2)
+    other = alone(coarse)
+    early = None
+    if numerics.handover is Handover.CARRIED and any(each.captured for each in history.transfers):
+        early = alone(replace(coarse, handover=Handover.DRUM))
     if progress:
         progress(1.0)
-    if not other.converged:
+    return _with_errors(history, other, early)
+
+
+def _with_errors(history: RunupHistory, coarse: RunupHistory, early: RunupHistory | None) -> RunupHistory:
+    """The run with its errors, from two others as coarse: by its own rule of capture, and another."""
+    if not coarse.converged:
         return history
-    # Where the speed was free the two ways have corners of their own; the other times are the same.
-    _, ours, theirs = np.intersect1d(history.time, other.time, assume_unique=True, return_indices=True)
-    gap = np.abs(history.amplitude[ours] - other.amplitude[theirs]).max()
-    largest = history.amplitude.max()
-    return replace(history, error_estimate=float(gap / largest) if largest > 0.0 else 0.0)
+    largest = float(history.amplitude.max())
+    scale = 1.0 / largest if largest > 0.0 else 0.0
+    at_once = float(np.nanmax(_gap(history, coarse, history.amplitude, coarse.amplitude))) * scale
+    crests = {id(run): _over_a_turn(run) for run in (history, coarse, early) if run is not None}
+    band = _gap(history, coarse, crests[id(history)], crests[id(coarse)])
+    handed = math.nan
+    if early is not None and early.converged:
+        other = _gap(coarse, early, crests[id(coarse)], crests[id(early)])
+        handed = float(np.nanmax(other)) * scale
+        known = ~np.isnan(other)
+        band = band + np.interp(history.time, coarse.time[known], other[known])
+    known = ~np.isnan(band)
+    whole = np.interp(history.time, history.time[known], band[known])
+    return replace(history, error_estimate=at_once, handover_estimate=handed, band=whole)
+
+
+def _gap(run: RunupHistory, other: RunupHistory, own: Array, others: Array) -> Array:
+    """Difference of two quantities at the times of a run, nan where the other has none, shape (k,).
+
+    Where the speed was free the ways have corners of their own; the other times are the same.
+    """
+    _, here, there = np.intersect1d(run.time, other.time, assume_unique=True, return_indices=True)
+    found = np.full(run.time.shape, np.nan)
+    found[here] = np.abs(own[here] - others[there])
+    return found
+
+
+def _over_a_turn(run: RunupHistory) -> Array:
+    """Largest amplitude within half a turn before and after each time, m, shape (k,).
+
+    Beats that come a little earlier or later cross: at one time alone they may differ by all of it.
+    """
+    first = np.searchsorted(run.angle, run.angle - np.pi)
+    last = np.searchsorted(run.angle, run.angle + np.pi, side="right")
+    pairs = zip(first.tolist(), last.tolist(), strict=True)
+    return np.array([run.amplitude[i:j].max() for i, j in pairs])
 
 
 def _march(
@@ -338,6 +384,7 @@ def _march(
         layer_mass=machine.masses,
         mass_error=machine.mass_error(),
         error_estimate=math.nan,
+        handover_estimate=math.nan,
         audit=audit,
         steps=int(sums.steps),
         layer_steps=int(sums.layer_steps),

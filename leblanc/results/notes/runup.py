@@ -43,6 +43,7 @@ class RunupCode(NoteCode):
     STOPPED = "stopped"
     ERROR_UNKNOWN = "error_unknown"
     ROUGH = "rough"
+    HANDOVER = "handover"
     ROUNDING = "rounding"
     ENERGY = "energy"
     PEAK = "peak"
@@ -143,6 +144,17 @@ def numerical_error(error: float) -> Note | None:
         "more cells would sharpen it."
     )
     return Note(RunupCode.ROUGH, {"error": error}, text)
+
+
+def handover_error(error: float) -> Note | None:
+    """What another sensible way of becoming a ring changes; None where it is little, or no liquid does."""
+    if not error > ERROR:
+        return None
+    text = (
+        "How liquid becomes a ring is known roughly: if the drum took it along at once, the "
+        f"amplitude would differ by up to {error:.1%} of its largest."
+    )
+    return Note(RunupCode.HANDOVER, {"error": error}, text)
 
 
 def rounding(spread: Spread, history: RunupHistory) -> Note:

@@ -1,0 +1,67 @@
+"""The error that the hand-over of a pool leaves, and the band about the amplitude."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fluid.fill import Fill
+from fluid.friction.laws import Friction
+from fluid.liquid import Liquid
+from meshes.chamber import Chamber
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.runup.linear import couple_linear
+from solvers.runup.machine import Handover, Ramp
+from solvers.runup.runup import RunupNumerics, _over_a_turn, run_up
+from tests.mutants import kills
+
+FILL = Fill(Chamber(0.24, 0.06), Liquid("brine", 1200.0, 1.6e-6), 1.2e-3)
+ROTOR = Jeffcott(60.0, 11196.0, 309.0, 0.05)
+RAMP = Ramp(4.0, 24.0, 4.0, 7.0)
+NUMERICS = RunupNumerics(cells=32, samples=600, handover=Handover.CARRIED)
+LINEAR = Friction("linear", 2.0)
+
+
+@kills("solvers.runup.runup:run_up", "handover=Handover.DRUM", "handover=Handover.CARRIED")
+@kills("solvers.runup.runup:_with_errors", "band = band + np.interp", "band = 0.0 * band + 0.0 * np.interp")
+def test_band() -> None:
+    """The three runs that it is made of, made one by one."""
+
+    def alone(cells: int, handover: Handover) -> np.ndarray:
+        numerics = replace(NUMERICS, cells=cells, handover=handover, companion=False)
+        return _over_a_turn(run_up(ROTOR.system(), [FILL], RAMP, LINEAR, 9.81, numerics, model=couple_linear))
+
+    found = run_up(ROTOR.system(), [FILL], RAMP, LINEAR, 9.81, NUMERICS, model=couple_linear)
+    fine, coarse, early = alone(32, Handover.CARRIED), alone(16, Handover.CARRIED), alone(16, Handover.DRUM)
+    largest = found.amplitude.max()
+    assert found.handover_estimate == pytest.approx(np.abs(coarse - early).max() / largest, rel=1e-12)
+    assert found.handover_estimate > 0.01
+    assert found.band is not None
+    np.testing.assert_allclose(found.band, np.abs(fine - coarse) + np.abs(coarse - early), atol=1e-12)
+
+
+def test_none_where_nothing_is_handed_over() -> None:
+    """No second hand-over is run without a pool that becomes a ring, nor under another rule."""
+    for friction, handover in (
+        (Friction(), Handover.CARRIED),
+        (LINEAR, Handover.RIDING),
+        (LINEAR, Handover.DRUM),
+    ):
+        numerics = replace(NUMERICS, handover=handover)
+        found = run_up(ROTOR.system(), [FILL], RAMP, friction, 9.81, numerics, model=couple_linear)
+        assert math.isnan(found.handover_estimate) and found.band is not None
+        assert float(found.band.max()) <= 2.0 * found.error_estimate * float(found.amplitude.max()) + 1e-15
+
+
+@kills("solvers.runup.runup:_over_a_turn", "run.angle + np.pi", "run.angle + 0.0 * np.pi")
+def test_largest_within_a_turn() -> None:
+    """Half a turn before and after, the ends included."""
+    numerics = replace(NUMERICS, companion=False, samples=101)
+    found = run_up(ROTOR.system(), [], Ramp(10.0, 11.0, 1.0, 2.0), numerics=numerics, model=couple_linear)
+    slow = _over_a_turn(found)
+    for k in range(found.time.size):
+        near = np.abs(found.angle - found.angle[k]) <= math.pi * (1.0 + 1e-12)
+        assert slow[k] == found.amplitude[near].max()
