@@ -7,6 +7,7 @@ and in its slowest frequency [theory: pool].
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -197,17 +198,29 @@ def balance_speed(fill: Fill, pool: Pool, friction: Friction, gravity: float) ->
     >>> print(f"{balance_speed(fill, pool_of(fill), Friction('linear', 5.0), 9.81):.2f}")
     7.07
     """
-    from scipy.optimize import brentq
-
     weight = pool.mass * gravity * pool.arm
 
-    def left(logarithm: float) -> float:
-        return math.log(max(float(wall_torque(fill, pool, friction, math.exp(logarithm))), 1e-300) / weight)
+    def held(speed: float) -> bool:
+        return float(wall_torque(fill, pool, friction, speed)) < weight
 
-    low, high = math.log(1e-9), math.log(1e6)
-    if weight == 0.0 or left(low) >= 0.0:
+    if not held(_SLOWEST):
         return 0.0
-    return math.inf if left(high) < 0.0 else math.exp(brentq(left, low, high, xtol=1e-13))
+    if held(_FASTEST):
+        return math.inf
+    return math.exp(_bisected(lambda log: held(math.exp(log)), math.log(_SLOWEST), math.log(_FASTEST)))
+
+
+# Spin speeds between which a balance is looked for, rad/s.
+_SLOWEST, _FASTEST = 1e-9, 1e6
+
+
+def _bisected(below: Callable[[float], bool], low: float, high: float) -> float:
+    """Where a condition ceases to hold between two numbers, to rounding."""
+    while True:
+        middle = 0.5 * (low + high)
+        if not low < middle < high:
+            return middle
+        low, high = (middle, high) if below(middle) else (low, middle)
 
 
 @dataclass(frozen=True)
@@ -263,9 +276,8 @@ def _cube(alpha: float) -> float:
 
 def _level(radius: float, inner: float, area: float) -> float:
     """How far the level lies below the axis, m, for the liquid between two circles to have an area."""
-    from scipy.optimize import brentq
 
-    def missing(height: float) -> float:
-        return _segment(radius, height).area - _segment(inner, height).area - area
+    def too_low(height: float) -> bool:
+        return _segment(radius, height).area - _segment(inner, height).area > area
 
-    return float(brentq(missing, -radius, radius, xtol=1e-15 * radius, rtol=8.9e-16))
+    return _bisected(too_low, -radius, radius)

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from leblanc.api import (
         compare,
         explain,
+        fit,
         layer,
         map_whirl,
         modes,
@@ -44,6 +45,7 @@ __all__ = [
     "compare",
     "example",
     "explain",
+    "fit",
     "layer",
     "load_scene",
     "map_whirl",

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from leblanc.questions import Quantity
     from leblanc.results.exciter import ExciterResult
     from leblanc.results.explanation import Comparison, ExciterExplanation, Explanation
+    from leblanc.results.fit import FitResult
     from leblanc.results.layer import LayerPeriodsResult, LayerResult
     from leblanc.results.liquid import ModesResult, VolumeResult
     from leblanc.results.optimum import OptimumResult
@@ -263,6 +264,40 @@ def compare(scene: SceneOrPath, models: Sequence[str]) -> Comparison:
 
     with _keywords():
         return compare_models(machine, tuple(models))
+
+
+def fit(
+    scene: SceneOrPath,
+    measured: str | PathLike[str],
+    unknown: Sequence[str],
+    *,
+    starts: int = 4,
+    seed: int = 0,
+    scale: str = "given",
+) -> FitResult:
+    """Unknowns of a scene from a measured curve, each with its uncertainty.
+
+    Parameters
+    ----------
+    scene : the machine, or the path of its file; its values are the first guess
+    measured : path of a table with a header such as "speed [rpm], amplitude [mm]", commas between its columns
+    unknown : paths of the unknowns in the scene, as "rotor.mass"
+    starts : searches, each from other values
+    seed : of the values that they start from
+    scale : "given", or "free" where the unit of the sensor is not known
+
+    Raises
+    ------
+    SceneError, InputError : as for `run`; a table that cannot be read, an unknown that is no number above 0
+    """
+    machine = _scene(scene)
+    from leblanc.studies.fit import fit_scene, is_free, read_measured
+    from leblanc.studies.models.choose import prepare
+
+    with _keywords():
+        free = is_free(scale)
+        table = read_measured(measured, prepare(machine).system.coordinates, free)
+        return fit_scene(machine, table, tuple(unknown), starts, seed, free)
 
 
 def sweep(

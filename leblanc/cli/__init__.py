@@ -18,7 +18,21 @@ from typing import Annotated, Any
 import typer
 from typer.main import get_command
 
-from leblanc.cli import compare, explain, layer, map, modes, new, optimise, run, runup, sweep, view, volume
+from leblanc.cli import (
+    compare,
+    explain,
+    fit,
+    layer,
+    map,
+    modes,
+    new,
+    optimise,
+    run,
+    runup,
+    sweep,
+    view,
+    volume,
+)
 from leblanc.cli.terminal.output import drop, ready_streams, say
 from leblanc.contents import recording
 from leblanc.interrupts import INTERRUPTED, TERMINATED, Terminated, behind, heard, leave, said
@@ -28,7 +42,7 @@ from meshes.errors import InputError
 DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED = 0, 1, 2, 3
 
 # Modules with one command each, a function of the module's name, in the order of the help.
-COMMANDS = (new, explain, run, compare, volume, layer, modes, map, runup, optimise, sweep, view)
+COMMANDS = (new, explain, run, compare, fit, volume, layer, modes, map, runup, optimise, sweep, view)
 
 # The current folder may hold a stranger's files: a pickle.py is not for the processes that are started from
 # here, nor is the .numba_config.yaml to say where compiled code is kept, which numba would unpickle.

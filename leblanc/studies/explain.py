@@ -144,8 +144,7 @@ def _covering(fill: Fill, deflection: float, speed: float, gravity: float) -> fl
 def _carried_from(scene: Scene, fill: Fill) -> float | None:
     """Speed above which gravity cannot hold the liquid at the bottom against the walls, rad/s."""
     gravity = across_gravity(scene)
-    pool = None if fill.chamber.section is not None else pool_of(fill)
-    if gravity == 0.0 or pool is None:
+    if gravity == 0.0 or fill.chamber.section is not None or (pool := pool_of(fill)) is None:
         return None
     return balance_speed(fill, pool, scene.model.friction, gravity)
 

@@ -518,8 +518,10 @@ def _never_caught(scene: Scene, history: RunupHistory) -> Iterator[Note]:
     """Liquid that still lies at the bottom though the drum turns fast enough for a ring."""
     top = float(history.speed.max())
     for k, fill in enumerate(scene.fills):
-        pool, gravity = pool_of(fill), across_gravity(scene)
-        if gravity == 0.0 or pool is None or history.captured[:, k].any() or top <= held_from(scene, fill):
+        gravity = across_gravity(scene)
+        if gravity == 0.0 or history.captured[:, k].any() or top <= held_from(scene, fill):
+            continue
+        if (pool := pool_of(fill)) is None:
             continue
         yield notes.not_carried(k, top, balance_speed(fill, pool, scene.model.friction, gravity))
 

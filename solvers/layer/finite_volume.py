@@ -144,7 +144,7 @@ def half_slopes(area, head, velocity, surface, spin, full, slot, half_head, half
         length = log[i] if wet else 1.0
         _, half = _celerity(velocity_m[i] * inverse, length, spin)
         stiff = slot if area_m[i] > full else 0.0
-        half = np.sqrt(half * half + length * stiff)
+        half = np.sqrt(half * half + length * stiff) if stiff > 0.0 else half
         # Velocity over head of the wave that runs ahead and of the other one, times Omega^2 L; the inverse of
         # their difference.
         carried, weight = spin * length, (spin * spin + stiff) * length
@@ -222,7 +222,7 @@ def side(
         flow[i] = _momentum(u, log, a, inverse) + push[i]
         mean, half = _celerity(u * inverse, log, spin)
         # Where the gap fills and empties from step to step the waves in it count twice as fast.
-        half = np.sqrt(half * half + 4.0 * log * stiff)
+        half = np.sqrt(half * half + 4.0 * log * stiff) if stiff > 0.0 else half
         back[i], ahead[i] = mean - half, mean + half
 
 
@@ -322,7 +322,8 @@ def ring_rates(
     mass = work[_MASS]
     if plates.shape[0] > 0:
         obstruct(plates, area, spin, full, slot, pull_face, work[_BEFORE:], work[_AFTER:], mass, work[_FLOW])
-    _drain(area, step, dt, mass, work[_FLOW], work[_BEFORE + 4], work[_AFTER + 4], work[_BED])
+    pushes = work[_BEFORE + 4], work[_AFTER + 4]
+    _drain(area, step, dt, plates.shape[0], mass, work[_FLOW], pushes[0], pushes[1], work[_BED])
     _gather(area, euler, step, work, d_q)
     take(plates, step, d_q)
     if energy.size > 0:
@@ -622,7 +623,7 @@ def solve_ring(diagonal, side, value, spare):
 
 
 @_inlined
-def _drain(area, step, dt, mass, flow, push_l, push_r, share):
+def _drain(area, step, dt, plates, mass, flow, push_l, push_r, share):
     """Cut the mass fluxes so that no cell loses more than it has; nothing is lost on the way.
 
     The flow beyond the pressure is cut alike: a film that kept its mass and lost the momentum of more, or the
@@ -641,6 +642,6 @@ def _drain(area, step, dt, mass, flow, push_l, push_r, share):
     for face in range(n + 1):
         kept = share[face] if mass[face] > 0.0 else share[face + 1]
         # Where nothing passes, as at a closed baffle, there is nothing to cut.
-        kept = 1.0 if mass[face] == 0.0 else kept
+        kept = 1.0 if plates > 0 and mass[face] == 0.0 else kept
         mass[face] *= kept
         flow[face] -= (1.0 - kept) * (flow[face] - 0.5 * (push_l[face] + push_r[face]))

@@ -73,9 +73,9 @@ def texts(plot: Any) -> tuple[float, float]:
 def pictures() -> list[Picture]:
     found = [working(name).picture for name in MACHINES]
     # Machines of other shapes: a standing tub, a tall drum, one without chambers, supports far away.
-    found += [
-        show(scene(name).replace({"rotor.axis": "vertical"})).picture for name in ("tub", "two_plane_rig")
-    ]
+    feet = [[x, -0.43, z] for x, z in ((0.26, 0.25), (-0.26, 0.25), (-0.26, -0.25), (0.26, -0.25))]
+    for name, more in (("tub", {"cabinet.feet": feet}), ("two_plane_rig", {})):
+        found.append(show(scene(name).replace({"rotor.axis": "vertical"} | more)).picture)
     found.append(show(scene("tub").replace({"chambers": []})).picture)
     far = {"stiffness": 4e4, "damping": 80.0}
     supports = [far | {"position": -3.0}, far | {"position": 2.0}]

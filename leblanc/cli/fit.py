@@ -1,0 +1,62 @@
+"""`leblanc fit`: unknown values of a scene from what was measured on the machine."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from leblanc.cli.terminal.output import load, print_json, print_table, say
+from leblanc.cli.terminal.progress import working
+from leblanc.contents import results_dir
+
+
+def fit(
+    scene: Annotated[Path, typer.Argument(help="Scene file (TOML); its values are the first guess.")],
+    measured: Annotated[
+        Path,
+        typer.Argument(help="Table of what was measured (CSV), headed like: speed [rpm], amplitude [mm]."),
+    ],
+    unknown: Annotated[
+        list[str], typer.Option(help="Path of an unknown, as in rotor.mass; once for each of them.")
+    ],
+    starts: Annotated[int, typer.Option(help="Searches, each from other values.", min=1, max=1000)] = 4,
+    seed: Annotated[int, typer.Option(help="Of the values that they start from.", min=0)] = 0,
+    scale: Annotated[
+        str, typer.Option(help="given, or free where the unit of the sensor is not known: shapes count.")
+    ] = "given",
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the files [default: out/<scene name>].")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
+) -> None:
+    """Unknowns of a scene from a measured curve, each with its uncertainty."""
+    from leblanc.studies.fit import fit_scene, is_free, read_measured
+    from leblanc.studies.models.choose import prepare
+
+    machine, free = load(scene), is_free(scale, "--scale")
+    table = read_measured(measured, prepare(machine).system.coordinates, free)
+    folder = results_dir(machine.name, out, scene, machine.digest, "fit.nc")
+    with working("search") as update:
+        found = fit_scene(machine, table, unknown, starts, seed, free, lambda part: update(part, 1.0))
+
+    from leblanc.figures.fit import write_figures
+    from leblanc.results.netcdf import write_netcdf
+    from leblanc.text.fit import HEAD, fit_rows, left_words
+
+    write_netcdf(found.named_arrays(), folder / "fit.nc")
+    files = write_figures(found, folder)
+    if json:
+        print_json(found.to_json())
+    else:
+        print_table(fit_rows(found), HEAD, right=True)
+        print(f"Left: {left_words(found)}")
+        for note in found.notes:
+            print(f"note: {note}")
+        print(f"See {files.png}; the data are in {folder / 'fit.nc'}")
+    if not found.converged:
+        from leblanc.scene.schema.load import NotConverged
+
+        raise NotConverged([f"{scene}: the search for {', '.join(unknown)} did not come to its end"])
+    say(f"{found.name}: {len(unknown)} unknowns, {found.evaluations} answers")

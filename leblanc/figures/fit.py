@@ -1,0 +1,81 @@
+"""Measured and fitted quantities of a machine, and what is left between them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from leblanc.figures.drawing.page import Caption, Figure, FigureFiles, Frame, lay_out, number, save, style
+from leblanc.results.base import one_line
+from leblanc.results.fit import FitResult, Measured
+from leblanc.units import MM, RPM
+from meshes.arrays import Array
+
+Axes = Any  # matplotlib's, which no module that only draws imports
+FRAME = Frame(left=0.78, top=0.12, between=0.14, below=0.42)
+DATA, LINE = "0.15", "#0072B2"
+_HEIGHTS = 2.2, 0.9  # inches: the quantity, what is left of it
+
+
+def fit_figure(result: FitResult) -> Figure:
+    """Each measured quantity with the fitted one over speed or time, and below it what is left."""
+    over = result.at * (RPM if result.over == "speed" else 1.0)
+    with style():
+        figure = Figure()
+        panels: list[list[Axes]] = []
+        for k, part in enumerate(result.measured):
+            panels += [[figure.add_axes((0, 0, 1, 1), label=f"{k}{row}")] for row in "ab"]
+            _draw(panels[-2][0], panels[-1][0], over, part, labelled=k == 0)
+        for (axes,) in panels:
+            axes.xaxis.set_major_formatter(number)
+            axes.yaxis.set_major_formatter(number)
+            axes.tick_params(labelbottom=axes is panels[-1][0])
+        panels[-1][0].set_xlabel("Speed (rpm)" if result.over == "speed" else "Time (s)")
+        panels[0][0].legend(loc="best")
+        lay_out(figure, panels, list(_HEIGHTS) * len(result.measured), FRAME, _caption(result))
+        figure.alt = (
+            "Measured points and the fitted line, with what is left between them below; "
+            f"{100.0 * result.residual_rms:.2g} % of the measured size."
+        )
+    return figure
+
+
+def _draw(above: Axes, below: Axes, over: Array, part: Measured, labelled: bool) -> None:
+    """One quantity and what is left of it."""
+    angle, bare = part.unit == "rad", part.unit == ""
+    factor = 180.0 / np.pi if angle else 1.0 if bare else MM
+    unit = "deg" if angle else "as measured" if bare else "mm"
+    mark = {"linestyle": "", "marker": "o", "markersize": 3.5, "markerfacecolor": "white"}
+    names = ("measured", "fitted") if labelled else ("_", "_")
+    above.plot(over, part.value * factor, color=DATA, label=names[0], zorder=3, **mark)
+    above.plot(over, part.fitted * factor, color=LINE, linewidth=1.4, label=names[1])
+    left = part.value - part.fitted
+    left = np.angle(np.exp(1j * left)) if angle else left
+    below.axhline(0.0, color="0.6", linewidth=0.8)
+    below.plot(over, left * factor, color=DATA, **mark)
+    words = part.name.replace("_", " ").capitalize()
+    above.set_ylabel(f"{words}\n({unit})")
+    below.set_ylabel(f"left ({unit})")
+
+
+def _caption(result: FitResult) -> Caption:
+    pairs = zip(result.unknown, result.value.tolist(), result.std.tolist(), strict=True)
+    found = "; ".join(f"{path} = {value:.4g} ± {std:.2g}" for path, value, std in pairs)
+    return Caption(
+        f"Measured and fitted over {result.over}, and what is left between them.",
+        f"Scene: {one_line(result.name)}. Found, SI, with standard errors: {found}. Left: "
+        f"{100.0 * result.residual_rms:.2g} % of the measured size.",
+    )
+
+
+def write_figures(result: FitResult, directory: Path) -> FigureFiles:
+    """Draw the figure of a fit.
+
+    Parameters
+    ----------
+    result : the fit
+    directory : where the files go; made if it is missing
+    """
+    return save(fit_figure(result), directory, "fit", "Measured and fitted")

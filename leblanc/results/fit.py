@@ -1,0 +1,187 @@
+"""Unknown values of a scene found from what was measured on the machine, each with its uncertainty."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from leblanc.results.base import Note, NoteCode, Result, attributes, texts
+from leblanc.results.netcdf import NamedArrays, variable
+from leblanc.units import number
+from meshes.arrays import Array
+
+BOTH = 0.95  # a correlation from which on data tell little more than a combination of two values
+VAGUE = 0.5  # of the value: a standard error at which the data hardly tell it
+
+
+class FitCode(NoteCode):
+    """What the notes of a fit say."""
+
+    AT_BOUND = "at_bound"
+    CORRELATED = "correlated"
+    VAGUE = "vague"
+    NOT_TOLD = "not_told"
+    OTHER_MINIMUM = "other_minimum"
+    NO_SPREAD = "no_spread"
+    SCALE = "scale"
+
+
+@dataclass(frozen=True)
+class Measured:
+    """One measured quantity.
+
+    Parameters
+    ----------
+    name : amplitude, phase, liquid_offset, liquid_angle, or a coordinate of the rotor
+    unit : SI unit of its values; empty where their scale is free
+    value : measured, in that unit, shape (n,)
+    fitted : by the scene with the values found, shape (n,)
+    """
+
+    name: str
+    unit: str
+    value: Array
+    fitted: Array
+
+
+@dataclass(frozen=True)
+class FitResult(Result):
+    """Values of a scene that bring it closest to what was measured; p unknowns, n measured points.
+
+    Parameters
+    ----------
+    name, source, assumed, digest : of the scene
+    unknown : paths of the unknowns, in the scene
+    value, std : found, SI, and their standard errors, nan where the data do not tell them, shape (p,)
+    first : values of the scene that the search began with, shape (p,)
+    correlation : of the errors of the values, shape (p, p)
+    over : "speed" or "time": what the quantities were measured over
+    at : those speeds or times, rad/s or s, rising, shape (n,)
+    measured : the quantities
+    scale : of the measured quantities over the scene's, with the best one found; 1 where it is not free
+    residual_rms : root of the mean square of what is left, over that of what was measured
+    converged : the best search came to its end
+    evaluations : of the scene
+    notes : what the data cannot tell
+    """
+
+    name: str
+    source: str
+    assumed: tuple[str, ...]
+    digest: str
+    unknown: tuple[str, ...]
+    value: Array
+    std: Array
+    first: Array
+    correlation: Array
+    over: str
+    at: Array
+    measured: tuple[Measured, ...]
+    scale: float
+    residual_rms: float
+    converged: bool
+    evaluations: int
+    notes: tuple[Note, ...]
+
+    figure: ClassVar[str] = "leblanc.figures.fit:fit_figure"
+    summary: ClassVar[str] = "leblanc.text.fit:summary"
+
+    @property
+    def parameters(self) -> dict[str, dict[str, float]]:
+        """Value and standard error of each unknown, SI."""
+        pairs = zip(self.unknown, self.value.tolist(), self.std.tolist(), strict=True)
+        return {path: {"value": value, "std": std} for path, value, std in pairs}
+
+    def to_json(self) -> dict[str, Any]:
+        """What `fit` prints for scripts, SI; what is not finite becomes null when it is printed."""
+        return {
+            "parameters": self.parameters,
+            "residual_rms": self.residual_rms,
+            "correlation": self.correlation,
+            "first": dict(zip(self.unknown, self.first.tolist(), strict=True)),
+            "scale": self.scale,
+            "converged": self.converged,
+            "evaluations": self.evaluations,
+            "name": self.name,
+            "digest": self.digest,
+            "assumed": self.assumed,
+            "notes": texts(self.notes),
+            self.over: self.at,
+            "measured": {part.name: part.value for part in self.measured},
+            "fitted": {part.name: part.fitted for part in self.measured},
+        }
+
+    def named_arrays(self) -> NamedArrays:
+        """Arrays over the dimensions `unknown`, `other` (of the correlation) and speed or time."""
+        over = (self.over,)
+        own: dict[str, Any] = {"residual_rms": self.residual_rms, "scale": self.scale}
+        unit = "rad s-1" if self.over == "speed" else "s"
+        found = {
+            "value": variable(("unknown",), self.value, "1", "value found, SI"),
+            "std": variable(("unknown",), self.std, "1", "its standard error, SI"),
+            "first": variable(("unknown",), self.first, "1", "value that the search began with, SI"),
+            "correlation": variable(("unknown", "other"), self.correlation, "1", "of the errors"),
+        }
+        for part in self.measured:
+            shown = part.unit or "1"
+            found[f"{part.name}_measured"] = variable(over, part.value, shown, f"{part.name}, measured")
+            found[f"{part.name}_fitted"] = variable(over, part.fitted, shown, f"{part.name}, by the scene")
+        return NamedArrays(
+            found,
+            coords={
+                "unknown": variable(("unknown",), np.array(self.unknown), "1", "path in the scene"),
+                self.over: variable(over, self.at, unit, self.over),
+            },
+            attrs=attributes(self, "fit", own, self.notes),
+        )
+
+
+def fit_notes(
+    unknown: Sequence[str],
+    value: Array,
+    std: Array,
+    correlation: Array,
+    at_bound: Sequence[bool],
+    others: int,
+) -> list[Note]:
+    """What the data cannot tell, in words.
+
+    Parameters
+    ----------
+    unknown : paths, p of them
+    value, std : found and standard errors, shape (p,)
+    correlation : shape (p, p)
+    at_bound : whether the search ended at the edge of what it looks at, shape (p,)
+    others : starts that came to another answer that is as good to a tenth
+    """
+    found = []
+    for path, size, error, edge in zip(unknown, value.tolist(), std.tolist(), at_bound, strict=True):
+        if edge:
+            text = f"{path} ended at the edge of the search, {number(size)}: the data do not bound it."
+            found.append(Note(FitCode.AT_BOUND, {"path": path, "value": size}, text))
+        elif math.isnan(error):
+            text = f"The data do not tell {path}: nothing that was measured changes with it alone."
+            found.append(Note(FitCode.NOT_TOLD, {"path": path}, text))
+        elif error > VAGUE * abs(size):
+            text = f"The data hardly tell {path}: its standard error is {error / abs(size):.0%} of it."
+            found.append(Note(FitCode.VAGUE, {"path": path, "share": error / abs(size)}, text))
+    for i in range(len(unknown)):
+        for j in range(i):
+            if abs(correlation[i, j]) > BOTH:
+                way = "product" if correlation[i, j] < 0.0 else "ratio"
+                text = (
+                    f"{unknown[j]} and {unknown[i]} are told together only (correlation "
+                    f"{correlation[i, j]:.3f}): something like their {way} is known, not each of them."
+                )
+                data = {"paths": (unknown[j], unknown[i]), "correlation": float(correlation[i, j])}
+                found.append(Note(FitCode.CORRELATED, data, text))
+    if others:
+        text = (
+            f"{others} of the starts came to another answer that is as good to a tenth: the data allow both."
+        )
+        found.append(Note(FitCode.OTHER_MINIMUM, {"starts": others}, text))
+    return found

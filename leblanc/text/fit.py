@@ -1,0 +1,44 @@
+"""A fit in words: what was found, how well each value is known."""
+
+from __future__ import annotations
+
+import math
+
+from leblanc.results.fit import FitResult
+from leblanc.units import number
+
+HEAD = ("Unknown (SI)", "first guess", "found", "standard error", "of it")
+
+
+def fit_rows(result: FitResult) -> list[tuple[str, ...]]:
+    """One line for each unknown, as `HEAD` heads it.
+
+    Parameters
+    ----------
+    result : the fit
+    """
+    found: list[tuple[str, ...]] = []
+    for path, first, value, std in zip(
+        result.unknown, result.first.tolist(), result.value.tolist(), result.std.tolist(), strict=True
+    ):
+        known = not math.isnan(std)
+        share = f"{100.0 * std / abs(value):.2g} %" if known else "not told"
+        found.append((path, number(first), number(value), number(std) if known else "not told", share))
+    return found
+
+
+def summary(result: FitResult) -> list[tuple[str, str]]:
+    """What a notebook shows."""
+    pairs = [(row[0], f"{row[2]}, standard error {row[3]}") for row in fit_rows(result)]
+    return [*pairs, ("left", left_words(result))]
+
+
+def left_words(result: FitResult) -> str:
+    """What is left between measured and fitted.
+
+    Parameters
+    ----------
+    result : the fit
+    """
+    count = sum(part.value.size for part in result.measured)
+    return f"{100.0 * result.residual_rms:.2g} % of the measured size, over {count} values"
