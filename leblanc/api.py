@@ -289,6 +289,21 @@ def fit(
     Raises
     ------
     SceneError, InputError : as for `run`; a table that cannot be read, an unknown that is no number above 0
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import leblanc as lb
+    >>> rig = lb.example("horizontal_rig").replace({"speeds.count": 12})
+    >>> found = lb.run(rig)
+    >>> lines = [f"{s}, {a}" for s, a in zip(found.speed, found.amplitude)]
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     table = Path(folder) / "measured.csv"
+    ...     _ = table.write_text("\\n".join(["speed [rad/s], amplitude [m]", *lines]))
+    ...     answer = lb.fit(rig.replace({"rotor.mass": 4.4}), table, ["rotor.mass"], starts=1)
+    >>> round(answer.parameters["rotor.mass"]["value"], 3)
+    4.0
     """
     machine = _scene(scene)
     from leblanc.studies.fit import fit_scene, is_free, read_measured

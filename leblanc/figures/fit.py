@@ -33,7 +33,6 @@ def fit_figure(result: FitResult) -> Figure:
             axes.yaxis.set_major_formatter(number)
             axes.tick_params(labelbottom=axes is panels[-1][0])
         panels[-1][0].set_xlabel("Speed (rpm)" if result.over == "speed" else "Time (s)")
-        panels[0][0].legend(loc="best")
         lay_out(figure, panels, list(_HEIGHTS) * len(result.measured), FRAME, _caption(result))
         figure.alt = (
             "Measured points and the fitted line, with what is left between them below; "

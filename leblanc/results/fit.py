@@ -67,6 +67,14 @@ class FitResult(Result):
     converged : the best search came to its end
     evaluations : of the scene
     notes : what the data cannot tell
+
+    Examples
+    --------
+    >>> one = np.ones(1)
+    >>> about = "rig", "", (), "", ("rotor.mass",)
+    >>> result = FitResult(*about, 4 * one, 0.1 * one, 5 * one, np.eye(1), "speed", one, (), 1, 0.02, True, 9, ())
+    >>> result.parameters
+    {'rotor.mass': {'value': 4.0, 'std': 0.1}}
     """
 
     name: str

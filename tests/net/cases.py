@@ -15,7 +15,20 @@ ROTORS = (
 WHOLE = ("two_plane_rig", "vertical_rig", "centrifuge", "runup")  # run-ups held to their end
 DOCS = ("closed_baffles", "lobes", "smallest_scene")
 COMMANDS = (
-    *("new", "explain", "run", "compare", "volume", "layer", "modes", "map", "runup", "optimise", "sweep"),
+    *(
+        "new",
+        "explain",
+        "run",
+        "compare",
+        "fit",
+        "volume",
+        "layer",
+        "modes",
+        "map",
+        "runup",
+        "optimise",
+        "sweep",
+    ),
     *("trade", "view", "validate", "notebooks"),
 )
 
@@ -220,6 +233,9 @@ def _words() -> Iterator[Case]:
     yield _case("words-exciter", "run examples/vibratory_table.toml")
     yield _case("words-exciter-explain", "explain examples/vibratory_table.toml")
     yield _case("words-compare", "compare small/runup.toml --models linear,statics --out out")
+    fitted = f"fit {_scene('horizontal_rig')} docs/examples/measured.csv --unknown rotor.mass --starts 2"
+    yield _case("words-fit", f"{fitted} --out out")
+    yield _case("fit", f"{fitted} --unknown rotor.damping_ratio --json --out out")
     yield _case("words-volume", f"{_VOLUME} --volume 2e-4")
     yield _case("words-layer", f"{_WHIRL} --model linear")
     yield _case("words-layer-duration", f"{_WHIRL} --model long_wave --cells 32 --duration 2")
