@@ -71,8 +71,8 @@ class FitResult(Result):
     Examples
     --------
     >>> one = np.ones(1)
-    >>> about = "rig", "", (), "", ("rotor.mass",)
-    >>> result = FitResult(*about, 4 * one, 0.1 * one, 5 * one, np.eye(1), "speed", one, (), 1, 0.02, True, 9, ())
+    >>> about, over = ("rig", "", (), "", ("rotor.mass",)), (np.eye(1), "speed", one)
+    >>> result = FitResult(*about, 4 * one, 0.1 * one, 5 * one, *over, (), 1, 0.02, True, 9, ())
     >>> result.parameters
     {'rotor.mass': {'value': 4.0, 'std': 0.1}}
     """
