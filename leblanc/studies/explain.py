@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,7 +27,7 @@ from leblanc.results.explanation import (
 from leblanc.results.motion.tilting import RestMode
 from leblanc.scene.rotors import Exciter as ExciterOfScene
 from leblanc.scene.rows import baffle_words
-from leblanc.scene.scene import Scene
+from leblanc.scene.scene import Runup, Scene
 from leblanc.studies.exciter import printed_critical
 from leblanc.studies.models.choose import Prepared, across_gravity, choose_all, costed, held_cost, prepare
 from leblanc.studies.models.liquid import synchronous_model
@@ -149,22 +150,45 @@ def _carried_from(scene: Scene, fill: Fill) -> float | None:
     return balance_speed(fill, pool, scene.model.friction, gravity)
 
 
+class _Rise(NamedTuple):
+    """A rise of the spin speed: from and to, rad/s, and its rate, rad/s^2."""
+
+    start: float
+    stop: float
+    rate: float
+
+
+def _rise(scene: Scene, above: float) -> _Rise | None:
+    """The steepest rise of a run-up or programme that ends above a speed, rad/s; None without one."""
+    plan = scene.speed_plan
+    if plan is None or isinstance(plan, Runup):
+        return None if plan is None or plan.rate is None else _Rise(plan.start, plan.stop, plan.rate)
+    found, speed = [], plan.start
+    for step in plan.steps:
+        if step.kind == "to" and step.speed is not None and step.speed > max(speed, above):
+            rate = step.rate or (step.speed - speed) / (step.time or math.inf)
+            found.append(_Rise(speed, step.speed, rate))
+        # After a coast for a time the speed is not known before: from rest at the worst.
+        speed = speed if step.kind == "hold" else step.speed or 0.0
+    return max(found, key=lambda rise: rise.rate, default=None)
+
+
 # Share of the first lag at which the liquid counts as carried along.
 _CARRIED = 0.1
 
 
 def _spin_up(scene: Scene, fill: Fill) -> SpinUp | None:
     """How the wall carries the liquid along; None unless its law acts on a layer in a clear ring."""
-    friction, chamber, run = scene.model.friction, fill.chamber, scene.runup
+    friction, chamber, rise = scene.model.friction, fill.chamber, _rise(scene, 0.0)
     if friction.law is not FrictionLaw.WALL or fill.uneven or is_full(fill):
         return None
     viscosity = fill.liquid.viscosity
-    last = scene.speeds.stop if run is None else run.stop
+    last = scene.speeds.stop if rise is None else rise.stop
     given = float(hydraulic_diameter(fill.depth, chamber.height)), viscosity, friction.roughness
     lag, ramp_time = last, None
-    if run is not None and run.rate is not None:
-        lag = min(last, steady_lag(run.rate, chamber.radius, *given) / chamber.radius)
-        ramp_time = (run.stop - run.start) / run.rate
+    if rise is not None:
+        lag = min(last, steady_lag(rise.rate, chamber.radius, *given) / chamber.radius)
+        ramp_time = (rise.stop - rise.start) / rise.rate
     reynolds = lag * chamber.radius * given[0] / viscosity if viscosity > 0.0 else math.inf
     return SpinUp(
         regime=str(regime(reynolds)),
@@ -190,15 +214,13 @@ def _walls(fill: Fill) -> str:
 
 def _carrying(scene: Scene, fill: Fill, captured_from: float | None) -> BaffleOutlook | None:
     """What the baffles of a chamber can do on the ramp, None where nothing is asked of them."""
-    plan = scene.runup
-    if plan is None or plan.rate is None or not fill.uneven or fill.chamber.baffles is None:
+    rise = _rise(scene, captured_from or 0.0)
+    if rise is None or not fill.uneven or fill.chamber.baffles is None or fill.compartments > 1:
         return None
-    if fill.compartments > 1:
-        return None
-    speed = min(max(plan.start, captured_from or 0.0), plan.stop)
+    speed = min(max(rise.start, captured_from or 0.0), rise.stop)
     # Both the flow and what holds it to the wall go with the speed.
     able = most_torque(fill, speed)
-    asked = plan.rate * 0.5 * fill.mass * (fill.chamber.radius**2 + fill.surface_radius**2)
+    asked = rise.rate * 0.5 * fill.mass * (fill.chamber.radius**2 + fill.surface_radius**2)
     enough = speed * math.sqrt(asked / able) if able > 0.0 else math.inf
     return BaffleOutlook(speed, able, asked, enough)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -110,3 +111,18 @@ def test_a_gap_that_fills() -> None:
     deepest = np.nanmax(found.history.depth_max)
     # The slot takes the rise of the head over it: a few per cent of the gap under a deflection as large.
     assert gap < deepest < 1.03 * gap and found.mass_error < 1e-12
+
+
+@kills("leblanc.studies.explain:_rise", "max(found, key", "min(found, key")
+@kills("leblanc.studies.explain:_rise", "step.speed > max(speed, above)", "step.speed > speed")
+def test_a_programme_asks_by_its_steepest_rise() -> None:
+    """Of the rises that end above the speed of capture the steepest counts, for each ring."""
+    steps = ["to 50 rpm in 0.5 s", "hold 2 s", "to 400 rpm at 40 rpm/s", "to 900 rpm at 60 rpm/s"]
+    scene = lb.example("front_loader").replace({"programme.steps": steps})
+    rate = 60.0 * 2.0 * math.pi / 60.0
+    for fill, layer in zip(scene.fills, lb.explain(scene).layers, strict=True):
+        assert layer is not None and layer.carrying is not None
+        inertia = 0.5 * fill.mass * (fill.chamber.radius**2 + fill.surface_radius**2)
+        assert layer.carrying.asked == pytest.approx(rate * inertia, rel=1e-12)
+        assert layer.carrying.speed == pytest.approx(400.0 * math.pi / 30.0, rel=1e-12)
+        assert not layer.carrying.left_behind
