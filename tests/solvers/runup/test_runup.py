@@ -430,7 +430,7 @@ def test_capture_and_release_in_the_balance() -> None:
     assert history.audit.closure < 0.01
 
 
-@kills("solvers.runup.runup:run_up", "cells = numerics.cells // 2", "cells = numerics.cells")
+@kills("solvers.runup.runup:run_up", "cells=numerics.cells // 2", "cells=numerics.cells")
 def test_error_estimate_is_of_the_size_of_the_error() -> None:
     """The estimate is of the size of the error."""
     ramp = Ramp(20.0, 40.0, 20.0, 1.5)
