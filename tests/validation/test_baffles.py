@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from validation.cases.baffles import cases
-from validation.cases.baffles.computed_flow import lagging
+from validation.cases.baffles.flow import lagging
 
 
 def test_decays_and_losses() -> None:

@@ -1,6 +1,6 @@
 """Layers with baffles against computed two-phase flow: ten runs of a ring in the plane [theory: baffles].
 
-`computed_flow` runs the compiled long waves as the reference ran: a lag that decays, one that a steady
+`flow` runs the compiled long waves as the reference ran: a lag that decays, one that a steady
 spin-up holds.
 """
 
@@ -11,6 +11,6 @@ from validation.cases.case import Case
 
 def cases() -> list[Case]:
     """Decays, driven losses, and the spin-up that leaves the liquid behind."""
-    from validation.cases.baffles import computed_flow
+    from validation.cases.baffles import flow
 
-    return computed_flow.cases()
+    return flow.cases()

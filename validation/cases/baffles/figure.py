@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
-from validation.cases.baffles.computed_flow import lagging, reference
+from validation.cases.baffles.flow import lagging, reference
 
 _FRAME = Frame(left=0.72, top=0.15, between=0.35, below=0.42)
 # Of each run: what it is, colour and line.
