@@ -231,8 +231,8 @@ def run_up(
     fills : its chambers with their liquid; empty ones do nothing, full ones are a solid mass
     drive : ramp or motor
     friction : on the walls, none by default; the laminar law takes the frequency of the slower free wave
-    gravity : across the axis, against the first direction, m/s^2; below its speed of capture the liquid lies
-        at the bottom and moves with the drum as a mass
+    gravity : across the axis, against the first direction, m/s^2; liquid that it holds at the bottom is a
+        pool that the walls carry round, or, under the rule `riding`, a mass that moves with the axis
     numerics : resolution
     progress : called with the share of the time that is done
     model : of the liquid through time: long waves, or `solvers.runup.linear.couple_linear` for small waves

@@ -169,7 +169,8 @@ def test_any_text_is_refused_or_read(text: str) -> None:
         path = Path(folder) / "m.csv"
         path.write_bytes(text.encode("utf-8", "surrogatepass"))
         try:
-            read_measured(path, ("x",))
+            found = read_measured(path, ("x",))
+            assert (np.diff(found.at) >= 0.0).all() and np.isfinite(found.at).all()
         except InputError:
             return
 
