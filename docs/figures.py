@@ -161,6 +161,7 @@ RECIPES = (
     Recipe(("validation.models.figure",), ("models",)),
     Recipe(("validation.figures.baffles",), ("whirl_baffles",)),
     Recipe(("validation.cases.baffles.figure",), ("baffles_decay",)),
+    Recipe(("validation.figures.fill_sweep",), ("fill_sweep",)),
     Recipe(("validation.figures.runup_trends",), ("runup_trends",), minutes=True),
     Recipe(
         ("validation.figures.exciter",),

@@ -68,6 +68,19 @@ def wave_celerity(turning: Real, log: Real, spin: float) -> tuple[Real, Real]:
     return turning + carried, np.sqrt(carried * carried + log * whole * whole)
 
 
+# Last share of the gap over which its waves grow as fast as those of a full one.
+CLOSING = 0.02
+
+
+def slot_stiffness(area: Real, full: float, slot: float) -> Real:
+    """Rise of the head with the area for the speed of waves, in a gap that fills [theory: long_wave, eq. 18].
+
+    It sets in by degrees: speeds that jumped would let the fluxes jump with the rotor's acceleration.
+    """
+    begun = (area / full - 1.0) / CLOSING + 1.0
+    return slot * np.minimum(np.maximum(begun, 0.0), 1.0)
+
+
 def wall_pressure(velocity: Real, log: Real, area: Real, surface: Real, spin: float, pull: Real) -> Real:
     """Pressure on the wall over the density [theory: long_wave, eq. 7]."""
     lift = 1.0 / (surface * surface) - 1.0

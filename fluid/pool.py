@@ -7,7 +7,6 @@ and in its slowest frequency [theory: pool].
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +15,7 @@ from numpy.typing import ArrayLike
 from fluid.fill import FULL, Fill
 from fluid.friction.baffles import loss_coefficient, open_share
 from fluid.friction.laws import Friction, FrictionLaw, stokes_coefficient
-from fluid.friction.pipe import drag_speed
+from fluid.friction.pipe import bisected, drag_speed
 from meshes.arrays import Array
 
 # Of the slowest mode on the strip: shape functions, length of the strip, points of Gauss. Twice as many of
@@ -188,7 +187,7 @@ def balance_speed(fill: Fill, pool: Pool, friction: Friction, gravity: float) ->
 
     Returns
     -------
-    rad/s; inf where no speed up to 1e6 rad/s suffices
+    rad/s; inf where no speed up to 1e9 times the pendulum's frequency suffices
 
     Examples
     --------
@@ -203,24 +202,17 @@ def balance_speed(fill: Fill, pool: Pool, friction: Friction, gravity: float) ->
     def held(speed: float) -> bool:
         return float(wall_torque(fill, pool, friction, speed)) < weight
 
-    if not held(_SLOWEST):
+    unit = math.sqrt(gravity / pool.length)
+    if not held(_SLOWEST * unit):
         return 0.0
-    if held(_FASTEST):
+    if held(_FASTEST * unit):
         return math.inf
-    return math.exp(_bisected(lambda log: held(math.exp(log)), math.log(_SLOWEST), math.log(_FASTEST)))
+    ends = math.log(_SLOWEST), math.log(_FASTEST)
+    return unit * math.exp(bisected(lambda log: held(unit * math.exp(log)), *ends))
 
 
-# Spin speeds between which a balance is looked for, rad/s.
-_SLOWEST, _FASTEST = 1e-9, 1e6
-
-
-def _bisected(below: Callable[[float], bool], low: float, high: float) -> float:
-    """Where a condition ceases to hold between two numbers, to rounding."""
-    while True:
-        middle = 0.5 * (low + high)
-        if not low < middle < high:
-            return middle
-        low, high = (middle, high) if below(middle) else (low, middle)
+# Spin speeds between which a balance is looked for, over the pendulum's frequency.
+_SLOWEST, _FASTEST = 1e-9, 1e9
 
 
 @dataclass(frozen=True)
@@ -280,4 +272,4 @@ def _level(radius: float, inner: float, area: float) -> float:
     def too_low(height: float) -> bool:
         return _segment(radius, height).area - _segment(inner, height).area > area
 
-    return _bisected(too_low, -radius, radius)
+    return bisected(too_low, -radius, radius)

@@ -142,6 +142,29 @@ def force_with_friction(
     return np.asarray(filled * (1.0 + offset_with_friction(t, spin, whirl_speed, rate)))
 
 
+def drag_power(layer: Layer, spin: ArrayLike, whirl_speed: float | Array, force: ArrayLike) -> Array:
+    """Heat by friction in a layer under a force on its mass that goes round [theory: loads, eq. 18].
+
+    The force is omega^2 w in a drum whose axis whirls, or gravity, which stands still.
+
+    Parameters
+    ----------
+    layer : of a chamber
+    spin : Omega, rad/s, shape (...,)
+    whirl_speed : omega at which the force goes round in the standing frame, rad/s, shape (...,)
+    force : its size per mass, m/s^2, shape (...,)
+
+    Returns
+    -------
+    W, shape (...,)
+    """
+    slip = np.asarray(whirl_speed - np.asarray(spin))
+    rate = layer.rate + stokes_rate(layer.stokes, slip)
+    wave = wave_function(layer.layer_tanh, spin, slip, rate)
+    share = 0.5 * layer.mass * (1.0 - layer.layer_tanh)
+    return np.asarray(-share * np.square(force) * slip * wave.imag / np.square(np.abs(wave)))
+
+
 def damped_waves(layer_tanh: ArrayLike, spin: ArrayLike, rate: ArrayLike) -> tuple[Complex, Complex]:
     """Free waves with one crest under linear friction: slips, complex; they decay with the imaginary part.
 

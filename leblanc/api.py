@@ -22,10 +22,11 @@ if TYPE_CHECKING:
     from fluid.liquid import Liquid
     from leblanc.questions import Quantity
     from leblanc.results.exciter import ExciterResult
-    from leblanc.results.explanation import Comparison, ExciterExplanation, Explanation
+    from leblanc.results.explanation import ExciterExplanation, Explanation
     from leblanc.results.fit import FitResult
     from leblanc.results.layer import LayerPeriodsResult, LayerResult
     from leblanc.results.liquid import ModesResult, VolumeResult
+    from leblanc.results.models.comparison import Comparison
     from leblanc.results.optimum import OptimumResult
     from leblanc.results.response import RunResult
     from leblanc.results.runup import RunupResult
@@ -280,11 +281,12 @@ def fit(
     Parameters
     ----------
     scene : the machine, or the path of its file; its values are the first guess
-    measured : path of a table with a header such as "speed [rpm], amplitude [mm]", commas between its columns
+    measured : path of a table over speed, time or liquid added, with a header such as
+        "speed [rpm], amplitude [mm]", commas between its columns
     unknown : paths of the unknowns in the scene, as "rotor.mass"
     starts : searches, each from other values
     seed : of the values that they start from
-    scale : "given", or "free" where the unit of the sensor is not known
+    scale : "given", "free" where the unit of the sensor is not known, "each" where every quantity has its own
 
     Raises
     ------
@@ -306,13 +308,13 @@ def fit(
     4.0
     """
     machine = _scene(scene)
-    from leblanc.studies.fit import fit_scene, is_free, read_measured
+    from leblanc.studies.fit import fit_scene, read_measured, require_scale
     from leblanc.studies.models.choose import prepare
 
     with _keywords():
-        free = is_free(scale)
+        free = require_scale(scale) != "given"
         table = read_measured(measured, prepare(machine).system.coordinates, free)
-        return fit_scene(machine, table, tuple(unknown), starts, seed, free)
+        return fit_scene(machine, table, tuple(unknown), starts, seed, scale)
 
 
 def sweep(

@@ -559,8 +559,9 @@ def friction_words(friction: Friction) -> str:
         FrictionLaw.STOKES: "laminar (Stokes)",
         FrictionLaw.LINEAR: f"linear, {friction.coefficient:g} 1/s",
         FrictionLaw.QUADRATIC: f"quadratic, {friction.coefficient:g}",
-        FrictionLaw.WALL: "laminar to turbulent, "
-        + (f"wall rough by {1e6 * friction.roughness:g} µm" if friction.roughness else "smooth wall"),
+        FrictionLaw.WALL: f"wall, rough by {1e6 * friction.roughness:g} µm"
+        if friction.roughness
+        else "smooth wall",
     }[friction.law]
 
 
@@ -569,5 +570,5 @@ def small_whirl_friction(friction: Friction) -> str:
     if friction.law is FrictionLaw.QUADRATIC:
         return "none (the quadratic law does not act on small whirls)"
     if friction.law is FrictionLaw.WALL:
-        return "laminar (Stokes, with the drum's rotation in the layers on floor and lid)"
+        return "laminar, with the Coriolis force"
     return friction_words(friction)

@@ -33,20 +33,25 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def run(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Run:
-    """Run a line of a shell in an empty folder, with the wheel's packages and not those of the sources."""
-    unpacked, bin_, work = (tmp_path_factory.mktemp(name) for name in ("wheel", "bin", "work"))
+def environment(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """Of a shell with the wheel's packages and not those of the sources."""
+    unpacked, bin_ = (tmp_path_factory.mktemp(name) for name in ("wheel", "bin"))
     with zipfile.ZipFile(wheel) as content:
         content.extractall(unpacked)
     script = bin_ / "leblanc"
     script.write_text(f"#!{sys.executable}\n{_COMMAND}", encoding="utf-8")
     script.chmod(0o755)
     path = os.pathsep.join([str(bin_), str(Path(sys.executable).parent), os.environ["PATH"]])
-    environment = os.environ | {"PATH": path, "PYTHONPATH": str(unpacked)}
+    return os.environ | {"PATH": path, "PYTHONPATH": str(unpacked)}
+
+
+@pytest.fixture
+def run(environment: dict[str, str], tmp_path: Path) -> Run:
+    """Run a line of a shell in a folder that was empty when the test began."""
 
     def done(line: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
-            line, shell=True, cwd=work, env=environment, capture_output=True, text=True, check=False
+            line, shell=True, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
         )
 
     return done

@@ -20,7 +20,7 @@ Real = Any  # an array or, compiled, a number
 # Contraction of the jet behind a baffle, fitted to computed flow [theory: baffles, eq. 2].
 _LEAST, _POWER = 0.55, 1.8
 # Of the depths before and behind a baffle, the share of the first in the depth at it.
-BEFORE = 0.7
+BEFORE = 0.55
 # A share of the depth that counts as closed.
 CLOSED = 1e-6
 # Above this Froude number the layer shoots over its baffles and their torque falls.
@@ -55,6 +55,18 @@ def loss_coefficient(share: Real) -> Real:
     jet = contraction(share) * share
     lost = 1.0 / jet - 1.0
     return lost * lost
+
+
+def lid_length(share: Real) -> Real:
+    """Length of channel over its depth with the inertia that a baffle adds, under a rigid lid.
+
+    [theory: baffles, eq. 15]
+
+    Parameters
+    ----------
+    share : open share of the depth, above 0
+    """
+    return -4.0 / math.pi * np.log(np.sin(0.5 * math.pi * share))
 
 
 def pile_up(depth: Array, tip: float, gap: float, head: Array) -> tuple[Array, Array]:

@@ -7,6 +7,7 @@ deep as the layer [theory: friction, eq. 1-5].
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from enum import StrEnum
 
 import numpy as np
@@ -113,21 +114,34 @@ def steady_lag(
     -------
     inf where there is no friction
     """
-    from scipy.optimize import brentq
-
     wanted = acceleration * radius
     if wanted == 0.0:
         return 0.0
 
-    def excess(log: float) -> float:
+    def slow(log: float) -> bool:
         velocity = math.exp(log)
         drag = float(drag_speed(velocity, diameter, viscosity, roughness))
-        return 4.0 * drag * velocity / diameter - wanted
+        return 4.0 * drag * velocity < wanted * diameter
 
     low, high = math.log(1e-60), math.log(1e60)
-    if excess(low) > 0.0 or excess(high) < 0.0:
-        return math.inf if excess(high) < 0.0 else 0.0
-    return math.exp(float(brentq(excess, low, high, xtol=1e-12)))
+    if slow(high):
+        return math.inf
+    return math.exp(bisected(slow, low, high)) if slow(low) else 0.0
+
+
+def bisected(below: Callable[[float], bool], low: float, high: float) -> float:
+    """Where a condition ceases to hold between two numbers, to rounding.
+
+    Parameters
+    ----------
+    below : holds at the lower one and not at the upper one
+    low, high : the two
+    """
+    while True:
+        middle = 0.5 * (low + high)
+        if not low < middle < high:
+            return middle
+        low, high = (middle, high) if below(middle) else (low, middle)
 
 
 def spin_up_time(

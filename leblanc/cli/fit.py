@@ -24,7 +24,10 @@ def fit(
     starts: Annotated[int, typer.Option(help="Searches, each from other values.", min=1, max=1000)] = 4,
     seed: Annotated[int, typer.Option(help="Of the values that they start from.", min=0)] = 0,
     scale: Annotated[
-        str, typer.Option(help="given, or free where the unit of the sensor is not known: shapes count.")
+        str,
+        typer.Option(
+            help="given; free: the unit of the sensor is not known, shapes count; each: of every quantity."
+        ),
     ] = "given",
     out: Annotated[
         Path | None, typer.Option(help="Folder for the files [default: out/<scene name>].")
@@ -32,14 +35,14 @@ def fit(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Unknowns of a scene from a measured curve, each with its uncertainty."""
-    from leblanc.studies.fit import fit_scene, is_free, read_measured
+    from leblanc.studies.fit import fit_scene, read_measured, require_scale
     from leblanc.studies.models.choose import prepare
 
-    machine, free = load(scene), is_free(scale, "--scale")
+    machine, free = load(scene), require_scale(scale, "--scale") != "given"
     table = read_measured(measured, prepare(machine).system.coordinates, free)
     folder = results_dir(machine.name, out, scene, machine.digest, "fit.nc")
     with working("search") as update:
-        found = fit_scene(machine, table, unknown, starts, seed, free, lambda part: update(part, 1.0))
+        found = fit_scene(machine, table, unknown, starts, seed, scale, lambda part: update(part, 1.0))
 
     from leblanc.figures.fit import write_figures
     from leblanc.results.netcdf import write_netcdf

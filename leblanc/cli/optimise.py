@@ -23,8 +23,8 @@ def optimise(
     objective: Annotated[
         str | None,
         typer.Option(
-            help="working_speed, peak, mean, least_mass, robust or floor_force [default: the scene's, or "
-            "working_speed]."
+            help="working_speed, peak, mean, least_mass, robust, floor_force, walking_margin, "
+            "point_clearance or motor_torque [default: the scene's, or working_speed]."
         ),
     ] = None,
     deflection: Annotated[
@@ -75,8 +75,7 @@ def optimise(
         ("--emulator", emulator, None),
         ("--no-front", no_front, False),
     )
-    in_time = task.objective == "peak" and not task.steady
-    what = about(machine, command, "optimum.nc", task, () if in_time else ("runup",))
+    what = about(machine, command, "optimum.nc", task, () if result.in_time else ("runup",))
     write_optimise_report(result, what, files, folder / "optimise.html")
     if json:
         print_json(result.to_json())

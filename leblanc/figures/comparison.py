@@ -21,7 +21,7 @@ from leblanc.figures.drawing.page import (
 from leblanc.figures.drawing.page import save as save  # a figure is drawn and written together
 from leblanc.figures.response import DRY, OUT_OF_RANGE, SHADE, SHARE, value_axis, wider_words
 from leblanc.results.base import one_line
-from leblanc.results.explanation import Comparison
+from leblanc.results.models.comparison import Comparison
 from leblanc.results.notes.response import plane_label
 from leblanc.results.response import RunResult
 from leblanc.text.explanation import comparison_alt

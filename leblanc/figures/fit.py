@@ -16,23 +16,25 @@ from meshes.arrays import Array
 Axes = Any  # matplotlib's, which no module that only draws imports
 FRAME = Frame(left=0.78, top=0.12, between=0.14, below=0.42)
 DATA, LINE = "0.15", "#0072B2"
+# What is drawn across: its factor from SI units, and what it is called.
+_OVER = {"speed": (RPM, "Speed (rpm)"), "time": (1.0, "Time (s)"), "added": (1e6, "Liquid added (ml)")}
 _HEIGHTS = 2.2, 0.9  # inches: the quantity, what is left of it
 
 
 def fit_figure(result: FitResult) -> Figure:
     """Each measured quantity with the fitted one over speed or time, and below it what is left."""
-    over = result.at * (RPM if result.over == "speed" else 1.0)
+    factor, label = _OVER[result.over]
     with style():
         figure = Figure()
         panels: list[list[Axes]] = []
         for k, part in enumerate(result.measured):
             panels += [[figure.add_axes((0, 0, 1, 1), label=f"{k}{row}")] for row in "ab"]
-            _draw(panels[-2][0], panels[-1][0], over, part, labelled=k == 0)
+            _draw(panels[-2][0], panels[-1][0], result.at * factor, part, labelled=k == 0)
         for (axes,) in panels:
             axes.xaxis.set_major_formatter(number)
             axes.yaxis.set_major_formatter(number)
             axes.tick_params(labelbottom=axes is panels[-1][0])
-        panels[-1][0].set_xlabel("Speed (rpm)" if result.over == "speed" else "Time (s)")
+        panels[-1][0].set_xlabel(label)
         lay_out(figure, panels, list(_HEIGHTS) * len(result.measured), FRAME, _caption(result))
         figure.alt = (
             "Measured points and the fitted line, with what is left between them below; "
@@ -54,6 +56,8 @@ def _draw(above: Axes, below: Axes, over: Array, part: Measured, labelled: bool)
     left = np.angle(np.exp(1j * left)) if angle else left
     below.axhline(0.0, color="0.6", linewidth=0.8)
     below.plot(over, left * factor, color=DATA, **mark)
+    for axes in (above, below):
+        axes.margins(y=0.12)  # no mark is cut at the edge
     words = part.name.replace("_", " ").capitalize()
     above.set_ylabel(f"{words}\n({unit})")
     below.set_ylabel(f"left ({unit})")
@@ -62,8 +66,9 @@ def _draw(above: Axes, below: Axes, over: Array, part: Measured, labelled: bool)
 def _caption(result: FitResult) -> Caption:
     pairs = zip(result.unknown, result.value.tolist(), result.std.tolist(), strict=True)
     found = "; ".join(f"{path} = {value:.4g} ± {std:.2g}" for path, value, std in pairs)
+    over = "liquid added" if result.over == "added" else result.over
     return Caption(
-        f"Measured and fitted over {result.over}, and what is left between them.",
+        f"Measured and fitted over {over}, and what is left between them.",
         f"Scene: {one_line(result.name)}. Found, SI, with standard errors: {found}. Left: "
         f"{100.0 * result.residual_rms:.2g} % of the measured size.",
     )

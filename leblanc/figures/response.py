@@ -408,7 +408,8 @@ def background(axes: Axes, curves: Curves, result: RunResult, lines: list[Array]
     for speed, line, color, label in (
         (result.critical_speed_wet, (0, (6, 1.5, 1, 1.5, 1, 1.5)), WET, "critical speed with liquid,"),
         (result.critical_speed_dry, (0, (6, 1.5, 1, 1.5)), DRY, "critical speed without liquid,"),
-        (result.capture_speed, (0, (8, 3)), "0.3", "liquid captured from"),
+        (result.capture_speed, (0, (8, 3)), "0.3", "a ring can stand from"),
+        (result.carried_from, (0, (2, 2)), "0.3", "carried round from rest from"),
     ):
         if speed is not None and low <= speed * RPM <= high:
             text = f"{label} {in_rpm(speed)}"

@@ -175,7 +175,7 @@ def write_optimise_report(
     path : the file to write or replace
     """
     names = [span.model for span in result.models] + (["long_wave"] if result.in_time else [])
-    place = "" if result.unit == "N" else amplitude_plane(result)
+    place = amplitude_plane(result) if result.unit in ("m", "kg", "kg m") else ""
     loads = None if result.response is None else result.response.loads
     paste = ", ".join(f'"{volume * ML:.6g} ml"' for volume in result.volume.tolist())
     parts = {

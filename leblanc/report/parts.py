@@ -84,7 +84,8 @@ def load_part(loads: MachineLoads | None) -> Table | None:
     time = ("after (s)",) if loads.in_time else ()
     rows = [
         (
-            *(row.label, Cell(row.size, warning=row.failed), row.speed),
+            # A number keeps its unit beside it.
+            *(row.label, Cell(row.size.replace(" ", "\N{NO-BREAK SPACE}"), warning=row.failed), row.speed),
             *((row.time,) if time else ()),
             row.remark,
         )

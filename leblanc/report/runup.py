@@ -61,7 +61,8 @@ def times(time: NDArray[np.float64], mask: NDArray[np.bool_]) -> str:
     if first.size > MOST_RANGES:
         return f"{first.size} times between {first[0]:.3g} and {last[-1]:.3g} s"
     pairs = zip(first.tolist(), last.tolist(), strict=True)
-    return "; ".join(f"{a:.3g} s" if a == b else f"{a:.3g} to {b:.3g} s" for a, b in pairs)
+    ends = [(f"{a:.3g}", f"{b:.3g}") for a, b in pairs]
+    return "; ".join(f"{a} s" if a == b else f"{a} to {b} s" for a, b in ends)
 
 
 def moments(result: RunupResult) -> Table:
@@ -146,7 +147,7 @@ def energy(result: RunupResult) -> Table:
     rows.append(row("= not accounted for", audit.remainder))
     if audit.motor != 0.0:
         who = "drag on the coasting drum" if result.passages else "the motor"
-        rows.append(row(f"of which {who} did", audit.motor))
+        rows.append((f"besides, work of {who}", number(audit.motor), ""))
     return table("", ("Energy", "J", "% of the work"), rows)
 
 

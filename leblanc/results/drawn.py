@@ -293,6 +293,23 @@ class Shell:
 
 
 @dataclass(frozen=True)
+class Spot:
+    """A place that a scene names: a foot of its cabinet, or a point.
+
+    Parameters
+    ----------
+    name : of a point; empty for a foot
+    axial, across : m, as of `Strut`
+    turns : it goes round with the drum
+    """
+
+    name: str
+    axial: float
+    across: complex
+    turns: bool = False
+
+
+@dataclass(frozen=True)
 class MachineParts:
     """What carries the chambers and what holds the machine, as drawn.
 
@@ -305,6 +322,8 @@ class MachineParts:
     bearings : places along the axis, m
     struts : springs and dampers
     sketched : what the scene does not say of them, a sentence for the caption; empty if it says all
+    feet : of its cabinet, in their order round it
+    points : that the scene names
     """
 
     drum: Shell
@@ -314,6 +333,8 @@ class MachineParts:
     bearings: tuple[float, ...]
     struts: tuple[Strut, ...]
     sketched: str
+    feet: tuple[Spot, ...] = ()
+    points: tuple[Spot, ...] = ()
 
 
 @dataclass(frozen=True)

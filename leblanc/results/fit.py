@@ -14,7 +14,10 @@ from leblanc.results.netcdf import NamedArrays, variable
 from leblanc.units import number
 from meshes.arrays import Array
 
+REACH = 100.0  # of the first guess: how far the search looks
 BOTH = 0.95  # a correlation from which on data tell little more than a combination of two values
+_UPPER = 0.975  # of the distribution: a twentieth lies outside both ends
+POOR = 0.3  # of what was measured: more left than that is no noise
 VAGUE = 0.5  # of the value: a standard error at which the data hardly tell it
 
 
@@ -28,6 +31,7 @@ class FitCode(NoteCode):
     OTHER_MINIMUM = "other_minimum"
     NO_SPREAD = "no_spread"
     SCALE = "scale"
+    POOR = "poor"
 
 
 @dataclass(frozen=True)
@@ -36,7 +40,7 @@ class Measured:
 
     Parameters
     ----------
-    name : amplitude, phase, liquid_offset, liquid_angle, or a coordinate of the rotor
+    name : amplitude, peak, phase, liquid_offset, liquid_angle, or a coordinate of the rotor
     unit : SI unit of its values; empty where their scale is free
     value : measured, in that unit, shape (n,)
     fitted : by the scene with the values found, shape (n,)
@@ -59,14 +63,17 @@ class FitResult(Result):
     value, std : found, SI, and their standard errors, nan where the data do not tell them, shape (p,)
     first : values of the scene that the search began with, shape (p,)
     correlation : of the errors of the values, shape (p, p)
-    over : "speed" or "time": what the quantities were measured over
-    at : those speeds or times, rad/s or s, rising, shape (n,)
+    over : "speed", "time" or "added" (liquid): what the quantities were measured over
+    at : those speeds, times or volumes, rad/s, s or m^3, rising, shape (n,)
     measured : the quantities
-    scale : of the measured quantities over the scene's, with the best one found; 1 where it is not free
+    scale : of the measured lengths over the scene's, of the first of them where each has its own; 1 where
+        it is given
     residual_rms : root of the mean square of what is left, over that of what was measured
     converged : the best search came to its end
     evaluations : of the scene
     notes : what the data cannot tell
+    signed : unknowns that may have either sign
+    freedom : degrees of freedom, measured values less those that were found; 0 where they are not known
 
     Examples
     --------
@@ -94,6 +101,8 @@ class FitResult(Result):
     converged: bool
     evaluations: int
     notes: tuple[Note, ...]
+    signed: tuple[str, ...] = ()
+    freedom: int = 0
 
     figure: ClassVar[str] = "leblanc.figures.fit:fit_figure"
     summary: ClassVar[str] = "leblanc.text.fit:summary"
@@ -104,10 +113,29 @@ class FitResult(Result):
         pairs = zip(self.unknown, self.value.tolist(), self.std.tolist(), strict=True)
         return {path: {"value": value, "std": std} for path, value, std in pairs}
 
+    @property
+    def interval(self) -> Array:
+        """Ends between which each value lies with 95 %, SI, shape (p, 2) [theory: fit, eq. 4].
+
+        Neither lies beyond what the search looks at.
+        """
+        from scipy.special import stdtrit
+
+        if self.freedom < 1:
+            return np.full((self.value.size, 2), np.nan)
+        wide = float(stdtrit(self.freedom, _UPPER)) * self.std
+        # Beyond the search nobody has looked; its edge is also where the exponential would overflow.
+        factor = np.exp(np.minimum(wide / np.abs(self.value), 2.0 * math.log(REACH)))
+        ends = np.stack([self.value / factor, self.value * factor], axis=1)
+        ends = np.clip(ends, self.first[:, None] / REACH, self.first[:, None] * REACH)
+        either = np.array([[path in self.signed] for path in self.unknown])
+        return np.where(either, np.stack([self.value - wide, self.value + wide], axis=1), ends)
+
     def to_json(self) -> dict[str, Any]:
         """What `fit` prints for scripts, SI; what is not finite becomes null when it is printed."""
         return {
             "parameters": self.parameters,
+            "interval": dict(zip(self.unknown, self.interval.tolist(), strict=True)),
             "residual_rms": self.residual_rms,
             "correlation": self.correlation,
             "first": dict(zip(self.unknown, self.first.tolist(), strict=True)),
@@ -124,10 +152,10 @@ class FitResult(Result):
         }
 
     def named_arrays(self) -> NamedArrays:
-        """Arrays over the dimensions `unknown`, `other` (of the correlation) and speed or time."""
+        """Arrays over the dimensions `unknown`, `other` (of the correlation) and speed, time or added."""
         over = (self.over,)
         own: dict[str, Any] = {"residual_rms": self.residual_rms, "scale": self.scale}
-        unit = "rad s-1" if self.over == "speed" else "s"
+        unit = {"speed": "rad s-1", "time": "s", "added": "m3"}[self.over]
         found = {
             "value": variable(("unknown",), self.value, "1", "value found, SI"),
             "std": variable(("unknown",), self.std, "1", "its standard error, SI"),
@@ -148,6 +176,20 @@ class FitResult(Result):
         )
 
 
+def poor_note(rms: float) -> Note:
+    """That the scene does not meet the data.
+
+    Parameters
+    ----------
+    rms : root of the mean square of what is left, over that of what was measured
+    """
+    text = (
+        f"The scene does not meet the data: {rms:.0%} of their size are left. That is no noise, and the "
+        "standard errors, which take it for noise, say little."
+    )
+    return Note(FitCode.POOR, {"residual_rms": rms}, text)
+
+
 def fit_notes(
     unknown: Sequence[str],
     value: Array,
@@ -155,6 +197,7 @@ def fit_notes(
     correlation: Array,
     at_bound: Sequence[bool],
     others: int,
+    span: Array,
 ) -> list[Note]:
     """What the data cannot tell, in words.
 
@@ -165,15 +208,21 @@ def fit_notes(
     correlation : shape (p, p)
     at_bound : whether the search ended at the edge of what it looks at, shape (p,)
     others : starts that came to another answer that is as good to a tenth
+    span : of unknowns that may have either sign, a length or angle that is large, nan of others, shape (p,)
     """
     found = []
-    for path, size, error, edge in zip(unknown, value.tolist(), std.tolist(), at_bound, strict=True):
+    told = zip(unknown, value.tolist(), std.tolist(), at_bound, span.tolist(), strict=True)
+    for path, size, error, edge, large in told:
         if edge:
             text = f"{path} ended at the edge of the search, {number(size)}: the data do not bound it."
             found.append(Note(FitCode.AT_BOUND, {"path": path, "value": size}, text))
         elif math.isnan(error):
             text = f"The data do not tell {path}: nothing that was measured changes with it alone."
             found.append(Note(FitCode.NOT_TOLD, {"path": path}, text))
+        elif not math.isnan(large):
+            if error > VAGUE * large:
+                text = f"The data hardly tell {path}: its standard error is {number(error)}."
+                found.append(Note(FitCode.VAGUE, {"path": path, "std": error}, text))
         elif error > VAGUE * abs(size):
             text = f"The data hardly tell {path}: its standard error is {error / abs(size):.0%} of it."
             found.append(Note(FitCode.VAGUE, {"path": path, "share": error / abs(size)}, text))

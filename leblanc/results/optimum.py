@@ -16,7 +16,7 @@ from leblanc.results.netcdf import NamedArrays, Variable, flags
 from leblanc.results.netcdf import variable as var
 from leblanc.results.response import RunResult
 from leblanc.results.sweep import EmulatorError
-from leblanc.units import LENGTH, in_rpm, with_unit
+from leblanc.units import LENGTH, VOLUME, in_rpm, with_unit
 from meshes.arrays import Array, Flags
 
 
@@ -40,6 +40,7 @@ class OptimumCode(NoteCode):
     LAMINAR = "laminar"
     NO_LIQUID = "no_liquid"
     INTERRUPTED = "interrupted"
+    PARTED = "parted"
 
 
 def given_deflection(deflection: float, speed: float, gap: float) -> Note:
@@ -91,6 +92,23 @@ def too_deep(chamber: int, limit: float) -> Note:
     """The layer of a chamber, counted from 0, is deeper than a share of its radius."""
     text = f"Out of range: the layer in chamber {chamber + 1} is deeper than {limit:g} of its radius."
     return Note(OptimumCode.TOO_DEEP, {"chamber": chamber + 1, "limit": limit}, text)
+
+
+def parted(chamber: int, count: int, volume: float) -> Note:
+    """Baffles cut the liquid of a chamber into compartments up to some volume.
+
+    Parameters
+    ----------
+    chamber : its place in the scene, from 0
+    count : of its baffles
+    volume : from which on the liquid passes them, m^3
+    """
+    text = (
+        f"Chamber {chamber + 1}: below {with_unit(volume, VOLUME)} its {count} baffles cut the liquid into "
+        "compartments. There the steady answer is that of finite elements for small deflections, with an "
+        "error that is not known."
+    )
+    return Note(OptimumCode.PARTED, {"chamber": chamber, "count": count, "volume": volume}, text)
 
 
 def laminar() -> Note:

@@ -92,7 +92,8 @@ class RunResult(Loaded, Result):
     notes : limits of validity and findings
     axis : "horizontal" or "vertical"
     chambers : one for each chamber
-    capture_speed : below it gravity keeps the liquid from riding with the drum, rad/s; None if never
+    capture_speed : from it on a ring of liquid can stand against gravity across the axis, rad/s; None
+        if at any
     critical_speed_dry, critical_speed_wet : without liquid and with its added mass, rad/s; of several the one
         at which the unbalance moves the axis most
     motion : None for a planar rotor
@@ -109,6 +110,8 @@ class RunResult(Loaded, Result):
     axial_gravity : gravity along the axis, m/s^2
     held : of speeds at which the motion was held in time; None where it was at none
     loads : forces and clearances at the speeds of `curve`; None where the scene asks for none
+    carried_from : speed from which the walls carry the liquid round from rest, rad/s, inf where nothing drags
+        on it; None where that is not asked or not known
 
     Raises
     ------
@@ -149,6 +152,7 @@ class RunResult(Loaded, Result):
     axial_gravity: float = 0.0
     held: Held | None = None
     loads: MachineLoads | None = None
+    carried_from: float | None = None
 
     def __post_init__(self) -> None:
         if self.axis not in ("horizontal", "vertical"):
@@ -383,6 +387,7 @@ class RunResult(Loaded, Result):
             "branches": [branches[row] for row in rows],
             "branch_stable": [branch_stable[row] for row in rows],
             **{name: getattr(self, name) for name in ("name", "digest", *SCALARS)},
+            "carried_from": None if self.carried_from is None else finite(np.array([self.carried_from]))[0],
             "assumed": list(self.assumed),
             "notes": list(texts(self.notes)),
             **({} if self.error_estimate is None else {"error_estimate": finite(self.error_estimate)}),
@@ -447,6 +452,7 @@ def _variables(result: RunResult) -> dict[str, Variable]:
     stability = np.array([STABILITY.index(state) - 1 for state in result.stability.tolist()])
     motion = numbered(result.state)
     mass, dry, wet, capture = (np.array(getattr(result, name), dtype=np.float64) for name in SCALARS)
+    carried = np.array(math.nan if result.carried_from is None else result.carried_from)
     lag, slow = "from the unbalance, positive with the spin, a lag is negative", "against slow disturbances"
     return {
         "amplitude": var(over, result.amplitude, "m", "amplitude", "of the branch reported"),
@@ -473,7 +479,8 @@ def _variables(result: RunResult) -> dict[str, Variable]:
         "liquid_mass": var((), mass, "kg", "liquid mass", "of all chambers"),
         "critical_speed_dry": var((), dry, rate, "critical speed without liquid", "undamped"),
         "critical_speed_wet": var((), wet, rate, "critical speed with liquid", "undamped, wall wet"),
-        "capture_speed": var((), capture, rate, "capture speed", "the liquid rides with the drum above it"),
+        "capture_speed": var((), capture, rate, "capture speed", "a ring can stand above it"),
+        "carried_from": var((), carried, rate, "speed of balance", "from rest the walls carry the liquid"),
         **_peak_variables(result),
         **_quality_variables(result),
         **_error_variables(result),

@@ -226,6 +226,12 @@ class RunupResult(Loaded, Result):
         return turn_mean(self.history.liquid_position, self.history.angle)
 
     @property
+    def motor_limited(self) -> Flags | None:
+        """The motor gave less than the programme asked on the way to each time, shape (k,); None if never."""
+        limited = self.history.limited
+        return limited if limited is not None and limited.any() else None
+
+    @property
     def captured(self) -> Flags:
         """Each layer rides with its drum, shape (k, l)."""
         return self.history.captured
@@ -275,6 +281,11 @@ class RunupResult(Loaded, Result):
         """Error of the amplitude by cells, steps and hand-over, m, nan if not estimated, shape (k,)."""
         band = self.history.band
         return np.full(self.time.shape, math.nan) if band is None else band
+
+    @property
+    def peak_error(self) -> dict[str, float]:
+        """Error of the run's largest amplitude, m: `cells` (and steps), `handover`; nan if not estimated."""
+        return dict(zip(("cells", "handover"), self.history.peak_gaps, strict=True))
 
     @property
     def energy(self) -> EnergyAudit:
@@ -432,7 +443,7 @@ class RunupResult(Loaded, Result):
         over += ["phase", "liquid_offset", "liquid_angle"]
         over += ["liquid_offset_mean", "liquid_angle_mean", "mass_error", "captured", "in_range"]
         over += ["depth_max", "depth_min", "mean_rotation", "lag", "amplitude_error"]
-        over += ["peak", "peak_dry", "end"]
+        over += ["peak", "peak_error", "peak_dry", "end"]
         over += ["peak_back"] if self.turns_back else []
         rest = ["error_estimate", "handover_estimate", "converged", "reason"]
         rest += ["steps", "cells", "model", "model_reason"]
@@ -440,6 +451,7 @@ class RunupResult(Loaded, Result):
         return {name: getattr(self, name) for name in (*over, *rest, *own)} | {
             **({"passages": [asdict(passage) for passage in self.passages]} if self.passages else {}),
             **({} if self.unbalance_left is None else {"unbalance_left": self.unbalance_left}),
+            **({} if self.motor_limited is None else {"motor_limited": self.motor_limited}),
             "energy": self._energy(),
             "transfers": [asdict(transfer) | {"lost": transfer.lost} for transfer in self.transfers],
             "notes": texts(self.notes),
@@ -546,6 +558,9 @@ def _columns(result: RunupResult) -> dict[str, Any]:
     if result.unbalance_left is not None:
         words = "sizes of all unbalances over what they were at first"
         columns["unbalance_left"] = variable(over, result.unbalance_left, "1", words)
+    if result.motor_limited is not None:
+        words = "the motor gives less than is asked"
+        columns["motor_limited"] = flags(over, result.motor_limited, "no yes", words)
     if result.loads is not None:
         columns |= result.loads.variables()
     if result.spread is not None:

@@ -10,7 +10,7 @@ from fluid.liquid import KNOWN_LIQUIDS, Liquid
 from fluid.temperature import Expansion, GivenLaw, PropertyLaw, Tabulated, Vogel, Walther
 from leblanc.scene.cabinet import point_table
 from leblanc.scene.rotors import JeffcottRotor
-from leblanc.scene.rows import Row, RowTable, Value, degrees, mm, row, rpm
+from leblanc.scene.rows import Row, RowTable, Value, curve_words, degrees, mm, row, rpm
 from leblanc.scene.scene import Model, Scene
 from leblanc.scene.schema.load import escaped
 from leblanc.scene.tasks import Optimisation, Runup, pairs_of
@@ -33,7 +33,7 @@ from leblanc.units import (
 from meshes.baffles import Baffles
 from meshes.chamber_section import ChamberSection
 
-MOST = 6  # speeds of a duty cycle or of a motor's curve that are listed one by one
+MOST = 6  # speeds of a duty cycle that are listed one by one
 
 _BAFFLES = ("Chamber", "baffles", "tips at (mm)", "gap at the wall (mm)", "first at (deg)", "loss")
 _SECTIONS = ("Chamber", "section", "area (cm²)", "farthest wall (mm)", "cells at the wall (mm)")
@@ -262,16 +262,10 @@ def _runup(plan: Runup) -> list[Row]:
     if plan.rate is not None:
         found.append(row("Run-up rate", f"{number(plan.rate)} rad/s²", "runup.rate"))
     if plan.motor is not None:
-        motor = plan.motor
-        points = [
-            f"{number(torque)} N m at {in_rpm(speed)}"
-            for speed, torque in zip(motor.speeds, motor.torques, strict=True)
-        ]
-        curve = ", ".join(points if len(points) <= MOST else [points[0], "...", points[-1]])
-        more = f" ({len(points)} points)" if len(points) > MOST else ""
+        motor, curve = plan.motor, curve_words(plan.motor.speeds, plan.motor.torques)
         found += [
             row("Inertia on the motor", f"{number(motor.inertia)} kg m²", "runup.motor.inertia"),
-            row("Motor's torque", f"{curve}{more}", "runup.motor.torques", "runup.motor.speeds"),
+            row("Motor's torque", curve, "runup.motor.torques", "runup.motor.speeds"),
         ]
     return [
         *found,
@@ -288,6 +282,13 @@ def _runup(plan: Runup) -> list[Row]:
 # -- what the liquid is chosen for ---------------------------------------------------------------------------
 
 _DEFAULT = Optimisation()
+
+
+_OVER = {
+    "operating": "at the operating speeds",
+    "runup": "over the run-up in time",
+    "both": "at the operating speeds and over the run-up in time",
+}
 
 
 def optimise_rows(wanted: Optimisation) -> list[Row]:
@@ -318,9 +319,12 @@ def optimise_rows(wanted: Optimisation) -> list[Row]:
         ("spill", "Inner edge", "may be reached at the working speed"),
         ("operating", "Operating speeds", _span(wanted.operating, ANGULAR_SPEED)),
         ("clearance", "Clearance", _length(wanted.clearance)),
+        ("loads_over", "Loads looked at", _OVER[wanted.loads_over]),
         ("floor_force", "Largest force under a foot", _plain(wanted.floor_force, " N")),
         ("walking_margin", "Least margin against walking", _plain(wanted.walking_margin)),
+        ("slip_margin", "Least margin against slipping", _plain(wanted.slip_margin)),
         ("point_clearance", "Least clearance of a point", _length(wanted.point_clearance)),
+        ("motor_torque", "Largest torque of the motor", _plain(wanted.motor_torque, " N m")),
         ("balance_quality", "Balance quality", _grade(wanted.balance_quality)),
         ("volumes", "Volumes", _volumes(wanted)),
     ):

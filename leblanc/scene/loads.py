@@ -11,7 +11,7 @@ from leblanc import units
 from leblanc.scene.rows import RowTable, Value, degrees
 from leblanc.scene.schema.part import Part
 from leblanc.scene.schema.rules import SPEED, Position, Unbalance, quantity
-from leblanc.units import MM, UNBALANCE, in_rpm, number, unit_for
+from leblanc.units import MASS, MM, UNBALANCE, in_rpm, number, unit_for, with_unit
 
 
 class Sheds(Part):
@@ -24,11 +24,15 @@ class Sheds(Part):
         description="in which what has not yet left falls to 1/e, while the drum is faster than above"
     )
     above: Annotated[float, SPEED] = Field(description="speed from which on water leaves")
+    mass: Annotated[float | None, quantity(units.MASS, 1e-12, 1e9)] = Field(
+        None, description="of the water that leaves in the end; the drum keeps its mass if left out"
+    )
 
     def words(self) -> str:
         """For readers."""
         share, time = number(100.0 * self.share), number(self.time_constant)
-        return f"{share} % in {time} s above {in_rpm(self.above)}"
+        mass = "" if self.mass is None else f", {with_unit(self.mass, MASS)}"
+        return f"{share} % in {time} s above {in_rpm(self.above)}{mass}"
 
 
 _SHEDS = "part of it that leaves while the drum turns fast; none if left out"

@@ -96,6 +96,23 @@ def row(label: str, text: str, *paths: str) -> Row:
     return Row(label, (Value(text, paths),))
 
 
+_MOST = 6  # points of a motor's curve that are listed one by one
+
+
+def curve_words(speeds: Sequence[float], torques: Sequence[float]) -> str:
+    """A motor's curve for readers; of many points both ends.
+
+    Parameters
+    ----------
+    speeds, torques : rad/s and N m
+    """
+    pairs = zip(speeds, torques, strict=True)
+    points = [f"{number(torque)} N m at {in_rpm(speed)}" for speed, torque in pairs]
+    if len(points) <= _MOST:
+        return ", ".join(points)
+    return f"{points[0]}, ..., {points[-1]} ({len(points)} points)"
+
+
 def rpm(speed: float) -> str:
     """A speed in both units.
 

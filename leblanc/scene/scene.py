@@ -18,7 +18,7 @@ from leblanc import units
 from leblanc.scene.cabinet import MAX_POINTS, Cabinet, Point, cabinet_conflicts
 from leblanc.scene.chambers import Chamber
 from leblanc.scene.programme.table import Programme as Programme
-from leblanc.scene.rotors import AnyRotor, polar_inertia_of, sheds_of
+from leblanc.scene.rotors import AnyRotor
 from leblanc.scene.rotors import Exciter as Exciter  # what a scene's rotor may be
 from leblanc.scene.rotors import JeffcottRotor as JeffcottRotor
 from leblanc.scene.rotors import TubRotor as TubRotor
@@ -29,6 +29,7 @@ from leblanc.scene.schema.paths import keys_of, require_field, with_values
 from leblanc.scene.schema.rules import Entries, Refused, Speed, Text, entries, one_of, quantity, whole
 from leblanc.scene.tasks import Optimisation
 from leblanc.scene.tasks import Runup as Runup
+from leblanc.scene.unbalances import polar_inertia_of, sheds_of
 from leblanc.units import allowed_as_typed
 from meshes.errors import InputError
 
@@ -149,7 +150,7 @@ class Model(Part):
 
     liquid: Annotated[str, one_of(*LIQUID_MODELS)] = Field("auto", description="model of the liquid")
     friction: Annotated[Friction, PlainValidator(FrictionRule())] = Field(
-        Friction(FrictionLaw.STOKES), description="of the liquid on the wall"
+        Friction(FrictionLaw.WALL), description="of the liquid on the wall"
     )
     tolerance: Annotated[float, quantity(units.NUMBER, 1e-12, 1.0)] = Field(
         1e-3, description="relative error that auto may make"

@@ -45,7 +45,10 @@ class GradeRule:
             raise Refused(self.allowed) from refused
 
 
-OBJECTIVES = ("working_speed", "peak", "mean", "least_mass", "robust", "floor_force")
+# Objectives that are loads of the machine, see `leblanc.studies.optimise.loads`.
+LOADS = ("floor_force", "walking_margin", "point_clearance", "motor_torque")
+OBJECTIVES = ("working_speed", "peak", "mean", "least_mass", "robust", *LOADS)
+LOADS_OVER = ("operating", "runup", "both")
 MAX_DUTY = 1000
 MAX_SAMPLES = 100_000
 
@@ -75,8 +78,10 @@ class Optimisation(Part):
     objective: Annotated[str, one_of(*OBJECTIVES)] = Field(
         "working_speed",
         description="what is made least: the amplitude at the working speed, its peak or its mean over the "
-        "duty cycle, the mass of liquid that keeps a limit, the amplitude over ranges (robust), or the "
-        "largest force under a foot of the cabinet at the operating speeds (floor_force)",
+        "duty cycle, the mass of liquid that keeps a limit, the amplitude over ranges (robust), or a load, "
+        "see loads_over: the largest force under a foot of the cabinet (floor_force), the share of its hold "
+        "on the floor that the machine uses (walking_margin), the share of its gap that a point takes "
+        "(point_clearance), the largest torque of the motor (motor_torque)",
     )
     working_speed: Annotated[float | None, SPEED] = Field(
         None, description="the last of the scene's speeds if left out"
@@ -140,18 +145,27 @@ class Optimisation(Part):
     clearance: Annotated[float | None, _LENGTH] = Field(
         None, description="largest amplitude at the operating speeds; no limit if left out"
     )
+    loads_over: Annotated[str, one_of(*LOADS_OVER)] = Field(
+        "operating",
+        description="where loads are looked at: in steady turns at the operating speeds, over the run-up or "
+        "programme in time, or both",
+    )
     floor_force: Annotated[float | None, quantity(units.FORCE, 1e-9, 1e15)] = Field(
-        None,
-        description="largest force under any foot at the operating speeds; no limit if left out",
+        None, description="largest force under any foot; no limit if left out"
     )
     walking_margin: Annotated[float | None, quantity(units.NUMBER, 0.0, 1.0)] = Field(
         None,
-        description="least margin against walking at the operating speeds: 1 at rest, 0 where a foot slips "
-        "or lifts off; no limit if left out",
+        description="least margin against walking: 1 at rest, 0 where a foot slips or lifts off; no limit if "
+        "left out",
+    )
+    slip_margin: Annotated[float | None, quantity(units.NUMBER, 0.0, 1.0)] = Field(
+        None, description="the same against slipping as a whole alone; no limit if left out"
     )
     point_clearance: Annotated[float | None, quantity(units.LENGTH, 0.0, 1e3)] = Field(
-        None,
-        description="least clearance of every point with a gap at the operating speeds; no limit if left out",
+        None, description="least clearance of every point with a gap; no limit if left out"
+    )
+    motor_torque: Annotated[float | None, quantity(units.TORQUE, 1e-9, 1e9)] = Field(
+        None, description="largest torque of the motor; no limit if left out"
     )
     balance_quality: Annotated[float | None, PlainValidator(GradeRule())] = Field(
         None,
@@ -180,6 +194,22 @@ def pairs_of(ranges: _Pair | tuple[_Pair, ...]) -> tuple[_Pair, ...]:
     return tuple(found)
 
 
+class TorqueCurve(Part):
+    """What a motor can give at most."""
+
+    speeds: Annotated[tuple[_MotorSpeed, ...], entries(2, MAX_POINTS, "rising angular speeds")] = Field(
+        description="at which its torque is given"
+    )
+    torques: Annotated[tuple[_Torque, ...], entries(2, MAX_POINTS, "torques, one a speed")] = Field(
+        description="largest at those speeds, straight lines between them"
+    )
+
+    @classmethod
+    def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """Speeds rise, and each has its torque."""
+        return Motor.conflicts(values, given)
+
+
 class Motor(Part):
     """A motor that drives the rotor."""
 
@@ -198,7 +228,7 @@ class Motor(Part):
         if speeds is not None and any(later <= earlier for earlier, later in itertools.pairwise(speeds)):
             yield Conflict(("speeds",), "a list in which every angular speed is above the one before")
         if speeds is not None and torques is not None and len(torques) != len(speeds):
-            text = f"a list of {len(speeds)} torques, one for each of runup.motor.speeds"
+            text = f"a list of {len(speeds)} torques, one for each of the motor's speeds"
             yield Conflict(("torques",), text)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 
-from leblanc.results.explanation import Comparison, ModelAnswer
+from leblanc.results.models.comparison import Comparison, ModelAnswer
 from leblanc.scene.scene import LIQUID_MODELS, Exciter, Scene
 from leblanc.studies.held.holding import HERE, Holding
 from leblanc.studies.run import run_scene

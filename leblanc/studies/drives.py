@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,10 +11,18 @@ from leblanc.results.base import Note
 from leblanc.results.motion.passages import Passage
 from leblanc.results.notes import runup as notes
 from leblanc.scene.programme.steps import Step
-from leblanc.scene.rotors import AnyRotor, polar_inertia_of, sheds_of, unbalances_of, with_unbalances
+from leblanc.scene.rotors import AnyRotor
 from leblanc.scene.scene import Programme, Runup, Scene, dry_rotor
+from leblanc.scene.unbalances import (
+    polar_inertia_of,
+    sheds_of,
+    unbalance_places_of,
+    unbalances_of,
+    with_unbalances,
+)
 from meshes.arrays import Array
 from meshes.errors import InputError
+from solvers.rotor.loads.frame import frame_of
 from solvers.rotor.system import RotorSystem, Shed
 from solvers.runup import programme
 from solvers.runup.machine import Drive, Handover, Motor, Ramp
@@ -54,6 +62,8 @@ def drive_of(plan: Runup | Programme, rotor: AnyRotor | None = None) -> Drive:
             inertia,
             plan.drag_torque,
             plan.drag_rate,
+            None if plan.motor is None else (plan.motor.speeds, plan.motor.torques),
+            plan.coast_limit,
         )
     if plan.motor is not None:
         motor = plan.motor
@@ -96,8 +106,35 @@ def rotor_in_time(scene: Scene) -> RotorSystem:
             continue
         alone = [sheds.share * size * (j == k) for j, size in enumerate(sizes)]
         part = scene.altered(rotor=with_unbalances(scene.rotor, alone))
-        found.append(Shed(dry_rotor(part).system().unbalance, sheds.time_constant, sheds.above))
+        unbalance, mass, inertia = dry_rotor(part).system().unbalance, None, 0.0
+        if sheds.mass is not None:
+            mass, inertia = water_mass(scene, k, sheds.mass)
+        found.append(Shed(unbalance, sheds.time_constant, sheds.above, mass, inertia))
     return replace(system, sheds=tuple(found)) if found else system
+
+
+def water_mass(scene: Scene, part: int, mass: float) -> tuple[Array, float]:
+    """Mass matrix of the water that leaves with a part of an unbalance, and its inertia about the spin axis.
+
+    It goes round at the radius at which it makes its share of the unbalance, in the plane of that; over a
+    turn it counts as a mass on the axis [theory: coupling, eq. 17].
+
+    Parameters
+    ----------
+    scene : the machine
+    part : number of the unbalance
+    mass : of the water, kg
+
+    Returns
+    -------
+    kg and kg m^2, shape (n, n); kg m^2
+    """
+    rotor = dry_rotor(scene)
+    frame, sheds = frame_of(rotor, scene.rotor.axis == "vertical"), sheds_of(scene.rotor)[part]
+    assert sheds is not None
+    moving = frame.moving(frame.on_axis(unbalance_places_of(scene.rotor)[part]))
+    radius = sheds.share * unbalances_of(scene.rotor)[part] / mass
+    return mass * moving.T @ moving, mass * radius**2
 
 
 def unbalance_left(scene: Scene, history: RunupHistory) -> Array | None:
@@ -135,6 +172,7 @@ def programme_notes(
     found = [notes.standing(drive.floor)] if stands else []
     if plan.coasts and drive.drag_torque == 0.0 and drive.drag_rate == 0.0:
         found.append(notes.without_drag())
+    found += _limited_steps(history, drive)
     for passage in passages:
         step, stage = plan.steps[passage.step - 1], drive.stages[passage.step - 1]
         if step.kind != "coast" or step.speed is None or passage.end - passage.begin < plan.coast_limit:
@@ -142,3 +180,22 @@ def programme_notes(
         stop = drive.target(stage, passage.speed_begin)
         found.append(notes.coast_not_ended(passage.step, stop, passage.speed_end, plan.coast_limit))
     return tuple(found)
+
+
+# Of a step's speed, that it counts as reached.
+_REACHED = 1e-4
+
+
+def _limited_steps(history: RunupHistory, drive: programme.Programme) -> Iterator[Note]:
+    """Steps in which the motor gave less than was asked."""
+    if history.limited is None or history.stage is None:
+        return
+    length = np.diff(history.time, prepend=0.0)
+    for number in np.unique(history.stage[history.limited]).tolist():
+        rows, stage = np.flatnonzero(history.limited & (history.stage == number)), drive.stages[number]
+        speed = history.speed[np.union1d(rows, rows - 1)]
+        last = float(history.speed[history.stage == number][-1])
+        missed = stage.stop is not None and last < stage.stop * (1.0 - _REACHED)
+        wanted = stage.stop if missed else None
+        time = float(length[rows].sum())
+        yield notes.motor_limited(number + 1, time, float(speed.min()), float(speed.max()), wanted)

@@ -13,7 +13,6 @@ from fluid.friction.baffles import most_torque
 from fluid.friction.laws import FrictionLaw
 from fluid.friction.pipe import hydraulic_diameter, regime, spin_up_time, steady_lag
 from fluid.numbers import layer_numbers
-from fluid.pool import balance_speed, pool_of
 from fluid.whirl import is_full
 from leblanc.results.choice import model_spans, speed_estimates
 from leblanc.results.explanation import (
@@ -29,7 +28,7 @@ from leblanc.scene.rotors import Exciter as ExciterOfScene
 from leblanc.scene.rows import baffle_words
 from leblanc.scene.scene import Runup, Scene
 from leblanc.studies.exciter import printed_critical
-from leblanc.studies.models.choose import Prepared, across_gravity, choose_all, costed, held_cost, prepare
+from leblanc.studies.models.choose import Prepared, balance_from, choose_all, costed, held_cost, prepare
 from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.run import rest_modes
 from meshes.arrays import Array
@@ -98,7 +97,7 @@ def explain_scene(scene: Scene) -> Explanation:
                 liquid_mass_ratio=fill.mass / bare.mass,
                 optimal_volume=_covering(fill, dry, ends[1], gravity),
                 walls=_walls(fill),
-                carried_from=_carried_from(scene, fill),
+                carried_from=balance_from(scene, fill),
                 spin_up=_spin_up(scene, fill),
                 carrying=_carrying(scene, fill, choice.captured_from),
             )
@@ -140,14 +139,6 @@ def _covering(fill: Fill, deflection: float, speed: float, gravity: float) -> fl
     if fill.compartments > 1 or fill.chamber.section is not None:
         return math.nan
     return float(optimal_volume(fill.chamber, deflection, speed, gravity))
-
-
-def _carried_from(scene: Scene, fill: Fill) -> float | None:
-    """Speed above which gravity cannot hold the liquid at the bottom against the walls, rad/s."""
-    gravity = across_gravity(scene)
-    if gravity == 0.0 or fill.chamber.section is not None or (pool := pool_of(fill)) is None:
-        return None
-    return balance_speed(fill, pool, scene.model.friction, gravity)
 
 
 class _Rise(NamedTuple):

@@ -15,28 +15,35 @@ import numpy as np
 
 from leblanc import units
 from leblanc.results.base import Note
-from leblanc.results.fit import FitCode, FitResult, Measured, fit_notes
+from leblanc.results.fit import POOR, REACH, FitCode, FitResult, Measured, fit_notes, poor_note
 from leblanc.scene.scene import Scene
 from leblanc.scene.schema.load import SceneError
 from leblanc.studies.drives import numerics_of, planned
 from leblanc.studies.models.choose import across_gravity, choose_all, liquid_models, prepare
 from leblanc.studies.runup import chosen_run, drive_of
 from leblanc.units import Dimension
-from meshes.arrays import Array
+from meshes.arrays import Array, Flags
 from meshes.errors import InputError
+from solvers.runup.runup import RunupHistory
 from solvers.synchronous.response import Response, response
 
 FIELD = "measured"
 MOST_ROWS = 100_000
 _HEAD = re.compile(r"\s*([A-Za-z_]\w*)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
-# Of the first guess: how far the search looks, and how far off its other starts are.
-_REACH, _SPREAD = 100.0, 2.0
+# Of the first guess: how far off the other starts are.
+_SPREAD = 2.0
 # Left of a measured quantity where the scene has no answer with some values, over its size.
 _NO_ANSWER = 1e3
+# Of the logarithms, for derivatives; the peaks of run-ups whose walls run dry jump by a per cent.
+_STEP, _PEAK_STEP = 1e-4, 2e-2
+# What may have either sign is looked for about its first guess in steps of these, m and rad.
+_SPANS = {"position": 0.1, "angle": 1.0}
 _ALIKE = 0.05  # two answers whose unknowns differ by less than this are one
-_OVER = {"speed": units.ANGULAR_SPEED, "time": units.TIME}
+_OVER = {"speed": units.ANGULAR_SPEED, "time": units.TIME, "added": units.VOLUME}
+SCALES = ("given", "free", "each")
 _QUANTITIES = {
     "amplitude": units.LENGTH,
+    "peak": units.LENGTH,
     "phase": units.ANGLE,
     "liquid_offset": units.LENGTH,
     "liquid_angle": units.ANGLE,
@@ -50,8 +57,8 @@ class Measurement:
 
     Parameters
     ----------
-    over : "speed" or "time"
-    at : rad/s or s, rising, shape (n,)
+    over : "speed", "time", or "added" for liquid added to the first chamber
+    at : rad/s, s or m^3, rising, shape (n,)
     columns : name and values of each quantity, SI, shape (n,)
     """
 
@@ -84,7 +91,7 @@ def read_measured(path: str | PathLike[str], coordinates: Sequence[str], free: b
     over = [name for name, _ in heads if name in _OVER]
     if len(over) != 1 or len(heads) < 2:
         raise InputError(
-            FIELD, ", ".join(rows[0]), "speed or time, one of them, and what was measured over it"
+            FIELD, ", ".join(rows[0]), "speed, time or added, one of them, and what was measured over it"
         )
     values = np.array([_numbers(row, len(heads), k + 2) for k, row in enumerate(rows[1:])])
     values = values * np.array([factor for _, factor in heads])
@@ -93,6 +100,8 @@ def read_measured(path: str | PathLike[str], coordinates: Sequence[str], free: b
     at = columns.pop(over[0])[order]
     if over[0] == "speed" and not (at > 0.0).all():
         raise InputError(FIELD, float(at.min()), "speeds above 0")
+    if over[0] == "added" and not (at >= 0.0).all():
+        raise InputError(FIELD, float(at.min()), "volumes of at least 0")
     return Measurement(over[0], at, tuple((name, column[order]) for name, column in columns.items()))
 
 
@@ -127,17 +136,21 @@ def _numbers(row: Sequence[str], count: int, line: int) -> list[float]:
     return found
 
 
-def is_free(scale: str, field: str = "scale") -> bool:
-    """Whether the scale of the measured lengths is found as well.
+def require_scale(scale: str, field: str = "scale") -> str:
+    """What is known of the scale of the measured lengths.
 
     Parameters
     ----------
-    scale : "given" or "free"
+    scale : "given", "free" for one factor of all lengths, "each" for one of every quantity
     field : what it is called where it was typed
+
+    Raises
+    ------
+    InputError : none of them
     """
-    if scale not in ("given", "free"):
-        raise InputError(field, scale, "given or free")
-    return scale == "free"
+    if scale not in SCALES:
+        raise InputError(field, scale, "one of " + ", ".join(SCALES))
+    return scale
 
 
 def fit_scene(
@@ -146,7 +159,7 @@ def fit_scene(
     unknown: Sequence[str],
     starts: int = 4,
     seed: int = 0,
-    free: bool = False,
+    scale: str = "given",
     progress: Callable[[float], None] | None = None,
 ) -> FitResult:
     """Values of a scene that bring its answer closest to what was measured [theory: fit, eq. 1-3].
@@ -154,11 +167,13 @@ def fit_scene(
     Parameters
     ----------
     scene : the machine; its values are the first guess
-    measurement : of the steady response over speed, or of the scene's run-up over time
+    measurement : of the steady response over speed, of the scene's run-up over time, or of amplitude at its
+        last speed and largest amplitude over liquid added
     unknown : paths of the unknowns in the scene
     starts : searches, the first from the scene's values, the others from values up to twice as large or small
     seed : of the others
-    free : the scale of the measured lengths is not known: one factor for all of them is found as well
+    scale : "given"; "free": that of the measured lengths is not known, one factor for all of them is found as
+        well; "each": one for every quantity
     progress : called with the share of the starts that is done
 
     Raises
@@ -169,27 +184,29 @@ def fit_scene(
 
     first = _first(scene, unknown)
     points = measurement.at.size * len(measurement.columns)
-    if points <= len(unknown) + int(free):
+    problem = _Problem(scene, tuple(unknown), first, measurement, require_scale(scale))
+    if points <= len(unknown) + problem.factors:
         raise InputError("unknown", len(unknown), f"fewer than the {points} measured values")
-    problem = _Problem(scene, tuple(unknown), first, measurement, free)
     problem.residual(np.zeros(len(unknown)))
-    limit, random = math.log(_REACH), np.random.default_rng(seed)
+    limit, random = math.log(REACH), np.random.default_rng(seed)
     begins = np.log(_SPREAD) * random.uniform(-1.0, 1.0, (max(starts, 1) - 1, len(unknown)))
     tried: list[Any] = []
     for k, begin in enumerate([np.zeros(len(unknown)), *begins]):
         tried.append(
-            least_squares(problem.residual, begin, bounds=(-limit, limit), x_scale=0.1, diff_step=1e-4)
+            least_squares(
+                problem.residual, begin, bounds=(-limit, limit), x_scale=0.1, diff_step=problem.step
+            )
         )
         if progress is not None:
             progress((k + 1) / max(starts, 1))
     best = min(tried, key=lambda each: float(each.cost))
-    return problem.result(best, _others(tried, best), limit)
+    return problem.result(best, tried, limit)
 
 
-def _others(tried: Sequence[Any], best: Any) -> int:
-    """Searches that ended elsewhere with an answer that is as good to a tenth."""
+def _others(tried: Sequence[Any], best: Any, told: Flags) -> int:
+    """Searches that ended elsewhere, by unknowns that the data tell, with an answer as good to a tenth."""
     alike = [each.cost <= 1.1 * best.cost + 1e-18 for each in tried]
-    far = [float(np.abs(each.x - best.x).max()) > _ALIKE for each in tried]
+    far = [float(np.abs(each.x - best.x)[told].max(initial=0.0)) > _ALIKE for each in tried]
     return sum(good and other for good, other in zip(alike, far, strict=True))
 
 
@@ -202,43 +219,72 @@ def _first(scene: Scene, unknown: Sequence[str]) -> Array:
         if path in unknown[:k]:
             raise InputError("unknown", path, "different paths")
         value: Any = table
+        signed = _span(path) is not None
         try:
             for key in path.split("."):
                 value = value[int(key)] if isinstance(value, list | tuple) else value[key]
         except (KeyError, IndexError, TypeError, ValueError) as fault:
             raise InputError("unknown", path, "the path of a value that stands in the scene") from fault
-        if isinstance(value, bool) or not isinstance(value, int | float) or not value > 0.0:
-            raise InputError("unknown", path, "the path of a number above 0, the first guess")
+        if isinstance(value, bool) or not isinstance(value, int | float) or not (signed or value > 0.0):
+            allowed = "the path of a number above 0, or of a position or angle, the first guess"
+            raise InputError("unknown", path, allowed)
         found.append(float(value))
     return np.array(found)
 
 
+def _span(path: str) -> float | None:
+    """Step of an unknown that may have either sign, m or rad; None where its logarithm is looked for."""
+    names = [key for key in path.split(".") if not key.isdigit()]
+    return _SPANS.get(names[-1])
+
+
 @dataclass
 class _Problem:
-    """The residual of a fit as a function of the logarithms of its unknowns over the first guess."""
+    """The residual of a fit over its unknowns, by their logarithms or steps from the first guess."""
 
     scene: Scene
     unknown: tuple[str, ...]
     first: Array
     measurement: Measurement
-    free: bool
+    scale: str
     evaluations: int = 0
+
+    @property
+    def factors(self) -> int:
+        """How many factors of lengths are found besides the unknowns."""
+        lengths = sum(name not in _ANGLES for name, _ in self.measurement.columns)
+        return {"given": 0, "free": 1, "each": lengths}[self.scale]
+
+    @property
+    def step(self) -> float:
+        """Of the logarithms, for derivatives."""
+        return _PEAK_STEP if any(name == "peak" for name, _ in self.measurement.columns) else _STEP
+
+    @property
+    def spans(self) -> Array:
+        """Steps of unknowns that may have either sign, nan of those whose logarithm is looked for."""
+        return np.array([np.nan if (span := _span(path)) is None else span for path in self.unknown])
+
+    def values(self, logs: Array) -> Array:
+        """The unknowns, SI [theory: fit, eq. 5]."""
+        spans = self.spans
+        return np.where(np.isnan(spans), self.first * np.exp(logs), self.first + spans * logs)
 
     def answer(self, logs: Array) -> list[Array]:
         """The measured quantities by the scene with other values, before they are scaled."""
-        values = dict(zip(self.unknown, (self.first * np.exp(logs)).tolist(), strict=True))
+        values = dict(zip(self.unknown, self.values(logs).tolist(), strict=True))
         self.evaluations += 1
         names = [name for name, _ in self.measurement.columns]
         return _answer(self.scene.replace(values), self.measurement.over, self.measurement.at, names)
 
-    def scale(self, found: Sequence[Array]) -> float:
-        """Best factor of all lengths; 1 where it is not free."""
-        if not self.free:
-            return 1.0
-        pairs = zip(found, self.measurement.columns, strict=True)
+    def scales(self, found: Sequence[Array]) -> list[float]:
+        """Best factor of each quantity [theory: fit, eq. 2]; 1 of angles, and where it is given."""
+        pairs = list(zip(found, self.measurement.columns, strict=True))
+        if self.scale == "each":
+            return [1.0 if name in _ANGLES else _factor([(own, value)]) for own, (name, value) in pairs]
         lengths = [(own, value) for own, (name, value) in pairs if name not in _ANGLES]
-        squares = sum(float(own @ own) for own, _ in lengths)
-        return sum(float(own @ value) for own, value in lengths) / squares if squares > 0.0 else 1.0
+        common = _factor(lengths) if self.scale == "free" else 1.0
+        return [1.0 if name in _ANGLES else common for name, _ in self.measurement.columns]
 
     def residual(self, logs: Array) -> Array:
         """What is left of each quantity over the root of its mean square, shape (n columns,)."""
@@ -250,33 +296,36 @@ class _Problem:
             found = []
         if not found or not all(np.isfinite(part).all() for part in found):
             return np.full(self.measurement.at.size * len(self.measurement.columns), _NO_ANSWER)
-        scale = self.scale(found)
         parts = []
-        for own, (name, value) in zip(found, self.measurement.columns, strict=True):
+        for own, (name, value), scale in zip(
+            found, self.measurement.columns, self.scales(found), strict=True
+        ):
             if name in _ANGLES:
                 parts.append(np.angle(np.exp(1j * (own - value))))
             else:
                 parts.append((scale * own - value) / _size(value))
         return np.concatenate(parts)
 
-    def result(self, best: Any, others: int, limit: float) -> FitResult:
+    def result(self, best: Any, tried: Sequence[Any], limit: float) -> FitResult:
         """What was found, with its uncertainty from the curvature about it [theory: fit, eq. 3]."""
         found, count = self.answer(best.x), best.fun.size
-        scale, value = self.scale(found), self.first * np.exp(best.x)
+        scales, value = self.scales(found), self.values(best.x)
         edge = [abs(abs(x) - limit) < 1e-6 for x in best.x.tolist()]
-        std, correlation = _uncertainty(best.jac, float(best.fun @ best.fun), count - int(self.free))
-        std = std * value
-        notes = fit_notes(self.unknown, value, std, correlation, edge, others)
-        if self.free:
-            text = f"One factor for all lengths was found as well: {units.number(scale)} of the scene's."
-            notes.append(Note(FitCode.SCALE, {"scale": scale}, text))
+        std, correlation = _uncertainty(best.jac, float(best.fun @ best.fun), count - self.factors)
+        std = std * np.where(np.isnan(self.spans), value, self.spans)
+        others = _others(tried, best, np.isfinite(std))
+        notes = fit_notes(self.unknown, value, std, correlation, edge, others, self.spans)
+        notes += self._scale_notes(scales)
+        rms = float(np.sqrt(np.mean(np.square(best.fun))))
+        if rms > POOR:
+            notes.append(poor_note(rms))
         if self.measurement.over == "speed" and best.fun @ best.fun < 1e-18 * count:
             text = "The scene meets the data to rounding: their noise is not known, nor are the errors."
             notes.append(Note(FitCode.NO_SPREAD, {}, text))
         parts = []
-        for own, (name, measured) in zip(found, self.measurement.columns, strict=True):
+        for own, (name, measured), scale in zip(found, self.measurement.columns, scales, strict=True):
             unit = "rad" if name in (*_ANGLES, "alpha", "beta", "gamma") else "m"
-            if self.free and name not in _ANGLES:
+            if self.scale != "given" and name not in _ANGLES:
                 own, unit = scale * own, ""
             parts.append(Measured(name, unit, measured, own))
         scene = self.scene
@@ -293,12 +342,34 @@ class _Problem:
             over=self.measurement.over,
             at=self.measurement.at,
             measured=tuple(parts),
-            scale=scale,
-            residual_rms=float(np.sqrt(np.mean(np.square(best.fun)))),
+            scale=next((s for s in scales if s != 1.0), 1.0),
+            residual_rms=rms,
             converged=bool(best.success) and bool((best.fun < _NO_ANSWER).all()),
             evaluations=self.evaluations,
             notes=tuple(notes),
+            signed=tuple(path for path in self.unknown if _span(path) is not None),
+            freedom=count - len(self.unknown) - self.factors,
         )
+
+    def _scale_notes(self, scales: Sequence[float]) -> list[Note]:
+        """The factors that were found."""
+        if self.scale == "free":
+            scale = next((s for s in scales if s != 1.0), 1.0)
+            text = f"One factor for all lengths was found as well: {units.number(scale)} of the scene's."
+            return [Note(FitCode.SCALE, {"scale": scale}, text)]
+        names = [name for name, _ in self.measurement.columns]
+        pairs = {name: s for name, s in zip(names, scales, strict=True) if name not in _ANGLES}
+        if self.scale == "given" or not pairs:
+            return []
+        told = ", ".join(f"{name} {units.number(s)}" for name, s in pairs.items())
+        text = f"A factor for each quantity was found as well, of the scene's: {told}."
+        return [Note(FitCode.SCALE, {"scale": pairs}, text)]
+
+
+def _factor(pairs: Sequence[tuple[Array, Array]]) -> float:
+    """The factor that brings some arrays closest to others, taken together."""
+    squares = sum(float(own @ own) for own, _ in pairs)
+    return sum(float(own @ value) for own, value in pairs) / squares if squares > 0.0 else 1.0
 
 
 def _size(value: Array) -> float:
@@ -329,19 +400,42 @@ def _uncertainty(jacobian: Array, squares: float, count: int) -> tuple[Array, Ar
 
 
 def _answer(scene: Scene, over: str, at: Array, names: Sequence[str]) -> list[Array]:
-    """Quantities of a scene at measured speeds or times."""
+    """Quantities of a scene at measured speeds or times, or with liquid added."""
     if over == "speed":
         speed, where = np.unique(at, return_inverse=True)
         found = _steady(scene, speed)
         return [np.asarray(_quantity(found, name))[where] for name in names]
-    plan = planned(scene)
-    taken = chosen_run(
-        scene, drive_of(plan, scene.rotor), across_gravity(scene), numerics_of(plan, check=False)
-    )
-    history = taken.history
+    if over == "added":
+        filled = [_with_more(scene, volume) for volume in at.tolist()]
+        return [np.array([_of_fill(each, name) for each in filled]) for name in names]
+    history = _history(scene)
     own = {name: history.coordinates[:, k] for k, name in enumerate(prepare(scene).system.coordinates)}
     own["amplitude"] = history.amplitude
+    for name in names:
+        if name not in own:
+            raise InputError(FIELD, name, "measured over speed or liquid added, or one of " + ", ".join(own))
     return [np.interp(at, history.time, own[name], right=np.nan) for name in names]
+
+
+def _with_more(scene: Scene, volume: float) -> Scene:
+    """The scene with more liquid in its first chamber, m^3."""
+    return scene.replace({"chambers.0.volume": scene.chambers[0].volume + volume})
+
+
+def _of_fill(scene: Scene, name: str) -> float:
+    """A quantity of one fill: the steady amplitude at the last speed, the largest one of the run-up, m."""
+    if name == "peak":
+        return float(_history(scene).amplitude.max())
+    if name == "amplitude":
+        return float(_steady(scene, np.array([scene.speeds.stop])).amplitude[0])
+    raise InputError(FIELD, name, "amplitude or peak over liquid added")
+
+
+def _history(scene: Scene) -> RunupHistory:
+    """The scene's run-up or programme, without the second run that tells its error."""
+    plan = planned(scene)
+    drive, numerics = drive_of(plan, scene.rotor), numerics_of(plan, check=False)
+    return chosen_run(scene, drive, across_gravity(scene), numerics).history
 
 
 def _steady(scene: Scene, speed: Array) -> Response:
@@ -358,5 +452,7 @@ def _quantity(found: Response, name: str) -> Array:
     if name == "phase":
         return np.angle(found.deflection)
     if name not in ("amplitude", "liquid_offset", "liquid_angle"):
-        raise InputError(FIELD, name, "measured over time, or one of " + ", ".join(_QUANTITIES))
+        raise InputError(
+            FIELD, name, "measured over time, or one of amplitude, phase, liquid_offset, liquid_angle"
+        )
     return np.asarray(getattr(found, name))

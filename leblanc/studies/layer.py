@@ -26,6 +26,7 @@ from leblanc.results.layer import (
     no_answer,
     out_of_range,
 )
+from leblanc.results.notes.baffles import smeared_baffles
 from leblanc.studies.models.validity import judge
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.liquid_model import LiquidWave, WaveModel, Whirl
@@ -79,6 +80,8 @@ def answer_layer(
     in_range = not notes
     if in_range and wave.answer.dry_patch[0]:
         notes = (dry_wall(),)
+    if isinstance(model, LongWave):
+        notes = (*notes, *smeared_baffles([fill], model.numerics.cells))
     kappa = (fill.chamber.radius / surface) ** 2 if gravity else math.nan
     return LayerResult(
         case=_case(fill, whirl, model),

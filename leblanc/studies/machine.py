@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from fluid.fill import Fill
+from fluid.friction.laws import Friction
 from leblanc.results.machine.loads import MachineLoads
 from leblanc.scene.scene import JeffcottRotor, Scene, TubRotor, dry_rotor
+from leblanc.studies.drives import rotor_in_time
 from meshes.arrays import Array, Complex, Flags, Index
+from solvers.held.state import HeldState
 from solvers.rotor.loads.machine import LoadedMachine
-from solvers.rotor.loads.turn import Extremes, damping_power, orbits, turn_extremes
-from solvers.runup.loads import drive_torque, path_extremes
+from solvers.rotor.loads.turn import Extremes, damping_power, joined, liquid_power, orbits, turn_extremes
+from solvers.runup.loads import bearing_impulses, drive_torque, held_extremes, path_extremes
 from solvers.runup.runup import RunupHistory
 
 
@@ -43,25 +47,56 @@ def loaded_machine(scene: Scene, fills: Sequence[Fill] | None = None) -> LoadedM
 
 
 def loads_over_speed(
-    machine: LoadedMachine, speed: Array, coordinates: Complex, asked: Index
+    machine: LoadedMachine,
+    friction: Friction,
+    speed: Array,
+    coordinates: Complex,
+    asked: Index,
+    held: Mapping[float, HeldState] | None = None,
 ) -> MachineLoads:
-    """Loads of steady motions, each over its turn [theory: loads, eq. 14-16].
+    """Loads of steady motions, each over its turn [theory: loads, eq. 14-16 and 18-19].
 
     Parameters
     ----------
     machine : of a scene
+    friction : of its liquid
     speed : rad/s, shape (k,)
     coordinates : complex amplitudes, shape (k, n)
     asked : which of the speeds are those of the scene
+    held : motions held in time by their speed, whose own turns and heat count there
     """
-    power = damping_power(machine, coordinates, speed)
+    power = steady_power(machine, friction, coordinates, speed)
+    worst, states = turn_extremes(machine, coordinates, speed), held or {}
+    rows = [worst.at(np.array([k])) for k in range(speed.size)] if states else []
+    for k, spin in enumerate(speed.tolist()):
+        if spin in states:
+            rows[k] = held_extremes(machine, spin, states[spin].path)
+            power[k] = states[spin].heat if math.isfinite(states[spin].heat) else power[k]
     return _loads(
         machine,
-        turn_extremes(machine, coordinates, speed),
+        joined(rows) if rows else worst,
         *(speed, np.zeros(0), np.zeros(0), power / speed, power),
         np.stack(orbits(machine, coordinates)),
         asked,
     )
+
+
+def steady_power(machine: LoadedMachine, friction: Friction, coordinates: Complex, speed: Array) -> Array:
+    """Power of the motor that holds a steady motion [theory: loads, eq. 16 and 18-19].
+
+    Parameters
+    ----------
+    machine : of a scene
+    friction : of its liquid
+    coordinates : complex amplitudes, shape (k, n)
+    speed : rad/s, shape (k,)
+
+    Returns
+    -------
+    W, shape (k,)
+    """
+    supports = damping_power(machine, coordinates, speed)
+    return supports + liquid_power(machine, friction, coordinates, speed)
 
 
 def loads_over_time(scene: Scene, machine: LoadedMachine, history: RunupHistory) -> MachineLoads | None:
@@ -76,15 +111,29 @@ def loads_over_time(scene: Scene, machine: LoadedMachine, history: RunupHistory)
         return None
     h, plan = history, scene.runup
     motor = plan is not None and plan.motor is not None
-    torque = drive_torque(history.path, h.time, h.speed, h.angle, spinning_inertia(scene), motor)
+    inertia = spinning_inertia(scene) - _lost_inertia(scene, history)
+    torque = drive_torque(history.path, h.time, h.speed, h.angle, inertia, motor)
+    if scene.programme is not None:
+        drag = spinning_inertia(scene) * scene.programme.drag_rate * h.speed
+        torque = torque + scene.programme.drag_torque + drag
     torque = np.where(_coasting(scene, history), 0.0, torque)
     return _loads(
         machine,
-        path_extremes(machine, history.path, h.time, h.captured),
+        path_extremes(machine, history.path, h.time),
         *(h.speed, h.time, h.angle, torque, torque * h.speed),
         np.zeros((2, 0, len(machine.points))),
         np.arange(h.time.size),
+        bearing_impulses(machine, history.path),
+        history.path.jumps,
     )
+
+
+def _lost_inertia(scene: Scene, history: RunupHistory) -> Array:
+    """Moment of inertia of the water that has left the drum, kg m^2, shape (k,)."""
+    sheds = rotor_in_time(scene).sheds
+    if history.left is None or not sheds:
+        return np.zeros(history.time.shape)
+    return np.asarray((1.0 - history.left) @ np.array([shed.inertia for shed in sheds]))
 
 
 def _coasting(scene: Scene, history: RunupHistory) -> Flags:
@@ -120,6 +169,8 @@ def _loads(
     power: Array,
     orbit: Array,
     asked: Index,
+    impulse: Array | None = None,
+    jumps: Array | None = None,
 ) -> MachineLoads:
     """The result, with the names of its parts."""
     cabinet = machine.cabinet
@@ -138,4 +189,6 @@ def _loads(
         power=power,
         orbit=orbit,
         asked=asked,
+        impulse=np.zeros((0, 2 if machine.bearings is not None else 0)) if impulse is None else impulse,
+        jumps=np.zeros(0) if jumps is None else jumps,
     )

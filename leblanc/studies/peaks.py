@@ -30,6 +30,7 @@ from solvers.synchronous.response import Response, by_speed, fill_responses, joi
 _UNDAMPED = 1e-8  # half width over speed of a resonance that nothing damps
 _NEAR, _NEARER = 1e-4, 1e-6  # relative distances over which its amplitude grows as one over the distance
 _GROWN = 30.0  # times, at least
+_TWIN = 1e-12  # relative distance of two resonances that are one
 _ASIDE = 3e-9  # relative distance of a speed that is taken for the resonance
 
 
@@ -106,6 +107,7 @@ def responses_between(
         return _marked(asked.without_liquid(owner, speed), _met(endless_dry, owner, speed))
 
     def wet(owner: Index, speed: Array, close: bool = True) -> Complex:
+        """Parts with liquid, the answer being kept."""
         answer = asked.with_liquid(owner, speed, close)
         endless = _met(endless_wet, owner, speed)
         answer = replace(
@@ -145,12 +147,19 @@ def _explored(
         # Where a bound is known, it is the height of a top: its place is enough.
         width = resonance.half_width if drawn or math.isinf(resonance.bound) else 0.0 * resonance.half_width
         here = seeds(resonance.speed, width, start, stop, own.speed, drawn)
-        fresh.append(np.setdiff1d(np.union1d(here, others), own.speed))
+        fresh.append(np.setdiff1d(_distinct(here, others), own.speed))
     owner = np.repeat(np.arange(len(fresh)), [speed.size for speed in fresh])
     if owner.size:
         parts = first(owner, np.concatenate(fresh))
         samples = [own.joined(fresh[k], parts[owner == k]) for k, own in enumerate(samples)]
     return refine(answer, samples, [resonance.bound for resonance in near])
+
+
+def _distinct(first: Array, others: Array) -> Array:
+    """The speeds of both, rising, without twins: between two a few roundings apart rounding makes a top."""
+    found = first[np.diff(first, prepend=-np.inf) > _TWIN * first]
+    apart = np.abs(others[:, None] - found).min(axis=1, initial=np.inf) > _TWIN * others
+    return np.union1d(found, others[apart])
 
 
 def _without_bound(
@@ -179,7 +188,8 @@ def _met(endless: Sequence[Array], owner: Index, speed: Array) -> Flags:
     found = np.zeros(speed.size, dtype=bool)
     for k in np.unique(owner).tolist():
         if endless[k].size:
-            found[owner == k] = np.isin(speed[owner == k], endless[k])
+            distance = np.abs(speed[owner == k, None] - endless[k]).min(axis=1)
+            found[owner == k] = distance <= _TWIN * speed[owner == k]
     return found
 
 

@@ -16,15 +16,17 @@ from leblanc.results.motion.held import Held
 from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.results.motion.tilting import Motion, RestMode
 from leblanc.results.notes import response as notes
+from leblanc.results.notes.baffles import smeared_baffles
 from leblanc.results.response import RunResult
 from leblanc.scene.inputs import input_rows
-from leblanc.scene.rotors import sheds_of
 from leblanc.scene.scene import Scene, TubRotor
+from leblanc.scene.unbalances import left_in_the_end, sheds_of
 from leblanc.studies.held.holding import HERE, Began, Holding
 from leblanc.studies.machine import loaded_machine, loads_over_speed
 from leblanc.studies.models.choose import (
     Prepared,
     by_elements,
+    carried_from,
     choose_all,
     costed,
     held_at,
@@ -41,7 +43,7 @@ from leblanc.units import small_whirl_friction
 from meshes.arrays import Array, Complex
 from meshes.chamber_section import liquid_of
 from meshes.errors import InputError
-from solvers.held.state import COUPLED
+from solvers.held.state import COUPLED, HeldState
 from solvers.rotor.balance_quality import balance_quality, tolerance_planes
 from solvers.rotor.campbell import campbell
 from solvers.rotor.jeffcott import Jeffcott
@@ -240,11 +242,12 @@ def run_scene(
     whirl, grown = _grown_whirl(machine, progress) if cycles else (self_excited(machine), ())
     choice = costed(machine, choice, whirl.growth)
     at, held, stable = held_at(scene, choice, whirl.growth), None, whirl.leaves_stable(answer.stable)
+    states: dict[float, HeldState] = {}
     if at.any():
         from leblanc.studies.held.held import hold_answer
 
         began = Began(answer, refined, whirl.growth, at)
-        choice, answer, refined, held = hold_answer(machine, choice, began, holding, progress)
+        choice, answer, refined, held, states = hold_answer(machine, choice, began, holding, progress)
         stable = np.where(at, answer.stable, stable)
         if motion is not None:
             forward = _at_chambers(machine.system, scene.fills, answer)
@@ -259,8 +262,9 @@ def run_scene(
     refined = replace(refined, stable=np.where(refined.model == "long_wave", refined.stable, steady))
     if motion is not None:
         motion = replace(motion, refined_forward=_at_chambers(machine.system, scene.fills, refined))
-    loads = _loads(scene, answer, refined)
-    stands = () if loads is None else (notes.loads(held),)
+    loads = _loads(scene, answer, refined, states)
+    obstructed = any(fill.uneven and fill.volume > 0.0 for fill in scene.fills)
+    stands = () if loads is None else (notes.loads(obstructed),)
     return RunResult(
         name=scene.name,
         source=scene.source,
@@ -273,6 +277,7 @@ def run_scene(
         axis=scene.rotor.axis,
         chambers=tuple(_chamber(fill, motion) for fill in scene.fills),
         capture_speed=choice.captured_from,
+        carried_from=carried_from(scene),
         critical_speed_dry=dry,
         critical_speed_wet=wet,
         motion=motion,
@@ -288,7 +293,9 @@ def run_scene(
     )
 
 
-def _loads(scene: Scene, answer: Response, refined: Response) -> MachineLoads | None:
+def _loads(
+    scene: Scene, answer: Response, refined: Response, held: dict[float, HeldState]
+) -> MachineLoads | None:
     """Forces and clearances at the speeds of the scene and between them; None where it asks for none."""
     machine = loaded_machine(scene)
     if machine is None:
@@ -296,7 +303,7 @@ def _loads(scene: Scene, answer: Response, refined: Response) -> MachineLoads | 
     every = by_speed([answer, refined])
     order = np.argsort(np.concatenate((answer.speed, refined.speed)), kind="stable")
     asked = np.argsort(order, kind="stable")[: answer.speed.size]
-    return loads_over_speed(machine, every.speed, every.coordinates, asked)
+    return loads_over_speed(machine, scene.model.friction, every.speed, every.coordinates, asked, held)
 
 
 def _balance(machine: Prepared, answer: Response) -> dict[str, Array]:
@@ -337,11 +344,12 @@ def _notes(
     cost = held_cost(machine, choice, whirl.growth)
     found = [notes.liquid_models(choice), notes.tolerance_missed(choice, machine.speed, cost)]
     if any(sheds is not None for sheds in sheds_of(machine.scene.rotor)):
-        found.append(notes.unbalance_leaves())
+        found.append(notes.unbalance_leaves(left_in_the_end(machine.scene.rotor)))
     if choice.captured_from is not None:
-        found.append(notes.not_carried(choice.captured_from))
+        found.append(notes.not_carried(choice.captured_from, carried_from(machine.scene)))
     found.append(notes.one_family(answer))
-    found += notes.held_motions(held, answer.speed) if held is not None else []
+    if held is not None:
+        found += [*notes.held_motions(held, answer.speed), *smeared_baffles(machine.scene.fills, held.cells)]
     if motion is None:
         found.append(notes.slow_disturbances(held))
     else:

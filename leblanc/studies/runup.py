@@ -16,6 +16,7 @@ from fluid.whirl import covering_speed, is_full
 from leblanc.results.base import FilledChamber, Note, percent
 from leblanc.results.motion.passages import passages_of
 from leblanc.results.notes import runup as notes
+from leblanc.results.notes.baffles import smeared_baffles
 from leblanc.results.notes.runup import RunupCode
 from leblanc.results.runup import Bands, RunupFrames, RunupResult
 from leblanc.scene.inputs import runup_rows
@@ -66,14 +67,15 @@ def require_layers(scene: Scene) -> None:
 
 
 def require_room(scene: Scene) -> None:
-    """Baffles are for long waves.
+    """Compartments are for long waves.
 
     Raises
     ------
-    InputError : linear layers with baffles in the liquid
+    InputError : linear layers where baffles cut the liquid into compartments
     """
-    if scene.model.liquid == "linear" and any(fill.uneven for fill in scene.fills):
-        raise InputError("model.liquid", "linear", "auto or long_wave with baffles in the liquid")
+    if scene.model.liquid == "linear" and any(fill.compartments > 1 for fill in scene.fills):
+        text = "auto or long_wave where baffles cut the liquid into compartments"
+        raise InputError("model.liquid", "linear", text)
 
 
 def require_frames(frames: int) -> None:
@@ -290,8 +292,10 @@ less than {percent(wave)} of the depth and the liquid hardly lags, otherwise lon
 def _ruled_out(scene: Scene) -> str:
     """Why linear layers are not tried, or nothing."""
     if any(fill.uneven for fill in scene.fills):
-        return "baffles stand in the liquid, past which linear layers do not flow"
+        return "baffles stand in the liquid, whose waves linear layers do not hold back"
     if scene.runup is not None and scene.runup.motor is not None:
+        return "a motor feels the torque of the waves, which linear layers leave out"
+    if scene.programme is not None and scene.programme.motor is not None:
         return "a motor feels the torque of the waves, which linear layers leave out"
     if scene.programme is not None and scene.programme.coasts:
         return "a coasting drum feels the torque of the waves, which linear layers leave out"
@@ -397,6 +401,7 @@ def runup_scene(
             *programme_notes(scene, history, drive, passages),
             *([] if left is None else [notes.unbalance_left(float(left[-1]))]),
             *limits,
+            *smeared_baffles(scene.fills, None if taken.model == "linear" else numerics.cells),
             *stands,
             *doubts(scene),
         ),

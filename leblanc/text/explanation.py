@@ -8,13 +8,12 @@ from leblanc.results.base import EXACT, WHOLE, one_line, percent
 from leblanc.results.choice import HeldCost, ModelSpan, SpeedEstimate
 from leblanc.results.explanation import (
     BaffleOutlook,
-    Comparison,
     ExciterExplanation,
     Explanation,
     LayerExplanation,
-    ModelAnswer,
     SpinUp,
 )
+from leblanc.results.models.comparison import Comparison, ModelAnswer
 from leblanc.results.motion.tilting import RestMode
 from leblanc.text.numbers import NOT_FOUND, number
 from leblanc.text.run import amplitude_place, error_words, speeds_words

@@ -7,7 +7,7 @@ import math
 from leblanc.results.fit import FitResult
 from leblanc.units import number
 
-HEAD = ("Unknown (SI)", "first guess", "found", "standard error", "of it")
+HEAD = ("Unknown (SI)", "first guess", "found", "standard error", "of it", "95 % from", "to")
 
 
 def fit_rows(result: FitResult) -> list[tuple[str, ...]]:
@@ -18,12 +18,13 @@ def fit_rows(result: FitResult) -> list[tuple[str, ...]]:
     result : the fit
     """
     found: list[tuple[str, ...]] = []
-    for path, first, value, std in zip(
-        result.unknown, result.first.tolist(), result.value.tolist(), result.std.tolist(), strict=True
-    ):
+    columns = (result.first.tolist(), result.value.tolist(), result.std.tolist(), result.interval.tolist())
+    for path, first, value, std, ends in zip(result.unknown, *columns, strict=True):
         known = not math.isnan(std)
-        share = f"{100.0 * std / abs(value):.2g} %" if known else "not told"
-        found.append((path, number(first), number(value), number(std) if known else "not told", share))
+        bare = path in result.signed  # a position or an angle has no size to compare with
+        share = "" if bare else f"{100.0 * std / abs(value):.2g} %" if known else "not told"
+        span = [number(end) if math.isfinite(end) else "not told" for end in ends]
+        found.append((path, number(first), number(value), number(std) if known else "not told", share, *span))
     return found
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from leblanc.results.machine.loads import MachineLoads, Worst
 from leblanc.text.numbers import NOT_FOUND, number
 from leblanc.units import LENGTH, RPM, in_rpm, with_unit
@@ -54,6 +56,7 @@ def load_rows(loads: MachineLoads) -> list[LoadRow]:
         found.append(_row(f"Movement of {name}", worst, _length(worst.value), "from where it rests"))
     for kind in ("spring", "damper", "support", "bearing"):
         found += _strongest(loads, kind)
+    found += _blow(loads)
     worst = loads.largest(loads.torque)
     found.append(_row("Motor, torque", worst, _sized(worst.value, "N m"), _share(loads)))
     worst = loads.largest(loads.power)
@@ -61,11 +64,22 @@ def load_rows(loads: MachineLoads) -> list[LoadRow]:
     return found
 
 
+def _blow(loads: MachineLoads) -> list[LoadRow]:
+    """The hardest blow of liquid that is caught or falls on a bearing; nothing where there was none."""
+    if not loads.bearings or not np.isfinite(loads.impulse).any():
+        return []
+    k, j = np.unravel_index(np.nanargmax(loads.impulse), loads.impulse.shape)
+    time = float(loads.jumps[k])
+    worst = Worst(float(loads.impulse[k, j]), float(np.interp(time, loads.time, loads.speed)), time)
+    said = f"of liquid that is caught or falls, on {loads.bearings[j]}"
+    return [_row("Bearing, hardest blow", worst, f"{number(worst.value)} N s", said)]
+
+
 def _share(loads: MachineLoads) -> str:
     """What the torque is for."""
     if loads.in_time:
         return "to speed up the drum and the liquid, and for the dampers"
-    return "at constant speed, for the dampers alone"
+    return "at constant speed, for dampers and liquid"
 
 
 def _clearance(loads: MachineLoads, name: str, worst: Worst) -> LoadRow:

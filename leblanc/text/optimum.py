@@ -67,7 +67,7 @@ def answer(result: OptimumResult) -> str:
     else:
         gives = f"the {result.meaning} is {shown(result.value, result.unit)}"
         gives += f" instead of {shown(result.baseline, result.unit)}" if result.baseline > 0.0 else ""
-    place = "" if result.unit == "N" else amplitude_plane(result)
+    place = amplitude_plane(result) if result.unit in ("m", "kg", "kg m") else ""
     return f"With {liquid}{kept}, {gives}{f' {place}' if place else ''}."
 
 

@@ -341,7 +341,15 @@ def limits(result: RunResult) -> list[Limit]:
     if result.capture_speed is not None:
         loose = r.speed <= result.capture_speed
         edge = f" (below {in_rpm(result.capture_speed)})" if loose.any() else ""
-        found.append(Limit("Liquid not carried round", f"{ranges(r.speed, loose)}{edge}", bool(loose.any())))
+        found.append(Limit("No ring of liquid stands", f"{ranges(r.speed, loose)}{edge}", bool(loose.any())))
+    if result.carried_from is not None:
+        loose, where = r.speed < result.carried_from, "by nothing: without friction"
+        if math.isfinite(result.carried_from):
+            where = f"below {in_rpm(result.carried_from)}"
+        edge = f" ({where})" if loose.any() else ""
+        found.append(
+            Limit("Not carried round from rest", f"{ranges(r.speed, loose)}{edge}", bool(loose.any()))
+        )
     if tolerance is not None and result.error_estimate is not None:
         missed = ~(result.error_estimate <= tolerance)
         found.append(_limit(f"Error above {number(100.0 * tolerance)} % or unknown", r.speed, missed))

@@ -54,8 +54,44 @@ def answer(result: RunupResult) -> str:
     return (
         f"The largest amplitude{place} is {_amplitude(result, first)}{dry}{steady}; "
         + ", ".join(f"{when} it is {_amplitude(result, moment)}" for when, moment in later)
-        + "."
+        + f".{_trust(result)}"
     )
+
+
+_ROUGH = 0.1  # of an amplitude: an error beyond this is told with its cause
+_CAUSES = {"cells": "cells and steps", "handover": "how the liquid becomes a ring"}
+
+
+def _trust(result: RunupResult) -> str:
+    """How well the largest amplitude is known, and for how much of the run the model holds: two sentences."""
+    known = peak_known(result)
+    first = f" The largest of all is known to {known}." if known else ""
+    return f"{first} The liquid model holds for {_fair(result)} of the run."
+
+
+def _fair(result: RunupResult) -> str:
+    """Share of the samples at which the liquid model holds."""
+    share = float(result.in_range.mean())
+    return "all" if share == 1.0 else f"{100.0 * share:.3g} %"
+
+
+def peak_known(result: RunupResult) -> str:
+    """Error of the run's largest amplitude in words, with its cause where it is large; or nothing.
+
+    Parameters
+    ----------
+    result : the run-up
+    """
+    parts = {name: size for name, size in result.peak_error.items() if not math.isnan(size)}
+    largest = float(result.history.largest.max())
+    if not parts or largest == 0.0:
+        return ""
+    error = sum(parts.values())
+    text = f"\N{PLUS-MINUS SIGN} {with_unit(error, LENGTH)}, {percent(error / largest)}"
+    if error <= _ROUGH * largest:
+        return text
+    worst = max(parts, key=lambda name: parts[name])
+    return f"{text}, most of it by {_CAUSES[worst]}"
 
 
 def _amplitude(result: RunupResult, moment: Moment) -> str:
@@ -79,6 +115,9 @@ def answer_rows(result: RunupResult) -> list[tuple[str, str]]:
         (label, f"{_amplitude(result, moment)}, after {with_unit(moment.time, TIME)}")
         for label, moment in moments(result)
     ]
+    if known := peak_known(result):
+        rows.append(("Largest of all known to", known))
+    rows.append(("Liquid model holds", f"for {_fair(result)} of the run"))
     if result.spread is not None:
         rows.append(("By rounding alone", rounding(result)))
     if largest_dry(result):

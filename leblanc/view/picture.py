@@ -81,6 +81,9 @@ LOOKS = {
     "rod": Look("#B9BDC1"),
     "bush": Look("#2B2B2B"),
     "ground": Look("#A8A294"),
+    "foot": Look("#2B2B2B"),
+    "cabinet": Look("#A8A294", 1.0, 2.0),
+    "point": Look("#CC79A7"),
 }
 
 

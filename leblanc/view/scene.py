@@ -17,6 +17,7 @@ from leblanc.results.base import one_line
 from leblanc.results.drawn import DrawnLiquid, LiquidBodies, LiquidShape, MachineMotion, Scale, strips
 from leblanc.text.run import amplitude_place
 from leblanc.units import DEGREE, LENGTH, MINUS, Unit, in_rpm, unit_for
+from leblanc.view.cabinet import around, corners
 from leblanc.view.machine import ground_end, machine
 from leblanc.view.parts import (
     ABOVE,
@@ -224,20 +225,23 @@ def compose(stage: Stage, instant: Instant) -> Picture:
         elif body is not None:
             pieces += _liquid(stage, body, k, floor)
     carried, standing, held = machine(stage, instant)
+    with_drum, outside, named = around(stage, instant)
     lines, axis_names = axes(stage, instant)
     spots, names = marks(stage, instant)
     shown, sign_names = signs(stage, instant)
-    turning = [*pieces, *carried, *lines, *spots]
+    turning = [*pieces, *carried, *with_drum, *lines, *spots]
     return Picture(
         pieces=(
             *(replace(piece, points=turned(stage, piece.points, instant.turn)) for piece in turning),
             *standing,
+            *outside,
             *shown,
         ),
         labels=(
             *(_turned_label(stage, label, instant.turn) for label in (*axis_names, *names)),
             *sign_names,
             *held,
+            *named,
         ),
         title=instant.title,
         state=instant.state,
@@ -259,6 +263,8 @@ def _frame(stage: Stage) -> Array:
     points = []
     if stage.parts is not None:
         points = [ground_end(stage, strut)[None] for strut in stage.parts.struts]
+        if stage.parts.feet:
+            points += [*corners(stage)]
     round_it = circle(0j, max(AWAY * stage.radius + stage.swing, 1.04 * stage.reach))
     ends = np.array([low - BELOW * stage.radius, high + ABOVE * stage.radius])
     rings = [placed(stage, round_it, height) for height in stage.ends]

@@ -14,6 +14,8 @@ from meshes.arrays import Array, Complex
 from meshes.errors import require_positive
 from solvers.held.state import COUPLED, HeldKind, HeldMachine, HeldState, HoldNumerics, Moment
 from solvers.held.turns import Watch
+from solvers.layer.baffles import FACE, table_of
+from solvers.layer.places import fewest_cells, is_smeared
 from solvers.layer.records import Outcome
 from solvers.layer.state import ring
 from solvers.runup.state import mean_area, planes_of
@@ -49,7 +51,7 @@ def start(
     for row, j in enumerate(layers.tolist()):
         fill, plane = machine.fills[j], planes[j]
         forward = 0.5 * complex(plane[0] @ motion + 1j * (plane[1] @ motion))
-        area[row] = _circle(fill, forward, numerics.cells)
+        area[row] = _levelled(fill, _circle(fill, forward, numerics.cells))
         if kick:
             size = plane[0] @ np.linalg.solve(machine.system.mass, plane[0])
             rate = rate + kick * fill.depth * spin * np.linalg.solve(machine.system.mass, plane[0]) / size
@@ -74,6 +76,17 @@ def _circle(fill: Fill, deflection: complex, cells: int) -> Array:
         low, high = (middle, high) if area(middle).sum() > whole else (low, middle)
     found = area(0.5 * (low + high))
     return np.asarray(found * (whole / found.sum()) * radius**2)
+
+
+def _levelled(fill: Fill, area: Array) -> Array:
+    """The same with as much liquid in each compartment as at rest: none passes closed baffles."""
+    if fill.compartments < 2:
+        return area
+    faces = np.sort(table_of(fill, area.size)[:, FACE].astype(int))
+    # The cells before the first face belong to the last compartment.
+    where = (np.searchsorted(faces, np.arange(area.size), side="right") - 1) % faces.size
+    mean = np.bincount(where, area, faces.size) / np.bincount(where, minlength=faces.size)
+    return np.asarray(area + (area.mean() - mean)[where])
 
 
 def hold(
@@ -131,7 +144,7 @@ def compile_kernels(machine: HeldMachine, begin: Moment) -> None:
         layers=begin.layers,
     )  # fmt: skip
     stretch = 0.0, 1e-6 / begin.spin
-    run(equation, equation.start(8), stretch, (), solver="coupled", follow=True)
+    run(equation, equation.start(fewest_cells(machine.fills)), stretch, (), solver="coupled", follow=True)
 
 
 def require_known_solver(machine: HeldMachine, spin: float, numerics: HoldNumerics) -> None:
@@ -158,23 +171,24 @@ def hold_with_error(
 ) -> HeldState:
     """`hold`, and from where it ends once more with half the cells, to estimate the error.
 
-    Parameters and errors as of `hold`; with less than 16 cells there is no estimate.
+    Parameters and errors as of `hold`; with less than 16 cells, or 8 in a compartment, there is no estimate.
     """
     found = hold(machine, begin, numerics, slowest)
-    if numerics.cells < 16 or not found.settled:
-        return found
     half = replace(numerics, cells=numerics.cells // 2)
+    parted = any(fill.compartments > 1 and is_smeared(fill, half.cells) for fill in machine.fills)
+    if numerics.cells < 16 or parted or not found.settled:
+        return found
     # A guess would lead from a whirl to the steady motion.
     rate = 0.0 if found.kind is HeldKind.LIMIT_CYCLE else slowest
-    other = hold(machine, _resampled(found.moment, half.cells), half, rate)
+    other = hold(machine, _resampled(machine, found.moment, half.cells), half, rate)
     if not other.settled or found.largest == 0.0:
         return replace(found, error=math.inf if found.largest else 0.0)
     gap = max(abs(found.amplitude - other.amplitude), abs(found.largest - other.largest)) / found.largest
     return replace(found, error=_SHARE * gap + found.change)
 
 
-def _resampled(moment: Moment, cells: int) -> Moment:
-    """The same with another number of cells; what a layer holds stays."""
+def _resampled(machine: HeldMachine, moment: Moment, cells: int) -> Moment:
+    """The same with another number of cells; what a layer and a compartment hold stays."""
 
     def again(rows: Array) -> Array:
         n = rows.shape[1]
@@ -183,7 +197,9 @@ def _resampled(moment: Moment, cells: int) -> Moment:
         found = [np.diff(np.interp(edges, np.arange(n + 1), row)) * cells / n for row in sums]
         return np.array(found).reshape(len(rows), cells)
 
-    return replace(moment, area=again(moment.area), momentum=again(moment.momentum))
+    rows = zip(np.flatnonzero(moment.layers).tolist(), again(moment.area), strict=True)
+    area = [_levelled(machine.fills[j], row) for j, row in rows]
+    return replace(moment, area=np.array(area).reshape(-1, cells), momentum=again(moment.momentum))
 
 
 def _march(
@@ -204,6 +220,7 @@ def _march(
     tracker = TurnTracker(equation, turn, watch.turn, marks)
     options = {"solver": numerics.solver, **_stepping(equation, state.grid, numerics, turn / marks)}
     state, outcome = run(equation, state, stretch, [tracker, *trackers], **options)
+    watch.heats = tracker.heats
     area, momentum, place, rate = (part.copy() for part in equation.parts(state))
     return Moment(moment.spin, place, rate, area, momentum, moment.layers), outcome
 

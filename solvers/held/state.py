@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
+
+import numpy as np
 
 from fluid.fill import Fill
 from fluid.friction.laws import NO_FRICTION, Friction
@@ -124,6 +126,9 @@ class HeldState:
     turns, steps : what it took
     moment : where it ends, from which other speeds can go on
     reason : why it did not settle, or empty
+    path : time, s, and coordinates at moments of the last turns, shape (m, 1 + n); m = 0 where not known
+    heat : mean power that supports, friction, baffles and bores turn into heat, W; nan where the solver does
+        not tell it
     """
 
     spin: float
@@ -147,6 +152,8 @@ class HeldState:
     moment: Moment
     reason: str = ""
     error: float = math.nan
+    path: Array = field(default_factory=lambda: np.zeros((0, 1)))
+    heat: float = math.nan
 
     @property
     def settled(self) -> bool:

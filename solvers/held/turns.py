@@ -15,10 +15,12 @@ import numpy as np
 from meshes.arrays import Array, Complex, Index
 from solvers.held.state import SHORT, HeldKind, HeldMachine, HeldState, HoldNumerics, Moment
 from solvers.layer.records import Outcome
+from solvers.runup.path import FINE, apart, evenly, fastest_frequency
 from solvers.runup.state import mean_area, planes_of
 
 # Turns after which a motion may be called periodic; a limit cycle is judged over windows from `_LONG` on.
 _FEW, _LONG = 4, 32
+_SHORT = 2  # turns of a motion that repeats, of which the path is kept
 _EVEN = 0.5  # times the tolerance, that a circle may wobble
 _ELSEWHERE = 20.0  # times the tolerance, that the axis may be off after a turn that repeats
 _LINES = 2  # multiples of the spin that are no whirl of their own, either way
@@ -73,6 +75,7 @@ class Watch:
         self.window = min(self.window, numerics.turns // 2)
         self.quick = abs(self.slowest) * _LONG > _QUICK
         self.count, self.steps = 0, 0
+        self.heats: list[float] = []  # of each turn, J, where they are told
         self.forget()
 
     def forget(self) -> None:
@@ -292,7 +295,16 @@ class Watch:
             steps=self.steps,
             moment=moment,
             reason=reason,
+            path=self._path(_SHORT if short else turns),
+            heat=float(np.mean(self.heats[-turns:])) * spin / (2.0 * math.pi) if self.heats else math.nan,
         )
+
+    def _path(self, turns: int) -> Array:
+        """Time and coordinates of the last turns, at moments evenly apart."""
+        rows = np.concatenate(self.rows[-turns:])
+        fastest, n = fastest_frequency(self.machine.system), self.begin.coordinates.size
+        rows = rows[evenly(FINE / (2.0 * math.pi) * (rows[:, 1] + fastest * rows[:, 0]))]
+        return np.asarray(rows[apart(rows[:, 0], rows[:, 1], fastest)][:, [0, *range(2, 2 + n)]])
 
 
 def _limit(marks: list[Array], coordinates: int) -> Array | None:

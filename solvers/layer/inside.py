@@ -44,16 +44,17 @@ def full_area(fill: Fill) -> float:
     return 0.5 * (1.0 - ratio) * (1.0 + ratio) if ratio > 0.0 else OPEN
 
 
-def inside_of(fill: Fill, cells: int) -> Inside:
+def inside_of(fill: Fill, cells: int, smeared: bool | None = None) -> Inside:
     """Obstacles of a chamber.
 
     Parameters
     ----------
     fill : chamber and liquid
     cells : round the wall
+    smeared : whether baffles are smeared over the layer; None where the cells decide
 
     Raises
     ------
-    InputError : baffles with too few cells between two
+    InputError : compartments with too few cells
     """
-    return Inside(table_of(fill, cells), full_area(fill), SLOT_SPEED**2)
+    return Inside(table_of(fill, cells, smeared), full_area(fill), SLOT_SPEED**2)

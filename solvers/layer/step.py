@@ -27,6 +27,7 @@ from solvers.layer.finite_volume import (
     NEAREST,
     NO_ROLLER,
     SUMMED,
+    THIN,
     WORK,
     faded_velocity,
     log_of_surface,
@@ -49,8 +50,6 @@ _inner: Any = njit(inline="always")
 LARGEST = 1.0
 # Decays up to this in a step take the exponential's series, whose tenth term is 0.06^10/10! = 2e-19.
 _WEAK = 0.0625
-# Films thinner than this (area over R^2) are held back, at this multiple of the spin.
-FILM = 1e-5
 
 surface_radius = _part(long_wave.free_surface_radius)
 _damping = _part(friction.damping_rate)
@@ -152,15 +151,15 @@ def add_velocity(area, q, pushed):
 
 @_part
 def calm(area, q, spin):
-    """Hold films back that run away: they carry no momentum worth speaking of and would rule the time step.
+    """Leave films the momentum of their faded velocity, which no front exceeds: the rest goes to the wall.
 
-    No front runs ahead at twice the speed of the drum; films below FILM may go twice as fast as that.
+    No front runs ahead at twice the speed of the drum; films may go twice as fast as that.
     """
     most = FASTEST * abs(spin)
     for i in range(area.size):
-        a, square = area[i], spin * area[i] * area[i]
-        moved = np.minimum(np.maximum(q[i] + square, -most * a), most * a)
-        q[i] = moved - square if a < FILM else q[i]
+        a = area[i]
+        u = np.minimum(np.maximum(faded_velocity(a, q[i], spin), -most), most)
+        q[i] = (u - spin * a) * a if a < THIN else q[i]
 
 
 @_part
@@ -304,13 +303,15 @@ def _whirl(time, drive):
 
 
 @_sum_part
-def _cell_loads(area, q, spin, pull, cosine, sine):
-    """Sums over the cells: pressure on the wall, first moment, both along two directions; area; mass flux."""
+def _cell_loads(area, q, spin, pull, cosine, sine, full, slot):
+    """Sums over the cells: pressure on walls, first moment, both along two directions; area; mass flux."""
     force_x, force_y, moment_x, moment_y, total, turned = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(area.size):
         r = np.maximum(surface_radius(area[i]), NEAREST)
         u, log = faded_velocity(area[i], q[i], spin), log_of_surface(area[i], r)
-        pressure = _wall(u, log, area[i], r, spin, pull[i])
+        # What a full gap is under presses on the inner wall as well, against the outer one.
+        pressed = slot * np.maximum(area[i] - full, 0.0) * (1.0 - r)
+        pressure = _wall(u, log, area[i], r, spin, pull[i]) + pressed
         lever = (1.0 - r) * (1.0 + r + r * r) / 3.0
         force_x += pressure * cosine[i]
         force_y += pressure * sine[i]
@@ -353,13 +354,14 @@ def centre(area, angles):
 
 
 @_jit
-def tally(area, q, spin, pull, angles, cosine, sine, share, sums):
+def tally(area, q, spin, pull, angles, cosine, sine, share, full, slot, sums):
     """Add a time's share of the loads to the record of `advance`.
 
-    Forces and offsets are turned into the frame of the deflection, at an angle of this cosine and sine.
+    `full` is the area of the full gap and `slot` the rise of its head with what is more. Forces and offsets
+    are turned into the frame of the deflection, at an angle of this cosine and sine.
     """
     force_x, force_y, moment_x, moment_y, total, turned = _cell_loads(
-        area, q, spin, pull, angles[0], angles[1]
+        area, q, spin, pull, angles[0], angles[1], full, slot
     )
     least, largest = _bounds(area)
     part, step = share / total, share * 2.0 * np.pi / area.size
@@ -446,12 +448,14 @@ def advance(area, q, energy, pace, stop, drive, wall, angles, inside, courant, m
             x, y = _whirl(time, drive)
             pull(x, y, angles, pull_cell, pull_face)
             cosine, sine = np.cos(slip * time), np.sin(slip * time)
-            tally(area, begin_q, spin, pull_cell, angles, cosine, sine, dt, sums)
+            slot = inside.slot * spin * spin
+            tally(area, begin_q, spin, pull_cell, angles, cosine, sine, dt, inside.full, slot, sums)
             sums.push_x += (x * cosine + y * sine) * dt
             sums.push_y += (y * cosine - x * sine) * dt
             correct(area, q, rate_a, rate_q, dt, next_a, next_q)
             correct_energy(energy, rate_e, dt, next_e)
             bound_energy(area, energy, spin)
+            calm(area, q, spin)
             wall_friction(area, q, spin, wall, 0.5 * dt, spare)
             time += dt
             steps += 1

@@ -27,6 +27,7 @@ from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.layer.finite_volume import DRY, GHOSTS, WORK, rates
 from solvers.layer.inside import SLOT_SPEED, Inside
+from solvers.layer.places import fewest_cells
 from solvers.layer.records import Outcome
 from solvers.layer.state import ring
 from solvers.pypde.grid import CirclePDE, circle
@@ -74,7 +75,8 @@ class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
         super().__init__()
         self.system, self.fills, self.spin = system, tuple(fills), spin
         self.friction, self.gravity, self.dispersion = friction, gravity, dispersion
-        self.layers = self.machine(8).active if layers is None else np.asarray(layers, dtype=bool)
+        fewest = fewest_cells(self.fills)
+        self.layers = self.machine(fewest).active if layers is None else np.asarray(layers, dtype=bool)
         self.explicit_time_dependence = True
         self._still: dict[int, Coupled] = {}  # by the number of cells: what does not change with the state
 
@@ -390,7 +392,7 @@ class CoupledSolver(SolverBase):  # type: ignore[no-untyped-call]
         self.equation.parts(state)
         self._select_backend(state)
         self.info |= {"dt": None, "dt_adaptive": True, "stochastic": False, "steps": 0}
-        self.info |= {"courant": self.courant, "outcome": Outcome.DONE, "followed": None}
+        self.info |= {"courant": self.courant, "outcome": Outcome.DONE, "followed": None, "heat": 0.0}
         machine = self.equation.machine(state.grid.shape[0])
         machine.follow(_ROWS if self.follow else 0)
         left: Array | None = None
@@ -410,6 +412,8 @@ class CoupledSolver(SolverBase):  # type: ignore[no-untyped-call]
             left = state.data.copy()
             self.info["steps"] += int(machine.sums.steps - steps)
             self.info["followed"] = machine.followed() if self.follow else None
+            sums = machine.sums
+            self.info["heat"] = float(sums.support + sums.friction + sums.baffles + sums.bores)
             return stop
 
         return advance
@@ -485,6 +489,10 @@ class TurnTracker(TrackerBase):  # type: ignore[no-untyped-call]
         its marks, areas A, m^2, shape (marks, l, c), and with the state at its end, which it may change;
         tells whether the run may end
     marks : how often a turn the layers are looked at
+
+    Attributes
+    ----------
+    heats : what each turn has turned into heat, J; none where the solver does not tell it
     """
 
     def __init__(
@@ -498,6 +506,8 @@ class TurnTracker(TrackerBase):  # type: ignore[no-untyped-call]
         self.equation, self.enough, self.marks = equation, enough, marks
         self.steps: list[Array] = []
         self.layers: list[Array] = []
+        self.heats: list[float] = []
+        self._heat = 0.0
 
     def initialize(self, field: Any, info: dict[str, Any] | None = None) -> float:
         """Keep a hand on what the solver tells."""
@@ -514,6 +524,9 @@ class TurnTracker(TrackerBase):  # type: ignore[no-untyped-call]
         self.layers.append(self.equation.parts(field)[0].copy())
         if len(self.layers) < self.marks:
             return
+        if "heat" in told:
+            self.heats.append(told["heat"] - self._heat)
+            self._heat = told["heat"]
         turn, layers = np.concatenate(self.steps), np.stack(self.layers)
         self.steps, self.layers = [], []
         if self.enough(turn, layers, field):

@@ -149,7 +149,9 @@ class OneFamily(WaveModel):
 
     def __post_init__(self) -> None:
         if self.friction.law is FrictionLaw.QUADRATIC:
-            raise InputError("friction", self.friction.law, "none, stokes or linear for one family of waves")
+            raise InputError(
+                "friction", self.friction.law, "none, linear, stokes or wall for one family of waves"
+            )
 
     def at_rest(self, fills: Fills, whirls: Whirls) -> LiquidAnswer:
         """See `WaveModel`; the error is the distance from the exact pull on a wet wall [theory: kdv, eq. 33].

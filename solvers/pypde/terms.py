@@ -24,7 +24,7 @@ from fluid.friction.wall import WallDrag, wall_drag, wall_shear
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative
 from solvers.layer.finite_volume import DRY, FULL, GHOSTS, THIN, WORK, rates
-from solvers.layer.inside import inside_of
+from solvers.layer.inside import SLOT_SPEED, full_area, inside_of
 from solvers.layer.records import LOADS, Drive, Outcome, Record, Wall, records
 from solvers.layer.state import means, ring
 from solvers.layer.step import centre, scratch, tally
@@ -234,7 +234,9 @@ def loads_at(terms: LongWaveTerms, area: Array, momentum: Array, time: float) ->
     n, slip, found = a.size, terms.whirl.slip, records(LOADS)
     turn = cmath.exp(1j * slip * time)
     pull = radial_force(terms, n, time)[0]
-    compiled(tally, a, q, terms.spin(time), pull, ring(n), turn.real, turn.imag, 1.0, found[0])
+    spin, full = terms.spin(time), full_area(terms.fill)
+    slot = (SLOT_SPEED * spin) ** 2
+    compiled(tally, a, q, spin, pull, ring(n), turn.real, turn.imag, 1.0, full, slot, found[0])
     push = body_force(terms, time) / (terms.fill.chamber.radius * turn)
     found[0].push_x, found[0].push_y = push.real, push.imag
     return np.asarray(found.view(np.float64))

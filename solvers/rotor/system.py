@@ -64,11 +64,15 @@ class Shed:
     unbalance : that leaves in the end, complex, shape (n,)
     time_constant : s
     above : spin speed from which it leaves, rad/s
+    mass : mass matrix of what leaves in the end, shape (n, n); None where its mass is not known
+    inertia : its moment of inertia about the spin axis, kg m^2
     """
 
     unbalance: Complex
     time_constant: float
     above: float
+    mass: Array | None = None
+    inertia: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -26,11 +26,13 @@ class Leg(NamedTuple):
     stop : its time, s
     rate : of the spin, rad/s^2; 0 where the spin is free
     stage : of the programme, from 0
+    limited : the motor gives less than the programme asks
     """
 
     stop: float
     rate: float
     stage: int
+    limited: bool = False
 
 
 def highest(drive: Drive) -> float:
@@ -97,6 +99,7 @@ def _times(drive: Ramp | Motor, samples: int) -> tuple[Array, Array]:
 
 def _programme(drive: Programme, machine: RunupMachine, step: float) -> Iterator[Leg]:
     """Stage after stage, each from the time and the speed that were reached."""
+    load = _Load(machine)
     for number, stage in enumerate(drive.stages):
         spin, stop = machine.spin, drive.target(stage, machine.spin)
         if stage.free:
@@ -108,9 +111,83 @@ def _programme(drive: Programme, machine: RunupMachine, step: float) -> Iterator
         lasts = stage.lasts(spin, stop)
         if lasts <= 0.0:
             continue
+        if drive.motor is not None:
+            yield from _limited(drive, machine, step, number, (lasts, stop), load)
+            continue
         end, rate = machine.time + lasts, (stop - spin) / lasts
         while machine.time < end:
             yield Leg(min(_after(machine.time, step, end), end), rate, number)
+
+
+def _limited(
+    drive: Programme,
+    machine: RunupMachine,
+    step: float,
+    number: int,
+    aim: tuple[float, float],
+    load: _Load,
+) -> Iterator[Leg]:
+    """A stage with a given speed as far as the motor's torque suffices [theory: coupling, eq. 16].
+
+    From leg to leg: where the rate asks for more than the motor gives at that speed, its curve takes over.
+    A rise goes on until its speed is reached, at no more than its rate; a hold ends with its time, and what
+    it has lost in speed is made up for with all the torque there is.
+
+    Parameters
+    ----------
+    aim : how long the stage is to last, s, and the speed at its end, rad/s
+    load : torque of liquid and whirl, as the stages before have left it
+    """
+    assert drive.inertia is not None
+    lasts, stop = aim
+    net, rate = drive.net(), (stop - machine.spin) / lasts
+    load.look()
+    end = machine.time + (lasts if rate == 0.0 else max(lasts, drive.limit))
+    while machine.time < end:
+        time, spin, gap = machine.time, machine.spin, stop - machine.spin
+        near = abs(gap) <= _REACHED * stop
+        if rate != 0.0 and (near or gap * rate < 0.0):
+            return
+        given = float(np.interp(spin, *net))
+        asked = rate if rate != 0.0 or near or gap < 0.0 else math.inf
+        inertia = drive.inertia - machine.lost_inertia
+        limited = inertia * asked + load.torque() > given
+        slope = (given - load.torque()) / inertia if limited else rate
+        until = min(_after(time, step, end), end)
+        if slope * gap > 0.0:
+            until = min(until, time + max(gap / slope, _SLIVER * step))
+        machine.drive(net if limited else _GIVEN, drive.inertia if limited else 0.0)
+        yield Leg(until, 0.0 if limited else rate, number, limited)
+        load.look()
+
+
+class _Load:
+    """Mean torque of liquid and whirl on the drum over its last turn.
+
+    Parameters
+    ----------
+    machine : that is driven
+    """
+
+    def __init__(self, machine: RunupMachine) -> None:
+        self._machine = machine
+        self._known = [self._now()]
+
+    def _now(self) -> tuple[float, float]:
+        """The angle turned, rad, and the work so far, J."""
+        sums = self._machine.sums
+        return float(self._machine.angle), float(sums["unbalance"] + sums["drive"])
+
+    def look(self) -> None:
+        """Take in the last leg."""
+        self._known.append(self._now())
+        while len(self._known) > 2 and self._known[-1][0] - self._known[1][0] >= 2.0 * math.pi:
+            del self._known[0]
+
+    def torque(self) -> float:
+        """N m; 0 before the first leg."""
+        (first, before), (last, after) = self._known[0], self._known[-1]
+        return (after - before) / (last - first) if last > first else 0.0
 
 
 def _coast(

@@ -190,13 +190,13 @@ def _power(area, velocity, surface, log, rate_a, spin, x, y, cosine, sine):
 
 
 @_summed
-def _rub(area, velocity, log, kept, pushed, spin):
+def _rub(area, velocity, log, kept, pushed, spin, full, slot):
     """Let friction leave its share of the velocities and add to them; sums over the cells.
 
     Returns
     -------
     Impulse of the wall's torque, heat, and the energy in the frame that does not turn before and after, all
-    over rho h_c R^4 [theory: coupling, eq. 7]
+    over rho h_c R^4 [theory: coupling, eq. 7]; that of a full gap with it [theory: long_wave, eq. 19]
     """
     torque, heat, before, after = 0.0, 0.0, 0.0, 0.0
     for i in range(area.size):
@@ -206,18 +206,21 @@ def _rub(area, velocity, log, kept, pushed, spin):
         lost = 0.5 * log[i] * (u - v) * (u + v)
         heat += lost
         turning = spin * area[i]
+        pressed = np.maximum(area[i] - full, 0.0)
         still = turning * (0.5 * spin * (1.0 - area[i]) + v) + 0.5 * log[i] * v * v
+        still += 0.5 * slot * pressed * pressed
         after += still
         before += still + turning * (u - v) + lost
     return torque, heat, before, after
 
 
 @_unwrapped
-def _half_friction(area, q, spin, layer, coefficient, thin, table, dt, spare, gains):
+def _half_friction(area, q, spin, layer, drags, dt, inside, spare, gains):
     """Half a step of friction; the energy before and after, with the profile left in the scratch."""
     n, step = area.size, 2.0 * np.pi / area.size
     velocity, surface, log = spare[_VELOCITY, :n], spare[_SURFACE, :n], spare[_LOG, :n]
     kept, pushed = spare[_KEPT, :n], spare[_PUSHED, :n]
+    coefficient, thin, table = drags
     profile(area, q, spin, velocity, surface, log)
     if layer.law == NONE:
         for i in range(n):
@@ -231,7 +234,8 @@ def _half_friction(area, q, spin, layer, coefficient, thin, table, dt, spare, ga
         decelerate(area, q, spin, kept)
         if layer.law == WALL:
             add_velocity(area, q, pushed)
-    torque, heat, before, after = _rub(area, velocity, log, kept, pushed, spin)
+    slot = inside.slot * spin * spin
+    torque, heat, before, after = _rub(area, velocity, log, kept, pushed, spin, inside.full, slot)
     gains.torque += torque * step
     gains.heat += heat * step
     return before * step, after * step
@@ -270,7 +274,8 @@ def layer_step(
     rate_e, next_e = spare[_RATE_E, : rolling.size], spare[_NEXT_E, : rolling.size]
     velocity, surface, log = spare[VELOCITY, GHOSTS:], spare[SURFACE, GHOSTS:], spare[LOG, GHOSTS:]
     gains.torque, gains.heat, gains.loss, gains.missed, gains.baffles = 0.0, 0.0, 0.0, 0.0, 0.0
-    _, gains.loss = _half_friction(area, q, spins[0], layer, coefficient, thin, table, dt, spare, gains)
+    drags = coefficient, thin, table
+    _, gains.loss = _half_friction(area, q, spins[0], layer, drags, dt, inside, spare, gains)
     copy(area, next_a)
     copy(q, next_q)
     copy(rolling, next_e)
@@ -301,15 +306,17 @@ def layer_step(
             correct_energy(rolling, rate_e, dt, next_e)
             bound_energy(area, rolling, spin)
             calm(area, q, spin)
-    energy, _ = _half_friction(area, q, spins[1], layer, coefficient, thin, table, dt, spare, gains)
+    energy, _ = _half_friction(area, q, spins[1], layer, drags, dt, inside, spare, gains)
     gains.loss -= energy + gains.missed
     return Outcome.DONE, fastest
 
 
 # A step is done once two estimates of the mean accelerations differ by this, relative to the largest. Where
 # the drying edge of a layer makes them jump, the guess follows by halves after a few rounds; after the last
-# the step is shortened, and the shortest may pass with what is left. Momentum is handed over all the same.
-_AGREED, _PASSABLE, _STRAIGHT, _ROUNDS, _SHORTEST = 1e-6, 1e-2, 5, 12, 1.0 / 32.0
+# the step is shortened, and a short one may pass with what is left. Momentum is handed over all the same.
+_AGREED, _PASSABLE, _STRAIGHT, _ROUNDS, _SHORT = 1e-6, 1e-2, 5, 12, 1.0 / 32.0
+# Steps this short that do not agree end the run: a layer on its way through the axis.
+_SHORTEST = 1.0 / 1024.0
 # Steps shortened by more than this no longer follow what the layers do.
 _LEAST = 1e-6
 
@@ -643,7 +650,7 @@ def advance(machine, state, room, stop, courant, most, resumed):
         copy(state.lean_rate, room.lean_rate)
         _guess(state, room, dt)
         status, fastest, gap = _couple(machine, state, room, dt)
-        if status == Outcome.NOT_COUPLED and pace.share <= _SHORTEST and gap <= _PASSABLE:
+        if status == Outcome.NOT_COUPLED and pace.share <= _SHORT and gap <= _PASSABLE:
             status = Outcome.DONE
         if status == Outcome.TOO_LONG or (status == Outcome.NOT_COUPLED and pace.share > _SHORTEST):
             copy(room.area, state.area)

@@ -10,8 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fluid.fill import Fill
+from fluid.friction.baffles import baffle_torque
 from fluid.friction.laws import Friction, damping_rate
+from fluid.whirl import is_full
 from meshes.arrays import Array, Complex
+from meshes.errors import InputError
 from solvers.layer.records import Outcome, records
 from solvers.layer.state import ring
 from solvers.rotor.system import RotorSystem
@@ -32,6 +35,8 @@ from solvers.slices import compiled, slices
 
 if TYPE_CHECKING:
     from solvers.runup.linear_kernel import LinearMachine
+
+_LAGS = 129  # of the curves of smeared baffles
 
 
 @dataclass
@@ -83,7 +88,12 @@ class LinearCoupled(CoupledRotor):
     def drive(self, curve: Array, inertia: float) -> None:
         """Set a motor's torque curve and moment of inertia; an empty curve leaves the spin to its ramp."""
         self.machine = self.machine._replace(curve=curve)
-        self.shaft.inertia = inertia
+        self.shaft.inertia = inertia - self.lost_inertia
+
+    @property
+    def rotor_mass(self) -> Array:
+        """See `CoupledRotor`."""
+        return np.asarray(self.machine.matrices[0])
 
     def load(self, unbalance: Complex) -> None:
         """Set the unbalance from here on, kg m and kg m^2, shape (n,)."""
@@ -244,7 +254,7 @@ def couple_linear(
 
     Raises
     ------
-    InputError : a negative gravity
+    InputError : a negative gravity, baffles that cut the liquid into compartments
     """
     from solvers.runup.linear_kernel import LINEAR_LAYER, LinearMachine
 
@@ -265,6 +275,7 @@ def couple_linear(
         planes=rest.planes,
         layers=layers,
         tables=wall_tables(fills, friction),
+        plates=plate_curves(fills),
         active=np.zeros(count),
         pools=pools,
         drags=drags,
@@ -294,6 +305,36 @@ def couple_linear(
         machine=machine,
     )
     machine.active[:] = found.begins_as_layer(spin)
+    return found
+
+
+def plate_curves(fills: Sequence[Fill]) -> Array:
+    """Smeared baffles of layers that lag: zeta N r_m/(4 pi R) over the lag [theory: baffles, eq. 13].
+
+    Parameters
+    ----------
+    fills : chambers and their liquid
+
+    Returns
+    -------
+    At lags that rise evenly from 0 to the spin, shape (l, p); p = 0 where no baffle stands in liquid
+
+    Raises
+    ------
+    InputError : baffles that cut the liquid into compartments
+    """
+    wet = [j for j, fill in enumerate(fills) if fill.uneven and not is_full(fill)]
+    found, lags = np.zeros((len(fills), _LAGS if wet else 0)), np.linspace(0.0, 1.0, _LAGS)
+    for j in wet:
+        fill, baffles = fills[j], fills[j].chamber.baffles
+        assert baffles is not None
+        if fill.compartments > 1:
+            text = "fewer, or shorter: linear layers do not slosh in compartments, long waves do"
+            raise InputError(f"chambers.{j}.baffles.count", baffles.count, text)
+        middle = math.sqrt(0.5 * (fill.chamber.radius**2 + fill.surface_radius**2))
+        # The loss is a function of the lag over the spin alone.
+        loss = baffle_torque(fill, 1.0, lags).loss
+        found[j] = loss * baffles.count * middle / (4.0 * math.pi * fill.chamber.radius)
     return found
 
 

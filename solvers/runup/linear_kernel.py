@@ -34,6 +34,8 @@ class LinearMachine(NamedTuple):
     planes : displacement of each layer's axis for unit coordinates, shape (l, 2, n)
     layers : records LINEAR_LAYER, shape (l,)
     tables : of the law of the wall, shape (l, m, 2); m = 0 under other laws
+    plates : smeared baffles, zeta N r_m/(4 pi R) at lags that rise evenly from 0 to the spin, shape (l, p);
+        p = 0 where no layer has any
     active : 1 for a layer, 0 for liquid that lies at the bottom or is solid, shape (l,)
     pools : records POOL of `solvers.runup.state`, the mass 0 for liquid that does not swing, shape (l,)
     drags : relative rotation of the walls and their torque on each pool, shape (l, 2, k)
@@ -54,6 +56,7 @@ class LinearMachine(NamedTuple):
     planes: Array
     layers: Record
     tables: Array
+    plates: Array
     active: Array
     pools: Record
     drags: Array
@@ -152,23 +155,48 @@ def _rotor_rows(m, spin, first, last, spins, dt):
 
 
 @_jit
-def _mean_drag(m, j, spin, dt):
-    """Rate of the friction on a layer as a whole: by the law of the wall at the middle of the step."""
+def _wall_drag(m, j, spin, lag):
+    """Rate of the friction of the walls on a layer as a whole, 1/s."""
     layer = m.layers[j]
     if layer.top == 0.0:
         return layer.rate * spin**layer.power
+    rate, _ = mean_rate(m.tables[j], layer.top, lag)
+    return rate * layer.sides
+
+
+@_jit
+def plate_drag(curve, spin, lag):
+    """Rate at which smeared baffles take a lag away, 1/s [theory: baffles, eq. 13].
+
+    Parameters
+    ----------
+    curve : of a layer, a row of `LinearMachine.plates`
+    spin, lag : rad/s, from 0
+    """
+    last = curve.size - 1
+    if last < 1:
+        return 0.0
+    place = min(last * lag / spin, 1.0 * last)
+    k = min(int(place), last - 1)
+    return lag * (curve[k] + (place - k) * (curve[k + 1] - curve[k]))
+
+
+@_jit
+def _mean_drag(m, j, spin, dt):
+    """Rates of walls and of baffles on a layer as a whole, at the middle of the step."""
     lag = abs(spin - m.carried[j])
-    first, _ = mean_rate(m.tables[j], layer.top, lag)
-    middle, _ = mean_rate(m.tables[j], layer.top, lag / (1.0 + 0.5 * dt * first * layer.sides))
-    return middle * layer.sides
+    first = _wall_drag(m, j, spin, lag) + plate_drag(m.plates[j], spin, lag)
+    lag /= 1.0 + 0.5 * dt * first
+    return _wall_drag(m, j, spin, lag), plate_drag(m.plates[j], spin, lag)
 
 
 @_jit
 def _carry(m, j, spin, spins, dt):
-    """Rotation of a layer as a whole at the end of the step: wall friction takes it to the drum's."""
+    """Rotation of a layer as a whole at the end of the step: walls and baffles take it to the drum's."""
     if m.active[j] == 0.0:
         return spins[1]
-    share = 0.5 * dt * _mean_drag(m, j, spin, dt)
+    wall, plates = _mean_drag(m, j, spin, dt)
+    share = 0.5 * dt * (wall + plates)
     return (m.carried[j] * (1.0 - share) + share * (spins[0] + spins[1])) / (1.0 + share)
 
 
@@ -195,7 +223,7 @@ def _tally(m, spin, spins, dt):
             continue
         layer = m.layers[j]
         mass, kappa = layer.mass, layer.curvature
-        rate, held = layer.rate * spin**layer.power, _mean_drag(m, j, spin, dt)
+        rate, (held, blocked) = layer.rate * spin**layer.power, _mean_drag(m, j, spin, dt)
         after = _carry(m, j, spin, spins, dt)
         whole, gained = 0.5 * (m.carried[j] + after), after - m.carried[j]
         u, v = m.rate[row] + 0.5 * m.change[row], m.rate[row + 1] + 0.5 * m.change[row + 1]
@@ -204,6 +232,7 @@ def _tally(m, spin, spins, dt):
         p, q = u + whole * y, v - whole * x
         drag = mass * rate * (1.0 + kappa)
         sums.friction += dt * (drag * (p * p + q * q) + layer.inertia * held * (spin - whole) ** 2)
+        sums.baffles += dt * layer.inertia * blocked * (spin - whole) ** 2
         sums.drive -= dt * drag * whole * (x * q - y * p)
         sums.drive += 2.0 * mass * kappa * gained * (x * v - y * u - whole * (x * x + y * y))
         sums.drive += layer.inertia * spin * gained

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
-from meshes.arrays import Array, Flags
+from meshes.arrays import Array
+from solvers.rotor.loads.bearings import bearing_forces, hub_load
 from solvers.rotor.loads.machine import LoadedMachine
-from solvers.rotor.loads.turn import LEAST, Extremes, extremes
+from solvers.rotor.loads.turn import ANGLES, LEAST, Extremes, extremes, turn_extremes
+from solvers.rotor.tub import Tub
 from solvers.runup.path import RotorPath
 
 _AT_ONCE = 20_000  # moments
-_SHY = 2  # samples on each side of a change of the liquid whose accelerations are not those of a spline
+_ENDS = 4  # moments at the ends of a path whose accelerations are not those of the motion
 
 
-def path_extremes(machine: LoadedMachine, path: RotorPath, time: Array, captured: Flags) -> Extremes:
+def path_extremes(machine: LoadedMachine, path: RotorPath, time: Array) -> Extremes:
     """The worst of each interval up to a sample, the first sample alone [theory: loads, eq. 14].
 
     Parameters
@@ -23,11 +23,11 @@ def path_extremes(machine: LoadedMachine, path: RotorPath, time: Array, captured
     machine : whose rotor moves
     path : its motion
     time : of the samples, s, rising, shape (k,)
-    captured : which layers ride with the drum at the samples, shape (k, l)
 
     Returns
     -------
-    Extremes of k intervals; bearing forces are not a number where liquid was caught or let go
+    Extremes of k intervals. Where liquid is caught or falls they are those before and after: of the blow
+    itself only the impulse is known, see `bearing_impulses`
     """
     every = np.union1d(path.time, time)
     every = every[(every >= time[0]) & (every <= time[-1])]
@@ -42,25 +42,61 @@ def path_extremes(machine: LoadedMachine, path: RotorPath, time: Array, captured
     values = {}
     for name in Extremes.__dataclass_fields__:
         moments = np.concatenate([getattr(part, name) for part in parts])
-        worst = np.minimum if name in LEAST else np.maximum
+        worst = np.fmin if name in LEAST else np.fmax
         values[name] = worst.reduceat(moments, starts, axis=0)
-    found = Extremes(**values)
-    return replace(found, bearing=np.where(_jolted(captured)[:, None], np.nan, found.bearing))
+    return Extremes(**values)
 
 
-def _jolted(captured: Flags) -> Flags:
-    """Samples near a change of what rides with the drum, shape (k,)."""
-    changed = np.zeros(len(captured), dtype=bool)
-    changed[1:] = (captured[1:] != captured[:-1]).any(axis=1)
-    near = changed.copy()
-    for step in range(1, _SHY + 1):
-        near[step:] |= changed[:-step]
-        near[:-step] |= changed[step:]
-    return near
+def bearing_impulses(machine: LoadedMachine, path: RotorPath) -> Array:
+    """What each hand-over of liquid does to the bearings at once [theory: loads, eq. 20].
+
+    Parameters
+    ----------
+    machine : whose rotor moves
+    path : its motion
+
+    Returns
+    -------
+    N s, shape (j, b); b = 0 where bearings are not known
+    """
+    kicks = path.kicks()
+    if machine.bearings is None or not isinstance(machine.rotor, Tub):
+        return np.zeros((len(kicks), 0))
+    still = np.zeros_like(kicks)
+    load = hub_load(machine.rotor, still, still, kicks)
+    return np.asarray(np.linalg.norm(bearing_forces(machine.rotor, machine.bearings, load), axis=-1))
+
+
+def held_extremes(machine: LoadedMachine, spin: float, path: Array) -> Extremes:
+    """The worst over the last turns of a motion that is held at a speed [theory: loads, eq. 14].
+
+    Parameters
+    ----------
+    machine : whose rotor moves
+    spin : rad/s
+    path : time and coordinates, as of `solvers.held.state.HeldState`, shape (m, 1 + n)
+
+    Returns
+    -------
+    Extremes of one turn; not a number where the path is too short
+    """
+    if len(path) <= 4 * _ENDS:
+        nothing = np.full((1, len(machine.rotor.system().coordinates)), np.nan, dtype=complex)
+        return turn_extremes(machine, nothing, np.array([spin]))
+    whole = RotorPath(path[:, 0], spin * path[:, 0], path[:, 1:], np.zeros((2, 3)))
+    # The derivatives of a spline are poor at its ends.
+    begin, end = path[_ENDS, 0], path[-1 - _ENDS, 0]
+    times = np.linspace(begin, end, 2 + int(ANGLES * spin * (end - begin) / (2.0 * np.pi)))
+    found = path_extremes(machine, whole, times)
+    values = {}
+    for name in Extremes.__dataclass_fields__:
+        worst = np.min if name in LEAST else np.max
+        values[name] = worst(getattr(found, name), axis=0, keepdims=True)
+    return Extremes(**values)
 
 
 def drive_torque(
-    path: RotorPath, time: Array, speed: Array, angle: Array, inertia: float, motor: bool
+    path: RotorPath, time: Array, speed: Array, angle: Array, inertia: Array, motor: bool
 ) -> Array:
     """Mean torque on the shaft from each sample to the next [theory: loads, eq. 17].
 
@@ -68,7 +104,7 @@ def drive_torque(
     ----------
     path : with the works at the samples
     time, speed, angle : of the samples, s, rad/s and rad, shape (k,)
-    inertia : of what spins about the axis without the liquid, kg m^2
+    inertia : of what spins about the axis without the liquid, kg m^2, shape (k,)
     motor : a motor drives: its own work counts
 
     Returns
@@ -82,5 +118,5 @@ def drive_torque(
     work = given if motor else unbalance + drive
     mean = np.divide(work, turned, out=np.zeros_like(turned), where=turned != 0.0)
     if not motor:
-        mean = mean + inertia * np.diff(speed) / np.diff(time)
+        mean = mean + 0.5 * (inertia[1:] + inertia[:-1]) * np.diff(speed) / np.diff(time)
     return np.concatenate([mean[:1], mean])

@@ -12,7 +12,7 @@ from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from meshes.arrays import Array, Complex, Flags
 from solvers.layer.baffles import tables_of
-from solvers.layer.inside import full_area
+from solvers.layer.inside import SLOT_SPEED, full_area
 from solvers.layer.records import Outcome, Record, records
 from solvers.layer.state import ring
 from solvers.rotor.system import RotorSystem
@@ -106,7 +106,12 @@ class Coupled(CoupledRotor):
     def drive(self, curve: Array, inertia: float) -> None:
         """Set a motor's torque curve and moment of inertia; an empty curve leaves the spin to its ramp."""
         self.machine = self.machine._replace(curve=curve)
-        self.shaft.inertia = inertia
+        self.shaft.inertia = inertia - self.lost_inertia
+
+    @property
+    def rotor_mass(self) -> Array:
+        """See `CoupledRotor`."""
+        return np.asarray(self.machine.matrices[0])
 
     def load(self, unbalance: Complex) -> None:
         """Set the unbalance from here on, kg m and kg m^2, shape (n,)."""
@@ -164,11 +169,18 @@ class Coupled(CoupledRotor):
             rate = plane @ v
             total += 0.5 * layer.mass * rate @ rate + momentum @ rate
             total += layer.weight * layer.radius**4 * measures.energy
+        total += self._pressed()
         for plane, momentum, j in self._swinging():
             rate = plane @ v
             total += 0.5 * self.masses[j] * rate @ rate + momentum @ rate
             total += 0.5 * self.pool_inertia[j] * self.lean_rate[j] ** 2
         return float(total)
+
+    def _pressed(self) -> float:
+        """Energy of what full gaps hold beyond their room, J [theory: long_wave, eq. 19]."""
+        more = np.maximum(self.state.area - self.machine.gaps[:, None], 0.0)
+        each = math.pi * (SLOT_SPEED * self.spin) ** 2 * np.square(more).mean(axis=1)
+        return float((self.machine.layers.weight * self.machine.layers.radius**4) @ each)
 
     def _swinging(self) -> list[tuple[Array, Array, int]]:
         """Plane, relative momentum and number of the chamber of each pool that swings."""
@@ -288,6 +300,8 @@ class Coupled(CoupledRotor):
         """Make machine, state and room anew for the layers and pools of now, other liquid being masses."""
         old, active, pooled = self.state, self.active, self.pooled
         planes, mass = planes_of(self.system, self.fills), self.system.mass.copy()
+        if self.lost_mass is not None:
+            mass -= self.lost_mass
         for weight, plane, moving in zip(self.layers.mass, planes, active | pooled, strict=True):
             if not moving:
                 mass += weight * plane.T @ plane

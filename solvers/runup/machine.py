@@ -8,7 +8,6 @@ through time.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -22,7 +21,7 @@ from meshes.arrays import Array, Complex, Flags, Index
 from meshes.errors import InputError, require_positive
 from solvers.layer.records import Outcome
 from solvers.rotor.system import RotorSystem
-from solvers.runup.programme import Programme
+from solvers.runup.programme import Programme, require_curve
 
 
 @dataclass(frozen=True)
@@ -90,12 +89,7 @@ class Motor:
     def __post_init__(self) -> None:
         for name in ("start", "inertia", "duration"):
             require_positive(name, getattr(self, name))
-        if len(self.speeds) < 2 or len(self.speeds) != len(self.torques):
-            raise InputError("motor.torques", len(self.torques), "one for each of at least two speeds")
-        if not all(math.isfinite(value) for value in (*self.speeds, *self.torques)):
-            raise InputError("motor.torques", self.torques, "finite numbers")
-        if any(after <= before for before, after in zip(self.speeds, self.speeds[1:], strict=False)):
-            raise InputError("motor.speeds", self.speeds, "ascending")
+        require_curve(self.speeds, self.torques)
 
     def corners(self) -> Array:
         """Beginning and end with the starting speed, shape (2, 2)."""
@@ -205,6 +199,14 @@ class RunupMachine(Protocol):
         """Spin speed, rad/s."""
 
     @property
+    def angle(self) -> float:
+        """Angle by which the drum has turned, rad."""
+
+    @property
+    def lost_inertia(self) -> float:
+        """Moment of inertia about the axis that has left the drum by now, kg m^2."""
+
+    @property
     def masses(self) -> Array:
         """Mass of the liquid in each chamber, kg, shape (l,)."""
 
@@ -225,6 +227,17 @@ class RunupMachine(Protocol):
 
     def load(self, unbalance: Complex) -> None:
         """Set the unbalance from here on, kg m and kg m^2, shape (n,)."""
+
+    def lighten(self, mass: Array, inertia: float) -> float:
+        """Set what has left the drum by now; the energy that the last part has brought in, below 0, J.
+
+        What leaves keeps its velocity, so that no speed changes [theory: coupling, eq. 17].
+
+        Parameters
+        ----------
+        mass : its mass matrix, kg and kg m^2, shape (n, n)
+        inertia : about the spin axis, kg m^2
+        """
 
     def advance(self, stop: float, rate: float, courant: float, most: int) -> Outcome:
         """Advance to a time while the spin changes at a rate, in at most so many steps."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -61,6 +62,25 @@ class Stage:
         return abs(stop - spin) / self.rate
 
 
+def require_curve(speeds: tuple[float, ...], torques: tuple[float, ...]) -> None:
+    """Refuse what is no torque curve of a motor.
+
+    Parameters
+    ----------
+    speeds, torques : of its points, rad/s and N m
+
+    Raises
+    ------
+    InputError : less than two points, numbers that are not finite, speeds that do not rise
+    """
+    if len(speeds) < 2 or len(speeds) != len(torques):
+        raise InputError("motor.torques", len(torques), "one for each of at least two speeds")
+    if not all(math.isfinite(value) for value in (*speeds, *torques)):
+        raise InputError("motor.torques", torques, "finite numbers")
+    if any(after <= before for before, after in pairwise(speeds)):
+        raise InputError("motor.speeds", speeds, "ascending")
+
+
 @dataclass(frozen=True)
 class Programme:
     """Stages one after the other, each from the speed that the one before has reached.
@@ -72,10 +92,13 @@ class Programme:
     inertia : of drum and motor about the axis without the liquid, kg m^2; None where nothing coasts
     drag_torque : of bearings and belt on a coasting drum, N m, the same at every speed
     drag_rate : of what grows with the speed: alone it slows the drum without liquid at this rate, 1/s
+    motor : speeds, rad/s, ascending, and the largest torques of the motor there, N m, straight lines between
+        them; None for one that gives what the stages ask
+    limit : longest time of a stage whose speed the motor does not reach, s
 
     Raises
     ------
-    InputError : a value out of its range, no stage, no speed above 0, a coast without inertia
+    InputError : a value out of its range, no stage, no speed above 0, a coast or a motor without inertia
     """
 
     start: float
@@ -83,6 +106,8 @@ class Programme:
     inertia: float | None = None
     drag_torque: float = 0.0
     drag_rate: float = 0.0
+    motor: tuple[tuple[float, ...], tuple[float, ...]] | None = None
+    limit: float = 600.0
 
     def __post_init__(self) -> None:
         for name in ("start", "drag_torque", "drag_rate"):
@@ -93,8 +118,10 @@ class Programme:
             raise InputError("stages", self.highest, "stages of which one goes above 0 rad/s")
         if self.inertia is not None:
             require_positive("inertia", self.inertia)
-        elif any(stage.free for stage in self.stages):
-            raise InputError("inertia", None, "given where the drum coasts")
+        elif self.motor is not None or any(stage.free for stage in self.stages):
+            raise InputError("inertia", None, "given where the drum coasts or a motor limits its speed")
+        if self.motor is not None:
+            require_curve(*self.motor)
 
     @property
     def highest(self) -> float:
@@ -124,6 +151,13 @@ class Programme:
         far = 10.0 * self.highest
         viscous = (self.inertia or 0.0) * self.drag_rate
         return np.array([[0.0, far], [-self.drag_torque, -self.drag_torque - viscous * far]])
+
+    def net(self) -> Array:
+        """Speeds and torques of the motor less those of the drag, shape (2, k) [theory: coupling, eq. 16]."""
+        assert self.motor is not None
+        drag, known = self.drag(), np.array(self.motor[0])
+        speeds = np.union1d(known, drag[0])
+        return np.array([speeds, np.interp(speeds, *self.motor) + np.interp(speeds, *drag)])
 
     def corners(self) -> Array:
         """Times at which stages begin and end and the speeds there, shape (2, k).

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -74,7 +75,7 @@ class EnergyAudit:
     Parameters
     ----------
     unbalance, drive, gravity : work of the unbalance, of the drive on the liquid, of gravity on the liquid
-    captured : energy that capture and release of the liquid brought in
+    captured : energy that capture and release of the liquid brought in, less what water that leaves takes
     change : of the energy of rotor and liquid
     support, friction : heat in the supports and by wall friction
     bores : lost in bores and by the scheme
@@ -152,9 +153,12 @@ class RunupHistory:
     handover : how liquid at the bottom of a lying chamber becomes a layer
     handover_estimate : of the amplitude, relative to its largest: what another sensible hand-over changes, by
         the drum that takes the liquid along at once, of the largest value within a turn; nan without it
+    peak_gaps : of the largest amplitude of the run, m: what half the cells change of it, and what that
+        hand-over changes; nan without those runs
     band : of the amplitude, m: what half the cells and that hand-over change of its largest value within a
         turn about each time, shape (k,); None without those runs
     stage : of its programme in which each time was reached, from 0, shape (k,)
+    limited : the motor gave less than its programme asked on the way to each time, shape (k,)
     left : share that is left of each part of the unbalance that leaves, shape (k, s)
     path : of the rotor all along; None where nobody asked for it
     """
@@ -185,8 +189,10 @@ class RunupHistory:
     transfers: tuple[Transfer, ...] = ()
     handover: Handover = Handover.RIDING
     handover_estimate: float = math.nan
+    peak_gaps: tuple[float, float] = (math.nan, math.nan)
     band: Array | None = None
     stage: Index | None = None
+    limited: Flags | None = None
     left: Array | None = None
     path: RotorPath | None = None
 
@@ -295,15 +301,19 @@ def _with_errors(history: RunupHistory, coarse: RunupHistory, early: RunupHistor
     at_once = float(np.nanmax(_gap(history, coarse, history.amplitude, coarse.amplitude))) * scale
     crests = {id(run): _over_a_turn(run) for run in (history, coarse, early) if run is not None}
     band = _gap(history, coarse, crests[id(history)], crests[id(coarse)])
-    handed = math.nan
+    handed, peak = math.nan, float(coarse.largest.max())
+    gaps = [abs(float(history.largest.max()) - peak), math.nan]
     if early is not None and early.converged:
+        gaps[1] = abs(float(early.largest.max()) - peak)
         other = _gap(coarse, early, crests[id(coarse)], crests[id(early)])
         handed = float(np.nanmax(other)) * scale
         known = ~np.isnan(other)
         band = band + np.interp(history.time, coarse.time[known], other[known])
     known = ~np.isnan(band)
     whole = np.interp(history.time, history.time[known], band[known])
-    return replace(history, error_estimate=at_once, handover_estimate=handed, band=whole)
+    return replace(
+        history, error_estimate=at_once, handover_estimate=handed, peak_gaps=(gaps[0], gaps[1]), band=whole
+    )
 
 
 def _gap(run: RunupHistory, other: RunupHistory, own: Array, others: Array) -> Array:
@@ -343,7 +353,7 @@ def _march(
     wanted, kept, depths = marked(drive, numerics.samples, snapshots), [0], [machine.depth()]
     if 0.0 not in wanted:
         kept, depths = [], []
-    readings, stages, left = [machine.read()], [0], [shedding.left]
+    readings, stages, left, limited = [machine.read()], [0], [shedding.left], [False]
     if recorder is not None:
         recorder.begin(machine)
     for leg in legs(drive, machine, numerics.samples):
@@ -363,6 +373,7 @@ def _march(
             break
         readings.append(machine.read())
         stages.append(leg.stage)
+        limited.append(leg.limited)
         left.append(shedding.left)
         if recorder is not None:
             recorder.sample(machine)
@@ -374,13 +385,17 @@ def _march(
     when = f"at {machine.time:.6g} s, {machine.spin:.6g} rad/s"
     sums = machine.sums
     audit = EnergyAudit(
-        captured=captured,
+        captured=captured + shedding.brought,
         change=machine.energy() - energy,
         **{name: float(sums[name]) for name in _WORKS},
     )
     shots = LayerSnapshots(np.array(kept, dtype=np.intp), machine.theta, np.array(depths)) if wanted else None
+    read: dict[str, Any] = {
+        field.name: np.array([getattr(reading, field.name) for reading in readings])
+        for field in fields(Reading)
+    }
     return RunupHistory(
-        **{field.name: np.array([getattr(r, field.name) for r in readings]) for field in fields(Reading)},
+        **read,
         layer_mass=machine.masses,
         mass_error=machine.mass_error(),
         error_estimate=math.nan,
@@ -393,10 +408,11 @@ def _march(
         reason="" if outcome is Outcome.DONE else f"{outcome.message} {when}",
         snapshots=shots,
         stage=np.array(stages),
+        limited=np.array(limited),
         left=np.array(left),
         transfers=tuple(machine.transfers),
         handover=numerics.handover,
-        path=None if recorder is None else recorder.path(),
+        path=None if recorder is None else recorder.path([each.time for each in machine.transfers]),
     )
 
 

@@ -29,7 +29,9 @@ class Shedding:
         self._system = system
         self._time = np.array([shed.time_constant for shed in system.sheds])
         self._above = (1.0 - _HELD) * np.array([shed.above for shed in system.sheds])
+        self._heavy = any(shed.mass is not None for shed in system.sheds)
         self.left: Array = np.ones(len(system.sheds))
+        self.brought = 0.0  # energy that came with what has left, below 0, J
 
     def pieces(self, machine: RunupMachine, stop: float) -> Iterator[float]:
         """Times on the way to another one; the unbalance is set before each, and what has left is gone after.
@@ -48,6 +50,8 @@ class Shedding:
             spin, step = machine.spin, until - machine.time
             middle = self.left * np.exp(-0.5 * step / self._time * (spin > self._above))
             machine.load(self._system.unbalance - sum(self._gone(middle)))
+            if self._heavy:
+                self.brought += machine.lighten(*self._lost(middle))
             yield until
             self.left = self.left * np.exp(-step / self._time * self._share(spin, machine.spin))
 
@@ -55,6 +59,15 @@ class Shedding:
         """What has left of each part, kg m, for the shares that are left."""
         pairs = zip(self._system.sheds, left.tolist(), strict=True)
         return [(1.0 - share) * shed.unbalance for shed, share in pairs]
+
+    def _lost(self, left: Array) -> tuple[Array, float]:
+        """Mass matrix and moment of inertia of what has left."""
+        mass, inertia = np.zeros_like(self._system.mass), 0.0
+        for shed, share in zip(self._system.sheds, left.tolist(), strict=True):
+            if shed.mass is not None:
+                mass += (1.0 - share) * shed.mass
+                inertia += (1.0 - share) * shed.inertia
+        return mass, inertia
 
     def _share(self, before: float, after: float) -> Array:
         """Share of a piece of time in which the drum is fast enough, its speed on a straight line."""

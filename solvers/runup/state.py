@@ -351,6 +351,7 @@ class CoupledRotor(ABC):
     capture, pools : as of `Rest`, shape (l,)
     lean, lean_rate : angle of each pool from the bottom, positive with the spin, rad, and its rate, (l,)
     transfers : liquid that has become a layer or fallen so far
+    lost_mass, lost_inertia : mass matrix of what has left the drum, and its moment of inertia about the axis
     """
 
     system: RotorSystem
@@ -362,6 +363,8 @@ class CoupledRotor(ABC):
     lean: Array
     lean_rate: Array
     transfers: list[Transfer] = field(default_factory=list, init=False)
+    lost_mass: Array | None = field(default=None, init=False)
+    lost_inertia: float = field(default=0.0, init=False)
 
     @cached_property
     def swings(self) -> Flags:
@@ -470,6 +473,29 @@ class CoupledRotor(ABC):
     def spin(self) -> float:
         """Spin speed, rad/s."""
         return float(self.shaft["spin"])
+
+    @property
+    def angle(self) -> float:
+        """Angle by which the drum has turned, rad."""
+        return float(self.shaft["angle"])
+
+    @property
+    @abstractmethod
+    def rotor_mass(self) -> Array:
+        """Mass matrix that the steps take, to be changed in place, shape (n, n)."""
+
+    @abstractmethod
+    def energy(self) -> float:
+        """Of rotor and liquid, J."""
+
+    def lighten(self, mass: Array, inertia: float) -> float:
+        """See `solvers.runup.machine.RunupMachine.lighten`."""
+        gone = np.zeros_like(self.system.mass) if self.lost_mass is None else self.lost_mass
+        before = self.energy()
+        self.rotor_mass[:] -= mass - gone
+        self.shaft["inertia"] -= inertia - self.lost_inertia
+        self.lost_mass, self.lost_inertia = mass, inertia
+        return self.energy() - before
 
     def watch(self) -> None:
         """From here on look for the largest amplitude anew."""

@@ -173,6 +173,28 @@ def test_drag_and_balance() -> None:
         assert balance_speed(fill, pool, Friction(), 9.81) == math.inf
 
 
+@kills("fluid.pool:_shear_torque", "drag_speed(", "1e-3 * drag_speed(")
+def test_hysteresis_as_experiments_report() -> None:
+    """The walls carry a pool above the speed at which its ring falls, unless it is thick [AH01]."""
+
+    def ratio(share: float, viscosity: float) -> float:
+        """Speed of balance over sqrt(g/a)."""
+        chamber = Chamber(0.15, 1.0)
+        fill = Fill(chamber, Liquid("liquid", 1000.0, viscosity), share * chamber.capacity)
+        pool = pool_of(fill)
+        assert pool is not None
+        falls = math.sqrt(9.81 / (0.15 * math.sqrt(1.0 - share)))
+        return balance_speed(fill, pool, Friction("wall"), 9.81) / falls
+
+    fills = (0.02, 0.05, 0.1, 0.2, 0.3)
+    for viscosity in (1e-6, 1e-5, 1e-4):
+        found = [ratio(share, viscosity) for share in fills]
+        assert min(found) > 1.0
+        assert found == sorted(found)
+    # Omega R^2/nu is about 20 at the speed at which a ring stands: no hysteresis.
+    assert max(ratio(share, 1e-2) for share in fills) < 1.0
+
+
 @kills("fluid.pool:_baffle_factor", "max(plate, loss * depth)", "loss * depth")
 @kills("fluid.pool:_baffle_factor", "baffles.count * pool.half_angle / math.pi", "baffles.count")
 @kills("fluid.pool:wall_torque", "turn * np.abs(turn)", "turn * turn")

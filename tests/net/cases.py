@@ -102,6 +102,8 @@ def _runs() -> Iterator[Case]:
     for name in ("vibratory_table", *ROTORS, *DOCS):
         yield _case(f"run-{name}", f"run {_scene(name)} --json --out out")
         yield _case(f"explain-{name}", f"explain {_scene(name)} --json")
+    yield _case("explain-top_loader", f"explain {_scene('top_loader')} --json")
+    yield _case("run-top_loader", f"run {_scene('top_loader')} --json --out out")
 
 
 def _comparisons() -> Iterator[Case]:
@@ -117,6 +119,8 @@ def _runups() -> Iterator[Case]:
         yield _case(f"runup-{name}", f"runup {scene} --cells 32 --samples 201 --no-check --json --out out")
     typed = f"runup {_scene('programme')} --cells 16 --samples 401 --no-check --json --out out"
     yield _case("runup-programme", typed)
+    typed = f"runup {_scene('top_loader')} --cells 32 --samples 401 --no-check --json --out out"
+    yield _case("runup-top_loader", typed)
     yield _case("runup-check", "runup small/runup.toml --samples 51 --json --out out")
 
 
@@ -181,6 +185,7 @@ def _layers() -> Iterator[Case]:
     steady |= {
         "long_wave-gravity": f"{wave} linear:0.5 --gravity 9.81",
         "long_wave-dispersion": f"{wave} linear:0.5 --dispersion",
+        "long_wave-smeared": f"{wave} linear:0.5 --baffles 20 --baffle-tip-radius 147mm",
     }
     stock = "--friction linear:3 --solver runge-kutta"
     steady |= {
@@ -236,6 +241,11 @@ def _words() -> Iterator[Case]:
     fitted = f"fit {_scene('horizontal_rig')} docs/examples/measured.csv --unknown rotor.mass --starts 2"
     yield _case("words-fit", f"{fitted} --out out")
     yield _case("fit", f"{fitted} --unknown rotor.damping_ratio --json --out out")
+    angles = f"fit {_scene('horizontal_rig')} docs/examples/rig_angles.csv --unknown rotor.damping_ratio"
+    yield _case("fit-angles", f"{angles} --unknown rotor.critical_speed --starts 1 --json --out out")
+    added = f"fit {_scene('runup')} docs/examples/added.csv --unknown rotor.unbalance --starts 1"
+    yield _case("fit-added", f"{added} --json --out out")
+    yield _case("fit-each", f"{fitted} --scale each --json --out out")
     yield _case("words-volume", f"{_VOLUME} --volume 2e-4")
     yield _case("words-layer", f"{_WHIRL} --model linear")
     yield _case("words-layer-duration", f"{_WHIRL} --model long_wave --cells 32 --duration 2")

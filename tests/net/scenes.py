@@ -64,7 +64,7 @@ WRONG: dict[str, tuple[str, str, str]] = {
     "one_speed_too_few": (_SMALLEST, "count = 61", "count = 0"),
     "speeds_backwards": (_SMALLEST, '"500 rpm"', '"5000 rpm"'),
     "unknown_model": (_RIG, 'liquid = "auto"', 'liquid = "best"'),
-    "unknown_friction": (_RIG, 'friction = "stokes"', 'friction = "sticky"'),
+    "unknown_friction": (_RIG, 'friction = "wall"', 'friction = "sticky"'),
     "assumed_nowhere": (_RIG, '"rotor.mass", "rotor.critical', '"rotor.masses", "rotor.critical'),
     "no_supports": ("examples/two_plane_rig.toml", "[[rotor.supports]]", "[[rotor.bearings]]"),
     "baffles_beyond_wall": ("docs/examples/closed_baffles.toml", "count = 6", 'count = 6, wall_gap = "1 m"'),

@@ -64,6 +64,7 @@ TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (
         *("run-two_plane_rig", "*backward*", Tolerance(absolute=1e-15)),
         "supports are equal all round, so nothing whirls backwards: 1e-19 m",
     ),
+    ("run-top_loader", "*backward*", Tolerance(absolute=1e-15), "the same"),
     (
         *("run-two_plane_rig", "*.campbell_direction.*", Tolerance(1e-12, ordered=False, skipped=4)),
         "at rest two modes have one frequency: which is followed first, and how it turns, is rounding",

@@ -17,9 +17,14 @@ ANSWERED: dict[str, tuple[int, int, int]] = {
     "dry_patch": RATIO, "stable": RATIO, "in_range": RATIO, "converged": RATIO,
     "deflection": LENGTH, "branches": LENGTH, "branch_stable": RATIO, "liquid_mass": MASS,
     "critical_speed_dry": SPEED, "critical_speed_wet": SPEED, "capture_speed": SPEED, "error_estimate": RATIO,
+    "carried_from": SPEED,
     "growth": SPEED, "whirl_speed": SPEED, "whirl_bands": SPEED, "position": LENGTH, "backward": LENGTH,
     "chamber_deflection": LENGTH, "natural_frequency": SPEED, "natural_damping_ratio": RATIO,
     "peak.speed": SPEED, "peak.amplitude": LENGTH, "peak_dry.speed": SPEED, "peak_dry.amplitude": LENGTH,
+    "floor_force": (1, 1, -2), "floor_force_least": (1, 1, -2), "floor_force_rest": (1, 1, -2),
+    "walking_margin": RATIO, "lift_off_margin": RATIO, "slip_margin": RATIO,
+    "motor_torque": (2, 1, -2), "motor_power": (2, 1, -3),
+    "clearance.end": LENGTH, "displacement.end": LENGTH,
     # map
     "volume": (3, 0, 0), "edges": SPEED, "scene_volume": (3, 0, 0), "scene_edges": SPEED,
     # volume

@@ -21,7 +21,7 @@ GIVEN: dict[str, tuple[int, int, int]] = {
     "density": (-3, 1, 0), "viscosity": (2, 0, -1), "gravity": (1, 0, -2),
     "start": SPEED, "stop": SPEED, "linear": SPEED, "rate": (0, 0, -2), "duration": TIME,
     "eccentricity": LENGTH, "speed": SPEED, "whirl-speed": SPEED, "whirl-amplitude": LENGTH, "ramp": TIME,
-    "vibration_limit": LENGTH,
+    "vibration_limit": LENGTH, "feet": LENGTH, "gap": LENGTH,
 }  # fmt: skip
 
 # Another unit of each, and how many of it make one SI unit.
@@ -154,6 +154,8 @@ def reordered(table: Table) -> Table:
     for name in ("supports", "unbalances", "springs", "dampers"):
         if name in found["rotor"]:
             found["rotor"][name].reverse()
+    if "cabinet" in found:
+        found["cabinet"]["feet"].reverse()
     return found
 
 

@@ -18,6 +18,7 @@ from tests.oracles.machines import TUB, TWO_PLANE, Table, changed, reordered
 Scales = tuple[float, float, float]
 
 KINDS = ("jeffcott", "two_plane", "tub")
+FARTHEST = 40.0  # m, of a part of a machine with a cabinet, for its feet may be 1 km off when it is scaled
 
 
 def drawn(rng: np.random.Generator, low: float, decades: float = 6.0) -> float:
@@ -38,7 +39,7 @@ def machine(seed: int, kind: str | None = None) -> Table:
     rotor = {"jeffcott": _jeffcott, "two_plane": _two_plane, "tub": _tub}[kind](rng)
     rotor |= {"kind": kind, "axis": str(rng.choice(["horizontal", "vertical"]))}
     start = drawn(rng, 1e-3)
-    return {
+    found = {
         "name": f"random {seed}",
         "gravity": drawn(rng, 1e-2),
         "rotor": rotor,
@@ -46,6 +47,38 @@ def machine(seed: int, kind: str | None = None) -> Table:
         "speeds": {"start": start, "stop": start * drawn(rng, 1.2, 1.5), "count": 3},
         "model": {"liquid": "auto", "friction": _friction(rng)},
     }
+    return found | (_around(rng, found) if rng.random() < 0.5 else {})
+
+
+def _around(rng: np.random.Generator, table: Table) -> Table:
+    """A cabinet on four feet so wide apart that every mass lies between them, and a point on the axis."""
+    rotor = table["rotor"]
+    parts = [*rotor.get("springs", ()), *rotor.get("supports", ()), *table["chambers"]]
+    places = [rotor.get("drum_position", 0.0), *(part.get("position", 0.0) for part in parts)]
+    places += [chamber.get("plane", 0.0) for chamber in table["chambers"]]
+    widest = max(np.max(np.abs(place)) for place in places)
+    wide, long = (max(float(widest), 1e-3) * float(rng.uniform(2.2, 3.0)) for _ in range(2))
+    if widest > FARTHEST:
+        return {}
+    up, along = _ways(table)
+    across = 3 - up - along
+    feet = []
+    for first, second in ((1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)):
+        foot = [0.0, 0.0, 0.0]
+        foot[up], foot[along], foot[across] = -wide, first * long, second * wide
+        feet.append(foot)
+    place = [0.0, 0.0, 0.0]
+    place[1 if rotor["kind"] == "tub" else 2] = _place(rng)
+    cabinet = {"mass": drawn(rng, 1e-1), "feet": feet, "friction": float(rng.uniform(0.1, 1.0))}
+    return {"cabinet": cabinet, "points": [{"name": "end", "position": place, "gap": drawn(rng, 1e-4)}]}
+
+
+def _ways(table: Table) -> tuple[int, int]:
+    """Numbers of the direction up, and of another one, which is along the axis where that lies."""
+    lies = table["rotor"]["axis"] == "horizontal"
+    if table["rotor"]["kind"] == "tub":
+        return (2, 1) if lies else (1, 0)
+    return (0, 2) if lies else (2, 0)
 
 
 def _jeffcott(rng: np.random.Generator) -> Table:
@@ -129,6 +162,12 @@ def mirrored(table: Table) -> Table:
     for chamber in found["chambers"]:
         if "plane" in chamber:
             chamber["plane"] *= -1.0
+    along = 1 if rotor["kind"] == "tub" else 2
+    if "cabinet" in found and rotor["axis"] == "horizontal":
+        for foot in found["cabinet"]["feet"]:
+            foot[along] *= -1.0
+    for point in found.get("points", ()):
+        point["position"][along] *= -1.0
     return found
 
 

@@ -6,7 +6,7 @@ import argparse
 
 import numpy as np
 
-from leblanc.results.explanation import ModelAnswer
+from leblanc.results.models.comparison import ModelAnswer
 from leblanc.results.response import RunResult
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene

@@ -13,17 +13,25 @@ from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
 from leblanc.results.choice import Choice
 from leblanc.scene.scene import Exciter, Runup, Scene, dry_rotor
-from leblanc.studies.models.choose import across_gravity, axial_gravity, choose, liquid_models, prepare
+from leblanc.studies.models.choose import (
+    across_gravity,
+    axial_gravity,
+    choose,
+    is_cut,
+    liquid_models,
+    prepare,
+)
 from leblanc.studies.runup import RunupChoice, chosen_run, drive_of, judged, planned
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
+from solvers.layer.places import fewest_cells
 from solvers.layer.state import Numerics
 from solvers.liquid_model import LiquidModel, Whirl
 from solvers.runup.runup import RunupNumerics
 
 RESPONSE, RUNUP = "response", "runup"
 WAVES, FAMILY = "long waves", "one family"
-DISPERSION, HELD = "dispersion", "held"
+DISPERSION, HELD, SMALL = "dispersion", "held", "small waves"
 
 
 @dataclass(frozen=True)
@@ -36,8 +44,8 @@ class Case:
     model : "auto" (the scene's default), "linear", "statics", "long_wave", "kdv", "fem"; of an exciter
         "formulas" or "integration"
     resolution : cells round a wall, edges along a wall, steps in a turn; None where there is none
-    variant : "dispersion", "held" (in time until the motion settles), "order 1" or "order 2", or empty; of a
-        layer alone its solver, as py-pde names it
+    variant : "dispersion", "held" (in time until the motion settles), "order 1" or "order 2", "small waves"
+        (of compartments), or empty; of a layer alone its solver, as py-pde names it
     """
 
     question: str
@@ -166,22 +174,29 @@ def answer(scene: Scene, case: Case) -> Answer:
 
 
 def _response(scene: Scene, case: Case) -> Answer:
-    from solvers.synchronous.models import CellsAtRest, ElementsAtRest
+    from solvers.synchronous.models import CellsAtRest
 
     size = case.resolution
     if case.variant == HELD:
         return _held(scene, size or scene.model.cells)
-    models, choice = chosen_models(scene, "statics" if size else case.model)
+    models, choice = chosen_models(scene, "auto" if is_cut(scene) else "statics" if size else case.model)
     if size is None:
         found = steady(scene, models)
         used, estimate = found.used, float(choice.error.max())
     else:
-        cells = case.model == "long_wave"
-        model = CellsAtRest(size) if cells else ElementsAtRest(size, int(case.variant[-1]))
+        model = CellsAtRest(size) if case.model == "long_wave" else _elements(size, case.variant)
         found, used, estimate = steady(scene, model), (case.model,), math.nan
     good = found.good & choice.in_range
     reason = "" if np.isfinite(found.amplitude).all() else "no bounded answer"
     return Answer(found.amplitude, bool(good.all()), reason, used, found.ripple, estimate)
+
+
+def _elements(size: int, variant: str) -> LiquidModel:
+    """Finite elements: of the paraboloid, or of small waves."""
+    from solvers.sloshing.model import SmallWaves
+    from solvers.synchronous.models import ElementsAtRest
+
+    return SmallWaves(size) if variant == SMALL else ElementsAtRest(size, int(variant[-1]))
 
 
 def _held(scene: Scene, cells: int) -> Answer:
@@ -192,9 +207,9 @@ def _held(scene: Scene, cells: int) -> Answer:
     from solvers.synchronous.models import STATICS
     from solvers.synchronous.response import response
 
-    machine = prepare(scene)
+    machine, rest = prepare(scene), _elements(96, SMALL) if is_cut(scene) else STATICS
     held, numerics = held_machine(machine), HoldNumerics(cells=cells)
-    begin = response(machine.rotor, scene.fills, machine.speed, machine.axial_gravity, STATICS).coordinates
+    begin = response(machine.rotor, scene.fills, machine.speed, machine.axial_gravity, rest).coordinates
     growth = whirl_growth(scene)
     states = [
         hold(held, start(held, spin, numerics, motion), numerics, rate)
@@ -321,5 +336,5 @@ def taste(scene: Scene, case: Case) -> None:
         answer(scene, replace(case, resolution=8))
     else:
         few = case.model == "fem" or case.variant == HELD
-        small = replace(case, resolution=8) if few else case
+        small = replace(case, resolution=fewest_cells(scene.fills)) if few and case.resolution else case
         answer(at_speeds(scene, scene.speed_array()[-1:]), small)

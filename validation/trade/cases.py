@@ -9,10 +9,11 @@ import numpy as np
 
 from fluid.fill import FULL
 from fluid.kdv import coefficients
-from leblanc.scene.scene import Exciter, Runup, Scene
-from leblanc.studies.models.choose import across_gravity
+from leblanc.scene.scene import Exciter, Runup, Scene, require_clear
+from leblanc.studies.models.choose import across_gravity, is_cut
 from leblanc.studies.runup import planned
 from meshes.arrays import Array, Flags
+from solvers.layer.places import fewest_cells
 from solvers.runup.state import layer_capture
 from validation.trade.answers import (
     DISPERSION,
@@ -20,6 +21,7 @@ from validation.trade.answers import (
     HELD,
     RESPONSE,
     RUNUP,
+    SMALL,
     WAVES,
     Case,
     at_speeds,
@@ -37,6 +39,7 @@ HELD_CELLS, QUICK_HELD = (32, 64, 128, 256), (16, 32, 64)  # of waves held in ti
 _MOST_CELLS = 4096
 MESHES: tuple[tuple[int, int], ...] = ((16, 1), (32, 1), (64, 1), (16, 2), (32, 2), (64, 2))
 QUICK_MESHES: tuple[tuple[int, int], ...] = ((16, 1), (16, 2))
+SMALL_CELLS, QUICK_SMALL = (24, 48, 96, 192), (12, 24, 48)  # of small waves in compartments
 STOCK, QUICK_STOCK = (16, 32), (16,)  # cells by py-pde's own solvers
 STEPS, QUICK_STEPS = (12, 16, 24, 32, 48, 96, 192), (12, 24, 48)
 _SCOUT = 16  # cells of the run that finds the largest vibration
@@ -87,19 +90,21 @@ def questions(scene: Scene, quick: bool = False, layer: bool | None = None) -> t
     if scene.runup is not None:
         found.append(runup_question(scene, quick))
     if names_waves(scene) if layer is None else layer:
+        require_clear(scene, "a layer alone, which is compared in a clear ring")
         found += layer_questions(scene, quick)
     return tuple(found)
 
 
 def names_waves(scene: Scene) -> bool:
-    """Whether a scene has a layer and asks for waves that py-pde solves.
+    """Whether a scene has a layer in a clear ring and asks for waves that py-pde solves.
 
     Parameters
     ----------
     scene : the machine
     """
     layers = any(0.0 < fill.volume < FULL * fill.chamber.capacity for fill in scene.fills)
-    return layers and scene.model.liquid in ("long_wave", "kdv")
+    clear = all(fill.chamber.baffles is None for fill in scene.fills)
+    return layers and clear and scene.model.liquid in ("long_wave", "kdv")
 
 
 def layer_questions(scene: Scene, quick: bool = False) -> list[Question]:
@@ -146,25 +151,32 @@ def layer_questions(scene: Scene, quick: bool = False) -> list[Question]:
 def response_question(scene: Scene, quick: bool = False) -> Question:
     """The synchronous response at the speeds that distinguish models most.
 
-    Best is the exact equilibrium of the liquid, which every other steady model approaches; where gravity lies
-    across the axis, rotor and long waves held in time, which alone have it.
+    Best is the exact equilibrium of the liquid, which every other steady model approaches; of compartments,
+    which have none, the finest elements of small waves; where gravity lies across the axis, rotor and long
+    waves held in time, which alone have it.
     """
     cells, meshes = (QUICK_CELLS, QUICK_MESHES) if quick else (CELLS, MESHES)
-    best = Case(RESPONSE, "statics")
-    cases = (
-        Case(RESPONSE, "auto"),
-        Case(RESPONSE, "linear"),
-        best,
-        *(Case(RESPONSE, "long_wave", n) for n in cells),
-        *(Case(RESPONSE, "fem", n, f"order {order}") for n, order in meshes),
-    )
+    if is_cut(scene):
+        ladder = tuple(Case(RESPONSE, "fem", n, SMALL) for n in (QUICK_SMALL if quick else SMALL_CELLS))
+        best, cases = ladder[-1], (Case(RESPONSE, "auto"), *ladder)
+    else:
+        best = Case(RESPONSE, "statics")
+        cases = (
+            Case(RESPONSE, "auto"),
+            Case(RESPONSE, "linear"),
+            best,
+            *(Case(RESPONSE, "long_wave", n) for n in cells),
+            *(Case(RESPONSE, "fem", n, f"order {order}") for n, order in meshes),
+        )
+        ladder = (best,)
     lying = stands_lying(scene)
     chosen = telling_speeds(scene, SPEEDS, lying)
     where = f"{chosen.size} speeds from {chosen[0]:.4g} to {chosen[-1]:.4g} rad/s"
     if not lying.any():
         about = f"synchronous response at {where}, the steady peak and the last speed among them; {_ERROR}"
-        return Question(RESPONSE, at_speeds(scene, chosen), about, cases, best, (best,))
-    held = tuple(Case(RESPONSE, "long_wave", n, HELD) for n in (QUICK_HELD if quick else HELD_CELLS))
+        return Question(RESPONSE, at_speeds(scene, chosen), about, cases, best, ladder[:-4:-1])
+    every = _enough(QUICK_HELD if quick else HELD_CELLS, scene)
+    held = tuple(Case(RESPONSE, "long_wave", n, HELD) for n in every)
     about = (
         f"response with gravity across the axis at {where}, from four times that of capture on and where no "
         f"whirl grows by itself; {_ERROR}, its mean over time"
@@ -207,7 +219,7 @@ def telling_speeds(scene: Scene, count: int = SPEEDS, among: Flags | None = None
     -------
     rad/s, rising, shape (k,)
     """
-    models, choice = chosen_models(scene, "statics")
+    models, choice = chosen_models(scene, "auto" if is_cut(scene) else "statics")
     found, speed = steady(scene, models), scene.speed_array()
     amplitude, dry, kept = found.amplitude, found.dry, choice.in_range
     if among is not None and (kept & among).any():
@@ -244,12 +256,21 @@ def runup_question(scene: Scene, quick: bool = False) -> Question:
     """
     plan, about = passage(scene)
     cut = scene.altered(runup=plan)
-    cells = _doubled(QUICK_CELLS if quick else CELLS, 2 * plan.cells)
+    cells = _enough(_doubled(QUICK_CELLS if quick else CELLS, 2 * plan.cells), scene)
     own = DISPERSION if plan.dispersion else ""
     ladder = tuple(Case(RUNUP, "long_wave", n, own) for n in reversed(cells))
     layers = [Case(RUNUP, "long_wave", n, variant) for variant in ("", DISPERSION) for n in cells]
-    cases = (Case(RUNUP, "auto"), Case(RUNUP, "linear"), *layers)
+    linear = () if is_cut(scene) else (Case(RUNUP, "linear"),)
+    cases = (Case(RUNUP, "auto"), *linear, *layers)
     return Question(RUNUP, cut, about, cases, ladder[0], ladder[:3])
+
+
+def _enough(cells: tuple[int, ...], scene: Scene) -> tuple[int, ...]:
+    """The rungs of a ladder with enough cells in every compartment; three of them, finer ones if need be."""
+    least = fewest_cells(scene.fills)
+    while sum(n >= least for n in cells) < 3:
+        cells = (*cells, 2 * cells[-1])
+    return tuple(n for n in cells if n >= least)
 
 
 def _doubled(cells: tuple[int, ...], wanted: int) -> tuple[int, ...]:
@@ -270,7 +291,8 @@ def passage(scene: Scene) -> tuple[Runup, str]:
     plan = planned(scene)
     assert isinstance(plan, Runup)
     whole = scene.altered(runup=plan.altered(back=False, samples=SAMPLES))
-    history = taken_run(whole, "long_wave", _SCOUT, plan.dispersion).history
+    scout = max(_SCOUT, fewest_cells(scene.fills))
+    history = taken_run(whole, "long_wave", scout, plan.dispersion).history
     top = int(np.argmax(history.amplitude))
     speed, time = float(history.speed[top]), float(history.time[top])
     if plan.rate is None:

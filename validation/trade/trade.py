@@ -67,7 +67,7 @@ def trade_scene(
     layer : as well one layer alone, by every solver that py-pde has for it; None where the scene asks for
         waves that py-pde solves
     """
-    require_clear(scene, "a comparison of models, most of which know circular walls alone")
+    require_clear(scene, "a comparison of models, most of which know circular walls alone", baffles=True)
     tell = progress or (lambda _, __: None)
     tolerance = scene.model.tolerance
     found = []

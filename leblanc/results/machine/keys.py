@@ -35,6 +35,8 @@ class Loaded:
     orbit = told("orbit")
     mount_force = told("mount_force")
     bearing_force = told("bearing_force")
+    bearing_impulse = told("bearing_impulse")
+    bearing_impulse_time = told("bearing_impulse_time")
     motor_torque = told("motor_torque")
     motor_power = told("motor_power")
     floor_force = told("floor_force")

@@ -54,6 +54,8 @@ class MachineLoads:
     torque, power : of the drive on the shaft, N m and W, shape (k,)
     orbit : semi-axes of each point's ellipse, m, shape (2, k, p); over time (2, 0, p)
     asked : which of the k are speeds of the scene, shape (n,)
+    impulse : of each hand-over of liquid on each bearing, N s, shape (j, b)
+    jumps : time of each, s, shape (j,)
     """
 
     speed: Array
@@ -70,6 +72,8 @@ class MachineLoads:
     power: Array
     orbit: Array
     asked: Index
+    impulse: Array
+    jumps: Array
 
     @property
     def stands(self) -> bool:
@@ -153,6 +157,10 @@ class MachineLoads:
         }
         if self.in_time:
             found["clearance"] = {name: worst.to_json()["value"] for name, worst in self.clearances.items()}
+            found["bearing_impulse"] = {
+                name: finite(self.impulse[:, k]) for k, name in enumerate(self.bearings)
+            }
+            found["bearing_impulse_time"] = finite(self.jumps)
             found["clearance_over_time"] = over
         else:
             found["clearance"] = over
@@ -220,6 +228,12 @@ class MachineLoads:
                 for name, values in zip(("major", "minor"), self.orbit, strict=True):
                     text = f"{name} semi-axis of the orbit"
                     found[f"point_{name}"] = var((over, "point"), values[rows], "m", text)
+        if self.in_time and self.bearings:
+            text = "of a hand-over of liquid"
+            found["handover_time"] = var(("handover",), self.jumps, "s", "time", text)
+            found["bearing_impulse"] = var(
+                ("handover", "bearing"), self.impulse, "N s", "impulse on the bearing", text
+            )
         if not self.stands:
             return found
         for name, long in (("floor_force", "largest"), ("floor_force_least", "least")):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -56,6 +57,8 @@ OF_MODELS = (RunCode.LIQUID_MODEL, RunCode.TOLERANCE_MISSED)
 def liquid_models(choice: Choice) -> Note | None:
     """How many speeds each model answers; None where the scene names the model."""
     if choice.cut:
+        if not np.any(choice.models == "fem"):
+            return None
         text = "Liquid model: finite elements for small disturbances; their error is not estimated."
         return Note(RunCode.LIQUID_MODEL, {"fem": choice.models.size}, text)
     if choice.prescribed:
@@ -73,10 +76,18 @@ def liquid_models(choice: Choice) -> Note | None:
     return Note(RunCode.LIQUID_MODEL, data, text)
 
 
-def unbalance_leaves() -> Note:
-    """A steady answer has all of the unbalance, though a part of it leaves with time."""
-    text = "A part of the unbalance leaves with time; the steady answer has all of it, as at the beginning."
-    return Note(RunCode.UNBALANCE_LEAVES, {}, text)
+def unbalance_leaves(left: float) -> Note:
+    """A steady answer has all of the unbalance, though a part of it leaves with time.
+
+    Parameters
+    ----------
+    left : share of the unbalances that is left in the end
+    """
+    text = (
+        "A part of the unbalance leaves with time; the steady answer has all of it, and the drum its whole "
+        f"mass, as at the start. In the end {percent(left)} of the unbalance is left."
+    )
+    return Note(RunCode.UNBALANCE_LEAVES, {"left": left}, text)
 
 
 def tolerance_missed(choice: Choice, speed: Array, cost: HeldCost | None = None) -> Note | None:
@@ -105,18 +116,42 @@ def tolerance_missed(choice: Choice, speed: Array, cost: HeldCost | None = None)
     return Note(RunCode.TOLERANCE_MISSED, data, text)
 
 
-def not_carried(below: float) -> Note:
+def not_carried(stands: float, carried: float | None = None) -> Note:
     """Gravity across the axis holds the liquid back.
 
     Parameters
     ----------
-    below : speed above which the liquid rides with the drum, rad/s
+    stands : speed above which a ring of liquid stands against gravity, rad/s
+    carried : speed from which the walls carry it round from rest, rad/s, inf where nothing drags on it; None
+        where that is not known
     """
+    data: dict[str, Any] = {"below": stands}
     text = (
-        f"Below {in_rpm(below)} gravity across the axis keeps the liquid from riding with the drum: "
-        "out of range."
+        f"A ring of liquid can stand from {in_rpm(stands)} on: below, gravity across the axis keeps the "
+        "liquid from riding with the drum, and the answer is out of range."
     )
-    return Note(RunCode.NOT_CARRIED, {"below": below}, text)
+    if carried is not None:
+        data["carried_from"] = carried if math.isfinite(carried) else None
+        text += f" {carried_words(stands, carried)}"
+    return Note(RunCode.NOT_CARRIED, data, text)
+
+
+def carried_words(stands: float, carried: float) -> str:
+    """From where on the walls carry the liquid round from rest, in a sentence.
+
+    Parameters
+    ----------
+    stands : speed above which a ring of liquid stands against gravity, rad/s
+    carried : speed from which the walls carry it round from rest, rad/s; inf where nothing drags on it
+    """
+    if math.isinf(carried):
+        return "From rest nothing carries it round: no friction acts on it."
+    if carried <= stands:
+        return "From rest the walls carry it from there on too."
+    return (
+        f"From rest the walls carry it from {in_rpm(carried)} on: between the two an answer holds for a "
+        "ring that stands already, as on the way down."
+    )
 
 
 def slow_disturbances(held: Held | None = None) -> Note | None:
@@ -136,18 +171,15 @@ def slow_disturbances(held: Held | None = None) -> Note | None:
 STANDS = "Forces on the floor take the cabinet as rigid and standing still on feet that do not pull"
 
 
-def loads(held: Held | None = None) -> Note:
+def loads(obstructed: bool = False) -> Note:
     """What forces and clearances leave out.
 
     Parameters
     ----------
-    held : motions held in time
+    obstructed : liquid moves past baffles, or in a section that is no circle
     """
-    count = 0 if held is None else int(np.count_nonzero(held.at))
-    told = (
-        f"; at {count} speeds held in time they are those of the mean motion with the spin" if count else ""
-    )
-    return Note(RunCode.LOADS, {"held": count}, f"{STANDS}{told}.")
+    without = "; what liquid loses past baffles or in sections of their own is not in the motor's torque"
+    return Note(RunCode.LOADS, {"obstructed": obstructed}, f"{STANDS}{without if obstructed else ''}.")
 
 
 def held_motions(held: Held, speed: Array) -> list[Note]:

@@ -61,6 +61,7 @@ class RunupCode(NoteCode):
     STANDING = "standing"
     NO_DRAG = "no_drag"
     COAST_NOT_ENDED = "coast_not_ended"
+    MOTOR_LIMITED = "motor_limited"
     UNBALANCE_LEFT = "unbalance_left"
     LOADS = "loads"
 
@@ -79,7 +80,7 @@ IN_TABLES = (
 
 def loads() -> Note:
     """What forces and clearances of a run-up leave out."""
-    text = f"{STANDS}; bearing forces are left out around moments at which liquid is caught or let go."
+    text = f"{STANDS}; the blow of liquid that is caught or falls is told as an impulse on the bearings."
     return Note(RunupCode.LOADS, {}, text)
 
 
@@ -117,6 +118,26 @@ def coast_not_ended(step: int, wanted: float, reached: float, limit: float) -> N
         f"{in_rpm(reached)} instead of {in_rpm(wanted)}."
     )
     return Note(RunupCode.COAST_NOT_ENDED, {"step": step, "wanted": wanted, "reached": reached}, text)
+
+
+def motor_limited(step: int, time: float, low: float, high: float, wanted: float | None) -> Note:
+    """A step of a programme that asked for more than the motor gives.
+
+    Parameters
+    ----------
+    step : its number, from 1
+    time : for which the motor alone set the speed, s
+    low, high : speeds between which that was, rad/s
+    wanted : speed that was not reached, rad/s; None where it was
+    """
+    text = (
+        f"Step {step} asks for more than the motor gives for {with_unit(time, TIME)}, "
+        f"{rpm_range(low, high)}: there the speed follows the motor."
+    )
+    if wanted is not None:
+        text += f" It does not come to {in_rpm(wanted)}."
+    data = {"step": step, "time": time, "low": low, "high": high, "reached": wanted is None}
+    return Note(RunupCode.MOTOR_LIMITED, data, text)
 
 
 def unbalance_left(share: float) -> Note:
@@ -342,8 +363,13 @@ def out_of_range(code: RunupCode, chamber: int, holds: Flags, limit: float = mat
         RunupCode.TOO_HIGH: f"the wave in {label} is {high}, beyond linear theory",
     }[code]
     share = float(1.0 - np.mean(holds))
-    text = f"Out of range for {1.0 - np.mean(holds):.0%} of the samples: {why}."
+    text = f"Out of range for {_part(share)} of the samples: {why}."
     return Note(code, {"chamber": chamber + 1, "share": share}, text)
+
+
+def _part(share: float) -> str:
+    """A share above nothing in whole per cent."""
+    return f"{share:.0%}" if share >= 0.005 else "less than 1%"
 
 
 def full_gap(chamber: int, full: Flags) -> Note | None:
@@ -358,7 +384,7 @@ def full_gap(chamber: int, full: Flags) -> Note | None:
         return None
     share = float(np.mean(full))
     text = (
-        f"The liquid in chamber {chamber + 1} fills the gap to its inner wall somewhere in {share:.0%} of "
+        f"The liquid in chamber {chamber + 1} fills the gap to its inner wall somewhere in {_part(share)} of "
         "the samples: there it is a full pipe under pressure, and air that it shuts in is let out."
     )
     return Note(RunupCode.FULL_GAP, {"chamber": chamber + 1, "share": share}, text)

@@ -10,10 +10,10 @@ from pydantic import BeforeValidator, Field, PlainValidator
 
 from leblanc import units
 from leblanc.scene.programme.steps import MAX_STEPS, SPEED, Step, StepList, StepRule
-from leblanc.scene.rows import Row, row, rpm
+from leblanc.scene.rows import Row, curve_words, row, rpm
 from leblanc.scene.schema.part import Conflict, Part
 from leblanc.scene.schema.rules import Inertia, Truth, one_of, quantity, whole
-from leblanc.scene.tasks import BORES, CAPTURES
+from leblanc.scene.tasks import BORES, CAPTURES, TorqueCurve
 from leblanc.units import in_rpm, number
 
 _STEPS = StepList(1, MAX_STEPS, 'steps such as "to 90 rpm in 4 s"')
@@ -31,17 +31,20 @@ class Programme(Part):
     ] = Field(description="one after the other, each from the speed that the one before has reached")
     inertia: Inertia | None = Field(
         None,
-        description="of drum and motor about the axis without the liquid, for a coast; that of the rotor "
-        "about its axis if left out",
+        description="of drum and motor about the axis without the liquid, for a coast or a motor; that of "
+        "the rotor about its axis if left out",
+    )
+    motor: TorqueCurve | None = Field(
+        None, description="that drives the drum; without one it gives what the steps ask"
     )
     drag_torque: Annotated[float, quantity(units.TORQUE, 0.0, 1e9)] = Field(
-        0.0, description="of bearings and belt on a coasting drum, the same at every speed"
+        0.0, description="of bearings and belt, the same at every speed"
     )
     drag_rate: Annotated[float, quantity(units.RATE, 0.0, 1e6)] = Field(
         0.0, description="at which drag that grows with the speed alone would slow the drum"
     )
     coast_limit: Annotated[float, quantity(units.TIME, 1e-9, 1e9)] = Field(
-        600.0, description="longest time of a coast to a speed"
+        600.0, description="longest time of a coast to a speed, or of a rise that the motor limits"
     )
     cells: Annotated[int, whole(8, 65536)] = Field(128, description="of each liquid layer round its wall")
     dispersion: Truth = Field(False, description="whether the waves of the layers disperse")
@@ -90,7 +93,10 @@ class Programme(Part):
             row(f"Programme step {k + 1}", step.words(), f"programme.steps.{k}")
             for k, step in enumerate(self.steps)
         ]
-        if self.coasts:
+        if self.motor is not None:
+            text = curve_words(self.motor.speeds, self.motor.torques)
+            found.append(row("Motor's torque", text, "programme.motor.torques", "programme.motor.speeds"))
+        if self.coasts or self.motor is not None:
             if self.inertia is not None:
                 found.append(row("Inertia of the drum", f"{number(self.inertia)} kg m²", "programme.inertia"))
             found += [

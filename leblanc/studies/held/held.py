@@ -15,7 +15,7 @@ from leblanc.results.motion.held import Held
 from leblanc.studies.held.holding import Began, Holding
 from leblanc.studies.held.store import FOLDER, kept
 from leblanc.studies.held.workers import runner
-from leblanc.studies.models.choose import Prepared
+from leblanc.studies.models.choose import Prepared, is_cut
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.held.branch import HeldBranches, HeldTask, held_branches
 from solvers.held.hold import require_known_solver, start
@@ -33,7 +33,7 @@ def hold_answer(
     began: Began,
     holding: Holding,
     progress: Callable[[str], object] = lambda _: None,
-) -> tuple[Choice, Response, Response, Held]:
+) -> tuple[Choice, Response, Response, Held, dict[float, HeldState]]:
     """The answer of a machine with the wave held in time where that is wanted.
 
     Parameters
@@ -47,7 +47,7 @@ def hold_answer(
     Returns
     -------
     The choice with the wave as model where it was held; the answers at the speeds asked for and between them;
-    the held states
+    the held states; and the motions themselves by their speeds, rad/s
     """
     rows = np.flatnonzero(began.at)
     between = _between(began)
@@ -70,20 +70,24 @@ def hold_answer(
     states = HeldBranches(*(tuple(way[k] for k in back.tolist()) for way in (found.up, found.down)))
     own = HeldBranches(states.up[: rows.size], states.down[: rows.size])
     held = held_result(own, machine, rows, holding.solver)
+    motions = dict(zip(steady.speed.tolist(), states.up, strict=True))
     answer = _placed(began.answer, every.at(np.arange(rows.size)), rows)
     models, error = choice.models.astype("U9"), choice.error.copy()
     models[rows], error[rows] = "long_wave", held.error[rows] + _left_out(machine, began.answer.at(rows))
     kept = every.at(np.arange(rows.size, total)) if began.at.all() else began.refined.at(_far(began))
-    return replace(choice, models=models, error=error), answer, kept, held
+    return replace(choice, models=models, error=error), answer, kept, held, motions
 
 
 def _left_out(machine: Prepared, steady: Response) -> Array:
     """Relative change of amplitude or liquid, the larger, by gravity along the axis, shape (n,).
 
-    No held wave has it. Nothing where the answer with it or without is not known.
+    No held wave has it. Nothing where the answer with it or without is not known; nan for compartments, whose
+    elements do not have it either.
     """
     if machine.axial_gravity == 0.0:
         return np.zeros(steady.speed.size)
+    if is_cut(machine.scene):
+        return np.full(steady.speed.size, np.nan)
     flat = response(machine.rotor, machine.scene.fills, steady.speed, 0.0, position=steady.position)
     with np.errstate(invalid="ignore", divide="ignore"):
         change = np.maximum(

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.friction.laws import Friction
+from fluid.pool import balance_speed, pool_of
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed
 from leblanc.results.choice import Choice, HeldCost
@@ -137,7 +138,9 @@ def models_of(scene: Scene) -> tuple[str, ...]:
 
 
 def _beginning(scene: Scene) -> str:
-    """The model that answers first: dearer ones begin with the exact equilibrium."""
+    """The model that answers first: dearer ones begin with the exact equilibrium, or with compartments."""
+    if is_cut(scene):
+        return "fem"
     dear = scene.model.liquid == "long_wave" or by_elements(scene)
     return "statics" if dear else scene.model.liquid
 
@@ -198,8 +201,13 @@ differently in two directions"
             allowed = f"balanced about the axis: the liquid at rest would lie {away:.3g} m off it"
             raise InputError(f"chambers.{k}.section", section.name, allowed)
     if is_cut(scene) and scene.model.liquid not in ("auto", "fem"):
-        allowed = "auto or fem where baffles cut the liquid into compartments or the section is no circle"
-        raise InputError("model.liquid", scene.model.liquid, allowed)
+        drawn = any(fill.chamber.section is not None for fill in scene.fills)
+        if drawn or scene.model.liquid != "long_wave":
+            allowed = (
+                "auto or fem where baffles cut the liquid into compartments (or long_wave), or the section "
+                "is no circle"
+            )
+            raise InputError("model.liquid", scene.model.liquid, allowed)
 
 
 def may_hold(scene: Scene) -> bool:
@@ -239,7 +247,8 @@ def costed(machine: Prepared, choice: Choice, growth: Array) -> Choice:
     growth : of the whirl that grows most, 1/s, shape (n,)
     """
     scene = machine.scene
-    if is_cut(scene) or not any(map(_has_surface, scene.fills)):
+    drawn = any(fill.chamber.section is not None for fill in scene.fills)
+    if drawn or not any(map(_has_surface, scene.fills)):
         return choice
     numerics = HoldNumerics(cells=scene.model.cells)
     return replace(
@@ -365,6 +374,45 @@ def _captured_from(scene: Scene) -> float | None:
     if scene.rotor.axis == "vertical" or scene.gravity == 0.0 or not layers:
         return None
     return max(float(capture_speed(fill.surface_radius, scene.gravity)) for fill in layers)
+
+
+def balance_from(scene: Scene, fill: Fill) -> float | None:
+    """Speed above which gravity cannot hold liquid at the bottom against the walls [theory: pool, eq. 8].
+
+    Parameters
+    ----------
+    scene : the machine
+    fill : one of its chambers
+
+    Returns
+    -------
+    rad/s, inf where nothing drags on the liquid; None where gravity does not act across the axis, no pool
+    lies on a circular wall, or closed compartments take it along
+    """
+    gravity = across_gravity(scene)
+    if gravity == 0.0 or fill.chamber.section is not None or fill.compartments > 1:
+        return None
+    pool = pool_of(fill)
+    return None if pool is None else balance_speed(fill, pool, scene.model.friction, gravity)
+
+
+def carried_from(scene: Scene) -> float | None:
+    """Speed above which the walls carry every layer round from rest [theory: pool, eq. 10].
+
+    Parameters
+    ----------
+    scene : the machine
+
+    Returns
+    -------
+    rad/s, inf where nothing drags on one of them; None where no layer lies at the bottom first, or that of a
+    chamber whose section is no circle
+    """
+    stands = _captured_from(scene)
+    if stands is None or any(fill.chamber.section is not None for fill in scene.fills):
+        return None
+    balances = [balance_from(scene, fill) for fill in scene.fills]
+    return max([stands, *(speed for speed in balances if speed is not None)])
 
 
 def _has_surface(fill: Fill) -> bool:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, dry_rotor, jeffcott
-from leblanc.studies.models.choose import axial_gravity, models_at, prepare
+from leblanc.studies.models.choose import axial_gravity, is_cut, models_at, prepare
 from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.peaks import responses_between, wet_resonances
 from meshes.arrays import Array, Flags
@@ -16,7 +16,14 @@ from solvers.rotor.vibration import orbit
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.peaks import highest, seeds
 from solvers.synchronous.resonances import planar_tops
-from solvers.synchronous.response import Response, by_speed, fill_responses, machine_responses, response
+from solvers.synchronous.response import (
+    Response,
+    by_speed,
+    fill_responses,
+    joined,
+    machine_responses,
+    response,
+)
 
 AT_ONCE = 4000  # pairs; more at once would only take memory
 FEW = 24  # speeds from which the peak of a rotor that tilts is refined
@@ -31,7 +38,8 @@ class FillAnswers:
     amplitude : m; infinite where it has no bound or was not found
     dry_patch : 1 where the wall is dry somewhere, else 0
     reach : largest share of the way from a wall to its chamber's inner edge that the liquid reaches; 0
-        without such edges [theory: optimum, eq. 12]
+        without such edges, and of a clear ring, whose liquid comes farther than that of compartments
+        [theory: optimum, eq. 12]
     """
 
     amplitude: Array
@@ -112,10 +120,15 @@ class FilledMachine:
     def _planar_peaks(self, volumes: Array, start: float, stop: float) -> Array:
         """The top of each resonance curve; where it lies outside the range, an end of the range."""
         rotor, gravity = jeffcott(self.scene), np.full(volumes.shape[0], axial_gravity(self.scene))
-        machines = [(rotor, with_volumes(self.scene, row).fills) for row in volumes]
-        tops = planar_tops(machines, gravity, synchronous_model(self.scene.model.liquid))
-        outside = np.flatnonzero(~((tops.speed >= start) & (tops.speed <= stop)))
-        found = tops.amplitude.copy()
+        scenes = [with_volumes(self.scene, row) for row in volumes]
+        names = np.array([model_name(filled) for filled in scenes])
+        speed, found = np.full((2, names.size), np.nan)
+        for name in np.unique(names).tolist():
+            own = np.flatnonzero(names == name)
+            machines = [(rotor, scenes[k].fills) for k in own.tolist()]
+            tops = planar_tops(machines, gravity[own], synchronous_model(name))
+            speed[own], found[own] = tops.speed, tops.amplitude
+        outside = np.flatnonzero(~((speed >= start) & (speed <= stop)))
         if outside.size:
             ends = np.tile([start, stop], outside.size)
             found[outside] = (
@@ -181,20 +194,32 @@ class FilledMachine:
     def _planar(self, volumes: Array, speed: Array) -> tuple[Array, Flags, Array]:
         """Amplitude, dry wall and deflections at m pairs; whirls that grow by themselves are judged apart."""
         different, owner = np.unique(volumes, axis=0, return_inverse=True)
-        rotor = jeffcott(self.scene)
-        machines = [(rotor, with_volumes(self.scene, row).fills) for row in different]
+        rotor, owner = jeffcott(self.scene), owner.reshape(-1)
+        scenes = [with_volumes(self.scene, row) for row in different]
+        machines = [(rotor, filled.fills) for filled in scenes]
         gravity = np.full(len(machines), axial_gravity(self.scene))
-        model = synchronous_model(self.scene.model.liquid)
-        found = machine_responses(machines, owner.reshape(-1), speed, gravity, model)
+        names = np.array([model_name(filled) for filled in scenes])[owner]
+        parts, places = [], []
+        for name in np.unique(names).tolist():
+            own = np.flatnonzero(names == name)
+            parts.append(
+                machine_responses(machines, owner[own], speed[own], gravity, synchronous_model(name))
+            )
+            places.append(own)
+        found = joined(parts).at(np.argsort(np.concatenate(places), kind="stable"))
         amplitude = np.abs(found.deflection)
         return amplitude, found.dry_patch, np.repeat(amplitude[:, None], volumes.shape[1], axis=1)
 
     def _others(self, volumes: Array, speed: Array) -> tuple[Array, Flags, Array]:
         """The same of rotors that tilt, as `run` reports them."""
-        sets = [with_volumes(self.scene, row).fills for row in volumes]
-        model, gravity = synchronous_model(self.scene.model.liquid), axial_gravity(self.scene)
+        scenes = [with_volumes(self.scene, row) for row in volumes]
+        sets = [filled.fills for filled in scenes]
+        models, gravity = (
+            [synchronous_model(model_name(filled)) for filled in scenes],
+            axial_gravity(self.scene),
+        )
         # A pair's answer must not depend on which others are asked for: each is a set of its own.
-        found = fill_responses(self._rotor, sets, np.arange(speed.size), speed, gravity, model)
+        found = fill_responses(self._rotor, sets, np.arange(speed.size), speed, gravity, models)
         system = self._rotor.system()
         moved = [np.abs(orbit(system, found.coordinates, fill.chamber.plane).forward) for fill in sets[0]]
         return found.amplitude, found.dry_patch, np.stack(moved, axis=1)
@@ -214,3 +239,13 @@ def with_volumes(scene: Scene, volumes: Array) -> Scene:
     """
     pairs = zip(scene.chambers, volumes.tolist(), strict=True)
     return scene.altered(chambers=tuple(chamber.holding(volume) for chamber, volume in pairs))
+
+
+def model_name(scene: Scene) -> str:
+    """Liquid model that answers for a scene's volumes: finite elements where baffles cut the liquid.
+
+    Parameters
+    ----------
+    scene : whose model is not "auto"
+    """
+    return "fem" if is_cut(scene) else scene.model.liquid

@@ -7,7 +7,7 @@ import numpy as np
 from leblanc.scene.scene import dry_rotor, jeffcott
 from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.models.liquid import synchronous_model
-from leblanc.studies.optimise.answers import FilledMachine, with_volumes
+from leblanc.studies.optimise.answers import FilledMachine, model_name, with_volumes
 from meshes.arrays import Array
 from solvers.rotor.balance_quality import balance_quality
 from solvers.synchronous.response import response
@@ -48,8 +48,8 @@ class QualityAtSpeed:
         """Of a rotor that tilts."""
         key, scene = volumes.tobytes(), self.machine.scene
         if key not in self._known:
-            rotor, fills = dry_rotor(scene), with_volumes(scene, volumes).fills
-            model = synchronous_model(scene.model.liquid)
-            found = response(rotor, fills, [self.speed], axial_gravity(scene), model)
+            rotor, filled = dry_rotor(scene), with_volumes(scene, volumes)
+            model = synchronous_model(model_name(filled))
+            found = response(rotor, filled.fills, [self.speed], axial_gravity(scene), model)
             self._known[key] = float(balance_quality(rotor, [self.speed], found.coordinates)[0])
         return self._known[key]

@@ -6,14 +6,13 @@ a run-up in time; `robust` has the quantile over operating conditions.
 
 from __future__ import annotations
 
-import math
 from typing import Protocol
 
 import numpy as np
 
 from leblanc.scene.scene import Scene, Speeds
-from leblanc.studies.models.liquid import runup_model
-from leblanc.studies.optimise.answers import FilledMachine, with_volumes
+from leblanc.studies.optimise.answers import FilledMachine
+from leblanc.studies.optimise.passages import Passages
 from meshes.arrays import Array
 
 
@@ -50,34 +49,15 @@ class RunupPeak:
     Parameters
     ----------
     scene : with a table `runup`
-    cells : round each wall; the scene's if None
+    runs : its run-ups with any volumes; on the scene's cells if None
     """
 
-    def __init__(self, scene: Scene, cells: int | None = None) -> None:
-        from leblanc.studies.runup import across_gravity, drive_of, liquid_model, numerics_of, planned
-
-        plan = planned(scene)
-        self.scene, self.drive, self.gravity = scene, drive_of(plan, scene.rotor), across_gravity(scene)
-        self.numerics = numerics_of(plan, cells, check=False)
-        self.model = runup_model(liquid_model(scene))
-        self._known: dict[bytes, float] = {}
+    def __init__(self, scene: Scene, runs: Passages | None = None) -> None:
+        self.runs = Passages(scene) if runs is None else runs
 
     def exact(self, volumes: Array) -> Array:
         """See `Vibration`; infinite for a run that did not come to its end."""
-        return np.array([self._one(np.ascontiguousarray(row)) for row in volumes])
-
-    def _one(self, volumes: Array) -> float:
-        from leblanc.studies.drives import rotor_in_time
-        from solvers.runup.runup import run_up
-
-        key = volumes.tobytes()
-        if key not in self._known:
-            friction, fills = self.scene.model.friction, with_volumes(self.scene, volumes).fills
-            system = rotor_in_time(self.scene)
-            numerics, drive = self.numerics, self.drive
-            run = run_up(system, fills, drive, friction, self.gravity, numerics, None, self.model)
-            self._known[key] = float(run.largest.max()) if run.converged else math.inf
-        return self._known[key]
+        return np.array([passage.amplitude for passage in self.runs.of(volumes)])
 
 
 class PeakOver:

@@ -31,12 +31,11 @@ from leblanc.scene.tasks import Optimisation
 from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.models.liquid import SYNCHRONOUS_MODELS
 from leblanc.studies.models.validity import doubts
-from leblanc.studies.optimise.answers import FilledMachine, with_volumes
+from leblanc.studies.optimise.answers import FilledMachine, model_name, with_volumes
 from leblanc.studies.optimise.balance import QualityAtSpeed
 from leblanc.studies.optimise.constraints import growth
 from leblanc.studies.optimise.emulated import EmulatedVibration
 from leblanc.studies.optimise.loads import require_loads
-from leblanc.studies.optimise.objectives import RunupPeak
 from leblanc.studies.optimise.problem import (
     Evaluator,
     Problem,
@@ -54,6 +53,7 @@ from leblanc.studies.optimise.search import (
     on_all_cells,
     plan_of,
 )
+from leblanc.studies.optimise.walls import freeing_volumes, require_known_walls
 from leblanc.studies.optimise.wetting import WettedWalls, wet_walls, wetting_volumes
 from leblanc.studies.run import run_scene
 from leblanc.units import in_rpm
@@ -106,8 +106,9 @@ def optimise_scene(
     task = task if objective is None else task.altered(objective=objective)
     if not scene.fills:
         raise InputError("chambers", "none", "at least one to choose the volume of")
-    require_clear(scene, "a search over volumes, which rests on the exact equilibrium in a clear ring")
+    require_clear(scene, "a search over volumes, which rests on the equilibrium in a ring", baffles=True)
     low, high = bounds_of(scene, task)
+    require_known_walls(scene, task, low, high)
     machine = FilledMachine(scene)
     require_loads(scene, task)
     if task.deflection is not None:
@@ -190,10 +191,10 @@ def _result(
     said = found.judged
     return _of_scene(
         scene,
-        in_time=isinstance(evaluate.vibration, RunupPeak),
+        in_time=evaluate.runs is not None,
         objective=task.objective,
         meaning=problem.meaning,
-        unit=_unit(evaluate),
+        unit=evaluate.unit,
         working_speed=problem.working_speed,
         volume=volume,
         value=mass if evaluate.by_mass else value,
@@ -244,13 +245,6 @@ def _findings(problem: Problem, found: Found) -> tuple[Note, ...]:
     ]
     notes.append(optimum.no_liquid(evaluate.by_mass, tuple(forbidden)))
     return tuple(notes)
-
-
-def _unit(evaluate: Evaluator) -> str:
-    """Unit of what is made small."""
-    if evaluate.by_mass:
-        return "kg"
-    return "m" if evaluate.sized is None else "N"
 
 
 def _at_deflection(scene: Scene, task: Optimisation, found: WettedWalls) -> OptimumResult:
@@ -311,6 +305,7 @@ def _with_response(result: OptimumResult, scene: Scene, machine: FilledMachine) 
     if machine.scene.model.liquid not in SYNCHRONOUS_MODELS:
         return result
     filled = with_volumes(machine.scene, result.volume)
+    filled = filled.altered(model=filled.model.altered(liquid=model_name(filled)))
     response = run_scene(filled)
     if scene.model.liquid == "auto":
         response = replace(response, models=tuple(_of_search(span) for span in response.models))
@@ -332,9 +327,14 @@ def _capacity(scene: Scene, volume: Array) -> ConstraintValue:
 def _limits(scene: Scene, problem: Problem, volume: Array) -> tuple[Note, ...]:
     """What the models do not hold for."""
     deepest = LONG[1]
-    if not isinstance(problem.evaluate.vibration, RunupPeak):
-        return ()
-    return tuple(
+    parted = tuple(
+        optimum.parted(k, fill.chamber.baffles.count, freed)
+        for k, (fill, freed) in enumerate(zip(scene.fills, freeing_volumes(scene), strict=True))
+        if fill.chamber.baffles is not None and freed > 0.0
+    )
+    if problem.evaluate.runs is None:
+        return parted
+    return parted + tuple(
         optimum.too_deep(k, deepest)
         for k, fill in enumerate(with_volumes(scene, volume).fills)
         if fill.depth > deepest * fill.chamber.radius and not is_full(fill)
@@ -342,8 +342,13 @@ def _limits(scene: Scene, problem: Problem, volume: Array) -> tuple[Note, ...]:
 
 
 def _closed_forms(machine: FilledMachine, volume: Array, speed: float) -> tuple[WettingVolumes, ...]:
-    """The volumes that wet the walls at the deflection that the answer has at the working speed."""
+    """The volumes that wet the walls at the deflection that the answer has at the working speed.
+
+    None where baffles would cut so little liquid into compartments, in which it does not gather on one side.
+    """
     scene = machine.scene
+    if freeing_volumes(scene).any():
+        return ()
     if machine.planar and scene.model.liquid in SYNCHRONOUS_MODELS:
         moved = np.repeat(machine.at(volume[None], np.array([speed])).amplitude, volume.size)
     else:

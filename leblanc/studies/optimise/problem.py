@@ -10,9 +10,9 @@ import numpy as np
 
 from leblanc.results import optimum
 from leblanc.results.base import Note
-from leblanc.scene.rotors import unbalances_of
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds
-from leblanc.scene.tasks import OBJECTIVES, Optimisation
+from leblanc.scene.tasks import LOADS, OBJECTIVES, Optimisation
+from leblanc.scene.unbalances import unbalances_of
 from leblanc.studies.optimise.answers import FilledMachine
 from leblanc.studies.optimise.balance import QualityAtSpeed
 from leblanc.studies.optimise.constraints import (
@@ -29,13 +29,23 @@ from leblanc.studies.optimise.constraints import (
     whirl_friction,
     whirl_size,
 )
-from leblanc.studies.optimise.loads import LoadsOver, limits_loads, load_constraints
+from leblanc.studies.optimise.loads import (
+    UNITS,
+    Load,
+    LoadLimit,
+    limits_loads,
+    load_constraints,
+    load_meaning,
+    loads_in_time,
+    loads_of,
+)
 from leblanc.studies.optimise.objectives import (
     AtSpeed,
     PeakOver,
     RunupPeak,
     Vibration,
 )
+from leblanc.studies.optimise.passages import Passages
 from leblanc.studies.optimise.robust import (
     DOUBLE,
     Robust,
@@ -44,6 +54,7 @@ from leblanc.studies.optimise.robust import (
     operating_conditions,
     unbalance_range,
 )
+from leblanc.studies.optimise.walls import most_cells
 from leblanc.units import LENGTH, in_rpm, rpm_range, with_unit
 from meshes.arrays import Array
 from meshes.errors import InputError
@@ -65,7 +76,8 @@ class Evaluator:
     constraints : to keep to
     by_mass : the liquid's mass is to be small; the vibration is then one of the constraints
     estimated : the vibration is an estimate, by an emulator
-    sized : what is to be small in place of the vibration, N
+    sized : load that is to be small in place of the vibration
+    runs : run-ups in time by which vibration, loads or both are judged; None where none are
     """
 
     vibration: Vibration
@@ -73,7 +85,34 @@ class Evaluator:
     constraints: tuple[Constraint, ...]
     by_mass: bool = False
     estimated: bool = False
-    sized: Vibration | None = None
+    sized: Load | None = None
+    runs: Passages | None = None
+
+    @property
+    def unit(self) -> str:
+        """Unit of what is made small."""
+        if self.by_mass:
+            return "kg"
+        return "m" if self.sized is None else UNITS.get(self.sized.name, "1")
+
+    def on(self, scene: Scene, runs: Passages) -> Evaluator:
+        """The same with other run-ups.
+
+        Parameters
+        ----------
+        scene : the machine
+        runs : of it
+        """
+        in_time = isinstance(self.vibration, RunupPeak)
+        return replace(
+            self,
+            runs=runs,
+            vibration=RunupPeak(scene, runs) if in_time else self.vibration,
+            constraints=tuple(
+                own.on(runs) if isinstance(own, LoadLimit) else own for own in self.constraints
+            ),
+            sized=None if self.sized is None else self.sized.on(runs),
+        )
 
     def __call__(self, volumes: Array) -> Judgement:
         """Evaluate m sets of volumes, m^3, shape (m, c).
@@ -154,17 +193,32 @@ def problem_of(
     planar = isinstance(scene.rotor, JeffcottRotor)
     density = np.array([fill.liquid.density for fill in scene.fills])
     at_work = AtSpeed(machine, np.array([speed]), np.ones(1))
-    constraints = _constraints(scene, task, machine, speed)
+    runs, few = _run_ups(scene, task)
+    constraints = _constraints(scene, task, machine, speed, runs)
     rpm = in_rpm(speed)
-    costly = not planar or task.whirl_limit is not None or limits_loads(task)
-    evaluate = Evaluator(at_work, density, constraints)
-    notes = (optimum.laminar(),) if whirl_friction(scene) != scene.model.friction else ()
+    # Whirls of a ring with baffles take a second each.
+    plates = any(fill.chamber.baffles is not None for fill in scene.fills)
+    slow = plates or task.whirl_limit is not None or limits_loads(task) or runs is not None
+    costly = not planar or slow
+    evaluate = Evaluator(at_work, density, constraints, runs=runs)
+    laminar = (optimum.laminar(),) if whirl_friction(scene) != scene.model.friction else ()
+    notes: tuple[Note, ...] = (*laminar, *few)
     problem = Problem(evaluate, f"amplitude at {rpm}", speed, (speed,), costly, notes)
     return _MAKERS[task.objective](scene, task, machine, problem, solve)
 
 
+def _run_ups(scene: Scene, task: Optimisation) -> tuple[Passages | None, tuple[Note, ...]]:
+    """Run-ups in time that the task needs, on a few cells, and a note where the scene has more."""
+    plan, loaded = scene.speed_plan, loads_in_time(task)
+    if plan is None or not (loaded or (task.objective == "peak" and not task.steady)):
+        return None, ()
+    few = min(max(_COARSE_CELLS, most_cells(scene)), plan.cells)
+    notes = (optimum.few_cells(few, plan.cells),) if few < plan.cells else ()
+    return Passages(scene, few, loaded), notes
+
+
 def _constraints(
-    scene: Scene, task: Optimisation, machine: FilledMachine, speed: float
+    scene: Scene, task: Optimisation, machine: FilledMachine, speed: float, runs: Passages | None
 ) -> tuple[Constraint, ...]:
     """The constraints of the task."""
     found = [] if task.dry_patch else [dry_wall(machine, speed)]
@@ -178,7 +232,7 @@ def _constraints(
         found.append(whirl_size(scene, growth_speeds(scene, task), task.whirl_limit))
     if task.clearance is not None:
         found.append(clearance(PeakOver(machine, operating_speeds(scene, task)), task.clearance))
-    found += load_constraints(scene, task, machine, operating_speeds(scene, task))
+    found += load_constraints(scene, task, machine, operating_speeds(scene, task), runs)
     if task.balance_quality is not None:
         found.append(balanced(QualityAtSpeed(machine, speed), task.balance_quality))
     return tuple(found)
@@ -213,14 +267,9 @@ def _working_speed(
 
 
 def _peak(scene: Scene, task: Optimisation, machine: FilledMachine, problem: Problem, _: object) -> Problem:
-    plan = scene.speed_plan
-    if plan is not None and not task.steady:
-        few = min(_COARSE_CELLS, plan.cells)
-        text = "largest amplitude of the run-up in time"
-        evaluate = replace(problem.evaluate, vibration=RunupPeak(scene, few))
-        fewer = optimum.few_cells(few, plan.cells)
-        notes = (*problem.notes, *((fewer,) if few < plan.cells else ()))
-        return replace(problem, evaluate=evaluate, meaning=text, costly=True, notes=notes)
+    if problem.evaluate.runs is not None and not task.steady:
+        evaluate = replace(problem.evaluate, vibration=RunupPeak(scene, problem.evaluate.runs))
+        return replace(problem, evaluate=evaluate, meaning="largest amplitude of the run-up in time")
     speeds = scene.speeds
     text = f"largest steady amplitude from {rpm_range(speeds.start, speeds.stop)}"
     evaluate = replace(problem.evaluate, vibration=PeakOver(machine, speeds))
@@ -320,15 +369,12 @@ def _at_any_temperature(
     return Constraint(constraint.name, text, constraint.unit, constraint.limit, constraint.scale, value)
 
 
-def _floor_force(
-    scene: Scene, task: Optimisation, machine: FilledMachine, problem: Problem, _: object
-) -> Problem:
+def _load(scene: Scene, task: Optimisation, machine: FilledMachine, problem: Problem, _: object) -> Problem:
     speeds = operating_speeds(scene, task)
-    text = f"largest force under a foot from {rpm_range(speeds.start, speeds.stop)}"
-    evaluate = replace(problem.evaluate, sized=LoadsOver(machine, speeds))
-    return replace(
-        problem, evaluate=evaluate, meaning=text, speeds=(speeds.stop, *_resonances(scene)), costly=True
-    )
+    over = loads_of(task, machine, speeds, problem.evaluate.runs)
+    evaluate = replace(problem.evaluate, sized=Load(over, task.objective))
+    near = (speeds.stop, *_resonances(scene))
+    return replace(problem, evaluate=evaluate, meaning=load_meaning(task, speeds), speeds=near, costly=True)
 
 
 _MAKERS: dict[str, _Make] = {
@@ -337,5 +383,5 @@ _MAKERS: dict[str, _Make] = {
     "mean": _mean,
     "least_mass": _least_mass,
     "robust": _robust,
-    "floor_force": _floor_force,
+    **dict.fromkeys(LOADS, _load),
 }

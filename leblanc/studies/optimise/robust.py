@@ -12,9 +12,9 @@ import numpy as np
 
 from fluid.liquid import expansion, liquid_at
 from leblanc.results.optimum import ConditionTable
-from leblanc.scene.rotors import with_unbalances
 from leblanc.scene.scene import Exciter, Scene
 from leblanc.scene.tasks import Optimisation, pairs_of
+from leblanc.scene.unbalances import with_unbalances
 from leblanc.studies.optimise.answers import FilledMachine
 from meshes.arrays import Array
 from meshes.errors import InputError

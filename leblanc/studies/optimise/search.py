@@ -11,7 +11,8 @@ import numpy as np
 from leblanc.scene.scene import JeffcottRotor, Scene, jeffcott
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.models.choose import axial_gravity
-from leblanc.studies.optimise.objectives import PeakOver, RunupPeak
+from leblanc.studies.optimise.objectives import PeakOver
+from leblanc.studies.optimise.passages import Passages
 from leblanc.studies.optimise.problem import Problem
 from leblanc.studies.optimise.wetting import wetting_volumes
 from meshes.arrays import Array
@@ -70,7 +71,7 @@ def best_volumes(scene: Scene, problem: Problem, low: Array, high: Array, progre
     counter = _Counter(progress)
     few = None
     if problem.costly:
-        few = _RUNUPS if isinstance(problem.evaluate.vibration, RunupPeak) else _AT_ONCE
+        few = _AT_ONCE if problem.evaluate.runs is None else _RUNUPS
 
     def judge(volumes: Array) -> Judgement:
         return counter.judged(volumes, problem.evaluate, few)
@@ -155,10 +156,10 @@ def _alike(scene: Scene, low: Array, high: Array) -> list[list[int]]:
 
 def on_all_cells(scene: Scene, problem: Problem) -> Problem:
     """The problem with run-ups on all of the scene's cells; itself if it has no others."""
-    coarse, plan = problem.evaluate.vibration, scene.speed_plan
-    if plan is None or not isinstance(coarse, RunupPeak) or coarse.numerics.cells >= plan.cells:
+    coarse, plan = problem.evaluate.runs, scene.speed_plan
+    if plan is None or coarse is None or coarse.numerics.cells >= plan.cells:
         return problem
-    return replace(problem, evaluate=replace(problem.evaluate, vibration=RunupPeak(scene)))
+    return replace(problem, evaluate=problem.evaluate.on(scene, Passages(scene, loaded=coarse.loaded)))
 
 
 def evaluated_again(fine: Problem, found: Found) -> Found:

@@ -9,8 +9,9 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Iterable
+from dataclasses import replace
 
-from leblanc.results.drawn import MachineParts, Shell, Strut
+from leblanc.results.drawn import MachineParts, Shell, Spot, Strut
 from leblanc.scene.rotors import JeffcottRotor, TubRotor, TwoPlaneRotor
 from leblanc.scene.scene import Scene
 
@@ -42,11 +43,40 @@ def machine_parts(scene: Scene, places: tuple[float, ...]) -> MachineParts:
     places : middle of each chamber along the axis as drawn, m
     """
     if isinstance(scene.rotor, TubRotor):
-        return _tub(scene, scene.rotor, places)
+        return _around(scene, _tub(scene, scene.rotor, places))
     if isinstance(scene.rotor, TwoPlaneRotor):
-        return _two_plane(scene, scene.rotor, places)
+        return _around(scene, _two_plane(scene, scene.rotor, places))
     assert isinstance(scene.rotor, JeffcottRotor)
-    return _jeffcott(scene, scene.rotor, places)
+    return _around(scene, _jeffcott(scene, scene.rotor, places))
+
+
+def _around(scene: Scene, parts: MachineParts) -> MachineParts:
+    """The same with the feet of its cabinet, in their order round it, and the points that the scene names."""
+    points = tuple(
+        Spot(point.name, *_spot(scene, point.position), turns=point.on == "drum") for point in scene.points
+    )
+    if scene.cabinet is None:
+        return replace(parts, points=points)
+    feet = [Spot("", *_spot(scene, foot)) for foot in scene.cabinet.feet]
+    lying = scene.rotor.axis == "horizontal"
+    flat = [complex(foot.axial, foot.across.real) if lying else foot.across for foot in feet]
+    middle = sum(flat) / len(flat)
+    order = sorted(range(len(feet)), key=lambda k: cmath.phase(flat[k] - middle))
+    told = "The cabinet stands on its feet where the scene says; its edges and its top are sketched."
+    return replace(
+        parts,
+        points=points,
+        feet=tuple(feet[k] for k in order),
+        sketched=f"{parts.sketched} {told}".strip(),
+    )
+
+
+def _spot(scene: Scene, position: tuple[float, float, float]) -> tuple[float, complex]:
+    """Place along the axis and across it, gravity along -i where the axis lies; the spin goes with i."""
+    if isinstance(scene.rotor, TubRotor):
+        return position[1], _across(position, scene.rotor.axis)
+    x, y, z = position
+    return z, complex(-y, x) if scene.rotor.axis == "horizontal" else complex(x, y)
 
 
 def _ends(scene: Scene, places: tuple[float, ...]) -> tuple[float, float]:

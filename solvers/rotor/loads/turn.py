@@ -6,8 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshes.arrays import Array, Complex, Flags
+from fluid.friction.laws import Friction
+from fluid.pool import pool_of, wall_torque
+from fluid.waves import capture_speed
+from fluid.whirl import drag_power, plane_layer
+from meshes.arrays import Array, Complex, Flags, Index
 from solvers.rotor.loads.machine import LoadedMachine, Loads
+from solvers.rotor.vibration import orbit
 
 ANGLES = 180  # of a turn at which sizes are looked at: a maximum of a sine is within 1.6e-4 of its size
 _AT_ONCE = 200  # speeds
@@ -37,6 +42,15 @@ class Extremes:
     lift_off: Array
     slip: Array
     walking: Array
+
+    def at(self, rows: Index) -> Extremes:
+        """Those of some turns.
+
+        Parameters
+        ----------
+        rows : their numbers
+        """
+        return Extremes(**{name: getattr(self, name)[rows] for name in Extremes.__dataclass_fields__})
 
 
 def extremes(loads: Loads) -> Extremes:
@@ -143,7 +157,7 @@ def orbits(machine: LoadedMachine, coordinates: Complex) -> tuple[Array, Array]:
 def damping_power(machine: LoadedMachine, coordinates: Complex, speed: Array) -> Array:
     """Mean power that the supports turn into heat, which the motor replaces [theory: loads, eq. 16].
 
-    In a steady turn with the spin the liquid rests in its drum and takes none.
+    What the liquid takes is that of `liquid_power`.
 
     Parameters
     ----------
@@ -159,3 +173,40 @@ def damping_power(machine: LoadedMachine, coordinates: Complex, speed: Array) ->
     moved = np.where(np.isfinite(coordinates), coordinates, np.nan)
     heat = np.einsum("si,ij,sj->s", moved.conj(), damping, moved).real
     return np.asarray(0.5 * np.square(speed) * heat)
+
+
+def liquid_power(machine: LoadedMachine, friction: Friction, coordinates: Complex, speed: Array) -> Array:
+    """Mean power that friction in the liquid turns into heat [theory: loads, eq. 18-19].
+
+    The motor replaces it. Where the motion is a circle with the spin and gravity does not act across the
+    axis it is nothing: the liquid rests in its drum. What goes round the other way and gravity move it as
+    small waves; below the speed at which a ring stands it is a pool past which the walls move. Chambers with
+    baffles or sections of their own are left out.
+
+    Parameters
+    ----------
+    machine : whose rotor moves
+    friction : of the liquid
+    coordinates : complex amplitudes, shape (s, n)
+    speed : Omega, rad/s, shape (s,)
+
+    Returns
+    -------
+    W, shape (s,)
+    """
+    system, total = machine.rotor.system(), np.zeros(speed.shape)
+    gravity = 0.0 if machine.vertical else machine.gravity
+    for fill in machine.fills:
+        layer = None if fill.uneven else plane_layer(fill, friction)
+        if layer is None:
+            continue
+        backward = np.abs(orbit(system, coordinates, fill.chamber.plane).backward)
+        own = drag_power(layer, speed, -speed, np.square(speed) * backward)
+        pool = pool_of(fill) if gravity > 0.0 else None
+        if pool is not None:
+            lies = speed <= capture_speed(fill.surface_radius, gravity)
+            most = pool.mass * gravity * pool.arm
+            held = speed * np.minimum(wall_torque(fill, pool, friction, speed), most)
+            own = np.where(lies, held, own + drag_power(layer, speed, 0.0 * speed, gravity))
+        total = total + own
+    return total

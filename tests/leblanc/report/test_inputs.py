@@ -46,6 +46,7 @@ REST = {
         "stable": False, "least_film": "20 um", "spill": True,
         "operating": ["500 rpm", "800 rpm"], "clearance": "4 mm", "volumes": [["1 ml", "20 ml"]],
         "balance_quality": "G 6.3", "floor_force": "700 N", "walking_margin": 0.3, "point_clearance": "2 mm",
+        "slip_margin": 0.4, "motor_torque": "7 N*m", "loads_over": "both",
     },
 }  # fmt: skip
 PROGRAMME = {
@@ -60,8 +61,9 @@ PROGRAMME = {
     "bore": "enstrophy",
     "capture": "drum",
     "samples": 123,
+    "motor": {"speeds": [0.0, "1300 rpm"], "torques": ["7 N*m", "1 N*m"]},
 }  # fmt: skip
-SHEDS = {"share": 0.35, "time_constant": "13 s", "above": "340 rpm"}
+SHEDS = {"share": 0.35, "time_constant": "13 s", "above": "340 rpm", "mass": "0.45 kg"}
 AROUND = {
     "cabinet": {
         "mass": "9 kg", "centre_of_mass": [0, 0.01, 0], "friction": 0.4,
@@ -118,6 +120,7 @@ ELSEWHERE = {"name", "source", "assumed"}
 TOLD_BY = {
     "rotor.kind": "rotor.axis",
     "runup.motor.speeds": "runup.motor.torques",
+    "programme.motor.speeds": "programme.motor.torques",
     "programme.steps": "programme.steps.2",
 }
 WAYS = ["ramp", "motor", "programme"]
@@ -195,6 +198,7 @@ def test_each_assumed_value_marks_its_cell_and_no_other(kind: str, way: str) -> 
         "rotor.damping_ratio": {"rotor.damping"},
         "rotor.kind": {"rotor.axis"},
         "runup.motor.speeds": {"runup.motor.torques"},
+        "programme.motor.speeds": {"programme.motor.torques"},
         "programme.steps": {f"programme.steps.{k}" for k in range(3)},
     }
     for path in leaves(table):

@@ -106,7 +106,7 @@ def test_what_may_be_left_out_has_its_default() -> None:
     left_out = TEXT[: TEXT.index("[model]")].replace('gravity = "9.8 m/s^2"', "").replace("assumed =", "# ")
     scene = read(left_out.replace('source = "a paper"', ""))
     assert (scene.source, scene.assumed, scene.gravity, scene.runup) == ("", (), 9.81, None)
-    assert (scene.model.liquid, scene.model.friction) == ("auto", Friction("stokes", 0.0))
+    assert (scene.model.liquid, scene.model.friction) == ("auto", Friction("wall"))
 
 
 def test_stiffness_and_damping_may_be_given_themselves() -> None:

@@ -12,11 +12,14 @@ import pytest
 from fluid.fill import Fill
 from fluid.liquid import Liquid
 from fluid.numbers import layer_numbers
+from fluid.pool import balance_speed, pool_of
 from leblanc.cli import main
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.studies.explain import explain_scene
-from leblanc.studies.models.choose import choose
+from leblanc.studies.models.choose import carried_from, choose
+from leblanc.studies.run import run_scene
 from leblanc.text.explanation import layer_rows
+from leblanc.units import in_rpm
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from tests.mutants import kills
@@ -86,7 +89,28 @@ def test_a_horizontal_axis_needs_capture() -> None:
     assert choose(scene(axis="vertical")).in_range.all()
 
 
-@pytest.mark.parametrize("model", ["kdv", "statics", "long_wave"])
+@kills("leblanc.studies.models.choose:carried_from", "max([stands", "min([stands")
+def test_run_tells_both_speeds_of_a_lying_drum() -> None:
+    """From where a ring can stand, and from where the walls carry the liquid round: `fluid.pool` has both."""
+    lying = scene().replace({"model.friction": "stokes"})
+    fill, found = lying.fills[0], run_scene(lying)
+    stands, pool = math.sqrt(9.81 / fill.surface_radius), pool_of(fill)
+    assert pool is not None
+    balance = balance_speed(fill, pool, lying.model.friction, 9.81)
+    assert balance > stands
+    assert found.capture_speed == pytest.approx(stands) and found.carried_from == pytest.approx(balance)
+    assert found.to_json()["carried_from"] == found.carried_from
+    (note,) = (note for note in found.notes if note.code == "not_carried")
+    assert in_rpm(stands) in note.text and in_rpm(balance) in note.text
+    # A drag that beats gravity at once leaves the ring's own condition; without friction nothing carries it.
+    held = lying.replace({"model.friction": {"linear": 1e6}})
+    assert carried_from(held) == pytest.approx(stands)
+    free = run_scene(lying.replace({"model.friction": "none"}))
+    assert free.carried_from == math.inf and free.to_json()["carried_from"] is None
+    assert carried_from(scene(axis="vertical")) is None
+
+
+@pytest.mark.parametrize("model", ["kdv", "statics"])
 def test_models_that_do_not_answer_are_refused(model: str) -> None:
     """Compartments have waves of their own."""
     asked = scene_from_table(table() | {"model": {"liquid": model}}).replace(
@@ -123,8 +147,8 @@ def test_the_wall_is_told_how_it_carries_the_liquid_along() -> None:
     given = table()
     given["chambers"] = [{"radius": 0.15, "height": 0.05, "volume": 6.715e-4, "liquid": "water"}]
     given["runup"] = {"start": 5.0, "stop": 40.0, "rate": 2.0, "duration": 20.0}
-    assert explain_scene(scene_from_table(given)).layers[0].spin_up is None  # type: ignore[union-attr]
-    given["model"] = {"friction": "wall"}
+    laminar = given | {"model": {"friction": "stokes"}}
+    assert explain_scene(scene_from_table(laminar)).layers[0].spin_up is None  # type: ignore[union-attr]
     layer = explain_scene(scene_from_table(given)).layers[0]
     assert layer is not None and layer.spin_up is not None
     found = layer.spin_up

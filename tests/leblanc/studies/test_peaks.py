@@ -21,7 +21,7 @@ from leblanc.studies.models.choose import choose_all, liquid_models, prepare
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.objectives import PeakOver
 from leblanc.studies.optimise.optimise import optimise_scene
-from leblanc.studies.peaks import responses_between
+from leblanc.studies.peaks import _distinct, responses_between
 from leblanc.studies.run import run_scene
 from leblanc.text.run import answer, remarks, summary
 from leblanc.units import RPM
@@ -249,3 +249,17 @@ def test_peaks_over_a_range() -> None:
         volumes = np.array([[0.0, 0.0], [2e-6, 1e-6], [1e-5, 2e-5]])
         found = PeakOver(FilledMachine(own), own.speeds).exact(volumes)
         np.testing.assert_allclose(found, [over(own, volume, 25) for volume in volumes], rtol=1e-9)
+
+
+@kills("leblanc.studies.peaks:_distinct", "> _TWIN * others", ">= 0.0")
+@kills("leblanc.studies.peaks:_distinct", "> _TWIN * first", "> 0.0")
+def test_resonances_that_are_one() -> None:
+    """Twins a rounding apart, equal modes or wet and dry ones, get one speed; others keep their own."""
+    once = np.array([3.0, 7.0, 11.0])
+    nudged = once * (1.0 + 4e-16 * np.array([1.0, -1.0, 1.0]))
+    both = np.sort(np.concatenate((once, nudged[nudged != once])))
+    assert both.size == 5 or both.size == 6
+    np.testing.assert_allclose(_distinct(both, nudged), once, rtol=1e-15)
+    apart = once * (1.0 + 1e-11)
+    assert _distinct(once, apart).size == 6 and _distinct(once[:0], apart).size == 3
+    assert _distinct(apart, once[:0]).size == 3

@@ -15,6 +15,7 @@ from leblanc.results.notes.runup import RunupCode
 from leblanc.results.runup import RunupResult
 from leblanc.scene.examples import example_path
 from leblanc.scene.scene import Scene, scene_from_table
+from leblanc.studies.drives import rotor_in_time
 from leblanc.studies.optimise.objectives import RunupPeak
 from leblanc.text.runup import summary
 from tests.mutants import kills
@@ -146,3 +147,43 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert "Step 7, coast to a stand" in said and "Largest on the way down" in said
     report = (tmp_path / "out" / "runup.html").read_text(encoding="utf-8")
     assert "Steps of the programme" in report and "coast to a stand" in report
+
+
+def test_a_motor_limits_a_programme() -> None:
+    """From the file to the note, the key and the data; the torque told is the motor's, drag included."""
+    torques = {"speeds": [0.0, 100.0], "torques": [9.0, 9.0]}
+    points = [{"name": "shaft", "position": [0.0, 0.0, 0.0]}]
+    steps = ["to 60 rad/s in 1 s", "hold 1 s"]
+    scene = machine(motor=torques, steps=steps).replace({"points": points})
+    found = lb.run_up(scene, check=False)
+    assert found.model == "long_wave"
+    (note,) = (note for note in found.notes if note.code is RunupCode.MOTOR_LIMITED)
+    assert note.data["step"] == 1 and note.data["reached"] and "follows the motor" in note.text
+    limited = np.array(found.to_json()["motor_limited"])
+    assert limited.any() and not limited.all()
+    np.testing.assert_array_equal(found.to_dataset()["motor_limited"].values, limited)
+    assert found.loads is not None
+    # Between two samples the motor's own torque is told to what the sums over steps leave.
+    np.testing.assert_allclose(found.loads.torque[limited], 9.0, rtol=0.03)
+    assert "Motor's torque" in {label for label, *_ in found.inputs}
+    assert found.speed[-1] == pytest.approx(60.0, rel=1e-4)
+
+
+def test_water_that_leaves_makes_the_drum_lighter() -> None:
+    """The same unbalance leaves with mass and without: the drum that loses mass is slowed faster."""
+    sheds = {"share": 0.9, "time_constant": "1 s", "above": "20 rad/s"}
+    steps = ["to 60 rad/s in 2 s", "hold 3 s", "coast 2 s"]
+    table = machine(steps=steps).table()
+    ends = []
+    for mass in ({}, {"mass": "0.5 kg"}):
+        rotor = table["rotor"] | {"sheds": sheds | mass}
+        scene = scene_from_table(table | {"rotor": rotor})
+        (shed,) = rotor_in_time(scene).sheds
+        if mass:
+            assert shed.mass is not None
+            np.testing.assert_allclose(shed.mass, 0.5 * np.eye(2))
+            unbalance = scene.rotor.unbalance  # type: ignore[union-attr]
+            assert shed.inertia == pytest.approx((0.9 * unbalance) ** 2 / 0.5)
+        found = lb.run_up(scene, check=False)
+        ends.append(found.speed[-1])
+    assert ends[1] < ends[0]

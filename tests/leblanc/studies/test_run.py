@@ -94,7 +94,7 @@ def test_unwritable_output(capsys: pytest.CaptureFixture[str], tmp_path: Path) -
     assert out == "" and str(blocked) in err and "Traceback" not in err
 
 
-@pytest.mark.parametrize("model", ["kdv", "statics", "long_wave"])
+@pytest.mark.parametrize("model", ["kdv", "statics"])
 def test_a_model_that_does_not_answer_writes_nothing(
     model: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fluid.friction.laws import Friction
 from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.results.notes.response import self_excited as note_of
 from leblanc.scene.scene import dry_rotor, load_scene
@@ -109,5 +108,5 @@ def test_rig() -> None:
     assert np.all(whirl.whirl_speed[grows] < speed[grows])
     # Refined edges: growth there is its slope, some 0.1 in a unit of speed, times 1e-8 of the speed.
     scene = load_scene("examples/horizontal_rig.toml")
-    at_edges, _ = asynchronous_growth(dry_rotor(scene), scene.fills, [low, high], Friction("stokes"))
+    at_edges, _ = asynchronous_growth(dry_rotor(scene), scene.fills, [low, high], scene.model.friction)
     assert np.all(np.abs(at_edges) < 1e-6)

@@ -212,3 +212,36 @@ def test_the_point_of_a_film_stands_on_its_curve() -> None:
     # Farther on the curve is higher, and rows of pixels count downwards.
     assert places[1] < places[0]
     assert np.array_equal(with_inset(white, inset)[200:], white[200:])
+
+
+def test_a_cabinet_stands_on_its_feet() -> None:
+    """Feet, edges and points where the scene has them; what is on the drum goes round with it."""
+    machine = scene("tub")
+    view, factor = working("tub"), working("tub").scale.deflection
+    names = {piece.name for piece in view.picture.pieces}
+    feet = [1e3 * np.array([y, -x, z]) for x, y, z in machine.cabinet.feet]
+    drawn = view.picture.piece("edge of the cabinet, floor").points
+    assert len(drawn) == len(feet) + 1 and {f"foot {k + 1}" for k in range(len(feet))} <= names
+    for foot in feet:
+        assert np.linalg.norm(drawn - foot, axis=1).min() < 1e-9
+    # Round the cabinet, no diagonal: of four feet of a rectangle the line is as long as its sides.
+    sizes = np.ptp(np.array(feet), axis=0)[:2]
+    way = np.linalg.norm(np.diff(drawn, axis=0), axis=1)
+    assert sorted(way) == pytest.approx(sorted([*sizes, *sizes]))
+    motion = view.motion
+    for point in machine.points:
+        x, y, z = point.position
+        shift = complex(motion.deflection[-1, 0] + motion.lean[-1] * (y - motion.places[0])) * factor
+        (place,) = view.picture.piece(f"point {point.name}").points
+        assert place == pytest.approx(1e3 * np.array([y, -x + shift.real, z + shift.imag]), abs=1e-9)
+    assert "The cabinet stands on its feet" in view.picture.caption
+
+
+def test_points_of_other_rotors() -> None:
+    """z lies along the axis; of a lying one x is up, of a standing one x lies across."""
+    points = [{"name": "rim", "on": "drum", "position": [0.02, 0.03, 0.01]}]
+    for axis, expected in (("horizontal", [10.0, -30.0, 20.0]), ("vertical", [20.0, 30.0, 10.0])):
+        still = scene("horizontal_rig").replace({"points": points, "rotor.axis": axis})
+        view = show(still, 30.0, 1e-6)
+        (place,) = view.picture.piece("point rim").points
+        assert place == pytest.approx(expected, abs=1e-3)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from fluid import long_wave as lw
-from solvers.layer import finite_volume
+from solvers.layer import finite_volume, step
 from solvers.layer.inside import Inside
+from solvers.layer.records import LOADS, records
 from tests.mutants import kills
 
 SPIN, FULL, SLOT, PULL = 1.3, 0.18, 64.0, 0.15
@@ -58,6 +59,7 @@ def test_a_full_gap_rests() -> None:
 @kills("solvers.layer.finite_volume:side", "0.5 * stiff * (a - full) * (a + full)", "stiff * (a - full)")
 @kills("solvers.layer.finite_volume:side", "half * half + 4.0 * log * stiff", "half * half")
 @kills("solvers.layer.finite_volume:half_slopes", "(spin * spin + stiff) * length", "spin * spin * length")
+@kills("solvers.layer.finite_volume:_faces", "PRESSED if most(wide)", "1.0 if most(wide)")
 def test_waves_of_a_full_gap() -> None:
     """A smooth disturbance under pressure changes by the equations, and its waves are as fast as stated."""
     errors = []
@@ -74,7 +76,8 @@ def test_waves_of_a_full_gap() -> None:
         d_area, d_q, fastest = rates(area, u * area - SPIN * area**2, PULL)
         errors.append([np.abs(d_area - exact[0]).mean(), np.abs(d_q - exact[1]).mean()])
         half = np.sqrt((SPIN * log) ** 2 + log * ((SPIN + u / r**2) ** 2 + 4 * SLOT * SPIN**2))
-        assert abs(fastest / np.max(np.abs(u / r**2 + SPIN * log) + half) - 1) < 0.01
+        told = fastest / finite_volume.PRESSED
+        assert abs(told / np.max(np.abs(u / r**2 + SPIN * log) + half) - 1) < 0.01
     # Second order, but for the cells at extrema, more of them on the coarse ring.
     assert np.all(np.array(errors[1]) < np.array(errors[0]) / 2.4), errors
     assert errors[1][1] < 2e-3 * np.abs(exact[1]).max()
@@ -89,3 +92,23 @@ def test_no_inner_wall() -> None:
         rates(area, q, 0.05), rates(area, q, 0.05, Inside(PIPE.plates, 1.0, 0.0)), strict=True
     ):
         np.testing.assert_array_equal(one, other)
+
+
+@kills("solvers.layer.step:_cell_loads", "* (1.0 - r)\n", "\n")
+@kills("solvers.layer.step:_cell_loads", "area[i] - full", "area[i] - 0.9 * full")
+def test_pressure_of_a_full_gap_on_both_walls() -> None:
+    """k (A - A_f) on the outer wall, of the radius 1, and against it on the inner one."""
+    n = 32
+    theta = middles(n)
+    area = FULL + 0.01 * np.cos(theta - 0.4)
+    angles, rim = np.stack([np.cos(theta), np.sin(theta)]), np.sqrt(1 - 2 * FULL)
+    given = area, -SPIN * area**2, SPIN, 0.0 * area, angles, 1.0, 0.0, 1.0
+    loads = []
+    for slot in (0.0, SLOT * SPIN**2):
+        sums = records(LOADS)[0]
+        step.tally(*given, FULL, slot, sums)
+        loads.append(complex(sums.force_x, sums.force_y))
+    pressure = SLOT * SPIN**2 * np.maximum(area - FULL, 0.0)
+    expected = np.sum(pressure * np.exp(1j * theta)) * (1 - rim) * 2 * np.pi / n
+    # The slot's surface lies up to 0.01/rim inside the rim.
+    assert abs(loads[1] - loads[0] - expected) < 0.06 * abs(expected)

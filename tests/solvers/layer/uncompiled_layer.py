@@ -439,6 +439,17 @@ def test_steps() -> None:
     assert fine < coarse / 3.0, (coarse, fine)
 
 
+@kills("solvers.layer.step:advance", "calm(area, q, spin)", "pass")
+def test_films_stick() -> None:
+    """A uniform film keeps the momentum of its faded velocity alone, a layer keeps all of it."""
+    for depth, kept in ((1e-6, 2e-2), (1e-3, 1.0)):
+        area, speed = np.full(8, depth), 1e-3
+        q = speed * area - SPIN * area**2
+        run(area, q, 0.01)
+        moved = (q + SPIN * area**2) / area
+        assert np.all(moved <= speed * kept * (1.0 + 1e-9)) and (kept < 1.0 or np.all(moved > 0.999 * speed))
+
+
 @kills("solvers.layer.step:kept_speed", "kept[i] = 1.0 - x * total", "kept[i] = 1.0 - 2.0 * x * total")
 @kills("solvers.layer.step:kept_speed", "1.0 / (1.0 + kept[i])", "1.0 - 2.0 * kept[i]")
 @kills("solvers.layer.step:decelerate", "(q[i] + square)", "(q[i] - square)")

@@ -26,6 +26,7 @@ LINEAR = Friction("linear", 2.0)
 
 
 @kills("solvers.runup.runup:run_up", "handover=Handover.DRUM", "handover=Handover.CARRIED")
+@kills("solvers.runup.runup:_with_errors", "early.largest.max()", "history.largest.max()")
 @kills("solvers.runup.runup:_with_errors", "band = band + np.interp", "band = 0.0 * band + 0.0 * np.interp")
 def test_band() -> None:
     """The three runs that it is made of, made one by one."""
@@ -41,6 +42,11 @@ def test_band() -> None:
     assert found.handover_estimate > 0.01
     assert found.band is not None
     np.testing.assert_allclose(found.band, np.abs(fine - coarse) + np.abs(coarse - early), atol=1e-12)
+    # The largest amplitudes are those of all steps, the others those of the samples, some tens a turn.
+    peaks = [run.max() for run in (fine, coarse, early)]
+    wanted = abs(peaks[0] - peaks[1]), abs(peaks[1] - peaks[2])
+    np.testing.assert_allclose(found.peak_gaps, wanted, atol=2e-3 * largest)
+    assert found.peak_gaps[1] > 0.01 * largest
 
 
 def test_none_where_nothing_is_handed_over() -> None:

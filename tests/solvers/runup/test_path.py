@@ -8,11 +8,13 @@ from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
+from solvers.rotor.loads.bearings import bearing_forces
 from solvers.rotor.loads.machine import LoadedMachine
 from solvers.rotor.tub import Mount, Tub
 from solvers.runup.linear import couple_linear
+from solvers.runup.loads import bearing_impulses, path_extremes
 from solvers.runup.long_wave import couple
-from solvers.runup.machine import Ramp, RunupModel
+from solvers.runup.machine import Handover, Ramp, RunupModel
 from solvers.runup.path import RotorPath
 from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
 from tests.mutants import kills
@@ -54,7 +56,7 @@ def _unbalanced(history: RunupHistory) -> float:
     return float(np.sqrt(np.square(left).mean() / np.square(force).mean()))
 
 
-@kills("solvers.runup.path:RotorPath.motion", "spline(time, 1)", "spline(time)")
+@kills("solvers.runup.path:RotorPath.motion", "spline(time[part], order)", "spline(time[part], 0)")
 @kills(
     "solvers.rotor.loads.machine:LoadedMachine.holding", "rate @ (holder.damping", "-rate @ (holder.damping"
 )
@@ -102,3 +104,46 @@ def test_path_is_even_and_whole() -> None:
     _, place, _, _ = path.motion(history.time)
     # h^4/384 of the fourth derivative: a part is 2 pi/128 of a turn; far below what the scheme leaves.
     assert np.abs(place - history.coordinates).max() < 1e-5 * np.abs(history.coordinates).max()
+
+
+@kills("solvers.runup.path:RotorPath._piece", "self.time >= begin", "self.time >= -np.inf")
+@kills("solvers.runup.path:RotorPath.kicks", "after(time, 1) - before(time, 1)", "before(time, 1)")
+@kills("solvers.runup.loads:bearing_impulses", "still, still, kicks)", "still, kicks, still)")
+def test_a_blow_is_no_acceleration() -> None:
+    """A motion whose velocity jumps, in closed form: its accelerations on both sides, and the impulse."""
+    time, jump, kick = np.linspace(0.0, 1.0, 401), 0.5, np.array([1e-3, 2e-3, 0.0, 5e-3, 0.0, -4e-3])
+    size = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]) * 1e-4
+    place = np.sin(20.0 * time)[:, None] * size + np.maximum(time - jump, 0.0)[:, None] * kick
+    path = RotorPath(time, 20.0 * time, place, np.zeros((2, 3)), np.array([jump]))
+    _, found, rate, acceleration = path.motion(time)
+    # h omega = 0.05: a cubic spline's second derivative is right to 0.05^2/12, at its ends to ten times that.
+    expected = -400.0 * np.sin(20.0 * time)[:, None] * size
+    assert np.abs(acceleration - expected).max() < 2.5e-3 * np.abs(expected).max()
+    np.testing.assert_allclose(path.kicks()[0], kick, atol=1e-6)
+    np.testing.assert_allclose(found, place, atol=1e-12)
+    assert np.abs(rate[200] - 20.0 * np.cos(10.0) * size - kick).max() < 1e-6
+    # The tub's mass times its kick, shared by the bearings as a force is.
+    machine = LoadedMachine(TUB, FILLS, bearings=(-0.05, -0.15))
+    (impulse,) = bearing_impulses(machine, path)
+    push = np.concatenate([TUB.tub_mass * kick[:3], np.array(TUB.tub_inertia) * kick[3:]])
+    shared = np.linalg.norm(bearing_forces(TUB, (-0.05, -0.15), push), axis=-1)
+    np.testing.assert_allclose(impulse, shared, rtol=1e-3)
+
+
+def test_bearing_forces_go_on_through_a_capture() -> None:
+    """Every interval has them, and the blow is the only thing that they leave out."""
+    numerics = RunupNumerics(cells=32, samples=600, companion=False, handover=Handover.DRUM)
+    ramp, friction = Ramp(start=3.0, stop=30.0, rate=10.0, duration=3.0), Friction("linear", 5.0)
+    history = run_up(TUB.system(), FILLS, ramp, friction, 9.81, numerics, None, couple_linear, follow=True)
+    (transfer,) = history.transfers
+    assert history.path is not None and transfer.captured
+    np.testing.assert_array_equal(history.path.jumps, [transfer.time])
+    machine = LoadedMachine(TUB, FILLS, bearings=(-0.05, -0.15))
+    bearing = path_extremes(machine, history.path, history.time).bearing
+    k = int(np.searchsorted(history.time, transfer.time))
+    around = bearing[k - 3 : k + 4, 0]
+    # A spline through the jump would make of an impulse J a force of J over two samples.
+    blow = bearing_impulses(machine, history.path)[0, 0] / (2.0 * np.diff(history.time).max())
+    assert np.isfinite(bearing).all()
+    # The layer pulls otherwise than the pool did: on each side the force goes on, between them it may step.
+    assert np.ptp(around[:3]) < 0.1 * blow and np.ptp(around[3:]) < 0.1 * blow

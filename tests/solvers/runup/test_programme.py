@@ -213,3 +213,67 @@ def test_what_is_no_programme(field: str, make: object) -> None:
     with pytest.raises(InputError) as told:
         make()  # type: ignore[operator]
     assert told.value.field == field
+
+
+FLAT = ((0.0, 200.0), (2.0, 2.0))
+
+
+@kills("solvers.runup.course:_limited", "inertia * asked + load.torque() > given", "False")
+@kills("solvers.runup.programme:Programme.net", "np.interp(speeds, *drag)", "0.0")
+@kills("solvers.runup.course:_limited", "gap * rate < 0.0", "gap * rate > 0.0")
+def test_a_motor_that_gives_less_than_is_asked() -> None:
+    """Spin-up by a constant torque is a straight line, with viscous drag an exponential; then the hold."""
+    up, hold = Stage(50.0, rate=100.0), Stage(duration=2.0)
+    found = run(STILL, Programme(5.0, (up, hold), inertia=0.4, motor=FLAT))
+    assert found.stage is not None and found.limited is not None and found.converged
+    rise = found.stage == 0
+    np.testing.assert_allclose(found.speed[rise], 5.0 + 5.0 * found.time[rise], rtol=1e-9)
+    assert found.time[rise][-1] == pytest.approx(45.0 / 5.0, rel=1e-5)
+    assert found.limited[1:][rise[1:]].all() and not found.limited[~rise].any()
+    assert found.time[-1] == pytest.approx(11.0, rel=1e-5)
+    np.testing.assert_allclose(found.speed[~rise], 50.0, rtol=2e-6)
+    # T - T_0 - I k Omega: to (k dt)^2/12 of the midpoint rule.
+    found = run(STILL, Programme(5.0, (up,), 0.4, 0.5, 0.05, motor=FLAT))
+    last = (2.0 - 0.5) / 0.4 / 0.05
+    np.testing.assert_allclose(found.speed, last + (5.0 - last) * np.exp(-0.05 * found.time), rtol=1e-6)
+
+
+@kills("solvers.runup.course:_limited", "max(lasts, drive.limit)", "lasts")
+def test_a_motor_that_never_gets_there() -> None:
+    """Its torque ends at 40 rad/s, an exponential on the way; the stage ends with its limit of time."""
+    falling = ((0.0, 40.0), (4.0, 0.0))
+    found = run(STILL, Programme(5.0, (Stage(50.0, duration=1.0),), 0.4, motor=falling, limit=6.0))
+    assert found.time[-1] == 6.0
+    np.testing.assert_allclose(found.speed, 40.0 - 35.0 * np.exp(-0.25 * found.time), rtol=2e-5)
+
+
+def test_a_strong_motor_changes_nothing() -> None:
+    """A curve that is never reached leaves the programme as it is, through the resonance and down."""
+    stages = (Stage(50.0, rate=20.0), Stage(duration=1.0), Stage(30.0, rate=40.0))
+    plain = run(ROTOR, Programme(5.0, stages, inertia=0.4), FILL)
+    found = run(ROTOR, Programme(5.0, stages, inertia=0.4, motor=((0.0, 90.0), (900.0, 900.0))), FILL)
+    assert found.limited is not None and not found.limited.any()
+    size = plain.amplitude.max()
+    np.testing.assert_allclose(
+        np.interp(plain.time, found.time, found.amplitude), plain.amplitude, rtol=0.0, atol=1e-3 * size
+    )
+
+
+@kills("solvers.runup.course:_Load._now", 'sums["unbalance"] + sums["drive"]', 'sums["unbalance"]')
+def test_what_a_limited_motor_gives_goes_into_the_drum_and_the_liquid() -> None:
+    """Its work is what the drum gains and what whirl and liquid take; what the liquid takes limits it."""
+    motor = ((0.0, 200.0), (6.0, 6.0))
+    drive = Programme(10.0, (Stage(45.0, rate=30.0),), 0.4, motor=motor)
+    numerics, friction = replace(ALONE, cells=32, samples=600), Friction("linear", 3.0)
+    found = run_up(ROTOR.system(), (FILL,), drive, friction, 0.0, numerics, model=couple)
+    assert found.limited is not None and found.limited[1:].all() and found.converged
+    assert found.speed[-1] == pytest.approx(45.0, rel=1e-4)
+    audit = found.audit
+    # The motor's work is summed with the speed at the beginning of a step: half of its rise, 0.2 of 27 rad/s.
+    drum = 0.5 * 0.4 * (found.speed[-1] ** 2 - 10.0**2)
+    assert audit.motor - audit.unbalance - audit.drive == pytest.approx(drum, rel=6e-3)
+    assert audit.motor == pytest.approx(6.0 * (found.angle[-1] - found.angle[0]), rel=6e-3)
+    # Asked is what the drum alone would take of this motor: what the liquid takes besides limits it.
+    asks = Programme(10.0, (Stage(45.0, rate=14.0),), 0.4, motor=motor)
+    assert run(STILL, asks, FILL).limited[2:].any()  # type: ignore[index]
+    assert not run(STILL, asks).limited.any()  # type: ignore[union-attr]

@@ -116,3 +116,51 @@ def test_nothing_that_leaves_changes_nothing() -> None:
     plain, idle = run((), ramp, FILL), run((Shed(WHOLE, 1e6, 90.0),), ramp, FILL)
     np.testing.assert_array_equal(plain.amplitude, idle.amplitude)
     assert plain.left is not None and plain.left.shape == (plain.time.size, 0)
+
+
+@kills("solvers.runup.state:CoupledRotor.lighten", "-= inertia - self.lost_inertia", "-= 0.0")
+@kills("solvers.runup.shedding:Shedding._lost", "inertia += (1.0 - share)", "inertia += share")
+@pytest.mark.parametrize("model", [couple_linear, couple])
+def test_water_that_leaves_takes_its_momentum_along(model: RunupModel) -> None:
+    """A coasting drum that nothing brakes keeps its speed; with steady drag it is slowed ever faster.
+
+    I(t) = I_0 - i (1 - e^(-t/T)): Omega falls by T_0 times the integral of 1/I, in closed form.
+    """
+    still = replace(ROTOR.system(), unbalance=np.zeros(2, dtype=complex))
+    shed = Shed(np.zeros(2, dtype=complex), 1.2, 1.0, np.diag([8.0, 8.0]), 0.25)
+    system = replace(still, sheds=(shed,))
+    coast = (Stage(duration=3.0, free=True),)
+    numerics = replace(ALONE, cells=32)
+    free = run_up(system, (), Programme(40.0, coast, 0.4), numerics=numerics, model=model)
+    np.testing.assert_allclose(free.speed, 40.0, rtol=1e-12)
+    found = run_up(system, (), Programme(40.0, coast, 0.4, 2.0), numerics=numerics, model=model)
+    least = 0.4 - 0.25
+    integral = 1.2 / least * np.log((least * np.exp(found.time / 1.2) + 0.25) / 0.4)
+    # Held for T/1000 at the middle: 1e-3^2/24.
+    np.testing.assert_allclose(found.speed, 40.0 - 2.0 * integral, rtol=1e-6)
+
+
+@kills("solvers.runup.state:CoupledRotor.lighten", "-= mass - gone", "-= 0.0")
+@kills("solvers.runup.shedding:Shedding._lost", "mass += (1.0 - share)", "mass += share")
+def test_the_lighter_rotor_moves_as_such() -> None:
+    """scipy with M(t) and no force of what leaves, through the resonance; the energy closes."""
+    time_constant, lost = 0.8, 9.0
+    shed = Shed(0.0 * WHOLE, time_constant, 15.0, np.diag([lost, lost]))
+    found = run((shed,), Ramp(10.0, 40.0, 20.0, 3.0), cells=1024, samples=400)
+
+    def rates(time: float, state: np.ndarray) -> np.ndarray:
+        spin, gain = min(10.0 + 20.0 * time, 40.0), 20.0 if time < 1.5 else 0.0
+        angle = 10.0 * time + 10.0 * time**2 if time < 1.5 else 37.5 + 40.0 * (time - 1.5)
+        mass = ROTOR.mass - lost * (1.0 - math.exp(-max(time - 0.25, 0.0) / time_constant))
+        force = ROTOR.unbalance * (spin**2 - 1j * gain) * np.exp(1j * angle)
+        place, rate = complex(*state[:2]), complex(*state[2:])
+        faster = (force - ROTOR.damping * rate - ROTOR.stiffness * place) / mass
+        return np.array([rate.real, rate.imag, faster.real, faster.imag])
+
+    exact = solve_ivp(rates, (0.0, 3.0), np.zeros(4), t_eval=found.time, rtol=1e-9, atol=1e-13)
+    wanted = np.hypot(*exact.y[:2])
+    # The trapezium's error, as above.
+    assert np.abs(found.amplitude - wanted).max() < 2e-3 * wanted.max()
+    whole = run((), Ramp(10.0, 40.0, 20.0, 3.0), cells=1024, samples=400)
+    assert np.abs(whole.amplitude - wanted).max() > 0.05 * wanted.max()
+    assert found.audit.closure < 1e-9

@@ -10,7 +10,7 @@ import pytest
 
 from leblanc.cli.terminal.output import print_json
 from leblanc.figures.comparison import LOOKS
-from leblanc.results.explanation import Comparison, ModelAnswer
+from leblanc.results.models.comparison import Comparison, ModelAnswer
 from leblanc.results.motion.held import Held
 from leblanc.results.response import RunResult
 from leblanc.text.explanation import comparison_head, comparison_rows, refusals
@@ -40,12 +40,12 @@ def three() -> Comparison:
 
 
 @kills(
-    "leblanc.results.explanation:Comparison.difference",
+    "leblanc.results.models.comparison:Comparison.difference",
     "own[known] - other[known]",
     "own[known] + other[known]",
 )
 @kills(
-    "leblanc.results.explanation:Comparison.difference",
+    "leblanc.results.models.comparison:Comparison.difference",
     "found / size if",
     "found / own[known].max() if",
 )
@@ -114,7 +114,7 @@ def test_json_dataset_and_table_say_the_same(capsys: pytest.CaptureFixture[str])
 
 
 @kills(
-    "leblanc.results.explanation:ModelAnswer.held",
+    "leblanc.results.models.comparison:ModelAnswer.held",
     "held.at & (held.state == kind)",
     "held.state == kind",
 )

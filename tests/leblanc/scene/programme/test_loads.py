@@ -11,9 +11,10 @@ import leblanc as lb
 from leblanc.results.notes.response import RunCode
 from leblanc.results.notes.runup import RunupCode
 from leblanc.scene.inputs import input_rows
-from leblanc.scene.rotors import TubRotor, sheds_of, unbalances_of, with_unbalances
+from leblanc.scene.rotors import TubRotor
 from leblanc.scene.scene import Scene, dry_rotor, scene_from_table
 from leblanc.scene.schema.load import SceneError
+from leblanc.scene.unbalances import sheds_of, unbalances_of, with_unbalances
 from leblanc.studies.drives import rotor_in_time
 from tests.mutants import kills
 
@@ -57,7 +58,7 @@ def test_loads_add_up() -> None:
     assert np.abs(couple[[0, 2]]).max() < 1e-16 and np.abs(couple[3:]).max() == pytest.approx(0.006)
 
 
-@kills("leblanc.scene.rotors:with_unbalances", "sizes[first:]", "sizes[:len(rotor.loads)]")
+@kills("leblanc.scene.unbalances:with_unbalances", "sizes[first:]", "sizes[:len(rotor.loads)]")
 def test_sizes_in_their_order() -> None:
     loads = {"position": 0.06, "size": 0.05}, {"position": -0.1, "size": 0.03, "sheds": SHEDS}
     both, bare = tub(*loads, unbalance=0.02).rotor, tub(*loads).rotor

@@ -118,7 +118,7 @@ def test_a_programme_of_a_scene_is_that_of_the_solvers() -> None:
     assert found.programme is not None and found.speed_plan is found.programme
     coast = Stage(5.0, duration=90.0, free=True), Stage(duration=2.0, free=True)
     stages = Stage(30.0, duration=2.0), Stage(duration=1.0), Stage(20.0, 10.0), *coast
-    assert drive_of(found.programme) == Programme(0.0, stages, 0.5, 2.0, 0.1)
+    assert drive_of(found.programme) == Programme(0.0, stages, 0.5, 2.0, 0.1, limit=90.0)
     again = scene_from_table(found.table())
     assert again == found and again.digest == found.digest
     assert found.replace({"programme.steps.1": "hold 2 s"}).digest != found.digest

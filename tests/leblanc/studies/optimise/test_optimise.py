@@ -310,10 +310,10 @@ def test_constraints_bind() -> None:
     held = optimise_scene(scene, task=bound, front=False)
     # The more the better up to the closed form; a margin of the amplitude, 1e-6, is some 3e-5 of this volume.
     assert held.volume[0] == pytest.approx(5e-5, rel=1e-4)
-    calm = optimise_scene(scene, task=Optimisation(stability_margin=0.05), front=False)
-    assert calm.feasible and calm.growth <= -0.05
+    calm = optimise_scene(scene, task=Optimisation(stability_margin=0.1), front=False)
+    assert calm.feasible and calm.growth <= -0.1
     assert calm.volume[0] < free.volume[0]
-    assert free.growth > -0.05
+    assert free.growth > -0.1
 
 
 def test_nothing_allowed_is_said() -> None:

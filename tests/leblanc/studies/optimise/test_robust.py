@@ -12,9 +12,10 @@ import pytest
 
 from fluid.liquid import known_liquid, liquid_at
 from leblanc.results.optimum import OptimumResult
-from leblanc.scene.rotors import TwoPlaneRotor, unbalances_of
+from leblanc.scene.rotors import TwoPlaneRotor
 from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.scene.tasks import Optimisation
+from leblanc.scene.unbalances import unbalances_of
 from leblanc.studies.optimise.answers import FilledMachine
 from leblanc.studies.optimise.objectives import AtSpeed
 from leblanc.studies.optimise.optimise import optimise_scene
@@ -105,7 +106,7 @@ def test_tub_against_each_condition() -> None:
 
 
 @pytest.mark.parametrize("together", [True, False])
-@kills("leblanc.scene.rotors:with_unbalances", "part.altered(size=size)", "part.altered(size=sizes[0])")
+@kills("leblanc.scene.unbalances:with_unbalances", "part.altered(size=size)", "part.altered(size=sizes[0])")
 def test_two_planes_against_each_condition(together: bool) -> None:
     """All unbalances by one factor, or each in its own range: the sizes written into the machine by hand."""
     machine, speed = scene("two_plane_rig"), 150.0

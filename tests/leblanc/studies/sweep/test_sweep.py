@@ -16,6 +16,7 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
+import leblanc as lb
 from leblanc.cli import main
 from leblanc.results.sweep import QUANTILES
 from leblanc.scene.examples import example
@@ -278,6 +279,36 @@ def test_what_no_sample_can_answer_is_one_fault(tmp_path: Path, capsys: Capture)
     assert main(["sweep", str(path), "--workers", "0", "--out", str(tmp_path / "out")]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith('scene.toml: model.liquid = "statics": must be auto or fem')
+
+
+def test_number_height_and_angle_of_baffles_vary(tmp_path: Path) -> None:
+    """Each sample is the run of its own scene, its compartments by elements, two of them refused."""
+    base = (Path(__file__).parents[4] / "docs" / "examples" / "closed_baffles.toml").read_text(
+        encoding="utf-8"
+    )
+    (tmp_path / "scene.toml").write_text(base.replace("count = 41", "count = 3"), encoding="utf-8")
+    study = """scene = "scene.toml"
+method = "grid"
+[vary]
+"chambers.0.baffles.count" = { choice = [2, 3, 6] }
+"chambers.0.baffles.tip_radius" = { linspace = ["141 mm", "179 mm", 2] }
+"chambers.0.baffles.first_angle" = { linspace = ["0 deg", "10 deg", 2] }
+"""
+    (tmp_path / "study.toml").write_text(study, encoding="utf-8")
+    lb.sweep(tmp_path / "study.toml", tmp_path / "out", workers=0)
+    found = xr.open_zarr(tmp_path / "out" / STORE, consolidated=False).load()
+    assert found.sizes["sample"] == 12
+    scene = lb.load_scene(tmp_path / "scene.toml")
+    paths = [f"chambers.0.baffles.{name}" for name in ("count", "tip_radius", "first_angle")]
+    for k in range(12):
+        values = {path: found[path].values[k].item() for path in paths}
+        cut = values[paths[1]] < 0.15
+        if values[paths[0]] == 2 and cut:
+            assert found["status"].values[k] != 0 and "two directions" in str(found["reason"].values[k])
+            continue
+        record = run_scene(scene.replace({**values, paths[0]: int(values[paths[0]])}))
+        np.testing.assert_allclose(found["amplitude"].values[k], record.amplitude, rtol=1e-9)
+        assert ("fem" in set(record.response.model)) == cut
 
 
 # -- going on ------------------------------------------------------------------------------------------------

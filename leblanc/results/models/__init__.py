@@ -1,0 +1,1 @@
+"""The same scene by several liquid models, side by side."""

@@ -1,0 +1,105 @@
+"""The front loader in time: what cells change of its peaks, its holds against motions held in time."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import leblanc as lb
+from fluid.fill import Fill
+from fluid.friction.laws import Friction
+from fluid.liquid import Liquid
+from leblanc.scene.scene import Scene
+from leblanc.studies.runup import runup_scene
+from leblanc.text.runup import answer, answer_rows, peak_known
+from meshes.baffles import Baffles
+from meshes.chamber import Chamber
+from solvers.pypde.coupled import RotorLayersPDE
+from solvers.rotor.jeffcott import Jeffcott
+from tests.mutants import kills
+
+BEGIN = ["to 45 rpm in 2 s", "hold 2 s", "to 90 rpm in 4 s", "hold 4 s"]
+
+
+def machine(*steps: str) -> Scene:
+    return lb.example("front_loader").replace({"programme.steps": [*BEGIN, *steps], "model.friction": "wall"})
+
+
+@cache
+def peaks(cells: int) -> list[float]:
+    """Largest amplitude of each step of the way past the capture, m."""
+    found = runup_scene(machine("to 400 rpm at 40 rpm/s", "hold 1 s"), cells=cells, check=False)
+    assert found.converged
+    return [passage.amplitude for passage in found.passages]
+
+
+@pytest.mark.slow
+def test_peaks_hardly_know_the_cells() -> None:
+    """128 and 256 cells agree within 1 %, eight cells between two baffles within 3 %."""
+    np.testing.assert_allclose(peaks(128), peaks(256), rtol=0.01)
+    np.testing.assert_allclose(peaks(64), peaks(256), rtol=0.03)
+
+
+@pytest.mark.slow
+def test_peak_error_covers_more_cells() -> None:
+    """What half the cells change of the largest amplitude is more than what four times the cells do.
+
+    Half the cells are four between two baffles, which have no slopes beside them: some 6 %.
+    """
+    found = runup_scene(machine("to 400 rpm at 40 rpm/s", "hold 1 s"), cells=64)
+    error = found.peak_error["cells"]
+    assert abs(max(peaks(64)) - max(peaks(256))) < error < 0.1 * max(peaks(64))
+
+
+@pytest.mark.slow
+def test_a_hold_is_a_motion_held_in_time() -> None:
+    """The tub goes round as in the periodic motion of the same speed once the swings of the run-up have died.
+
+    The slowest modes lose 3 % of critical damping at 0.7 Hz: after 25 s they are down to 4 %.
+    """
+    still = {f"rotor.loads.{j}.sheds": None for j in range(2)}
+    scene = machine("to 400 rpm at 40 rpm/s", "hold 25 s").replace(still)
+    found = runup_scene(scene, check=False)
+    late = found.time > found.time[-1] - 2.0
+    speed = 400.0 * math.pi / 30.0
+    speeds = {"speeds.start": 0.999 * speed, "speeds.stop": speed, "speeds.count": 2, "model.held": "always"}
+    held = lb.run(scene.replace(speeds))
+    assert held.model[-1] == "long_wave" and held.state[-1] == "periodic"
+    low, high = float(held.amplitude_min[-1]), float(held.amplitude_max[-1])
+    # An ellipse: its mean radius is that of the two halves to the square of what they differ by.
+    assert found.amplitude[late].mean() == pytest.approx(0.5 * (low + high), rel=0.01)
+    assert found.amplitude[late].max() == pytest.approx(high, rel=0.05)
+
+
+def test_motions_held_with_many_baffles() -> None:
+    """Which layers stand is known before anything is known of the resolution."""
+    fill = Fill(Chamber(0.24, 0.06, baffles=Baffles(8, 0.231)), Liquid("brine", 1200.0, 1.6e-6), 1.2e-3)
+    rotor = Jeffcott(60.0, 11196.0, 309.0, 0.05)
+    assert RotorLayersPDE(rotor.system(), [fill], 40.0, friction=Friction(), gravity=9.81).layers.all()
+
+
+@kills("leblanc.text.runup:peak_known", "error <= _ROUGH", "error > _ROUGH")
+@kills("leblanc.text.runup:peak_known", "max(parts", "min(parts")
+def test_what_a_reader_is_told() -> None:
+    """The headline has the peak's error, its cause where it is large, and for how long the model holds."""
+    short = lb.example("runup").replace({"runup.duration": "1 s", "runup.cells": 16})
+    found = runup_scene(short, samples=50, check=False)
+    found = replace(found, in_range=np.ones(found.time.size, dtype=bool))
+    assert peak_known(found) == "" and "for all of the run" in answer(found)
+    largest = float(found.history.largest.max())
+    for gaps, told in (
+        ((0.01, math.nan), "1 %"),
+        ((0.04, 0.05), "9 %"),
+        ((0.15, 0.05), "20 %, most of it by cells and steps"),
+        ((0.05, 0.15), "20 %, most of it by how the liquid becomes a ring"),
+    ):
+        history = replace(found.history, peak_gaps=(gaps[0] * largest, gaps[1] * largest))
+        one = replace(found, history=history)
+        assert peak_known(one).endswith(told) and peak_known(one) in answer(one)
+        assert ("Largest of all known to", peak_known(one)) in answer_rows(one)
+    half = replace(found, in_range=np.arange(found.time.size) % 2 == 0)
+    assert f"for {100.0 * half.in_range.mean():.3g} % of the run" in answer(half)
