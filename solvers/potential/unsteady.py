@@ -181,12 +181,13 @@ def force(state: Array, push: complex) -> complex:
     return complex(2.0 * np.pi * np.mean(pressure * np.exp(1j * angle) * opened))
 
 
-def invariants(state: Array) -> Invariants:
+def invariants(state: Array, spin: float = 1.0) -> Invariants:
     """Volume, energy, angular momentum and centre of mass [theory: potential, eq. 20].
 
     Parameters
     ----------
     state : y and phi, shape (2n,)
+    spin : of the frame in which the flow has no vorticity, over the unit of the spin; 0 leaves phi alone
     """
     n, flow, whole = state.size // 2, _flow(state), 2.0 * np.pi
     square, phi = np.square(flow.radius), state[n:]
@@ -194,8 +195,8 @@ def invariants(state: Array) -> Invariants:
     swing = np.mean((1.0 - square * flow.radius) / 3.0 * flow.opened * np.exp(1j * flow.angle))
     return Invariants(
         volume=float(0.5 * whole * np.mean((1.0 - square) * flow.opened)),
-        energy=float(-0.5 * whole * np.mean(phi * flow.stream_slope) - 0.125 * whole * rest),
-        angular_momentum=float(-whole * np.mean(phi * square * flow.steep) + 0.25 * whole * rest),
+        energy=float(-0.5 * whole * np.mean(phi * flow.stream_slope) - 0.125 * whole * spin**2 * rest),
+        angular_momentum=float(-whole * np.mean(phi * square * flow.steep) + 0.25 * whole * spin * rest),
         centre=complex(whole * swing),
     )
 
@@ -277,3 +278,96 @@ def _pull(flow: _Flow, push: complex) -> Array:
     """- 2 psi + r^2/2 + f.x at the surface."""
     along = push.real * np.cos(flow.angle) + push.imag * np.sin(flow.angle)
     return np.asarray(-2.0 * flow.stream + 0.5 * np.square(flow.radius) + flow.radius * along)
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a layer does under any force: its rates and its own force are straight lines of f.
+
+    Parameters
+    ----------
+    still : rates without f, shape (2n,)
+    lever : rates of phi for f = 1 and f = i, shape (2, n)
+    force : on the drum by the pressure without f, complex
+    response : symmetric matrix that f adds to it with, shape (2, 2)
+    momentum : P, the liquid's in its frame, complex
+    moment : V times the centre of mass, complex
+    """
+
+    still: Array
+    lever: Array
+    force: complex
+    response: Array
+    momentum: complex
+    moment: complex
+
+    def rates(self, push: complex) -> Array:
+        """Rates under a force f, shape (2n,).
+
+        Parameters
+        ----------
+        push : f, as for `rates`
+        """
+        found = self.still.copy()
+        found[self.lever.shape[1] :] += push.real * self.lever[0] + push.imag * self.lever[1]
+        return found
+
+
+def answer(state: Array, spin: float = 1.0, friction: float = 0.0, damping: float = 0.0) -> Answer:
+    """Rates and force of a layer under any force at once [theory: potential, eq. 21-23].
+
+    Parameters
+    ----------
+    state, damping : as for `rates`
+    spin : of the frame in which the flow has no vorticity, over the unit of the spin
+    friction : k of a force -k grad phi on all the liquid, which turns the drum's pressure by nothing
+    """
+    n, flow, whole = state.size // 2, _flow(state), 2.0 * np.pi
+    metric, inner = flow.metric, np.minimum(flow.k * flow.depth, _LARGE)
+    climb = -flow.stream_slope / metric
+    arms = flow.radius * np.stack((np.cos(flow.angle), np.sin(flow.angle)))
+    spectrum = np.fft.rfft(climb)
+    spectrum[1:] *= -1j * _coth(flow)
+    spectrum[0] = spectrum[-1] = 0.0
+    slide = np.fft.irfft(spectrum, n)
+    slide -= np.mean(flow.opened * slide - flow.steep * climb)
+    fast, deep = np.square(flow.potential_slope), np.square(flow.stream_slope)
+    rest = -2.0 * spin * flow.stream + 0.5 * np.square(spin * flow.radius)
+    change = slide * flow.potential_slope - 0.5 * (fast - deep) / metric + rest - friction * state[n:]
+    above = -0.5 * (fast + deep) / metric + rest
+    spectra = np.fft.rfft(np.stack((flow.steep * slide + flow.opened * climb, change, above, *arms)))
+    # Twice the share of a pair of waves; the mean and the shortest have one each.
+    pairs = np.full(flow.k.size, 2.0 * whole / n**2)
+    pairs[[0, -1]] *= 0.5
+    weight = pairs * flow.k * np.tanh(inner)
+    moved = np.real(spectra[3:, None] * spectra[None, 3:].conj()) @ weight
+    volume = 0.5 * whole * np.mean((1.0 - np.square(flow.radius)) * flow.opened)
+    ray = arms[0] + 1j * arms[1]
+    kept = np.concatenate((spectra[:2], spectra[3:]))
+    kept[:, flow.k > _KEPT * flow.k[-1]] = 0.0
+    kept[1:, 0] = 0.0
+    if damping > 0.0:
+        kept[:2] -= damping * (flow.k / (_KEPT * flow.k[-1])) ** 8 * np.fft.rfft(state.reshape(2, n))
+    found = np.fft.irfft(kept, n)
+    return Answer(
+        still=found[:2].ravel(),
+        lever=found[2:],
+        force=_wall_force(flow, spectra[2], np.fft.rfft(state[:n])),
+        response=volume * np.eye(2) - moved,
+        momentum=complex(-whole * np.mean(ray * flow.stream_slope)),
+        moment=complex(whole * np.mean((1.0 / flow.radius - np.square(flow.radius)) / 3.0 * flow.opened * ray)),
+    )
+
+
+def _wall_force(flow: _Flow, above: Complex, surface: Complex) -> complex:
+    """Sum of the pressure on the wall without f; `above` and `surface`: coefficients of D and y."""
+    n, inner = flow.angle.size, np.minimum(flow.k * flow.depth, _LARGE)
+    over = np.concatenate(([0.0], 1.0 / np.sinh(inner[1:])))
+    over[-1] = 0.0
+    near = 1.0 / np.cosh(inner)
+    parts = np.stack((above * near, 1j * flow.k * flow.potential * near, -1j * over * surface,
+                      flow.k * over * surface))  # fmt: skip
+    change, sliding, shift, opened = np.fft.irfft(parts, n)
+    opened += 1.0
+    pressure = -change - 0.5 * np.square(sliding / opened)
+    return complex(2.0 * np.pi * np.mean(pressure * np.exp(1j * (_even(n) + shift)) * opened))
