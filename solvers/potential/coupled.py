@@ -143,7 +143,9 @@ class ExactMachine:
         """
         n, count = len(self.system.coordinates), len(self.layers)
         turned = state[2 * n : 2 * (n + count)].reshape(count, 2)
-        return Parts(state[:n], state[n : 2 * n], turned, state[2 * (n + count) :].reshape(count, -1))
+        return Parts(
+            state[:n], state[n : 2 * n], turned, state[2 * (n + count) :].reshape(count, 2 * self.nodes)
+        )
 
     def joined(self, parts: Parts) -> Array:
         """A state from its parts."""

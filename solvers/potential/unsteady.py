@@ -24,6 +24,7 @@ _RELATIVE, _ABSOLUTE = 1e-9, 1e-12
 # Share of the volume that no sound wave loses; nothing but (17) keeps it.
 _LOST = 1e-6
 FEWEST = 16
+_ROUNDS, _SETTLED = 200, 1e-14  # of the angles of a surface of a given shape
 
 Push = Callable[[float], complex]
 
@@ -355,7 +356,9 @@ def answer(state: Array, spin: float = 1.0, friction: float = 0.0, damping: floa
         force=_wall_force(flow, spectra[2], np.fft.rfft(state[:n])),
         response=volume * np.eye(2) - moved,
         momentum=complex(-whole * np.mean(ray * flow.stream_slope)),
-        moment=complex(whole * np.mean((1.0 / flow.radius - np.square(flow.radius)) / 3.0 * flow.opened * ray)),
+        moment=complex(
+            whole * np.mean((1.0 / flow.radius - np.square(flow.radius)) / 3.0 * flow.opened * ray)
+        ),
     )
 
 
@@ -371,3 +374,89 @@ def _wall_force(flow: _Flow, above: Complex, surface: Complex) -> complex:
     opened += 1.0
     pressure = -change - 0.5 * np.square(sliding / opened)
     return complex(2.0 * np.pi * np.mean(pressure * np.exp(1j * (_even(n) + shift)) * opened))
+
+
+def laid(radius: Callable[[Array], Array], count: int) -> Surface:
+    """Liquid at rest in the drum under a surface of a given shape [theory: potential, eq. 2].
+
+    Parameters
+    ----------
+    radius : of the surface over R at some angles, shape as theirs, above 0, below 1; its waves are lower than
+        the layer is deep
+    count : n, even
+
+    Raises
+    ------
+    ArithmeticError : the angles did not settle: the surface is too steep for these nodes
+    """
+    angle = _even(count)
+    for _ in range(_ROUNDS):
+        height = -np.log(radius(angle))
+        before, angle = angle, _angle_of(height)
+        if np.abs(angle - before).max() < _SETTLED:
+            return Surface(height, np.zeros(count))
+    raise ArithmeticError(f"no strip with {count} nodes for this surface")
+
+
+def seen(state: Array, angles: Array) -> tuple[Array, Array]:
+    """Radius of the surface, and velocity along the wall, at given angles.
+
+    Parameters
+    ----------
+    state : y and phi, shape (2n,)
+    angles : rad, shape (m,)
+
+    Returns
+    -------
+    r/R and the velocity over R times the unit of the spin, shape (m,) each
+    """
+    n, flow = state.size // 2, _flow(state)
+    k, inner = flow.k[:-1], np.minimum(flow.k[:-1] * flow.depth, _LARGE)
+    heights = np.fft.rfft(state[:n])[:-1] / n
+    heights[1:] *= 2.0
+    slides = 2.0 / n * flow.potential[:-1] / np.cosh(inner)
+    top, low = np.zeros(k.size), np.zeros(k.size)
+    top[1:], low[1:] = 1.0 / np.tanh(inner[1:]), 1.0 / np.sinh(inner[1:])
+    found = []
+    for factor in (top, low):
+        u = angles.copy()
+        for _ in range(_ROUNDS):
+            waves = np.exp(1j * np.outer(u, k))
+            gap = u + np.real(waves @ (-1j * factor * heights)) - angles
+            u = u - gap / (1.0 + np.real(waves @ (factor * k * heights)))
+            if np.abs(gap).max() < _SETTLED:
+                break
+        found.append(np.exp(1j * np.outer(u, k)))
+    opened = 1.0 + np.real(found[1] @ (low * k * heights))
+    return np.exp(-np.real(found[0] @ heights)), np.real(found[1] @ (1j * k * slides)) / opened
+
+
+def _angle_of(height: Array) -> Array:
+    """x of a surface y, shape (n,)."""
+    n = height.size
+    k, spectrum = np.arange(n // 2 + 1), np.fft.rfft(height)
+    spectrum[1:] *= -1j / np.tanh(np.minimum(k[1:] * height.mean(), _LARGE))
+    spectrum[0] = spectrum[-1] = 0.0
+    return np.asarray(_even(n) + np.fft.irfft(spectrum, n))
+
+
+def levelled(state: Array, volume: float) -> Array:
+    """The same surface, moved out or in until it holds a volume, shape (2n,).
+
+    Parameters
+    ----------
+    state : y and phi, shape (2n,)
+    volume : V, over R^2
+
+    Raises
+    ------
+    ArithmeticError : no such surface near by
+    """
+    found, n = state.copy(), state.size // 2
+    for _ in range(_ROUNDS):
+        flow = _flow(found)
+        gap = volume - np.pi * np.mean((1.0 - np.square(flow.radius)) * flow.opened)
+        found[:n] += gap / (2.0 * np.pi * np.mean(np.square(flow.radius)))
+        if abs(gap) < _SETTLED:
+            return found
+    raise ArithmeticError(f"no surface like this one holds {volume:g}")
