@@ -11,6 +11,7 @@ import cmath
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from enum import StrEnum
 
 import numpy as np
 
@@ -26,6 +27,15 @@ Spinning = Callable[[float], tuple[float, float, float]]
 
 _RELATIVE, _ABSOLUTE = 1e-9, 1e-12
 _LOST = 1e-6  # share of the volume that nothing but a wave that breaks, or wants more nodes, loses
+
+
+class Ended(StrEnum):
+    """Why a course ends."""
+
+    DONE = "done"
+    # Or the nodes do not carry it any more.
+    BROKE = "broke"
+    DRIED = "dried"
 
 
 def ramp(start: float, rate: float = 0.0) -> Spinning:
@@ -255,7 +265,8 @@ class Course:
     moment, momentum : V times each layer's centre of mass and the rate of that, in the layer's frame over R^3
         and the unit, complex, shape (m, l)
     state : at the end
-    ended : why it went no further; empty where it came to its end
+    heat : power of supports and friction, W, shape (m,)
+    ended : why it went no further
     """
 
     time: Array
@@ -264,7 +275,8 @@ class Course:
     moment: Complex
     momentum: Complex
     state: Array
-    ended: str = ""
+    heat: Array
+    ended: Ended
 
 
 def coupled(
@@ -341,33 +353,40 @@ def advance(machine: ExactMachine, begin: Array, stretch: tuple[float, float]) -
         max_step=longest,
         first_step=min(longest, stretch[1] - stretch[0]),
     )
-    rows: list[tuple[float, Array, Array, list[complex], list[complex]]] = []
-    volumes, ended = _volumes(machine, begin), ""
-    while solver.status == "running" and not ended:
+    rows: list[tuple[float, Array, Array, list[complex], list[complex], float]] = []
+    volumes, ended = _volumes(machine, begin), Ended.DONE
+    while solver.status == "running" and ended is Ended.DONE:
         with np.errstate(all="ignore"):
             failed = solver.step()
-            parts = machine.parts(solver.y)
-            answers = [answer(wave) for wave in parts.waves]
-            ended = failed or _broken(machine, parts, volumes)
+            ended = Ended.BROKE if failed else _judged(machine, machine.parts(solver.y), volumes)
+        if ended is Ended.BROKE:
+            break
+        parts, power = machine.parts(solver.y), machine.powers(solver.t, solver.y)
+        answers = [answer(wave) for wave in parts.waves]
         moment, momentum = ([getattr(found, name) for found in answers] for name in ("moment", "momentum"))
-        rows.append((solver.t, parts.place.copy(), parts.rate.copy(), moment, momentum))
-    table = [np.array(column) for column in zip(*rows, strict=True)]
-    shape = len(rows), len(machine.layers)
-    moments = [np.asarray(part, dtype=complex).reshape(shape) for part in table[3:]]
-    return Course(table[0], table[1], table[2], *moments, state=solver.y.copy(), ended=ended)
+        heat = power.support + power.friction
+        rows.append((solver.t, parts.place.copy(), parts.rate.copy(), moment, momentum, heat))
+    return Course(
+        time=np.array([row[0] for row in rows]),
+        place=np.array([row[1] for row in rows]).reshape(-1, n),
+        rate=np.array([row[2] for row in rows]).reshape(-1, n),
+        moment=np.array([row[3] for row in rows], dtype=complex).reshape(len(rows), len(machine.layers)),
+        momentum=np.array([row[4] for row in rows], dtype=complex).reshape(len(rows), len(machine.layers)),
+        state=solver.y.copy(),
+        heat=np.array([row[5] for row in rows]),
+        ended=ended,
+    )
 
 
 def _volumes(machine: ExactMachine, state: Array) -> Array:
     return np.array([invariants(wave).volume for wave in machine.parts(state).waves])
 
 
-def _broken(machine: ExactMachine, parts: Parts, volumes: Array) -> str:
-    """Why the waves of a state are none any more; empty where they are."""
+def _judged(machine: ExactMachine, parts: Parts, volumes: Array) -> Ended:
+    """Whether the waves of a state are waves still."""
     if not (np.isfinite(parts.waves).all() and np.isfinite(parts.place).all()):
-        return "a wave broke"
+        return Ended.BROKE
     if parts.waves[:, : machine.nodes].min(initial=1.0) <= 0.0:
-        return "a wave left a part of its wall dry"
+        return Ended.DRIED
     found = np.array([invariants(wave).volume for wave in parts.waves])
-    if np.abs(found / volumes - 1.0).max(initial=0.0) > _LOST:
-        return f"a wave broke, or wants more than {machine.nodes} nodes: its volume changed"
-    return ""
+    return Ended.BROKE if np.abs(found / volumes - 1.0).max(initial=0.0) > _LOST else Ended.DONE

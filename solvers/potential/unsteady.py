@@ -404,13 +404,13 @@ def laid(radius: Callable[[Array], Array], count: int) -> Surface:
     raise ArithmeticError(f"no strip with {count} nodes for this surface")
 
 
-def seen(state: Array, angles: Array) -> tuple[Array, Array]:
+def seen(state: Array, at: Array) -> tuple[Array, Array]:
     """Radius of the surface, and velocity along the wall, at given angles.
 
     Parameters
     ----------
     state : y and phi, shape (2n,)
-    angles : rad, shape (m,)
+    at : angles, rad, shape (m,)
 
     Returns
     -------
@@ -425,16 +425,26 @@ def seen(state: Array, angles: Array) -> tuple[Array, Array]:
     top[1:], low[1:] = 1.0 / np.tanh(inner[1:]), 1.0 / np.sinh(inner[1:])
     found = []
     for factor in (top, low):
-        u = angles.copy()
+        u = at.copy()
         for _ in range(_ROUNDS):
             waves = np.exp(1j * np.outer(u, k))
-            gap = u + np.real(waves @ (-1j * factor * heights)) - angles
+            gap = u + np.real(waves @ (-1j * factor * heights)) - at
             u = u - gap / (1.0 + np.real(waves @ (factor * k * heights)))
             if np.abs(gap).max() < _SETTLED:
                 break
         found.append(np.exp(1j * np.outer(u, k)))
     opened = 1.0 + np.real(found[1] @ (low * k * heights))
     return np.exp(-np.real(found[0] @ heights)), np.real(found[1] @ (1j * k * slides)) / opened
+
+
+def angles(state: Array) -> Array:
+    """Of the surface's nodes, x, rad, shape (n,).
+
+    Parameters
+    ----------
+    state : y and phi, shape (2n,)
+    """
+    return _angle_of(state[: state.size // 2])
 
 
 def _angle_of(height: Array) -> Array:
@@ -466,3 +476,35 @@ def levelled(state: Array, volume: float) -> Array:
         if abs(gap) < _SETTLED:
             return found
     raise ArithmeticError(f"no surface like this one holds {volume:g}")
+
+
+def tail(state: Array, layer: float) -> float:
+    """Size of the shortest waves that are kept, over that of the largest.
+
+    Parameters
+    ----------
+    state : y and phi, shape (2n,)
+    layer : h_0/R; waves below a thousandth of it count as that high
+    """
+    n = state.size // 2
+    k = np.arange(n // 2 + 1)
+    sizes = k * np.abs(np.fft.rfft(state.reshape(2, n))) * 2.0 / n
+    kept = int(_KEPT * k[-1])
+    last = sizes[:, int(0.9 * kept) : kept + 1].max(axis=1)
+    return float((last / np.maximum(sizes.max(axis=1), 1e-3 * layer)).max())
+
+
+def resampled(state: Array, count: int) -> Array:
+    """The same waves on another number of nodes, the shortest left out where they are fewer.
+
+    Parameters
+    ----------
+    state : y and phi, shape (2n,)
+    count : n, even
+    """
+    n = state.size // 2
+    spectra = np.fft.rfft(state.reshape(2, n)) * (count / n)
+    whole = np.zeros((2, count // 2 + 1), dtype=complex)
+    kept = min(n, count) // 2
+    whole[:, :kept] = spectra[:, :kept]
+    return np.asarray(np.fft.irfft(whole, count).ravel())
