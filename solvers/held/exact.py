@@ -20,8 +20,8 @@ from solvers.runup.state import layer_capture, planes_of
 MOST = 512  # nodes, beyond which a wave that wants more counts as broken
 _DAMPING = 1.0  # of the shortest waves
 _TAIL = 1e-4  # of the waves' sizes in the last of the spectrum, above which nodes are doubled
+_STEP = 1e-6  # tolerance of a step; the shortest waves bound it closer than that
 _BETWEEN = 4  # moments between two steps, at which the axis is told
-_ENDS = {Ended.DONE: Outcome.DONE, Ended.BROKE: Outcome.BROKE, Ended.DRIED: Outcome.DRIED}
 
 
 @dataclass
@@ -170,10 +170,10 @@ def march(
     parts = exact.parts(state)
     parts.place[:], parts.rate[:], parts.waves[:] = moment.coordinates, moment.rate, moment.wave
     while watch.count < numerics.turns:
-        course = advance(exact, state, (0.0, turn))
+        course = advance(exact, state, (0.0, turn), _STEP)
         if course.ended is Ended.BROKE or _rough(exact, course.state):
             if exact.nodes >= MOST or not exact.layers:
-                return _moment(exact, state, moment.spin, moment.layers), _ENDS[course.ended]
+                return _moment(exact, state, moment.spin, moment.layers), Outcome.BROKE
             exact, state = _finer(exact, state)
             watch.forget()
             continue

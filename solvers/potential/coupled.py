@@ -25,7 +25,7 @@ from solvers.rotor.system import RotorSystem
 # Angle of the drum, its speed and the rate of that, at a time: rad, rad/s, rad/s^2.
 Spinning = Callable[[float], tuple[float, float, float]]
 
-_RELATIVE, _ABSOLUTE = 1e-9, 1e-12
+_ABSOLUTE = 1e-3  # of the tolerance
 _LOST = 1e-6  # share of the volume that nothing but a wave that breaks, or wants more nodes, loses
 
 
@@ -324,7 +324,9 @@ def coupled(
     return ExactMachine(heavy, tuple(layers), spin, start, gravity, nodes, damping)
 
 
-def advance(machine: ExactMachine, begin: Array, stretch: tuple[float, float]) -> Course:
+def advance(
+    machine: ExactMachine, begin: Array, stretch: tuple[float, float], tolerance: float = 1e-9
+) -> Course:
     """Take a machine through time, by steps that the fastest of its waves allows.
 
     Parameters
@@ -332,6 +334,7 @@ def advance(machine: ExactMachine, begin: Array, stretch: tuple[float, float]) -
     machine : what moves
     begin : its state, as from `ExactMachine.rest`
     stretch : from when to when, s
+    tolerance : of a step, relative; a thousandth of it of the radius, the unit and so on
 
     Returns
     -------
@@ -348,8 +351,8 @@ def advance(machine: ExactMachine, begin: Array, stretch: tuple[float, float]) -
     longest = (stretch[1] - stretch[0]) / count * (1.0 + 1e-12)
     solver = DOP853(
         *(machine.rates, stretch[0], begin.copy(), stretch[1]),
-        rtol=_RELATIVE,
-        atol=_ABSOLUTE * scale,
+        rtol=tolerance,
+        atol=_ABSOLUTE * tolerance * scale,
         max_step=longest,
         first_step=min(longest, stretch[1] - stretch[0]),
     )

@@ -332,14 +332,15 @@ def answer(state: Array, spin: float = 1.0, friction: float = 0.0, damping: floa
     n, flow, whole = state.size // 2, _flow(state), 2.0 * np.pi
     metric, inner = flow.metric, np.minimum(flow.k * flow.depth, _LARGE)
     climb = -flow.stream_slope / metric
+    square = np.square(flow.radius)
     arms = flow.radius * np.stack((np.cos(flow.angle), np.sin(flow.angle)))
     spectrum = np.fft.rfft(climb)
     spectrum[1:] *= -1j * _coth(flow)
     spectrum[0] = spectrum[-1] = 0.0
     slide = np.fft.irfft(spectrum, n)
-    slide -= np.mean(flow.opened * slide - flow.steep * climb)
+    slide -= (flow.opened @ slide - flow.steep @ climb) / n
     fast, deep = np.square(flow.potential_slope), np.square(flow.stream_slope)
-    rest = -2.0 * spin * flow.stream + 0.5 * np.square(spin * flow.radius)
+    rest = -2.0 * spin * flow.stream + 0.5 * spin**2 * square
     change = slide * flow.potential_slope - 0.5 * (fast - deep) / metric + rest - friction * state[n:]
     above = -0.5 * (fast + deep) / metric + rest
     spectra = np.fft.rfft(np.stack((flow.steep * slide + flow.opened * climb, change, above, *arms)))
@@ -348,7 +349,7 @@ def answer(state: Array, spin: float = 1.0, friction: float = 0.0, damping: floa
     pairs[[0, -1]] *= 0.5
     weight = pairs * flow.k * np.tanh(inner)
     moved = np.real(spectra[3:, None] * spectra[None, 3:].conj()) @ weight
-    volume = 0.5 * whole * np.mean((1.0 - np.square(flow.radius)) * flow.opened)
+    volume = 0.5 * whole / n * ((1.0 - square) @ flow.opened)
     ray = arms[0] + 1j * arms[1]
     kept = np.concatenate((spectra[:2], spectra[3:]))
     kept[:, flow.k > _KEPT * flow.k[-1]] = 0.0
@@ -361,10 +362,8 @@ def answer(state: Array, spin: float = 1.0, friction: float = 0.0, damping: floa
         lever=found[2:],
         force=_wall_force(flow, spectra[2], np.fft.rfft(state[:n])),
         response=volume * np.eye(2) - moved,
-        momentum=complex(-whole * np.mean(ray * flow.stream_slope)),
-        moment=complex(
-            whole * np.mean((1.0 / flow.radius - np.square(flow.radius)) / 3.0 * flow.opened * ray)
-        ),
+        momentum=complex(-whole / n * (ray @ flow.stream_slope)),
+        moment=complex(whole / n * (ray @ ((1.0 / flow.radius - square) * flow.opened)) / 3.0),
     )
 
 
@@ -379,7 +378,7 @@ def _wall_force(flow: _Flow, above: Complex, surface: Complex) -> complex:
     change, sliding, shift, opened = np.fft.irfft(parts, n)
     opened += 1.0
     pressure = -change - 0.5 * np.square(sliding / opened)
-    return complex(2.0 * np.pi * np.mean(pressure * np.exp(1j * (_even(n) + shift)) * opened))
+    return complex(2.0 * np.pi / n * ((pressure * opened) @ np.exp(1j * (_even(n) + shift))))
 
 
 def laid(radius: Callable[[Array], Array], count: int) -> Surface:
