@@ -259,7 +259,9 @@ def run_scene(
     # Next to a speed at which it is not known whether a whirl grows, it is not known either.
     calm = np.interp(refined.speed, machine.speed, np.isnan(whirl.growth)) == 0.0
     steady = refined.stable & calm & ~whirl.inside(refined.speed)
-    refined = replace(refined, stable=np.where(np.isin(refined.model, list(HELD_MODELS)), refined.stable, steady))
+    refined = replace(
+        refined, stable=np.where(np.isin(refined.model, list(HELD_MODELS)), refined.stable, steady)
+    )
     if motion is not None:
         motion = replace(motion, refined_forward=_at_chambers(machine.system, scene.fills, refined))
     loads = _loads(scene, answer, refined, states)

@@ -273,7 +273,8 @@ def _held_facts(result: RunResult) -> list[tuple[str, str]]:
     found = [
         (
             f"Rotor and {waves} held in time",
-            f"{'all' if count == every else f'{count} of'} {every} speeds, {held.cells} {parts} round each wall"
+            f"{'all' if count == every else f'{count} of'} {every} speeds, "
+            f"{held.cells} {parts} round each wall"
             + ("" if math.isnan(error) else f", estimated error at most {percent(error)}"),
         )
     ]
@@ -568,8 +569,8 @@ MODELS = {
     ),
     "potential": (
         "Exact plane waves of any height and any depth on a flow without vorticity, by a conformal map.",
-        "Left out: wall layers, bores and dry walls, surface tension, the liquid's lag; friction is a small force "
-        "on all the liquid that damps waves as the walls do.",
+        "Left out: wall layers, bores and dry walls, surface tension, the liquid's lag; friction is a small "
+        "force on all the liquid that damps waves as the walls do.",
     ),
     "kdv": (
         "One family of weakly nonlinear, dispersive waves that stand still as seen from the whirl.",

@@ -26,7 +26,7 @@ _BETWEEN = 4  # moments between two steps, at which the axis is told
 
 @dataclass
 class _Turning:
-    """What a watch may change: rows of y, of phi, of the coordinates and of their rates, as py-pde has fields.
+    """What a watch may change: rows of y, of phi, of the coordinates and of their rates.
 
     Parameters
     ----------
@@ -65,9 +65,7 @@ def exact_machine(machine: HeldMachine, spin: float, layers: Flags, nodes: int) 
     fills = [fill for fill, rides in zip(machine.fills, layers.tolist(), strict=True) if rides]
     rates = [body_force_rate(fill, machine.friction, spin) for fill in fills]
     gravity = complex(-machine.gravity)
-    return coupled(
-        system, fills, ramp(spin), friction=rates, gravity=gravity, nodes=nodes, damping=_DAMPING
-    )
+    return coupled(system, fills, ramp(spin), friction=rates, gravity=gravity, nodes=nodes, damping=_DAMPING)
 
 
 def begin(machine: HeldMachine, spin: float, nodes: int, motion: Complex, kick: float) -> Moment:
@@ -137,9 +135,7 @@ def _moment(exact: ExactMachine, state: Array, spin: float, layers: Flags) -> Mo
         over = 0.5 * (1.0 - np.square(radius))
         area[j] = layer.radius**2 * over
         momentum[j] = layer.radius**4 * spin * over * (velocity - over)
-    return Moment(
-        spin, parts.place.copy(), parts.rate.copy(), area, momentum, layers, parts.waves.copy()
-    )
+    return Moment(spin, parts.place.copy(), parts.rate.copy(), area, momentum, layers, parts.waves.copy())
 
 
 def require_own_steps(numerics: HoldNumerics) -> None:
@@ -188,9 +184,7 @@ def march(
     return _moment(exact, state, moment.spin, moment.layers), Outcome.DONE
 
 
-def _told(
-    exact: ExactMachine, ends: tuple[Array, Array], course: Course, watch: Watch, turn: float
-) -> bool:
+def _told(exact: ExactMachine, ends: tuple[Array, Array], course: Course, watch: Watch, turn: float) -> bool:
     """Hand a turn to the watch; whether it has seen enough. It may change the state at the end."""
     before, state = ends
     parts, m, count = exact.parts(state), exact.nodes, len(exact.layers)

@@ -206,7 +206,7 @@ class ExactMachine:
             right += layer.plane.T @ given
             left += layer.plane.T @ inertia @ layer.plane
             answers.append(found)
-        return np.linalg.solve(left, right), answers
+        return np.asarray(np.linalg.solve(left, right), dtype=float), answers
 
     def energy(self, state: Array) -> float:
         """Of rotor and layers, J [theory: potential, eq. 27].

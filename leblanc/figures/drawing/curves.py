@@ -273,7 +273,8 @@ def _over_time(result: RunResult) -> tuple[Array, Array]:
     shares = (np.interp(curve.speed, result.speed[order], (end / mean)[order])
               for end in (held.least, held.largest))  # fmt: skip
     least, largest = (
-        np.where(np.isin(curve.model, list(HELD_MODELS)), share * curve.amplitude * MM, np.nan) for share in shares
+        np.where(np.isin(curve.model, list(HELD_MODELS)), share * curve.amplitude * MM, np.nan)
+        for share in shares
     )
     return least, largest
 

@@ -110,7 +110,13 @@ class Held:
             "state_down": flags(
                 over, down, " ".join(MOTIONS), "state of the motion", "while the speed falls"
             ),
-            "held_solver": var((), np.array(self.solver), "1", "solver", "that held the motions, of py-pde unless it is dop853"),
+            "held_solver": var(
+                (),
+                np.array(self.solver),
+                "1",
+                "solver",
+                "that held the motions, of py-pde unless it is dop853",
+            ),
             **reasons,
         }
 

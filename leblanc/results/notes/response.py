@@ -199,6 +199,11 @@ def held_motions(held: Held, speed: Array) -> list[Note]:
         f"Rotor and {waves} held in time at {count} of {speed.size} speeds, {held.cells} {parts} round each "
         f"wall, {size}."
     )
+    if held.model == "potential":
+        text += (
+            " Friction of the walls is a small force on all the liquid, which damps waves as they do: nothing "
+            "lags."
+        )
     if cycles:
         text += f" Limit cycles at {cycles}, {_between(speed[held.limit_cycle])}."
     if apart:
@@ -301,7 +306,9 @@ def against_spin(share: float, speed: float, held: Held | None = None) -> Note:
     by = "the liquid answers that part by linear theory"
     if held is not None:
         rest = f"; elsewhere {by}" if not held.at.all() else ""
-        by = f"where motions were held in time the {HELD_MODELS[held.model][0]} answer that part as well{rest}"
+        by = (
+            f"where motions were held in time the {HELD_MODELS[held.model][0]} answer that part as well{rest}"
+        )
     text = f"Up to {share:.2g} of the orbit goes against the spin, at {in_rpm(speed)}; {by}."
     return Note(RunCode.AGAINST_SPIN, {"share": share, "speed": speed}, text)
 

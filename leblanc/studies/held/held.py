@@ -74,7 +74,10 @@ def hold_answer(
     motions = dict(zip(steady.speed.tolist(), states.up, strict=True))
     answer = _placed(began.answer, every.at(np.arange(rows.size)), rows)
     models, error = choice.models.astype("U9"), choice.error.copy()
-    models[rows], error[rows] = choice.held_model, held.error[rows] + _left_out(machine, began.answer.at(rows))
+    models[rows], error[rows] = (
+        choice.held_model,
+        held.error[rows] + _left_out(machine, began.answer.at(rows)),
+    )
     kept = every.at(np.arange(rows.size, total)) if began.at.all() else began.refined.at(_far(began))
     return replace(choice, models=models, error=error), answer, kept, held, motions
 
@@ -234,7 +237,9 @@ def _in_range(machine: Prepared, states: tuple[HeldState, ...]) -> Flags:
                 continue
             area = state.moment.area[next(rows)] / radius**2
             deepest = 1.0 - float(np.sqrt(max(1.0 - 2.0 * area.max(), 0.0)))
-            kept &= (exact or fill.depth <= _LONG * radius) and deepest * radius <= radius - fill.chamber.inner_radius
+            kept &= (
+                exact or fill.depth <= _LONG * radius
+            ) and deepest * radius <= radius - fill.chamber.inner_radius
         found.append(kept)
     return np.array(found, dtype=bool)
 

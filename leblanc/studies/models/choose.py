@@ -219,7 +219,9 @@ def _check_exact(scene: Scene) -> None:
     if scene.model.liquid != "potential":
         return
     if any(fill.uneven and fill.volume > 0.0 for fill in scene.fills):
-        raise InputError("model.liquid", "potential", "auto, fem or long_wave where baffles stand in the liquid")
+        raise InputError(
+            "model.liquid", "potential", "auto, fem or long_wave where baffles stand in the liquid"
+        )
     if scene.model.friction.law is FrictionLaw.QUADRATIC:
         allowed = "none, linear, stokes or wall for exact waves, which take the drag on small waves"
         raise InputError("model.friction", "quadratic", allowed)
@@ -242,7 +244,7 @@ def held_at(scene: Scene, choice: Choice, growth: Array) -> Flags:
     """At which speeds the wave is held in time, shape (n,).
 
     Auto needs it where no steady model is known to be within the tolerance, though the liquid rides with the
-    drum, and where a whirl grows by itself; exact waves need it where gravity acts across the axis, and there.
+    drum, and where a whirl grows by itself; exact waves are held there, and with gravity across the axis.
 
     Parameters
     ----------

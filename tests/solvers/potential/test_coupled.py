@@ -211,7 +211,7 @@ def test_small_motions_are_linear_theory() -> None:
 
 
 def test_a_kick_grows_as_linear_theory_has_it() -> None:
-    """In time: the shares of the four motions stay what they are, by their growth and speed of linear theory."""
+    """In time: the four motions keep their shares, by growth and speed of linear theory."""
     fill, rotor, turn = filled(0.1), jeffcott(damping=20.0).system(), 2.0 * math.pi / SPIN
     machine = coupled(rotor, [fill], ramp(SPIN), nodes=32)
     values, state = modes([fill], rotor, 0.0), machine.rest()
@@ -300,7 +300,7 @@ def test_the_energy_budget_closes() -> None:
 
 
 def test_a_changing_spin_leaves_liquid_without_friction_alone() -> None:
-    """The wall is a circle: an even layer stays where it was, whatever the drum does, and so does the frame."""
+    """The wall is a circle: an even layer stays where it was, whatever the drum does."""
     machine = coupled(jeffcott().system(), [filled(0.2)], ramp(SPIN, 2000.0), nodes=16)
     end = machine.parts(advance(machine, machine.rest(), (0.0, 0.1)).state)
     np.testing.assert_allclose(end.waves, machine.parts(machine.rest()).waves, atol=1e-15)
