@@ -201,8 +201,8 @@ def held_motions(held: Held, speed: Array) -> list[Note]:
     )
     if held.model == "potential":
         text += (
-            " Friction of the walls is a small force on all the liquid, which damps waves as they do: nothing "
-            "lags."
+            " Friction of the walls is a small force on all the liquid, which damps waves as they do: "
+            "nothing lags."
         )
     if cycles:
         text += f" Limit cycles at {cycles}, {_between(speed[held.limit_cycle])}."
