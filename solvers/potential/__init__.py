@@ -2,5 +2,5 @@
 
 A conformal map turns the layer into a strip (`strip`); `steady` solves for waves that stand in the frame of
 their whirl, free ones among them, and follows them in any parameter, folds included; `unsteady` takes any
-surface through time.
+surface through time, and `coupled` takes layers through time with a rotor.
 """

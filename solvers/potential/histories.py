@@ -19,7 +19,7 @@ from meshes.errors import InputError, require_positive
 from solvers.liquid_history import LayerFilm, LayerHistory
 from solvers.liquid_model import Whirl, grown
 from solvers.potential.in_time import Moment, Steps, WaveState, course
-from solvers.potential.unsteady import Invariants, Push, Surface, depth_at, force, invariants, node_angles, still
+from solvers.potential.unsteady import Invariants, Push, Surface, force, invariants, node_angles, seen, still
 
 Progress = Callable[[float], object] | None
 
@@ -149,12 +149,12 @@ def film(
     begin, radius = _start(fill, steps), fill.chamber.radius
     interval = periods * whirl.period / frames
     theta = 2.0 * math.pi * (np.arange(_ANGLES) + 0.5) / _ANGLES
-    pictures = [depth_at(begin, theta)]
+    pictures = [1.0 - seen(begin.state, theta)[0]]
     times = interval * np.arange(1, frames)
     for moment in course(begin, times * whirl.spin, whirl_push(fill, whirl), steps):
         if moment.state is WaveState.BROKEN:
             break
-        pictures.append(depth_at(moment.surface, theta))
+        pictures.append(1.0 - seen(moment.surface.state, theta)[0])
         if progress is not None:
             progress(len(pictures) / frames)
     time = interval * np.arange(len(pictures))
@@ -163,7 +163,7 @@ def film(
 
 
 def whirl_push(fill: Fill, whirl: Whirl) -> Push:
-    """The force f of a whirl and of gravity across the axis [theory: potential, eq. 21].
+    """The force f of a whirl and of gravity across the axis [theory: potential, eq. 25].
 
     Parameters
     ----------
@@ -308,7 +308,7 @@ def _history(fill: Fill, whirl: Whirl, last: Moment, reason: str, means: _Means)
     table = np.array(means.rows, dtype=np.complex128).reshape(len(means.rows), 6)
     by_momentum, by_pressure, centre, rotation, deepest, least = table.T
     full = math.pi * whirl.amplitude / radius * (whirl.speed / spin) ** 2 or math.inf
-    theta = np.mod(node_angles(last.surface) - whirl.slip / spin * last.time + math.pi, 2.0 * math.pi) - math.pi
+    theta = np.mod(node_angles(last.surface.state) - whirl.slip / spin * last.time + math.pi, 2.0 * math.pi) - math.pi
     order = np.argsort(theta)
     periods = LayerHistory(
         time=(np.arange(len(means.rows)) + 0.5) * whirl.period,

@@ -2,7 +2,7 @@
 
 A wave is `resolved`, or carries `short_waves` that its nodes do not resolve, or is `broken`. Its spectrum
 alone never says that it is broken: short waves fill it while the crest may be falling. Its crest does, where
-the liquid is nearly as fast as the crest itself, and a surface that overhangs [theory: potential, eq. 23].
+the liquid is nearly as fast as the crest itself, and a surface that overhangs [theory: potential, eq. 29].
 """
 
 from __future__ import annotations
@@ -16,9 +16,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy import fft
 
-from meshes.arrays import Array, Complex
+from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative
-from solvers.potential.unsteady import FEWEST, LARGE, Push, Surface, finer, invariants, rates, wave_numbers
+from solvers.potential.unsteady import (
+    FEWEST,
+    LARGE,
+    Push,
+    Surface,
+    invariants,
+    rates,
+    resampled,
+    tail,
+    wave_numbers,
+)
 
 if TYPE_CHECKING:
     from scipy.integrate import DOP853
@@ -26,9 +36,7 @@ if TYPE_CHECKING:
 _RELATIVE, _ABSOLUTE = 1e-10, 1e-13
 # Tail of a spectrum at which nodes are doubled, and above which it is not resolved.
 DOUBLED, RESOLVED = 1e-8, 1e-6
-# What counts as the largest coefficient at least, over the depth: rest has none.
-_FLOOR = 1e-3
-# A crest at this number that fills its spectrum to this much breaks [theory: potential, eq. 23].
+# A crest at this number that fills its spectrum to this much breaks [theory: potential, eq. 29].
 BREAKING, FILLED = 0.65, 1e-3
 # Share of the volume that no sound wave loses; nothing but (17) keeps it.
 LOST = 1e-6
@@ -139,8 +147,8 @@ def course(
     A moment at each time. A wave that breaks comes last, as it was found, and tells why.
     """
     steps = steps or Steps()
-    while begin.height.size < steps.nodes:
-        begin = finer(begin)
+    if begin.height.size < steps.nodes:
+        begin = _surface(resampled(begin.state, steps.nodes))
     change = _changes(push, steps)
     volume = invariants(begin.state).volume
     solver, due = _solver(change, begin.state, 0.0, times[-1]), 0
@@ -164,8 +172,7 @@ def course(
             yield _moment(times[due], reached, state, extremes)
             due += 1
         if now.tail > DOUBLED and 2 * nodes <= steps.most and due < times.size:
-            doubled = finer(_surface(solver.y))
-            solver = _solver(change, doubled.state, solver.t, times[-1])
+            solver = _solver(change, resampled(solver.y, 2 * nodes), solver.t, times[-1])
 
 
 def advance(
@@ -183,7 +190,7 @@ def advance(
 
 
 def judged(now: Watch, nodes: int, most: int) -> tuple[WaveState, str]:
-    """What is known of a wave, and why it is broken or nothing [theory: potential, eq. 23].
+    """What is known of a wave, and why it is broken or nothing [theory: potential, eq. 29].
 
     Parameters
     ----------
@@ -211,8 +218,7 @@ def watched(state: Array, change: Array, volume: float) -> Watch:
     volume : that it began with, over R^2
     """
     n = state.size // 2
-    height, potential = fft.rfft(state.reshape(2, n))
-    waves, depth = wave_numbers(n), float(state[:n].mean())
+    height, waves, depth = fft.rfft(state[:n]), wave_numbers(n), float(state[:n].mean())
     flux = np.concatenate(([0.0], waves.k[1:] / np.tanh(np.minimum(waves.k[1:] * depth, LARGE))))
     opened, steep = fft.irfft(np.stack((flux * height, 1j * waves.odd * height)), n)
     opened += 1.0
@@ -227,15 +233,8 @@ def watched(state: Array, change: Array, volume: float) -> Watch:
         crest_number=_crest_number(state, change) if sharp else 0.0,
         slope=float(np.arctan2(np.abs(steep), opened).max()),
         drift=abs(found / volume - 1.0),
-        tail=_tail(height, potential, waves.kept, layer),
+        tail=tail(state, layer),
     )
-
-
-def _tail(height: Complex, potential: Complex, kept: int, layer: float) -> float:
-    """Of the waves that are kept k |Y_k| and k |phi_k|, in their last tenth over the largest."""
-    size = np.arange(kept) * np.abs(np.stack((height, potential))[:, :kept]) / (height.size - 1)
-    least = _FLOOR * layer
-    return float((size[:, -(kept // 10) :].max(axis=1) / np.maximum(size.max(axis=1), least)).max())
 
 
 def _crest_number(state: Array, change: Array) -> float:
@@ -270,7 +269,7 @@ def _crest_number(state: Array, change: Array) -> float:
 
 
 def carried(acceleration: Callable[[float], complex]) -> Push:
-    """The force f of a drum whose axis moves anyhow, while it spins anyhow [theory: potential, eq. 21].
+    """The force f of a drum whose axis moves anyhow, while it spins anyhow [theory: potential, eq. 25].
 
     Parameters
     ----------

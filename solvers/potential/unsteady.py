@@ -1,8 +1,8 @@
 """The exact wave in time: rates of change of its surface, the force that it exerts, what it conserves.
 
-On even nodes all round the drum, by Fourier transforms [theory: potential, eq. 16-22]. Lengths over R, times
+On even nodes all round the drum, by Fourier transforms [theory: potential, eq. 16-26]. Lengths over R, times
 in 1/Omega, with the spin Omega that the liquid had when it was at rest in its drum. Forces are seen in the
-frame that turns at that spin for ever, whatever the drum does later [theory: potential, eq. 21]; with f = 0
+frame that turns at that spin for ever, whatever the drum does later [theory: potential, eq. 25]; with f = 0
 volume, energy and angular momentum stay. `solvers.potential.in_time` takes a wave through time.
 """
 
@@ -25,6 +25,9 @@ from solvers.potential.strip import moved, nodes
 KEPT = 2.0 / 3.0
 LARGE = 350.0  # k K beyond which tanh is 1 and 1/cosh nothing
 FEWEST = 16
+# What counts as the largest wave at least, over the depth.
+_LEAST = 1e-3
+_ROUNDS, _SETTLED = 200, 1e-14  # of the angles of a surface of a given shape
 
 Push = Callable[[float], complex]
 
@@ -174,21 +177,6 @@ def started(wave: SteadyWave, slip: float, count: int) -> Surface:
     return Surface(height, np.fft.irfft(spectrum, count))
 
 
-def finer(surface: Surface) -> Surface:
-    """The same wave on twice as many nodes, every other one of which was there before.
-
-    Parameters
-    ----------
-    surface : a wave
-    """
-    n = surface.height.size
-    spectrum = fft.rfft(surface.state.reshape(2, n))
-    # The shortest wave is a cosine, half of it at each end of the longer spectrum.
-    spectrum[:, -1] *= 0.5
-    height, potential = 2.0 * fft.irfft(spectrum, 2 * n)
-    return Surface(height, potential)
-
-
 def rates(state: Array, push: complex, damping: float = 0.0, friction: float = 0.0) -> Array:
     """Rates of change of a surface [theory: potential, eq. 16-18].
 
@@ -197,33 +185,57 @@ def rates(state: Array, push: complex, damping: float = 0.0, friction: float = 0
     state : y and phi, shape (2n,)
     push : f, minus the acceleration of the axis, over Omega^2 R
     damping : of the shortest waves that are kept, over Omega; falls with the eighth power of the wave number
-    friction : k of a body force -k grad phi on the liquid, over Omega [theory: potential, eq. 22]
+    friction : k of a body force -k grad phi on the liquid, over Omega [theory: potential, eq. 26]
 
     Returns
     -------
     Shape (2n,)
     """
-    n = state.size // 2
     flow = _flow(state)
-    waves = flow.waves
-    metric = flow.metric
+    change = _moved(flow, 1.0)
+    if push:
+        change[1] += flow.radius * (push.real * np.cos(flow.angle) + push.imag * np.sin(flow.angle))
+    spectra = _limited(fft.rfft(change), flow, damping, friction)
+    return np.asarray(fft.irfft(spectra, state.size // 2).ravel())
+
+
+def _moved(flow: _Flow, spin: float) -> Array:
+    """Rates of y and phi without f or friction, shape (2, n) [theory: potential, eq. 16-18]."""
+    n, metric = flow.radius.size, flow.metric
     climb = -flow.stream_slope / metric
     slide = fft.irfft(-1j * flow.over * fft.rfft(climb), n)
     # The mean that keeps x - u without one.
     slide -= (flow.opened @ slide - flow.steep @ climb) / n
-    both = np.empty((2, n))
-    both[0] = flow.steep * slide + flow.opened * climb
+    found = np.empty((2, n))
+    found[0] = flow.steep * slide + flow.opened * climb
     inner = flow.potential_slope * flow.potential_slope - flow.stream_slope * flow.stream_slope
-    both[1] = slide * flow.potential_slope - 0.5 * inner / metric + _pull(flow, push)
-    change = fft.rfft(both)
-    change[:, waves.kept :] = 0.0
-    change[1, 0] = 0.0
+    found[1] = slide * flow.potential_slope - 0.5 * inner / metric + _field(flow, spin)
+    return found
+
+
+def _fixed(flow: _Flow, spin: float) -> Array:
+    """Rate of phi at a fixed place of the surface without f, shape (n,)."""
+    square = flow.potential_slope * flow.potential_slope + flow.stream_slope * flow.stream_slope
+    return np.asarray(-0.5 * square / flow.metric + _field(flow, spin))
+
+
+def _field(flow: _Flow, spin: float) -> Array:
+    """- 2 psi + r^2/2 at the surface."""
+    return np.asarray(0.5 * spin**2 * flow.radius * flow.radius - 2.0 * spin * flow.stream)
+
+
+def _limited(spectra: Complex, flow: _Flow, damping: float, friction: float) -> Complex:
+    """Rates of y, phi and any more of phi as waves, in place: those that are kept, damped."""
+    kept = flow.waves.kept
+    spectra[:, kept:] = 0.0
+    spectra[1:, 0] = 0.0
     if damping > 0.0:
-        change[0, : waves.kept] -= damping * waves.short * flow.surface[: waves.kept]
-        change[1, : waves.kept] -= damping * waves.short * flow.potential[: waves.kept]
+        short = damping * flow.waves.short
+        spectra[0] -= np.pad(short * flow.surface[:kept], (0, spectra.shape[1] - kept))
+        spectra[1] -= np.pad(short * flow.potential[:kept], (0, spectra.shape[1] - kept))
     if friction > 0.0:
-        change[1, 1 : waves.kept] -= friction * flow.potential[1 : waves.kept]
-    return np.asarray(fft.irfft(change, n).ravel())
+        spectra[1, 1:kept] -= friction * flow.potential[1:kept]
+    return spectra
 
 
 def force(state: Array, push: complex, friction: float = 0.0) -> complex:
@@ -232,106 +244,255 @@ def force(state: Array, push: complex, friction: float = 0.0) -> complex:
     Parameters
     ----------
     state, push : as for `rates`
-    friction : k as for `rates`; the drum holds the body force that it stands for [theory: potential, eq. 22]
+    friction : k as for `rates`; the drum holds the body force that it stands for [theory: potential, eq. 26]
     """
-    n = state.size // 2
     flow = _flow(state)
-    square = np.square(flow.potential_slope) + np.square(flow.stream_slope)
-    above = fft.rfft(-0.5 * square / flow.metric + _pull(flow, push))
-    inner = np.minimum(flow.waves.k * flow.depth, LARGE)
-    change = fft.irfft(above / np.cosh(inner), n)
-    potential, angle, opened = _wall(flow)
-    sliding = fft.irfft(1j * flow.waves.odd * potential, n)
+    along = flow.radius * (push.real * np.cos(flow.angle) + push.imag * np.sin(flow.angle))
+    by_pressure = _wall_force(flow, fft.rfft(_fixed(flow, 1.0) + along), push)
+    return by_pressure + friction * _momentum(flow) if friction else by_pressure
+
+
+def _wall_force(flow: _Flow, above: Complex, push: complex) -> complex:
+    """Sum of the pressure on the wall; `above`: coefficients of the rate of phi at the surface."""
+    n, k = flow.radius.size, flow.waves.k
+    inner = np.minimum(k * flow.depth, LARGE)
+    near, over = 1.0 / np.cosh(inner), np.concatenate(([0.0], 1.0 / np.sinh(inner[1:-1]), [0.0]))
+    parts = np.stack(
+        (above * near, 1j * flow.waves.odd * flow.potential * near, -1j * over * flow.surface,
+         k * over * flow.surface)
+    )  # fmt: skip
+    change, sliding, shift, opened = fft.irfft(parts, n)
+    opened += 1.0
+    angle = flow.waves.angle + shift
     along = push.real * np.cos(angle) + push.imag * np.sin(angle)
     pressure = -change - 0.5 * np.square(sliding / opened) + along
-    by_pressure = complex(2.0 * np.pi * np.mean(pressure * np.exp(1j * angle) * opened))
-    return by_pressure + friction * _momentum(flow, state[n:]) if friction else by_pressure
+    return complex(2.0 * np.pi / n * ((pressure * opened) @ np.exp(1j * angle)))
 
 
-def invariants(state: Array) -> Invariants:
+def _momentum(flow: _Flow) -> complex:
+    """P [theory: potential, eq. 26]."""
+    ray = flow.radius * np.exp(1j * flow.angle)
+    return complex(-2.0 * np.pi * np.mean(ray * flow.stream_slope))
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a layer does under any force: its rates and its own force are straight lines of f.
+
+    Parameters
+    ----------
+    still : rates without f, shape (2n,)
+    lever : rates of phi for f = 1 and f = i, shape (2, n)
+    force : on the drum by the pressure without f, complex
+    response : symmetric matrix that f adds to it with, shape (2, 2)
+    momentum : P, the liquid's in its frame, complex
+    moment : V times the centre of mass, complex
+    """
+
+    still: Array
+    lever: Array
+    force: complex
+    response: Array
+    momentum: complex
+    moment: complex
+
+    def rates(self, push: complex) -> Array:
+        """Rates under a force f, shape (2n,).
+
+        Parameters
+        ----------
+        push : f, as for `rates`
+        """
+        found = self.still.copy()
+        found[self.lever.shape[1] :] += push.real * self.lever[0] + push.imag * self.lever[1]
+        return found
+
+
+def answer(state: Array, spin: float = 1.0, friction: float = 0.0, damping: float = 0.0) -> Answer:
+    """Rates and force of a layer under any force at once [theory: potential, eq. 21-23].
+
+    Parameters
+    ----------
+    state, damping, friction : as for `rates`; friction turns the drum's pressure by nothing
+    spin : of the frame in which the flow has no vorticity, over the unit of the spin
+    """
+    n, flow, whole = state.size // 2, _flow(state), 2.0 * np.pi
+    arms = flow.radius * np.stack((np.cos(flow.angle), np.sin(flow.angle)))
+    spectra = fft.rfft(np.concatenate((_moved(flow, spin), arms, _fixed(flow, spin)[None])))
+    # Twice the share of a pair of waves; the mean and the shortest have one each.
+    pairs = np.full(flow.waves.k.size, 2.0 * whole / n**2)
+    pairs[[0, -1]] *= 0.5
+    weight = pairs * flow.waves.k * np.tanh(np.minimum(flow.waves.k * flow.depth, LARGE))
+    moved = np.real(spectra[2:4, None] * spectra[None, 2:4].conj()) @ weight
+    square = flow.radius * flow.radius
+    volume = 0.5 * whole / n * ((1.0 - square) @ flow.opened)
+    outward = _wall_force(flow, spectra[4], 0j)
+    found = fft.irfft(_limited(spectra[:4], flow, damping, friction), n)
+    return Answer(
+        still=found[:2].ravel(),
+        lever=found[2:],
+        force=outward,
+        response=volume * np.eye(2) - moved,
+        momentum=_momentum(flow),
+        moment=_moment(flow),
+    )
+
+
+def _moment(flow: _Flow) -> complex:
+    """V times the centre of mass [theory: potential, eq. 20]."""
+    third = (1.0 - flow.radius * flow.radius * flow.radius) / 3.0
+    return complex(2.0 * np.pi * np.mean(third * flow.opened * np.exp(1j * flow.angle)))
+
+
+def invariants(state: Array, spin: float = 1.0) -> Invariants:
     """Volume, energy, angular momentum and first moments [theory: potential, eq. 20].
 
     Parameters
     ----------
     state : y and phi, shape (2n,)
+    spin : of the frame in which the flow has no vorticity, over the unit of the spin; 0 leaves phi alone
     """
     n, flow, whole = state.size // 2, _flow(state), 2.0 * np.pi
     square, phi = np.square(flow.radius), state[n:]
     rest = whole * np.mean((1.0 - square * square) * flow.opened)
-    swing = np.mean((1.0 - square * flow.radius) / 3.0 * flow.opened * np.exp(1j * flow.angle))
     volume = 0.5 * whole * np.mean((1.0 - square) * flow.opened)
     kinetic = -0.5 * whole * np.mean(phi * flow.stream_slope)
     turning = -whole * np.mean(phi * square * flow.steep)
     return Invariants(
         volume=float(volume),
-        energy=float(kinetic - 0.125 * rest),
-        angular_momentum=float(turning + 0.25 * rest),
-        centre=complex(whole * swing),
-        momentum=_momentum(flow, phi),
+        energy=float(kinetic - 0.125 * spin**2 * rest),
+        angular_momentum=float(turning + 0.25 * spin * rest),
+        centre=_moment(flow),
+        momentum=_momentum(flow),
         kinetic=float(kinetic),
         turning=float(turning),
         rotation=float(-whole * np.mean(phi * flow.steep) / volume),
     )
 
 
-def node_angles(surface: Surface) -> Array:
+def laid(radius: Callable[[Array], Array], count: int) -> Surface:
+    """Liquid at rest in the drum under a surface of a given shape [theory: potential, eq. 2].
+
+    Parameters
+    ----------
+    radius : of the surface over R at some angles, shape as theirs, above 0, below 1; its waves are lower than
+        the layer is deep
+    count : n, even
+
+    Raises
+    ------
+    ArithmeticError : the angles did not settle: the surface is too steep for these nodes
+    """
+    angle = wave_numbers(count).angle
+    for _ in range(_ROUNDS):
+        height = -np.log(radius(angle))
+        before, angle = angle, node_angles(np.concatenate((height, np.zeros(count))))
+        if np.abs(angle - before).max() < _SETTLED:
+            return Surface(height, np.zeros(count))
+    raise ArithmeticError(f"no strip with {count} nodes for this surface")
+
+
+def levelled(state: Array, volume: float) -> Array:
+    """The same surface, moved out or in until it holds a volume, shape (2n,).
+
+    Parameters
+    ----------
+    state : y and phi, shape (2n,)
+    volume : V, over R^2
+
+    Raises
+    ------
+    ArithmeticError : no such surface near by
+    """
+    found, n = state.copy(), state.size // 2
+    for _ in range(_ROUNDS):
+        flow = _flow(found)
+        gap = volume - np.pi * np.mean((1.0 - np.square(flow.radius)) * flow.opened)
+        found[:n] += gap / (2.0 * np.pi * np.mean(np.square(flow.radius)))
+        if abs(gap) < _SETTLED:
+            return found
+    raise ArithmeticError(f"no surface like this one holds {volume:g}")
+
+
+def tail(state: Array, layer: float) -> float:
+    """Size of the shortest waves that are kept, over that of the largest: k |Y_k| and k |phi_k|.
+
+    Parameters
+    ----------
+    state : y and phi, shape (2n,)
+    layer : h_0/R; waves below a thousandth of it count as that high: a layer at rest has none
+    """
+    n = state.size // 2
+    kept = wave_numbers(n).kept
+    sizes = np.arange(kept) * np.abs(fft.rfft(state.reshape(2, n))[:, :kept]) * 2.0 / n
+    last = sizes[:, -(kept // 10) :].max(axis=1)
+    return float((last / np.maximum(sizes.max(axis=1), _LEAST * layer)).max())
+
+
+def resampled(state: Array, count: int) -> Array:
+    """The same waves on another number of nodes, the shortest left out where they are fewer.
+
+    Parameters
+    ----------
+    state : y and phi, shape (2n,)
+    count : n, even
+
+    Returns
+    -------
+    Shape (2 count,)
+    """
+    n = state.size // 2
+    spectra = fft.rfft(state.reshape(2, n)) * (count / n)
+    whole = np.zeros((2, count // 2 + 1), dtype=complex)
+    kept = min(n, count) // 2
+    whole[:, :kept] = spectra[:, :kept]
+    # The shortest wave is a cosine, half of it at each end of a longer spectrum.
+    whole[:, kept] = spectra[:, kept].real * (0.5 if count > n else 1.0 if count == n else 0.0)
+    return np.asarray(fft.irfft(whole, count).ravel())
+
+
+def node_angles(state: Array) -> Array:
     """Angles of the nodes in the frame of the spin, rad, shape (n,).
 
     Parameters
     ----------
-    surface : a wave
+    state : y and phi, shape (2n,)
     """
-    return _flow(surface.state).angle
+    return _flow(state).angle
 
 
-def depth_at(surface: Surface, theta: Array) -> Array:
-    """Depth over R at angles in the frame of the spin, of a surface that does not overhang.
+def seen(state: Array, at: Array) -> tuple[Array, Array]:
+    """Radius of the surface, and velocity along the wall, at given angles; a surface that does not overhang.
 
     Parameters
     ----------
-    surface : a wave
-    theta : angles, rad, shape (m,)
+    state : y and phi, shape (2n,)
+    at : angles in the frame of the spin, rad, shape (m,)
 
     Returns
     -------
-    Shape (m,)
+    r/R and the velocity over R times the unit of the spin, shape (m,) each
     """
-    n = surface.height.size
-    flow = _flow(surface.state)
-    k = flow.waves.k
-    shift = -1j * flow.over * flow.surface
-    # From between the nodes; Newton's method then finds the place itself.
-    places = np.concatenate((flow.angle, flow.angle[:1] + 2.0 * np.pi))
-    u = np.interp(theta, places, np.concatenate((flow.waves.angle, [2.0 * np.pi])), period=2.0 * np.pi)
-    for _ in range(6):
-        wave = np.exp(1j * np.outer(u, k))
-        off = u + _summed(wave, shift, n) - theta
-        u -= (np.mod(off + np.pi, 2.0 * np.pi) - np.pi) / (1.0 + _summed(wave, 1j * k * shift, n))
-    return np.asarray(-np.expm1(-_summed(np.exp(1j * np.outer(u, k)), flow.surface, n)))
-
-
-def _summed(wave: Complex, spectrum: Complex, count: int) -> Array:
-    """A real function of this spectrum on so many nodes where e^{iku} is `wave`, shape (m, n/2 + 1)."""
-    part = wave @ spectrum
-    return np.asarray((2.0 * part.real - spectrum[0].real - (wave[:, -1] * spectrum[-1]).real) / count)
-
-
-def _wall(flow: _Flow) -> tuple[Complex, Array, Array]:
-    """At the wall: the potential's spectrum, the angle, x_u."""
-    n, k = flow.radius.size, flow.waves.k
-    inner = np.minimum(k * flow.depth, LARGE)
-    over = np.concatenate(([0.0], 1.0 / np.sinh(inner[1:])))
-    angle = flow.waves.angle + fft.irfft(-1j * np.where(flow.waves.odd > 0.0, over, 0.0) * flow.surface, n)
-    opened = 1.0 + fft.irfft(k * over * flow.surface, n)
-    return flow.potential / np.cosh(inner), angle, opened
-
-
-def _momentum(flow: _Flow, phi: Array) -> complex:
-    """P, from the potential at wall and surface [theory: potential, eq. 21]."""
-    potential, angle, opened = _wall(flow)
-    at_wall = fft.irfft(potential, phi.size) * np.exp(1j * angle) * opened
-    at_surface = phi * flow.radius * np.exp(1j * flow.angle) * (flow.opened + 1j * flow.steep)
-    return complex(2.0 * np.pi * np.mean(at_wall - at_surface))
+    flow = _flow(state)
+    k, inner = flow.waves.k[1:-1], np.minimum(flow.waves.k[1:-1] * flow.depth, LARGE)
+    n = flow.radius.size
+    heights, slides = 2.0 / n * flow.surface[1:-1], 2.0 / n * flow.potential[1:-1] / np.cosh(inner)
+    found = []
+    for factor, places in ((1.0 / np.tanh(inner), flow.angle), (1.0 / np.sinh(inner), flow.waves.angle)):
+        ends = np.concatenate((places, places[:1] + 2.0 * np.pi))
+        # From between the nodes; Newton's method then finds the place itself.
+        u = np.interp(at, ends, np.concatenate((flow.waves.angle, [2.0 * np.pi])), period=2.0 * np.pi)
+        for _ in range(_ROUNDS):
+            waves = np.exp(1j * np.outer(u, k))
+            gap = u + np.real(waves @ (-1j * factor * heights)) - at
+            gap = np.mod(gap + np.pi, 2.0 * np.pi) - np.pi
+            if np.abs(gap).max() < _SETTLED:
+                break
+            u = u - gap / (1.0 + np.real(waves @ (factor * k * heights)))
+        found.append(waves)
+    opened = 1.0 + np.real(found[1] @ (k / np.sinh(inner) * heights))
+    height = flow.depth + np.real(found[0] @ heights)
+    return np.exp(-height), np.real(found[1] @ (1j * k * slides)) / opened
 
 
 def _flow(state: Array) -> _Flow:
@@ -359,12 +520,3 @@ def _flow(state: Array) -> _Flow:
         *(waves, depth, over, surface, potential, np.exp(-state[:n])),
         *(shift, opened, steep, potential_slope, stream, stream_slope),
     )
-
-
-def _pull(flow: _Flow, push: complex) -> Array:
-    """- 2 psi + r^2/2 + f.x at the surface."""
-    found = flow.radius * (0.5 * flow.radius) - 2.0 * flow.stream
-    if push:
-        angle = flow.angle
-        found += flow.radius * (push.real * np.cos(angle) + push.imag * np.sin(angle))
-    return np.asarray(found)

@@ -193,7 +193,7 @@ def test_crest_number_of_a_wave_that_changes() -> None:
     for time in (1.0, 1.0 + step, 1.0 + 2.0 * step):
         surface = advance(begin, time, steps=Steps(256, 256)).surface
         near = np.arange(-3, 4) + int(np.argmax(surface.height))
-        angle = np.unwrap(node_angles(surface)[near % 256])
+        angle = np.unwrap(node_angles(surface.state)[near % 256])
         middle = angle[3]
         height = np.polynomial.Polynomial.fit(angle - middle, surface.height[near % 256], 6)
         potential = np.polynomial.Polynomial.fit(angle - middle, surface.potential[near % 256], 6)

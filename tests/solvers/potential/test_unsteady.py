@@ -15,12 +15,12 @@ from solvers.potential.in_time import Steps, advance
 from solvers.potential.unsteady import (
     Push,
     Surface,
-    depth_at,
-    finer,
     force,
     invariants,
     node_angles,
     rates,
+    resampled,
+    seen,
     started,
     still,
 )
@@ -47,14 +47,15 @@ def test_rest_stays_rest() -> None:
         assert np.abs(rates(still(layer, 32).state, 0j)).max() < 1e-15
 
 
-@kills("solvers.potential.unsteady:force", "-change - 0.5", "change - 0.5")
+@kills("solvers.potential.unsteady:_wall_force", "-change - 0.5", "change - 0.5")
+@kills("solvers.potential.unsteady:_wall_force", "1j * flow.waves.odd", "0.9j * flow.waves.odd")
 @kills(
-    "solvers.potential.unsteady:force",
+    "solvers.potential.unsteady:_wall_force",
     "0.5 * np.square(sliding / opened)",
     "0.4 * np.square(sliding / opened)",
 )
-@kills("solvers.potential.unsteady:_wall", "1.0 / np.sinh(inner[1:])", "1.0 / np.tanh(inner[1:])")
-@kills("solvers.potential.unsteady:_pull", "- 2.0 * flow.stream", "- 1.9 * flow.stream")
+@kills("solvers.potential.unsteady:_wall_force", "1.0 / np.sinh(inner[1:-1])", "1.0 / np.tanh(inner[1:-1])")
+@kills("solvers.potential.unsteady:_field", "- 2.0 * spin", "- 1.9 * spin")
 def test_pressure_and_momentum_give_one_force() -> None:
     """Of a steady wave, along the deflection: no friction, no torque, no phase."""
     for layer, ratio, whirl in FORCED:
@@ -64,9 +65,9 @@ def test_pressure_and_momentum_give_one_force() -> None:
         assert ratio_found == pytest.approx(wave.force_ratio, abs=1e-11)
 
 
-@kills("solvers.potential.unsteady:rates", "flow.opened @ slide - flow.steep @ climb", "flow.opened @ slide")
-@kills("solvers.potential.unsteady:rates", "flow.steep * slide + flow.opened", "flow.opened")
-@kills("solvers.potential.unsteady:rates", "0.5 * inner / metric", "0.6 * inner / metric")
+@kills("solvers.potential.unsteady:_moved", "flow.opened @ slide - flow.steep @ climb", "flow.opened @ slide")
+@kills("solvers.potential.unsteady:_moved", "flow.steep * slide + flow.opened", "flow.opened")
+@kills("solvers.potential.unsteady:_moved", "0.5 * inner / metric", "0.6 * inner / metric")
 @kills("solvers.potential.unsteady:started", "0.5 * slip", "0.4 * slip")
 def test_a_steady_wave_stays_with_its_whirl() -> None:
     """After a turn of the whirl round the drum it is where it began, by steps of 1e-12."""
@@ -108,11 +109,10 @@ def test_small_waves(crests: int) -> None:
     assert linear_detuning(layer, crests) == pytest.approx((wanted[0] / (crests - wanted[0])) ** 2, rel=1e-12)
 
 
-@kills("solvers.potential.unsteady:invariants", "kinetic - 0.125 * rest", "kinetic - 0.12 * rest")
-@kills("solvers.potential.unsteady:invariants", "turning + 0.25 * rest", "turning - 0.25 * rest")
-@kills("solvers.potential.unsteady:_momentum", "at_wall - at_surface", "at_wall + at_surface")
-@kills("solvers.potential.unsteady:_momentum", "flow.opened + 1j * flow.steep", "flow.opened - 1j * flow.steep")
-@kills("solvers.potential.unsteady:force", "+ along", "+ 0.5 * along")
+@kills("solvers.potential.unsteady:invariants", "0.125 * spin**2", "0.12 * spin**2")
+@kills("solvers.potential.unsteady:invariants", "turning + 0.25", "turning - 0.25")
+@kills("solvers.potential.unsteady:_momentum", "-2.0 * np.pi", "2.0 * np.pi")
+@kills("solvers.potential.unsteady:_wall_force", "+ along", "+ 0.5 * along")
 def test_budgets() -> None:
     """What a force does to the invariants, and the force by momentum, by central differences in time."""
     step, begin, push = 1e-4, waved(0.3), 0.02 - 0.03j
@@ -147,7 +147,7 @@ def test_damping_takes_short_waves_alone() -> None:
         assert math.exp(share) >= least and math.exp(share) <= most
 
 
-@kills("solvers.potential.unsteady:rates", "-= friction * flow.potential", "-= 0.5 * friction * flow.potential")
+@kills("solvers.potential.unsteady:_limited", "-= friction * flow.potential", "-= 0.5 * friction * flow.potential")
 @pytest.mark.parametrize("layer", [0.1, 0.6])
 def test_friction_takes_small_waves_as_the_linear_theory_says(layer: float) -> None:
     """Rates of small y and phi under -k grad phi have its decay and its frequency, at any depth."""
@@ -191,31 +191,31 @@ def test_the_drum_holds_what_friction_takes() -> None:
     assert (energy, turned) == pytest.approx((work, twist), abs=1e-9)
 
 
-@kills("solvers.potential.unsteady:finer", "spectrum[:, -1] *= 0.5", "spectrum[:, -1] *= 1.0")
-def test_finer_nodes_hold_the_same_wave() -> None:
-    """On the nodes that were there: the same numbers; between them the series, known here."""
-    count = 32
-    u = 2.0 * np.pi * np.arange(count) / count
+@kills("solvers.potential.unsteady:resampled", "0.5 if count > n", "1.0 if count > n")
+def test_other_nodes_hold_the_same_wave() -> None:
+    """On the nodes that were there the same numbers, between them the series, known here; and back again."""
 
-    def shape(u: np.ndarray) -> np.ndarray:
-        return 0.3 + 0.02 * np.cos(3.0 * u + 0.4) + 0.001 * np.cos(16.0 * u)
+    def shape(count: int) -> np.ndarray:
+        u = 2.0 * np.pi * np.arange(count) / count
+        return np.concatenate((0.3 + 0.02 * np.cos(3.0 * u + 0.4) + 0.001 * np.cos(16.0 * u), np.sin(u)))
 
-    twice = finer(Surface(shape(u), np.sin(u)))
-    np.testing.assert_allclose(twice.height, shape(np.pi * np.arange(64) / 32), atol=1e-15)
-    np.testing.assert_allclose(twice.potential, np.sin(np.pi * np.arange(64) / 32), atol=1e-15)
+    for count in (32, 64, 96):
+        found = resampled(shape(32), count)
+        np.testing.assert_allclose(found, shape(count), atol=1e-15)
+    np.testing.assert_allclose(resampled(resampled(shape(64), 128), 64), shape(64), atol=1e-15)
 
 
-@kills("solvers.potential.unsteady:depth_at", "period=2.0 * np.pi", "period=1.0")
-@kills("solvers.potential.unsteady:_summed", "2.0 * part.real", "part.real")
-def test_depth_at_angles() -> None:
-    """At the nodes' own angles the nodes' own depths; round a synchronous circle its closed form."""
-    wave = waved(0.3)
-    depth = depth_at(wave, node_angles(wave) + 4.0 * np.pi)
-    np.testing.assert_allclose(depth, -np.expm1(-wave.height), atol=1e-14)
+@kills("solvers.potential.unsteady:seen", "gap + np.pi, 2.0", "gap + np.pi, 1.0")
+@kills("solvers.potential.unsteady:seen", "flow.depth + np.real", "flow.depth - np.real")
+def test_radius_at_angles() -> None:
+    """At the nodes' own angles the nodes' own radii; round a synchronous circle its closed form."""
+    wave = waved(0.3).state
+    radius, _ = seen(wave, node_angles(wave) + 4.0 * np.pi)
+    np.testing.assert_allclose(radius, np.exp(-wave[:64]), atol=1e-14)
     theta, push = np.linspace(-7.0, 9.0, 40), 0.05
     circle = started(forced(0.1, 0.0, push), 0.0, 128)
-    radius = np.sqrt(0.81 - np.square(push * np.sin(theta))) - push * np.cos(theta)
-    np.testing.assert_allclose(depth_at(circle, theta), 1.0 - radius, atol=1e-12)
+    wanted = np.sqrt(0.81 - np.square(push * np.sin(theta))) - push * np.cos(theta)
+    np.testing.assert_allclose(seen(circle.state, theta)[0], wanted, atol=1e-12)
 
 
 @pytest.mark.parametrize("count", [14, 17])
