@@ -1,4 +1,4 @@
-"""Scenes with exact waves: at once where the circle is the answer, held where it is not, refused where neither."""
+"""Scenes with exact waves: answered at once, held in time, or refused."""
 
 from __future__ import annotations
 
