@@ -82,7 +82,7 @@ class Invariants:
 
 @dataclass(frozen=True)
 class Waves:
-    """Wave numbers of n even nodes; all but `angle` of shape (n/2 + 1,).
+    """Wave numbers of n even nodes; arrays but `angle` of shape (n/2 + 1,).
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ class Waves:
     odd : the same without the shortest, which has no sine on even nodes
     angle : u of the nodes, shape (n,)
     kept : how many of the waves rates keep
-    short : eighth power of k over the last that is kept, of these
+    short : eighth power of k over the last that is kept
     """
 
     k: Array
@@ -112,7 +112,7 @@ def wave_numbers(count: int) -> Waves:
     kept = math.floor(KEPT * k[-1]) + 1
     odd = np.concatenate((k[:-1], [0.0]))
     angle = 2.0 * np.pi * np.arange(count) / count
-    return Waves(k, odd, angle, kept, (k[:kept] / (KEPT * k[-1])) ** 8)
+    return Waves(k, odd, angle, kept, (k / (KEPT * k[-1])) ** 8)
 
 
 @dataclass(frozen=True)
@@ -230,9 +230,9 @@ def _limited(spectra: Complex, flow: _Flow, damping: float, friction: float) -> 
     spectra[:, kept:] = 0.0
     spectra[1:, 0] = 0.0
     if damping > 0.0:
-        short = damping * flow.waves.short
-        spectra[0] -= np.pad(short * flow.surface[:kept], (0, spectra.shape[1] - kept))
-        spectra[1] -= np.pad(short * flow.potential[:kept], (0, spectra.shape[1] - kept))
+        # Those beyond that a surface may have begun with as well: they would stay for ever.
+        spectra[0] -= damping * flow.waves.short * flow.surface
+        spectra[1] -= damping * flow.waves.short * flow.potential
     if friction > 0.0:
         spectra[1, 1:kept] -= friction * flow.potential[1:kept]
     return spectra
@@ -425,7 +425,7 @@ def tail(state: Array, layer: float) -> float:
     n = state.size // 2
     kept = wave_numbers(n).kept
     sizes = np.arange(kept) * np.abs(fft.rfft(state.reshape(2, n))[:, :kept]) * 2.0 / n
-    last = sizes[:, -(kept // 10) :].max(axis=1)
+    last = sizes[:, -(kept // 10 + 1) :].max(axis=1)
     return float((last / np.maximum(sizes.max(axis=1), _LEAST * layer)).max())
 
 
