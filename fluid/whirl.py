@@ -68,7 +68,7 @@ def body_force_rate(fill: Fill, friction: Friction, spin: float) -> float:
     """k of a force -k u on all the liquid that damps its slower free wave as its walls do, 1/s.
 
     Such a force leaves a flow without vorticity without any, which walls do not: of theirs it has the drag on
-    waves, and no wall layers [theory: potential, eq. 26].
+    waves, and no wall layers [theory: potential, eq. 30].
 
     Parameters
     ----------

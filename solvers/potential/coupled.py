@@ -1,7 +1,7 @@
 """A rotor with exact layers through time: no iteration, since a layer's force is a straight line of the push.
 
 Plane vectors are complex numbers in the standing frame, their real part along the first direction
-[theory: potential, eq. 21-28]. Dimensional but for the waves, whose lengths are over R and whose times are in
+[theory: potential, eq. 25-32]. Dimensional but for the waves, whose lengths are over R and whose times are in
 1/`unit`.
 """
 
@@ -93,7 +93,7 @@ class Parts:
 
 @dataclass(frozen=True)
 class Powers:
-    """What brings energy to rotor and layers, and what takes it, W [theory: potential, eq. 28].
+    """What brings energy to rotor and layers, and what takes it, W [theory: potential, eq. 32].
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ class ExactMachine:
         return np.concatenate((parts.place, parts.rate, parts.turned.ravel(), parts.waves.ravel()))
 
     def rates(self, time: float, state: Array) -> Array:
-        """Rates of change of a state [theory: potential, eq. 24-26].
+        """Rates of change of a state [theory: potential, eq. 28-30].
 
         Parameters
         ----------
@@ -209,7 +209,7 @@ class ExactMachine:
         return np.asarray(np.linalg.solve(left, right), dtype=float), answers
 
     def energy(self, state: Array) -> float:
-        """Of rotor and layers, J [theory: potential, eq. 27].
+        """Of rotor and layers, J [theory: potential, eq. 31].
 
         Parameters
         ----------

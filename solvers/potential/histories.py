@@ -163,7 +163,7 @@ def film(
 
 
 def whirl_push(fill: Fill, whirl: Whirl) -> Push:
-    """The force f of a whirl and of gravity across the axis [theory: potential, eq. 25].
+    """The force f of a whirl and of gravity across the axis [theory: potential, eq. 24].
 
     Parameters
     ----------

@@ -2,7 +2,7 @@
 
 A wave is `resolved`, or carries `short_waves` that its nodes do not resolve, or is `broken`. Its spectrum
 alone never says that it is broken: short waves fill it while the crest may be falling. Its crest does, where
-the liquid is nearly as fast as the crest itself, and a surface that overhangs [theory: potential, eq. 29].
+the liquid is nearly as fast as the crest itself, and a surface that overhangs [theory: potential, eq. 23].
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 _RELATIVE, _ABSOLUTE = 1e-10, 1e-13
 # Tail of a spectrum at which nodes are doubled, and above which it is not resolved.
 DOUBLED, RESOLVED = 1e-8, 1e-6
-# A crest at this number that fills its spectrum to this much breaks [theory: potential, eq. 29].
+# A crest at this number that fills its spectrum to this much breaks [theory: potential, eq. 23].
 BREAKING, FILLED = 0.65, 1e-3
 # Share of the volume that no sound wave loses; nothing but (17) keeps it.
 LOST = 1e-6
@@ -190,7 +190,7 @@ def advance(
 
 
 def judged(now: Watch, nodes: int, most: int) -> tuple[WaveState, str]:
-    """What is known of a wave, and why it is broken or nothing [theory: potential, eq. 29].
+    """What is known of a wave, and why it is broken or nothing [theory: potential, eq. 23].
 
     Parameters
     ----------
@@ -269,7 +269,7 @@ def _crest_number(state: Array, change: Array) -> float:
 
 
 def carried(acceleration: Callable[[float], complex]) -> Push:
-    """The force f of a drum whose axis moves anyhow, while it spins anyhow [theory: potential, eq. 25].
+    """The force f of a drum whose axis moves anyhow, while it spins anyhow [theory: potential, eq. 24].
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
 """The exact wave in time: rates of change of its surface, the force that it exerts, what it conserves.
 
-On even nodes all round the drum, by Fourier transforms [theory: potential, eq. 16-26]. Lengths over R, times
+On even nodes all round the drum, by Fourier transforms [theory: potential, eq. 16-27]. Lengths over R, times
 in 1/Omega, with the spin Omega that the liquid had when it was at rest in its drum. Forces are seen in the
-frame that turns at that spin for ever, whatever the drum does later [theory: potential, eq. 25]; with f = 0
+frame that turns at that spin for ever, whatever the drum does later [theory: potential, eq. 24]; with f = 0
 volume, energy and angular momentum stay. `solvers.potential.in_time` takes a wave through time.
 """
 
@@ -185,7 +185,7 @@ def rates(state: Array, push: complex, damping: float = 0.0, friction: float = 0
     state : y and phi, shape (2n,)
     push : f, minus the acceleration of the axis, over Omega^2 R
     damping : of the shortest waves that are kept, over Omega; falls with the eighth power of the wave number
-    friction : k of a body force -k grad phi on the liquid, over Omega [theory: potential, eq. 26]
+    friction : k of a body force -k grad phi on the liquid, over Omega [theory: potential, eq. 22]
 
     Returns
     -------
@@ -244,7 +244,7 @@ def force(state: Array, push: complex, friction: float = 0.0) -> complex:
     Parameters
     ----------
     state, push : as for `rates`
-    friction : k as for `rates`; the drum holds the body force that it stands for [theory: potential, eq. 26]
+    friction : k as for `rates`; the drum holds the body force that it stands for [theory: potential, eq. 22]
     """
     flow = _flow(state)
     along = flow.radius * (push.real * np.cos(flow.angle) + push.imag * np.sin(flow.angle))
@@ -270,7 +270,7 @@ def _wall_force(flow: _Flow, above: Complex, push: complex) -> complex:
 
 
 def _momentum(flow: _Flow) -> complex:
-    """P [theory: potential, eq. 26]."""
+    """P, the rate of change of V times the centre of mass [theory: potential, eq. 21]."""
     ray = flow.radius * np.exp(1j * flow.angle)
     return complex(-2.0 * np.pi * np.mean(ray * flow.stream_slope))
 
@@ -309,7 +309,7 @@ class Answer:
 
 
 def answer(state: Array, spin: float = 1.0, friction: float = 0.0, damping: float = 0.0) -> Answer:
-    """Rates and force of a layer under any force at once [theory: potential, eq. 21-23].
+    """Rates and force of a layer under any force at once [theory: potential, eq. 25-27].
 
     Parameters
     ----------

@@ -79,7 +79,7 @@ def test_force_and_rates_are_straight_lines_of_the_push() -> None:
 
 
 def test_the_response_of_a_uniform_layer() -> None:
-    """V - pi a^2 tanh(ln(R/a)), of which both directions have the same [theory: potential, eq. 23]."""
+    """V - pi a^2 tanh(ln(R/a)), of which both directions have the same [theory: potential, eq. 27]."""
     for layer in (0.05, 0.5, 0.9):
         hollow = (1.0 - layer) ** 2
         found = answer(laid(lambda angle, at=1.0 - layer: np.full(angle.shape, at), 32).state).response
