@@ -1,8 +1,8 @@
 """The exact wave in time: rates of change of its surface, the force that it exerts, what it conserves.
 
-On even nodes all round the drum, by Fourier transforms [theory: potential, eq. 16-22]. Lengths over R, times
+On even nodes all round the drum, by Fourier transforms [theory: potential, eq. 16-24]. Lengths over R, times
 in 1/Omega, with the spin Omega that the liquid had when it was at rest in its drum. Forces are seen in the
-frame that turns at that spin for ever, whatever the drum does later [theory: potential, eq. 21]; with f = 0
+frame that turns at that spin for ever, whatever the drum does later [theory: potential, eq. 24]; with f = 0
 volume, energy and angular momentum stay. `solvers.potential.in_time` takes a wave through time.
 """
 
