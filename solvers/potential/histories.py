@@ -98,7 +98,8 @@ def simulate(
     times, weights = _points(period)
     # The points of all periods, each with its end behind them.
     within = np.concatenate((times, [period]))
-    moments = course(begin, (period * np.arange(count)[:, None] + within).ravel(), push, steps)
+    stops = np.asarray((period * np.arange(count)[:, None] + within).ravel(), dtype=np.float64)
+    moments = course(begin, stops, push, steps)
     means = _Means(whirl, push, steps.friction, weights, _sample(begin, 0.0, push, steps.friction))
     deepest, last, reason = 1.0 - fill.chamber.inner_radius / fill.chamber.radius, None, ""
     for moment in moments:
@@ -150,14 +151,14 @@ def film(
     interval = periods * whirl.period / frames
     theta = 2.0 * math.pi * (np.arange(_ANGLES) + 0.5) / _ANGLES
     pictures = [1.0 - seen(begin.state, theta)[0]]
-    times = interval * np.arange(1, frames)
+    times = np.asarray(interval * np.arange(1, frames), dtype=np.float64)
     for moment in course(begin, times * whirl.spin, whirl_push(fill, whirl), steps):
         if moment.state is WaveState.BROKEN:
             break
         pictures.append(1.0 - seen(moment.surface.state, theta)[0])
         if progress is not None:
             progress(len(pictures) / frames)
-    time = interval * np.arange(len(pictures))
+    time = np.asarray(interval * np.arange(len(pictures)), dtype=np.float64)
     turning = grown(time, whirl.ramp) * np.exp(1j * whirl.slip * time)
     return LayerFilm(time, theta, radius * np.array(pictures), np.asarray(whirl.amplitude * turning))
 
@@ -208,6 +209,8 @@ def _sample(surface: Surface, time: float, push: Push, friction: float) -> _Samp
 @dataclass
 class _Means:
     """Means over whirl periods, and how well momentum, energy and angular momentum balance.
+
+    [theory: potential, eq. 20-22]
 
     Parameters
     ----------
@@ -264,7 +267,7 @@ class _Means:
         self.before, self._samples = end, []
 
     def _balance(self, inner: list[_Sample], end: _Sample) -> None:
-        """Energy and angular momentum against the work of f and of friction [theory: potential, eq. 20, 22]."""
+        """Energy and angular momentum against what f and friction do [theory: potential, eq. 20, 22]."""
         k = self.friction
         work = [(s.push.conjugate() * s.kept.momentum).real - 2.0 * k * s.kept.kinetic for s in inner]
         twist = [(s.kept.centre.conjugate() * s.push).imag - k * s.kept.turning for s in inner]
@@ -308,10 +311,11 @@ def _history(fill: Fill, whirl: Whirl, last: Moment, reason: str, means: _Means)
     table = np.array(means.rows, dtype=np.complex128).reshape(len(means.rows), 6)
     by_momentum, by_pressure, centre, rotation, deepest, least = table.T
     full = math.pi * whirl.amplitude / radius * (whirl.speed / spin) ** 2 or math.inf
-    theta = np.mod(node_angles(last.surface.state) - whirl.slip / spin * last.time + math.pi, 2.0 * math.pi) - math.pi
+    turned = node_angles(last.surface.state) - whirl.slip / spin * last.time
+    theta = np.mod(turned + math.pi, 2.0 * math.pi) - math.pi
     order = np.argsort(theta)
     periods = LayerHistory(
-        time=(np.arange(len(means.rows)) + 0.5) * whirl.period,
+        time=np.asarray((np.arange(len(means.rows)) + 0.5) * whirl.period, dtype=np.float64),
         force_ratio=by_momentum / full,
         pressure_ratio=by_pressure / full,
         offset=centre * radius,

@@ -61,7 +61,8 @@ class Steps:
     nodes : all round the drum to begin with, even
     most : nodes are doubled up to this many
     damping : of the shortest waves that are kept, over Omega; falls with the eighth power of the wave number
-    friction : k of a small body force -k grad phi on the liquid, over Omega: it keeps the flow irrotational
+    friction : k of a small body force -k grad phi on the liquid, over Omega, in a drum that keeps its speed
+        [theory: potential, eq. 22]
     """
 
     nodes: int = 128
@@ -85,7 +86,7 @@ class Watch:
     Parameters
     ----------
     crest, trough : greatest and least depth, over R
-    crest_number : speed of the liquid at the crest over that of the crest; 0 where there is no crest to speak of
+    crest_number : speed of the liquid at the crest over that of the crest; 0 where the crest is low
     slope : steepest slope of the surface, rad; beyond pi/2 it overhangs
     drift : relative change of the volume
     tail : largest coefficient in the last tenth of the spectrum over the largest
@@ -146,6 +147,8 @@ def course(
     ------
     A moment at each time. A wave that breaks comes last, as it was found, and tells why.
     """
+    if times.size == 0:
+        return
     steps = steps or Steps()
     if begin.height.size < steps.nodes:
         begin = _surface(resampled(begin.state, steps.nodes))
@@ -158,7 +161,9 @@ def course(
             message = solver.step()
         nodes = solver.y.size // 2
         if solver.status == "failed" or not np.isfinite(solver.y).all():
-            yield _moment(solver.t, solver.y, WaveState.BROKEN, extremes, f"no step was short enough ({message})")
+            yield _moment(
+                solver.t, solver.y, WaveState.BROKEN, extremes, f"no step was short enough ({message})"
+            )
             return
         now = watched(solver.y, solver.f, volume)
         extremes = now.since(extremes)
@@ -175,9 +180,7 @@ def course(
             solver = _solver(change, resampled(solver.y, 2 * nodes), solver.t, times[-1])
 
 
-def advance(
-    begin: Surface, time: float, push: Push | None = None, steps: Steps | None = None
-) -> Moment:
+def advance(begin: Surface, time: float, push: Push | None = None, steps: Steps | None = None) -> Moment:
     """A wave after a time, or where it broke.
 
     Parameters

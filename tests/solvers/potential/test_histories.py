@@ -1,4 +1,4 @@
-"""The exact wave under a prescribed whirl, in SI units: computed flow, linear theory, gravity, honest ends."""
+"""The exact wave under a whirl, period by period: small ones by linear theory, tall ones by other codes."""
 
 from __future__ import annotations
 
@@ -6,150 +6,169 @@ import json
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
-from fluid import whirl
+from fluid import whirl as small
 from fluid.fill import Fill
 from fluid.liquid import Liquid
-from meshes.chamber import Baffles, Chamber
+from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.liquid_model import Whirl
-from solvers.potential.histories import film, simulate
+from solvers.potential.histories import film, simulate, whirl_push
 from solvers.potential.in_time import Steps, WaveState
 from solvers.potential.steady import forced
 from tests.mutants import kills
 
+WATER = Liquid("water", 1000.0, 1e-6)
 FLOW = Path(__file__).parents[3] / "validation" / "data" / "openfoam_layer.json"
-# tanh L of a layer of a tenth.
-TANH = (1.0 - 0.81) / (1.0 + 0.81)
-WATER = Liquid("water", 998.0, 1e-6)
 
 
-def ring(layer: float, radius: float = 0.15, inner: float = 0.0) -> Fill:
-    """A layer of this depth over the radius in a chamber 10 mm high."""
-    chamber = Chamber(radius, 0.01, inner_radius=inner)
-    return Fill(chamber, WATER, math.pi * radius**2 * layer * (2.0 - layer) * 0.01)
+def layer(depth: float, radius: float = 0.15, height: float = 1.0, inner: float = 0.0) -> Fill:
+    """A layer whose depth at rest is a share of the radius."""
+    chamber = Chamber(radius, height, inner_radius=inner)
+    return Fill(chamber, WATER, math.pi * height * radius**2 * depth * (2.0 - depth))
 
 
-def computed(name: str) -> dict[str, Any]:
-    """A case of the computed flow."""
-    return next(case for case in json.loads(FLOW.read_text())["cases"] if case["name"] == name)
+@kills("solvers.potential.histories:_Means._close", "1j * slip * momentum", "-1j * slip * momentum")
+@kills("solvers.potential.histories:_Means._close", "2j * momentum - centre", "1j * momentum - centre")
+@kills("solvers.potential.histories:_Means._balance", "2.0 * k * s.kept.kinetic", "k * s.kept.kinetic")
+@kills("solvers.potential.histories:_Means._balance", "k * s.kept.turning", "2.0 * k * s.kept.turning")
+def test_two_forces_and_three_budgets() -> None:
+    """By pressure and by momentum, with the energy and the angular momentum that the force brings."""
+    fill, spin = layer(0.3), 40.0
+    motion = Whirl(spin, 1.4 * spin, 0.02 * fill.depth, ramp=20.0 / spin, gravity=0.002 * spin**2 * 0.15)
+    for friction in (0.0, 0.2):
+        found = simulate(fill, motion, 3.0 * motion.period, Steps(64, 256, friction=friction))
+        periods = found.periods
+        assert found.state is WaveState.RESOLVED and periods.converged and periods.force_ratio.size == 3
+        assert np.abs(periods.force_ratio).min() > 0.1
+        # The ramp's end is a corner of the third derivative within a panel of three.
+        assert max(found.force_gap, found.energy_gap, found.turning_gap) < 1e-6 and found.drift < 1e-11
+        np.testing.assert_allclose(periods.pressure_ratio, periods.force_ratio, atol=1e-6)
 
 
-@kills("solvers.potential.histories:whirl_push", "size * share", "0.98 * size * share")
-def test_resonance_beside_computed_flow() -> None:
-    """A whirl at the free wave: means of the first whirls of two-phase flow with a wall that holds it.
-
-    The flow's own error is 3 % before it breaks; its wall takes a little more. An exact wave of another code
-    has 0.268+0.299i and 0.482+1.990i.
-    """
-    case = computed("C_0.05_f1")
-    motion = Whirl(case["speed"], case["whirl_speed"], case["whirl_amplitude"], case["ramp"])
-    found = simulate(ring(0.1), motion, 1.67)
-    assert found.state is WaveState.RESOLVED and found.periods.converged
-    np.testing.assert_allclose(found.periods.force_ratio, [0.268 + 0.299j, 0.482 + 1.990j], atol=8e-4)
-    wanted = np.array([complex(*pair) for pair in case["force_ratio"][:2]])
-    np.testing.assert_allclose(found.periods.force_ratio, wanted, rtol=0.04)
-    # The flow's is the greatest of the period, with the same error of 1 %.
-    assert 0.015 * found.crest == pytest.approx(case["depth_max"][1], rel=0.01)
-    # Momentum and pressure by quite different sums; 8 points in a panel of 3/Omega integrate to 1e-9.
-    assert found.force_gap < 1e-8 and found.energy_gap < 1e-7 and found.turning_gap < 1e-7
-    assert found.drift < 1e-12 and found.nodes > 128
-
-
-def test_twice_as_large_a_machine() -> None:
-    """Another radius and speed with the same numbers over R and Omega: the same answer over its own units."""
-    first = simulate(ring(0.1), Whirl(40.0, 30.0, 2e-4, 0.3), 1.2, Steps(64))
-    other = simulate(ring(0.1, 0.3), Whirl(20.0, 15.0, 4e-4, 0.6), 2.4, Steps(64))
-    np.testing.assert_allclose(other.periods.force_ratio, first.periods.force_ratio, atol=1e-12)
-    np.testing.assert_allclose(other.periods.offset, 2.0 * first.periods.offset, atol=1e-15)
-    np.testing.assert_allclose(other.periods.mean_rotation, 0.5 * first.periods.mean_rotation, atol=1e-13)
-    np.testing.assert_allclose(other.periods.time, 2.0 * first.periods.time)
+@kills("solvers.potential.histories:whirl_push", "whirl.speed**2 * whirl.amplitude", "whirl.amplitude")
+@kills("solvers.potential.histories:_history", "(whirl.speed / spin) ** 2", "(whirl.speed / spin)")
+def test_a_small_whirl_with_friction() -> None:
+    """Its last period by linear theory: force, offset and the waves' height, for lengths in m."""
+    fill, spin, rate = layer(0.1), 30.0, 0.4
+    motion = Whirl(spin, 0.75 * spin, 1e-5 * fill.depth, ramp=30.0 / spin)
+    periods = simulate(fill, motion, 5.0 * motion.period, Steps(32, 32, friction=rate)).periods
+    square = (fill.surface_radius / fill.chamber.radius) ** 2
+    given = (1.0 - square) / (1.0 + square), spin, motion.speed, rate * spin
+    # The slower free wave has died to e^{-0.13 * 70}.
+    assert complex(periods.force_ratio[-1]) == pytest.approx(
+        complex(small.force_with_friction(*given)), abs=1e-3
+    )
+    assert complex(periods.offset[-1]) == pytest.approx(
+        complex(small.offset_with_friction(*given)) * motion.amplitude, abs=1e-3 * motion.amplitude
+    )
+    # Half the wave's height at the surface goes with the offset: V c = pi a^2 eta of one crest.
+    lifted = abs(periods.offset[-1]) * fill.depth * (2.0 * 0.15 - fill.depth) / fill.surface_radius**2
+    assert (periods.depth_max - periods.depth_min)[-1] == pytest.approx(2.0 * lifted, rel=0.05)
+    assert abs(periods.theta[np.argmax(periods.depth)] - np.angle(periods.offset[-1])) < 0.2
 
 
-def test_small_whirl_settles_where_linear_theory_is() -> None:
-    """With a gentle ramp, and friction in which all else dies."""
-    rate = 0.1
-    found = simulate(ring(0.1), Whirl(40.0, 52.0, 1.5e-6, 0.5), 5.0, Steps(32, 64, friction=rate))
-    wanted = complex(whirl.force_with_friction(TANH, 1.0, 1.3, rate))
-    # What the ramp has stirred has died by exp(-9); the square of the whirl over the depth is 1e-8.
-    assert found.periods.force_ratio[-1] == pytest.approx(wanted, abs=1e-3)
+def test_resonance_of_a_computed_flow() -> None:
+    """The whirl with the backward free wave: periods before it breaks, of two other codes and the flow."""
+    run = next(case for case in json.loads(FLOW.read_text())["cases"] if "time" in case)
+    fill = layer(0.1)
+    motion = Whirl(run["speed"], run["whirl_speed"], run["whirl_amplitude"], run["ramp"])
+    found = simulate(fill, motion, 2.0 * motion.period, Steps(128, 512))
+    force = found.periods.force_ratio
+    assert found.state is WaveState.RESOLVED and found.force_gap < 1e-8
+    # Three digits of another code for the same equations.
+    assert force[:2] == pytest.approx([0.268 + 0.299j, 0.482 + 1.990j], abs=6e-4)
+    # The flow has a wall without slip, and is known to 3 %.
+    flow = np.array([complex(*pair) for pair in run["force_ratio"][:2]])
+    assert np.abs(force / flow - 1.0).max() < 0.035
 
 
-@kills("solvers.potential.histories:whirl_push", "- 1j * weight", "+ 1j * weight")
-def test_gravity_across_the_axis() -> None:
-    """Beside a whirl that hardly turns and hardly is: the liquid lies above, as the linear theory has it."""
-    gravity, spin, rate = 1.2, 40.0, 0.1
-    motion = replace(Whirl(spin, 1e-9 * spin, 1e-9), gravity=gravity)
-    found = simulate(ring(0.1), motion, 5.0, Steps(32, 64, friction=rate))
-    # A whirl at 1e-4 of the spin with the force of gravity; that points along -y, the deflection along x.
-    slow = 1e-4
-    wanted = complex(whirl.offset_with_friction(TANH, 1.0, slow, rate)) / slow**2
-    # Gravity sets in at once; the waves of that have died by exp(-9) or so, second order is (g/Omega^2 R)^2.
-    assert found.periods.offset[-1] / (gravity / spin**2) == pytest.approx(-1j * wanted, abs=1e-3)
-    assert wanted == pytest.approx(-0.405, abs=0.05)
+@pytest.mark.slow
+def test_resonance_ends_where_the_crest_breaks() -> None:
+    """Between 65 and 67/Omega, whatever nodes it may have; long waves with dispersion agree until then."""
+    from solvers.layer.state import Numerics
+    from solvers.pypde.settle import simulate as long_waves
+
+    fill = layer(0.1)
+    motion = Whirl(40.0, 40.0 - 9.424119343577846, 0.05 * fill.depth, 0.6)
+    found = simulate(fill, motion, 4.0 * motion.period, Steps(128, 2048, damping=2.0))
+    assert found.state is WaveState.BROKEN and "crest breaks" in found.periods.reason
+    assert found.periods.force_ratio.size == 2 and not found.periods.converged
+    assert 1.4 < found.crest < 1.55 and 0.65 < found.crest_number < 0.7 and found.drift < 1e-6
+    numerics = Numerics(256, dispersion=True)
+    other = long_waves(fill, motion, 2.0 * motion.period, numerics=numerics).force_ratio
+    assert np.abs(other / found.periods.force_ratio - 1.0).max() < 2e-2
 
 
-def test_a_wave_that_breaks_ends_it() -> None:
-    """Twice as hard as the computed flow: periods up to the breaking, and no force beyond."""
-    case = computed("C_0.05_f1")
-    motion = Whirl(case["speed"], case["whirl_speed"], 4.0 * case["whirl_amplitude"], case["ramp"])
-    found = simulate(ring(0.1), motion, 4.0, Steps(128, 512))
-    assert found.state is WaveState.BROKEN and not found.periods.converged and found.periods.reason
-    assert 1 <= found.periods.time.size < 6 and np.isfinite(found.periods.force_ratio).all()
-    shots = film(ring(0.1), motion, 60, 6.0, Steps(128, 512))
-    assert 1 < shots.time.size < 60 and shots.depth.shape == (shots.time.size, shots.theta.size)
+def test_a_smooth_wave_settles_on_the_steady_one() -> None:
+    """Off resonance, with a little friction for the free waves that the ramp stirs."""
+    fill, spin = layer(0.3), 40.0
+    motion = Whirl(spin, 0.85 * spin, 0.05 * fill.depth, ramp=60.0 / spin)
+    found = simulate(fill, motion, 3.0 * motion.period, Steps(64, 256, friction=0.1))
+    wanted = forced(0.3, (1.0 - 1.0 / 0.85) ** 2, 0.05 * 0.3)
+    # The friction turns and shortens it by its square and itself, of the distance from resonance.
+    assert found.periods.force_ratio[-1].real == pytest.approx(wanted.force_ratio, rel=0.02)
+    assert found.crest == pytest.approx(wanted.crest, rel=0.02)
 
 
-def test_the_crest_comes_to_an_inner_wall() -> None:
-    """A gap a tenth deeper than the layer, and a crest of more than that."""
-    case = computed("C_0.05_f1")
-    motion = Whirl(case["speed"], case["whirl_speed"], case["whirl_amplitude"], case["ramp"])
-    found = simulate(ring(0.1, inner=0.15 * 0.89), motion, 1.67)
-    assert not found.periods.converged and "inner wall" in found.periods.reason
-    assert found.crest > 1.1
-
-
-def test_film() -> None:
-    """It begins with the even layer and shows the wave that the history has at its end, volume and all."""
-    motion, fill = Whirl(40.0, 52.0, 3e-4, 0.2), ring(0.1)
-    period = motion.period
-    shots = film(fill, motion, 8, 2.0, Steps(64))
-    np.testing.assert_allclose(shots.depth[0], fill.depth, rtol=1e-12)
-    np.testing.assert_allclose(np.diff(shots.time), 0.25 * period, rtol=1e-12)
-    # The mean of R^2 - r^2 over equal angles is exact for a smooth surface.
-    volume = 0.5 * np.mean(0.15**2 - np.square(0.15 - shots.depth), axis=1) * 2.0 * np.pi * 0.01
-    np.testing.assert_allclose(volume, fill.volume, rtol=1e-9)
-    assert abs(shots.deflection[-1]) == pytest.approx(3e-4, rel=1e-12)
-
-
-def test_steady_wave_is_where_time_leads() -> None:
-    """A whirl that grows gently over many of its turns arrives at the wave of Newton's method."""
-    motion = Whirl(40.0, 20.0, 3e-4, 4.0)
-    found = simulate(ring(0.1), motion, 5.0, Steps(64, 128))
-    wave = forced(0.1, 1.0, 3e-4 / 0.15)
-    # What the ramp stirs goes with its third power.
-    assert found.periods.force_ratio[-1] == pytest.approx(wave.force_ratio, abs=2e-3)
-
-
-@pytest.mark.parametrize(
-    ("field", "fill"),
-    [
-        ("volume", replace(ring(0.1), volume=0.0)),
-        ("baffles", replace(ring(0.1), chamber=Chamber(0.15, 0.01, baffles=Baffles(4, 0.14)))),
-    ],
+@kills(
+    "solvers.potential.histories:film", "interval * np.arange(1, frames)", "interval * np.arange(frames - 1)"
 )
-def test_what_it_does_not_serve(field: str, fill: Fill) -> None:
-    with pytest.raises(InputError, match=field):
-        simulate(fill, Whirl(40.0, 52.0, 1e-4), 1.0)
+def test_film() -> None:
+    """Pictures hold the liquid, begin with the layer at rest, and show what the history tells."""
+    fill = layer(0.1)
+    motion = Whirl(40.0, 52.0, 0.02 * fill.depth, 0.3)
+    pictures = film(fill, motion, frames=9, periods=1.0, steps=Steps(64, 128))
+    assert pictures.depth.shape == (9, 256)
+    np.testing.assert_allclose(pictures.depth[0], fill.depth, rtol=1e-12)
+    # Even angles and a surface that is smooth: the sum is exact.
+    area = np.mean(pictures.depth * (0.15 - 0.5 * pictures.depth), axis=1) * 2.0 * math.pi
+    np.testing.assert_allclose(area, fill.volume, rtol=1e-9)
+    np.testing.assert_allclose(pictures.time, np.arange(9) * motion.period / 9.0)
+    assert abs(pictures.deflection[-1]) == pytest.approx(motion.amplitude) and pictures.deflection[0] == 0.0
+    few = film(fill, motion, frames=3, periods=1.0, steps=Steps(64, 128))
+    # Within steps of 0.3 by a formula of seventh order.
+    np.testing.assert_allclose(few.depth, pictures.depth[::3], atol=1e-9 * 0.15)
+    again = film(fill, motion, frames=1, periods=1.0)
+    assert again.depth.shape == (1, 256)
+
+
+def test_the_inner_wall_ends_it() -> None:
+    fill = layer(0.1, inner=0.15 * 0.87)
+    motion = Whirl(40.0, 40.0 - 9.424, 0.05 * fill.depth, 0.6)
+    found = simulate(fill, motion, 3.0 * motion.period, Steps(64, 256))
+    assert found.state is WaveState.BROKEN and "inner wall" in found.periods.reason
+    assert found.crest == pytest.approx(1.3, abs=0.02)
+
+
+def test_units() -> None:
+    """Twice the radius and half the spin: the same ratios."""
+    kept = []
+    for radius, spin in ((0.15, 40.0), (0.3, 20.0)):
+        fill = layer(0.2, radius)
+        motion = Whirl(spin, 1.5 * spin, 0.02 * fill.depth, 10.0 / spin)
+        kept.append(simulate(fill, motion, motion.period, Steps(64, 64)).periods)
+    assert kept[1].force_ratio[0] == pytest.approx(kept[0].force_ratio[0], rel=1e-9)
+    np.testing.assert_allclose(kept[1].depth, 2.0 * kept[0].depth, rtol=1e-8)
+    assert kept[1].mean_rotation[0] == pytest.approx(0.5 * kept[0].mean_rotation[0], rel=1e-6)
+
+
+def test_force_of_whirl_and_gravity() -> None:
+    fill = layer(0.1)
+    push = whirl_push(fill, Whirl(10.0, 12.0, 0.003, gravity=9.81))
+    unit = 100.0 * 0.15
+    assert push(0.0) == pytest.approx((144.0 * 0.003 - 9.81j) / unit, rel=1e-13)
+    assert push(math.pi) == pytest.approx((144.0 * 0.003 * np.exp(0.2j * math.pi) + 9.81j) / unit, rel=1e-13)
 
 
 def test_bad_input() -> None:
-    motion = Whirl(40.0, 52.0, 1e-4)
+    fill, motion = layer(0.1), Whirl(10.0, 12.0, 0.001)
+    with pytest.raises(InputError, match="volume"):
+        simulate(replace(fill, volume=0.0), motion, 1.0)
     with pytest.raises(InputError, match="duration"):
-        simulate(ring(0.1), motion, 0.0)
+        simulate(fill, motion, 0.0)
     with pytest.raises(InputError, match="frames"):
-        film(ring(0.1), motion, 0, 1.0)
+        film(fill, motion, 0, 1.0)

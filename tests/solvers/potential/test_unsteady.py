@@ -8,10 +8,11 @@ import math
 import numpy as np
 import pytest
 
-from fluid import waves, whirl
+from fluid import waves
+from fluid import whirl as small
 from meshes.errors import InputError
-from solvers.potential.steady import forced, linear_detuning
 from solvers.potential.in_time import Steps, advance
+from solvers.potential.steady import forced, linear_detuning
 from solvers.potential.unsteady import (
     Push,
     Surface,
@@ -147,7 +148,11 @@ def test_damping_takes_short_waves_alone() -> None:
         assert math.exp(share) >= least and math.exp(share) <= most
 
 
-@kills("solvers.potential.unsteady:_limited", "-= friction * flow.potential", "-= 0.5 * friction * flow.potential")
+@kills(
+    "solvers.potential.unsteady:_limited",
+    "-= friction * flow.potential",
+    "-= 0.5 * friction * flow.potential",
+)
 @pytest.mark.parametrize("layer", [0.1, 0.6])
 def test_friction_takes_small_waves_as_the_linear_theory_says(layer: float) -> None:
     """Rates of small y and phi under -k grad phi have its decay and its frequency, at any depth."""
@@ -162,7 +167,7 @@ def test_friction_takes_small_waves_as_the_linear_theory_says(layer: float) -> N
             table.append([2.0 * np.mean(side * shape) for side in change for shape in (np.cos(u), np.sin(u))])
     found = np.linalg.eigvals(np.array(table).T)
     square = (1.0 - layer) ** 2
-    pair = whirl.damped_waves((1.0 - square) / (1.0 + square), 1.0, rate)
+    pair = small.damped_waves((1.0 - square) / (1.0 + square), 1.0, rate)
     # e^{i s t}: a slip's imaginary part is the decay; each wave comes with its conjugate.
     wanted = [1j * complex(slip) for slip in pair]
     for value in wanted:
