@@ -15,6 +15,8 @@ from fluid import waves
 from fluid.fill import Fill
 from leblanc.results.base import Note
 from leblanc.results.layer import (
+    ExactWave,
+    FreeWaveResult,
     LayerCase,
     LayerPeriodsResult,
     LayerResult,
@@ -23,6 +25,7 @@ from leblanc.results.layer import (
     against_whirl,
     dry_wall,
     inner_wall,
+    lee_waves,
     no_answer,
     out_of_range,
 )
@@ -30,8 +33,10 @@ from leblanc.results.notes.baffles import smeared_baffles
 from leblanc.studies.models.validity import judge
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.liquid_model import LiquidWave, WaveModel, Whirl
+from solvers.potential.model import Potential, PotentialWave
+from solvers.potential.steady import Branch
 from solvers.pypde.models import LongWave, OneFamily, Progress
-from solvers.synchronous.models import LINEAR
+from solvers.synchronous.models import LINEAR, Linear
 
 _ONE_WAY = 1e-6  # part of the answer that may go the other way round before it is worth a note
 
@@ -82,6 +87,9 @@ def answer_layer(
         notes = (dry_wall(),)
     if isinstance(model, LongWave):
         notes = (*notes, *smeared_baffles([fill], model.numerics.cells))
+    exact = _exact(wave) if isinstance(wave, PotentialWave) else None
+    if exact is not None and exact.branch == Branch.LEE_WAVES:
+        notes = (*notes, lee_waves())
     kappa = (fill.chamber.radius / surface) ** 2 if gravity else math.nan
     return LayerResult(
         case=_case(fill, whirl, model),
@@ -97,7 +105,66 @@ def answer_layer(
         notes=notes,
         gravity_offset=float(waves.gravity_offset(kappa, speed, gravity)) if gravity else 0.0,
         captured=not gravity or speed > float(waves.capture_speed(surface, gravity)),
-        validity=judge(wave),
+        validity=judge(wave.numbers, wave.ranges),
+        exact=exact,
+    )
+
+
+def _exact(wave: PotentialWave) -> ExactWave:
+    """What only the exact wave has."""
+    numbers = {name: wave.numbers.get(name, math.nan) for name in ("crest", "trough", "crest_number")}
+    return ExactWave(
+        state="resolved" if wave.answer.converged[0] else None,
+        branch=wave.branch or None,
+        error_estimate=float(wave.answer.error[0]),
+        largest_whirl=wave.largest,
+        **numbers,
+    )
+
+
+def free_wave(fill: Fill, speed: float, crest: float, crests: int, model: WaveModel) -> FreeWaveResult:
+    """The wave that runs round the drum by itself with crests of a given height.
+
+    Parameters
+    ----------
+    fill : chamber and liquid, with some liquid in it
+    speed : spin speed Omega, rad/s
+    crest : depth at the crest over the mean depth, above 1
+    crests : round the drum
+    model : linear theory or the exact wave
+
+    Raises
+    ------
+    InputError : a value out of its range, another model
+    """
+    require_positive("--speed", speed)
+    require_positive("--volume", fill.volume)
+    if not isinstance(model, Potential | Linear):
+        raise InputError("--model", model.name, "linear or potential where --free is given")
+    begin = time.perf_counter()
+    with as_options():
+        wave = model.free_wave(fill, speed, crest, crests)
+    taken, numbers = time.perf_counter() - begin, judge(wave.numbers, wave.ranges)
+    notes = (*([no_answer(wave.reason)] if wave.reason else []), *out_of_range(numbers))
+    if wave.converged and float(wave.depth.max()) > fill.chamber.radius - fill.chamber.inner_radius:
+        notes = (*notes, inner_wall())
+    return FreeWaveResult(
+        case=_case(fill, Whirl(speed, wave.whirl_speed[0] if wave.converged else speed, 0.0), model),
+        mode=crests,
+        whirl_speed=np.array(wave.whirl_speed),
+        crest=wave.crest,
+        trough=wave.trough,
+        crest_number=wave.crest_number,
+        branch=wave.branch or None,
+        converged=wave.converged,
+        in_range=not notes,
+        mass_error=wave.mass_error,
+        error_estimate=wave.error,
+        wall_time=taken,
+        theta=wave.theta,
+        depth=wave.depth,
+        notes=notes,
+        validity=numbers,
     )
 
 
@@ -135,7 +202,7 @@ def wave_notes(wave: LiquidWave) -> tuple[Note, ...]:
     clear = wave.answer.limits.get("inner_wall")
     return (
         *([no_answer(wave.reason)] if wave.reason else []),
-        *out_of_range(judge(wave)),
+        *out_of_range(judge(wave.numbers, wave.ranges)),
         *([against_whirl(wave.counter)] if wave.counter > _ONE_WAY else []),
         *([] if clear is None or clear[0] else [inner_wall()]),
     )
@@ -186,7 +253,8 @@ def layer_history(
     with as_options():
         history = simulate(fill, whirl, duration, model.friction, model.numerics, model.solver, progress)
     wave = model.wave_at_end(fill, whirl, history)
-    return LayerPeriodsResult(_case(fill, whirl, model), history, wave_notes(wave), judge(wave))
+    numbers = judge(wave.numbers, wave.ranges)
+    return LayerPeriodsResult(_case(fill, whirl, model), history, wave_notes(wave), numbers)
 
 
 def layer_film(
@@ -224,6 +292,20 @@ def layer_film(
     return last, frames
 
 
+def free_film(result: FreeWaveResult) -> tuple[Wave, WaveFrames]:
+    """A free wave in the drum frame for a film, twice round the drum.
+
+    Parameters
+    ----------
+    result : with its profile
+    """
+    whirl = Whirl(result.case.speed, result.wave().whirl_speed, 0.0)
+    frames = steady_film(result, whirl, 2.0 * whirl.period)
+    # What the arrow points to is the crest: no whirl deflects the drum.
+    towards = result.depth.max() * np.exp(1j * whirl.slip * frames.time)
+    return result.wave(), replace(frames, deflection=towards)
+
+
 def _film_from_rest(fill: Fill, whirl: Whirl, model: LongWave, duration: float) -> WaveFrames:
     """Long waves from rest."""
     from solvers.pypde.settle import film
@@ -235,7 +317,7 @@ def _film_from_rest(fill: Fill, whirl: Whirl, model: LongWave, duration: float) 
     return WaveFrames(time=shots.time, theta=shots.theta, depth=shots.depth, deflection=shots.deflection)
 
 
-def steady_film(answer: LayerResult, whirl: Whirl, duration: float) -> WaveFrames:
+def steady_film(answer: LayerResult | FreeWaveResult, whirl: Whirl, duration: float) -> WaveFrames:
     """Pictures of a wave that is steady in the frame of the deflection, as it runs round the drum.
 
     Parameters

@@ -25,6 +25,7 @@ from solvers.liquid_model import (
     LONG,
     ROUNDING,
     THIN_LAYERS,
+    FreeWave,
     LiquidAnswer,
     LiquidModel,
     LiquidWave,
@@ -36,6 +37,7 @@ from solvers.liquid_model import (
     angles,
     kept_limits,
     numbers_of,
+    require_crest,
     wave_amplitude,
     whirl_answer,
 )
@@ -223,6 +225,46 @@ class Linear(WaveModel):
             ranges=ranges,
             mass_error=0.5 * displacement**2 / (chamber.radius**2 - surface**2) if converged else math.nan,
             reason="" if converged else "the whirl meets a free wave, the linear force is unbounded",
+        )
+
+    def free_wave(self, fill: Fill, spin: float, crest: float, crests: int = 1) -> FreeWave:
+        """The free wave of n crests, whose speed does not depend on its height [theory: waves, eq. 7].
+
+        Parameters
+        ----------
+        fill : chamber and liquid
+        spin : Omega, rad/s
+        crest : depth at the crest over the mean depth, above 1
+        crests : n, round the drum
+
+        Raises
+        ------
+        InputError : no free surface, no crest
+        """
+        require_crest(fill, crest, crests)
+        radius, surface = fill.chamber.radius, fill.surface_radius
+        if surface <= fill.chamber.inner_radius:
+            raise InputError("volume", fill.volume, "less than what fills the chamber, for a free surface")
+        height = (crest - 1.0) * fill.depth
+        ahead, behind = waves.free_wave_speeds(crests, math.log(radius / surface), spin)
+        theta = angles()
+        depth = np.clip(fill.depth + height * np.cos(crests * theta), 0.0, radius)
+        # Speed along the surface over that across it, of liquid between a wall and a small wave.
+        ring = (surface / radius) ** (2 * crests)
+        crest_number = crests * height / surface * (1.0 + ring) / (1.0 - ring)
+        numbers = {"relative_depth": fill.depth / radius, "wave_amplitude": crest - 1.0}
+        numbers |= {"crest": crest, "trough": 2.0 - crest, "crest_number": crest_number}
+        return FreeWave(
+            whirl_speed=(spin + float(behind), spin + float(ahead)),
+            theta=theta,
+            depth=depth,
+            crest=crest,
+            trough=2.0 - crest,
+            crest_number=crest_number,
+            numbers=numbers,
+            ranges={"wave_amplitude": self.ranges["wave_amplitude"]},
+            converged=True,
+            mass_error=0.5 * height**2 / (radius**2 - surface**2),
         )
 
     def linear_limit(self, fills: Fills, speed: Array, gravity: Array) -> Array:
