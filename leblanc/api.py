@@ -397,7 +397,7 @@ def layer(
     friction : none, stokes, wall[:ROUGHNESS], linear:RATE or quadratic:NUMBER
     gravity : across the axis, m/s^2
     liquid : a known name, or a `leblanc.Liquid`
-    duration : start from rest and answer period by period, s; for long_wave
+    duration : start from rest and answer period by period, s; for long_wave and potential
     ramp : time over which the whirl grows, with a duration, s
     solver : of py-pde, as runge-kutta or scipy, in place of finite_volume (long_wave), steady_newton (kdv)
     free : depth at the crest over the mean depth of the free wave asked for, in place of a whirl, by linear

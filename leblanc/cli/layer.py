@@ -53,7 +53,7 @@ def layer(
     gravity: Annotated[str, typer.Option(help="Gravity across the axis.")] = "0",
     liquid: Annotated[str, typer.Option(help="Name of the liquid.")] = "water",
     duration: Annotated[
-        str | None, typer.Option(help="Start from rest and answer period by period (long_wave).")
+        str | None, typer.Option(help="Start from rest and answer period by period (long_wave, potential).")
     ] = None,
     ramp: Annotated[str, typer.Option(help="Time over which the whirl grows, with --duration.")] = "0",
     solver: Annotated[

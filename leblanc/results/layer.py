@@ -120,12 +120,12 @@ class ExactWave:
 
     Parameters
     ----------
-    state : "resolved"; None where no wave was found
+    state : "resolved"; in time also "short_waves" or "broken"; None where no wave was found
     branch : "one_crest", "many_crests", or "lee_waves" where shorter waves ride on it
     crest, trough : greatest and least depth over the mean depth
     crest_number : speed of the liquid at the crest over that of the crest, 1 for the highest wave; nan where
         the wave stands still in the drum
-    error_estimate : of the force, relative
+    error_estimate : of the force, relative; in time the gap between pressure and momentum
     largest_whirl : at which waves of this speed end, or up to which they were found, m; nan where the whirl
         that was asked for has a wave
     """
@@ -268,7 +268,7 @@ class FreeWaveResult(Result):
     >>> found = lb.layer(radius="100 mm", volume="119.4 ml", height="20 mm", speed=1.0, model="potential",
     ...                  free=1.2)
     >>> [f"{speed:.4f}" for speed in found.whirl_speed]
-    ['0.7512', '1.4951']
+    ['0.7512', '1.4952']
     """
 
     case: LayerCase
@@ -348,6 +348,8 @@ class LayerPeriodsResult(Result):
     history : force, centre of mass and depths period by period, and the depth at the end
     notes : why there is no answer, and where the model is out of its range
     validity : dimensionless numbers the model rests on, each with its range
+    exact : what the exact wave alone tells, crest and trough since the beginning, its state at the end; None
+        for other models
 
     Examples
     --------
@@ -363,6 +365,7 @@ class LayerPeriodsResult(Result):
     history: LayerHistory
     notes: tuple[Note, ...]
     validity: tuple[Number, ...]
+    exact: ExactWave | None = None
 
     solver = carried("case.solver")
     figure = "leblanc.figures.wave:periods_figure"
@@ -404,6 +407,7 @@ class LayerPeriodsResult(Result):
             "in_range": self.in_range,
             "validity": tuple(map(asdict, self.validity)),
             "notes": texts(self.notes),
+            **({} if self.exact is None else asdict(self.exact)),
         }
 
     def named_arrays(self) -> NamedArrays:

@@ -32,12 +32,13 @@ from leblanc.results.layer import (
 from leblanc.results.notes.baffles import smeared_baffles
 from leblanc.studies.models.validity import judge
 from meshes.errors import InputError, require_not_negative, require_positive
-from solvers.liquid_model import LiquidWave, WaveModel, Whirl
+from solvers.liquid_model import LiquidWave, WaveModel, Whirl, numbers_of
 from solvers.potential.model import Potential, PotentialWave
 from solvers.potential.steady import Branch
 from solvers.pypde.models import LongWave, OneFamily, Progress
 from solvers.synchronous.models import LINEAR, Linear
 
+_EVEN = 720  # angles of a film
 _ONE_WAY = 1e-6  # part of the answer that may go the other way round before it is worth a note
 
 
@@ -243,18 +244,43 @@ def layer_history(
 
     Raises
     ------
-    InputError : a value out of its range, a model other than the long waves
+    InputError : a value out of its range, a model other than the long waves and the exact wave
     """
+    whirl = Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity)
+    if isinstance(model, Potential):
+        return _exact_history(fill, whirl, model, duration, progress)
     if not isinstance(model, LongWave):
-        raise InputError("--model", model.name, "long_wave where a --duration is given")
+        raise InputError("--model", model.name, "long_wave or potential where a --duration is given")
     from solvers.pypde.settle import simulate
 
-    whirl = Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity)
     with as_options():
         history = simulate(fill, whirl, duration, model.friction, model.numerics, model.solver, progress)
     wave = model.wave_at_end(fill, whirl, history)
     numbers = judge(wave.numbers, wave.ranges)
     return LayerPeriodsResult(_case(fill, whirl, model), history, wave_notes(wave), numbers)
+
+
+def _exact_history(
+    fill: Fill, whirl: Whirl, model: Potential, duration: float, progress: Progress
+) -> LayerPeriodsResult:
+    """The exact wave from rest: up to where it breaks, if it does."""
+    from solvers.potential.histories import simulate
+
+    with as_options():
+        found = simulate(fill, whirl, duration, progress=progress)
+    numbers = judge(numbers_of(fill, whirl, {}), model.ranges)
+    reason = found.periods.reason
+    exact = ExactWave(
+        state=found.state.value,
+        branch=None,
+        crest=found.crest,
+        trough=found.trough,
+        crest_number=found.crest_number,
+        error_estimate=found.force_gap,
+        largest_whirl=math.nan,
+    )
+    notes = (*([no_answer(reason)] if reason else []), *out_of_range(numbers))
+    return LayerPeriodsResult(_case(fill, whirl, model), found.periods, notes, numbers, exact)
 
 
 def layer_film(
@@ -270,8 +296,9 @@ def layer_film(
 ) -> tuple[Wave, WaveFrames]:
     """A layer in the drum frame for a film; the parameters are `layer_history`'s.
 
-    Long waves start from rest and run for six whirl periods unless a duration is given; waves of the other
-    models are steady in the frame of the deflection and run round the drum for two.
+    Long waves start from rest and run for six whirl periods unless a duration is given; the exact wave starts
+    from rest where one is given. Other waves are steady in the frame of the deflection and run round the drum
+    for two.
 
     Returns
     -------
@@ -282,7 +309,7 @@ def layer_film(
     InputError : a value out of its range
     """
     whirl = Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity)
-    if not isinstance(model, LongWave):
+    if not isinstance(model, LongWave) and not (isinstance(model, Potential) and duration is not None):
         answer = answer_layer(fill, speed, whirl_speed, whirl_amplitude, model, gravity, progress)
         return answer.wave(), steady_film(answer, whirl, 2.0 * whirl.period)
     with as_options():
@@ -306,14 +333,21 @@ def free_film(result: FreeWaveResult) -> tuple[Wave, WaveFrames]:
     return result.wave(), replace(frames, deflection=towards)
 
 
-def _film_from_rest(fill: Fill, whirl: Whirl, model: LongWave, duration: float) -> WaveFrames:
-    """Long waves from rest."""
-    from solvers.pypde.settle import film
-
+def _film_from_rest(fill: Fill, whirl: Whirl, model: WaveModel, duration: float) -> WaveFrames:
+    """Waves from rest."""
     # Eight pictures at least while the deflection turns once, and enough for a smooth film.
     frames = int(np.clip(8.0 * duration / whirl.period, 120, 2000))
     periods = duration / whirl.period
-    shots = film(fill, whirl, frames, periods, model.friction, model.numerics, model.solver, model.progress)
+    if isinstance(model, LongWave):
+        from solvers.pypde.settle import film
+
+        shots = film(
+            fill, whirl, frames, periods, model.friction, model.numerics, model.solver, model.progress
+        )
+    else:
+        from solvers.potential.histories import film as exact_film
+
+        shots = exact_film(fill, whirl, frames, periods)
     return WaveFrames(time=shots.time, theta=shots.theta, depth=shots.depth, deflection=shots.deflection)
 
 
@@ -328,7 +362,10 @@ def steady_film(answer: LayerResult | FreeWaveResult, whirl: Whirl, duration: fl
     """
     frames = int(np.clip(60.0 * duration / whirl.period, 60, 2000))
     time = duration * np.arange(frames) / frames
-    turned = answer.theta - whirl.slip * time[:, None]
+    # Angles that crowd at a crest are too far apart for it where it runs to.
+    apart, even = np.diff(answer.theta), np.linspace(-math.pi, math.pi, _EVEN, endpoint=False)
+    theta = answer.theta if apart.max() < 1.5 * apart.min() else even
+    turned = theta - whirl.slip * time[:, None]
     depth = np.interp(turned, answer.theta, answer.depth, period=2.0 * math.pi)
     deflection = whirl.amplitude * np.exp(1j * whirl.slip * time)
-    return WaveFrames(time=time, theta=answer.theta, depth=depth, deflection=deflection)
+    return WaveFrames(time=time, theta=theta, depth=depth, deflection=deflection)

@@ -234,7 +234,19 @@ def periods_summary(result: LayerPeriodsResult) -> list[tuple[str, str]]:
         ("Whirl periods", f"{h.time.size}"),
         ("Force ratio of the last one", _at_angle(complex(h.force_ratio[-1]))),
         ("Mean rotation in the drum", _rate(float(h.mean_rotation[-1]))),
+        *_in_time(result.exact),
         *_validity(result.converged, result.in_range, result.validity),
+    ]
+
+
+def _in_time(exact: ExactWave | None) -> list[tuple[str, str]]:
+    """State and shape of an exact wave in time."""
+    if exact is None or exact.state is None:
+        return []
+    return [
+        ("State of the wave", exact.state.replace("_", " ")),
+        *_shape(exact),
+        ("Force by pressure off that by momentum", number(exact.error_estimate)),
     ]
 
 

@@ -357,7 +357,9 @@ def _told(last: End, fill: Fill) -> tuple[str, float]:
     upto = f"the last smooth steady wave was found at a whirl of {share:.4g} of the depth"
     why = {
         EndKind.FOLD: f"waves of this speed end in a fold at a whirl of {share:.4g} of the depth",
-        EndKind.CHOKING: f"the flow chokes at the trough (Froude number {math.sqrt(last.froude):.2f}); {upto}",
+        EndKind.CHOKING: (
+            f"the flow chokes at the trough (Froude number {math.sqrt(last.froude):.2f}); {upto}"
+        ),
         EndKind.RESONANCE: f"the whirl meets the free wave of {last.crests} crests; {upto}",
         EndKind.NODES: f"the nodes do not carry the short waves that come with it; {upto}",
     }
