@@ -1,4 +1,4 @@
-"""What is kept of the breaking of the exact wave: runs that are quick come out again, and the page shows it."""
+"""What is kept of the breaking of the exact wave comes out again, and the page shows it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`python -m validation.exact`: endings, highest waves and long waves beside the exact one, computed and kept."""
+"""`python -m validation.exact`: compute endings, highest waves and long waves beside the exact one."""
 
 from __future__ import annotations
 

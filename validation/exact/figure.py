@@ -35,9 +35,9 @@ def breaking_figure() -> Figure:
         _draw_crests(crests, results)
         _draw_times(times, results)
         text = (
-            "Above: whirl periods until the exact wave breaks, under a whirl with the backward free wave, grown over "
-            "0.9 periods; open symbols: not broken until then. Below: crests of the highest free waves, and the "
-            "crest of a wave that breaks beside long waves, h0/R = 0.1, w0 = 0.05 h0."
+            "Above: whirl periods until the exact wave breaks, under a whirl with the backward free wave, "
+            "grown over 0.9 periods; open symbols: not broken until then. Below: crests of the highest free "
+            "waves, and the crest of a wave that breaks beside long waves, h0/R = 0.1, w0 = 0.05 h0."
         )
         lay_out(figure, [[ends], [crests], [times]], [2.2, 1.5, 1.7], _FRAME, text)
         figure.alt = alternative(results)
