@@ -211,7 +211,7 @@ def _aside(ratio):
 
 
 @_jit
-def slope_aside(table, area, full, value, half, ghosts):
+def slope_aside(table, area, full, value, half, bend, ghosts):
     """Put half slopes of cells beside baffles, which know their own side alone, to second order.
 
     Parameters
@@ -220,7 +220,7 @@ def slope_aside(table, area, full, value, half, ghosts):
     area : of the cells, shape (n,)
     full : area of a full gap
     value : of the cells, continued beyond both ends, shape (n + 2 ghosts,)
-    half : their half slopes, changed in place, of the same shape
+    half, bend : their half slopes and what both their faces have beyond them, changed in place, of the same shape
     ghosts : cells by which the ring is continued
     """
     n = area.size
@@ -241,10 +241,11 @@ def slope_aside(table, area, full, value, half, ghosts):
         # Next to a dry cell there is no slope, nor where the gap begins to be full.
         smooth = near * far > 0.0 and least > _DRY and (most <= full or least > full)
         half[one + ghosts] = 0.5 * way * near * _aside(far / near) if smooth and not plain else 0.0
+        bend[one + ghosts] = 0.0
         if one == n - 1:
-            half[ghosts - 1] = half[one + ghosts]
+            half[ghosts - 1], bend[ghosts - 1] = half[one + ghosts], 0.0
         if one == 0:
-            half[n + ghosts] = half[one + ghosts]
+            half[n + ghosts], bend[n + ghosts] = half[one + ghosts], 0.0
 
 
 @_jit

@@ -1,4 +1,4 @@
-"""Finite volumes for the annular long-wave equations: second order, well balanced, never below zero.
+"""Finite volumes for the annular long-wave equations: second order or third, well balanced, never below zero.
 
 Unknowns of a cell: the liquid area per radian A and the relative angular momentum q = u A - Omega A^2, the
 absolute one less Omega R^2 A, whose flux cancels [theory: long_wave, eq. 4]. Reconstructed are the static
@@ -56,6 +56,9 @@ THIN = 1e-5
 NEAREST = 0.03
 # Keeps quotients of nothing by nothing at nothing.
 _NOTHING = 1e-300
+
+# Skew of the slopes that makes the faces' values right to third order.
+THIRD = 1.0 / 12.0
 
 _LOG_4 = 1.3862943611198906
 
@@ -121,21 +124,45 @@ def primitives(area, q, spin, pull, full, slot, velocity, head, surface):
 
 
 @_face_jit
-def _half_slope(back: float, ahead: float) -> float:
-    """Half of the monotonised central slope."""
-    central = 0.25 * (back + ahead)
-    least = min(abs(central), abs(back), abs(ahead))
-    slope: float = least if central > 0.0 else -least
-    return slope if back * ahead > 0.0 else 0.0
+def _limited(back: float, ahead: float, skew: float) -> tuple[float, float]:
+    """Half of a cell's slope, and what both its faces have beyond its mean; limited, 0 where it is a crest.
+
+    Of the differences behind and ahead each face takes 1/4, the nearer one's and the farther one's moved apart by
+    `skew`: 0 is the monotonised central slope, 1/12 the parabola, to third order, with Koren's limits
+    [theory: long_wave, eq. 11].
+    """
+    near, far = 0.25 + skew, 0.25 - skew
+    least = min(abs(back), abs(ahead))
+    up = min(least, abs(far * back + near * ahead))
+    down = min(least, abs(near * back + far * ahead))
+    way = 0.5 if back + ahead > 0.0 else -0.5
+    half, bend = way * (up + down), way * (up - down)
+    same = back * ahead > 0.0
+    return (half if same else 0.0), (bend if same else 0.0)
 
 
 @_face_jit
-def half_slopes(area, head, velocity, surface, spin, full, slot, half_head, half_velocity, log):
+def half_slopes(
+    area,
+    head,
+    velocity,
+    surface,
+    spin,
+    full,
+    slot,
+    skew,
+    half_head,
+    half_velocity,
+    head_bend,
+    velocity_bend,
+    log,
+):
     """Half of the slopes of a ring's cells but the first and the last, limited wave by wave; and their L.
 
     Differences of head and velocity are split into those that the two waves of the cell carry, of which
     du/dA = (lambda - u/r^2)/L = Omega +- c/L, c half the difference of the speeds [theory: long_wave, eq. 3].
-    Next to a dry cell there is no slope, nor where the gap begins to be full.
+    Next to a dry cell there is no slope, nor where the gap begins to be full. `skew` is that of `_limited`; what
+    the faces have beyond the mean goes to `head_bend` and `velocity_bend`.
     """
     n = half_head.size
     area_b, area_m, area_a = area[:n], area[1 : n + 1], area[2 : n + 2]
@@ -160,10 +187,12 @@ def half_slopes(area, head, velocity, surface, spin, full, slot, half_head, half
         head_1, head_2 = head_m[i] - head_b[i], head_a[i] - head_m[i]
         velocity_1 = weight * (velocity_m[i] - velocity_b[i])
         velocity_2 = weight * (velocity_a[i] - velocity_m[i])
-        first = _half_slope(velocity_1 - behind * head_1, velocity_2 - behind * head_2)
-        second = _half_slope(ahead * head_1 - velocity_1, ahead * head_2 - velocity_2)
+        first, first_bend = _limited(velocity_1 - behind * head_1, velocity_2 - behind * head_2, skew)
+        second, second_bend = _limited(ahead * head_1 - velocity_1, ahead * head_2 - velocity_2, skew)
         half_head[i] = (first + second) * share if wet else 0.0
         half_velocity[i] = 0.5 * (ahead * first + behind * second) * quotient if wet else 0.0
+        head_bend[i] = (first_bend + second_bend) * share if wet else 0.0
+        velocity_bend[i] = 0.5 * (ahead * first_bend + behind * second_bend) * quotient if wet else 0.0
 
 
 @_face_jit
@@ -179,8 +208,10 @@ def side(
     cell_area,
     head,
     half_head,
+    head_bend,
     velocity,
     half_velocity,
+    velocity_bend,
     bed,
     way,
     spin,
@@ -198,7 +229,8 @@ def side(
 
     Parameters
     ----------
-    cell_area, head, half_head, velocity, half_velocity : of the cell on that side of each face
+    cell_area, head, half_head, head_bend, velocity, half_velocity, velocity_bend : of the cell on that side of
+        each face, as `half_slopes` has them
     bed : radial force at the faces
     way : 1 for the cell before the face, -1 for the one after it
     spin : Omega
@@ -211,14 +243,14 @@ def side(
     for i in range(bed.size):
         wet = cell_area[i] > DRY
         # Where the push exceeds the centrifugal force no surface has this head: the least radius stands in.
-        here = head[i] + way * half_head[i]
+        here = head[i] + head_bend[i] + way * half_head[i]
         level = np.maximum(_at_head(here, spin, bed[i]), NEAREST)
         # Beyond the full gap the head is that of the slot, on a straight line.
         beyond = here - spin * spin * full + rim * bed[i]
         pressed = full + beyond / (slot + spin * spin + bed[i] / rim)
         level = np.sqrt(np.maximum(1.0 - 2.0 * pressed, NEAREST * NEAREST)) if level < rim else level
         r = level if wet else 1.0
-        u = velocity[i] + way * half_velocity[i] if wet else 0.0
+        u = velocity[i] + velocity_bend[i] + way * half_velocity[i] if wet else 0.0
         a = 0.5 * (1.0 - r) * (1.0 + r)
         log, inverse = log_and_inverse(a, r)
         area[i], momentum[i] = a, u * a - spin * a * a
@@ -294,11 +326,11 @@ FULL = 0.4995
 GHOSTS = 2
 # Rows of scratch: of cells with ghosts, of faces, and of either side of the faces (area, q, flux of mass and
 # of q, pressure, speeds). Only whole rows are contiguous to the compiler: they are taken one by one.
-WORK = 29
+WORK = 31
 _AREA, _PULL, VELOCITY, _HEAD, SURFACE, _HALF_HEAD, _HALF_VELOCITY, LOG = range(8)
 _BED, _SLOW, _FAST, _MASS, _FLOW = range(8, 13)
 _AFTER, _BEFORE, _ROWS = 13, 20, 7
-_ROLLER, _POWER = 27, 28
+_ROLLER, _POWER, _HEAD_BEND, _VELOCITY_BEND = range(27, 31)
 
 # Decay of the fluctuations behind a bore, over their own speed and the depth; from jumps and breaking waves.
 DECAY = 0.48
@@ -330,10 +362,11 @@ def ring_rates(
     are left out; `inside` are baffles and inner wall, a `solvers.layer.inside.Inside`.
     """
     plates, full, slot = inside.plates, inside.full, inside.slot * spin * spin
-    _cells(area, q, spin, pull_cell, full, slot, work)
+    # Waves that disperse are resolved to third order: less is beside the point where the equations are good.
+    _cells(area, q, spin, pull_cell, full, slot, THIRD if dispersion else 0.0, work)
     if plates.shape[0] > 0:
-        slope_aside(plates, area, full, work[_HEAD], work[_HALF_HEAD], GHOSTS)
-        slope_aside(plates, area, full, work[VELOCITY], work[_HALF_VELOCITY], GHOSTS)
+        slope_aside(plates, area, full, work[_HEAD], work[_HALF_HEAD], work[_HEAD_BEND], GHOSTS)
+        slope_aside(plates, area, full, work[VELOCITY], work[_HALF_VELOCITY], work[_VELOCITY_BEND], GHOSTS)
     if energy.size > 0:
         fluctuations(area, energy, spin, work[_ROLLER])
     fastest = _faces(pull_face, spin, full, slot, work, energy.size > 0)
@@ -379,7 +412,7 @@ def rates(area, q, spin, euler, pull_cell, pull_face, inside, step, dt, dispersi
 
 
 @_inlined
-def _cells(area, q, spin, pull, full, slot, work):
+def _cells(area, q, spin, pull, full, slot, skew, work):
     """Primitive variables of the cells and their half slopes, all round and a little further."""
     n = area.size
     end = n + GHOSTS
@@ -396,8 +429,9 @@ def _cells(area, q, spin, pull, full, slot, work):
             work[row, end + i] = work[row, GHOSTS + i]
     inner = slice(1, n + 3)
     half_slopes(
-        *(work[_AREA], work[_HEAD], work[VELOCITY], work[SURFACE], spin, full, slot),
-        *(work[_HALF_HEAD, inner], work[_HALF_VELOCITY, inner], work[LOG, inner]),
+        *(work[_AREA], work[_HEAD], work[VELOCITY], work[SURFACE], spin, full, slot, skew),
+        *(work[_HALF_HEAD, inner], work[_HALF_VELOCITY, inner]),
+        *(work[_HEAD_BEND, inner], work[_VELOCITY_BEND, inner], work[LOG, inner]),
     )
 
 
@@ -422,8 +456,10 @@ def _faces(pull_face, spin, full, slot, work, rolling):
             wide[cells],
             work[_HEAD, cells],
             work[_HALF_HEAD, cells],
+            work[_HEAD_BEND, cells],
             work[VELOCITY, cells],
             work[_HALF_VELOCITY, cells],
+            work[_VELOCITY_BEND, cells],
             bed,
             way,
             spin,
