@@ -211,7 +211,7 @@ def _aside(ratio):
 
 
 @_jit
-def slope_aside(table, area, full, value, half, bend, ghosts):
+def slope_aside(table, area, full, value, half, ghosts):
     """Put half slopes of cells beside baffles, which know their own side alone, to second order.
 
     Parameters
@@ -220,7 +220,7 @@ def slope_aside(table, area, full, value, half, bend, ghosts):
     area : of the cells, shape (n,)
     full : area of a full gap
     value : of the cells, continued beyond both ends, shape (n + 2 ghosts,)
-    half, bend : their half slopes and what both their faces have beyond them, changed in place, of the same shape
+    half : their half slopes, changed in place, of the same shape
     ghosts : cells by which the ring is continued
     """
     n = area.size
@@ -241,11 +241,34 @@ def slope_aside(table, area, full, value, half, bend, ghosts):
         # Next to a dry cell there is no slope, nor where the gap begins to be full.
         smooth = near * far > 0.0 and least > _DRY and (most <= full or least > full)
         half[one + ghosts] = 0.5 * way * near * _aside(far / near) if smooth and not plain else 0.0
-        bend[one + ghosts] = 0.0
         if one == n - 1:
-            half[ghosts - 1], bend[ghosts - 1] = half[one + ghosts], 0.0
+            half[ghosts - 1] = half[one + ghosts]
         if one == 0:
-            half[n + ghosts], bend[n + ghosts] = half[one + ghosts], 0.0
+            half[n + ghosts] = half[one + ghosts]
+
+
+@_jit
+def straighten(table, n, value, bent, ghosts):
+    """Make straight again the cells beside baffles, where they were parabolas.
+
+    Parameters
+    ----------
+    table : as by `table_of`
+    n : cells of the ring
+    value : of the cells, continued beyond both ends, shape (n + 2 ghosts,)
+    bent : means of what they have at their two faces, changed in place, of the same shape
+    ghosts : cells by which the ring is continued
+    """
+    for k in range(2 * table.shape[0]):
+        i, way = int(table[k // 2, FACE]), 2 * (k % 2) - 1
+        if i < 0:
+            continue
+        beside = (i + (way - 1) // 2) % n
+        bent[beside + ghosts] = value[beside + ghosts]
+        if beside == n - 1:
+            bent[ghosts - 1] = value[ghosts - 1]
+        if beside == 0:
+            bent[n + ghosts] = value[n + ghosts]
 
 
 @_jit

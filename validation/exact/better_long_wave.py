@@ -28,7 +28,14 @@ DETUNINGS = (0.7, 0.8, 0.9, 0.95, 1.05, 1.1, 1.2, 1.3, 1.4)
 # Whirls over the largest that the wave out of phase bears; below the free wave those of the detuning as far above it.
 SHARES = (0.1, 0.5)
 # Whirls for the cells: h_0/R, detuning p over that of the free wave, share of the fold.
-MARCHED = ((0.1, 0.95, 0.1), (0.1, 1.4, 0.5), (0.2, 1.2, 0.5), (0.3, 0.9, 0.1), (0.3, 1.1, 0.1), (0.3, 1.2, 0.5))
+MARCHED = (
+    (0.1, 0.95, 0.1),
+    (0.1, 1.4, 0.5),
+    (0.2, 1.2, 0.5),
+    (0.3, 0.9, 0.1),
+    (0.3, 1.1, 0.1),
+    (0.3, 1.2, 0.5),
+)
 CELLS = (64, 128, 256, 512)
 PERIODS = 20
 _GROWTH, _LOW = 1.08, 1e-4
@@ -151,7 +158,16 @@ def marched(wave: Wave, detuning: float, dispersion: bool, cells: int, periods: 
     for i in range(periods):
         loads = records(LOADS)
         march(
-            held, q, i * period, (i + 1) * period, drive, Wall(0, 0.0, 0.0, dispersion), angles, _COURANT, spare, loads
+            held,
+            q,
+            i * period,
+            (i + 1) * period,
+            drive,
+            Wall(0, 0.0, 0.0, dispersion),
+            angles,
+            _COURANT,
+            spare,
+            loads,
         )
         after = complex(*centre(held, angles))
         found[i] = means(loads[0], period, mass, whirl, (before, after))[0].real
@@ -183,7 +199,9 @@ def compute() -> dict[str, list[dict[str, object]]]:
     """Both tables, as they are kept."""
     folds = {(layer, f): fold(layer, f) for layer in DEPTHS for f in DETUNINGS if f > 1.0}
     # The list of detunings is not quite even about 1: the nearest one above stands in.
-    above = {f: min((g for g in DETUNINGS if g > 1.0), key=lambda g: abs(g - max(f, 2.0 - f))) for f in DETUNINGS}
+    above = {
+        f: min((g for g in DETUNINGS if g > 1.0), key=lambda g: abs(g - max(f, 2.0 - f))) for f in DETUNINGS
+    }
     cases = [
         case(layer, f, share, folds[layer, above[f]], tuple(Model))
         for layer in DEPTHS

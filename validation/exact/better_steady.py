@@ -96,9 +96,7 @@ class Wave:
     def coefficients(self) -> tuple[Array, Array]:
         """Coefficients of A and U in cosines of k theta, k = 0 ... m, each shape (m + 1,)."""
         ring = half_ring(self.area.size - 1)
-        last = np.ones(self.area.size)
-        last[[0, -1]] = 0.5
-        return last * (ring.cosines @ self.area), last * (ring.cosines @ self.velocity)
+        return np.asarray(ring.cosines @ self.area), np.asarray(ring.cosines @ self.velocity)
 
 
 @lru_cache(maxsize=4)
@@ -194,9 +192,7 @@ def _newton(
     return state if error < _SOUND else None
 
 
-def residuals(
-    model: Model, layer: float, detuning: float, whirl: float, state: Values, count: int
-) -> Values:
+def residuals(model: Model, layer: float, detuning: float, whirl: float, state: Values, count: int) -> Values:
     """Equations of a steady wave, of one state or of several at once.
 
     Parameters
