@@ -129,8 +129,8 @@ def primitives(area, q, spin, pull, full, slot, velocity, head, surface):
 def _limited(back: float, ahead: float, skew: float) -> tuple[float, float]:
     """Half of a cell's slope, and what both its faces have beyond its mean; limited, 0 where it is a crest.
 
-    A face takes a quarter of each difference, behind and ahead, and `skew` more of that across it and less of the
-    other: 0 is the monotonised central slope, 1/12 the parabola within Koren's limits.
+    A face takes a quarter of each difference, behind and ahead, and `skew` more of that across it and less
+    of the other: 0 is the monotonised central slope, 1/12 the parabola within Koren's limits.
     """
     near, far = 0.25 + skew, 0.25 - skew
     least = min(abs(back), abs(ahead))
@@ -252,8 +252,8 @@ def side(
 
     Parameters
     ----------
-    cell_area, head, half_head, velocity, half_velocity : of the cell on that side of each face; head and velocity
-        are means of its two faces
+    cell_area, head, half_head, velocity, half_velocity : of the cell on that side of each face; head and
+        velocity are the means of its two faces
     bed : radial force at the faces
     way : 1 for the cell before the face, -1 for the one after it
     spin : Omega

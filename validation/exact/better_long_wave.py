@@ -1,7 +1,7 @@
-"""What a better long wave would bring: errors of the force beside the exact steady wave, by model and by cells.
+"""What a better long wave would bring: errors of the force beside the exact wave, by model and by cells.
 
-`python -m validation.exact.better_long_wave` computes the tables of docs/theory/long_wave.md and keeps them in
-better_long_wave.json.
+`python -m validation.exact.better_long_wave` computes the tables of docs/theory/long_wave.md, in minutes, and
+keeps them in better_long_wave.json.
 """
 
 from __future__ import annotations
@@ -25,7 +25,8 @@ KEPT = Path(__file__).with_suffix(".json")
 DEPTHS = (0.1, 0.2, 0.3, 0.5)
 # Detunings p over that of the small free wave.
 DETUNINGS = (0.7, 0.8, 0.9, 0.95, 1.05, 1.1, 1.2, 1.3, 1.4)
-# Whirls over the largest that the wave out of phase bears; below the free wave those of the detuning as far above it.
+# Whirls over the largest that the wave out of phase bears; below the free wave those of the detuning as far
+# above it.
 SHARES = (0.1, 0.5)
 # Whirls for the cells: h_0/R, detuning p over that of the free wave, share of the fold.
 MARCHED = (
@@ -198,10 +199,8 @@ def by_cells(layer: float, detuning: float, share: float, largest: float, model:
 def compute() -> dict[str, list[dict[str, object]]]:
     """Both tables, as they are kept."""
     folds = {(layer, f): fold(layer, f) for layer in DEPTHS for f in DETUNINGS if f > 1.0}
-    # The list of detunings is not quite even about 1: the nearest one above stands in.
-    above = {
-        f: min((g for g in DETUNINGS if g > 1.0), key=lambda g: abs(g - max(f, 2.0 - f))) for f in DETUNINGS
-    }
+    # Detunings lie in pairs about 1.
+    above = {f: max(f, round(2.0 - f, 2)) for f in DETUNINGS}
     cases = [
         case(layer, f, share, folds[layer, above[f]], tuple(Model))
         for layer in DEPTHS
@@ -223,10 +222,9 @@ def main() -> None:
     """Compute, keep and print."""
     found = compute()
     KEPT.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
-    for row in found["equations"]:
-        print(row)
-    for row in found["cells"]:
-        print(row)
+    for rows in found.values():
+        for row in rows:
+            print(row)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 """Steady waves of long-wave models with more and more of the depth, in Fourier space.
 
-Lengths over R, times in 1/omega_w, velocities over the wall's slip s. In the frame of the whirl a model is Bernoulli's function of its
-kinetic energy [theory: long_wave, eq. 26]; the wave is even about the deflection, and Newton's method with derivatives by
-complex steps finds it, as the exact one is found by `solvers.potential.steady`.
+Lengths over R, times in 1/omega_w, velocities over the slip s of the whirl. In its frame a model is
+Bernoulli's function of its kinetic energy [theory: long_wave, eq. 25]; the wave is even about the deflection,
+and Newton's method with derivatives by complex steps finds it.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Model(StrEnum):
     HYDROSTATIC : nothing, the long waves as they stand
     DISPERSION : `dispersion` as the finite volumes have it [theory: long_wave, eq. 14]
     SERRE : Serre's equations in the strip, the kinetic energy to its first correction
-    SECOND : the kinetic energy to its second correction [theory: long_wave, eq. 23]
+    SECOND : the kinetic energy to its second correction [theory: long_wave, eq. 22]
     """
 
     HYDROSTATIC = "hydrostatic"
@@ -82,7 +82,7 @@ class Wave:
 
     @property
     def velocity(self) -> Array:
-        """Velocity U at the nodes, over s [theory: long_wave, eq. 26]."""
+        """Velocity U at the nodes, over s [theory: long_wave, eq. 25]."""
         return np.asarray((self.area + self.flux) / layer_log(self.area))
 
     @property
@@ -198,8 +198,8 @@ def residuals(model: Model, layer: float, detuning: float, whirl: float, state: 
     Parameters
     ----------
     model, layer, detuning, whirl, count : as for `steady`
-    state : A at the nodes, what the mass flux has beside it, Bernoulli's constant and, of the model SECOND, w at the
-        nodes between the ends, shape (..., m + 3) or (..., 2 m + 2); real or complex
+    state : A at the nodes, what the mass flux has beside it, Bernoulli's constant and, of the model SECOND, w
+        at the nodes between the ends, shape (..., m + 3) or (..., 2 m + 2); real or complex
 
     Returns
     -------

@@ -52,6 +52,12 @@ def rates(
     return d_area, d_q, fastest
 
 
+def dispersed(area: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """What dispersion adds to the rate of q, without what it changes at the faces."""
+    with mock.patch.object(finite_volume, "THIRD", 0.0):
+        return rates(area, q, dispersion=True)[1] - rates(area, q)[1]
+
+
 def slope(values: np.ndarray) -> np.ndarray:
     """Derivative along the ring, to rounding for smooth values."""
     modes = np.fft.rfft(values) * 1j * np.arange(values.size // 2 + 1)
@@ -199,7 +205,7 @@ def test_dispersion() -> None:
         r, log = lw.free_surface_radius(area), lw.layer_log(area)
         q = u * area - SPIN * area**2
         head = lw.bernoulli(u, log, area, r, SPIN, PULL * np.cos(middles(n) - TURNED)) - 0.5 * (u / r) ** 2
-        added = rates(area, q, dispersion=True)[1] - rates(area, q)[1]
+        added = dispersed(area, q)
         missing, gradient = added / area, slope(head)
         reach = area * log**2
         bend = slope(gradient) + 2.0 * slope(u) ** 2
@@ -220,7 +226,7 @@ def test_dispersion_exerts_no_torque() -> None:
     for thinnest in (-12.0, -6.0, -2.0, -1.0) * 3:
         area = 10.0 ** rng.uniform(thinnest, -0.4, n) * (rng.random(n) > 0.2)
         q = rng.normal(size=n) * area - SPIN * area**2
-        added = rates(area, q, dispersion=True)[1] - rates(area, q)[1]
+        added = dispersed(area, q)
         assert np.abs(added).max() > 0.0 and abs(added.sum()) < 1e-14 * np.abs(rates(area, q)[1]).sum()
         assert np.all(added[area == 0.0] == 0.0)
         u = np.where(area > 0.0, q / np.maximum(area, 1e-300) + SPIN * area, 0.0)
@@ -351,7 +357,7 @@ def test_slopes() -> None:
     "(first_bend - second_bend) * share",
 )
 def test_bent_slopes() -> None:
-    """A parabola comes back from its means at both faces of a cell; limits and summits are those of the slopes."""
+    """A parabola comes back from its means at both faces of a cell; limits are those of the slopes."""
     edges, deep = np.arange(8.0), np.full(7, 0.1)
     rim = lw.free_surface_radius(deep)
     # Means over the cells of (x + 4)^2, of x^2 beyond the summit and of what has none.
@@ -365,7 +371,7 @@ def test_bent_slopes() -> None:
             np.testing.assert_allclose(mean + half, scale * (edges[2:7] + 4.0) ** 2, atol=1e-12)
             np.testing.assert_allclose(mean - half, scale * (edges[1:6] + 4.0) ** 2, atol=1e-12)
     # A face goes no further than the neighbour nearby is, twice the difference allowed; a summit is flat.
-    value = np.array([0.0, 1.0, 9.0, 8.0, 8.0, 9.0, 9.0])
+    value = np.array([0.0, 1.0, 9.0, 6.0, 6.0, 9.0, 9.0])
     face_flux.bent_slopes(deep, value, still, rim, SPIN, 1.0, 0.0, *found)
     np.testing.assert_allclose(found[0], [1.0, 0.0, 0.0, 0.0, 0.0], atol=1e-14)
     np.testing.assert_allclose(found[3], value[1:6], atol=1e-14)
