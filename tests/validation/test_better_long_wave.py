@@ -25,7 +25,7 @@ SHARES = {
 
 
 def linear_force(layer: float, detuning: float, share: float) -> float:
-    """G of a small whirl where the harmonic has this share of L as its tanh [theory: potential, eq. 15-16]."""
+    """G of a small whirl where the harmonic has this share of L for its tanh."""
     tanh = share * -math.log1p(-layer)
     # A = A_0 + a cos theta: a (1 - p^2 (1 + 1/t)) = w_0 r.
     amplitude = (1.0 - layer) / (1.0 - detuning * (1.0 + 1.0 / tanh))
