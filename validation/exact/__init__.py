@@ -1,0 +1,1 @@
+"""The wave models beside the exact wave."""
