@@ -1,1 +1,0 @@
-"""The wave models beside the exact wave."""
