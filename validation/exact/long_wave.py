@@ -8,6 +8,7 @@ speed only p^2 counts, as for the exact wave.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cache
 
@@ -22,6 +23,8 @@ _STEP = 1e-30
 # Nodes from the deflection to its opposite: few to begin with, more where a spectrum has not ended.
 NODES = (33, 65, 129)
 RESOLVED = 1e-7
+# Nodes to find where the flow chokes, and the tail of a spectrum that a corner has there.
+_CHOKED, _CORNER = 33, 1e-3
 
 
 @dataclass(frozen=True)
@@ -86,10 +89,7 @@ def steady_long_wave(layer: float, detuning: float, whirl: float, dispersion: bo
 
 def _followed(layer: float, detuning: float, whirl: float, dispersion: bool, count: int) -> SteadyLongWave:
     """The same on a number of nodes."""
-    rest = 0.5 * layer * (2.0 - layer)
-    state = np.zeros(2 * count)
-    state[:count], state[-2], state[-1] = rest, rest, (1.0 - detuning) * rest
-    reached, step = 0.0, 0.5
+    state, reached, step = _rest(layer, detuning, count), 0.0, 0.5
     while reached < 1.0:
         step = min(step, 1.0 - reached)
         problem = _Problem(layer, detuning, (reached + step) * whirl, dispersion, count)
@@ -104,6 +104,39 @@ def _followed(layer: float, detuning: float, whirl: float, dispersion: bool, cou
     size = np.abs(even.coefficients @ state[:count])
     tail = float(size[-(count // 10) :].max() / size[1:].max())
     return SteadyLongWave(even.angle, state[:count], whirl, tail, reached >= 1.0)
+
+
+def choking(layer: float, detuning: float, most: float) -> float:
+    """Largest w_0/h_0 of a smooth long wave without dispersion, to 10 %.
+
+    Parameters
+    ----------
+    layer, detuning : h_0/R and p^2
+    most : w_0/h_0 up to which it is followed
+
+    Returns
+    -------
+    nan where it is above `most`
+    """
+    state, count, whirl, reached = _rest(layer, detuning, _CHOKED), _CHOKED, 1e-6, 0.0
+    coefficients = _even(count).coefficients
+    while whirl < most:
+        found = _newton(_Problem(layer, detuning, whirl * layer, False, count), state)
+        if found is None:
+            return reached
+        size = np.abs(coefficients @ found[:count])
+        if size[-(count // 10) :].max() > _CORNER * size[1:].max():
+            return reached
+        state, reached, whirl = found, whirl, 1.1 * whirl
+    return math.nan
+
+
+def _rest(layer: float, detuning: float, count: int) -> Array:
+    """The unknowns of the layer at rest."""
+    area = 0.5 * layer * (2.0 - layer)
+    state = np.zeros(2 * count)
+    state[:count], state[-2], state[-1] = area, area, (1.0 - detuning) * area
+    return state
 
 
 @dataclass(frozen=True)
