@@ -13,6 +13,7 @@ import numpy as np
 
 from fluid import waves
 from fluid.fill import Fill
+from fluid.wave_height import detuning_ratio, largest_whirl
 from leblanc.results.base import Note
 from leblanc.results.layer import (
     LayerCase,
@@ -24,6 +25,7 @@ from leblanc.results.layer import (
     dry_wall,
     inner_wall,
     no_answer,
+    no_smooth_wave,
     out_of_range,
 )
 from leblanc.results.notes.baffles import smeared_baffles
@@ -31,7 +33,7 @@ from leblanc.studies.models.validity import judge
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.liquid_model import LiquidWave, WaveModel, Whirl
 from solvers.pypde.models import LongWave, OneFamily, Progress
-from solvers.synchronous.models import LINEAR
+from solvers.synchronous.models import LINEAR, Linear
 
 _ONE_WAY = 1e-6  # part of the answer that may go the other way round before it is worth a note
 
@@ -80,6 +82,7 @@ def answer_layer(
     in_range = not notes
     if in_range and wave.answer.dry_patch[0]:
         notes = (dry_wall(),)
+    notes = (*notes, *_beyond_waves(fill, whirl, model))
     if isinstance(model, LongWave):
         notes = (*notes, *smeared_baffles([fill], model.numerics.cells))
     kappa = (fill.chamber.radius / surface) ** 2 if gravity else math.nan
@@ -87,6 +90,7 @@ def answer_layer(
         case=_case(fill, whirl, model),
         force_ratio=_force_ratio(fill, whirl, wave),
         offset=complex(wave.answer.offset[0]),
+        error_estimate=float(wave.answer.error[0]),
         mass_error=wave.mass_error,
         converged=bool(wave.answer.converged[0]),
         in_range=in_range,
@@ -99,6 +103,18 @@ def answer_layer(
         captured=not gravity or speed > float(waves.capture_speed(surface, gravity)),
         validity=judge(wave),
     )
+
+
+def _beyond_waves(fill: Fill, whirl: Whirl, model: WaveModel) -> tuple[Note, ...]:
+    """That no smooth steady wave is there [theory: model_error, eq. 32-33]."""
+    if whirl.slip == 0.0 or whirl.gravity != 0.0 or not isinstance(model, Linear | LongWave | OneFamily):
+        return ()
+    size = whirl.amplitude / fill.depth
+    largest = float(largest_whirl(fill.depth / fill.chamber.radius, whirl.detuning))
+    if fill.surface_radius <= fill.chamber.inner_radius or size <= largest:
+        return ()
+    above = float(detuning_ratio(fill.depth / fill.chamber.radius, whirl.detuning)) > 1.0
+    return (no_smooth_wave(size, largest, above),)
 
 
 Model = TypeVar("Model", bound=WaveModel)

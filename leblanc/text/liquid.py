@@ -156,12 +156,18 @@ def layer_summary(result: LayerResult) -> list[tuple[str, str]]:
     return [
         *_model(result),
         ("Force ratio", _at_angle(result.force_ratio)),
+        *_error(result.error_estimate),
         ("Centre of mass", _at_angle(result.offset, LENGTH)),
         ("Mean rotation in the drum", _rate(result.mean_rotation)),
         *_steady(result),
         ("Error of the liquid's volume", number(result.mass_error)),
         *_validity(result.converged, result.in_range, result.validity),
     ]
+
+
+def _error(estimate: float) -> list[tuple[str, str]]:
+    """What the model tells of its own error, if it does."""
+    return [("Its estimated error", number(estimate))] if math.isfinite(estimate) else []
 
 
 def periods_summary(result: LayerPeriodsResult) -> list[tuple[str, str]]:

@@ -17,6 +17,7 @@ import numpy as np
 from fluid import waves
 from fluid.fill import Fill, Fills
 from fluid.paraboloid import CYLINDER_STEEPNESS, steepness
+from fluid.wave_height import linear_error
 from meshes.arrays import Array, Index
 from meshes.errors import InputError
 from meshes.section import Section, annulus
@@ -184,7 +185,7 @@ class Linear(WaveModel):
         return added_mass_answer(fills, whirls, error)
 
     def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
-        """See `WaveModel`.
+        """See `WaveModel`; the error is that of small waves beside exact ones [theory: model_error, eq. 34].
 
         Raises
         ------
@@ -214,6 +215,7 @@ class Linear(WaveModel):
             dry_patch=abs(displacement) > fill.depth,
             converged=converged,
             small=True,
+            error=self._error(fill, whirl),
         )
         return LiquidWave(
             answer=answer,
@@ -224,6 +226,14 @@ class Linear(WaveModel):
             mass_error=0.5 * displacement**2 / (chamber.radius**2 - surface**2) if converged else math.nan,
             reason="" if converged else "the whirl meets a free wave, the linear force is unbounded",
         )
+
+    def _error(self, fill: Fill, whirl: Whirl) -> float:
+        """Of one wave; none where gravity throws others."""
+        if whirl.gravity != 0.0:
+            return math.nan
+        if whirl.slip == 0.0:
+            return float(self.at_rest(Fills.of([fill]), Whirls.of(whirl)).error[0])
+        return float(linear_error(fill.depth / fill.chamber.radius, whirl.detuning, whirl.amplitude / fill.depth))
 
     def linear_limit(self, fills: Fills, speed: Array, gravity: Array) -> Array:
         """Infinite: the law is a straight line."""
