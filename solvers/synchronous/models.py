@@ -233,7 +233,9 @@ class Linear(WaveModel):
             return math.nan
         if whirl.slip == 0.0:
             return float(self.at_rest(Fills.of([fill]), Whirls.of(whirl)).error[0])
-        return float(linear_error(fill.depth / fill.chamber.radius, whirl.detuning, whirl.amplitude / fill.depth))
+        return float(
+            linear_error(fill.depth / fill.chamber.radius, whirl.detuning, whirl.amplitude / fill.depth)
+        )
 
     def linear_limit(self, fills: Fills, speed: Array, gravity: Array) -> Array:
         """Infinite: the law is a straight line."""

@@ -82,7 +82,9 @@ def _ends(ends: dict[tuple[float, float], End]) -> Ends:
 
 
 def _marched() -> Marched:
-    cases = [(*case, dispersion, cells) for case in IN_TIME for dispersion in (False, True) for cells in CELLS]
+    cases = [
+        (*case, dispersion, cells) for case in IN_TIME for dispersion in (False, True) for cells in CELLS
+    ]
     histories = [
         settle(
             layer_fill(layer),
@@ -127,7 +129,9 @@ def main(arguments: list[str] | None = None) -> int:
     for name in measured.maps.models:
         error = measured.maps.error(name)
         worst = np.nanquantile(error, (0.5, 0.9, 1.0))
-        print(f"{name:14} error: median {worst[0]:.1e}, nine in ten below {worst[1]:.1e}, largest {worst[2]:.1e}")
+        print(
+            f"{name:14} error: median {worst[0]:.1e}, nine in ten below {worst[1]:.1e}, largest {worst[2]:.1e}"
+        )
     print(f"{measured.seconds:.0f} s, {np.count_nonzero(measured.maps.smooth)} smooth waves on the maps")
     return 0
 

@@ -37,8 +37,6 @@ def maps_figure(cases: Cases) -> Figure:
     ----------
     cases : on a grid
     """
-    from matplotlib.colors import LogNorm
-
     with style():
         figure = Figure()
         rows: list[list[Any]] = []
@@ -50,25 +48,24 @@ def maps_figure(cases: Cases) -> Figure:
                 ratio, layer, error = grid_of(cases, model, whirl)
                 lost, known = np.isnan(error), np.clip(error, _LEAST, _MOST)
                 shown = axes.pcolormesh(
-                    ratio, layer, known, norm=LogNorm(_LEAST, _MOST), cmap="viridis", shading="nearest",
+                    ratio, layer, known, norm="log", vmin=_LEAST, vmax=_MOST, cmap="viridis", shading="nearest",
                     rasterized=True,
                 )  # fmt: skip
                 axes.contourf(
                     ratio, layer, lost.astype(float), levels=[0.5, 1.5], colors="none", hatches=["////"]
                 )
-                lines = axes.contour(
+                axes.contour(
                     ratio, layer, np.log10(known), levels=np.log10(_LINES), colors=["white", "black"],
                     linewidths=0.9, linestyles=["--", "-"],
                 )  # fmt: skip
-                del lines
                 _dress(axes, first=not row, last=model == _MODELS[-1][0])
-                axes.set_title(f"{name}, $w_0$ = {whirl:g} $h_0$", fontsize=7.5, pad=2.5)
+                axes.set_title(f"{name}, whirl {whirl:g} h0", fontsize=7.5, pad=2.5)
                 row.append(axes)
             rows.append(row)
         text = (
             "Error of the force ratio G over the larger of |G| and 1, against the exact wave without friction. "
-            "Dashed line 1 %, solid line 5 %. Hatched: no smooth steady wave, of the exact equations or of the "
-            "model. The whirl is the slower of the two with this p."
+            "Dashed line 1 %, solid line 5 %. Hatched: no smooth steady wave was found, of the exact equations or of the "
+            "model; alone, where short waves in the lee resonate. Of the two whirl speeds with this p the one below the spin."
         )
         lay_out(figure, rows, [1.25] * len(rows), _FRAME, text)
         _spread(figure, rows, shown)
@@ -80,10 +77,12 @@ def _dress(axes: Any, first: bool, last: bool) -> None:
     axes.set_yscale("log")
     axes.set_yticks(_TICKS, [number(tick) for tick in _TICKS])
     axes.minorticks_off()
-    axes.set_xlim(0.2, 2.2)
+    axes.set_xlim(0.2, 2.15)
+    axes.set_ylim(0.02, 0.7)
+    axes.set_facecolor("0.88")
     axes.grid(visible=False)
-    axes.set_ylabel("$h_0/R$" if first else "")
-    axes.set_xlabel("Detuning $p/p_1$" if last else "")
+    axes.set_ylabel("Depth h0/R" if first else "")
+    axes.set_xlabel("Detuning p/p1" if last else "")
     axes.tick_params(labelleft=first, labelbottom=last)
 
 
@@ -96,7 +95,8 @@ def _spread(figure: Figure, rows: list[list[Any]], shown: Any) -> None:
             axes.set_position((box.x0 - 0.1 * k * box.width, box.y0, width, box.height))
     top, bottom = rows[0][-1].get_position(), rows[-1][-1].get_position()
     bar: Any = figure.add_axes((top.x1 + 0.02, bottom.y0, 0.018, top.y1 - bottom.y0))
-    figure.colorbar(shown, cax=bar)
+    figure.colorbar(shown, cax=bar, format=lambda value, _position: f"{number(100.0 * value)} %")
+    bar.minorticks_off()
     bar.set_title("error", fontsize=7, pad=3)
 
 
@@ -155,7 +155,7 @@ def ends_figure(ends: Ends) -> Figure:
             mine = np.isclose(ends.layer, layer)
             for side in (ends.ratio < 1.0, ends.ratio > 1.0):
                 here = mine & side & (ends.whirl < 0.49)
-                name = f"$h_0/R$ = {layer:g}" if side[0] else None
+                name = f"h0/R = {layer:g}" if side[0] else None
                 axes.plot(ends.ratio[here], ends.whirl[here], color=look, label=name)
                 folds = here & ends.fold
                 axes.plot(ends.ratio[folds], ends.whirl[folds], "o", color=look, markersize=3.0)
@@ -164,12 +164,12 @@ def ends_figure(ends: Ends) -> Figure:
         axes.set_xlim(0.3, 1.8)
         axes.set_ylim(2e-4, 0.5)
         axes.yaxis.set_major_formatter(number)
-        axes.set_xlabel("Detuning $p/p_1$")
-        axes.set_ylabel("Largest whirl $w_0/h_0$")
+        axes.set_xlabel("Detuning p/p1")
+        axes.set_ylabel("Largest whirl w0/h0")
         text = (
             "Largest whirl whose steady wave, grown from rest, is smooth. Points: folds, beyond which there is none "
-            "near. Lines without points: as far as the wave was followed, to its choking, to lee waves or to a "
-            "sharp crest. Dotted: long waves without dispersion choke."
+            "near. Lines without points: as far as the wave was followed, to its choking, to lee waves (dents) or to "
+            "a sharp crest. Dotted: long waves without dispersion choke."
         )
         lay_out(figure, [[axes]], [2.8], Frame(left=0.72, top=0.15, between=0.12, below=0.42), text)
         figure.alt = ends_words(ends)

@@ -2,7 +2,7 @@
 
 `LongWave` goes through time until its force no longer changes. Where no bore stands and nothing rubs, what it
 ends at obeys ordinary equations, solved here by Newton's method: the error of the model alone, without that of
-its cells [theory: wave_errors, eq. 3-6]. Lengths over R, times in 1/Omega, velocities over s; of the whirl
+its cells [theory: model_error, eq. 24-27]. Lengths over R, times in 1/Omega, velocities over s; of the whirl
 speed only p^2 counts, as for the exact wave.
 """
 
@@ -153,7 +153,7 @@ class _Problem:
     count: int
 
     def residual(self, state: Array) -> Array:
-        """What the unknowns miss [theory: wave_errors, eq. 3-6].
+        """What the unknowns miss [theory: model_error, eq. 24-27].
 
         Parameters
         ----------
