@@ -95,8 +95,8 @@ def no_smooth_wave(whirl: float, largest: float, fold: bool) -> Note:
     fold : they end at a fold, above the resonance; else the flow chokes
     """
     way = "it turns back" if fold else "the flow chokes"
-    text = f"no smooth steady wave follows a whirl as it grows to {whirl:.2g} of the mean depth: without friction "
-    text += f"{way} at {largest:.2g}"
+    text = f"no smooth steady wave follows a whirl as it grows to {whirl:.2g} of the mean depth: "
+    text += f"without friction {way} at {largest:.2g}"
     return Note(LayerCode.NO_SMOOTH_WAVE, {"whirl": whirl, "largest": largest, "fold": fold}, text)
 
 
@@ -198,10 +198,9 @@ class LayerResult(Result):
         ----------
         profile : with the depth around the wall
         """
-        names = ("force_ratio", "error_estimate", "offset", "mass_error", "converged", "in_range")
-        names += ("mean_rotation", "wall_time")
-        more = ("theta", "depth") if profile else ()
-        found: dict[str, Any] = {name: getattr(self, name) for name in (*names, *more)}
+        names = ["force_ratio", "error_estimate", "offset", "mass_error", "converged", "in_range"]
+        names += ["mean_rotation", "wall_time", *(("theta", "depth") if profile else ())]
+        found: dict[str, Any] = {name: getattr(self, name) for name in names}
         return found | {
             "solver": self.solver,
             "notes": texts(self.notes),

@@ -13,7 +13,6 @@ import numpy as np
 
 from fluid import waves
 from fluid.fill import Fill
-from fluid.wave_height import detuning_ratio, largest_whirl
 from leblanc.results.base import Note
 from leblanc.results.layer import (
     LayerCase,
@@ -34,6 +33,7 @@ from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.liquid_model import LiquidWave, WaveModel, Whirl
 from solvers.pypde.models import LongWave, OneFamily, Progress
 from solvers.synchronous.models import LINEAR, Linear
+from solvers.wave_error import detuning_ratio, largest_whirl
 
 _ONE_WAY = 1e-6  # part of the answer that may go the other way round before it is worth a note
 

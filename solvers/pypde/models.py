@@ -15,7 +15,6 @@ import numpy as np
 from fluid import kdv
 from fluid.fill import Fill, Fills
 from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw, damping_rate
-from fluid.wave_height import family_error, long_wave_error
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.layer.state import LayerHistory, Numerics
@@ -35,6 +34,7 @@ from solvers.liquid_model import (
     wave_amplitude,
     whirl_answer,
 )
+from solvers.wave_error import family_error, long_wave_error
 from solvers.waves.modes import WaveTerms
 
 if TYPE_CHECKING:

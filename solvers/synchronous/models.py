@@ -17,7 +17,6 @@ import numpy as np
 from fluid import waves
 from fluid.fill import Fill, Fills
 from fluid.paraboloid import CYLINDER_STEEPNESS, steepness
-from fluid.wave_height import linear_error
 from meshes.arrays import Array, Index
 from meshes.errors import InputError
 from meshes.section import Section, annulus
@@ -43,6 +42,7 @@ from solvers.liquid_model import (
 from solvers.roots import bracketed_root
 from solvers.statics.hydrostatics import equilibrium, volume_under
 from solvers.statics.law_defect import defect_bound, upright_surfaces
+from solvers.wave_error import linear_error
 
 # The end of the straight line is taken so much too low, relatively, that the law is the line up to it.
 _MARGIN = 1e-9

@@ -17,8 +17,8 @@ import numpy as np
 from meshes.arrays import Array, Flags
 
 KEPT = Path(__file__).parent / "results.json"
-# Models by their names here; one family answers the whirl behind the drum and its twin ahead, which the others
-# do not tell apart.
+# Models by their names here; one family answers the whirl behind the drum and its twin ahead, which the
+# others do not tell apart.
 MODELS = ("linear", "long_wave", "dispersion", "kdv", "kdv_twin", "whitham", "whitham_twin")
 
 
@@ -138,7 +138,7 @@ def _cases(found: Mapping[str, Any]) -> Cases:
     return Cases(**arrays, models={name: _array(found["models"][name]) for name in MODELS})
 
 
-def _array(values: list[Any]) -> Array:
+def _array(values: list[Any]) -> Any:
     """Numbers with nan where there are none; flags as flags."""
     if all(isinstance(value, bool) for value in values):
         return np.array(values, dtype=bool)

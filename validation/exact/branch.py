@@ -20,7 +20,7 @@ _FIRST, _MOST, _MOST_AT_FOLDS, SMOOTH = 64, 128, 216, 1e-6
 RIPPLED = 0.1
 # Shortest step of a way, of the way.
 _SHORTEST = 1.0 / 24.0
-# Height of the first step on the way to a fold over h_0, and how steps grow; of the whirl on the way to another end.
+# Height of the first step on the way to a fold over h_0; how steps grow; those of a whirl to another end.
 _RISE, _GROWTH, _FURTHER = 0.03, 1.3, 1.15
 # Whirl beyond which no end is looked for, and the first one on the way, over h_0.
 WIDEST, _NARROWEST = 0.5, 1e-4
@@ -71,7 +71,7 @@ def detuning(layer: float, ratio: float) -> float:
 
 
 def whirl_speeds(layer: float, ratio: float) -> tuple[float, float]:
-    """The twins of whirl speeds at a ratio p/p_1, over the spin: behind the drum, and ahead of it or against it.
+    """The twins of whirl speeds at a ratio p/p_1, over the spin: behind the drum, and ahead or against it.
 
     Parameters
     ----------

