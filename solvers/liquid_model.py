@@ -66,6 +66,11 @@ class Whirl:
         return self.speed - self.spin
 
     @property
+    def detuning(self) -> float:
+        """p^2 = (1 - Omega/omega_w)^2: all an exact wave knows of the speeds [theory: potential, eq. 9]."""
+        return (self.slip / self.speed) ** 2
+
+    @property
     def period(self) -> float:
         """Time of one whirl seen from the drum, or of one turn of a synchronous one, s."""
         return 2.0 * math.pi / (abs(self.slip) or self.spin)
@@ -148,7 +153,8 @@ class LiquidAnswer:
     dry_patch : the wall is dry over its whole height somewhere
     converged : the answer was found
     limits : by its name each limit of the model, and where it is kept
-    error : estimated relative error of U; nan where the model has no estimate
+    error : estimated error of U, at rest relative, of waves over the larger of U and a full chamber's;
+        nan where the model has no estimate
     """
 
     unbalance: Complex

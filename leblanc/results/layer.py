@@ -31,6 +31,7 @@ class LayerCode(NoteCode):
     AGAINST_WHIRL = "against_whirl"
     DRY_WALL = "dry_wall"
     LEE_WAVES = "lee_waves"
+    NO_SMOOTH_WAVE = "no_smooth_wave"
 
 
 @dataclass(frozen=True)
@@ -91,6 +92,20 @@ def lee_waves() -> Note:
     return Note(LayerCode.LEE_WAVES, {}, "shorter waves ride on the wave, as they do in the lee of a whirl")
 
 
+def no_smooth_wave(whirl: float, largest: float, fold: bool) -> Note:
+    """The whirl is larger than any up to which a smooth steady wave follows it.
+
+    Parameters
+    ----------
+    whirl, largest : of the axis, and where such waves end, over the mean depth
+    fold : they end at a fold, above the resonance; else the flow chokes
+    """
+    way = "it turns back" if fold else "the flow chokes"
+    text = f"no smooth steady wave follows a whirl as it grows to {whirl:.2g} of the mean depth: "
+    text += f"without friction {way} at {largest:.2g}"
+    return Note(LayerCode.NO_SMOOTH_WAVE, {"whirl": whirl, "largest": largest, "fold": fold}, text)
+
+
 @dataclass(frozen=True)
 class LayerCase:
     """The layer and the whirl of a question.
@@ -148,6 +163,7 @@ class LayerResult(Result):
     case : the layer and the whirl
     force_ratio : force on the drum over m_f omega_w^2 A
     offset : liquid's centre of mass from the drum's axis, m
+    error_estimate : of the force ratio, over the larger of its size and 1; nan where the model has none
     mass_error : of the surface that the model draws, relative
     converged : the force is finite
     in_range : the model holds; `validity` and `notes` say why not
@@ -172,6 +188,7 @@ class LayerResult(Result):
     case: LayerCase
     force_ratio: complex
     offset: complex
+    error_estimate: float
     mass_error: float
     converged: bool
     in_range: bool
@@ -214,9 +231,9 @@ class LayerResult(Result):
         ----------
         profile : with the depth around the wall
         """
-        names = ("force_ratio", "offset", "mass_error", "converged", "in_range", "mean_rotation", "wall_time")
-        more = ("theta", "depth") if profile else ()
-        found: dict[str, Any] = {name: getattr(self, name) for name in (*names, *more)}
+        names = ["force_ratio", "error_estimate", "offset", "mass_error", "converged", "in_range"]
+        names += ["mean_rotation", "wall_time", *(("theta", "depth") if profile else ())]
+        found: dict[str, Any] = {name: getattr(self, name) for name in names}
         return found | {
             "solver": self.solver,
             "notes": texts(self.notes),
@@ -236,6 +253,7 @@ class LayerResult(Result):
             "offset_real": variable((), self.offset.real, "m", "centre of mass, along the deflection"),
             "offset_imag": variable((), self.offset.imag, "m", "centre of mass, 90 deg ahead of it"),
             "mean_rotation": variable((), self.mean_rotation, "rad s-1", "mean rotation in the drum"),
+            "error_estimate": variable((), self.error_estimate, "1", "estimated error of the force ratio"),
             "mass_error": variable((), self.mass_error, "1", "relative error of the liquid's volume"),
             "gravity_offset": variable((), self.gravity_offset, "m", "steady offset by gravity, in space"),
         }

@@ -27,6 +27,7 @@ from leblanc.results.layer import (
     inner_wall,
     lee_waves,
     no_answer,
+    no_smooth_wave,
     out_of_range,
 )
 from leblanc.results.notes.baffles import smeared_baffles
@@ -37,6 +38,7 @@ from solvers.potential.model import Potential, PotentialWave
 from solvers.potential.steady import Branch
 from solvers.pypde.models import LongWave, OneFamily, Progress
 from solvers.synchronous.models import LINEAR, Linear
+from solvers.wave_error import detuning_ratio, largest_whirl
 
 _EVEN = 720  # angles of a film
 _ONE_WAY = 1e-6  # part of the answer that may go the other way round before it is worth a note
@@ -86,6 +88,7 @@ def answer_layer(
     in_range = not notes
     if in_range and wave.answer.dry_patch[0]:
         notes = (dry_wall(),)
+    notes = (*notes, *_beyond_waves(fill, whirl, model))
     if isinstance(model, LongWave):
         notes = (*notes, *smeared_baffles([fill], model.numerics.cells))
     exact = _exact(wave) if isinstance(wave, PotentialWave) else None
@@ -96,6 +99,7 @@ def answer_layer(
         case=_case(fill, whirl, model),
         force_ratio=_force_ratio(fill, whirl, wave),
         offset=complex(wave.answer.offset[0]),
+        error_estimate=float(wave.answer.error[0]),
         mass_error=wave.mass_error,
         converged=bool(wave.answer.converged[0]),
         in_range=in_range,
@@ -167,6 +171,18 @@ def free_wave(fill: Fill, speed: float, crest: float, crests: int, model: WaveMo
         notes=notes,
         validity=numbers,
     )
+
+
+def _beyond_waves(fill: Fill, whirl: Whirl, model: WaveModel) -> tuple[Note, ...]:
+    """That no smooth steady wave is there [theory: model_error, eq. 32-33]."""
+    if whirl.slip == 0.0 or whirl.gravity != 0.0 or not isinstance(model, Linear | LongWave | OneFamily):
+        return ()
+    size = whirl.amplitude / fill.depth
+    largest = float(largest_whirl(fill.depth / fill.chamber.radius, whirl.detuning))
+    if fill.surface_radius <= fill.chamber.inner_radius or size <= largest:
+        return ()
+    above = float(detuning_ratio(fill.depth / fill.chamber.radius, whirl.detuning)) > 1.0
+    return (no_smooth_wave(size, largest, above),)
 
 
 Model = TypeVar("Model", bound=WaveModel)

@@ -175,6 +175,7 @@ def layer_summary(result: LayerResult) -> list[tuple[str, str]]:
     return [
         *_model(result),
         ("Force ratio", _at_angle(result.force_ratio)),
+        *_error(result.error_estimate),
         ("Centre of mass", _at_angle(result.offset, LENGTH)),
         ("Mean rotation in the drum", _rate(result.mean_rotation)),
         *_steady(result),
@@ -192,10 +193,7 @@ def _exact(result: LayerResult) -> list[tuple[str, str]]:
     if exact.state is None:
         largest = exact.largest_whirl
         return [("Largest whirl with a wave", with_unit(largest, LENGTH))] if math.isfinite(largest) else []
-    return [
-        *_shape(exact),
-        ("Estimated error of the force", number(exact.error_estimate)),
-    ]
+    return _shape(exact)
 
 
 def _shape(wave: ExactWave | FreeWaveResult) -> list[tuple[str, str]]:
@@ -222,6 +220,11 @@ def free_wave_summary(result: FreeWaveResult) -> list[tuple[str, str]]:
         *([("Error of the liquid's volume", number(result.mass_error))] if found else []),
         *_validity(found, result.in_range, result.validity),
     ]
+
+
+def _error(estimate: float) -> list[tuple[str, str]]:
+    """What the model tells of its own error, if it does."""
+    return [("Its estimated error", number(estimate))] if math.isfinite(estimate) else []
 
 
 def periods_summary(result: LayerPeriodsResult) -> list[tuple[str, str]]:

@@ -44,6 +44,7 @@ from solvers.liquid_model import (
 from solvers.roots import bracketed_root
 from solvers.statics.hydrostatics import equilibrium, volume_under
 from solvers.statics.law_defect import defect_bound, upright_surfaces
+from solvers.wave_error import linear_error
 
 # The end of the straight line is taken so much too low, relatively, that the law is the line up to it.
 _MARGIN = 1e-9
@@ -186,7 +187,7 @@ class Linear(WaveModel):
         return added_mass_answer(fills, whirls, error)
 
     def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
-        """See `WaveModel`.
+        """See `WaveModel`; the error is that of small waves beside exact ones [theory: model_error, eq. 34].
 
         Raises
         ------
@@ -216,6 +217,7 @@ class Linear(WaveModel):
             dry_patch=abs(displacement) > fill.depth,
             converged=converged,
             small=True,
+            error=self._error(fill, whirl),
         )
         return LiquidWave(
             answer=answer,
@@ -265,6 +267,16 @@ class Linear(WaveModel):
             ranges={"wave_amplitude": self.ranges["wave_amplitude"]},
             converged=True,
             mass_error=0.5 * height**2 / (radius**2 - surface**2),
+        )
+
+    def _error(self, fill: Fill, whirl: Whirl) -> float:
+        """Of one wave; none where gravity throws others."""
+        if whirl.gravity != 0.0:
+            return math.nan
+        if whirl.slip == 0.0:
+            return float(self.at_rest(Fills.of([fill]), Whirls.of(whirl)).error[0])
+        return float(
+            linear_error(fill.depth / fill.chamber.radius, whirl.detuning, whirl.amplitude / fill.depth)
         )
 
     def linear_limit(self, fills: Fills, speed: Array, gravity: Array) -> Array:
