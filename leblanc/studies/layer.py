@@ -38,6 +38,7 @@ from solvers.potential.steady import Branch
 from solvers.pypde.models import LongWave, OneFamily, Progress
 from solvers.synchronous.models import LINEAR, Linear
 
+_EVEN = 720  # angles of a film
 _ONE_WAY = 1e-6  # part of the answer that may go the other way round before it is worth a note
 
 
@@ -328,7 +329,10 @@ def steady_film(answer: LayerResult | FreeWaveResult, whirl: Whirl, duration: fl
     """
     frames = int(np.clip(60.0 * duration / whirl.period, 60, 2000))
     time = duration * np.arange(frames) / frames
-    turned = answer.theta - whirl.slip * time[:, None]
+    # Angles that crowd at a crest are too far apart for it where it runs to.
+    apart, even = np.diff(answer.theta), np.linspace(-math.pi, math.pi, _EVEN, endpoint=False)
+    theta = answer.theta if apart.max() < 1.5 * apart.min() else even
+    turned = theta - whirl.slip * time[:, None]
     depth = np.interp(turned, answer.theta, answer.depth, period=2.0 * math.pi)
     deflection = whirl.amplitude * np.exp(1j * whirl.slip * time)
-    return WaveFrames(time=time, theta=answer.theta, depth=depth, deflection=deflection)
+    return WaveFrames(time=time, theta=theta, depth=depth, deflection=deflection)
