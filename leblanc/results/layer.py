@@ -16,7 +16,7 @@ from leblanc.results.base import Note, NoteCode, Result, carried, one_line, text
 from leblanc.results.netcdf import NamedArrays, variable
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative, require_positive
-from solvers.layer.state import LayerHistory
+from solvers.liquid_history import LayerHistory
 
 FEWEST = 3  # angles of a wave
 SLACK = 1e-9  # rounding of a depth, over the radius

@@ -17,7 +17,8 @@ from fluid.fill import Fill, Fills
 from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw, damping_rate
 from meshes.arrays import Array
 from meshes.errors import InputError
-from solvers.layer.state import LayerHistory, Numerics
+from solvers.layer.state import Numerics
+from solvers.liquid_history import LayerHistory
 from solvers.liquid_model import (
     CAPTURED,
     LONG,

@@ -103,6 +103,7 @@ def _runs() -> Iterator[Case]:
         yield _case(f"run-{name}", f"run {_scene(name)} --json --out out")
         yield _case(f"explain-{name}", f"explain {_scene(name)} --json")
     yield _case("explain-top_loader", f"explain {_scene('top_loader')} --json")
+    yield _case("run-exact", "run small/horizontal_rig_exact.toml --workers 1 --json --out out")
     yield _case("run-top_loader", f"run {_scene('top_loader')} --json --out out")
 
 

@@ -16,6 +16,7 @@ from solvers.rotor.tub import Vector
 
 _LEVEL = 1e-6  # of the distance between feet: how far one may stand above another
 _LINE = 1e-6  # of that distance: how far the feet must be from a straight line
+_ALIKE = 1e-9  # of the largest force at rest: what rounding may make of equal ones
 
 
 @dataclass(frozen=True)
@@ -162,7 +163,9 @@ def margins(cabinet: Cabinet, floor: FloorForce, rest: FloorForce) -> Margins:
     InputError : a foot that carries nothing at rest
     """
     if not np.all(rest.vertical > 0.0):
-        weak = int(np.argmin(rest.vertical))
+        # Feet that press alike to rounding are told by the first of them, on any processor.
+        alike = _ALIKE * float(np.abs(rest.vertical).max())
+        weak = int(np.argmax(rest.vertical <= rest.vertical.min() + alike))
         raise InputError(
             f"cabinet.feet.{weak}",
             f"{float(rest.vertical[weak]):.4g} N at rest",
