@@ -390,14 +390,14 @@ def layer(
     whirl_amplitude : radius of the whirl, m
     model : statics, linear, long_wave, kdv, fem or potential
     cells : round the wall; 256 for long_wave, 96 for fem if None; of potential at most as many from crest to
-        trough, 432 if None
+        trough, 432 if None, and in time round the wall, 2048 if None
     baffles : number of radial baffles, for fem
     baffle_tip_radius, baffle_wall_gap : of their edges from the axis and from the wall, m
     dispersion : exact linear dispersion, for long_wave and kdv
     friction : none, stokes, wall[:ROUGHNESS], linear:RATE or quadratic:NUMBER
     gravity : across the axis, m/s^2
     liquid : a known name, or a `leblanc.Liquid`
-    duration : start from rest and answer period by period, s; for long_wave
+    duration : start from rest and answer period by period, s; for long_wave and potential
     ramp : time over which the whirl grows, with a duration, s
     solver : of py-pde, as runge-kutta or scipy, in place of finite_volume (long_wave), steady_newton (kdv)
     free : depth at the crest over the mean depth of the free wave asked for, in place of a whirl, by linear

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
@@ -37,7 +37,10 @@ from solvers.liquid_model import (
     wave_amplitude,
     whirl_answer,
 )
+from solvers.potential import unsteady
 from solvers.potential.ends import End, EndKind, end
+from solvers.potential.histories import PotentialHistory, Progress
+from solvers.potential.in_time import Steps
 from solvers.potential.steady import MOST, Branch, SteadyWave, forced, free, on_nodes, solve
 from solvers.potential.strip import FEWEST, nodes
 
@@ -45,6 +48,7 @@ from solvers.potential.strip import FEWEST, nodes
 _FINER = 1.5
 # Error of an answer that counts as found.
 _FOUND = 1e-4
+_MOST_CELLS, _MOST_STEPS = 8192, 2048
 # Nodes from crest to trough that are drawn, at least.
 _DRAWN = 180
 # Digits that a whirl loses as it gets smaller than the drum.
@@ -74,7 +78,9 @@ class Potential(WaveModel):
 
     Parameters
     ----------
-    most : steps from crest to trough that nodes may have; the spectrum decides how many are taken
+    cells : steps from crest to trough that nodes may have, of which the spectrum decides how many are taken;
+        in time the nodes round the wall that there may be, from 128 on doubled; None for 432 and 2048
+    progress : called with the share of the time that is done, where a wave goes through time
 
     Raises
     ------
@@ -91,7 +97,8 @@ class Potential(WaveModel):
     '2.042546 one_crest'
     """
 
-    most: int = MOST
+    cells: int | None = None
+    progress: Progress = field(default=None, compare=False, repr=False)
 
     name = "potential"
     ranges: ClassVar[Mapping[str, Range]] = {
@@ -99,8 +106,27 @@ class Potential(WaveModel):
     }  # fmt: skip
 
     def __post_init__(self) -> None:
-        if not FEWEST <= self.most <= 2048:
-            raise InputError("cells", self.most, f"from {FEWEST} to 2048 steps from crest to trough")
+        if not FEWEST <= self.most <= _MOST_CELLS:
+            raise InputError("cells", self.most, f"from {FEWEST} to {_MOST_CELLS} for the exact wave")
+
+    @property
+    def most(self) -> int:
+        """Steps from crest to trough that nodes of a steady wave may have."""
+        return MOST if self.cells is None else min(self.cells, _MOST_STEPS)
+
+    @property
+    def steps(self) -> Steps:
+        """How a wave is taken through time.
+
+        Raises
+        ------
+        InputError : too few nodes for it, or an odd number
+        """
+        if self.cells is None:
+            return Steps()
+        if self.cells < unsteady.FEWEST or self.cells % 2:
+            raise InputError("cells", self.cells, f"an even number from {unsteady.FEWEST} in time")
+        return Steps(nodes=min(self.cells, Steps.nodes), most=self.cells)
 
     def at_rest(self, fills: Fills, whirls: Whirls) -> LiquidAnswer:
         """See `WaveModel`: a circle about the axis of spin, exact while the wall is wet.
@@ -159,6 +185,45 @@ class Potential(WaveModel):
             turning=finer.turning * whirl.slip,
             branch=finer.branch,
             nodes=found.surface.size - 1,
+        )
+
+    def wave_at_end(self, fill: Fill, whirl: Whirl, history: PotentialHistory) -> PotentialWave:
+        """The wave as a history leaves it, with the last means as its answer.
+
+        Parameters
+        ----------
+        fill, whirl : chamber and liquid, and its whirl
+        history : from `solvers.potential.histories`
+        """
+        periods, answered = history.periods, history.periods.force_ratio.size > 0
+        none = complex(math.nan, math.nan)
+        force, offset = (periods.force_ratio[-1], periods.offset[-1]) if answered else (none, none)
+        found = {
+            "wave_amplitude": max(history.crest - 1.0, 1.0 - history.trough), "crest": history.crest,
+            "trough": history.trough, "crest_number": history.crest_number,
+        }  # fmt: skip
+        numbers = numbers_of(fill, whirl, found)
+        chamber = fill.chamber
+        clear = history.crest * fill.depth <= chamber.radius - chamber.inner_radius
+        answer = whirl_answer(
+            fill,
+            whirl,
+            force_ratio=complex(force),
+            offset=complex(offset),
+            limits=kept_limits(numbers, self.ranges) | {"inner_wall": clear},
+            converged=periods.converged,
+            error=history.force_gap,
+        )
+        return PotentialWave(
+            answer=answer,
+            theta=periods.theta,
+            depth=periods.depth,
+            numbers=numbers,
+            ranges=self.ranges,
+            mass_error=periods.mass_error,
+            mean_rotation=float(periods.mean_rotation[-1]) if answered else math.nan,
+            reason=periods.reason,
+            nodes=history.nodes,
         )
 
     def free_wave(self, fill: Fill, spin: float, crest: float, crests: int = 1) -> FreeWave:
