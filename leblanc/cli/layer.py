@@ -66,8 +66,10 @@ def layer(
     out: Annotated[Path | None, typer.Option(help="Folder for the figure of the wave.")] = None,
     animate: Annotated[
         Path | None,
-        typer.Option(help="GIF or MP4 of the wave in the drum frame: long_wave from rest, potential with --duration "
-            "too, others steady."),
+        typer.Option(
+            help="GIF or MP4 of the wave in the drum frame: long_wave from rest, potential with --duration "
+            "too, others steady."
+        ),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
@@ -145,7 +147,9 @@ def _tell(result: LayerResult | LayerPeriodsResult | FreeWaveResult, profile: bo
             print()
             print_table(rows, head, right=True)
     else:
-        print_table(free_wave_summary(result) if isinstance(result, FreeWaveResult) else layer_summary(result))
+        print_table(
+            free_wave_summary(result) if isinstance(result, FreeWaveResult) else layer_summary(result)
+        )
         if profile:
             head, rows = layer_profile(result)
             print()

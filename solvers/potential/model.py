@@ -13,7 +13,7 @@ from typing import ClassVar
 import numpy as np
 
 from fluid import waves
-from fluid.fill import Fill, Fills
+from fluid.fill import FULL, Fill, Fills
 from fluid.paraboloid import steepness
 from meshes.arrays import Array
 from meshes.errors import InputError
@@ -182,7 +182,7 @@ class Potential(WaveModel):
             crest_number=_crest_number(drawn),
             error=(change + _EPSILON / size) / max(abs(force), _EPSILON) + ROUNDING,
             mass_error=_mass_error(drawn),
-            turning=finer.turning * whirl.slip,
+            rotation=finer.rotation * whirl.slip,
             branch=finer.branch,
             nodes=found.surface.size - 1,
         )
@@ -303,7 +303,7 @@ class Potential(WaveModel):
             crest_number=math.nan,
             error=ROUNDING,
             mass_error=0.0,
-            turning=0.0,
+            rotation=0.0,
             branch=Branch.ONE_CREST if size else "",
             nodes=0,
         )
@@ -319,7 +319,7 @@ class Potential(WaveModel):
         crest_number: float,
         error: float,
         mass_error: float,
-        turning: float,
+        rotation: float,
         branch: str,
         nodes: int,
     ) -> PotentialWave:
@@ -344,7 +344,7 @@ class Potential(WaveModel):
             numbers=numbers,
             ranges=self.ranges,
             mass_error=mass_error,
-            mean_rotation=turning,
+            mean_rotation=rotation,
             branch=branch,
             nodes=nodes,
         )
@@ -379,7 +379,7 @@ class Potential(WaveModel):
 def _require_surface(fill: Fill) -> None:
     """Refuse a chamber without a free surface."""
     chamber, surface = fill.chamber, fill.surface_radius
-    if fill.depth >= chamber.radius * (1.0 - 1e-9) or surface <= chamber.inner_radius:
+    if fill.volume >= chamber.capacity * FULL or surface <= chamber.inner_radius:
         allowed = "less than what fills the chamber, for a free surface"
         raise InputError("volume", fill.volume, allowed)
 
