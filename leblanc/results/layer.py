@@ -289,7 +289,7 @@ class FreeWaveResult(Result):
     >>> found = lb.layer(radius="100 mm", volume="119.4 ml", height="20 mm", speed=1.0, model="potential",
     ...                  free=1.2)
     >>> [f"{speed:.4f}" for speed in found.whirl_speed]
-    ['0.7512', '1.4951']
+    ['0.7512', '1.4952']
     """
 
     case: LayerCase

@@ -51,7 +51,7 @@ class End:
 
 
 def froude(wave: SteadyWave) -> Array:
-    """Square of the local Froude number of the flow seen from the wave [theory: potential, eq. 21].
+    """Square of the local Froude number of the flow seen from the wave [theory: potential, eq. 33].
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The exact wave as a liquid model: what is known of it, in SI units, and what it says where there is none."""
+"""The exact wave as a liquid model: what is known of it, and what it says where there is none."""
 
 from __future__ import annotations
 
