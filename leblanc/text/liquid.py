@@ -242,7 +242,7 @@ def periods_summary(result: LayerPeriodsResult) -> list[tuple[str, str]]:
     """The main numbers of a layer from rest, as labels and values."""
     h = result.history
     if not h.time.size:
-        return [*_model(result), ("Answer", h.reason)]
+        return [*_model(result), ("Answer", h.reason), *_exact_periods(result.exact)]
     return [
         *_model(result),
         ("Whirl periods", f"{h.time.size}"),
