@@ -65,7 +65,7 @@ def froude(wave: SteadyWave) -> Array:
     --------
     >>> from solvers.potential.steady import at_rest
     >>> from solvers.potential.strip import nodes
-    >>> float(froude(at_rest(0.05, nodes(16)))[0].round(3))  # p^2 of the free wave is that of nearly long ones
+    >>> float(froude(at_rest(0.05, nodes(16)))[0].round(3))  # small free waves are nearly long here
     0.999
     """
     y, speed = wave.surface, wave.speeds

@@ -419,10 +419,10 @@ def _mass_error(wave: SteadyWave) -> float:
 def _told(last: End, fill: Fill) -> tuple[str, float]:
     """Why there is no wave, and the whirl at which they end, m."""
     share = last.whirl * fill.chamber.radius / fill.depth
-    upto = f"the last smooth steady wave was found at a whirl of {share:.4g} of the depth"
+    upto = f"the last smooth steady wave was found at a whirl of {share:.3g} of the depth"
     froude = math.sqrt(last.froude) if last.froude > 0.0 else math.nan
     why = {
-        EndKind.FOLD: f"waves of this speed end in a fold at a whirl of {share:.4g} of the depth",
+        EndKind.FOLD: f"waves of this speed end in a fold at a whirl of {share:.3g} of the depth",
         EndKind.CHOKING: f"the flow chokes at the trough, Froude number {froude:.2f}; {upto}",
         EndKind.RESONANCE: f"the whirl meets the free wave of {last.crests} crests; {upto}",
         EndKind.NODES: f"the nodes do not carry the short waves that come with it; {upto}",

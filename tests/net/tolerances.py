@@ -44,6 +44,15 @@ TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (
         "of samples that are all alike it is rounding: 3e-19 m",
     ),
     ("compare-*", "*largest_difference*", Tolerance(absolute=2e-12), "difference of answers of two models"),
+    # The exact wave
+    ("*", "*force_gap", Tolerance(absolute=1e-9), "of two forces, rounding: 4e-14"),
+    (
+        *("layer-potential*", "*largest_whirl", Tolerance(relative=1e-2)),
+        "the last step of a continuation; what the waves are near their end decides where it falls",
+    ),
+    ("layer-*", "*error_estimate", Tolerance(absolute=1e-10), "rounding of two waves: 1e-12"),
+    ("layer-potential*", "*", Tolerance(relative=1e-11), "Newton's method to rounding: 8e-13"),
+    ("layer-free*", "*", Tolerance(relative=1e-11), "the same: 1e-13"),
     # Estimates of errors
     (
         *("modes-baffles", "*error_estimate*", Tolerance(relative=1e-4)),

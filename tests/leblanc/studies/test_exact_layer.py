@@ -1,4 +1,4 @@
-"""`leblanc layer --model potential` and `--free`: keys, words, refusals, files; and `lb.layer` beside them."""
+"""`leblanc layer --model potential` and `--free`: keys, words, refusals, files; `lb.layer` beside them."""
 
 from __future__ import annotations
 
@@ -44,7 +44,8 @@ def test_steady(capsys: pytest.CaptureFixture[str]) -> None:
     assert len(found["theta"]) == len(found["depth"])  # type: ignore[arg-type]
     result = called(radius="100 mm", whirl_speed=52.0, whirl_amplitude="0.2 mm")
     assert isinstance(result, LayerResult) and result.exact is not None
-    assert [result.force_ratio.real, result.force_ratio.imag] == pytest.approx(found["force_ratio"], abs=1e-11)
+    ratio = [result.force_ratio.real, result.force_ratio.imag]
+    assert ratio == pytest.approx(found["force_ratio"], abs=1e-11)
     assert {"crest", "trough", "crest_number"} <= {number.name for number in result.validity}
 
 
@@ -66,7 +67,7 @@ def test_lee_waves_are_noted() -> None:
     layer = math.pi * R**2 * 0.3 * 1.7 * HEIGHT
     found = called(volume=layer, whirl_speed=28.0, whirl_amplitude=0.012 * 0.3 * R)
     assert isinstance(found, LayerResult) and found.exact is not None
-    assert found.exact.branch == "lee_waves" and any("shorter waves" in str(note.text) for note in found.notes)
+    assert found.exact.branch == "lee_waves" and any("shorter waves" in note.text for note in found.notes)
     assert found.in_range
 
 
