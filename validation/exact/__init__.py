@@ -17,7 +17,7 @@ import numpy as np
 from meshes.arrays import Array, Flags
 
 KEPT = Path(__file__).parent / "results.json"
-# Models by their names here; one family is asked of the whirl behind the drum and of its twin ahead, which the
+# Models by their names here; one family is asked of the whirl behind the drum and of its twin, which the
 # others do not tell apart.
 MODELS = ("linear", "long_wave", "dispersion", "kdv", "kdv_twin", "whitham", "whitham_twin")
 

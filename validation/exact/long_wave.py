@@ -2,8 +2,8 @@
 
 `LongWave` goes through time until its force no longer changes. Where no bore stands and nothing rubs, what it
 ends at obeys ordinary equations, solved here by Newton's method: the error of the model alone, without that
-of its cells [theory: model_error, eq. 24-27]. Lengths over R, times in 1/Omega, velocities over s; of the whirl
-speed only p^2 counts, as for the exact wave.
+of its cells [theory: model_error, eq. 24-27]. Lengths over R, times in 1/Omega, velocities over s; of
+the whirl speed only p^2 counts, as for the exact wave.
 """
 
 from __future__ import annotations
