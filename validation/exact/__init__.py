@@ -138,7 +138,7 @@ def _cases(found: Mapping[str, Any]) -> Cases:
     return Cases(**arrays, models={name: _array(found["models"][name]) for name in MODELS})
 
 
-def _array(values: list[Any]) -> Array:
+def _array(values: list[Any]) -> Any:
     """Numbers with nan where there are none; flags as flags."""
     if all(isinstance(value, bool) for value in values):
         return np.array(values, dtype=bool)

@@ -53,8 +53,6 @@ def maps_figure(cases: Cases) -> Figure:
     ----------
     cases : of the maps
     """
-    from matplotlib.colors import LogNorm
-
     with style():
         figure, rows = Figure(), []
         for name, title in _NAMES.items():
@@ -64,7 +62,9 @@ def maps_figure(cases: Cases) -> Figure:
                 ratio, layer, error = on_grid(cases, name, whirl)
                 axes.patch.set(facecolor="white", edgecolor="0.6", hatch="////", linewidth=0.0)
                 seen = np.clip(error, 1.01 * _LEAST, 0.99 * _MOST)
-                mesh = axes.pcolormesh(ratio, layer, seen, norm=LogNorm(_LEAST, _MOST), cmap="viridis")
+                mesh = axes.pcolormesh(
+                    ratio, layer, seen, norm="log", vmin=_LEAST, vmax=_MOST, cmap="viridis"
+                )
                 axes.contour(ratio, layer, seen, levels=_LINES, colors=("white", "red"), linewidths=0.9)
                 axes.set_yscale("log")
                 axes.set_yticks([0.02, 0.05, 0.1, 0.2, 0.5], ["0.02", "0.05", "0.1", "0.2", "0.5"])
@@ -82,8 +82,8 @@ def maps_figure(cases: Cases) -> Figure:
         bar.tick_params(labelsize=6, colors="white")
         text = (
             "Error of the force ratio beside the exact wave, over the larger of it and 1. White line: 1 %, "
-            "red: 5 %. Hatched: no smooth steady wave, of the liquid or of the model. Long waves by their steady "
-            "equations, without the error of cells."
+            "red: 5 %. Hatched: no smooth steady wave was found, of the liquid or of the model. Long waves by "
+            "their steady equations, without the error of cells."
         )
         lay_out(figure, rows, [1.25] * len(rows), _FRAME, text)
         parts = [
