@@ -82,7 +82,7 @@ def maps_figure(cases: Cases) -> Figure:
         bar.tick_params(labelsize=6, colors="white")
         text = (
             "Error of the force ratio beside the exact wave, over the larger of it and 1. White line: 1 %, "
-            "red: 5 %. Hatched: no smooth steady wave was found, of the liquid or of the model. Long waves by "
+            "red: 5 %. Hatched: no smooth steady wave was found, of the liquid or the model. Long waves by "
             "their steady equations, without the error of cells."
         )
         lay_out(figure, rows, [1.25] * len(rows), _FRAME, text)
