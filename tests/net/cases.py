@@ -103,7 +103,6 @@ def _runs() -> Iterator[Case]:
         yield _case(f"run-{name}", f"run {_scene(name)} --json --out out")
         yield _case(f"explain-{name}", f"explain {_scene(name)} --json")
     yield _case("explain-top_loader", f"explain {_scene('top_loader')} --json")
-    yield _case("run-exact", "run small/horizontal_rig_exact.toml --workers 1 --json --out out")
     yield _case("run-top_loader", f"run {_scene('top_loader')} --json --out out")
 
 
@@ -186,10 +185,6 @@ def _layers() -> Iterator[Case]:
     steady |= {
         "long_wave-gravity": f"{wave} linear:0.5 --gravity 9.81",
         "long_wave-dispersion": f"{wave} linear:0.5 --dispersion",
-        "potential": f"{_WHIRL} --model potential",
-        "potential-choked": f"{_LAYER} 1e-2 --model potential",
-        "potential-free": f"{_LAYER.partition(' --whirl-speed')[0]} --free 1.4 --model potential",
-        "potential-duration": f"{_WHIRL} --model potential --duration 2 --ramp 1",
         "long_wave-smeared": f"{wave} linear:0.5 --baffles 20 --baffle-tip-radius 147mm",
     }
     stock = "--friction linear:3 --solver runge-kutta"
