@@ -157,6 +157,14 @@ RECIPES = (
         ("modes_baffles",),
         {"modes_baffles": "modes"},
     ),
+    Recipe(
+        (
+            *("leblanc", "layer", "--radius", "100 mm", "--volume", "119.4 ml", "--height", "20 mm"),
+            *("--speed", "40 rad/s", "--free", "1.6", "--model", "potential"),
+        ),
+        ("layer_limiting_wave",),
+        {"layer_limiting_wave": "wave"},
+    ),
     Recipe(("validation.figures.whirl_passage",), ("whirl_passage",), minutes=True),
     Recipe(("validation.models.figure",), ("models",)),
     Recipe(("validation.breaking.figure",), ("breaking",)),

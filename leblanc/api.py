@@ -390,7 +390,7 @@ def layer(
     whirl_amplitude : radius of the whirl, m
     model : statics, linear, long_wave, kdv, fem or potential
     cells : round the wall; 256 for long_wave, 96 for fem if None; of potential at most as many from crest to
-        trough, 432 if None
+        trough, 432 if None, and in time round the wall, 2048 if None
     baffles : number of radial baffles, for fem
     baffle_tip_radius, baffle_wall_gap : of their edges from the axis and from the wall, m
     dispersion : exact linear dispersion, for long_wave and kdv

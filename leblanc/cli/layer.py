@@ -36,7 +36,7 @@ def layer(
         int | None,
         typer.Option(
             help="Cells round the wall [default: long_wave 256, fem 96]; "
-            "most nodes from crest to trough [default: potential 432]."
+            "most nodes from crest to trough, in time round the wall [default: potential 432, 2048]."
         ),
     ] = None,
     baffles: Annotated[int, typer.Option(help="Number of radial baffles (fem).")] = 0,
@@ -66,7 +66,10 @@ def layer(
     out: Annotated[Path | None, typer.Option(help="Folder for the figure of the wave.")] = None,
     animate: Annotated[
         Path | None,
-        typer.Option(help="GIF or MP4 of the wave in the drum frame: long_wave from rest, others steady."),
+        typer.Option(
+            help="GIF or MP4 of the wave in the drum frame: long_wave from rest, potential with --duration "
+            "too, others steady."
+        ),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
@@ -81,7 +84,7 @@ def layer(
     from leblanc.studies.layer import answer_layer, free_wave, layer_history
 
     question = ask(layer_question, given)
-    folder = None if out is None or question.duration is not None else out_dir("layer", out)
+    folder = None if out is None else out_dir("layer", out)
     if animate is not None:
         from leblanc.figures.drawing.page import require_film
 
@@ -96,7 +99,7 @@ def layer(
             result = layer_history(**whirl, duration=question.duration, ramp=question.ramp)
         else:
             result = answer_layer(**whirl)
-        if folder is not None and not isinstance(result, LayerPeriodsResult):
+        if folder is not None and (not isinstance(result, LayerPeriodsResult) or result.time.size):
             _draw(result, folder)
     if animate is not None:
         _film(question, result, animate)
@@ -157,12 +160,16 @@ def _tell(result: LayerResult | LayerPeriodsResult | FreeWaveResult, profile: bo
         print(f"note: {note}")
 
 
-def _draw(result: LayerResult | FreeWaveResult, folder: Path) -> None:
-    """The wave as it stands in the frame of the deflection, or of its crest."""
+def _draw(result: LayerResult | LayerPeriodsResult | FreeWaveResult, folder: Path) -> None:
+    """The wave as it stands in the frame of the deflection, or of its crest; its means over whirl periods."""
     from leblanc.figures.drawing.page import save
-    from leblanc.figures.wave import wave_figure
+    from leblanc.figures.wave import layer_figure, periods_figure
+    from leblanc.results.layer import LayerPeriodsResult
 
-    files = save(wave_figure(result.wave()), folder, "wave", "Wave on the annulus")
+    if isinstance(result, LayerPeriodsResult):
+        files = save(periods_figure(result), folder, "periods", "Whirl periods of a layer")
+    else:
+        files = save(layer_figure(result), folder, "wave", "Wave on the annulus")
     say(f"wrote {files.png}")
 
 

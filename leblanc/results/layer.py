@@ -155,6 +155,27 @@ class ExactWave:
 
 
 @dataclass(frozen=True)
+class ExactPeriods:
+    """What the exact wave in time alone can tell.
+
+    Parameters
+    ----------
+    state : "resolved", "short_waves" that the nodes do not resolve, or "broken"
+    crest, trough : greatest and least depth so far over the mean depth
+    crest_number : greatest speed so far of the liquid at a crest over that of the crest
+    nodes : round the wall at the end
+    force_gap : largest difference of the forces by pressure and by momentum, over the largest force
+    """
+
+    state: str
+    crest: float
+    trough: float
+    crest_number: float
+    nodes: int
+    force_gap: float
+
+
+@dataclass(frozen=True)
 class LayerResult(Result):
     """Force and centre of mass of a liquid layer; complex: along the deflection, 90 deg ahead of it.
 
@@ -366,8 +387,7 @@ class LayerPeriodsResult(Result):
     history : force, centre of mass and depths period by period, and the depth at the end
     notes : why there is no answer, and where the model is out of its range
     validity : dimensionless numbers the model rests on, each with its range
-    exact : what the exact wave alone tells, crest and trough since the beginning, its state at the end; None
-        for other models
+    exact : what the exact wave alone tells; None for other models
 
     Examples
     --------
@@ -383,7 +403,7 @@ class LayerPeriodsResult(Result):
     history: LayerHistory
     notes: tuple[Note, ...]
     validity: tuple[Number, ...]
-    exact: ExactWave | None = None
+    exact: ExactPeriods | None = None
 
     solver = carried("case.solver")
     figure = "leblanc.figures.wave:periods_figure"

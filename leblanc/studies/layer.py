@@ -15,6 +15,7 @@ from fluid import waves
 from fluid.fill import Fill
 from leblanc.results.base import Note
 from leblanc.results.layer import (
+    ExactPeriods,
     ExactWave,
     FreeWaveResult,
     LayerCase,
@@ -190,7 +191,7 @@ Model = TypeVar("Model", bound=WaveModel)
 
 def watched(model: Model, progress: Progress) -> Model:
     """The model, with someone to tell how far it has come, if it goes through time."""
-    if progress is not None and isinstance(model, LongWave | OneFamily):
+    if progress is not None and isinstance(model, LongWave | OneFamily | Potential):
         return replace(model, progress=progress)
     return model
 
@@ -260,11 +261,11 @@ def layer_history(
 
     Raises
     ------
-    InputError : a value out of its range, a model other than the long waves and the exact wave
+    InputError : a value out of its range, a model other than the long waves and the exact one
     """
     whirl = Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity)
     if isinstance(model, Potential):
-        return _exact_history(fill, whirl, model, duration, progress)
+        return _exact_history(fill, whirl, duration, model, progress)
     if not isinstance(model, LongWave):
         raise InputError("--model", model.name, "long_wave or potential where a --duration is given")
     from solvers.pypde.settle import simulate
@@ -277,26 +278,18 @@ def layer_history(
 
 
 def _exact_history(
-    fill: Fill, whirl: Whirl, model: Potential, duration: float, progress: Progress
+    fill: Fill, whirl: Whirl, duration: float, model: Potential, progress: Progress
 ) -> LayerPeriodsResult:
-    """The exact wave from rest: up to where it breaks, if it does."""
+    """Exact waves from rest, until they break."""
     from solvers.potential.histories import simulate
 
     with as_options():
-        found = simulate(fill, whirl, duration, progress=progress)
-    numbers = judge(numbers_of(fill, whirl, {}), model.ranges)
-    reason = found.periods.reason
-    exact = ExactWave(
-        state=found.state.value,
-        branch=None,
-        crest=found.crest,
-        trough=found.trough,
-        crest_number=found.crest_number,
-        error_estimate=found.force_gap,
-        largest_whirl=math.nan,
-    )
-    notes = (*([no_answer(reason)] if reason else []), *out_of_range(numbers))
-    return LayerPeriodsResult(_case(fill, whirl, model), found.periods, notes, numbers, exact)
+        found = simulate(fill, whirl, duration, model.steps, progress)
+    wave = model.wave_at_end(fill, whirl, found)
+    names = ("crest", "trough", "crest_number", "nodes", "force_gap")
+    exact = ExactPeriods(state=found.state, **{name: getattr(found, name) for name in names})
+    numbers = judge(wave.numbers, wave.ranges)
+    return LayerPeriodsResult(_case(fill, whirl, model), found.periods, wave_notes(wave), numbers, exact)
 
 
 def layer_film(
@@ -312,9 +305,8 @@ def layer_film(
 ) -> tuple[Wave, WaveFrames]:
     """A layer in the drum frame for a film; the parameters are `layer_history`'s.
 
-    Long waves start from rest and run for six whirl periods unless a duration is given; the exact wave starts
-    from rest where one is given. Other waves are steady in the frame of the deflection and run round the drum
-    for two.
+    Long waves start from rest and run for six whirl periods unless a duration is given, exact ones where one
+    is given; other waves are steady in the frame of the deflection and run round the drum for two.
 
     Returns
     -------
@@ -325,7 +317,8 @@ def layer_film(
     InputError : a value out of its range
     """
     whirl = Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity)
-    if not isinstance(model, LongWave) and not (isinstance(model, Potential) and duration is not None):
+    steady = not isinstance(model, LongWave) and (duration is None or not isinstance(model, Potential))
+    if steady:
         answer = answer_layer(fill, speed, whirl_speed, whirl_amplitude, model, gravity, progress)
         return answer.wave(), steady_film(answer, whirl, 2.0 * whirl.period)
     with as_options():
@@ -350,20 +343,20 @@ def free_film(result: FreeWaveResult) -> tuple[Wave, WaveFrames]:
 
 
 def _film_from_rest(fill: Fill, whirl: Whirl, model: WaveModel, duration: float) -> WaveFrames:
-    """Waves from rest."""
+    """Long waves or exact ones from rest."""
     # Eight pictures at least while the deflection turns once, and enough for a smooth film.
     frames = int(np.clip(8.0 * duration / whirl.period, 120, 2000))
     periods = duration / whirl.period
-    if isinstance(model, LongWave):
-        from solvers.pypde.settle import film
-
-        shots = film(
-            fill, whirl, frames, periods, model.friction, model.numerics, model.solver, model.progress
-        )
-    else:
+    if isinstance(model, Potential):
         from solvers.potential.histories import film as exact_film
 
-        shots = exact_film(fill, whirl, frames, periods)
+        shots = exact_film(fill, whirl, frames, periods, model.steps, model.progress)
+    else:
+        from solvers.pypde.settle import film
+
+        assert isinstance(model, LongWave)
+        law, solver = model.friction, model.solver
+        shots = film(fill, whirl, frames, periods, law, model.numerics, solver, model.progress)
     return WaveFrames(time=shots.time, theta=shots.theta, depth=shots.depth, deflection=shots.deflection)
 
 

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from leblanc.results.layer import (
+    ExactPeriods,
     ExactWave,
     FreeWaveResult,
     LayerCase,
@@ -196,6 +197,19 @@ def _exact(result: LayerResult) -> list[tuple[str, str]]:
     return _shape(exact)
 
 
+def _exact_periods(exact: ExactPeriods | None) -> list[tuple[str, str]]:
+    """What only the exact wave in time tells."""
+    if exact is None:
+        return []
+    return [
+        ("State of the wave", exact.state.replace("_", " ")),
+        ("Deepest and shallowest", f"{number(exact.crest)} and {number(exact.trough)} mean depths"),
+        ("Speed of the liquid at a crest", f"up to {number(exact.crest_number)} of the crest's"),
+        ("Nodes round the wall", f"{exact.nodes}"),
+        ("Gap of the two forces", number(exact.force_gap)),
+    ]
+
+
 def _shape(wave: ExactWave | FreeWaveResult) -> list[tuple[str, str]]:
     """Kind and size of a wave, as labels and values."""
     kind = [("Kind of wave", wave.branch.replace("_", " "))] if wave.branch else []
@@ -231,25 +245,14 @@ def periods_summary(result: LayerPeriodsResult) -> list[tuple[str, str]]:
     """The main numbers of a layer from rest, as labels and values."""
     h = result.history
     if not h.time.size:
-        return [*_model(result), ("Answer", h.reason)]
+        return [*_model(result), ("Answer", h.reason), *_exact_periods(result.exact)]
     return [
         *_model(result),
         ("Whirl periods", f"{h.time.size}"),
         ("Force ratio of the last one", _at_angle(complex(h.force_ratio[-1]))),
         ("Mean rotation in the drum", _rate(float(h.mean_rotation[-1]))),
-        *_in_time(result.exact),
+        *_exact_periods(result.exact),
         *_validity(result.converged, result.in_range, result.validity),
-    ]
-
-
-def _in_time(exact: ExactWave | None) -> list[tuple[str, str]]:
-    """State and shape of an exact wave in time."""
-    if exact is None or exact.state is None:
-        return []
-    return [
-        ("State of the wave", exact.state.replace("_", " ")),
-        *_shape(exact),
-        ("Force by pressure off that by momentum", number(exact.error_estimate)),
     ]
 
 

@@ -51,7 +51,7 @@ class End:
 
 
 def froude(wave: SteadyWave) -> Array:
-    """Square of the local Froude number of the flow seen from the wave [theory: potential, eq. 21].
+    """Square of the local Froude number of the flow seen from the wave [theory: potential, eq. 33].
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def froude(wave: SteadyWave) -> Array:
     --------
     >>> from solvers.potential.steady import at_rest
     >>> from solvers.potential.strip import nodes
-    >>> float(froude(at_rest(0.05, nodes(16)))[0].round(3))  # its free waves are nearly long
+    >>> float(froude(at_rest(0.05, nodes(16)))[0].round(3))  # small free waves are nearly long here
     0.999
     """
     y, speed = wave.surface, wave.speeds

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
 
 from fluid import waves
-from fluid.fill import Fill, Fills
+from fluid.fill import FULL, Fill, Fills
 from fluid.paraboloid import steepness
 from meshes.arrays import Array
 from meshes.errors import InputError
@@ -37,7 +37,10 @@ from solvers.liquid_model import (
     wave_amplitude,
     whirl_answer,
 )
+from solvers.potential import unsteady
 from solvers.potential.ends import End, EndKind, end
+from solvers.potential.histories import PotentialHistory, Progress
+from solvers.potential.in_time import Steps
 from solvers.potential.steady import MOST, Branch, SteadyWave, forced, free, on_nodes, solve
 from solvers.potential.strip import FEWEST, nodes
 
@@ -45,6 +48,7 @@ from solvers.potential.strip import FEWEST, nodes
 _FINER = 1.5
 # Error of an answer that counts as found.
 _FOUND = 1e-4
+_MOST_CELLS, _MOST_STEPS = 8192, 2048
 # Nodes from crest to trough that are drawn, at least.
 _DRAWN = 180
 # Digits that a whirl loses as it gets smaller than the drum.
@@ -74,7 +78,9 @@ class Potential(WaveModel):
 
     Parameters
     ----------
-    most : steps from crest to trough that nodes may have; the spectrum decides how many are taken
+    cells : steps from crest to trough that nodes may have, of which the spectrum decides how many are taken;
+        in time the nodes round the wall that there may be, from 128 on doubled; None for 432 and 2048
+    progress : called with the share of the time that is done, where a wave goes through time
 
     Raises
     ------
@@ -91,7 +97,8 @@ class Potential(WaveModel):
     '2.042546 one_crest'
     """
 
-    most: int = MOST
+    cells: int | None = None
+    progress: Progress = field(default=None, compare=False, repr=False)
 
     name = "potential"
     ranges: ClassVar[Mapping[str, Range]] = {
@@ -99,8 +106,27 @@ class Potential(WaveModel):
     }  # fmt: skip
 
     def __post_init__(self) -> None:
-        if not FEWEST <= self.most <= 2048:
-            raise InputError("cells", self.most, f"from {FEWEST} to 2048 steps from crest to trough")
+        if not FEWEST <= self.most <= _MOST_CELLS:
+            raise InputError("cells", self.most, f"from {FEWEST} to {_MOST_CELLS} for the exact wave")
+
+    @property
+    def most(self) -> int:
+        """Steps from crest to trough that nodes of a steady wave may have."""
+        return MOST if self.cells is None else min(self.cells, _MOST_STEPS)
+
+    @property
+    def steps(self) -> Steps:
+        """How a wave is taken through time.
+
+        Raises
+        ------
+        InputError : too few nodes for it, or an odd number
+        """
+        if self.cells is None:
+            return Steps()
+        if self.cells < unsteady.FEWEST or self.cells % 2:
+            raise InputError("cells", self.cells, f"an even number from {unsteady.FEWEST} in time")
+        return Steps(nodes=min(self.cells, Steps.nodes), most=self.cells)
 
     def at_rest(self, fills: Fills, whirls: Whirls) -> LiquidAnswer:
         """See `WaveModel`: a circle about the axis of spin, exact while the wall is wet.
@@ -156,9 +182,48 @@ class Potential(WaveModel):
             crest_number=_crest_number(drawn),
             error=(change + _EPSILON / size) / max(abs(force), _EPSILON) + ROUNDING,
             mass_error=_mass_error(drawn),
-            turning=finer.turning * whirl.slip,
+            rotation=finer.rotation * whirl.slip,
             branch=finer.branch,
             nodes=found.surface.size - 1,
+        )
+
+    def wave_at_end(self, fill: Fill, whirl: Whirl, history: PotentialHistory) -> PotentialWave:
+        """The wave as a history leaves it, with the last means as its answer.
+
+        Parameters
+        ----------
+        fill, whirl : chamber and liquid, and its whirl
+        history : from `solvers.potential.histories`
+        """
+        periods, answered = history.periods, history.periods.force_ratio.size > 0
+        none = complex(math.nan, math.nan)
+        force, offset = (periods.force_ratio[-1], periods.offset[-1]) if answered else (none, none)
+        found = {
+            "wave_amplitude": max(history.crest - 1.0, 1.0 - history.trough), "crest": history.crest,
+            "trough": history.trough, "crest_number": history.crest_number,
+        }  # fmt: skip
+        numbers = numbers_of(fill, whirl, found)
+        chamber = fill.chamber
+        clear = history.crest * fill.depth <= chamber.radius - chamber.inner_radius
+        answer = whirl_answer(
+            fill,
+            whirl,
+            force_ratio=complex(force),
+            offset=complex(offset),
+            limits=kept_limits(numbers, self.ranges) | {"inner_wall": clear},
+            converged=periods.converged,
+            error=history.force_gap,
+        )
+        return PotentialWave(
+            answer=answer,
+            theta=periods.theta,
+            depth=periods.depth,
+            numbers=numbers,
+            ranges=self.ranges,
+            mass_error=periods.mass_error,
+            mean_rotation=float(periods.mean_rotation[-1]) if answered else math.nan,
+            reason=periods.reason,
+            nodes=history.nodes,
         )
 
     def free_wave(self, fill: Fill, spin: float, crest: float, crests: int = 1) -> FreeWave:
@@ -238,7 +303,7 @@ class Potential(WaveModel):
             crest_number=math.nan,
             error=ROUNDING,
             mass_error=0.0,
-            turning=0.0,
+            rotation=0.0,
             branch=Branch.ONE_CREST if size else "",
             nodes=0,
         )
@@ -254,7 +319,7 @@ class Potential(WaveModel):
         crest_number: float,
         error: float,
         mass_error: float,
-        turning: float,
+        rotation: float,
         branch: str,
         nodes: int,
     ) -> PotentialWave:
@@ -279,7 +344,7 @@ class Potential(WaveModel):
             numbers=numbers,
             ranges=self.ranges,
             mass_error=mass_error,
-            mean_rotation=turning,
+            mean_rotation=rotation,
             branch=branch,
             nodes=nodes,
         )
@@ -314,7 +379,7 @@ class Potential(WaveModel):
 def _require_surface(fill: Fill) -> None:
     """Refuse a chamber without a free surface."""
     chamber, surface = fill.chamber, fill.surface_radius
-    if fill.depth >= chamber.radius * (1.0 - 1e-9) or surface <= chamber.inner_radius:
+    if fill.volume >= chamber.capacity * FULL or surface <= chamber.inner_radius:
         allowed = "less than what fills the chamber, for a free surface"
         raise InputError("volume", fill.volume, allowed)
 
@@ -354,12 +419,11 @@ def _mass_error(wave: SteadyWave) -> float:
 def _told(last: End, fill: Fill) -> tuple[str, float]:
     """Why there is no wave, and the whirl at which they end, m."""
     share = last.whirl * fill.chamber.radius / fill.depth
-    upto = f"the last smooth steady wave was found at a whirl of {share:.4g} of the depth"
+    upto = f"the last smooth steady wave was found at a whirl of {share:.3g} of the depth"
+    froude = math.sqrt(last.froude) if last.froude > 0.0 else math.nan
     why = {
-        EndKind.FOLD: f"waves of this speed end in a fold at a whirl of {share:.4g} of the depth",
-        EndKind.CHOKING: (
-            f"the flow chokes at the trough (Froude number {math.sqrt(last.froude):.2f}); {upto}"
-        ),
+        EndKind.FOLD: f"waves of this speed end in a fold at a whirl of {share:.3g} of the depth",
+        EndKind.CHOKING: f"the flow chokes at the trough, Froude number {froude:.2f}; {upto}",
         EndKind.RESONANCE: f"the whirl meets the free wave of {last.crests} crests; {upto}",
         EndKind.NODES: f"the nodes do not carry the short waves that come with it; {upto}",
     }

@@ -158,12 +158,13 @@ class SteadyWave:
         return np.asarray(speed / np.sqrt(square * (np.square(opened) + np.square(steep))))
 
     @property
-    def turning(self) -> float:
-        """Angular momentum in the drum over the moment of inertia, over s [theory: potential, eq. 20]."""
-        at, y = self.at, self.surface
-        operators, square = strip(at, float(at.mean @ y)), np.exp(-2.0 * y)
-        inertia = float(at.mean @ ((1.0 - square * square) * (1.0 + operators.flux @ y)))
-        return float(2.0 * at.mean @ ((operators.shift @ square) * square * (at.slope @ y))) / inertia
+    def rotation(self) -> float:
+        """Mean over the liquid of its angular velocity in the drum, over s [theory: potential, eq. 5]."""
+        at, square = self.at, np.exp(-2.0 * self.surface)
+        operators = strip(at, float(at.mean @ self.surface))
+        # phi, over -s/2, along the surface.
+        potential, steep = operators.shift @ square, at.slope @ self.surface
+        return float(at.mean @ (potential * steep)) / self.volume
 
     @property
     def volume(self) -> float:

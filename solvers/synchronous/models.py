@@ -243,10 +243,10 @@ class Linear(WaveModel):
         ------
         InputError : no free surface, no crest
         """
-        require_crest(fill, crest, crests)
         radius, surface = fill.chamber.radius, fill.surface_radius
-        if surface <= fill.chamber.inner_radius:
+        if fill.depth >= radius * (1.0 - 1e-9) or surface <= fill.chamber.inner_radius:
             raise InputError("volume", fill.volume, "less than what fills the chamber, for a free surface")
+        require_crest(fill, crest, crests)
         height = (crest - 1.0) * fill.depth
         ahead, behind = waves.free_wave_speeds(crests, math.log(radius / surface), spin)
         theta = angles()
