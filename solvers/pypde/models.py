@@ -70,7 +70,8 @@ class LongWave(WaveModel):
     def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
         """See `WaveModel`; the error is that of smooth waves beside exact ones [theory: model_error, eq. 35].
 
-        Under gravity across the axis it is the gap between the force by momentum and that by pressure.
+        Under gravity across the axis and with baffles it is the gap between the forces by momentum and by
+        pressure.
 
         Raises
         ------
@@ -108,7 +109,7 @@ class LongWave(WaveModel):
             limits=kept_limits(numbers, self.ranges) | limits,
             dry_patch=float(history.depth.min(initial=math.inf)) <= 0.0,
             converged=history.converged,
-            error=gap if whirl.gravity else self._error(fill, whirl),
+            error=gap if whirl.gravity or chamber.baffles else self._error(fill, whirl),
         )
         return LiquidWave(
             answer=answer,
