@@ -32,6 +32,7 @@ _PATTERN = re.compile(r"[\w/]+\*$")  # an entry of the contents that stands for 
 RUN = (
     "index.md",
     "tour.md",
+    "models/potential.md",
     *(f"howto/{name}.md" for name in ("machine", "chamber", "volume", "cluster", "results", "units")),
 )
 

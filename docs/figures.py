@@ -157,8 +157,18 @@ RECIPES = (
         ("modes_baffles",),
         {"modes_baffles": "modes"},
     ),
+    Recipe(
+        (
+            *("leblanc", "layer", "--radius", "100 mm", "--volume", "119.4 ml", "--height", "20 mm"),
+            *("--speed", "40 rad/s", "--free", "1.6", "--model", "potential"),
+        ),
+        ("layer_limiting_wave",),
+        {"layer_limiting_wave": "wave"},
+    ),
     Recipe(("validation.figures.whirl_passage",), ("whirl_passage",), minutes=True),
     Recipe(("validation.models.figure",), ("models",)),
+    Recipe(("validation.breaking.figure",), ("breaking",)),
+    Recipe(("validation.exact.figure",), ("wave_errors", "wave_ends")),
     Recipe(("validation.figures.baffles",), ("whirl_baffles",)),
     Recipe(("validation.cases.baffles.figure",), ("baffles_decay",)),
     Recipe(("validation.figures.fill_sweep",), ("fill_sweep",)),

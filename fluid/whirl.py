@@ -64,6 +64,28 @@ def plane_layer(fill: Fill, friction: Friction) -> Layer | None:
     return Layer(fill.mass, tanh, rate, stokes)
 
 
+def body_force_rate(fill: Fill, friction: Friction, spin: float) -> float:
+    """k of a force -k u on all the liquid that damps its slower free wave as its walls do, 1/s.
+
+    Such a force leaves a flow without vorticity without any, which walls do not: of theirs it has the drag on
+    waves, and no wall layers [theory: potential, eq. 30].
+
+    Parameters
+    ----------
+    fill : chamber and liquid
+    friction : of its walls; a quadratic one drags on no small wave, and has none
+    spin : Omega, rad/s
+
+    Returns
+    -------
+    0 without liquid or without a free surface
+    """
+    layer = plane_layer(fill, friction)
+    if layer is None:
+        return 0.0
+    return layer.rate + float(stokes_rate(layer.stokes, slower_slip(layer.layer_tanh) * spin).real)
+
+
 def slower_slip(layer_tanh: float) -> float:
     """Size of the slower free wave's frequency seen from the drum over the spin, sqrt(T^2 + T) - T.
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from leblanc.results.exciter import ExciterResult
     from leblanc.results.explanation import ExciterExplanation, Explanation
     from leblanc.results.fit import FitResult
-    from leblanc.results.layer import LayerPeriodsResult, LayerResult
+    from leblanc.results.layer import FreeWaveResult, LayerPeriodsResult, LayerResult
     from leblanc.results.liquid import ModesResult, VolumeResult
     from leblanc.results.models.comparison import Comparison
     from leblanc.results.optimum import OptimumResult
@@ -363,8 +363,8 @@ def layer(
     volume: Quantity,
     height: Quantity,
     speed: Quantity,
-    whirl_speed: Quantity,
-    whirl_amplitude: Quantity,
+    whirl_speed: Quantity | None = None,
+    whirl_amplitude: Quantity | None = None,
     model: str = "linear",
     cells: int | None = None,
     baffles: int = 0,
@@ -377,8 +377,10 @@ def layer(
     duration: Quantity | None = None,
     ramp: Quantity = 0.0,
     solver: str | None = None,
-) -> LayerResult | LayerPeriodsResult:
-    """Force and centre of mass of a liquid layer under a prescribed whirl, in the plane.
+    free: float | None = None,
+    mode: int | None = None,
+) -> LayerResult | LayerPeriodsResult | FreeWaveResult:
+    """Force and centre of mass of a liquid layer under a prescribed whirl, in the plane; or its free wave.
 
     Parameters
     ----------
@@ -386,17 +388,21 @@ def layer(
     volume : of the liquid, m^3
     speed, whirl_speed : of the spin and of the whirl in space, rad/s
     whirl_amplitude : radius of the whirl, m
-    model : statics, linear, long_wave, kdv or fem
-    cells : round the wall; 256 for long_wave, 96 for fem if None
+    model : statics, linear, long_wave, kdv, fem or potential
+    cells : round the wall; 256 for long_wave, 96 for fem if None; of potential at most as many from crest to
+        trough, 432 if None, and in time round the wall, 2048 if None
     baffles : number of radial baffles, for fem
     baffle_tip_radius, baffle_wall_gap : of their edges from the axis and from the wall, m
     dispersion : exact linear dispersion, for long_wave and kdv
     friction : none, stokes, wall[:ROUGHNESS], linear:RATE or quadratic:NUMBER
     gravity : across the axis, m/s^2
     liquid : a known name, or a `leblanc.Liquid`
-    duration : start from rest and answer period by period, s; for long_wave
+    duration : start from rest and answer period by period, s; for long_wave and potential
     ramp : time over which the whirl grows, with a duration, s
     solver : of py-pde, as runge-kutta or scipy, in place of finite_volume (long_wave), steady_newton (kdv)
+    free : depth at the crest over the mean depth of the free wave asked for, in place of a whirl, by linear
+        or potential
+    mode : its crests round the drum, 1 if None
 
     Raises
     ------
@@ -412,10 +418,12 @@ def layer(
     """
     given = locals()
     from leblanc.questions import ask, layer_question
-    from leblanc.studies.layer import answer_layer, layer_history
+    from leblanc.studies.layer import answer_layer, free_wave, layer_history
 
     with _keywords():
         question = ask(layer_question, given)
+        if question.free is not None:
+            return free_wave(**question.free)
         if question.duration is None:
             return answer_layer(**question.whirl)
         return layer_history(**question.whirl, duration=question.duration, ramp=question.ramp)

@@ -72,18 +72,20 @@ def as_typed(error: InputError, given: Mapping[str, Any]) -> InputError:
 
 @dataclass(frozen=True)
 class LayerQuestion:
-    """A layer under a prescribed whirl.
+    """A layer under a prescribed whirl, or its free wave.
 
     Parameters
     ----------
-    whirl : by the names of `leblanc.studies.layer.answer_layer`
+    whirl : by the names of `leblanc.studies.layer.answer_layer`; empty where a free wave is asked for
     duration : from rest, s; None for the settled answer
     ramp : time over which the whirl grows, s
+    free : by the names of `leblanc.studies.layer.free_wave`; None where a whirl is given
     """
 
     whirl: dict[str, Any]
     duration: float | None
     ramp: float
+    free: dict[str, Any] | None = None
 
 
 def layer_question(
@@ -92,8 +94,8 @@ def layer_question(
     volume: Quantity,
     height: Quantity,
     speed: Quantity,
-    whirl_speed: Quantity,
-    whirl_amplitude: Quantity,
+    whirl_speed: Quantity | None = None,
+    whirl_amplitude: Quantity | None = None,
     model: str = "linear",
     cells: int | None = None,
     baffles: int = 0,
@@ -106,6 +108,8 @@ def layer_question(
     duration: Quantity | None = None,
     ramp: Quantity = 0.0,
     solver: str | None = None,
+    free: float | None = None,
+    mode: int | None = None,
 ) -> LayerQuestion:
     """The question of `layer`; the parameters are those of `leblanc.api.layer`.
 
@@ -120,14 +124,35 @@ def layer_question(
     chamber = Chamber(
         parse_option(radius, LENGTH, "--radius"), parse_option(height, LENGTH, "--height"), baffles=plates
     )
-    whirl = {
+    whirl: dict[str, Any] = {
         "fill": Fill(chamber, liquid_of(liquid), parse_option(volume, VOLUME, "--volume")),
         "speed": parse_option(speed, ANGULAR_SPEED, "--speed"),
+    }
+    law = friction_of(friction)
+    if free is not None:
+        unused = {
+            "whirl_speed": whirl_speed, "whirl_amplitude": whirl_amplitude, "duration": duration,
+            "solver": solver, "dispersion": dispersion or None, "baffles": baffles or None,
+            "gravity": gravity if parse_option(gravity, ACCELERATION, "--gravity") else None,
+            "ramp": ramp if parse_option(ramp, TIME, "--ramp") else None,
+        }  # fmt: skip
+        for name, value in unused.items():
+            if value is not None:
+                raise InputError(f"--{name.replace('_', '-')}", value, "left out where --free is given")
+        with as_options():
+            made = wave_model(model, law, cells)
+        crests = 1 if mode is None else mode
+        return LayerQuestion({}, None, 0.0, {**whirl, "crest": float(free), "crests": crests, "model": made})
+    if mode is not None:
+        raise InputError("--mode", mode, "left out without --free")
+    if whirl_speed is None or whirl_amplitude is None:
+        name = "--whirl-amplitude" if whirl_amplitude is None else "--whirl-speed"
+        raise InputError(name, None, "given, or --free in its place")
+    whirl |= {
         "whirl_speed": parse_option(whirl_speed, ANGULAR_SPEED, "--whirl-speed"),
         "whirl_amplitude": parse_option(whirl_amplitude, LENGTH, "--whirl-amplitude"),
         "gravity": parse_option(gravity, ACCELERATION, "--gravity"),
     }
-    law = friction_of(friction)
     with as_options():
         whirl["model"] = wave_model(model, law, cells, dispersion, solver)
     length = None if duration is None else parse_option(duration, TIME, "--duration")

@@ -30,6 +30,7 @@ CAPTURED: Range = (1.0, math.inf)
 THIN_LAYERS: Range = (0.0, 0.2)
 LONG: Range = (0.0, 0.3)
 _ACROSS = 1e-9  # of the pull, that may be rounding
+_MOST_CRESTS = 64  # of a free wave
 
 
 @dataclass(frozen=True)
@@ -63,6 +64,11 @@ class Whirl:
     def slip(self) -> float:
         """Whirl speed seen from the drum, s = omega_w - Omega, rad/s."""
         return self.speed - self.spin
+
+    @property
+    def detuning(self) -> float:
+        """p^2 = (1 - Omega/omega_w)^2: all an exact wave knows of the speeds [theory: potential, eq. 9]."""
+        return (self.slip / self.speed) ** 2
 
     @property
     def period(self) -> float:
@@ -147,7 +153,8 @@ class LiquidAnswer:
     dry_patch : the wall is dry over its whole height somewhere
     converged : the answer was found
     limits : by its name each limit of the model, and where it is kept
-    error : estimated relative error of U; nan where the model has no estimate
+    error : estimated error of U, at rest relative, of waves over the larger of U and a full chamber's;
+        nan where the model has no estimate
     """
 
     unbalance: Complex
@@ -365,6 +372,39 @@ class LiquidWave:
     reason: str = ""
 
 
+@dataclass(frozen=True)
+class FreeWave:
+    """A wave that runs round the drum by itself, in two senses with one shape.
+
+    Parameters
+    ----------
+    whirl_speed : at which its crests go round in space, behind the drum and ahead of it, rad/s
+    theta, depth : angle from a crest, rad, ascending, and depth of the layer there, m, shape (k,)
+    crest, trough : greatest and least depth over that of the layer at rest
+    crest_number : speed of the liquid at the crest over that of the crest
+    numbers, ranges : as of `LiquidWave`
+    converged : the wave was found
+    mass_error : of the surface drawn, relative
+    error : estimated relative error of the speed along the wall; nan where there is no estimate
+    branch : kind of wave, where the model tells
+    reason : why there is no answer, or empty
+    """
+
+    whirl_speed: tuple[float, float]
+    theta: Array
+    depth: Array
+    crest: float
+    trough: float
+    crest_number: float
+    numbers: Mapping[str, float]
+    ranges: Mapping[str, Range]
+    converged: bool
+    mass_error: float
+    error: float = math.nan
+    branch: str = ""
+    reason: str = ""
+
+
 class WaveModel(LiquidModel, Protocol):
     """Liquid model that knows the wave of a prescribed whirl; a class needs a name, `ranges` and `wave`."""
 
@@ -451,6 +491,46 @@ def whirl_answer(
         converged=np.array([converged]),
         limits={name: np.array([kept]) for name, kept in limits.items()},
         error=np.array([error]),
+    )
+
+
+def require_crest(fill: Fill, crest: float, crests: int) -> None:
+    """Raise `InputError` unless a free wave may have such crests.
+
+    Parameters
+    ----------
+    fill : chamber and liquid
+    crest : depth at the crest over the mean depth
+    crests : round the drum
+    """
+    most = fill.chamber.radius / fill.depth
+    if not 1.0 < crest < most:
+        raise InputError("free", crest, f"above 1 and below {most:g}, where the crest reaches the axis")
+    if not 1 <= crests <= _MOST_CRESTS:
+        raise InputError("mode", crests, f"from 1 to {_MOST_CRESTS}")
+
+
+def no_free_wave(fill: Fill, ranges: Mapping[str, Range], reason: str) -> FreeWave:
+    """A free wave that was not found: the layer at rest, and why.
+
+    Parameters
+    ----------
+    fill : chamber and liquid
+    ranges, reason : as of `FreeWave`
+    """
+    theta = angles()
+    return FreeWave(
+        whirl_speed=(math.nan, math.nan),
+        theta=theta,
+        depth=np.full(theta.shape, fill.depth),
+        crest=math.nan,
+        trough=math.nan,
+        crest_number=math.nan,
+        numbers={"relative_depth": fill.depth / fill.chamber.radius},
+        ranges=ranges,
+        converged=False,
+        mass_error=math.nan,
+        reason=reason,
     )
 
 

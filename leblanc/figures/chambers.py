@@ -25,7 +25,7 @@ from leblanc.figures.drawing.page import (
 )
 from leblanc.results.base import FilledChamber
 from leblanc.results.drawn import chord, rounded_down
-from leblanc.results.motion.held import HELD_MODEL
+from leblanc.results.motion.held import HELD_MODELS
 from leblanc.results.response import RunResult, peak, phase
 from leblanc.text.run import alts, amplitude_place
 from leblanc.units import DEGREE, LENGTH, MINUS, MM, TIMES, in_rpm, number, with_unit
@@ -436,7 +436,7 @@ def chamber_figure(result: RunResult) -> Figure:
         if result.motion is not None:
             place = amplitude_place(result)
             part = f" Amplitudes are those {place}; drawn is the part of the motion that turns with the spin."
-        if any(result.curve.model[index] == HELD_MODEL for index in views.instants):
+        if any(result.curve.model[index] in HELD_MODELS for index in views.instants):
             part += " The liquid is drawn at rest in the mean motion, without its waves."
         text = caption(result, f"Chamber seen along the axis. {describe_scale(result, views)}{part}")
         more = HEADING_ROW * more_heading_rows(result, views)

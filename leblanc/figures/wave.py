@@ -27,7 +27,7 @@ from leblanc.figures.drawing.page import (
 from leblanc.figures.response import STRIP
 from leblanc.results.base import one_line
 from leblanc.results.drawn import FILLED, LARGEST_FACTOR, rounded_down
-from leblanc.results.layer import LayerPeriodsResult, LayerResult, Wave, WaveFrames
+from leblanc.results.layer import FreeWaveResult, LayerPeriodsResult, LayerResult, Wave, WaveFrames
 from leblanc.units import DEGREE, LENGTH, MINUS, MM, RPM, TIMES, with_unit
 from meshes.arrays import Array
 
@@ -195,10 +195,11 @@ def draw_annulus(axes: Axes, wave: Wave, factor: float) -> None:
     bar = dry_wall(wave, angle, surface, factor)
     if not np.isnan(bar).all():
         axes.plot(bar.real, bar.imag, **DRY_BAR)
-    arrow(axes, wave, 1.0, DEFLECTION, "deflection")
+    arrow(axes, wave, 1.0, DEFLECTION, wave.towards)
     turning(axes, wave, "spin", 1.0, 135.0)
     if wave.whirl_speed != 0.0:
-        turning(axes, wave, "whirl", math.copysign(1.0, wave.whirl_speed), 225.0)
+        name = "whirl" if wave.towards == "deflection" else "wave"
+        turning(axes, wave, name, math.copysign(1.0, wave.whirl_speed), 225.0)
     axes.plot([0.0], [0.0], "+", color="black", markersize=9, markeredgewidth=1.2, label="geometric axis")
     if cmath.isfinite(wave.force_ratio) and wave.force_ratio != 0.0:
         _force(axes, wave)
@@ -207,7 +208,9 @@ def draw_annulus(axes: Axes, wave: Wave, factor: float) -> None:
         mark = {"markerfacecolor": "white", "markeredgecolor": "black", "markersize": 5.0}
         axes.plot([mass.real], [mass.imag], "D", zorder=5, label="liquid's centre of mass", **mark)
     place = {"xycoords": "axes fraction", "textcoords": "offset points", "ha": "center", "va": "top"}
-    axes.annotate(f"{describe_force(wave)}\n{describe_offset(wave)}", (0.5, 0.0), xytext=(0, -3), **place)
+    if wave.towards == "deflection":
+        text = f"{describe_force(wave)}\n{describe_offset(wave)}"
+        axes.annotate(text, (0.5, 0.0), xytext=(0, -3), **place)
 
 
 def walls(axes: Axes, wave: Wave) -> None:
@@ -341,7 +344,7 @@ def draw_profile(axes: Axes, wave: Wave) -> None:
     dry = is_dry(depth, wave.mean_depth)
     axes.axhline(wave.mean_depth * MM, **MEAN_LINE)
     profile_axis(axes, float(max(depth.max(), wave.mean_depth)) * MM, bool(dry.any()))
-    axes.set_xlabel("Angle from the deflection, with the spin (deg)")
+    axes.set_xlabel(f"Angle from the {wave.towards}, with the spin (deg)")
     if dry.any():
         bar = np.where(dry, 0.5 * STRIP, np.nan)
         axes.plot(np.degrees(angle), bar, transform=axes.get_xaxis_transform(), **DRY_BAR)
@@ -400,11 +403,13 @@ def describe_case(wave: Wave) -> str:
         if slip != 0.0
         else "the deflection at rest in the drum"
     )
+    held = wave.towards == "deflection"
+    size = f", whirl amplitude {_length(wave.whirl_amplitude)}" if held else ""
+    turns = "whirl" if held else f"the {wave.towards} goes round at"
     return (
         f"{one_line(wave.title)}. Liquid model: {one_line(wave.model)}. "
-        f"Wall {_length(wave.radius)}{inner}, mean depth {_length(wave.mean_depth)}, "
-        f"whirl amplitude {_length(wave.whirl_amplitude)}; spin {_speed(wave.spin)}, "
-        f"whirl {_speed(wave.whirl_speed)}, {drum}."
+        f"Wall {_length(wave.radius)}{inner}, mean depth {_length(wave.mean_depth)}"
+        f"{size}; spin {_speed(wave.spin)}, {turns} {_speed(wave.whirl_speed)}, {drum}."
     )
 
 
@@ -512,7 +517,7 @@ def _annulus(axes: Axes, wave: Wave, history: WaveFrames, factor: float, dry: bo
     (liquid,) = axes.fill([0.0], [0.0], facecolor=LIQUID, edgecolor="none", label="liquid")
     (free,) = axes.plot([], [], color=SURFACE, linewidth=0.8)
     (bar,) = axes.plot([], [], **DRY_BAR | ({} if dry else {"label": "_"}))
-    deflected = arrow(axes, wave, 0.0, DEFLECTION, "deflection")
+    deflected = arrow(axes, wave, 0.0, DEFLECTION, wave.towards)
 
     def show(index: int) -> None:
         depth = history.depth[index] * MM
@@ -536,7 +541,7 @@ def _profile(axes: Axes, wave: Wave, history: WaveFrames, dry: bool) -> Show:
     (curve,) = axes.plot([], [], color=SURFACE, linewidth=1.2, label="depth of the layer")
     axes.axhline(wave.mean_depth * MM, **MEAN_LINE)
     style = {"color": DEFLECTION, "linewidth": 1.2, "linestyle": (0, (1, 1.2))}
-    (place,) = axes.plot([], [], label="angle of the deflection", **style, **across)
+    (place,) = axes.plot([], [], label=f"angle of the {wave.towards}", **style, **across)
     (bar,) = axes.plot([], [], **DRY_BAR | ({} if dry else {"label": "_"}), **across)
     axes.set_xlabel("Angle from the mark, with the spin (deg)")
 
@@ -565,7 +570,9 @@ def describe_film(wave: Wave, history: WaveFrames) -> str:
     part = "" if span >= 0.9 * whole else f" (the last {span:.3g} s of {whole:.3g} s)"
     factor = depth_factor(wave, float(history.depth[chosen].max()))
     drawn = f"{describe_depths(factor)}{describe_cut(wave, float(history.depth[chosen].max()))}"
-    text = f"Seen from the drum{part}. {drawn}; the arrow grows with the deflection."
+    held = wave.towards == "deflection"
+    arrow_says = "the arrow grows with the deflection" if held else f"the arrow points to a {wave.towards}"
+    text = f"Seen from the drum{part}. {drawn}; {arrow_says}."
     if span > 0.0:
         text += f" One second of the film is {span / (time.size - 1) * FRAME_RATE:.3g} s."
         if abs(wave.seen_from_the_drum) * float(np.max(np.diff(time))) > 2.0 * TURN:
@@ -583,13 +590,14 @@ def wave_figure(wave: Wave) -> Figure:
         draw_annulus(left, wave, factor)
         draw_profile(right, wave)
         right.yaxis.set_major_formatter(number)
-        text = (
-            f"{describe_depths(factor)}{describe_cut(wave, deepest)}; arrows show directions, "
-            "the place of the centre of mass is not exaggerated. "
+        held = (
+            "; arrows show directions, the place of the centre of mass is not exaggerated. "
             "Force ratio: force over that of a full drum; angles from the deflection, "
             "positive with the spin. "
-            f"{describe_case(wave)}{describe_notes(wave)}"
         )
+        said = held if wave.towards == "deflection" else "; no whirl holds it. "
+        text = f"{describe_depths(factor)}{describe_cut(wave, deepest)}{said}{describe_case(wave)}"
+        text += describe_notes(wave)
         _beside(figure, left, right, WAVE_FRAME, text)
         figure.alt = (
             "The layer seen along the axis and its depth around the wall, "
@@ -687,7 +695,7 @@ def _beside(figure: Figure, left: Axes, right: Axes, frame: Frame, caption: str)
     left.set_position((place.x0 - ASIDE / WIDTH, place.y0, place.width, place.height))
 
 
-def layer_figure(result: LayerResult) -> Figure:
+def layer_figure(result: LayerResult | FreeWaveResult) -> Figure:
     """The main figure of a layer's answer."""
     return wave_figure(result.wave())
 

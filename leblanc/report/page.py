@@ -128,7 +128,7 @@ def models(names: Sequence[str], held: bool = False) -> list[tuple[str, str]]:
     Parameters
     ----------
     names : of the models
-    held : long waves were held in time
+    held : waves were held in time
     """
     return described(names, held)
 

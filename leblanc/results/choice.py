@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.results.base import EXACT, percent
+from leblanc.results.motion.held import HELD_MODELS
 from leblanc.units import TIME, with_unit
 from meshes.arrays import Array, Flags, Index
 
@@ -73,6 +74,7 @@ class Choice:
     gravity : what gravity across the axis does, which no model of a steady answer has, to the means over time
         and as a ripple about them
     cut : baffles cut the liquid of a chamber into compartments, or its section is no circle
+    held_model : of the waves, where motions are held in time
     holding : processor time to hold rotor and waves in time at each speed, s; None where it was not asked for
         or no wave can be held
     """
@@ -87,6 +89,7 @@ class Choice:
     linear: LinearError
     gravity: GravityError
     cut: bool = False
+    held_model: str = "long_wave"
     holding: Array | None = None
 
     @property
@@ -216,14 +219,16 @@ def _reason(choice: Choice, model: str, part: Index) -> str:
             "gravity across the axis outweighs the spin: the liquid does not ride with the drum, the numbers "
             "are those of liquid that does"
         )
-    if model == "long_wave":
+    if model in HELD_MODELS:
         return _held_reason(choice, part)
     if model == "kdv":
         return _family_reason(choice, part)
     if model == "fem" and not choice.cut:
         return "the scene asks for it; finite elements integrate the paraboloid and miss it by their mesh"
     why = _statics_reason(choice, part) if model == "statics" else _linear_reason(choice, part)
-    if choice.prescribed:
+    if choice.prescribed and choice.held_model == "potential":
+        why = f"the scene asks for the exact wave, which is this one in a circle with the spin; {why}"
+    elif choice.prescribed:
         why = f"the scene asks for it; {why}"
     if not choice.missed[part[0]]:
         return why
@@ -248,7 +253,8 @@ def _held_reason(choice: Choice, part: Index) -> str:
     asked = "the scene asks for it; " if choice.prescribed else ""
     worst = choice.error[part].max()
     size = percent(worst) if np.isfinite(worst) else "an amount that is not known"
-    return f"{asked}rotor and wave are held in time until they settle; half the cells change them by {size}"
+    parts = HELD_MODELS[choice.held_model][1]
+    return f"{asked}rotor and wave are held in time until they settle; half the {parts} change them by {size}"
 
 
 def _linear_reason(choice: Choice, part: Index) -> str:
@@ -289,8 +295,8 @@ def _better(choice: Choice, model: str, part: Index) -> str:
         return "none: no other model knows such chambers"
     if not choice.in_range[part[0]]:
         return "none that is steady: `leblanc runup` carries the liquid until it is caught"
-    if model == "long_wave":
-        return "the same with more cells ([model] cells)"
+    if model in HELD_MODELS:
+        return f"the same with more {HELD_MODELS[model][1]} ([model] cells)"
     if model == "kdv":
         return "the exact equilibrium (statics), which costs less as well"
     gravity = choice.gravity.amplitude[part].max()

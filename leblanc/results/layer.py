@@ -16,7 +16,7 @@ from leblanc.results.base import Note, NoteCode, Result, carried, one_line, text
 from leblanc.results.netcdf import NamedArrays, variable
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative, require_positive
-from solvers.layer.state import LayerHistory
+from solvers.liquid_history import LayerHistory
 
 FEWEST = 3  # angles of a wave
 SLACK = 1e-9  # rounding of a depth, over the radius
@@ -30,6 +30,8 @@ class LayerCode(NoteCode):
     INNER_WALL = "inner_wall"
     AGAINST_WHIRL = "against_whirl"
     DRY_WALL = "dry_wall"
+    LEE_WAVES = "lee_waves"
+    NO_SMOOTH_WAVE = "no_smooth_wave"
 
 
 @dataclass(frozen=True)
@@ -85,6 +87,25 @@ def dry_wall() -> Note:
     return Note(LayerCode.DRY_WALL, {}, "the wall is dry in part")
 
 
+def lee_waves() -> Note:
+    """Shorter waves ride on the wave of the whirl."""
+    return Note(LayerCode.LEE_WAVES, {}, "shorter waves ride on the wave, as they do in the lee of a whirl")
+
+
+def no_smooth_wave(whirl: float, largest: float, fold: bool) -> Note:
+    """The whirl is larger than any up to which a smooth steady wave follows it.
+
+    Parameters
+    ----------
+    whirl, largest : of the axis, and where such waves end, over the mean depth
+    fold : they end at a fold, above the resonance; else the flow chokes
+    """
+    way = "it turns back" if fold else "the flow chokes"
+    text = f"no smooth steady wave follows a whirl as it grows to {whirl:.2g} of the mean depth: "
+    text += f"without friction {way} at {largest:.2g}"
+    return Note(LayerCode.NO_SMOOTH_WAVE, {"whirl": whirl, "largest": largest, "fold": fold}, text)
+
+
 @dataclass(frozen=True)
 class LayerCase:
     """The layer and the whirl of a question.
@@ -109,6 +130,52 @@ class LayerCase:
 
 
 @dataclass(frozen=True)
+class ExactWave:
+    """What the exact wave alone can tell.
+
+    Parameters
+    ----------
+    state : "resolved"; in time also "short_waves" or "broken"; None where no wave was found
+    branch : "one_crest", "many_crests", or "lee_waves" where shorter waves ride on it
+    crest, trough : greatest and least depth over the mean depth
+    crest_number : speed of the liquid at the crest over that of the crest, 1 for the highest wave; nan where
+        the wave stands still in the drum
+    error_estimate : of the force, relative; in time the gap between pressure and momentum
+    largest_whirl : at which waves of this speed end, or up to which they were found, m; nan where the whirl
+        that was asked for has a wave
+    """
+
+    state: str | None
+    branch: str | None
+    crest: float
+    trough: float
+    crest_number: float
+    error_estimate: float
+    largest_whirl: float
+
+
+@dataclass(frozen=True)
+class ExactPeriods:
+    """What the exact wave in time alone can tell.
+
+    Parameters
+    ----------
+    state : "resolved", "short_waves" that the nodes do not resolve, or "broken"
+    crest, trough : greatest and least depth so far over the mean depth
+    crest_number : greatest speed so far of the liquid at a crest over that of the crest
+    nodes : round the wall at the end
+    force_gap : largest difference of the forces by pressure and by momentum, over the largest force
+    """
+
+    state: str
+    crest: float
+    trough: float
+    crest_number: float
+    nodes: int
+    force_gap: float
+
+
+@dataclass(frozen=True)
 class LayerResult(Result):
     """Force and centre of mass of a liquid layer; complex: along the deflection, 90 deg ahead of it.
 
@@ -117,6 +184,7 @@ class LayerResult(Result):
     case : the layer and the whirl
     force_ratio : force on the drum over m_f omega_w^2 A
     offset : liquid's centre of mass from the drum's axis, m
+    error_estimate : of the force ratio, over the larger of its size and 1; nan where the model has none
     mass_error : of the surface that the model draws, relative
     converged : the force is finite
     in_range : the model holds; `validity` and `notes` say why not
@@ -127,6 +195,7 @@ class LayerResult(Result):
     gravity_offset : steady part of the offset under gravity across the axis, in space, m: up is negative
     captured : centrifugal acceleration at the surface exceeds gravity
     validity : dimensionless numbers the model rests on, each with its range
+    exact : what the exact wave alone tells; None for other models
 
     Examples
     --------
@@ -140,6 +209,7 @@ class LayerResult(Result):
     case: LayerCase
     force_ratio: complex
     offset: complex
+    error_estimate: float
     mass_error: float
     converged: bool
     in_range: bool
@@ -151,6 +221,7 @@ class LayerResult(Result):
     gravity_offset: float
     captured: bool
     validity: tuple[Number, ...]
+    exact: ExactWave | None = None
 
     solver = carried("case.solver")
     figure = "leblanc.figures.wave:layer_figure"
@@ -181,15 +252,16 @@ class LayerResult(Result):
         ----------
         profile : with the depth around the wall
         """
-        names = ("force_ratio", "offset", "mass_error", "converged", "in_range", "mean_rotation", "wall_time")
-        more = ("theta", "depth") if profile else ()
-        found: dict[str, Any] = {name: getattr(self, name) for name in (*names, *more)}
+        names = ["force_ratio", "error_estimate", "offset", "mass_error", "converged", "in_range"]
+        names += ["mean_rotation", "wall_time", *(("theta", "depth") if profile else ())]
+        found: dict[str, Any] = {name: getattr(self, name) for name in names}
         return found | {
             "solver": self.solver,
             "notes": texts(self.notes),
             "gravity_offset": self.gravity_offset,
             "captured": self.captured,
             "validity": tuple(map(asdict, self.validity)),
+            **({} if self.exact is None else asdict(self.exact)),
         }
 
     def named_arrays(self) -> NamedArrays:
@@ -202,10 +274,106 @@ class LayerResult(Result):
             "offset_real": variable((), self.offset.real, "m", "centre of mass, along the deflection"),
             "offset_imag": variable((), self.offset.imag, "m", "centre of mass, 90 deg ahead of it"),
             "mean_rotation": variable((), self.mean_rotation, "rad s-1", "mean rotation in the drum"),
+            "error_estimate": variable((), self.error_estimate, "1", "estimated error of the force ratio"),
             "mass_error": variable((), self.mass_error, "1", "relative error of the liquid's volume"),
             "gravity_offset": variable((), self.gravity_offset, "m", "steady offset by gravity, in space"),
         }
         coords = {"theta": variable(along, self.theta, "rad", "angle from the deflection, with the spin")}
+        return NamedArrays(columns, coords, _attributes(self.case, self.converged, self.in_range, self.notes))
+
+
+@dataclass(frozen=True)
+class FreeWaveResult(Result):
+    """A wave that runs round the drum by itself, behind the drum or ahead of it, with one shape.
+
+    Parameters
+    ----------
+    case : the layer; its whirl speed is that of the wave behind the drum, its whirl none
+    mode : crests round the drum
+    whirl_speed : at which the crests go round in space, behind the drum and ahead of it, rad/s, shape (2,)
+    crest, trough, crest_number, branch : as of `ExactWave`; no branch of a model that tells none
+    converged : the wave was found
+    in_range : the model holds; `validity` and `notes` say why not
+    mass_error : of the surface that the model draws, relative
+    error_estimate : of the speeds along the wall, relative; nan where the model has none
+    wall_time : s
+    theta, depth : angle from a crest, rad, and depth of the layer there, m, shape (k,)
+    notes : why there is no answer, and where the model is out of its range
+    validity : dimensionless numbers the model rests on, each with its range
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> found = lb.layer(radius="100 mm", volume="119.4 ml", height="20 mm", speed=1.0, model="potential",
+    ...                  free=1.2)
+    >>> [f"{speed:.4f}" for speed in found.whirl_speed]
+    ['0.7512', '1.4952']
+    """
+
+    case: LayerCase
+    mode: int
+    whirl_speed: Array
+    crest: float
+    trough: float
+    crest_number: float
+    branch: str | None
+    converged: bool
+    in_range: bool
+    mass_error: float
+    error_estimate: float
+    wall_time: float
+    theta: Array
+    depth: Array
+    notes: tuple[Note, ...]
+    validity: tuple[Number, ...]
+
+    figure = "leblanc.figures.wave:layer_figure"
+    summary = "leblanc.text.liquid:free_wave_summary"
+
+    def wave(self) -> Wave:
+        """The wave behind the drum as figures show it; the one ahead has the same shape."""
+        return Wave(
+            title="Free wave" if self.mode == 1 else f"Free wave of {self.mode} crests",
+            model=self.case.model,
+            radius=self.case.radius,
+            inner_radius=self.case.inner_radius,
+            mean_depth=self.case.mean_depth,
+            whirl_amplitude=0.0,
+            spin=self.case.speed,
+            whirl_speed=self.case.whirl_speed if self.converged else self.case.speed,
+            theta=self.theta,
+            depth=self.depth,
+            force_ratio=complex(math.nan, math.nan),
+            offset=complex(math.nan, math.nan),
+            notes=texts(self.notes),
+            towards="crest",
+        )
+
+    def to_json(self, profile: bool = True) -> dict[str, Any]:
+        """What `layer --free` prints for scripts, SI and radians.
+
+        Parameters
+        ----------
+        profile : with the depth around the wall
+        """
+        names = ("mode", "whirl_speed", "crest", "trough", "crest_number", "branch", "converged", "in_range")
+        names += ("mass_error", "error_estimate", "wall_time", *(("theta", "depth") if profile else ()))
+        found: dict[str, Any] = {name: getattr(self, name) for name in names}
+        return found | {"validity": tuple(map(asdict, self.validity)), "notes": texts(self.notes)}
+
+    def named_arrays(self) -> NamedArrays:
+        """The depth over `theta`, the two speeds over `sense`; the rest without a dimension."""
+        columns = {
+            "depth": variable(("theta",), self.depth, "m", "depth of the layer"),
+            "whirl_speed": variable(("sense",), self.whirl_speed, "rad s-1", "speed of the crests in space"),
+            "crest": variable((), self.crest, "1", "greatest depth over the mean depth"),
+            "trough": variable((), self.trough, "1", "least depth over the mean depth"),
+            "crest_number": variable((), self.crest_number, "1", "speed of the liquid at the crest over its"),
+        }
+        coords = {
+            "theta": variable(("theta",), self.theta, "rad", "angle from a crest, with the spin"),
+            "sense": variable(("sense",), np.array([-1, 1]), "1", "behind the drum, ahead of it"),
+        }
         return NamedArrays(columns, coords, _attributes(self.case, self.converged, self.in_range, self.notes))
 
 
@@ -219,6 +387,7 @@ class LayerPeriodsResult(Result):
     history : force, centre of mass and depths period by period, and the depth at the end
     notes : why there is no answer, and where the model is out of its range
     validity : dimensionless numbers the model rests on, each with its range
+    exact : what the exact wave alone tells; None for other models
 
     Examples
     --------
@@ -234,6 +403,7 @@ class LayerPeriodsResult(Result):
     history: LayerHistory
     notes: tuple[Note, ...]
     validity: tuple[Number, ...]
+    exact: ExactPeriods | None = None
 
     solver = carried("case.solver")
     figure = "leblanc.figures.wave:periods_figure"
@@ -275,6 +445,7 @@ class LayerPeriodsResult(Result):
             "in_range": self.in_range,
             "validity": tuple(map(asdict, self.validity)),
             "notes": texts(self.notes),
+            **({} if self.exact is None else asdict(self.exact)),
         }
 
     def named_arrays(self) -> NamedArrays:
@@ -330,6 +501,7 @@ class Wave:
     force_ratio : on the drum over that of a full drum; along the deflection, 90 deg ahead; nan if none found
     offset : centre of mass from the geometric axis, same axes, m; nan if none was found
     notes : limits of validity and findings, in words
+    towards : what lies at angle 0: the "deflection", or a "crest" of a wave that no whirl holds
 
     Raises
     ------
@@ -349,6 +521,7 @@ class Wave:
     force_ratio: complex
     offset: complex
     notes: tuple[str, ...] = ()
+    towards: str = "deflection"
 
     def __post_init__(self) -> None:
         require_positive("radius", self.radius)
@@ -382,7 +555,7 @@ class WaveFrames:
     time : rising, s, shape (k,)
     theta : angle from a mark on the drum, rad, shape (n,), n > 2
     depth : m, shape (k, n)
-    deflection : complex, the mark on the real axis, m, shape (k,)
+    deflection : complex, the mark on the real axis, m, shape (k,); of a free wave towards a crest
     force_ratio, period_time, mean_rotation : means over periods of the whirl seen from the drum: force as in
         `Wave`, middle of the period, s, and the liquid's rotation in the drum, rad/s; shape (p,)
 

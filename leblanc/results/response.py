@@ -15,7 +15,7 @@ from leblanc.results.choice import ModelSpan
 from leblanc.results.machine.keys import Loaded
 from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.motion.encoding import finite, pair
-from leblanc.results.motion.held import HELD_MODEL, MOTIONS, Held, numbered
+from leblanc.results.motion.held import HELD_MODELS, MOTIONS, Held, numbered
 from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.results.motion.tilting import Motion
 from leblanc.results.netcdf import NamedArrays, Variable, flags
@@ -329,7 +329,7 @@ class RunResult(Loaded, Result):
     def cycling(self) -> Flags:
         """Where the answer of `curve` is a limit cycle, shape (p,)."""
         curve = self.curve
-        return np.asarray((curve.model == HELD_MODEL) & curve.converged & ~curve.stable)
+        return np.asarray(np.isin(curve.model, list(HELD_MODELS)) & curve.converged & ~curve.stable)
 
     # Held states; every branch; what a rotor adds that is not planar.
     held_at = carried("held.at")

@@ -248,7 +248,7 @@ def _study(scene: Scene) -> list[Row]:
 
 def _held(model: Model) -> list[Row]:
     """How waves are held in time, where they are."""
-    if model.held == "never" and model.liquid != "long_wave":
+    if model.held == "never" and model.liquid not in ("long_wave", "potential"):
         return []
     held = [row("Waves held in time", model.held, "model.held")] if model.held != "never" else []
     return [*held, row("Cells of a held wave", str(model.cells), "model.cells")]

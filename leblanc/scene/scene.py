@@ -48,7 +48,7 @@ MAX_ASSUMED = 10_000
 
 HELD = ("auto", "never", "always")
 MAX_CELLS = 4096
-LIQUID_MODELS = ("auto", "statics", "linear", "long_wave", "kdv", "fem")
+LIQUID_MODELS = ("auto", "statics", "linear", "long_wave", "potential", "kdv", "fem")
 _LAWS = ("none", "stokes", "wall")
 _SOME_CHAMBERS = Entries(1, MAX_CHAMBERS, "tables headed [[chambers]]")
 
@@ -161,7 +161,9 @@ class Model(Part):
         "where no steady model is within the tolerance or a whirl grows by itself (auto); or always",
     )
     cells: Annotated[int, whole(16, MAX_CELLS)] = Field(
-        128, description="finite volumes round each wall of a wave that is held"
+        128,
+        description="finite volumes round each wall of a wave that is held; nodes of an exact one, even, of "
+        "which it takes more where it wants them",
     )
 
 

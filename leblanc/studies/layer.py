@@ -15,6 +15,9 @@ from fluid import waves
 from fluid.fill import Fill
 from leblanc.results.base import Note
 from leblanc.results.layer import (
+    ExactPeriods,
+    ExactWave,
+    FreeWaveResult,
     LayerCase,
     LayerPeriodsResult,
     LayerResult,
@@ -23,16 +26,22 @@ from leblanc.results.layer import (
     against_whirl,
     dry_wall,
     inner_wall,
+    lee_waves,
     no_answer,
+    no_smooth_wave,
     out_of_range,
 )
 from leblanc.results.notes.baffles import smeared_baffles
 from leblanc.studies.models.validity import judge
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.liquid_model import LiquidWave, WaveModel, Whirl
+from solvers.potential.model import Potential, PotentialWave
+from solvers.potential.steady import Branch
 from solvers.pypde.models import LongWave, OneFamily, Progress
-from solvers.synchronous.models import LINEAR
+from solvers.synchronous.models import LINEAR, Linear
+from solvers.wave_error import detuning_ratio, largest_whirl
 
+_EVEN = 720  # angles of a film
 _ONE_WAY = 1e-6  # part of the answer that may go the other way round before it is worth a note
 
 
@@ -80,13 +89,18 @@ def answer_layer(
     in_range = not notes
     if in_range and wave.answer.dry_patch[0]:
         notes = (dry_wall(),)
+    notes = (*notes, *_beyond_waves(fill, whirl, model))
     if isinstance(model, LongWave):
         notes = (*notes, *smeared_baffles([fill], model.numerics.cells))
+    exact = _exact(wave) if isinstance(wave, PotentialWave) else None
+    if exact is not None and exact.branch == Branch.LEE_WAVES:
+        notes = (*notes, lee_waves())
     kappa = (fill.chamber.radius / surface) ** 2 if gravity else math.nan
     return LayerResult(
         case=_case(fill, whirl, model),
         force_ratio=_force_ratio(fill, whirl, wave),
         offset=complex(wave.answer.offset[0]),
+        error_estimate=float(wave.answer.error[0]),
         mass_error=wave.mass_error,
         converged=bool(wave.answer.converged[0]),
         in_range=in_range,
@@ -97,8 +111,79 @@ def answer_layer(
         notes=notes,
         gravity_offset=float(waves.gravity_offset(kappa, speed, gravity)) if gravity else 0.0,
         captured=not gravity or speed > float(waves.capture_speed(surface, gravity)),
-        validity=judge(wave),
+        validity=judge(wave.numbers, wave.ranges),
+        exact=exact,
     )
+
+
+def _exact(wave: PotentialWave) -> ExactWave:
+    """What only the exact wave has."""
+    numbers = {name: wave.numbers.get(name, math.nan) for name in ("crest", "trough", "crest_number")}
+    return ExactWave(
+        state="resolved" if wave.answer.converged[0] else None,
+        branch=wave.branch or None,
+        error_estimate=float(wave.answer.error[0]),
+        largest_whirl=wave.largest,
+        **numbers,
+    )
+
+
+def free_wave(fill: Fill, speed: float, crest: float, crests: int, model: WaveModel) -> FreeWaveResult:
+    """The wave that runs round the drum by itself with crests of a given height.
+
+    Parameters
+    ----------
+    fill : chamber and liquid, with some liquid in it
+    speed : spin speed Omega, rad/s
+    crest : depth at the crest over the mean depth, above 1
+    crests : round the drum
+    model : linear theory or the exact wave
+
+    Raises
+    ------
+    InputError : a value out of its range, another model
+    """
+    require_positive("--speed", speed)
+    require_positive("--volume", fill.volume)
+    if not isinstance(model, Potential | Linear):
+        raise InputError("--model", model.name, "linear or potential where --free is given")
+    begin = time.perf_counter()
+    with as_options():
+        wave = model.free_wave(fill, speed, crest, crests)
+    taken, numbers = time.perf_counter() - begin, judge(wave.numbers, wave.ranges)
+    notes = (*([no_answer(wave.reason)] if wave.reason else []), *out_of_range(numbers))
+    if wave.converged and float(wave.depth.max()) > fill.chamber.radius - fill.chamber.inner_radius:
+        notes = (*notes, inner_wall())
+    return FreeWaveResult(
+        case=_case(fill, Whirl(speed, wave.whirl_speed[0] if wave.converged else speed, 0.0), model),
+        mode=crests,
+        whirl_speed=np.array(wave.whirl_speed),
+        crest=wave.crest,
+        trough=wave.trough,
+        crest_number=wave.crest_number,
+        branch=wave.branch or None,
+        converged=wave.converged,
+        in_range=not notes,
+        mass_error=wave.mass_error,
+        error_estimate=wave.error,
+        wall_time=taken,
+        theta=wave.theta,
+        depth=wave.depth,
+        notes=notes,
+        validity=numbers,
+    )
+
+
+def _beyond_waves(fill: Fill, whirl: Whirl, model: WaveModel) -> tuple[Note, ...]:
+    """That no smooth steady wave is there [theory: model_error, eq. 32-33]."""
+    if whirl.slip == 0.0 or whirl.gravity != 0.0 or not isinstance(model, Linear | LongWave | OneFamily):
+        return ()
+    size = whirl.amplitude / fill.depth
+    largest = float(largest_whirl(fill.depth / fill.chamber.radius, whirl.detuning))
+    if fill.surface_radius <= fill.chamber.inner_radius or size <= largest:
+        return ()
+    above = float(detuning_ratio(fill.depth / fill.chamber.radius, whirl.detuning)) > 1.0
+    return (no_smooth_wave(size, largest, above),)
 
 
 Model = TypeVar("Model", bound=WaveModel)
@@ -106,7 +191,7 @@ Model = TypeVar("Model", bound=WaveModel)
 
 def watched(model: Model, progress: Progress) -> Model:
     """The model, with someone to tell how far it has come, if it goes through time."""
-    if progress is not None and isinstance(model, LongWave | OneFamily):
+    if progress is not None and isinstance(model, LongWave | OneFamily | Potential):
         return replace(model, progress=progress)
     return model
 
@@ -135,7 +220,7 @@ def wave_notes(wave: LiquidWave) -> tuple[Note, ...]:
     clear = wave.answer.limits.get("inner_wall")
     return (
         *([no_answer(wave.reason)] if wave.reason else []),
-        *out_of_range(judge(wave)),
+        *out_of_range(judge(wave.numbers, wave.ranges)),
         *([against_whirl(wave.counter)] if wave.counter > _ONE_WAY else []),
         *([] if clear is None or clear[0] else [inner_wall()]),
     )
@@ -176,17 +261,35 @@ def layer_history(
 
     Raises
     ------
-    InputError : a value out of its range, a model other than the long waves
+    InputError : a value out of its range, a model other than the long waves and the exact one
     """
+    whirl = Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity)
+    if isinstance(model, Potential):
+        return _exact_history(fill, whirl, duration, model, progress)
     if not isinstance(model, LongWave):
-        raise InputError("--model", model.name, "long_wave where a --duration is given")
+        raise InputError("--model", model.name, "long_wave or potential where a --duration is given")
     from solvers.pypde.settle import simulate
 
-    whirl = Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity)
     with as_options():
         history = simulate(fill, whirl, duration, model.friction, model.numerics, model.solver, progress)
     wave = model.wave_at_end(fill, whirl, history)
-    return LayerPeriodsResult(_case(fill, whirl, model), history, wave_notes(wave), judge(wave))
+    numbers = judge(wave.numbers, wave.ranges)
+    return LayerPeriodsResult(_case(fill, whirl, model), history, wave_notes(wave), numbers)
+
+
+def _exact_history(
+    fill: Fill, whirl: Whirl, duration: float, model: Potential, progress: Progress
+) -> LayerPeriodsResult:
+    """Exact waves from rest, until they break."""
+    from solvers.potential.histories import simulate
+
+    with as_options():
+        found = simulate(fill, whirl, duration, model.steps, progress)
+    wave = model.wave_at_end(fill, whirl, found)
+    names = ("crest", "trough", "crest_number", "nodes", "force_gap")
+    exact = ExactPeriods(state=found.state, **{name: getattr(found, name) for name in names})
+    numbers = judge(wave.numbers, wave.ranges)
+    return LayerPeriodsResult(_case(fill, whirl, model), found.periods, wave_notes(wave), numbers, exact)
 
 
 def layer_film(
@@ -202,8 +305,8 @@ def layer_film(
 ) -> tuple[Wave, WaveFrames]:
     """A layer in the drum frame for a film; the parameters are `layer_history`'s.
 
-    Long waves start from rest and run for six whirl periods unless a duration is given; waves of the other
-    models are steady in the frame of the deflection and run round the drum for two.
+    Long waves start from rest and run for six whirl periods unless a duration is given, exact ones where one
+    is given; other waves are steady in the frame of the deflection and run round the drum for two.
 
     Returns
     -------
@@ -214,7 +317,8 @@ def layer_film(
     InputError : a value out of its range
     """
     whirl = Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity)
-    if not isinstance(model, LongWave):
+    steady = not isinstance(model, LongWave) and (duration is None or not isinstance(model, Potential))
+    if steady:
         answer = answer_layer(fill, speed, whirl_speed, whirl_amplitude, model, gravity, progress)
         return answer.wave(), steady_film(answer, whirl, 2.0 * whirl.period)
     with as_options():
@@ -224,18 +328,39 @@ def layer_film(
     return last, frames
 
 
-def _film_from_rest(fill: Fill, whirl: Whirl, model: LongWave, duration: float) -> WaveFrames:
-    """Long waves from rest."""
-    from solvers.pypde.settle import film
+def free_film(result: FreeWaveResult) -> tuple[Wave, WaveFrames]:
+    """A free wave in the drum frame for a film, twice round the drum.
 
+    Parameters
+    ----------
+    result : with its profile
+    """
+    whirl = Whirl(result.case.speed, result.wave().whirl_speed, 0.0)
+    frames = steady_film(result, whirl, 2.0 * whirl.period)
+    # What the arrow points to is the crest: no whirl deflects the drum.
+    towards = result.depth.max() * np.exp(1j * whirl.slip * frames.time)
+    return result.wave(), replace(frames, deflection=towards)
+
+
+def _film_from_rest(fill: Fill, whirl: Whirl, model: WaveModel, duration: float) -> WaveFrames:
+    """Long waves or exact ones from rest."""
     # Eight pictures at least while the deflection turns once, and enough for a smooth film.
     frames = int(np.clip(8.0 * duration / whirl.period, 120, 2000))
     periods = duration / whirl.period
-    shots = film(fill, whirl, frames, periods, model.friction, model.numerics, model.solver, model.progress)
+    if isinstance(model, Potential):
+        from solvers.potential.histories import film as exact_film
+
+        shots = exact_film(fill, whirl, frames, periods, model.steps, model.progress)
+    else:
+        from solvers.pypde.settle import film
+
+        assert isinstance(model, LongWave)
+        law, solver = model.friction, model.solver
+        shots = film(fill, whirl, frames, periods, law, model.numerics, solver, model.progress)
     return WaveFrames(time=shots.time, theta=shots.theta, depth=shots.depth, deflection=shots.deflection)
 
 
-def steady_film(answer: LayerResult, whirl: Whirl, duration: float) -> WaveFrames:
+def steady_film(answer: LayerResult | FreeWaveResult, whirl: Whirl, duration: float) -> WaveFrames:
     """Pictures of a wave that is steady in the frame of the deflection, as it runs round the drum.
 
     Parameters
@@ -246,7 +371,10 @@ def steady_film(answer: LayerResult, whirl: Whirl, duration: float) -> WaveFrame
     """
     frames = int(np.clip(60.0 * duration / whirl.period, 60, 2000))
     time = duration * np.arange(frames) / frames
-    turned = answer.theta - whirl.slip * time[:, None]
+    # Angles that crowd at a crest are too far apart for it where it runs to.
+    apart, even = np.diff(answer.theta), np.linspace(-math.pi, math.pi, _EVEN, endpoint=False)
+    theta = answer.theta if apart.max() < 1.5 * apart.min() else even
+    turned = theta - whirl.slip * time[:, None]
     depth = np.interp(turned, answer.theta, answer.depth, period=2.0 * math.pi)
     deflection = whirl.amplitude * np.exp(1j * whirl.slip * time)
-    return WaveFrames(time=time, theta=answer.theta, depth=depth, deflection=deflection)
+    return WaveFrames(time=time, theta=theta, depth=depth, deflection=deflection)

@@ -12,7 +12,7 @@ from fluid.fill import Fill
 from leblanc.results.base import FilledChamber, Note
 from leblanc.results.choice import Choice, model_spans
 from leblanc.results.machine.loads import MachineLoads
-from leblanc.results.motion.held import Held
+from leblanc.results.motion.held import HELD_MODELS, Held
 from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.results.motion.tilting import Motion, RestMode
 from leblanc.results.notes import response as notes
@@ -259,7 +259,9 @@ def run_scene(
     # Next to a speed at which it is not known whether a whirl grows, it is not known either.
     calm = np.interp(refined.speed, machine.speed, np.isnan(whirl.growth)) == 0.0
     steady = refined.stable & calm & ~whirl.inside(refined.speed)
-    refined = replace(refined, stable=np.where(refined.model == "long_wave", refined.stable, steady))
+    refined = replace(
+        refined, stable=np.where(np.isin(refined.model, list(HELD_MODELS)), refined.stable, steady)
+    )
     if motion is not None:
         motion = replace(motion, refined_forward=_at_chambers(machine.system, scene.fills, refined))
     loads = _loads(scene, answer, refined, states)

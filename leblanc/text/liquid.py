@@ -8,7 +8,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from leblanc.results.layer import LayerCase, LayerPeriodsResult, LayerResult, Number
+from leblanc.results.layer import (
+    ExactPeriods,
+    ExactWave,
+    FreeWaveResult,
+    LayerCase,
+    LayerPeriodsResult,
+    LayerResult,
+    Number,
+)
 from leblanc.results.liquid import ModesResult, VolumeResult
 from leblanc.text.numbers import number
 from leblanc.units import LENGTH, ML, MM, NUMBER, VOLUME, Dimension, Unit, in_rpm, unit_for, with_unit
@@ -65,11 +73,23 @@ def whirl_words(case: LayerCase) -> str:
     ----------
     case : the layer and the whirl
     """
+    return (
+        f"{layer_words(case)}, whirl of {with_unit(case.whirl_amplitude, LENGTH)} "
+        f"at {in_rpm(case.whirl_speed)}"
+    )
+
+
+def layer_words(case: LayerCase) -> str:
+    """The layer and its spin, without the whirl.
+
+    Parameters
+    ----------
+    case : the layer
+    """
     inner = f", inner wall {with_unit(case.inner_radius, LENGTH)}" if case.inner_radius > 0.0 else ""
     return (
         f"Wall of radius {with_unit(case.radius, LENGTH)}{inner}, mean depth "
-        f"{with_unit(case.mean_depth, LENGTH)}; spin {in_rpm(case.speed)}, whirl of "
-        f"{with_unit(case.whirl_amplitude, LENGTH)} at {in_rpm(case.whirl_speed)}"
+        f"{with_unit(case.mean_depth, LENGTH)}; spin {in_rpm(case.speed)}"
     )
 
 
@@ -133,7 +153,7 @@ def layer_periods(result: LayerPeriodsResult) -> tuple[tuple[str, ...], list[tup
 
 
 def layer_profile(
-    result: LayerResult | LayerPeriodsResult,
+    result: LayerResult | LayerPeriodsResult | FreeWaveResult,
 ) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     """Heading and rows of the depth around the wall, at no more than `MOST_ANGLES` of its angles.
 
@@ -156,24 +176,82 @@ def layer_summary(result: LayerResult) -> list[tuple[str, str]]:
     return [
         *_model(result),
         ("Force ratio", _at_angle(result.force_ratio)),
+        *_error(result.error_estimate),
         ("Centre of mass", _at_angle(result.offset, LENGTH)),
         ("Mean rotation in the drum", _rate(result.mean_rotation)),
         *_steady(result),
+        *_exact(result),
         ("Error of the liquid's volume", number(result.mass_error)),
         *_validity(result.converged, result.in_range, result.validity),
     ]
+
+
+def _exact(result: LayerResult) -> list[tuple[str, str]]:
+    """What only the exact wave tells: its kind and size, or how large a whirl has a wave."""
+    exact = result.exact
+    if exact is None:
+        return []
+    if exact.state is None:
+        largest = exact.largest_whirl
+        return [("Largest whirl with a wave", with_unit(largest, LENGTH))] if math.isfinite(largest) else []
+    return _shape(exact)
+
+
+def _exact_periods(exact: ExactPeriods | None) -> list[tuple[str, str]]:
+    """What only the exact wave in time tells."""
+    if exact is None:
+        return []
+    return [
+        ("State of the wave", exact.state.replace("_", " ")),
+        ("Deepest and shallowest", f"{number(exact.crest)} and {number(exact.trough)} mean depths"),
+        ("Speed of the liquid at a crest", f"up to {number(exact.crest_number)} of the crest's"),
+        ("Nodes round the wall", f"{exact.nodes}"),
+        ("Gap of the two forces", number(exact.force_gap)),
+    ]
+
+
+def _shape(wave: ExactWave | FreeWaveResult) -> list[tuple[str, str]]:
+    """Kind and size of a wave, as labels and values."""
+    kind = [("Kind of wave", wave.branch.replace("_", " "))] if wave.branch else []
+    moving = math.isfinite(wave.crest_number)
+    speed = [("Speed of the liquid at the crest", f"{number(wave.crest_number)} of the crest's")]
+    depths = f"{number(wave.crest)} and {number(wave.trough)} mean depths"
+    return [*kind, ("Deepest and shallowest", depths), *(speed if moving else [])]
+
+
+def free_wave_summary(result: FreeWaveResult) -> list[tuple[str, str]]:
+    """The main numbers of a free wave, as labels and values."""
+    found = result.converged
+    behind, ahead = (in_rpm(float(speed)) for speed in result.whirl_speed)
+    speeds = [("Crests go round, behind the drum", behind), ("Crests go round, ahead of it", ahead)]
+    known = found and math.isfinite(result.error_estimate)
+    return [
+        ("Liquid model", result.case.model),
+        ("Crests", f"{result.mode}"),
+        *(speeds if found else []),
+        *(_shape(result) if found else []),
+        *([("Estimated error of the speed", number(result.error_estimate))] if known else []),
+        *([("Error of the liquid's volume", number(result.mass_error))] if found else []),
+        *_validity(found, result.in_range, result.validity),
+    ]
+
+
+def _error(estimate: float) -> list[tuple[str, str]]:
+    """What the model tells of its own error, if it does."""
+    return [("Its estimated error", number(estimate))] if math.isfinite(estimate) else []
 
 
 def periods_summary(result: LayerPeriodsResult) -> list[tuple[str, str]]:
     """The main numbers of a layer from rest, as labels and values."""
     h = result.history
     if not h.time.size:
-        return [*_model(result), ("Answer", h.reason)]
+        return [*_model(result), ("Answer", h.reason), *_exact_periods(result.exact)]
     return [
         *_model(result),
         ("Whirl periods", f"{h.time.size}"),
         ("Force ratio of the last one", _at_angle(complex(h.force_ratio[-1]))),
         ("Mean rotation in the drum", _rate(float(h.mean_rotation[-1]))),
+        *_exact_periods(result.exact),
         *_validity(result.converged, result.in_range, result.validity),
     ]
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from leblanc.results.base import one_line, percent
 from leblanc.results.choice import ModelSpan
-from leblanc.results.motion.held import HELD_MODEL, Held
+from leblanc.results.motion.held import HELD_MODELS, Held
 from leblanc.results.notes.response import plane_words
 from leblanc.results.response import RunResult, grade_words
 from leblanc.text.numbers import NOT_FOUND, number, ranges
@@ -114,7 +114,7 @@ def _wrong(result: RunResult, index: int) -> list[str]:
     """What keeps an amplitude from being believed."""
     r = result.curve
     found = [] if r.in_range[index] else ["out of range"]
-    if result.held is not None and r.model[index] == HELD_MODEL:
+    if result.held is not None and r.model[index] in HELD_MODELS:
         state = "limit cycle" if result.cycling[index] else "" if r.converged[index] else "not settled"
         return [*found, state] if state else found
     if not r.converged[index] and np.isfinite(r.deflection[index]):
@@ -269,11 +269,12 @@ def _held_facts(result: RunResult) -> list[tuple[str, str]]:
     if held is None:
         return []
     count, every = int(np.count_nonzero(held.at)), result.speed.size
-    error = _largest_known(held.error)
+    error, (waves, parts) = _largest_known(held.error), HELD_MODELS[held.model]
     found = [
         (
-            "Rotor and long waves held in time",
-            f"{'all' if count == every else f'{count} of'} {every} speeds, {held.cells} cells round each wall"
+            f"Rotor and {waves} held in time",
+            f"{'all' if count == every else f'{count} of'} {every} speeds, "
+            f"{held.cells} {parts} round each wall"
             + ("" if math.isnan(error) else f", estimated error at most {percent(error)}"),
         )
     ]
@@ -566,6 +567,11 @@ MODELS = {
         "Long waves of any height, bores included, that keep mass and angular momentum.",
         "Taken for granted: a layer thin against its waves, one depth along the axis.",
     ),
+    "potential": (
+        "Exact plane waves of any height and any depth on a flow without vorticity, by a conformal map.",
+        "Left out: wall layers, bores and dry walls, surface tension, the liquid's lag; friction is a small "
+        "force on all the liquid that damps waves as the walls do.",
+    ),
     "kdv": (
         "One family of weakly nonlinear, dispersive waves that stand still as seen from the whirl.",
         "Taken for granted: whirl near the resonance of that family, low waves.",
@@ -577,7 +583,7 @@ MODELS = {
 }
 
 HELD = (
-    "Rotor and long waves march in time together, speed by speed, until their motion rests, repeats with the "
+    "Rotor and waves march in time together, speed by speed, until their motion rests, repeats with the "
     "turn or stays within bounds; amplitudes and centres of mass are means over time."
 )
 
@@ -601,12 +607,12 @@ def described(names: Iterable[str], held: bool = False) -> list[tuple[str, str]]
     Parameters
     ----------
     names : of models, in any order
-    held : long waves were held in time
+    held : waves were held in time
     """
     found: dict[str, tuple[str, ...]] = {name: MODELS.get(name, ()) for name in names}
-    if held:
-        does, granted = MODELS[HELD_MODEL]
-        found[HELD_MODEL] = (does, HELD, granted)
+    for name in set(HELD_MODELS) & set(found) if held else ():
+        does, granted = MODELS[name]
+        found[name] = (does, HELD, granted)
     return [(name, " ".join(told)) for name, told in found.items()]
 
 

@@ -17,6 +17,8 @@ _SHORTEST, _LONGEST = 32.0, 512.0  # turns of a window
 _THROWN = 0.15  # of gravity over the centrifugal acceleration, from which a motion hardly ever repeats
 # Measured, s: of a turn, and of a cell in a step.
 _TURN, _CELL = 2e-3, 1e-7
+# Of exact waves: of a step's rotor, of a layer's, and of each of its nodes.
+_ROTOR, _NODES, _NODE = 2e-3, 4e-3, 1e-5
 _HEAPED, _MOST = 80.0, 22.0  # by what a turn takes longer where gravity heaps the liquid up
 
 
@@ -47,6 +49,7 @@ def hold_seconds(
     growth: Array,
     across: float = 0.0,
     numerics: HoldNumerics | None = None,
+    exact: bool = False,
 ) -> Array:
     """Processor time to hold motions until they settle, with half the cells for the error as well.
 
@@ -59,6 +62,7 @@ def hold_seconds(
     growth : as for `settling_turns`
     across : gravity across the axis, m/s^2
     numerics : resolution
+    exact : of exact waves [theory: held, eq. 14]
 
     Returns
     -------
@@ -76,6 +80,10 @@ def hold_seconds(
     surfaces = [fill.surface_radius for fill in fills if fill.volume > 0.0 and fill.surface_radius > 0.0]
     strength = across / (np.square(spin) * min(surfaces, default=math.inf))
     cells = np.array([[numerics.cells], [numerics.cells // 2]])
+    if exact:
+        steps = math.pi * (1.0 + np.sqrt(1.0 + cells / 3.0))
+        turn = steps * (_ROTOR + len(surfaces) * (_NODES + _NODE * cells))
+        return np.asarray((settling_turns(spin, growth, strength, numerics) * turn).sum(axis=0))
     turn = _TURN + _CELL * len(surfaces) * np.square(cells) / numerics.courant
     heaped = np.minimum(1.0 + _HEAPED * strength**4, _MOST)
     return np.asarray((settling_turns(spin, growth, strength, numerics) * turn).sum(axis=0) * heaped)

@@ -38,13 +38,18 @@ def start(
     coordinates : complex amplitudes of the motion, q = Re(coordinates e^{i Omega t}), shape (n,)
     kick : velocity of the axis beside that of the motion, over the layer's mean depth times the spin
     """
+    n = len(machine.system.coordinates)
+    motion = np.zeros(n, dtype=complex) if coordinates is None else np.asarray(coordinates)
+    if machine.exact:
+        from solvers.held import exact
+
+        # A thin layer without bores breaks of what long waves forget.
+        return exact.begin(machine, spin, numerics.cells, motion, 0.1 * kick)
     from solvers.pypde import RotorLayersPDE
 
     equation = RotorLayersPDE(
         machine.system, machine.fills, spin, friction=machine.friction, gravity=machine.gravity
     )
-    n = len(machine.system.coordinates)
-    motion = np.zeros(n, dtype=complex) if coordinates is None else np.asarray(coordinates)
     rate = (1j * spin * motion).real
     planes, layers = planes_of(machine.system, machine.fills), np.flatnonzero(equation.layers)
     area = np.zeros((layers.size, numerics.cells))
@@ -137,6 +142,8 @@ def compile_kernels(machine: HeldMachine, begin: Moment) -> None:
     ----------
     machine, begin : as for `hold`
     """
+    if machine.exact:  # nothing of it is compiled
+        return
     from solvers.pypde import RotorLayersPDE, run
 
     equation = RotorLayersPDE(
@@ -155,6 +162,11 @@ def require_known_solver(machine: HeldMachine, spin: float, numerics: HoldNumeri
     machine, numerics : as for `hold`
     spin : rad/s
     """
+    if machine.exact:
+        from solvers.held.exact import require_own_steps
+
+        require_own_steps(numerics)
+        return
     if numerics.solver == COUPLED:
         return
     from solvers.pypde import RotorLayersPDE
@@ -176,7 +188,8 @@ def hold_with_error(
     found = hold(machine, begin, numerics, slowest)
     half = replace(numerics, cells=numerics.cells // 2)
     parted = any(fill.compartments > 1 and is_smeared(fill, half.cells) for fill in machine.fills)
-    if numerics.cells < 16 or parted or not found.settled:
+    fewest = 64 if machine.exact else 16
+    if numerics.cells < fewest or parted or not found.settled:
         return found
     # A guess would lead from a whirl to the steady motion.
     rate = 0.0 if found.kind is HeldKind.LIMIT_CYCLE else slowest
@@ -189,6 +202,10 @@ def hold_with_error(
 
 def _resampled(machine: HeldMachine, moment: Moment, cells: int) -> Moment:
     """The same with another number of cells; what a layer and a compartment hold stays."""
+    if machine.exact:
+        from solvers.held.exact import again as with_nodes
+
+        return with_nodes(machine, moment, cells)
 
     def again(rows: Array) -> Array:
         n = rows.shape[1]
@@ -205,7 +222,14 @@ def _resampled(machine: HeldMachine, moment: Moment, cells: int) -> Moment:
 def _march(
     machine: HeldMachine, moment: Moment, numerics: HoldNumerics, watch: Watch, trackers: Sequence[Any]
 ) -> tuple[Moment, Outcome]:
-    """On py-pde's road until the watch has seen enough, the turns have run out or the steps have failed."""
+    """On py-pde's road until the watch has seen enough, the turns have run out or the steps have failed.
+
+    Exact waves have no cells, and a road of their own.
+    """
+    if machine.exact:
+        from solvers.held import exact
+
+        return exact.march(machine, moment, numerics, watch)
     from solvers.pypde import RotorLayersPDE, TurnTracker, run
     from solvers.pypde.stock import SAMPLES
 

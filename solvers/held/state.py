@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 import numpy as np
@@ -34,7 +34,7 @@ class HoldNumerics:
 
     Parameters
     ----------
-    cells : finite volumes round each wall, from 8
+    cells : finite volumes round each wall, from 8; nodes of the surface of an exact wave, even, from 16
     dispersion : add the finite depth's dispersion to the layers
     courant : Courant number of the layers, above 0, at most 0.9
     tolerance : change of the amplitude over its size at which it has settled
@@ -74,6 +74,8 @@ class Moment:
     coordinates, rate : of the rotor, m or rad, and per second, shape (n,)
     area, momentum : A, m^2, and q, m^4/s, of the layers' cells, shape (l, c)
     layers : which chambers hold a layer
+    wave : y and phi of exact waves, lengths over R and times in 1/Omega, of which area and momentum are what
+        is seen, shape (l, 2m); none of others
     """
 
     spin: float
@@ -82,6 +84,7 @@ class Moment:
     area: Array
     momentum: Array
     layers: Flags
+    wave: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     def at(self, spin: float) -> Moment:
         """The same motion turn by turn at another spin: velocities go with it.
@@ -91,9 +94,7 @@ class Moment:
         spin : rad/s
         """
         share = spin / self.spin
-        return Moment(
-            spin, self.coordinates, self.rate * share, self.area, self.momentum * share, self.layers
-        )
+        return replace(self, spin=spin, rate=self.rate * share, momentum=self.momentum * share)
 
 
 @dataclass(frozen=True)
@@ -169,11 +170,14 @@ class HeldMachine:
     ----------
     system : the dry rotor
     fills : its chambers with their liquid
-    friction : on the walls; the laminar law takes the frequency of the slower free wave
+    friction : on the walls; the laminar law takes the frequency of the slower free wave; exact waves take a
+        force on all the liquid that damps that wave as much
     gravity : across the axis, m/s^2
+    exact : the layers are exact waves instead of long ones
     """
 
     system: RotorSystem
     fills: tuple[Fill, ...]
     friction: Friction = NO_FRICTION
     gravity: float = 0.0
+    exact: bool = False

@@ -91,6 +91,8 @@ class Outcome(IntEnum):
     STOPPED = 5
     INTERRUPTED = 6
     RAN_AWAY = 7
+    BROKE = 8
+    DRIED = 9
 
     @property
     def message(self) -> str:
@@ -107,4 +109,6 @@ _MESSAGES = {
     Outcome.STOPPED: "the motor stands",
     Outcome.INTERRUPTED: "interrupted",
     Outcome.RAN_AWAY: "a film beside a dry wall ran away, and the time steps shrank to nothing",
+    Outcome.BROKE: "a wave broke, or wants more than 512 nodes: the exact wave owes no force",
+    Outcome.DRIED: "a wave left a part of its wall dry, which the exact wave cannot",
 }

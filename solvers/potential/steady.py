@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from enum import StrEnum
 
 import numpy as np
 
@@ -19,7 +20,11 @@ from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.potential.strip import Nodes, moved, nodes, strip
 
 # Newton's method: done when the residual is this over the depth, and rounds that it may take.
-_DONE, _ROUNDS = 1e-13, 40
+_DONE, _ROUNDS = 1e-13, 12
+# Rounds after which a residual is given up that grows and is no rounding, over the depth.
+_PATIENT, _STALLED = 3, 1e-6
+# Of the first round's change, what the later ones may add before the wave found counts as another branch's.
+_NEAR = 0.5
 # A stand-still of the residual at this much counts as done as well: rounding of many nodes.
 _ROUNDING = 1e-10
 # Steps from crest to trough to begin with.
@@ -30,11 +35,22 @@ _LEAST, _GREATEST = 0.1, 4.0
 _FURTHEST = 15.0
 # Rise between crest and trough, of the height, that a short wave has and rounding has not.
 _RIPPLE = 1e-6
+_NOISE = 1e-12  # of a surface in ln(R/r), which is no ripple and no wave
 # Tail of a spectrum that counts as its end, and steps from crest to trough that nodes may have for it.
 RESOLVED, MOST = 1e-8, 432
+# Tail beyond which nodes do not carry a wave at all.
+_LOST = 1e-2
 # Crowding of nodes over n h_0/R and the square of the crest's speed, best for layers of 0.05 to 0.5; least.
 _CROWDED, _SHARPEST = 10.0, 0.004
 CONDITIONS = ("detuning", "whirl", "crest", "height")
+
+
+class Branch(StrEnum):
+    """Kinds of waves of permanent form, which hold one whirl or have one crest and differ otherwise."""
+
+    ONE_CREST = "one_crest"
+    MANY_CRESTS = "many_crests"
+    LEE_WAVES = "lee_waves"
 
 
 @dataclass(frozen=True)
@@ -83,9 +99,10 @@ class SteadyWave:
 
     @property
     def tail(self) -> float:
-        """Largest coefficient in the last tenth of the spectrum, k |Y_k| over the largest of all."""
+        """Largest coefficient in the last tenth of the spectrum, k |Y_k| over the largest; 0 for rounding."""
         size = np.arange(self.surface.size) * np.abs(self.at.spectrum(self.surface))
-        return float(size[-(size.size // 10 + 1) :].max() / max(size.max(), 1e-300))
+        last = float(size[-(size.size // 10 + 1) :].max())
+        return last / float(size.max()) if last > _NOISE else 0.0
 
     @property
     def single(self) -> bool:
@@ -94,7 +111,14 @@ class SteadyWave:
         Where it does not, shorter waves ride on the one that was asked for: another branch.
         """
         fall = np.diff(self.surface)
-        return bool(fall.max() <= _RIPPLE * abs(self.surface[0] - self.surface[-1]))
+        return bool(fall.max() <= max(_RIPPLE * abs(self.surface[0] - self.surface[-1]), _NOISE))
+
+    @property
+    def branch(self) -> Branch:
+        """One crest in a turn, many equal ones, or shorter waves on either."""
+        if not self.single:
+            return Branch.LEE_WAVES
+        return Branch.ONE_CREST if self.at.crests == 1 else Branch.MANY_CRESTS
 
     @property
     def centre(self) -> float:
@@ -122,13 +146,31 @@ class SteadyWave:
     @property
     def crest_speed(self) -> float:
         """Speed of the liquid at the crest seen from the wave, over |s|/R: 0 for the highest wave."""
+        return float(self.speeds[0])
+
+    @property
+    def speeds(self) -> Array:
+        """Speed of the liquid along the surface seen from the wave, over |s|/R, against it, shape (m,)."""
         at, y = self.at, self.surface
-        operators = strip(at, float(at.mean @ y))
-        square = np.exp(-2.0 * y)
-        opened = 1.0 + operators.flux @ y
+        operators, square = strip(at, float(at.mean @ y)), np.exp(-2.0 * y)
+        opened, steep = 1.0 + operators.flux @ y, at.slope @ y
         speed = 0.5 * operators.flux @ square + square * opened
-        # At the crest the surface does not rise, and the root of J is x_u.
-        return float(speed[0] / (math.exp(-float(y[0])) * opened[0]))
+        return np.asarray(speed / np.sqrt(square * (np.square(opened) + np.square(steep))))
+
+    @property
+    def rotation(self) -> float:
+        """Mean over the liquid of its angular velocity in the drum, over s [theory: potential, eq. 5]."""
+        at, square = self.at, np.exp(-2.0 * self.surface)
+        operators = strip(at, float(at.mean @ self.surface))
+        # phi, over -s/2, along the surface.
+        potential, steep = operators.shift @ square, at.slope @ self.surface
+        return float(at.mean @ (potential * steep)) / self.volume
+
+    @property
+    def volume(self) -> float:
+        """Area of the liquid over pi R^2, by the nodes; h_0/R (2 - h_0/R) is what there should be."""
+        opened = 1.0 + strip(self.at, float(self.at.mean @ self.surface)).flux @ self.surface
+        return float(self.at.mean @ (-np.expm1(-2.0 * self.surface) * opened))
 
     def slip_speeds(self) -> tuple[float, float]:
         """Speeds s along the wall over Omega, forward and backward [theory: potential, eq. 10]."""
@@ -173,7 +215,7 @@ def at_rest(layer: float, at: Nodes) -> SteadyWave:
     return SteadyWave(at, flat, linear_detuning(layer, at.crests), 0.0, layer, 0.0, True)
 
 
-def solve(begin: SteadyWave, wanted: Mapping[str, float]) -> SteadyWave:
+def solve(begin: SteadyWave, wanted: Mapping[str, float], same: bool = False) -> SteadyWave:
     """The wave that meets two conditions, from one that is near.
 
     Parameters
@@ -181,6 +223,8 @@ def solve(begin: SteadyWave, wanted: Mapping[str, float]) -> SteadyWave:
     begin : a wave, whose nodes are kept
     wanted : two of "detuning" p^2, "whirl" w_0/R, "crest" and "height", over h_0 the depth at the crest and
         what it has more than the trough
+    same : stay on the branch of `begin`. The first round goes along its tangent; where the later ones change
+        the surface by more than half as much again, the wave that they come to is another branch's
 
     Returns
     -------
@@ -201,8 +245,8 @@ def solve(begin: SteadyWave, wanted: Mapping[str, float]) -> SteadyWave:
     first = float(begin.at.mean @ begin.surface)
     # Bernoulli's constant of the surface that is given.
     state[m] = float(np.mean(_equations(begin.at, begin.layer, state, wanted)[0][:m]))
-    error = math.inf
-    for _ in range(_ROUNDS):
+    error, along = math.inf, state[:m]
+    for turn in range(_ROUNDS):
         depth = float(begin.at.mean @ state[:m])
         off = np.abs(state[:m]).max() > _FURTHEST
         if off or not _LEAST * first < depth < _GREATEST * first or not state[m + 1] >= 0.0:
@@ -211,13 +255,17 @@ def solve(begin: SteadyWave, wanted: Mapping[str, float]) -> SteadyWave:
         before, error = error, float(np.abs(residual).max() / begin.layer)
         if error < _DONE or (error < _ROUNDING and error > 0.5 * before):
             break
+        if turn > _PATIENT and error > max(before, _STALLED):
+            return _broken(begin)
         try:
             state = state - np.linalg.solve(jacobian, residual)
         except np.linalg.LinAlgError:
             return _broken(begin)
         if not np.isfinite(state).all():
             return _broken(begin)
-    if not error < _ROUNDING:
+        along = state[:m] if turn == 0 else along
+    strayed = np.abs(state[:m] - along).max() > _NEAR * np.abs(along - begin.surface).max()
+    if not error < _ROUNDING or (same and strayed):
         return _broken(begin)
     return replace(
         begin,
@@ -235,12 +283,13 @@ def _broken(begin: SteadyWave) -> SteadyWave:
 
 
 def follow(
-    begin: SteadyWave, wanted: Mapping[str, float], steps: int = 4, most: int = MOST, least: float = 1e-3
+    begin: SteadyWave, wanted: Mapping[str, float], steps: int = 4, most: int = MOST, least: float = 2e-3
 ) -> SteadyWave:
     """The wave that meets two conditions, in steps from another: each that fails is halved.
 
     For a free wave a step that puts shorter waves on it fails too: it has come to another branch. A whirl
-    brings such waves along by itself, in its lee. Nodes follow the spectrum on the way.
+    brings such waves along by itself, in its lee; there a step fails that leaves the tangent. Nodes follow
+    the spectrum on the way.
 
     Parameters
     ----------
@@ -260,9 +309,11 @@ def follow(
     while reached < 1.0:
         step = min(step, 1.0 - reached)
         goal = {key: start[key] + (reached + step) * (value - start[key]) for key, value in wanted.items()}
-        found = solve(wave, goal)
+        found = solve(wave, goal, same=wanted.get("whirl") != 0.0)
         if _kept(found, wanted):
-            wave, reached, step = refined(found, goal, most), reached + step, 1.4 * step
+            found = refined(found, goal, most)
+        if _kept(found, wanted) and (most == 0 or found.tail < _LOST):
+            wave, reached, step = found, reached + step, 1.4 * step
         elif step < least:
             return replace(wave, converged=False)
         else:
@@ -287,9 +338,12 @@ def refined(wave: SteadyWave, wanted: Mapping[str, float], most: int = MOST) -> 
         # A crest is as wide as the layer is deep, and shrinks with the square of its speed as it nears 0.
         sharp = _CROWDED * wave.at.crests * wave.layer * wave.crest_speed**2
         count = min(most, 3 * (wave.surface.size - 1) // 2)
-        to = nodes(count, wave.at.crests, min(max(sharp, _SHARPEST), 1.0))
-        found = solve(on_nodes(wave, to), wanted)
-        if not _kept(found, wanted) or found.tail > wave.tail:
+        # Even nodes where it is the trough that is sharp.
+        for cluster in dict.fromkeys((min(max(sharp, _SHARPEST), 1.0), 1.0)):
+            found = solve(on_nodes(wave, nodes(count, wave.at.crests, cluster)), wanted)
+            if _kept(found, wanted) and found.tail <= wave.tail:
+                break
+        else:
             break
         wave = found
     return wave
@@ -300,7 +354,7 @@ def _kept(found: SteadyWave, wanted: Mapping[str, float]) -> bool:
     return found.converged and (found.single or wanted.get("whirl") != 0.0)
 
 
-def forced(layer: float, detuning: float, whirl: float) -> SteadyWave:
+def forced(layer: float, detuning: float, whirl: float, most: int = MOST) -> SteadyWave:
     """The wave that a whirl holds, followed from the layer at rest.
 
     Parameters
@@ -308,6 +362,7 @@ def forced(layer: float, detuning: float, whirl: float) -> SteadyWave:
     layer : h_0/R
     detuning : p^2 = (1 - Omega/omega_w)^2
     whirl : w_0/R, above 0
+    most : steps from crest to trough that nodes may have
 
     Raises
     ------
@@ -321,13 +376,13 @@ def forced(layer: float, detuning: float, whirl: float) -> SteadyWave:
     """
     require_not_negative("detuning", detuning)
     require_positive("whirl", whirl)
-    begin = solve(at_rest(layer, nodes(_FIRST)), {"detuning": detuning, "whirl": 0.0})
+    begin = solve(at_rest(layer, nodes(min(_FIRST, most))), {"detuning": detuning, "whirl": 0.0})
     # The crest is at u = 0, along the deflection or opposite to it.
     way = 1.0 if detuning < linear_detuning(layer) else -1.0
-    return follow(begin, {"detuning": detuning, "whirl": way * whirl})
+    return follow(begin, {"detuning": detuning, "whirl": way * whirl}, most=most)
 
 
-def free(layer: float, crest: float, crests: int = 1) -> SteadyWave:
+def free(layer: float, crest: float, crests: int = 1, most: int = MOST) -> SteadyWave:
     """The free wave with a crest of this depth, followed from small ones.
 
     Parameters
@@ -335,6 +390,7 @@ def free(layer: float, crest: float, crests: int = 1) -> SteadyWave:
     layer : h_0/R
     crest : depth at the crest over h_0, above 1
     crests : n, round the drum
+    most : steps from crest to trough that nodes may have
 
     Raises
     ------
@@ -347,13 +403,13 @@ def free(layer: float, crest: float, crests: int = 1) -> SteadyWave:
     """
     if not crest > 1.0:
         raise InputError("crest", crest, "above 1")
-    rest = at_rest(layer, nodes(_FIRST, crests))
+    rest = at_rest(layer, nodes(min(_FIRST, most), crests))
     # Thin layers hardly disperse: only a wave well below the cube of the depth is a cosine.
     small = min(0.2 * layer * layer, 0.5 * (crest - 1.0))
     lifted = rest.surface + small * layer / (1.0 - layer) * np.cos(crests * rest.at.u)
     guess = SteadyWave(rest.at, lifted, rest.detuning, 0.0, layer, math.nan, False)
     begin = solve(guess, {"whirl": 0.0, "crest": 1.0 + small})
-    return follow(begin, {"whirl": 0.0, "crest": crest}, 8) if begin.converged else begin
+    return follow(begin, {"whirl": 0.0, "crest": crest}, 8, most) if begin.converged else begin
 
 
 def on_nodes(wave: SteadyWave, to: Nodes) -> SteadyWave:

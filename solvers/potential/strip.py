@@ -20,8 +20,6 @@ from meshes.errors import InputError, require_positive
 
 # The rest of coth beyond its 1 is nothing to rounding for k K above this: 2 exp(-40).
 _DEEP = 20.0
-# Steps between the nodes, at the trough, of the sums for waves in u.
-_FINER = 2.0
 FEWEST = 8
 
 
@@ -109,11 +107,8 @@ def nodes(count: int, crests: int = 1, cluster: float = 1.0) -> Nodes:
     cosine, sine = np.cos(np.outer(xi, k)), np.sin(np.outer(xi, k))
     # Discrete cosine transform of the first kind.
     harmonics = 2.0 / count * ends[:, None] * cosine.T * ends
-    # Waves in u are taken between the nodes as well: at the trough these are too far apart for them.
-    between, weights, places, lengths = _placed(math.ceil(_FINER / cluster) * count, crests, cluster)
     first = crests * np.arange(1, count - 1)
-    mean = weights * lengths * crests / (between.size - 1)
-    taken = 2.0 * np.cos(np.outer(first, places)) * mean @ np.cos(np.outer(between, k)) @ harmonics
+    taken = _waves_in_u(count, cluster) @ harmonics
     return Nodes(
         u=u,
         mean=ends * stretch * crests / count,
@@ -137,6 +132,31 @@ def _placed(count: int, crests: int, cluster: float) -> tuple[Array, Array, Arra
     cosine, sine = np.cos(0.5 * xi), np.sin(0.5 * xi)
     stretch = cluster / (np.square(cosine) + np.square(cluster * sine)) / crests
     return xi, ends, 2.0 * np.arctan2(cluster * sine, cosine) / crests, stretch
+
+
+def _waves_in_u(count: int, cluster: float) -> Array:
+    """Waves in u of one crest from those in xi, without the mean [theory: potential, eq. 13].
+
+    The nodes themselves are too far apart for them at the trough.
+
+    Parameters
+    ----------
+    count, cluster : as for `nodes`
+
+    Returns
+    -------
+    Shape (count - 2, count + 1)
+    """
+    j, away = np.arange(count + 1), (1.0 - cluster) / (1.0 + cluster)
+    # exp(iu) = (w + away)/(1 + away w) as a power series in w = exp(i xi), and what multiplies one by it.
+    series = np.where(j == 0, away, (1.0 - away * away) * (-away) ** np.maximum(j - 1, 0))
+    behind = j[:, None] - j
+    times = np.where(behind >= 0, series[np.abs(behind)], 0.0)
+    found, power = np.empty((count - 2, count + 1)), np.where(j == 0, 1.0, 0.0)
+    for k in range(1, count - 1):
+        power = times @ power
+        found[k - 1] = j * power / k
+    return found
 
 
 def strip(at: Nodes, depth: float) -> Strip:

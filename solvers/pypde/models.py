@@ -17,7 +17,8 @@ from fluid.fill import Fill, Fills
 from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw, damping_rate
 from meshes.arrays import Array
 from meshes.errors import InputError
-from solvers.layer.state import LayerHistory, Numerics
+from solvers.layer.state import Numerics
+from solvers.liquid_history import LayerHistory
 from solvers.liquid_model import (
     CAPTURED,
     LONG,
@@ -34,6 +35,7 @@ from solvers.liquid_model import (
     wave_amplitude,
     whirl_answer,
 )
+from solvers.wave_error import family_error, long_wave_error
 from solvers.waves.modes import WaveTerms
 
 if TYPE_CHECKING:
@@ -66,7 +68,10 @@ class LongWave(WaveModel):
     }  # fmt: skip
 
     def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
-        """See `WaveModel`; the error is the gap between the force by momentum and that by pressure.
+        """See `WaveModel`; the error is that of smooth waves beside exact ones [theory: model_error, eq. 35].
+
+        Under gravity across the axis and with baffles it is the gap between the forces by momentum and by
+        pressure.
 
         Raises
         ------
@@ -104,7 +109,7 @@ class LongWave(WaveModel):
             limits=kept_limits(numbers, self.ranges) | limits,
             dry_patch=float(history.depth.min(initial=math.inf)) <= 0.0,
             converged=history.converged,
-            error=gap,
+            error=gap if whirl.gravity or chamber.baffles else self._error(fill, whirl),
         )
         return LiquidWave(
             answer=answer,
@@ -116,6 +121,12 @@ class LongWave(WaveModel):
             mean_rotation=float(history.mean_rotation[-1]) if answered else math.nan,
             reason=history.reason,
         )
+
+    def _error(self, fill: Fill, whirl: Whirl) -> float:
+        """Of a smooth wave without friction; nan where there is none."""
+        layer, size = fill.depth / fill.chamber.radius, whirl.amplitude / fill.depth
+        numerics = self.numerics
+        return float(long_wave_error(layer, whirl.detuning, size, numerics.dispersion, numerics.cells))
 
 
 @dataclass(frozen=True)
@@ -196,7 +207,7 @@ class OneFamily(WaveModel):
         return standing(fills, deflection, self.dispersion)
 
     def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
-        """See `WaveModel`; the error is the response of the other family over that of this one.
+        """See `WaveModel`; the error is that beside exact waves [theory: model_error, eq. 36].
 
         Raises
         ------
@@ -237,7 +248,12 @@ class OneFamily(WaveModel):
             | {"inner_wall": surface**2 - 2.0 * highest >= chamber.inner_radius**2},
             dry_patch=dry,
             converged=not reason and possible,
-            error=other,
+            error=family_error(
+                fill.depth / chamber.radius,
+                whirl.speed / whirl.spin,
+                whirl.amplitude / fill.depth,
+                self.dispersion,
+            ),
         )
         return LiquidWave(
             answer=answer,

@@ -20,7 +20,8 @@ from fluid.fill import Fill
 from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw
 from meshes.arrays import Complex
 from meshes.errors import InputError, require_positive
-from solvers.layer.state import LayerFilm, LayerHistory, Numerics, resting_area
+from solvers.layer.state import Numerics, resting_area
+from solvers.liquid_history import LayerFilm, LayerHistory
 from solvers.liquid_model import Whirl, grown
 from solvers.pypde.grid import circle
 from solvers.pypde.long_wave import AnnularLongWavePDE

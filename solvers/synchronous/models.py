@@ -25,6 +25,7 @@ from solvers.liquid_model import (
     LONG,
     ROUNDING,
     THIN_LAYERS,
+    FreeWave,
     LiquidAnswer,
     LiquidModel,
     LiquidWave,
@@ -36,12 +37,14 @@ from solvers.liquid_model import (
     angles,
     kept_limits,
     numbers_of,
+    require_crest,
     wave_amplitude,
     whirl_answer,
 )
 from solvers.roots import bracketed_root
 from solvers.statics.hydrostatics import equilibrium, volume_under
 from solvers.statics.law_defect import defect_bound, upright_surfaces
+from solvers.wave_error import linear_error
 
 # The end of the straight line is taken so much too low, relatively, that the law is the line up to it.
 _MARGIN = 1e-9
@@ -184,7 +187,7 @@ class Linear(WaveModel):
         return added_mass_answer(fills, whirls, error)
 
     def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
-        """See `WaveModel`.
+        """See `WaveModel`; the error is that of small waves beside exact ones [theory: model_error, eq. 34].
 
         Raises
         ------
@@ -214,6 +217,7 @@ class Linear(WaveModel):
             dry_patch=abs(displacement) > fill.depth,
             converged=converged,
             small=True,
+            error=self._error(fill, whirl),
         )
         return LiquidWave(
             answer=answer,
@@ -223,6 +227,56 @@ class Linear(WaveModel):
             ranges=ranges,
             mass_error=0.5 * displacement**2 / (chamber.radius**2 - surface**2) if converged else math.nan,
             reason="" if converged else "the whirl meets a free wave, the linear force is unbounded",
+        )
+
+    def free_wave(self, fill: Fill, spin: float, crest: float, crests: int = 1) -> FreeWave:
+        """The free wave of n crests, whose speed does not depend on its height [theory: waves, eq. 7].
+
+        Parameters
+        ----------
+        fill : chamber and liquid
+        spin : Omega, rad/s
+        crest : depth at the crest over the mean depth, above 1
+        crests : n, round the drum
+
+        Raises
+        ------
+        InputError : no free surface, no crest
+        """
+        radius, surface = fill.chamber.radius, fill.surface_radius
+        if fill.depth >= radius * (1.0 - 1e-9) or surface <= fill.chamber.inner_radius:
+            raise InputError("volume", fill.volume, "less than what fills the chamber, for a free surface")
+        require_crest(fill, crest, crests)
+        height = (crest - 1.0) * fill.depth
+        ahead, behind = waves.free_wave_speeds(crests, math.log(radius / surface), spin)
+        theta = angles()
+        depth = np.clip(fill.depth + height * np.cos(crests * theta), 0.0, radius)
+        # Speed along the surface over that across it, of liquid between a wall and a small wave.
+        ring = (surface / radius) ** (2 * crests)
+        crest_number = crests * height / surface * (1.0 + ring) / (1.0 - ring)
+        numbers = {"relative_depth": fill.depth / radius, "wave_amplitude": crest - 1.0}
+        numbers |= {"crest": crest, "trough": 2.0 - crest, "crest_number": crest_number}
+        return FreeWave(
+            whirl_speed=(spin + float(behind), spin + float(ahead)),
+            theta=theta,
+            depth=depth,
+            crest=crest,
+            trough=2.0 - crest,
+            crest_number=crest_number,
+            numbers=numbers,
+            ranges={"wave_amplitude": self.ranges["wave_amplitude"]},
+            converged=True,
+            mass_error=0.5 * height**2 / (radius**2 - surface**2),
+        )
+
+    def _error(self, fill: Fill, whirl: Whirl) -> float:
+        """Of one wave; none where gravity throws others."""
+        if whirl.gravity != 0.0:
+            return math.nan
+        if whirl.slip == 0.0:
+            return float(self.at_rest(Fills.of([fill]), Whirls.of(whirl)).error[0])
+        return float(
+            linear_error(fill.depth / fill.chamber.radius, whirl.detuning, whirl.amplitude / fill.depth)
         )
 
     def linear_limit(self, fills: Fills, speed: Array, gravity: Array) -> Array:

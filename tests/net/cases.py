@@ -103,6 +103,7 @@ def _runs() -> Iterator[Case]:
         yield _case(f"run-{name}", f"run {_scene(name)} --json --out out")
         yield _case(f"explain-{name}", f"explain {_scene(name)} --json")
     yield _case("explain-top_loader", f"explain {_scene('top_loader')} --json")
+    yield _case("run-exact", "run small/horizontal_rig_exact.toml --workers 1 --json --out out")
     yield _case("run-top_loader", f"run {_scene('top_loader')} --json --out out")
 
 
@@ -160,6 +161,7 @@ def _sweeps() -> Iterator[Case]:
 
 _LAYER = "layer --radius 0.15 --volume 6.7e-4 --height 0.05 --speed 40 --whirl-speed 32 --whirl-amplitude"
 _WHIRL = f"{_LAYER} 1.5e-4"
+_FREE = f"{_LAYER.partition(' --whirl-speed')[0]} --free"
 _DRUM = _LAYER.replace("--whirl-speed 32", "--whirl-speed 40")  # at rest in the drum
 
 
@@ -176,6 +178,12 @@ def _layers() -> Iterator[Case]:
         "kdv-linear": f"{_WHIRL} --model kdv --friction linear:0.5",
         "kdv-large": f"{_LAYER} 1.5e-2 --model kdv --friction linear:0.5",
         "kdv-dispersion": f"{_WHIRL} --model kdv --friction linear:0.5 --dispersion",
+        "potential": f"{_WHIRL} --model potential",
+        "potential-chokes": f"{_LAYER} 1.5e-3 --model potential",
+        "potential-duration": f"{_WHIRL} --model potential --cells 128 --duration 2 --ramp 1",
+        "free": f"{_FREE} 1.2 --model potential",
+        "free-mode": f"{_FREE} 1.1 --model potential --mode 3",
+        "free-linear": f"{_FREE} 1.2 --model linear",
         "fem": f"{_WHIRL} --model fem",
         "fem-closed": f"{_WHIRL} --model fem --baffles 6",
         "fem-baffles": f"{_WHIRL} --model fem --baffles 3 --baffle-tip-radius 140mm --baffle-wall-gap 2mm",
@@ -305,6 +313,10 @@ def _wrong() -> Iterator[Case]:
         "layer-model": f"{_WHIRL} --model best",
         "layer-friction": f"{_WHIRL} --friction linear:-1",
         "layer-duration": f"{_WHIRL} --model linear --duration 3",
+        "layer-free-model": f"{_FREE} 1.2 --model kdv",
+        "layer-free-whirl": f"{_WHIRL} --free 1.2",
+        "layer-no-whirl": _FREE.removesuffix(" --free"),
+        "layer-potential-gravity": f"{_WHIRL} --model potential --gravity 9.81",
         "layer-solver": f"{_WHIRL} --model long_wave --solver milstein",
         "layer-solver-model": f"{_WHIRL} --model linear --solver scipy",
         "layer-baffles": f"{_WHIRL} --model kdv --baffles 3",

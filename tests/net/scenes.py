@@ -13,6 +13,15 @@ from tests.net.call import ROOT
 SMALL: dict[str, tuple[str, dict[str, str]]] = {
     "horizontal_rig": ("examples/horizontal_rig.toml", {"speeds.count": "15"}),
     "centrifuge": ("examples/centrifuge.toml", {"speeds.count": "15"}),
+    "horizontal_rig_exact": (
+        "examples/horizontal_rig.toml",
+        {
+            "speeds.start": '"1600 rpm"',
+            "speeds.stop": '"1600 rpm"',
+            "speeds.count": "1",
+            "model.liquid": '"potential"\ncells = 32',
+        },
+    ),
     "runup": (
         "examples/runup.toml",
         {"speeds.count": "9", "runup.duration": '"2 s"', "runup.cells": "32"},

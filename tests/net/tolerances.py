@@ -44,6 +44,21 @@ TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (
         "of samples that are all alike it is rounding: 3e-19 m",
     ),
     ("compare-*", "*largest_difference*", Tolerance(absolute=2e-12), "difference of answers of two models"),
+    # The exact wave
+    ("*", "*force_gap", Tolerance(absolute=1e-9), "of two forces, rounding: 4e-14"),
+    (
+        *("layer-potential*", "*largest_whirl", Tolerance(relative=1e-2)),
+        "the last step of a continuation; what the waves are near their end decides where it falls",
+    ),
+    (
+        *("run-exact", "*ripple*", Tolerance(relative=1e-2)),
+        "short waves that the jump of a guess leaves behind, 3 % of the offset: 7e-4",
+    ),
+    ("run-exact", "*error*", Tolerance(absolute=1e-5), "of two such runs; see the next"),
+    ("run-exact", "*", Tolerance(relative=1e-3), "held until it has settled, not to rounding: 5e-5 shaken"),
+    ("layer-*", "*error_estimate", Tolerance(absolute=1e-10), "rounding of two waves: 1e-12"),
+    ("layer-potential*", "*", Tolerance(1e-9, 1e-12), "Newton's method: 8e-13; time steps of 1e-10"),
+    ("layer-free*", "*", Tolerance(1e-10, 1e-13), "the same: 1e-13"),
     # Estimates of errors
     (
         *("modes-baffles", "*error_estimate*", Tolerance(relative=1e-4)),

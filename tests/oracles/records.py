@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.results.base import FilledChamber
-from leblanc.results.motion.held import HELD_MODEL, Held
+from leblanc.results.motion.held import Held
 from leblanc.results.notes import response as run_notes
 from leblanc.results.response import RunResult
 from meshes.arrays import Array
@@ -181,7 +181,7 @@ def held_rig(count: int = 21, at: slice = slice(None)) -> RunResult:
     )
     response = replace(
         r,
-        model=np.where(chosen, HELD_MODEL, r.model),
+        model=np.where(chosen, "long_wave", r.model),
         stable=r.stable & ~cycle & ~lost,
         branch_stable=(r.stable & ~cycle & ~lost)[:, None],
         converged=~lost,

@@ -20,7 +20,8 @@ from fluid.liquid import Liquid
 from fluid.waves import force_ratio
 from meshes.chamber import Chamber
 from solvers.layer.records import Outcome
-from solvers.layer.state import LayerHistory, Numerics
+from solvers.layer.state import Numerics
+from solvers.liquid_history import LayerHistory
 from solvers.liquid_model import Whirl
 from solvers.pypde.settle import settle, simulate
 from solvers.rotor.jeffcott import Jeffcott

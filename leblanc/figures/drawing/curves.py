@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.results.motion.held import HELD_MODEL, Held
+from leblanc.results.motion.held import HELD_MODELS, Held
 from leblanc.results.response import RunResult, phase
 from leblanc.units import MM, RPM
 from meshes.arrays import Array, Complex, Flags, Index
@@ -273,7 +273,8 @@ def _over_time(result: RunResult) -> tuple[Array, Array]:
     shares = (np.interp(curve.speed, result.speed[order], (end / mean)[order])
               for end in (held.least, held.largest))  # fmt: skip
     least, largest = (
-        np.where(curve.model == HELD_MODEL, share * curve.amplitude * MM, np.nan) for share in shares
+        np.where(np.isin(curve.model, list(HELD_MODELS)), share * curve.amplitude * MM, np.nan)
+        for share in shares
     )
     return least, largest
 

@@ -15,12 +15,13 @@ from meshes.arrays import Array, Complex, Flags
 from solvers.held.state import COUPLED
 
 MOTIONS = ("steady", "periodic", "limit_cycle", "not_settled")
-HELD_MODEL = "long_wave"  # the liquid model of motions held in time
+# Liquid models of motions held in time, with what goes round each wall, in words.
+HELD_MODELS = {"long_wave": ("long waves", "cells"), "potential": ("exact waves", "nodes")}
 
 
 @dataclass(frozen=True)
 class Held:
-    """What rotor and long waves do at the speeds at which they were held in time until they settled.
+    """What rotor and waves do at the speeds at which they were held in time until they settled.
 
     n speeds, c chambers. At the other speeds numbers are nan and states are "steady".
 
@@ -37,6 +38,7 @@ class Held:
     cells : round each wall
     reason : why the motion has not settled, else empty, shape (n,); no entry where that is not known
     solver : that held them, by its name in py-pde
+    model : of the liquid, one of `HELD_MODELS`
     """
 
     at: Flags
@@ -52,6 +54,7 @@ class Held:
     cells: int
     reason: NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, dtype="U1"))
     solver: str = COUPLED
+    model: str = "long_wave"
 
     @property
     def limit_cycle(self) -> Flags:
@@ -107,7 +110,13 @@ class Held:
             "state_down": flags(
                 over, down, " ".join(MOTIONS), "state of the motion", "while the speed falls"
             ),
-            "held_solver": var((), np.array(self.solver), "1", "solver", "of py-pde, that held the motions"),
+            "held_solver": var(
+                (),
+                np.array(self.solver),
+                "1",
+                "solver",
+                "that held the motions, of py-pde unless it is dop853",
+            ),
             **reasons,
         }
 

@@ -10,7 +10,7 @@ import numpy as np
 from leblanc.results.base import Note, NoteCode, percent
 from leblanc.results.choice import Choice, HeldCost
 from leblanc.results.motion.cycles import LargeWhirl
-from leblanc.results.motion.held import HELD_MODEL, Held
+from leblanc.results.motion.held import HELD_MODELS, Held
 from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.units import (
     LENGTH,
@@ -63,7 +63,8 @@ def liquid_models(choice: Choice) -> Note | None:
         return Note(RunCode.LIQUID_MODEL, {"fem": choice.models.size}, text)
     if choice.prescribed:
         return None
-    exact, held = (int(np.count_nonzero(choice.models == name)) for name in ("statics", HELD_MODEL))
+    held_model = choice.held_model
+    exact, held = (int(np.count_nonzero(choice.models == name)) for name in ("statics", held_model))
     count, told = choice.models.size, f"; long waves held in time at {held}" if held else ""
     linear = count - exact - held
     text = (
@@ -72,7 +73,7 @@ def liquid_models(choice: Choice) -> Note | None:
     )
     if held == count:
         text = f"Liquid model: long waves held in time at all {count} speeds."
-    data = {"linear": linear, "statics": exact} | ({HELD_MODEL: held} if held else {})
+    data = {"linear": linear, "statics": exact} | ({held_model: held} if held else {})
     return Note(RunCode.LIQUID_MODEL, data, text)
 
 
@@ -191,13 +192,18 @@ def held_motions(held: Held, speed: Array) -> list[Note]:
     speed : rad/s, shape (n,)
     """
     count, cycles, apart = (int(np.count_nonzero(x)) for x in (held.at, held.limit_cycle, held.hysteresis))
-    error = held.error[held.at]
+    error, (waves, parts) = held.error[held.at], HELD_MODELS[held.model]
     worst = float(error[~np.isnan(error)].max(initial=0.0))
     size = f"estimated error at most {percent(worst)}" if not np.isnan(error).all() else "error not estimated"
     text = (
-        f"Rotor and long waves held in time at {count} of {speed.size} speeds, {held.cells} cells round each "
+        f"Rotor and {waves} held in time at {count} of {speed.size} speeds, {held.cells} {parts} round each "
         f"wall, {size}."
     )
+    if held.model == "potential":
+        text += (
+            " Friction of the walls is a small force on all the liquid, which damps waves as they do: "
+            "nothing lags."
+        )
     if cycles:
         text += f" Limit cycles at {cycles}, {_between(speed[held.limit_cycle])}."
     if apart:
@@ -295,12 +301,14 @@ def against_spin(share: float, speed: float, held: Held | None = None) -> Note:
     ----------
     share : of the orbit that goes against the spin, at most
     speed : where it does, rad/s
-    held : motions held in time, in which the long waves answer that part as well
+    held : motions held in time, in which the waves answer that part as well
     """
     by = "the liquid answers that part by linear theory"
     if held is not None:
         rest = f"; elsewhere {by}" if not held.at.all() else ""
-        by = f"where motions were held in time the long waves answer that part as well{rest}"
+        by = (
+            f"where motions were held in time the {HELD_MODELS[held.model][0]} answer that part as well{rest}"
+        )
     text = f"Up to {share:.2g} of the orbit goes against the spin, at {in_rpm(speed)}; {by}."
     return Note(RunCode.AGAINST_SPIN, {"share": share, "speed": speed}, text)
 

@@ -15,7 +15,7 @@ from leblanc.results.motion.held import Held
 from leblanc.studies.held.holding import Began, Holding
 from leblanc.studies.held.store import FOLDER, kept
 from leblanc.studies.held.workers import runner
-from leblanc.studies.models.choose import Prepared, is_cut
+from leblanc.studies.models.choose import Prepared, held_model, is_cut
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.held.branch import HeldBranches, HeldTask, held_branches
 from solvers.held.hold import require_known_solver, start
@@ -24,6 +24,7 @@ from solvers.rotor.vibration import orbit
 from solvers.synchronous.response import Response, joined, response
 from solvers.whirl.growth import asynchronous_growth
 
+OWN_STEPS = "dop853"  # of exact waves, which py-pde does not hold
 _KICK = 0.1  # of the layer's depth times the spin: what a whirl that grows by itself begins with
 
 
@@ -73,7 +74,10 @@ def hold_answer(
     motions = dict(zip(steady.speed.tolist(), states.up, strict=True))
     answer = _placed(began.answer, every.at(np.arange(rows.size)), rows)
     models, error = choice.models.astype("U9"), choice.error.copy()
-    models[rows], error[rows] = "long_wave", held.error[rows] + _left_out(machine, began.answer.at(rows))
+    models[rows], error[rows] = (
+        choice.held_model,
+        held.error[rows] + _left_out(machine, began.answer.at(rows)),
+    )
     kept = every.at(np.arange(rows.size, total)) if began.at.all() else began.refined.at(_far(began))
     return replace(choice, models=models, error=error), answer, kept, held, motions
 
@@ -131,7 +135,8 @@ def held_machine(machine: Prepared) -> HeldMachine:
     machine : the scene's
     """
     fills = tuple(machine.scene.fills)
-    return HeldMachine(machine.system, fills, machine.friction, machine.across_gravity)
+    exact = machine.scene.model.liquid == "potential"
+    return HeldMachine(machine.system, fills, machine.friction, machine.across_gravity, exact)
 
 
 def hold_speeds(
@@ -199,7 +204,7 @@ def held_response(
         liquid_angle=angle if fills else np.angle(motion.forward),
         dry_patch=np.array([state.dry.any() for state in up]),
         stable=circles,
-        model=np.full(settled.shape, "long_wave"),
+        model=np.full(settled.shape, held_model(machine.scene)),
         in_range=steady.in_range & _in_range(machine, up),
         converged=settled,
         branch_deflection=np.column_stack([motion.forward, none]),
@@ -220,7 +225,7 @@ def _sizes(machine: Prepared, states: tuple[HeldState, ...]) -> Array:
 
 def _in_range(machine: Prepared, states: tuple[HeldState, ...]) -> Flags:
     """Every layer rides with the drum, covers an upright wall, is long, and clear of its inner wall."""
-    found = []
+    found, exact = [], held_model(machine.scene) == "potential"
     covers = max((covering_speed(f, machine.axial_gravity) for f in machine.scene.fills), default=0.0)
     for state in states:
         rows = iter(range(len(state.moment.area)))
@@ -232,7 +237,9 @@ def _in_range(machine: Prepared, states: tuple[HeldState, ...]) -> Flags:
                 continue
             area = state.moment.area[next(rows)] / radius**2
             deepest = 1.0 - float(np.sqrt(max(1.0 - 2.0 * area.max(), 0.0)))
-            kept &= fill.depth <= _LONG * radius and deepest * radius <= radius - fill.chamber.inner_radius
+            kept &= (
+                exact or fill.depth <= _LONG * radius
+            ) and deepest * radius <= radius - fill.chamber.inner_radius
         found.append(kept)
     return np.array(found, dtype=bool)
 
@@ -262,6 +269,7 @@ def held_result(found: HeldBranches, machine: Prepared, at: Index, solver: str) 
     solver : that held them, by its name in py-pde
     """
     up, down, speeds = found.up, found.down, machine.speed.size
+    model = held_model(machine.scene)
     apart = found.hysteresis
 
     def spread(values: Sequence[Any] | Array, missing: complex | str = np.nan) -> NDArray[Any]:
@@ -289,5 +297,6 @@ def held_result(found: HeldBranches, machine: Prepared, at: Index, solver: str) 
         amplitude_down=spread(falling),
         cells=machine.scene.model.cells,
         reason=spread([state.reason for state in up], ""),
-        solver=solver,
+        solver=OWN_STEPS if model == "potential" else solver,
+        model=model,
     )

@@ -19,7 +19,15 @@ from solvers.held.branch import HeldTask, Runner
 from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics, Moment
 
 FOLDER = "held"
-_ROOMS = "fluid", "solvers/rotor", "solvers/layer", "solvers/runup", "solvers/pypde", "solvers/held"
+_ROOMS = (
+    "fluid",
+    "solvers/rotor",
+    "solvers/layer",
+    "solvers/runup",
+    "solvers/pypde",
+    "solvers/potential",
+    "solvers/held",
+)
 
 
 def kept(

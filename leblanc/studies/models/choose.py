@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from fluid.friction.laws import Friction
+from fluid.friction.laws import Friction, FrictionLaw
 from fluid.pool import balance_speed, pool_of
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed
 from leblanc.results.choice import Choice, HeldCost
+from leblanc.results.motion.held import HELD_MODELS
 from leblanc.scene.scene import Scene, dry_rotor
 from leblanc.studies.models.liquid import synchronous_model
 from meshes.arrays import Array, Flags
@@ -122,6 +123,7 @@ def choose_all(machines: Sequence[Prepared]) -> list[Choice]:
     """
     for machine in machines:
         _check_walls(machine.scene)
+        _check_exact(machine.scene)
     planar = [machine for machine in machines if isinstance(machine.rotor, Jeffcott)]
     found = iter(_planar_errors(planar) if planar else ())
     errors = [
@@ -141,6 +143,8 @@ def _beginning(scene: Scene) -> str:
     """The model that answers first: dearer ones begin with the exact equilibrium, or with compartments."""
     if is_cut(scene):
         return "fem"
+    if scene.model.liquid == "potential":  # a circle with the spin is one of small waves too, at any height
+        return "linear"
     dear = scene.model.liquid == "long_wave" or by_elements(scene)
     return "statics" if dear else scene.model.liquid
 
@@ -210,17 +214,37 @@ differently in two directions"
             raise InputError("model.liquid", scene.model.liquid, allowed)
 
 
+def _check_exact(scene: Scene) -> None:
+    """What the exact wave does not know."""
+    if scene.model.liquid != "potential":
+        return
+    if any(fill.uneven and fill.volume > 0.0 for fill in scene.fills):
+        raise InputError(
+            "model.liquid", "potential", "auto, fem or long_wave where baffles stand in the liquid"
+        )
+    if scene.model.friction.law is FrictionLaw.QUADRATIC:
+        allowed = "none, linear, stokes or wall for exact waves, which take the drag on small waves"
+        raise InputError("model.friction", "quadratic", allowed)
+    if scene.model.cells % 2:
+        raise InputError("model.cells", scene.model.cells, "even, for exact waves")
+
+
 def may_hold(scene: Scene) -> bool:
     """Whether a scene lets motions be held in time."""
     model = scene.model
-    return model.liquid == "long_wave" or (model.liquid == "auto" and model.held != "never")
+    return model.liquid in HELD_MODELS or (model.liquid == "auto" and model.held != "never")
+
+
+def held_model(scene: Scene) -> str:
+    """Name of the liquid model that motions are held with."""
+    return "potential" if scene.model.liquid == "potential" else "long_wave"
 
 
 def held_at(scene: Scene, choice: Choice, growth: Array) -> Flags:
     """At which speeds the wave is held in time, shape (n,).
 
     Auto needs it where no steady model is known to be within the tolerance, though the liquid rides with the
-    drum, and where a whirl grows by itself.
+    drum, and where a whirl grows by itself; exact waves are held there, and with gravity across the axis.
 
     Parameters
     ----------
@@ -228,8 +252,11 @@ def held_at(scene: Scene, choice: Choice, growth: Array) -> Flags:
     choice : the steady models
     growth : of the whirl that grows most, 1/s, shape (n,)
     """
-    if scene.model.liquid == "long_wave":
+    across = scene.rotor.axis == "horizontal" and scene.gravity > 0.0
+    if scene.model.liquid == "long_wave" or (scene.model.liquid == "potential" and across):
         return np.ones(growth.shape, dtype=bool)
+    if scene.model.liquid == "potential":
+        return np.asarray(growth > 0.0)
     if not may_hold(scene) or is_cut(scene):
         return np.zeros(growth.shape, dtype=bool)
     if scene.model.held == "always":
@@ -250,11 +277,9 @@ def costed(machine: Prepared, choice: Choice, growth: Array) -> Choice:
     drawn = any(fill.chamber.section is not None for fill in scene.fills)
     if drawn or not any(map(_has_surface, scene.fills)):
         return choice
-    numerics = HoldNumerics(cells=scene.model.cells)
-    return replace(
-        choice,
-        holding=hold_seconds(scene.fills, machine.speed, growth, machine.across_gravity, numerics),
-    )
+    numerics, exact = HoldNumerics(cells=scene.model.cells), choice.held_model == "potential"
+    given = scene.fills, machine.speed, growth, machine.across_gravity, numerics, exact
+    return replace(choice, holding=hold_seconds(*given))
 
 
 def held_cost(machine: Prepared, choice: Choice, growth: Array) -> HeldCost | None:
@@ -271,7 +296,7 @@ def held_cost(machine: Prepared, choice: Choice, growth: Array) -> HeldCost | No
     None where nothing is to be held
     """
     scene = machine.scene
-    asked = scene.model.held != "never" or scene.model.liquid == "long_wave"
+    asked = scene.model.held != "never" or scene.model.liquid in HELD_MODELS
     ready = scene if asked else scene.altered(model=scene.model.altered(held="auto"))
     at = held_at(ready, choice, growth)
     if choice.holding is None or not at.any():
@@ -348,6 +373,7 @@ def _choice(machine: Prepared, linear: LinearError, gravity: GravityError) -> Ch
         linear=linear,
         gravity=gravity,
         cut=cut,
+        held_model=held_model(scene),
     )
 
 

@@ -49,6 +49,13 @@ def _fem(friction: Friction, cells: int | None, dispersion: bool, solver: str | 
     return SmallWaves() if cells is None else SmallWaves(cells)
 
 
+def _potential(friction: Friction, cells: int | None, dispersion: bool, solver: str | None) -> WaveModel:
+    from solvers.potential.model import Potential
+
+    _require_none(friction, "the exact wave, which is inviscid")
+    return Potential() if cells is None else Potential(cells)
+
+
 def _require_none(friction: Friction, theory: str) -> None:
     """Refuse friction that a theory does not know."""
     if friction.law is not FrictionLaw.NONE:
@@ -61,6 +68,7 @@ _MAKE: Mapping[str, _Make] = {
     "long_wave": _long_wave,
     "kdv": _kdv,
     "fem": _fem,
+    "potential": _potential,
 }
 WAVE_MODELS = tuple(_MAKE)
 # Those that py-pde solves.
@@ -84,7 +92,8 @@ def wave_model(
     ----------
     name : one of `WAVE_MODELS`
     friction : on the wall; statics feel none, as the liquid is at rest in the drum
-    cells : round the wall, or points of one family; as many as serves most cases if None
+    cells : round the wall, points of one family, or most steps from crest to trough of the exact wave; as
+        many as serves most cases if None
     dispersion : of the finite depth, for long waves; the exact one for one family; the others have it anyway
     solver : its name in py-pde, for long waves and one family; the model's own if None
 

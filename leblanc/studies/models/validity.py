@@ -19,7 +19,7 @@ from leblanc.results.notes.doubts import DoubtCode, doubt
 from leblanc.scene.rotors import JeffcottRotor, TubRotor, TwoPlaneRotor
 from leblanc.scene.scene import Exciter, Scene
 from leblanc.units import DENSITY, LENGTH, MASS, UNBALANCE, VISCOSITY, in_rpm, number, rpm_range, with_unit
-from solvers.liquid_model import LiquidWave
+from solvers.liquid_model import Range
 
 SMALLEST, LARGEST = 2e-4, 10.0  # of a wall, m
 THINNEST = 1e-6  # of a layer all round its wall, m
@@ -233,18 +233,26 @@ MEANING = {
     "reynolds": "spin speed times radius squared over viscosity",
     "wall_layer": "laminar layer at the wall over mean depth",
     "wave_amplitude": "largest change of depth over mean depth",
+    "crest": "greatest depth over mean depth",
+    "trough": "least depth over mean depth",
+    "crest_number": "speed of the liquid at the crest over that of the crest",
     "force_gap": "force by pressure less that by momentum, over the force or the full drum's",
     "other_family": "response of the family left out over that of the one taken",
 }
 
 
-def judge(wave: LiquidWave) -> tuple[Number, ...]:
-    """Numbers that a model's answer rests on, against the model's ranges, in the order of `MEANING`."""
+def judge(found: Mapping[str, float], ranges: Mapping[str, Range]) -> tuple[Number, ...]:
+    """Numbers that a model's answer rests on, against the model's ranges, in the order of `MEANING`.
+
+    Parameters
+    ----------
+    found, ranges : by name, as of `solvers.liquid_model.LiquidWave`
+    """
     numbers = []
     for name, meaning in MEANING.items():
-        if name not in wave.numbers:
+        if name not in found:
             continue
-        value, bounds = wave.numbers[name], wave.ranges.get(name)
+        value, bounds = found[name], ranges.get(name)
         least, most = bounds or (None, None)
         inside = bounds is None or bounds[0] <= value <= bounds[1]
         numbers.append(Number(name, meaning, value, least, most, inside))

@@ -202,7 +202,9 @@ CASES = (
         "chambers.0.liquid.colour",
         "density, viscosity",
     ),
-    case('"auto"', '"best"', "model.liquid", '"best"', "auto, statics, linear, long_wave, kdv, fem"),
+    case(
+        '"auto"', '"best"', "model.liquid", '"best"', "auto, statics, linear, long_wave, potential, kdv, fem"
+    ),
     case('"stokes"', '"sticky"', "model.friction", '"sticky"', "none, stokes", "linear"),
     case('"stokes"', "0.5", "model.friction", "= 0.5", "none, stokes"),
     case('"stokes"', "{}", "model.friction", "{}", "quadratic"),

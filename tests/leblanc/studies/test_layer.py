@@ -13,11 +13,14 @@ from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from fluid.liquid import known_liquid
 from leblanc.cli import main
-from leblanc.results.layer import LayerResult
+from leblanc.results.layer import LayerCode, LayerResult
 from leblanc.studies.layer import answer_layer, steady_film
 from leblanc.studies.models.liquid import wave_model
+from leblanc.text.liquid import layer_summary
+from leblanc.text.numbers import number
 from meshes.chamber import Chamber
 from solvers.liquid_model import Whirl
+from solvers.potential.steady import forced, linear_detuning
 from solvers.pypde.models import OneFamily
 from solvers.synchronous.models import LINEAR, STATICS
 from tests.mutants import kills
@@ -114,6 +117,35 @@ def test_json(capsys: pytest.CaptureFixture[str]) -> None:
     for key in ("mass_error", "converged", "wall_time", "mean_rotation", "theta", "depth"):
         assert key in answer
     assert len(answer["theta"]) == len(answer["depth"])
+
+
+@pytest.mark.parametrize("model", ["linear", "kdv", "long_wave"])
+def test_the_estimated_error_holds_the_exact_wave(model: str) -> None:
+    # The median estimate is a twentieth above; cells and settling of long waves may take some of it away.
+    depth, speed = FILL.depth, 0.85 * SPIN
+    exact = forced(depth / R, (1.0 - SPIN / speed) ** 2, 0.03 * depth / R).force_ratio
+    answer = answer_layer(FILL, SPIN, speed, 0.03 * depth, wave_model(model))
+    error = abs(answer.force_ratio.real - exact) / max(1.0, abs(exact))
+    # The median estimate is a twentieth above; cells and settling of the long waves may take some of it away.
+    assert 0.2 * answer.error_estimate < error < answer.error_estimate
+    assert answer.to_json()["error_estimate"] == answer.error_estimate
+    assert ("Its estimated error", number(answer.error_estimate)) in layer_summary(answer)
+    codes = {note.code for note in answer.notes}
+    assert LayerCode.NO_SMOOTH_WAVE not in codes
+
+
+@pytest.mark.parametrize("ratio", [0.9, 1.1])
+def test_a_note_where_no_smooth_wave_follows_the_whirl(ratio: float) -> None:
+    """On both sides of the resonance, a fold above it and choking below; there is no estimate beyond."""
+    p = ratio * math.sqrt(linear_detuning(FILL.depth / R))
+    for size, beyond in ((0.004, False), (0.02, True)):
+        answer = answer_layer(FILL, SPIN, SPIN / (1.0 + p), size * FILL.depth, wave_model("linear"))
+        notes = [note for note in answer.notes if note.code is LayerCode.NO_SMOOTH_WAVE]
+        assert bool(notes) is beyond and math.isnan(answer.error_estimate) is beyond
+        if beyond:
+            assert notes[0].data["fold"] is (ratio > 1.0) and 0.004 < notes[0].data["largest"] < 0.02
+            assert ("it turns back" in notes[0].text) is (ratio > 1.0)
+            assert "Its estimated error" not in dict(layer_summary(answer))
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,8 @@ from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers import slices
-from solvers.layer.state import LayerHistory, Numerics
+from solvers.layer.state import Numerics
+from solvers.liquid_history import LayerHistory
 from solvers.liquid_model import Whirl
 from solvers.pypde.grid import circle
 from solvers.pypde.long_wave import AnnularLongWavePDE
