@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 GROUPS = (
     *("errata", "optimal_volume", "vector_model", "horizontal_rig", "vertical_rig", "layer", "whirl", "tub"),
-    *("two_plane", "exciter", "runup", "fill_sweep", "baffles"),
+    *("two_plane", "exciter", "runup", "fill_sweep", "baffles", "exact_wave"),
 )
 
 
@@ -77,6 +77,7 @@ def _group(name: str) -> Callable[[], list[Case]]:
     from validation.cases import (
         baffles,
         errata,
+        exact_wave,
         exciter,
         fill_sweep,
         layer,
@@ -103,6 +104,7 @@ def _group(name: str) -> Callable[[], list[Case]]:
         "runup": runup.cases,
         "fill_sweep": fill_sweep.cases,
         "baffles": baffles.cases,
+        "exact_wave": exact_wave.cases,
     }[name]
 
 

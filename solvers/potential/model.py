@@ -41,11 +41,9 @@ from solvers.potential import unsteady
 from solvers.potential.ends import End, EndKind, end
 from solvers.potential.histories import PotentialHistory, Progress
 from solvers.potential.in_time import Steps
-from solvers.potential.steady import MOST, Branch, SteadyWave, forced, free, on_nodes, solve
+from solvers.potential.steady import MOST, Branch, SteadyWave, forced, free, on_more_nodes, on_nodes
 from solvers.potential.strip import FEWEST, nodes
 
-# Nodes of the wave beside which its own error is taken, over its own.
-_FINER = 1.5
 # Error of an answer that counts as found.
 _FOUND = 1e-4
 _MOST_CELLS, _MOST_STEPS = 8192, 2048
@@ -165,7 +163,7 @@ class Potential(WaveModel):
         found = forced(layer, detuning, size, self.most)
         if not found.converged:
             return self._without(fill, whirl, *_told(end(found, self.most), fill))
-        finer = _finer(found, {"detuning": detuning, "whirl": found.whirl})
+        finer = on_more_nodes(found, {"detuning": detuning, "whirl": found.whirl})
         change = abs(finer.force_ratio - found.force_ratio)
         if not finer.converged or change > _FOUND * max(abs(found.force_ratio), layer):
             last = End(EndKind.NODES, size, math.nan, 0)
@@ -249,7 +247,7 @@ class Potential(WaveModel):
         require_crest(fill, crest, crests)
         found, reason, error = free(layer, crest, crests, self.most), "", math.nan
         if found.converged:
-            finer = _finer(found, {"whirl": 0.0, "crest": crest})
+            finer = on_more_nodes(found, {"whirl": 0.0, "crest": crest})
             pair = [math.sqrt(wave.detuning) for wave in (found, finer)]
             error = abs(pair[1] / pair[0] - 1.0) + ROUNDING
             if not finer.converged or not finer.single or error > _FOUND:
@@ -382,12 +380,6 @@ def _require_surface(fill: Fill) -> None:
     if fill.volume >= chamber.capacity * FULL or surface <= chamber.inner_radius:
         allowed = "less than what fills the chamber, for a free surface"
         raise InputError("volume", fill.volume, allowed)
-
-
-def _finer(wave: SteadyWave, wanted: Mapping[str, float]) -> SteadyWave:
-    """The same wave on half as many nodes again, whose own error is far less."""
-    count = math.ceil(_FINER * (wave.surface.size - 1))
-    return solve(on_nodes(wave, nodes(count, wave.at.crests, wave.at.cluster)), wanted)
 
 
 def _profile(wave: SteadyWave) -> tuple[Array, Array, SteadyWave]:

@@ -134,6 +134,10 @@ TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (
         "growth rates from long waves in time: 1.4e-8, against what is printed 7e-8",
     ),
     ("validate-baffles", "*.cases[].*", Tolerance(2e-9, 2e-9), "layers in time, less the print: 3e-11"),
+    (
+        *("validate-exact_wave", "*.cases[].*", Tolerance(1e-9, 1e-9)),
+        "rounding of waves of some hundred nodes; the largest whirl and the fastest wave are searched for",
+    ),
     ("validate-runup", "*.cases[].*", Tolerance(relative=2e-10, absolute=1e-12), "a run-up"),
     # Finite elements
     (

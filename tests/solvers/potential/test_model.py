@@ -22,6 +22,7 @@ from solvers.potential.strip import nodes
 from solvers.potential.unsteady import invariants, started
 from solvers.synchronous.models import LINEAR, STATICS
 from tests.mutants import kills
+from validation.cases.rigs import data
 
 MODEL = Potential()
 
@@ -40,22 +41,16 @@ def asked(layer: float, speed: float, share: float, radius: float = 0.1, spin: f
     return MODEL.wave(fill, Whirl(spin, speed * spin, share * fill.depth))
 
 
-# h_0/R, omega_w/Omega, w_0/h_0, G, crest and trough over h_0: by two codes that share nothing with this one.
-FORCED = (
-    (0.1, 1.3, 0.02, 2.042546357170, 1.0439750030, 0.9520102517),
-    (0.1, 0.7, 0.05, -0.686338807239, 1.0590015455, 0.9497413408),
-    (0.1, 1.75, 0.05, -0.686338807239, 1.0590015455, 0.9497413408),
-    (0.1, 0.85, 0.10, 1.409749750730, 1.1435417916, 0.8383889330),
-    (0.3, 0.85, 0.10, 1.068773056475, 1.1128489708, 0.8845584491),
-    (0.3, 1.3, 0.10, 1.131290435131, 1.1240389695, 0.8696593663),
-)
+TABLE = data("exact_wave.json")  # by two codes that share nothing with this one
 
 
 @kills("solvers.potential.model:Potential.wave", "finer.centre * radius", "finer.centre")
 @kills("solvers.potential.model:_profile", "math.pi if wave.whirl < 0.0 else 0.0", "0.0")
 @pytest.mark.parametrize(("radius", "spin"), [(0.1, 40.0), (0.3, 120.0)])
 def test_forced(radius: float, spin: float) -> None:
-    for layer, speed, share, force, crest, trough in FORCED:
+    for row in TABLE["forced"]:
+        layer, speed, share = row["depth"], row["whirl_speed"], row["whirl"]
+        force, crest, trough = (float(row[key]) for key in ("force", "crest", "trough"))
         fill = filled(layer, radius)
         whirl = Whirl(spin, speed * spin, share * fill.depth)
         wave = MODEL.wave(fill, whirl)
@@ -202,20 +197,14 @@ def test_few_nodes_do_not_pretend() -> None:
 
 # --- free waves ---
 
-# h_0/R, crest over h_0, backward speed over the spin: of the same equations by two other codes.
-FREE = (
-    (0.05, 1.10, -0.186999214546),
-    (0.1, 1.30, -0.255138549856),
-    (0.1, 1.60, -0.26933846385),
-    (0.3, 1.35, -0.355520689950),
-    (0.5, 1.20, -0.390588931402),
-)
+FREE = (("0.05", "1.10"), ("0.1", "1.30"), ("0.1", "1.60"), ("0.3", "1.35"), ("0.5", "1.20"))
 
 
 @kills("solvers.potential.model:Potential.free_wave", "spin * (1.0 + behind)", "spin * behind")
 @kills("solvers.potential.model:_crest_number", "math.exp(", "-math.exp(")
 def test_free() -> None:
-    for layer, crest, behind in FREE:
+    for depth, height in FREE:
+        layer, crest, behind = float(depth), float(height), float(TABLE["free"][depth][height])
         fill = filled(layer)
         wave = MODEL.free_wave(fill, 40.0, crest)
         assert wave.converged and wave.branch == Branch.ONE_CREST

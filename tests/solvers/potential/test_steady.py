@@ -25,6 +25,7 @@ from solvers.potential.steady import (
 )
 from solvers.potential.strip import nodes
 from tests.mutants import kills
+from validation.cases.rigs import data
 
 
 def detuning(whirl_ratio: float) -> float:
@@ -121,43 +122,31 @@ def test_where_the_liquid_does_not_pull() -> None:
 
 # --- figures of other codes ---
 
-# h_0/R, omega_w/Omega, w_0/h_0, G, crest and trough over h_0: of the same equations by two codes that share
-# nothing with this one, one in u and one in clustered nodes.
-FORCED = (
-    (0.1, 1.3, 0.02, 2.042546357170, 1.0439750030, 0.9520102517),
-    (0.1, 0.7, 0.05, -0.686338807239, 1.0590015455, 0.9497413408),
-    (0.1, 1.75, 0.05, -0.686338807239, 1.0590015455, 0.9497413408),
-    (0.1, 0.85, 0.10, 1.409749750730, 1.1435417916, 0.8383889330),
-    (0.3, 0.85, 0.10, 1.068773056475, 1.1128489708, 0.8845584491),
-    (0.3, 1.3, 0.10, 1.131290435131, 1.1240389695, 0.8696593663),
-)
+# Of the same equations by two codes that share nothing with this one, one in u and one in clustered nodes.
+# The whole tables are held by tests/validation/test_exact_wave.py; here are those that a mutant changes.
+TABLE = data("exact_wave.json")
 
 
 @kills("solvers.potential.steady:_equations", "speed = 0.5 * by_strip", "speed = 0.4 * by_strip")
 @kills("solvers.potential.steady:forced", "else -1.0", "else 1.0")
 def test_forced() -> None:
-    for layer, ratio, whirl, force, crest, trough in FORCED:
-        wave = forced(layer, detuning(ratio), whirl * layer)
+    for row in TABLE["forced"]:
+        layer = row["depth"]
+        wave = forced(layer, detuning(row["whirl_speed"]), row["whirl"] * layer)
         assert wave.converged and wave.single
         # The last of twelve digits is not sure with 64 nodes.
-        assert wave.force_ratio == pytest.approx(force, abs=2e-12)
-        assert (wave.crest, wave.trough) == pytest.approx((crest, trough), abs=1e-10)
+        assert wave.force_ratio == pytest.approx(float(row["force"]), abs=2e-12)
+        heights = float(row["crest"]), float(row["trough"])
+        assert (wave.crest, wave.trough) == pytest.approx(heights, abs=1e-10)
 
 
-# h_0/R, crest over h_0, backward speed over the spin.
 FREE = (
-    (0.05, 1.02, -0.181951397620),
-    (0.05, 1.10, -0.186999214546),
-    (0.05, 1.30, -0.198757482019),
-    (0.1, 1.02, -0.236566315090),
-    (0.1, 1.10, -0.241999444841),
-    (0.1, 1.30, -0.255138549856),
-    (0.1, 1.50, -0.266050523357),
-    (0.1, 1.60, -0.26933846385),
-    (0.3, 1.10, -0.339984375082),
-    (0.3, 1.35, -0.355520689950),
-    (0.5, 1.05, -0.380968310985),
-    (0.5, 1.20, -0.390588931402),
+    ("0.05", "1.02"),
+    ("0.05", "1.30"),
+    ("0.1", "1.10"),
+    ("0.1", "1.60"),
+    ("0.3", "1.35"),
+    ("0.5", "1.20"),
 )
 
 
@@ -165,7 +154,8 @@ FREE = (
 @kills("solvers.potential.steady:free", "0.2 * layer * layer", "0.01")
 def test_free() -> None:
     """Also in a thin layer, where waves of many crests are close by, and near the highest wave."""
-    for layer, crest, speed in FREE:
+    for depth, height in FREE:
+        layer, crest, speed = float(depth), float(height), float(TABLE["free"][depth][height])
         wave = free(layer, crest)
         assert wave.converged and wave.single and wave.crest == pytest.approx(crest, rel=1e-12)
         ahead, behind = wave.slip_speeds()

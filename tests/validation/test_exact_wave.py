@@ -1,0 +1,50 @@
+"""The exact wave beside two other codes, number by number, as `leblanc validate exact_wave` prints it."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from functools import cache
+
+from validation.cases.case import Case
+from validation.cases.exact_wave import cases, last_place
+from validation.cases.rigs import data
+
+
+@cache
+def found() -> tuple[Case, ...]:
+    return tuple(cases())
+
+
+def test_every_number_agrees_to_its_digits() -> None:
+    """But for two greatest speeds, of which the other code saw too few waves: here they are greater."""
+    verdicts = {case.name.partition("/")[2]: case.verdict for case in found()}
+    assert len(verdicts) == len(found())
+    assert {name for name, verdict in verdicts.items() if verdict != "agrees"} == {
+        "greatest-0.3",
+        "greatest-0.5",
+    }
+    assert verdicts["greatest-0.3"] == verdicts["greatest-0.5"] == "erratum"
+
+
+def test_no_number_is_left_out() -> None:
+    """Every entry of the tables has its case, and what is compared is what is printed there."""
+    table, kinds = data("exact_wave.json"), Counter(case.name.split("/")[1].split("-")[0] for case in found())
+    columns = {"forced": 3, "linear": 1, "near_resonance": 1, "greatest": 1, "limiting": 1}
+    wanted = {key.split("_")[0]: count * len(table[key]) for key, count in columns.items()}
+    wanted["models"] = sum(len(row.keys() & {"force", "long_wave", "dispersion"}) for row in table["models"])
+    wanted["free"] = sum(map(len, table["free"].values()))
+    wanted["fold"] = sum(map(len, table["folds"].values()))
+    wanted["ends"] = 4 * len(table["ends"]["whirls"])
+    assert {key: kinds[key] for key in wanted} == wanted
+    printed = {case.printed for case in found()}
+    assert {float(row["force"]) for row in table["forced"]} <= printed
+    assert {float(speed) for column in table["free"].values() for speed in column.values()} <= printed
+
+
+def test_a_digit_that_is_wrong_is_seen() -> None:
+    """Twelve digits are held to twelve: a unit of the eleventh is more than is allowed."""
+    checked = [case for case in found() if case.name.startswith("exact_wave/free-0.1-1.2")]
+    assert checked and all(abs(case.computed - case.printed) < 1e-11 for case in checked)  # type: ignore[operator]
+    assert last_place("-0.248774599939") == 1e-12
+    json.dumps([case.record() for case in found()], allow_nan=False)
