@@ -167,7 +167,7 @@ RECIPES = (
     ),
     Recipe(("validation.figures.whirl_passage",), ("whirl_passage",), minutes=True),
     Recipe(("validation.models.figure",), ("models",)),
-    Recipe(("validation.breaking.figure",), ("breaking",)),
+    Recipe(("validation.breaking.figure",), ("breaking", "breaking_crest")),
     Recipe(("validation.exact.figure",), ("wave_errors", "wave_ends")),
     Recipe(("validation.figures.baffles",), ("whirl_baffles",)),
     Recipe(("validation.cases.baffles.figure",), ("baffles_decay",)),

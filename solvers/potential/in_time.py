@@ -63,12 +63,15 @@ class Steps:
     damping : of the shortest waves that are kept, over Omega; falls with the eighth power of the wave number
     friction : k of a small body force -k grad phi on the liquid, over Omega, in a drum that keeps its speed
         [theory: potential, eq. 22]
+    breaking : crest number from which a crest that fills its spectrum is broken [theory: potential, eq. 23];
+        infinite to follow it for its shape until it overhangs, or its nodes lose volume
     """
 
     nodes: int = 128
     most: int = 2048
     damping: float = 0.0
     friction: float = 0.0
+    breaking: float = BREAKING
 
     def __post_init__(self) -> None:
         if self.nodes < FEWEST or self.nodes % 2:
@@ -77,6 +80,8 @@ class Steps:
             raise InputError("most", self.most, f"at least as many as nodes ({self.nodes})")
         require_not_negative("damping", self.damping)
         require_not_negative("friction", self.friction)
+        if not self.breaking > 0.0:
+            raise InputError("breaking", self.breaking, "above 0")
 
 
 @dataclass(frozen=True)
@@ -167,7 +172,7 @@ def course(
             return
         now = watched(solver.y, solver.f, volume)
         extremes = now.since(extremes)
-        state, reason = judged(now, nodes, steps.most)
+        state, reason = judged(now, nodes, steps.most, steps.breaking)
         if reason:
             yield _moment(solver.t, solver.y, state, extremes, reason)
             return
@@ -192,7 +197,7 @@ def advance(begin: Surface, time: float, push: Push | None = None, steps: Steps 
     return last
 
 
-def judged(now: Watch, nodes: int, most: int) -> tuple[WaveState, str]:
+def judged(now: Watch, nodes: int, most: int, breaking: float = BREAKING) -> tuple[WaveState, str]:
     """What is known of a wave, and why it is broken or nothing [theory: potential, eq. 23].
 
     Parameters
@@ -200,11 +205,12 @@ def judged(now: Watch, nodes: int, most: int) -> tuple[WaveState, str]:
     now : its shape
     nodes : that it has
     most : that it may have
+    breaking : as for `Steps`
     """
     broken = WaveState.BROKEN
     if now.slope > 0.5 * math.pi:
         return broken, "the surface overhangs"
-    if now.crest_number > BREAKING and now.tail > FILLED and 2 * nodes > most:
+    if now.crest_number > breaking and now.tail > FILLED and 2 * nodes > most:
         return broken, f"the crest breaks: its liquid has {now.crest_number:.2f} of its speed"
     if not now.drift < LOST:
         return broken, f"{nodes} nodes do not carry it: they lose {now.drift:.1e} of the volume"

@@ -6,9 +6,15 @@ import json
 from collections import Counter
 from functools import cache
 
+import pytest
+
+from solvers.potential.steady import on_nodes
+from solvers.potential.strip import nodes
+from validation.breaking import kept
 from validation.cases.case import Case
 from validation.cases.exact_wave import cases, last_place
 from validation.cases.rigs import data
+from validation.figures.exact_wave import NEAR, climbed, free_figure, last_crests, sharp_figure
 
 
 @cache
@@ -40,6 +46,23 @@ def test_no_number_is_left_out() -> None:
     printed = {case.printed for case in found()}
     assert {float(row["force"]) for row in table["forced"]} <= printed
     assert {float(speed) for column in table["free"].values() for speed in column.values()} <= printed
+
+
+def test_figures_of_the_notebook() -> None:
+    """Waves climb as far as they are asked, and what a reader is told of them is theirs."""
+    assert {depth: crest for depth, crest in last_crests().items() if depth > 0.25} == {
+        row.depth: NEAR * row.crest for row in kept().highest if row.depth in (0.3, 0.5)
+    }
+    climb = climbed(0.5, 1.2)
+    assert climb[-1].crest == pytest.approx(1.2, rel=1e-9) and climb[-1].single
+    # The faster the higher, as far as that.
+    speeds = [wave.slip_speeds()[0] for wave in climb]
+    assert speeds == sorted(speeds)
+    assert f"{speeds[-1] / (1.0 + 2.0 * speeds[-1]):.4f} at 1.200" in free_figure({0.5: climb}).alt
+    figure = sharp_figure(climb[-1], climb[2])
+    assert f"{climb[-1].tail:.1e} with crowded nodes" in figure.alt
+    even = on_nodes(climb[-1], nodes(climb[-1].surface.size - 1, 1, 1.0))
+    assert climb[-1].at.cluster < 1.0 and even.tail > climb[-1].tail
 
 
 def test_a_digit_that_is_wrong_is_seen() -> None:

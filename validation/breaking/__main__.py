@@ -1,4 +1,4 @@
-"""`python -m validation.breaking`: compute endings, highest waves and long waves beside the exact one."""
+"""`python -m validation.breaking`: endings, highest waves, a crest, long waves beside the exact one."""
 
 from __future__ import annotations
 
@@ -7,26 +7,22 @@ import math
 
 import numpy as np
 
-from fluid.fill import Fill
-from fluid.liquid import Liquid
 from meshes.arrays import Array
-from meshes.chamber import Chamber
 from solvers.layer.state import Numerics
-from solvers.liquid_model import Whirl
 from solvers.potential import histories
 from solvers.potential.in_time import Steps, course
-from solvers.potential.steady import follow, free, linear_detuning
+from solvers.potential.steady import follow, free
 from solvers.potential.unsteady import still
 from solvers.pypde import settle
-from validation.breaking import Beside, Ending, Highest, Kept, keep
+from validation.breaking import Beside, Ending, Highest, Kept, crests, keep
+from validation.breaking.crests import resonant
 
 DEPTHS = (0.1, 0.3, 0.5, 0.7)
 WHIRLS = (0.1, 0.05, 0.02, 0.01, 0.005, 0.002)
 CREST_DEPTHS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7)
 BESIDE = ((0.1, 0.1), (0.1, 0.05), (0.1, 0.02), (0.3, 0.05))
-# Whirl periods over which the whirl grows, and the longest run.
-RAMP, LONGEST = 0.9, 25.0
-STEPS = Steps(nodes=128, most=2048, damping=2.0)
+LONGEST = 25.0  # whirl periods
+STEPS = Steps(nodes=crests.FIRST, most=2048, damping=crests.DAMPING)
 # Moments in a whirl period at which a wave is looked at.
 LOOKS = 20
 CELLS = 512
@@ -34,20 +30,6 @@ CELLS = 512
 FRONT, WITHIN = 0.5, 8
 # The crest of the last free wave, over |s| R, and the shortest step towards the highest, over h_0.
 LAST, SHORTEST = 0.07, 1e-5
-
-
-def resonant(depth: float, whirl: float) -> tuple[Fill, Whirl]:
-    """A layer, and a whirl as fast as its small backward free wave; lengths over R, times in 1/Omega.
-
-    Parameters
-    ----------
-    depth : h_0/R
-    whirl : w_0/h_0
-    """
-    p = math.sqrt(linear_detuning(depth))
-    fill = Fill(Chamber(1.0, 1.0), Liquid("water", 1000.0, 1e-6), math.pi * depth * (2.0 - depth))
-    slip = -p / (1.0 + p)
-    return fill, Whirl(1.0, 1.0 + slip, whirl * depth, RAMP * 2.0 * math.pi / abs(slip))
 
 
 def ending(depth: float, whirl: float, longest: float = LONGEST, steps: Steps = STEPS) -> Ending:
@@ -160,17 +142,18 @@ def main(arguments: list[str] | None = None) -> int:
         for whirl in WHIRLS:
             endings.append(ending(depth, whirl))
             print(endings[-1], flush=True)
-    crests = []
+    high = []
     for depth in CREST_DEPTHS:
-        crests.append(highest(depth))
-        print(crests[-1], flush=True)
+        high.append(highest(depth))
+        print(high[-1], flush=True)
     until = {(each.depth, each.whirl): each.periods for each in endings}
     pairs = []
     for depth, whirl in BESIDE:
         for dispersion in (False, True):
             pairs.append(beside(depth, whirl, dispersion, until[depth, whirl]))
             print(depth, whirl, dispersion, pairs[-1].force, pairs[-1].front, flush=True)
-    keep(Kept(tuple(endings), tuple(crests), tuple(pairs)))
+    keep(Kept(tuple(endings), tuple(high), tuple(pairs)))
+    crests.keep(crests.computed())
     return 0
 
 

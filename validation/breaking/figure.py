@@ -1,4 +1,4 @@
-"""The kept endings of the exact wave, the highest free waves and long waves beside the exact one, drawn.
+"""The kept endings of the exact wave, the highest free waves, long waves beside them and a crest, drawn.
 
 `python -m validation.breaking.figure --out docs/images`; `python -m validation.breaking` computes them anew.
 """
@@ -6,12 +6,16 @@
 from __future__ import annotations
 
 import argparse
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, save, style
-from validation.breaking import Beside, Kept, kept
+import numpy as np
+
+from leblanc.figures.drawing.page import Figure, Frame, fill, lay_out, number, save, style
+from validation.breaking import Beside, Kept, crests, kept
+from validation.breaking.crests import Crest
 
 _FRAME = Frame(left=0.62, top=0.15, between=0.62, below=0.42)
 _LOOKS = {
@@ -20,7 +24,12 @@ _LOOKS = {
     0.5: {"color": "#009E73", "marker": "^"},
     0.7: {"color": "#CC79A7", "marker": "D"},
 }
-SHOWN = (0.1, 0.05)  # h_0/R and w_0/h_0 of the crests over time
+SHOWN = (crests.LAYER, crests.SHARE)  # h_0/R and w_0/h_0 of the crests over time
+# Of the crest that breaks: room, colours from the first moment to the last, what of the wall is drawn, rad.
+_CREST_FRAME = Frame(left=0.62, top=0.3, between=0.25, below=0.42)
+_COLOURS = ("0.65", "#56B4E9", "#009E73", "#0072B2", "#D55E00", "#CC79A7")
+_AHEAD, _BEHIND = 0.22, 0.42
+_DRUM_LINES = 721
 
 
 def breaking_figure() -> Figure:
@@ -103,6 +112,86 @@ def shown(results: Kept) -> list[Beside]:
     return [row for row in results.beside if (row.depth, row.whirl) == SHOWN]
 
 
+def crest_figure(found: Sequence[Crest] | None = None) -> Figure:
+    """A crest that breaks: in the drum, and unrolled with its slopes as they are.
+
+    Parameters
+    ----------
+    found : moments of one wave; None: those that are kept, the finest of them
+    """
+    rows = list(found) if found else [row for row in crests.kept() if row.most == max(crests.MOST)]
+    with style():
+        figure = Figure()
+        drums: list[Any] = [figure.add_axes((0, 0, 1, 1), label=f"drum {row.time}") for row in rows]
+        near: Any = figure.add_axes((0, 0, 1, 1), label="crest")
+        for axes, row in zip(drums, rows, strict=True):
+            _draw_drum(axes, row)
+        for row, colour in zip(rows, _COLOURS, strict=False):
+            _draw_crest(near, row, colour)
+        depths = np.arange(0.0, 1.9, 0.5)
+        near.set_yticks(_unrolled(crests.LAYER * depths), [number(depth) for depth in depths])
+        near.set_xlim(-_AHEAD, _BEHIND)
+        near.set_ylim(0.0, float(_unrolled(1.7 * crests.LAYER)))
+        near.axhline(float(_unrolled(crests.LAYER)), color="0.5", linewidth=0.7, linestyle=":")
+        near.set_xlabel("Angle from the crest (rad); the wave runs to the left")
+        near.set_ylabel("Depth over h0")
+        turn = 2.0 * math.pi / abs(crests.resonant(*SHOWN)[1].slip)
+        text = (
+            f"h0/R = {SHOWN[0]:g}, w0 = {SHOWN[1]:g} h0, whirl with the small backward free wave; t in "
+            f"1/Omega, a whirl period being {turn:.1f}; {rows[-1].most} nodes. Above: seen from the drum, "
+            "which spins counter-clockwise, true to scale. Below: unrolled onto the strip, where "
+            "slopes are as steep as they are in the drum; the last crest's ripples are those of its nodes. "
+            "B: speed of the liquid at the crest over that of the crest."
+        )
+        # What a strip as wide as that is high.
+        wide = 6.3 - _CREST_FRAME.left - 0.25
+        high = wide * float(_unrolled(1.7 * crests.LAYER)) / (_AHEAD + _BEHIND)
+        lay_out(figure, [drums, [near]], [wide / len(drums), high], _CREST_FRAME, text)
+        figure.alt = crest_words(rows)
+    return figure
+
+
+def _unrolled(depth: Any) -> Any:
+    """Height ln(R/r) in the strip, of a depth over R."""
+    return -np.log1p(-np.asarray(depth))
+
+
+def _draw_drum(axes: Any, row: Crest) -> None:
+    angle = np.linspace(-math.pi, math.pi, _DRUM_LINES)
+    depth = np.interp(angle, crests.angles(), row.depth)
+    wall, free = np.exp(1j * (row.place + angle)), (1.0 - depth) * np.exp(1j * (row.place + angle))
+    axes.set_xlim(-1.06, 1.06)
+    axes.set_ylim(-1.06, 1.06)
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    ring = np.concatenate((wall, free[::-1]))
+    fill(axes, ring.real, ring.imag, facecolor="#56B4E9", edgecolor="none")
+    axes.plot(wall.real, wall.imag, color="black", linewidth=1.2)
+    axes.plot(free.real, free.imag, color="#0072B2", linewidth=0.9)
+    axes.set_title(f"t = {row.time:.4g}", fontsize=7.5, pad=2.0)
+
+
+def _draw_crest(axes: Any, row: Crest, colour: str) -> None:
+    angle = crests.angles()
+    name = f"t = {row.time:.4g}: {row.slope:.0f} deg, B = {row.crest_number:.2f}"
+    axes.plot(angle, _unrolled(row.depth), color=colour, label=name)
+
+
+def crest_words(rows: Sequence[Crest]) -> str:
+    """The numbers of a crest that breaks.
+
+    Parameters
+    ----------
+    rows : moments of one wave
+    """
+    parts = [
+        f"at t = {row.time:.4g} a crest of {row.crest:.3f} h0, {row.slope:.1f} deg steep, with B = "
+        f"{row.crest_number:.2f}"
+        for row in rows
+    ]
+    return f"A crest that breaks: {'; '.join(parts)}."
+
+
 def alternative(results: Kept) -> str:
     """The numbers that a reader would take from the figure.
 
@@ -119,28 +208,32 @@ def alternative(results: Kept) -> str:
     return f"Time to breaking, {'; '.join(ends)}. Highest crests over the depth: {', '.join(crests)}."
 
 
-def draw(out: Path) -> Path:
-    """Write it as PNG.
+def draw(out: Path) -> list[Path]:
+    """Write both as PNG.
 
     Parameters
     ----------
     out : folder, made if it is missing
     """
-    files = save(breaking_figure(), out, "breaking", "When the exact wave breaks")
-    files.svg.unlink()
-    return files.png
+    files = (
+        save(breaking_figure(), out, "breaking", "When the exact wave breaks"),
+        save(crest_figure(), out, "breaking_crest", "A crest that breaks"),
+    )
+    for file in files:
+        file.svg.unlink()
+    return [file.png for file in files]
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Draw the figure.
+    """Draw the figures.
 
     Parameters
     ----------
     arguments : of the command line; None: the process's own
     """
     parser = argparse.ArgumentParser(prog="python -m validation.breaking.figure", description=__doc__)
-    parser.add_argument("--out", type=Path, required=True, help="folder of the figure")
-    print(draw(parser.parse_args(arguments).out))
+    parser.add_argument("--out", type=Path, required=True, help="folder of the figures")
+    print(*draw(parser.parse_args(arguments).out), sep="\n")
 
 
 if __name__ == "__main__":

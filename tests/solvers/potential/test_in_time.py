@@ -241,6 +241,17 @@ def test_states(seen: dict[str, float], nodes: int, state: WaveState) -> None:
     assert found is state and bool(reason) == (state is WaveState.BROKEN)
 
 
+def test_a_crest_may_be_followed_beyond_its_breaking() -> None:
+    """Until it overhangs or loses volume, which no number lifts."""
+    seen = {**vars(QUIET), "crest_number": 0.9, "tail": 1e-2}
+    assert judged(Watch(**seen), 2048, 2048)[0] is WaveState.BROKEN
+    assert judged(Watch(**seen), 2048, 2048, math.inf)[0] is WaveState.SHORT_WAVES
+    for key, value in (("slope", 1.6), ("drift", 1e-5)):
+        assert judged(Watch(**{**seen, key: value}), 2048, 2048, math.inf)[0] is WaveState.BROKEN
+    with pytest.raises(InputError, match="breaking"):
+        Steps(breaking=0.0)
+
+
 def test_a_wave_that_breaks_says_so() -> None:
     """Hit so hard that the crest overturns; with more nodes no earlier, and never without a reason."""
     u = 2.0 * np.pi * np.arange(64) / 64
