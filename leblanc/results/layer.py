@@ -93,7 +93,7 @@ def lee_waves() -> Note:
 
 
 def no_smooth_wave(whirl: float, largest: float, fold: bool) -> Note:
-    """The whirl is larger than any up to which a smooth steady wave follows it.
+    """The whirl is larger than any up to which a smooth steady wave follows it: in place of its number.
 
     Parameters
     ----------

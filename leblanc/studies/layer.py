@@ -39,9 +39,10 @@ from solvers.potential.model import Potential, PotentialWave
 from solvers.potential.steady import Branch
 from solvers.pypde.models import LongWave, OneFamily, Progress
 from solvers.synchronous.models import LINEAR, Linear
-from solvers.wave_error import detuning_ratio, largest_whirl
+from solvers.wave_error import detuning_ratio
 
 _EVEN = 720  # angles of a film
+_SMOOTH = "smooth_whirl"  # has a note of its own, which says why
 _ONE_WAY = 1e-6  # part of the answer that may go the other way round before it is worth a note
 
 
@@ -85,11 +86,10 @@ def answer_layer(
     with as_options():
         wave = watched(model, progress).wave(fill, whirl)
     taken = time.perf_counter() - begin
-    notes, surface = wave_notes(wave), fill.surface_radius
+    notes, surface = (*wave_notes(wave), *_beyond_waves(fill, whirl, wave)), fill.surface_radius
     in_range = not notes
     if in_range and wave.answer.dry_patch[0]:
         notes = (dry_wall(),)
-    notes = (*notes, *_beyond_waves(fill, whirl, model))
     if isinstance(model, LongWave):
         notes = (*notes, *smeared_baffles([fill], model.numerics.cells))
     exact = _exact(wave) if isinstance(wave, PotentialWave) else None
@@ -174,16 +174,13 @@ def free_wave(fill: Fill, speed: float, crest: float, crests: int, model: WaveMo
     )
 
 
-def _beyond_waves(fill: Fill, whirl: Whirl, model: WaveModel) -> tuple[Note, ...]:
-    """That no smooth steady wave is there [theory: model_error, eq. 32-33]."""
-    if whirl.slip == 0.0 or whirl.gravity != 0.0 or not isinstance(model, Linear | LongWave | OneFamily):
+def _beyond_waves(fill: Fill, whirl: Whirl, wave: LiquidWave) -> tuple[Note, ...]:
+    """Whether the whirl is larger than any that a smooth steady wave follows, and why those end."""
+    if not any(number.name == _SMOOTH and not number.in_range for number in judge(wave.numbers, wave.ranges)):
         return ()
-    size = whirl.amplitude / fill.depth
-    largest = float(largest_whirl(fill.depth / fill.chamber.radius, whirl.detuning))
-    if fill.surface_radius <= fill.chamber.inner_radius or size <= largest:
-        return ()
-    above = float(detuning_ratio(fill.depth / fill.chamber.radius, whirl.detuning)) > 1.0
-    return (no_smooth_wave(size, largest, above),)
+    size, layer = whirl.amplitude / fill.depth, fill.depth / fill.chamber.radius
+    above = float(detuning_ratio(layer, whirl.detuning)) > 1.0
+    return (no_smooth_wave(size, size / wave.numbers[_SMOOTH], above),)
 
 
 Model = TypeVar("Model", bound=WaveModel)
@@ -220,7 +217,7 @@ def wave_notes(wave: LiquidWave) -> tuple[Note, ...]:
     clear = wave.answer.limits.get("inner_wall")
     return (
         *([no_answer(wave.reason)] if wave.reason else []),
-        *out_of_range(judge(wave.numbers, wave.ranges)),
+        *out_of_range(tuple(n for n in judge(wave.numbers, wave.ranges) if n.name != _SMOOTH)),
         *([against_whirl(wave.counter)] if wave.counter > _ONE_WAY else []),
         *([] if clear is None or clear[0] else [inner_wall()]),
     )
