@@ -141,6 +141,7 @@ def test_notes_count_what_was_held() -> None:
     assert motions.code is RunCode.HELD and restless.code is RunCode.NOT_SETTLED
     assert dict(motions.data) == {
         "held": 21, "cells": 128, "error": 3e-3, "limit_cycles": 3, "hysteresis": 1,
+        "wave_error": 2e-3, "waves_not_known": 0,
     }  # fmt: skip
     assert "Limit cycles at 3, between 1145 and 1335 rpm." in motions.text
     assert "at 195 rpm: the motion still changes after 1024 turns" in restless.text

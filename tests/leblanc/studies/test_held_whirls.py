@@ -31,12 +31,12 @@ def cycle(of: Prepared, size: float = SIZE, kind: HeldKind = HeldKind.LIMIT_CYCL
     axis = axis + 1e-4 * np.exp(-1j * SPIN * time)
     held, coordinates = HeldMachine(of.system, tuple(of.scene.fills)), np.zeros(2, dtype=complex)
     moment = start(held, SPIN, HoldNumerics(cells=8), coordinates)
-    one = np.ones(len(of.scene.fills))
+    each = np.ones(len(of.scene.fills))
     return HeldState(
         spin=SPIN, kind=kind, amplitude=1e-3, crest=1.3e-3, least=7e-4, largest=1.3e-3,
-        coordinates=coordinates, rest=np.zeros(2), liquid=0j * one, ripple=0.0 * one,
-        whirl_speed=WHIRL if kind is HeldKind.LIMIT_CYCLE else math.nan, dry=one < 0.0, captured=one > 0.0,
-        mean_rotation=0.0 * one, mass_error=0.0, change=0.0, turns=40, steps=1500, moment=moment,
+        coordinates=coordinates, rest=np.zeros(2), liquid=0j * each, ripple=0.0 * each,
+        whirl_speed=WHIRL if kind is HeldKind.LIMIT_CYCLE else math.nan, dry=each < 0.0, captured=each > 0.0,
+        mean_rotation=0.0 * each, mass_error=0.0, change=0.0, turns=40, steps=1500, moment=moment,
         path=np.column_stack([time, axis.real, axis.imag]),
     )  # fmt: skip
 
