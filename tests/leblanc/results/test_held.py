@@ -143,7 +143,7 @@ def test_notes_count_what_was_held() -> None:
         "held": 21, "cells": 128, "error": 3e-3, "limit_cycles": 3, "hysteresis": 1,
         "wave_error": 2e-3, "waves_not_known": 0,
     }  # fmt: skip
-    assert "Limit cycles at 3, between 1145 and 1335 rpm." in motions.text
+    assert "Limit cycles at 3, between 1145 and 1335 rpm;" in motions.text
     assert "at 195 rpm: the motion still changes after 1024 turns" in restless.text
     settled = replace(held, state=np.where(held.not_settled, "periodic", held.state))
     assert [note.code for note in notes.held_motions(settled, speed)] == [RunCode.HELD]
