@@ -142,7 +142,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _tell_choices(measured: Measured) -> int:
-    """The table of what auto takes, at the draws of chance, both whirl speeds of each."""
+    """The table of what auto takes, at the draws of chance."""
     print("| tolerance | linear | kdv | potential | long_wave | covered | largest error | no smooth wave |")
     print("|---|---|---|---|---|---|---|---|")
     for tolerance in TOLERANCES:

@@ -40,27 +40,24 @@ class Chosen:
         return float(np.mean(self.error[known] <= np.maximum(self.told[known], RESOLVED)))
 
 
-def choices(cases: Cases, tolerance: float, twin: bool = False) -> Chosen:
+def choices(cases: Cases, tolerance: float) -> Chosen:
     """What auto takes and answers; where long waves are left they are not asked, which takes seconds each.
+
+    Of the two whirl speeds of a detuning every other case has the one behind the drum, the others its twin.
 
     Parameters
     ----------
     cases : whirls with their exact waves
     tolerance : that auto is given
-    twin : of the two whirl speeds of a detuning the one ahead of the drum
     """
-    found = [
-        _choice(*place, tolerance, twin)
-        for place in zip(cases.layer.tolist(), cases.ratio.tolist(), cases.whirl.tolist(), strict=True)
-    ]
+    places = zip(cases.layer.tolist(), cases.ratio.tolist(), cases.whirl.tolist(), strict=True)
+    found = [_choice(*place, tolerance, k % 2) for k, place in enumerate(places)]
     names, told, force = zip(*found, strict=True)
     error = np.abs(np.array(force) - cases.exact) / np.maximum(1.0, np.abs(cases.exact))
     return Chosen(np.array(names), np.array(told), error)
 
 
-def _choice(
-    layer: float, ratio: float, size: float, tolerance: float, twin: bool
-) -> tuple[str, float, float]:
+def _choice(layer: float, ratio: float, size: float, tolerance: float, twin: int) -> tuple[str, float, float]:
     """Model, its estimate and its G."""
     fill, whirl = layer_fill(layer), Whirl(1.0, whirl_speeds(layer, ratio)[twin], size * layer)
     choice = choose_wave(AutoWave(tolerance=tolerance), fill, whirl)
@@ -79,11 +76,9 @@ def words(cases: Cases, tolerance: float) -> str:
     cases : whirls with their exact waves
     tolerance : that auto is given
     """
-    both = [choices(cases, tolerance, twin) for twin in (False, True)]
-    model = np.concatenate([found.model for found in both])
-    smooth = np.tile(cases.smooth, 2)
-    shares = [f"{np.mean(model[smooth] == name):.1%}" for name in ("linear", "kdv", "potential", "long_wave")]
-    covered, error = (np.mean([found.covered for found in both]), np.concatenate([f.error for f in both]))
-    beyond = np.mean(model[~smooth] == "long_wave")
-    cells = [f"{tolerance:g}", *shares, f"{covered:.1%}", f"{np.nanmax(error):.2g}", f"{beyond:.0%}"]
+    found, smooth = choices(cases, tolerance), cases.smooth
+    names = ("linear", "kdv", "potential", "long_wave")
+    shares = [f"{np.mean(found.model[smooth] == name):.1%}" for name in names]
+    beyond = f"{np.mean(found.model[~smooth] == 'long_wave'):.0%}"
+    cells = [f"{tolerance:g}", *shares, f"{found.covered:.1%}", f"{np.nanmax(found.error):.2g}", beyond]
     return f"| {' | '.join(cells)} |"
