@@ -15,7 +15,7 @@ from solvers.pypde.settle import settle
 from validation.exact import Cases, Ends, Marched, Measured, keep, kept
 from validation.exact.answers import beside, layer_fill
 from validation.exact.branch import WIDEST, End, Held, detuning, end, held_waves
-from validation.exact.choice import words
+from validation.exact.choice import choices, words
 from validation.exact.long_wave import choking, steady_long_wave
 
 LAYERS = (0.02, 0.03, 0.04, 0.055, 0.075, 0.1, 0.135, 0.18, 0.24, 0.3, 0.4, 0.5, 0.6, 0.7)
@@ -146,7 +146,7 @@ def _tell_choices(measured: Measured) -> int:
     print("| tolerance | linear | kdv | potential | long_wave | covered | largest error | no smooth wave |")
     print("|---|---|---|---|---|---|---|---|")
     for tolerance in TOLERANCES:
-        print(words(measured.drawn, tolerance), flush=True)
+        print(words(measured.drawn, tolerance, choices(measured.drawn, tolerance)), flush=True)
     return 0
 
 

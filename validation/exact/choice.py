@@ -68,15 +68,16 @@ def _choice(layer: float, ratio: float, size: float, tolerance: float, twin: int
     return choice.model.name, float(answer.error[0]), force
 
 
-def words(cases: Cases, tolerance: float) -> str:
+def words(cases: Cases, tolerance: float, found: Chosen) -> str:
     """A row of a table: shares of the models among smooth waves, coverage, the others.
 
     Parameters
     ----------
     cases : whirls with their exact waves
-    tolerance : that auto is given
+    tolerance : that auto was given
+    found : what it took
     """
-    found, smooth = choices(cases, tolerance), cases.smooth
+    smooth = cases.smooth
     names = ("linear", "kdv", "potential", "long_wave")
     shares = [f"{np.mean(found.model[smooth] == name):.1%}" for name in names]
     beyond = f"{np.mean(found.model[~smooth] == 'long_wave'):.0%}"
