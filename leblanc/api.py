@@ -379,6 +379,7 @@ def layer(
     solver: str | None = None,
     free: float | None = None,
     mode: int | None = None,
+    tolerance: float | None = None,
 ) -> LayerResult | LayerPeriodsResult | FreeWaveResult:
     """Force and centre of mass of a liquid layer under a prescribed whirl, in the plane; or its free wave.
 
@@ -388,7 +389,7 @@ def layer(
     volume : of the liquid, m^3
     speed, whirl_speed : of the spin and of the whirl in space, rad/s
     whirl_amplitude : radius of the whirl, m
-    model : statics, linear, long_wave, kdv, fem or potential
+    model : statics, linear, long_wave, kdv, fem or potential; auto takes the cheapest that is good enough
     cells : round the wall; 256 for long_wave, 96 for fem if None; of potential at most as many from crest to
         trough, 432 if None, and in time round the wall, 2048 if None
     baffles : number of radial baffles, for fem
@@ -403,6 +404,7 @@ def layer(
     free : depth at the crest over the mean depth of the free wave asked for, in place of a whirl, by linear
         or potential
     mode : its crests round the drum, 1 if None
+    tolerance : of auto, error of the force that is allowed, relative; 0.01 if None
 
     Raises
     ------

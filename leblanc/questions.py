@@ -31,7 +31,9 @@ from meshes.chamber import Chamber
 from meshes.errors import InputError, require_not_negative
 
 if TYPE_CHECKING:
+    from leblanc.studies.models.whirling import AutoWave
     from leblanc.studies.modes import SectionSource
+    from solvers.liquid_model import WaveModel
 
 Quantity = str | float
 Question = TypeVar("Question")
@@ -110,6 +112,7 @@ def layer_question(
     solver: str | None = None,
     free: float | None = None,
     mode: int | None = None,
+    tolerance: float | None = None,
 ) -> LayerQuestion:
     """The question of `layer`; the parameters are those of `leblanc.api.layer`.
 
@@ -117,8 +120,9 @@ def layer_question(
     ------
     InputError : a value that cannot be read, or is out of its range
     """
-    from leblanc.studies.layer import as_options  # bring the solvers of layers, which no other question needs
-    from leblanc.studies.models.liquid import wave_model
+    from leblanc.studies.layer import (
+        as_options,
+    )  # brings the solvers of layers, which no other question needs
 
     plates = baffle_plates(baffles, baffle_tip_radius, baffle_wall_gap)
     chamber = Chamber(
@@ -140,7 +144,7 @@ def layer_question(
             if value is not None:
                 raise InputError(f"--{name.replace('_', '-')}", value, "left out where --free is given")
         with as_options():
-            made = wave_model(model, law, cells)
+            made = _layer_model(model, law, cells, tolerance=tolerance)
         crests = 1 if mode is None else mode
         return LayerQuestion({}, None, 0.0, {**whirl, "crest": float(free), "crests": crests, "model": made})
     if mode is not None:
@@ -154,9 +158,32 @@ def layer_question(
         "gravity": parse_option(gravity, ACCELERATION, "--gravity"),
     }
     with as_options():
-        whirl["model"] = wave_model(model, law, cells, dispersion, solver)
+        whirl["model"] = _layer_model(model, law, cells, dispersion, solver, tolerance)
     length = None if duration is None else parse_option(duration, TIME, "--duration")
     return LayerQuestion(whirl, length, parse_option(ramp, TIME, "--ramp"))
+
+
+def _layer_model(
+    name: str,
+    friction: Friction,
+    cells: int | None,
+    dispersion: bool = False,
+    solver: str | None = None,
+    tolerance: float | None = None,
+) -> WaveModel | AutoWave:
+    """The model that is named, or what stands for it until the whirl is known."""
+    from leblanc.studies.models.liquid import wave_model
+    from leblanc.studies.models.whirling import AUTO, LAYER_MODELS, TOLERANCE, AutoWave
+
+    if name not in LAYER_MODELS:
+        raise InputError("model", name, "one of " + ", ".join(LAYER_MODELS))
+    if name != AUTO:
+        if tolerance is not None:
+            raise InputError("tolerance", tolerance, f"left out for {name}; auto has one")
+        return wave_model(name, friction, cells, dispersion, solver)
+    if solver is not None:
+        raise InputError("solver", solver, "left out for auto; long_wave and kdv have one")
+    return AutoWave(friction, cells, dispersion, TOLERANCE if tolerance is None else tolerance)
 
 
 def modes_question(

@@ -20,6 +20,7 @@ from fluid.fill import Fill, Fills
 from fluid.numbers import whirl_numbers
 from meshes.arrays import Array, Complex, Flags, Index
 from meshes.errors import InputError, require_not_negative, require_positive
+from solvers.wave_error import largest_whirl
 
 # What is left between an exact answer and the same from another order of sums.
 ROUNDING = 1e-12
@@ -29,6 +30,7 @@ Range = tuple[float, float]
 CAPTURED: Range = (1.0, math.inf)
 THIN_LAYERS: Range = (0.0, 0.2)
 LONG: Range = (0.0, 0.3)
+SMOOTH: Range = (0.0, 1.0)  # whirl over the largest that a smooth wave follows
 _ACROSS = 1e-9  # of the pull, that may be rounding
 _MOST_CRESTS = 64  # of a free wave
 
@@ -544,6 +546,26 @@ def numbers_of(fill: Fill, whirl: Whirl, found: Mapping[str, float]) -> dict[str
     """
     given = whirl_numbers(fill, whirl.spin, whirl.speed, whirl.amplitude, whirl.gravity)
     return asdict(given) | dict(found)
+
+
+def smooth_whirl(fill: Fill, whirl: Whirl) -> dict[str, float]:
+    """Size of a whirl over the largest that a smooth steady wave follows [theory: model_error, eq. 32-33].
+
+    Parameters
+    ----------
+    fill, whirl : what was asked, with a free surface
+
+    Returns
+    -------
+    By its name among the numbers of a wave, 0 between the resonances of one and of two crests, where no end
+    is told; none in a synchronous whirl, under gravity and with baffles, whose waves are others
+    """
+    if whirl.slip == 0.0 or whirl.gravity != 0.0 or fill.chamber.baffles is not None:
+        return {}
+    if whirl.amplitude == 0.0:
+        return {"smooth_whirl": 0.0}
+    largest = float(largest_whirl(fill.depth / fill.chamber.radius, whirl.detuning))
+    return {"smooth_whirl": whirl.amplitude / fill.depth / largest if largest > 0.0 else math.inf}
 
 
 def kept_limits(numbers: Mapping[str, float], ranges: Mapping[str, Range]) -> dict[str, bool]:

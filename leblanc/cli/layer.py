@@ -31,7 +31,15 @@ def layer(
         ),
     ] = None,
     mode: Annotated[int | None, typer.Option(help="Crests of the free wave [default: 1].")] = None,
-    model: Annotated[str, typer.Option(help="statics, linear, long_wave, kdv, fem or potential.")] = "linear",
+    model: Annotated[
+        str,
+        typer.Option(
+            help="statics, linear, long_wave, kdv, fem or potential; auto: the cheapest within --tolerance."
+        ),
+    ] = "linear",
+    tolerance: Annotated[
+        float | None, typer.Option(help="Of auto: error of the force that is allowed [default: 0.01].")
+    ] = None,
     cells: Annotated[
         int | None,
         typer.Option(
@@ -110,7 +118,7 @@ def layer(
         _tell(result, profile)
     if not result.converged:
         reason = "; ".join(shown["notes"][:1])
-        raise NotConverged([f"leblanc layer: {reason or 'no answer'}; {_HELP[model]}"])
+        raise NotConverged([f"leblanc layer: {reason or 'no answer'}; {_HELP[result.case.model]}"])
 
 
 _HELP = {

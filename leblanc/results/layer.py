@@ -32,6 +32,7 @@ class LayerCode(NoteCode):
     DRY_WALL = "dry_wall"
     LEE_WAVES = "lee_waves"
     NO_SMOOTH_WAVE = "no_smooth_wave"
+    NO_EXACT_WAVE = "no_exact_wave"
 
 
 @dataclass(frozen=True)
@@ -93,7 +94,7 @@ def lee_waves() -> Note:
 
 
 def no_smooth_wave(whirl: float, largest: float, fold: bool) -> Note:
-    """The whirl is larger than any up to which a smooth steady wave follows it.
+    """The whirl is larger than any up to which a smooth steady wave follows it: in place of its number.
 
     Parameters
     ----------
@@ -104,6 +105,11 @@ def no_smooth_wave(whirl: float, largest: float, fold: bool) -> Note:
     text = f"no smooth steady wave follows a whirl as it grows to {whirl:.2g} of the mean depth: "
     text += f"without friction {way} at {largest:.2g}"
     return Note(LayerCode.NO_SMOOTH_WAVE, {"whirl": whirl, "largest": largest, "fold": fold}, text)
+
+
+def no_exact_wave(reason: str) -> Note:
+    """Why no exact wave was found where the closed form has a smooth one, so that another model answers."""
+    return Note(LayerCode.NO_EXACT_WAVE, {}, f"no smooth exact wave was found: {reason}")
 
 
 @dataclass(frozen=True)
@@ -117,6 +123,8 @@ class LayerCase:
     speed, whirl_speed : spin; whirl in space, negative against the spin, rad/s
     whirl_amplitude : m
     solver : of the model's equations, by its name in py-pde; empty where that does not solve them
+    dispersion : of the finite depth, in a model that may have it or not
+    reason : why that model was taken, where the question left it open
     """
 
     model: str
@@ -127,6 +135,8 @@ class LayerCase:
     whirl_speed: float
     whirl_amplitude: float
     solver: str = ""
+    dispersion: bool = False
+    reason: str = ""
 
 
 @dataclass(frozen=True)
@@ -223,7 +233,8 @@ class LayerResult(Result):
     validity: tuple[Number, ...]
     exact: ExactWave | None = None
 
-    solver = carried("case.solver")
+    solver, model, model_reason = carried("case.solver"), carried("case.model"), carried("case.reason")
+    dispersion = carried("case.dispersion")
     figure = "leblanc.figures.wave:layer_figure"
     summary = "leblanc.text.liquid:layer_summary"
 
@@ -256,6 +267,7 @@ class LayerResult(Result):
         names += ["mean_rotation", "wall_time", *(("theta", "depth") if profile else ())]
         found: dict[str, Any] = {name: getattr(self, name) for name in names}
         return found | {
+            **_taken(self.case),
             "solver": self.solver,
             "notes": texts(self.notes),
             "gravity_offset": self.gravity_offset,
@@ -327,6 +339,8 @@ class FreeWaveResult(Result):
     notes: tuple[Note, ...]
     validity: tuple[Number, ...]
 
+    model, model_reason = carried("case.model"), carried("case.reason")
+    dispersion = carried("case.dispersion")
     figure = "leblanc.figures.wave:layer_figure"
     summary = "leblanc.text.liquid:free_wave_summary"
 
@@ -359,7 +373,8 @@ class FreeWaveResult(Result):
         names = ("mode", "whirl_speed", "crest", "trough", "crest_number", "branch", "converged", "in_range")
         names += ("mass_error", "error_estimate", "wall_time", *(("theta", "depth") if profile else ()))
         found: dict[str, Any] = {name: getattr(self, name) for name in names}
-        return found | {"validity": tuple(map(asdict, self.validity)), "notes": texts(self.notes)}
+        shown = {"validity": tuple(map(asdict, self.validity)), "notes": texts(self.notes)}
+        return found | _taken(self.case) | shown
 
     def named_arrays(self) -> NamedArrays:
         """The depth over `theta`, the two speeds over `sense`; the rest without a dimension."""
@@ -405,7 +420,8 @@ class LayerPeriodsResult(Result):
     validity: tuple[Number, ...]
     exact: ExactPeriods | None = None
 
-    solver = carried("case.solver")
+    solver, model, model_reason = carried("case.solver"), carried("case.model"), carried("case.reason")
+    dispersion = carried("case.dispersion")
     figure = "leblanc.figures.wave:periods_figure"
     summary = "leblanc.text.liquid:periods_summary"
 
@@ -441,6 +457,7 @@ class LayerPeriodsResult(Result):
         names += ("mass_error", "converged", *(("theta", "depth") if profile else ()))
         found: dict[str, Any] = {name: getattr(self.history, name) for name in names}
         return found | {
+            **_taken(self.case),
             "solver": self.solver,
             "in_range": self.in_range,
             "validity": tuple(map(asdict, self.validity)),
@@ -474,11 +491,18 @@ class LayerPeriodsResult(Result):
         return NamedArrays(columns, coords, _attributes(self.case, self.converged, self.in_range, self.notes))
 
 
+def _taken(case: LayerCase) -> dict[str, Any]:
+    """The model that answered, and why where the question left it open."""
+    return {"model": case.model, "dispersion": case.dispersion, "model_reason": case.reason}
+
+
 def _attributes(case: LayerCase, converged: bool, in_range: bool, notes: tuple[Note, ...]) -> dict[str, Any]:
     """The question, whether it was answered, versions."""
     return {
         "title": "Layer under a whirl",
         **asdict(case),
+        "dispersion": "yes" if case.dispersion else "no",
+        "reason": case.reason or "the model was asked for",
         "converged": "yes" if converged else "no",
         "in_range": "yes" if in_range else "no",
         "notes": "\n".join(map(one_line, texts(notes))) or "none",

@@ -334,6 +334,7 @@ class RunResult(Loaded, Result):
     # Held states; every branch; what a rotor adds that is not planar.
     held_at = carried("held.at")
     held_error = carried("held.error")
+    held_wave_error = carried("held.wave_error")
     held_whirl_speed = carried("held.whirl_speed")
     held_reason = carried("held.reason")
     held_solver = carried("held.solver")

@@ -7,7 +7,6 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import TypeVar
 
 import numpy as np
 
@@ -33,15 +32,24 @@ from leblanc.results.layer import (
 )
 from leblanc.results.notes.baffles import smeared_baffles
 from leblanc.studies.models.validity import judge
+from leblanc.studies.models.whirling import (
+    AutoWave,
+    WaveChoice,
+    choose_free,
+    choose_in_time,
+    choose_wave,
+    watched,
+)
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.liquid_model import LiquidWave, WaveModel, Whirl
 from solvers.potential.model import Potential, PotentialWave
 from solvers.potential.steady import Branch
 from solvers.pypde.models import LongWave, OneFamily, Progress
 from solvers.synchronous.models import LINEAR, Linear
-from solvers.wave_error import detuning_ratio, largest_whirl
+from solvers.wave_error import detuning_ratio
 
 _EVEN = 720  # angles of a film
+_SMOOTH = "smooth_whirl"  # has a note of its own, which says why
 _ONE_WAY = 1e-6  # part of the answer that may go the other way round before it is worth a note
 
 
@@ -50,7 +58,7 @@ def answer_layer(
     speed: float,
     whirl_speed: float,
     whirl_amplitude: float,
-    model: WaveModel,
+    model: WaveModel | AutoWave,
     gravity: float = 0.0,
     progress: Progress = None,
 ) -> LayerResult:
@@ -63,7 +71,8 @@ def answer_layer(
     whirl_speed : omega_w in space, rad/s, not 0; negative against the spin
     whirl_amplitude : A, m; without any, statics, linear theory and elements give the limit of the force
         ratio, the others no force
-    model : of the liquid, with its friction and resolution, as by `leblanc.studies.models.liquid.wave_model`
+    model : of the liquid, with its friction and resolution, as by `leblanc.studies.models.liquid.wave_model`;
+        or what stands for the cheapest that is good enough
     gravity : across the axis, m/s^2; for the linear and the long-wave model
     progress : called with the share of the longest time that is done, by models that go through time
 
@@ -77,19 +86,17 @@ def answer_layer(
     require_not_negative("--gravity", gravity)
     if not math.isfinite(whirl_speed) or whirl_speed == 0.0:
         raise InputError("--whirl-speed", whirl_speed, "a finite number other than 0")
-    if not model.takes_baffles and fill.chamber.baffles is not None:
-        allowed = f"0 for --model {model.name}; fem takes them"
-        raise InputError("--baffles", fill.chamber.baffles.count, allowed)
     begin = time.perf_counter()
     whirl = Whirl(speed, whirl_speed, whirl_amplitude, gravity=gravity)
     with as_options():
-        wave = watched(model, progress).wave(fill, whirl)
-    taken = time.perf_counter() - begin
-    notes, surface = wave_notes(wave), fill.surface_radius
+        choice = choose_wave(model, fill, whirl) if isinstance(model, AutoWave) else WaveChoice(model)
+        wave = choice.wave or watched(_with_baffles(choice.model, fill), progress).wave(fill, whirl)
+    taken, model = time.perf_counter() - begin, choice.model
+    notes, surface = (*wave_notes(wave), *_beyond_waves(fill, whirl, wave)), fill.surface_radius
     in_range = not notes
     if in_range and wave.answer.dry_patch[0]:
         notes = (dry_wall(),)
-    notes = (*notes, *_beyond_waves(fill, whirl, model))
+    notes = (*notes, *choice.notes)
     if isinstance(model, LongWave):
         notes = (*notes, *smeared_baffles([fill], model.numerics.cells))
     exact = _exact(wave) if isinstance(wave, PotentialWave) else None
@@ -97,7 +104,7 @@ def answer_layer(
         notes = (*notes, lee_waves())
     kappa = (fill.chamber.radius / surface) ** 2 if gravity else math.nan
     return LayerResult(
-        case=_case(fill, whirl, model),
+        case=_case(fill, whirl, choice),
         force_ratio=_force_ratio(fill, whirl, wave),
         offset=complex(wave.answer.offset[0]),
         error_estimate=float(wave.answer.error[0]),
@@ -116,6 +123,14 @@ def answer_layer(
     )
 
 
+def _with_baffles(model: WaveModel, fill: Fill) -> WaveModel:
+    """The model, if it takes the baffles that there may be."""
+    if not model.takes_baffles and fill.chamber.baffles is not None:
+        allowed = f"0 for --model {model.name}; fem takes them"
+        raise InputError("baffles", fill.chamber.baffles.count, allowed)
+    return model
+
+
 def _exact(wave: PotentialWave) -> ExactWave:
     """What only the exact wave has."""
     numbers = {name: wave.numbers.get(name, math.nan) for name in ("crest", "trough", "crest_number")}
@@ -128,7 +143,9 @@ def _exact(wave: PotentialWave) -> ExactWave:
     )
 
 
-def free_wave(fill: Fill, speed: float, crest: float, crests: int, model: WaveModel) -> FreeWaveResult:
+def free_wave(
+    fill: Fill, speed: float, crest: float, crests: int, model: WaveModel | AutoWave
+) -> FreeWaveResult:
     """The wave that runs round the drum by itself with crests of a given height.
 
     Parameters
@@ -137,7 +154,7 @@ def free_wave(fill: Fill, speed: float, crest: float, crests: int, model: WaveMo
     speed : spin speed Omega, rad/s
     crest : depth at the crest over the mean depth, above 1
     crests : round the drum
-    model : linear theory or the exact wave
+    model : linear theory or the exact wave, for which auto stands
 
     Raises
     ------
@@ -145,8 +162,11 @@ def free_wave(fill: Fill, speed: float, crest: float, crests: int, model: WaveMo
     """
     require_positive("--speed", speed)
     require_positive("--volume", fill.volume)
+    with as_options():
+        choice = choose_free(model) if isinstance(model, AutoWave) else WaveChoice(model)
+    model = choice.model
     if not isinstance(model, Potential | Linear):
-        raise InputError("--model", model.name, "linear or potential where --free is given")
+        raise InputError("--model", model.name, "auto, linear or potential where --free is given")
     begin = time.perf_counter()
     with as_options():
         wave = model.free_wave(fill, speed, crest, crests)
@@ -155,7 +175,7 @@ def free_wave(fill: Fill, speed: float, crest: float, crests: int, model: WaveMo
     if wave.converged and float(wave.depth.max()) > fill.chamber.radius - fill.chamber.inner_radius:
         notes = (*notes, inner_wall())
     return FreeWaveResult(
-        case=_case(fill, Whirl(speed, wave.whirl_speed[0] if wave.converged else speed, 0.0), model),
+        case=_case(fill, Whirl(speed, wave.whirl_speed[0] if wave.converged else speed, 0.0), choice),
         mode=crests,
         whirl_speed=np.array(wave.whirl_speed),
         crest=wave.crest,
@@ -174,26 +194,13 @@ def free_wave(fill: Fill, speed: float, crest: float, crests: int, model: WaveMo
     )
 
 
-def _beyond_waves(fill: Fill, whirl: Whirl, model: WaveModel) -> tuple[Note, ...]:
-    """That no smooth steady wave is there [theory: model_error, eq. 32-33]."""
-    if whirl.slip == 0.0 or whirl.gravity != 0.0 or not isinstance(model, Linear | LongWave | OneFamily):
+def _beyond_waves(fill: Fill, whirl: Whirl, wave: LiquidWave) -> tuple[Note, ...]:
+    """Whether the whirl is larger than any that a smooth steady wave follows, and why those end."""
+    if not any(number.name == _SMOOTH and not number.in_range for number in judge(wave.numbers, wave.ranges)):
         return ()
-    size = whirl.amplitude / fill.depth
-    largest = float(largest_whirl(fill.depth / fill.chamber.radius, whirl.detuning))
-    if fill.surface_radius <= fill.chamber.inner_radius or size <= largest:
-        return ()
-    above = float(detuning_ratio(fill.depth / fill.chamber.radius, whirl.detuning)) > 1.0
-    return (no_smooth_wave(size, largest, above),)
-
-
-Model = TypeVar("Model", bound=WaveModel)
-
-
-def watched(model: Model, progress: Progress) -> Model:
-    """The model, with someone to tell how far it has come, if it goes through time."""
-    if progress is not None and isinstance(model, LongWave | OneFamily | Potential):
-        return replace(model, progress=progress)
-    return model
+    size, layer = whirl.amplitude / fill.depth, fill.depth / fill.chamber.radius
+    above = float(detuning_ratio(layer, whirl.detuning)) > 1.0
+    return (no_smooth_wave(size, size / wave.numbers[_SMOOTH], above),)
 
 
 @contextmanager
@@ -220,14 +227,16 @@ def wave_notes(wave: LiquidWave) -> tuple[Note, ...]:
     clear = wave.answer.limits.get("inner_wall")
     return (
         *([no_answer(wave.reason)] if wave.reason else []),
-        *out_of_range(judge(wave.numbers, wave.ranges)),
+        *out_of_range(tuple(n for n in judge(wave.numbers, wave.ranges) if n.name != _SMOOTH)),
         *([against_whirl(wave.counter)] if wave.counter > _ONE_WAY else []),
         *([] if clear is None or clear[0] else [inner_wall()]),
     )
 
 
-def _case(fill: Fill, whirl: Whirl, model: WaveModel) -> LayerCase:
-    """The whirl and the chamber, for texts and figures."""
+def _case(fill: Fill, whirl: Whirl, choice: WaveChoice) -> LayerCase:
+    """The whirl, the chamber and the model, for texts and figures."""
+    model = choice.model
+    dispersed = isinstance(model, LongWave) and model.numerics.dispersion
     return LayerCase(
         model=model.name,
         radius=fill.chamber.radius,
@@ -237,6 +246,8 @@ def _case(fill: Fill, whirl: Whirl, model: WaveModel) -> LayerCase:
         whirl_speed=whirl.speed,
         whirl_amplitude=whirl.amplitude,
         solver=model.solver,
+        dispersion=dispersed or (isinstance(model, OneFamily) and model.dispersion),
+        reason=choice.reason,
     )
 
 
@@ -245,7 +256,7 @@ def layer_history(
     speed: float,
     whirl_speed: float,
     whirl_amplitude: float,
-    model: WaveModel,
+    model: WaveModel | AutoWave,
     duration: float,
     ramp: float = 0.0,
     gravity: float = 0.0,
@@ -264,21 +275,29 @@ def layer_history(
     InputError : a value out of its range, a model other than the long waves and the exact one
     """
     whirl = Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity)
+    choice = _in_time(model, fill, whirl)
+    model = choice.model
     if isinstance(model, Potential):
-        return _exact_history(fill, whirl, duration, model, progress)
+        return _exact_history(fill, whirl, duration, choice, model, progress)
     if not isinstance(model, LongWave):
-        raise InputError("--model", model.name, "long_wave or potential where a --duration is given")
+        raise InputError("--model", model.name, "auto, long_wave or potential where a --duration is given")
     from solvers.pypde.settle import simulate
 
     with as_options():
         history = simulate(fill, whirl, duration, model.friction, model.numerics, model.solver, progress)
     wave = model.wave_at_end(fill, whirl, history)
     numbers = judge(wave.numbers, wave.ranges)
-    return LayerPeriodsResult(_case(fill, whirl, model), history, wave_notes(wave), numbers)
+    return LayerPeriodsResult(_case(fill, whirl, choice), history, wave_notes(wave), numbers)
+
+
+def _in_time(model: WaveModel | AutoWave, fill: Fill, whirl: Whirl) -> WaveChoice:
+    """The model that goes through time."""
+    with as_options():
+        return choose_in_time(model, fill, whirl) if isinstance(model, AutoWave) else WaveChoice(model)
 
 
 def _exact_history(
-    fill: Fill, whirl: Whirl, duration: float, model: Potential, progress: Progress
+    fill: Fill, whirl: Whirl, duration: float, choice: WaveChoice, model: Potential, progress: Progress
 ) -> LayerPeriodsResult:
     """Exact waves from rest, until they break."""
     from solvers.potential.histories import simulate
@@ -289,7 +308,7 @@ def _exact_history(
     names = ("crest", "trough", "crest_number", "nodes", "force_gap")
     exact = ExactPeriods(state=found.state, **{name: getattr(found, name) for name in names})
     numbers = judge(wave.numbers, wave.ranges)
-    return LayerPeriodsResult(_case(fill, whirl, model), found.periods, wave_notes(wave), numbers, exact)
+    return LayerPeriodsResult(_case(fill, whirl, choice), found.periods, wave_notes(wave), numbers, exact)
 
 
 def layer_film(
@@ -297,7 +316,7 @@ def layer_film(
     speed: float,
     whirl_speed: float,
     whirl_amplitude: float,
-    model: WaveModel,
+    model: WaveModel | AutoWave,
     gravity: float = 0.0,
     duration: float | None = None,
     ramp: float = 0.0,
@@ -317,6 +336,9 @@ def layer_film(
     InputError : a value out of its range
     """
     whirl = Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity)
+    if isinstance(model, AutoWave):
+        with as_options():
+            model = (choose_wave if duration is None else choose_in_time)(model, fill, whirl).model
     steady = not isinstance(model, LongWave) and (duration is None or not isinstance(model, Potential))
     if steady:
         answer = answer_layer(fill, speed, whirl_speed, whirl_amplitude, model, gravity, progress)

@@ -227,6 +227,7 @@ def free_wave_summary(result: FreeWaveResult) -> list[tuple[str, str]]:
     known = found and math.isfinite(result.error_estimate)
     return [
         ("Liquid model", result.case.model),
+        *_why(result.case),
         ("Crests", f"{result.mode}"),
         *(speeds if found else []),
         *(_shape(result) if found else []),
@@ -259,7 +260,12 @@ def periods_summary(result: LayerPeriodsResult) -> list[tuple[str, str]]:
 def _model(result: LayerResult | LayerPeriodsResult) -> list[tuple[str, str]]:
     """The model, and what of py-pde solves it."""
     solver = [("Solver of py-pde", result.case.solver)] if result.case.solver else []
-    return [("Liquid model", result.case.model), *solver]
+    return [("Liquid model", result.case.model), *_why(result.case), *solver]
+
+
+def _why(case: LayerCase) -> list[tuple[str, str]]:
+    """Why that model, where the question left it open."""
+    return [("Why that model", case.reason)] if case.reason else []
 
 
 def _validity(converged: bool, in_range: bool, numbers: tuple[Number, ...]) -> list[tuple[str, str]]:

@@ -23,6 +23,7 @@ from solvers.liquid_model import (
     CAPTURED,
     LONG,
     ROUNDING,
+    SMOOTH,
     THIN_LAYERS,
     LiquidAnswer,
     LiquidWave,
@@ -32,6 +33,7 @@ from solvers.liquid_model import (
     Whirls,
     kept_limits,
     numbers_of,
+    smooth_whirl,
     wave_amplitude,
     whirl_answer,
 )
@@ -42,6 +44,13 @@ if TYPE_CHECKING:
     from solvers.pypde.family_law import Standing
 
 Progress = Callable[[float], object] | None
+
+
+def _bounds(ranges: Mapping[str, Range], friction: Friction) -> Mapping[str, Range]:
+    """Ranges of a model; friction rounds a fold off: where smooth waves end is known without it alone."""
+    if friction.law is FrictionLaw.NONE:
+        return ranges
+    return {name: bounds for name, bounds in ranges.items() if name != "smooth_whirl"}
 
 
 @dataclass(frozen=True)
@@ -65,6 +74,7 @@ class LongWave(WaveModel):
     takes_baffles = True
     ranges: ClassVar[Mapping[str, Range]] = {
         "relative_depth": LONG, "centrifuge": CAPTURED, "wall_layer": THIN_LAYERS, "force_gap": (0.0, 0.1),
+        "smooth_whirl": SMOOTH,
     }  # fmt: skip
 
     def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
@@ -80,15 +90,18 @@ class LongWave(WaveModel):
         from solvers.pypde.settle import settle
 
         history = settle(fill, whirl, self.friction, self.numerics, self.solver, self.progress)
-        return self.wave_at_end(fill, whirl, history)
+        return self.wave_at_end(fill, whirl, history, steady=True)
 
-    def wave_at_end(self, fill: Fill, whirl: Whirl, history: LayerHistory) -> LiquidWave:
+    def wave_at_end(
+        self, fill: Fill, whirl: Whirl, history: LayerHistory, steady: bool = False
+    ) -> LiquidWave:
         """The wave as a history leaves it, with the last means as its answer.
 
         Parameters
         ----------
         fill, whirl : chamber and liquid, and its whirl
         history : from `solvers.pypde.settle`
+        steady : it was followed until it no longer changed, so that it counts where smooth waves end
         """
         chamber, answered = fill.chamber, history.force_ratio.size > 0
         none = complex(math.nan, math.nan)
@@ -98,7 +111,8 @@ class LongWave(WaveModel):
             gap = float(abs(force - history.pressure_ratio[-1])) / max(1.0, float(abs(force)))
             extremes = np.concatenate([history.depth_max, history.depth_min])
             found = {"force_gap": gap, "wave_amplitude": wave_amplitude(extremes, fill.depth)}
-        numbers = numbers_of(fill, whirl, found)
+        numbers = numbers_of(fill, whirl, found | (smooth_whirl(fill, whirl) if steady else {}))
+        ranges = _bounds(self.ranges, self.friction)
         deepest = float(history.depth.max(initial=0.0))
         limits = {"inner_wall": deepest <= chamber.radius - chamber.inner_radius}
         answer = whirl_answer(
@@ -106,7 +120,7 @@ class LongWave(WaveModel):
             whirl,
             force_ratio=complex(force),
             offset=complex(offset),
-            limits=kept_limits(numbers, self.ranges) | limits,
+            limits=kept_limits(numbers, ranges) | limits,
             dry_patch=float(history.depth.min(initial=math.inf)) <= 0.0,
             converged=history.converged,
             error=gap if whirl.gravity or chamber.baffles else self._error(fill, whirl),
@@ -116,7 +130,7 @@ class LongWave(WaveModel):
             theta=history.theta,
             depth=history.depth,
             numbers=numbers,
-            ranges=self.ranges,
+            ranges=ranges,
             mass_error=history.mass_error,
             mean_rotation=float(history.mean_rotation[-1]) if answered else math.nan,
             reason=history.reason,
@@ -155,7 +169,7 @@ class OneFamily(WaveModel):
     name = "kdv"
     ranges: ClassVar[Mapping[str, Range]] = {
         "relative_depth": LONG, "wave_amplitude": (0.0, 0.3), "other_family": (0.0, 0.2),
-        "wall_layer": THIN_LAYERS,
+        "wall_layer": THIN_LAYERS, "smooth_whirl": SMOOTH,
     }  # fmt: skip
 
     def __post_init__(self) -> None:
@@ -233,7 +247,9 @@ class OneFamily(WaveModel):
         area = np.clip(family.mean_area + eta, 0.0, 0.5 * chamber.radius**2)
         size = kdv.validity(family, eta, whirl.slip)
         other = float(size.neglected)
-        numbers = numbers_of(fill, whirl, {"wave_amplitude": float(size.amplitude), "other_family": other})
+        found = {"wave_amplitude": float(size.amplitude), "other_family": other}
+        numbers = numbers_of(fill, whirl, found | smooth_whirl(fill, whirl))
+        ranges = _bounds(self.ranges, self.friction)
         # Below nothing and above all that the drum holds there is no layer, whatever the equation says.
         dry = float(size.thinnest) <= 0.0
         highest = float(eta.max())
@@ -244,7 +260,7 @@ class OneFamily(WaveModel):
             whirl,
             force_ratio=ratio,
             offset=offset,
-            limits=kept_limits(numbers, self.ranges)
+            limits=kept_limits(numbers, ranges)
             | {"inner_wall": surface**2 - 2.0 * highest >= chamber.inner_radius**2},
             dry_patch=dry,
             converged=not reason and possible,
@@ -260,7 +276,7 @@ class OneFamily(WaveModel):
             theta=around[order],
             depth=(chamber.radius - np.sqrt(chamber.radius**2 - 2.0 * area))[order],
             numbers=numbers,
-            ranges=self.ranges,
+            ranges=ranges,
             mass_error=abs(float(area.mean()) / family.mean_area - 1.0),
             mean_rotation=math.nan,
             reason=reason if possible else "the wave would run the wall dry or fill the drum",

@@ -24,6 +24,7 @@ from solvers.liquid_model import (
     CAPTURED,
     LONG,
     ROUNDING,
+    SMOOTH,
     THIN_LAYERS,
     FreeWave,
     LiquidAnswer,
@@ -38,6 +39,7 @@ from solvers.liquid_model import (
     kept_limits,
     numbers_of,
     require_crest,
+    smooth_whirl,
     wave_amplitude,
     whirl_answer,
 )
@@ -176,6 +178,7 @@ class Linear(WaveModel):
     name = "linear"
     ranges: ClassVar[Mapping[str, Range]] = {
         "wave_amplitude": (0.0, 0.3), "centrifuge": CAPTURED, "wall_layer": THIN_LAYERS,
+        "smooth_whirl": SMOOTH,
     }  # fmt: skip
 
     def at_rest(self, fills: Fills, whirls: Whirls) -> LiquidAnswer:
@@ -204,7 +207,8 @@ class Linear(WaveModel):
         converged = math.isfinite(force) and math.isfinite(displacement)
         # A synchronous whirl's linear surface is the exact circle to the square of its offset, while wet.
         ranges = dict(self.ranges) | ({} if whirl.slip else {"wave_amplitude": (0.0, 1.0)})
-        numbers = numbers_of(fill, whirl, {"wave_amplitude": abs(displacement) / fill.depth})
+        found = {"wave_amplitude": abs(displacement) / fill.depth}
+        numbers = numbers_of(fill, whirl, found | smooth_whirl(fill, whirl))
         inner_wall = surface - abs(displacement) >= chamber.inner_radius
         theta = angles()
         drawn = surface + displacement * np.cos(theta) if converged else np.full(theta.shape, surface)

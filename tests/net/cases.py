@@ -178,6 +178,8 @@ def _layers() -> Iterator[Case]:
         "kdv-linear": f"{_WHIRL} --model kdv --friction linear:0.5",
         "kdv-large": f"{_LAYER} 1.5e-2 --model kdv --friction linear:0.5",
         "kdv-dispersion": f"{_WHIRL} --model kdv --friction linear:0.5 --dispersion",
+        "auto": f"{_WHIRL} --model auto",
+        "auto-resonance": f"{_LAYER} 1.5e-3 --model auto --cells 64",
         "potential": f"{_WHIRL} --model potential",
         "potential-chokes": f"{_LAYER} 1.5e-3 --model potential",
         "potential-duration": f"{_WHIRL} --model potential --cells 128 --duration 2 --ramp 1",

@@ -178,6 +178,7 @@ def held_rig(count: int = 21, at: slice = slice(None)) -> RunResult:
         amplitude_down=np.where(late, 3.0 * size, np.nan),
         cells=128,
         reason=np.where(lost, "the motion still changes after 1024 turns", ""),
+        wave_error=np.where(cycle, 2e-3, np.nan),
     )
     response = replace(
         r,

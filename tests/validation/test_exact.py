@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import fields
 from itertools import pairwise
 
 import numpy as np
@@ -27,6 +28,7 @@ from tests.mutants import kills
 from validation.exact import MODELS, Cases, kept
 from validation.exact.answers import family_answer, layer_fill, model_answers
 from validation.exact.branch import detuning, end, held_waves, whirl_speeds
+from validation.exact.choice import RESOLVED, choices, words
 from validation.exact.figure import ends_figure, ends_words, maps_figure, maps_words
 from validation.exact.long_wave import choking, steady_long_wave
 
@@ -239,3 +241,20 @@ def test_figures_tell_their_numbers() -> None:
     assert maps.alt == maps_words(measured.maps) and "kdv at 0.003" in maps.alt
     assert len(maps.axes) == 9
     assert ends.alt == ends_words(measured.ends) and "0.01 at p/p_1 = 1.1 and a depth of 0.1" in ends.alt
+
+
+def test_auto_beside_some_of_the_draws() -> None:
+    """Cheap models, the exact one, and what is left to long waves; the row of a table says so."""
+    drawn = kept().drawn
+    square = np.array([detuning(*pair) for pair in zip(drawn.layer, drawn.ratio, strict=True)])
+    beyond = np.flatnonzero(~drawn.smooth & (drawn.whirl > largest_whirl(drawn.layer, square)))
+    at = np.concatenate([np.flatnonzero(drawn.smooth)[::16], beyond[:3]])
+    arrays = {item.name: getattr(drawn, item.name)[at] for item in fields(Cases) if item.name != "models"}
+    some = Cases(**arrays, models={name: values[at] for name, values in drawn.models.items()})
+    found = choices(some, 1e-4)
+    assert {"linear", "potential"} <= set(found.model[some.smooth].tolist())
+    assert np.all(found.told[some.smooth] <= 1e-4) and found.covered >= 0.95
+    assert np.all(found.error[found.model == "potential"] < RESOLVED)
+    assert np.all(np.isnan(found.told[found.model == "long_wave"])) and "long_wave" in found.model
+    share = np.mean(found.model[some.smooth] == "linear")
+    assert words(some, 1e-4, found).startswith(f"| 0.0001 | {share:.1%} | ")

@@ -9,9 +9,10 @@ from typing import Any
 import pytest
 
 from leblanc.scene.scene import load_scene
+from solvers.wave_error import family_error, long_wave_error
 from validation.trade import fingerprint, kept, names
 from validation.trade.__main__ import table
-from validation.trade.answers import FAMILY, WAVES
+from validation.trade.answers import FAMILY, WAVES, answer, lone_layer
 from validation.trade.cases import layer_questions, response_question, runup_question
 from validation.trade.cases import questions as all_questions
 from validation.trade.judge import Row, dominates
@@ -130,8 +131,19 @@ def test_a_layer_alone_by_each_solver_of_py_pde() -> None:
     ]
     found = error_table(waves, picked)
     first, second = (found[case.label][0] for case in picked)
+    # What they tell of themselves is of the model, beside exact waves, and of the cells.
+    fill, whirl, _ = lone_layer(waves.scene)
+    layer, size = fill.depth / fill.chamber.radius, whirl.amplitude / fill.depth
+    for case in picked:
+        told = answer(waves.scene, case).estimate
+        assert told == pytest.approx(
+            float(long_wave_error(layer, whirl.detuning, size, False, 16)), rel=1e-12
+        )
+        assert told > float(long_wave_error(layer, whirl.detuning, size, False)) > 0.0
     # Both err by the cells, 6 %, and by their steps, 1e-4 of it.
     assert 1e-2 < first < 0.1 and abs(first - second) < 1e-3 * first
     (picked_one,) = (case for case in family.cases if case.variant == "runge-kutta")
     assert error_table(family, [picked_one])[picked_one.label][0] < 1e-5
+    told = answer(family.scene, picked_one).estimate
+    assert told == family_error(layer, whirl.speed / whirl.spin, size, whitham=False) > 0.0
     assert not any(case.variant in ("milstein", "explicit_mpi") for case in (*waves.cases, *family.cases))

@@ -12,9 +12,10 @@ from meshes.arrays import Array
 from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl
 from solvers.pypde.settle import settle
-from validation.exact import Cases, Ends, Marched, Measured, keep
+from validation.exact import Cases, Ends, Marched, Measured, keep, kept
 from validation.exact.answers import beside, layer_fill
 from validation.exact.branch import WIDEST, End, Held, detuning, end, held_waves
+from validation.exact.choice import choices, words
 from validation.exact.long_wave import choking, steady_long_wave
 
 LAYERS = (0.02, 0.03, 0.04, 0.055, 0.075, 0.1, 0.135, 0.18, 0.24, 0.3, 0.4, 0.5, 0.6, 0.7)
@@ -34,6 +35,7 @@ IN_TIME = (
     (0.05, 0.7, 0.2),
 )  # fmt: skip
 CELLS = (64, 128, 256)
+TOLERANCES = (0.05, 0.01, 0.001, 1e-4)  # of what auto is asked
 
 
 def measure() -> Measured:
@@ -123,7 +125,10 @@ def main(arguments: list[str] | None = None) -> int:
     Exit code
     """
     parser = argparse.ArgumentParser(prog="python -m validation.exact", description=__doc__)
-    parser.parse_args(arguments)
+    text = "only ask what --model auto takes and how good it is at the kept draws"
+    parser.add_argument("--auto", action="store_true", help=text)
+    if parser.parse_args(arguments).auto:
+        return _tell_choices(kept())
     measured = measure()
     keep(measured)
     for name in measured.maps.models:
@@ -133,6 +138,15 @@ def main(arguments: list[str] | None = None) -> int:
             f"{name:14} error: median {worst[0]:.1e}, nine in ten below {worst[1]:.1e}, most {worst[2]:.1e}"
         )
     print(f"{measured.seconds:.0f} s, {np.count_nonzero(measured.maps.smooth)} smooth waves on the maps")
+    return _tell_choices(measured)
+
+
+def _tell_choices(measured: Measured) -> int:
+    """The table of what auto takes, at the draws of chance."""
+    print("| tolerance | linear | kdv | potential | long_wave | covered | largest error | no smooth wave |")
+    print("|---|---|---|---|---|---|---|---|")
+    for tolerance in TOLERANCES:
+        print(words(measured.drawn, tolerance, choices(measured.drawn, tolerance)), flush=True)
     return 0
 
 

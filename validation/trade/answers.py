@@ -28,6 +28,7 @@ from solvers.layer.places import fewest_cells
 from solvers.layer.state import Numerics
 from solvers.liquid_model import LiquidModel, Whirl
 from solvers.runup.runup import RunupNumerics
+from solvers.wave_error import long_wave_error
 
 RESPONSE, RUNUP = "response", "runup"
 WAVES, FAMILY = "long waves", "one family"
@@ -76,7 +77,8 @@ class Answer:
     reason : why there is no answer, or empty
     used : models that answered
     ripple : half of what the amplitude swings over, m, shape (k,); None where it is not asked for
-    estimate : largest error that the answer tells of itself, relative; nan where it tells none
+    estimate : largest error that the answer tells of itself, relative: of a layer alone that of its waves
+        beside the exact one, without friction; nan where it tells none
     """
 
     values: Array
@@ -202,6 +204,7 @@ def _elements(size: int, variant: str) -> LiquidModel:
 def _held(scene: Scene, cells: int) -> Answer:
     """Rotor and long waves at constant speed until they settle, each speed from its synchronous motion."""
     from leblanc.studies.held.held import held_machine
+    from leblanc.studies.held.whirls import wave_errors
     from solvers.held.hold import hold, start
     from solvers.held.state import HoldNumerics
     from solvers.synchronous.models import STATICS
@@ -220,7 +223,10 @@ def _held(scene: Scene, cells: int) -> Answer:
     ripple = np.array([0.5 * (state.largest - state.least) for state in states])
     reason = next((state.reason for state in states if not state.settled), "")
     captured = all(state.captured.all() for state in states)
-    return Answer(amplitude, captured, reason, ("long_wave",), ripple)
+    # Of the cells there is no estimate, the ladder shows what they do; of the waves where they whirl.
+    waves = wave_errors(machine, states)
+    estimate = float(np.nanmax(waves)) if np.isfinite(waves).any() else math.nan
+    return Answer(amplitude, captured, reason, ("long_wave",), ripple, estimate)
 
 
 def whirl_growth(scene: Scene) -> Array:
@@ -300,8 +306,10 @@ def _long_waves(scene: Scene, case: Case) -> Answer:
     fill, whirl, friction = lone_layer(scene)
     numerics = Numerics(case.resolution or Numerics().cells)
     found = simulate(fill, whirl, _PERIODS * whirl.period, friction, numerics, case.variant)
-    force = found.force_ratio
-    return Answer(np.concatenate([force.real, force.imag]), True, found.reason, (case.model,))
+    force, layer = found.force_ratio, fill.depth / fill.chamber.radius
+    estimate = float(long_wave_error(layer, whirl.detuning, _SMALL, False, numerics.cells))
+    values = np.concatenate([force.real, force.imag])
+    return Answer(values, True, found.reason, (case.model,), estimate=estimate)
 
 
 def _one_family(scene: Scene, case: Case) -> Answer:
@@ -311,7 +319,8 @@ def _one_family(scene: Scene, case: Case) -> Answer:
     found = OneFamily(friction, case.resolution or 256, solver=case.variant).wave(fill, whirl)
     offset = complex(found.answer.offset[0])
     in_range = bool(found.answer.in_range[0])
-    return Answer(np.array([offset.real, offset.imag]), in_range, found.reason, (case.model,))
+    values, estimate = np.array([offset.real, offset.imag]), float(found.answer.error[0])
+    return Answer(values, in_range, found.reason, (case.model,), estimate=estimate)
 
 
 _ANSWERS: dict[str, Callable[[Scene, Case], Answer]] = {

@@ -39,6 +39,9 @@ class Held:
     reason : why the motion has not settled, else empty, shape (n,); no entry where that is not known
     solver : that held them, by its name in py-pde
     model : of the liquid, one of `HELD_MODELS`
+    wave_error : estimated from smooth waves under the whirl of a limit cycle, how far long waves are off the
+        exact ones, relative; nan where there is no whirl or no estimate, shape (n,); no entry where that is
+        not known
     """
 
     at: Flags
@@ -55,11 +58,19 @@ class Held:
     reason: NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, dtype="U1"))
     solver: str = COUPLED
     model: str = "long_wave"
+    wave_error: Array = field(default_factory=lambda: np.zeros(0))
 
     @property
     def limit_cycle(self) -> Flags:
         """Where the motion, as met while the speed rises, is bounded but never repeats, shape (n,)."""
         return np.asarray(self.at & (self.state == "limit_cycle"))
+
+    @property
+    def waves_not_known(self) -> Flags:
+        """Limit cycles of which there is no estimate how far long waves are off, shape (n,)."""
+        if not self.wave_error.size or self.model == "potential":
+            return np.zeros(self.at.shape, dtype=bool)
+        return np.asarray(self.limit_cycle & np.isnan(self.wave_error))
 
     @property
     def not_settled(self) -> Flags:
@@ -80,6 +91,7 @@ class Held:
         return {
             "held_at": self.at.tolist(),
             "held_error": finite(self.error),
+            "held_wave_error": finite(self.wave_error),
             "held_whirl_speed": finite(self.whirl_speed),
             "liquid_mean": finite(self.liquid),
             "liquid_ripple": finite(self.ripple),
@@ -92,10 +104,13 @@ class Held:
     def variables(self) -> dict[str, Variable]:
         """Arrays over `speed`, of the layers over `chamber` too."""
         over, each, drum = ("speed",), ("speed", "chamber"), "from the chamber's axis, in the drum"
-        down, reasons = numbered(self.state_down), {}
+        down, more = numbered(self.state_down), {}
+        if self.wave_error.size:
+            text = "of long waves beside exact ones, under the whirl of a limit cycle"
+            more["held_wave_error"] = var(over, self.wave_error, "1", "estimated error of the waves", text)
         if self.reason.size:
             text = "why the motion has not settled"
-            reasons["held_reason"] = var(over, self.reason, "1", text, "empty where it has, or was not held")
+            more["held_reason"] = var(over, self.reason, "1", text, "empty where it has, or was not held")
         return {
             "held_at": flags(over, self.at, "no yes", "held", "the motion was held in time until it settled"),
             "held_error": var(
@@ -117,7 +132,7 @@ class Held:
                 "solver",
                 "that held the motions, of py-pde unless it is dop853",
             ),
-            **reasons,
+            **more,
         }
 
 

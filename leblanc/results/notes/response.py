@@ -205,13 +205,16 @@ def held_motions(held: Held, speed: Array) -> list[Note]:
             "nothing lags."
         )
     if cycles:
-        text += f" Limit cycles at {cycles}, {_between(speed[held.limit_cycle])}."
+        text += f" Limit cycles at {cycles}, {_between(speed[held.limit_cycle])}{_waves_words(held)}."
     if apart:
         text += (
             f" Up and down differ at {apart}, {_between(speed[held.hysteresis])}: amplitudes are those while "
             "the speed rises."
         )
-    data = {"held": count, "cells": held.cells, "error": worst, "limit_cycles": cycles, "hysteresis": apart}
+    data = {"held": count, "cells": held.cells, "error": worst, "limit_cycles": cycles, "hysteresis": apart,
+        "wave_error": float(held.wave_error[np.isfinite(held.wave_error)].max(initial=0.0)),
+        "waves_not_known": int(np.count_nonzero(held.waves_not_known)),
+    }  # fmt: skip
     found, lost = [Note(RunCode.HELD, data, text)], held.not_settled
     if lost.any():
         why = held.reason[lost][0] if held.reason.size else ""
@@ -221,6 +224,18 @@ def held_motions(held: Held, speed: Array) -> list[Note]:
         )
         found.append(Note(RunCode.NOT_SETTLED, {"speed": tuple(speed[lost].tolist())}, text))
     return found
+
+
+def _waves_words(held: Held) -> str:
+    """How far long waves are off at the whirls of limit cycles, as the end of a sentence."""
+    known = held.wave_error[np.isfinite(held.wave_error)]
+    lost = int(np.count_nonzero(held.waves_not_known))
+    told = f"; long waves are off by up to {percent(float(known.max()))} there" if known.size else ""
+    if not lost:
+        return told
+    where = f"at {lost} of them" if known.size else "there"
+    why = "no smooth wave follows a whirl as large, or baffles stand in the liquid"
+    return f"{told}; how far long waves are off is not known {where}: {why}"
 
 
 def _between(speed: Array) -> str:

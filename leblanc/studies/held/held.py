@@ -14,6 +14,7 @@ from leblanc.results.choice import Choice
 from leblanc.results.motion.held import Held
 from leblanc.studies.held.holding import Began, Holding
 from leblanc.studies.held.store import FOLDER, kept
+from leblanc.studies.held.whirls import wave_errors
 from leblanc.studies.held.workers import runner
 from leblanc.studies.models.choose import Prepared, held_model, is_cut
 from meshes.arrays import Array, Complex, Flags, Index
@@ -74,10 +75,9 @@ def hold_answer(
     motions = dict(zip(steady.speed.tolist(), states.up, strict=True))
     answer = _placed(began.answer, every.at(np.arange(rows.size)), rows)
     models, error = choice.models.astype("U9"), choice.error.copy()
-    models[rows], error[rows] = (
-        choice.held_model,
-        held.error[rows] + _left_out(machine, began.answer.at(rows)),
-    )
+    models[rows] = choice.held_model
+    waves = np.nan_to_num(held.wave_error[rows])  # where they have no estimate the notes say so
+    error[rows] = held.error[rows] + waves + _left_out(machine, began.answer.at(rows))
     kept = every.at(np.arange(rows.size, total)) if began.at.all() else began.refined.at(_far(began))
     return replace(choice, models=models, error=error), answer, kept, held, motions
 
@@ -299,4 +299,5 @@ def held_result(found: HeldBranches, machine: Prepared, at: Index, solver: str) 
         reason=spread([state.reason for state in up], ""),
         solver=OWN_STEPS if model == "potential" else solver,
         model=model,
+        wave_error=spread(wave_errors(machine, up)),
     )

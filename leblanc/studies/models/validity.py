@@ -227,6 +227,7 @@ def _suits(start: float, stop: float, critical: float) -> bool:
 MEANING = {
     "relative_depth": "mean depth over radius",
     "deflection": "whirl amplitude over mean depth",
+    "smooth_whirl": "whirl over the largest that a smooth steady wave follows",
     "detuning": "distance from the nearer free wave over that between the two",
     "froude": "whirl speed seen from the drum over the nearer free wave's",
     "centrifuge": "centrifugal acceleration at the surface over gravity across the axis",

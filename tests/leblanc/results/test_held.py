@@ -58,7 +58,14 @@ def test_json_and_data_file_have_the_same_motions(tmp_path: Path) -> None:
     held = held_of(result)
     assert found["held_at"] == held.at.tolist() == (data["held_at"] == 1).values.tolist()
     assert found["state"].count("limit_cycle") == 3
-    for key in ("held_error", "held_whirl_speed", "amplitude_down", "amplitude_min", "amplitude_max"):
+    for key in (
+        "held_error",
+        "held_wave_error",
+        "held_whirl_speed",
+        "amplitude_down",
+        "amplitude_min",
+        "amplitude_max",
+    ):
         np.testing.assert_array_equal(np.array(found[key], dtype=float), data[key].values)
         np.testing.assert_array_equal(np.array(found[key], dtype=float), getattr(result, key))
     for key in ("liquid_mean", "liquid_ripple"):
@@ -76,6 +83,27 @@ def test_a_motion_held_has_shown_its_own_stability() -> None:
     result = replace(held_rig(), whirl=SelfExcited(np.full(21, np.nan), np.full(21, np.nan), (), "none"))
     kinds = dict(zip(result.state.tolist(), result.stability.tolist(), strict=True))
     assert kinds == {"periodic": "stable", "limit_cycle": "unstable", "not_settled": "not_known"}
+
+
+def test_the_note_tells_how_far_long_waves_are_off_at_the_whirls_of_cycles() -> None:
+    result = held_rig(at=SOME)
+    held = held_of(result)
+    known = notes.held_motions(held, result.speed)[0]
+    assert "; long waves are off by up to 0.2 % there." in known.text and known.data["waves_not_known"] == 0
+    errors = held.wave_error.copy()
+    errors[np.flatnonzero(held.limit_cycle)[:2]] = np.nan
+    for some, said in (
+        (errors, "not known at 2 of them: no smooth wave"),
+        (errors * np.nan, "not known there"),
+    ):
+        told = notes.held_motions(replace(held, wave_error=some), result.speed)[0]
+        assert said in told.text and told.data["waves_not_known"] >= 2
+    # Of exact waves nothing is said, nor where it was never asked.
+    for other in (
+        replace(held, model="potential", wave_error=errors * np.nan),
+        replace(held, wave_error=np.zeros(0)),
+    ):
+        assert "waves are off" not in notes.held_motions(other, result.speed)[0].text
 
 
 def test_limits_tell_cycles_from_what_is_unstable() -> None:
@@ -113,8 +141,9 @@ def test_notes_count_what_was_held() -> None:
     assert motions.code is RunCode.HELD and restless.code is RunCode.NOT_SETTLED
     assert dict(motions.data) == {
         "held": 21, "cells": 128, "error": 3e-3, "limit_cycles": 3, "hysteresis": 1,
+        "wave_error": 2e-3, "waves_not_known": 0,
     }  # fmt: skip
-    assert "Limit cycles at 3, between 1145 and 1335 rpm." in motions.text
+    assert "Limit cycles at 3, between 1145 and 1335 rpm;" in motions.text
     assert "at 195 rpm: the motion still changes after 1024 turns" in restless.text
     settled = replace(held, state=np.where(held.not_settled, "periodic", held.state))
     assert [note.code for note in notes.held_motions(settled, speed)] == [RunCode.HELD]

@@ -142,6 +142,7 @@ def test_a_note_where_no_smooth_wave_follows_the_whirl(ratio: float) -> None:
         answer = answer_layer(FILL, SPIN, SPIN / (1.0 + p), size * FILL.depth, wave_model("linear"))
         notes = [note for note in answer.notes if note.code is LayerCode.NO_SMOOTH_WAVE]
         assert bool(notes) is beyond and math.isnan(answer.error_estimate) is beyond
+        assert answer.in_range is not beyond
         if beyond:
             assert notes[0].data["fold"] is (ratio > 1.0) and 0.004 < notes[0].data["largest"] < 0.02
             assert ("it turns back" in notes[0].text) is (ratio > 1.0)

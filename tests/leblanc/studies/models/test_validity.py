@@ -11,12 +11,14 @@ from fluid.fill import Fill
 from fluid.friction.laws import NO_FRICTION, Friction
 from fluid.liquid import known_liquid
 from leblanc.cli import main
-from leblanc.results.layer import LayerResult
+from leblanc.results.layer import LayerCode, LayerResult, Number
 from leblanc.studies.layer import answer_layer
 from leblanc.studies.models.liquid import wave_model
 from leblanc.studies.models.validity import MEANING
 from meshes.chamber import Chamber
+from solvers.potential.steady import linear_detuning
 from solvers.synchronous.models import LINEAR
+from tests.mutants import kills
 
 R, H, SPIN = 0.15, 0.01, 40.0
 SHARED = {"relative_depth", "deflection", "detuning", "froude", "centrifuge", "reynolds", "wall_layer"}
@@ -69,6 +71,50 @@ def test_synchronous_linear_waves_hold_up_to_the_dry_wall() -> None:
     assert outside(answer_layer(fill, SPIN, SPIN, 1.1 * fill.depth, LINEAR)) == {"wave_amplitude"}
 
 
+DEEP, RATIO, FOLD = 0.1, 1.1, 0.010372250  # of the exact wave, by another code for its equations
+
+
+def beside_the_fold(
+    model: str, share: float, friction: Friction = NO_FRICTION, speed: float = 0.0, gravity: float = 0.0
+) -> tuple[Number | None, LayerResult]:
+    """A whirl of a share of the largest that a smooth wave follows, at a detuning unless a speed is given."""
+    fill, asked = layer(DEEP), wave_model(model, friction, 32 if model == "long_wave" else None)
+    at = speed or SPIN / (1.0 + RATIO * math.sqrt(linear_detuning(DEEP)))
+    answer = answer_layer(fill, SPIN, at, share * FOLD * fill.depth, asked, gravity)
+    return next((number for number in answer.validity if number.name == "smooth_whirl"), None), answer
+
+
+@pytest.mark.parametrize("model", ["linear", "kdv", "long_wave"])
+@kills("solvers.liquid_model:smooth_whirl", "/ fill.depth / largest", "* largest / fill.depth")
+def test_a_whirl_counts_beside_the_largest_that_a_smooth_wave_follows(model: str) -> None:
+    """Told by the models that have an estimate; the note that says why is there where it is out of range."""
+    for share in (0.5, 1.5):
+        number, answer = beside_the_fold(model, share)
+        # The closed form has this fold to 1.5 %, at most 7 %.
+        assert number is not None and number.value == pytest.approx(share, rel=0.07) and number.most == 1.0
+        told = [note for note in answer.notes if note.code is LayerCode.NO_SMOOTH_WAVE]
+        assert number.in_range == (share < 1.0) == (not told) == math.isfinite(answer.error_estimate)
+        assert not any(MEANING["smooth_whirl"] in note.text for note in answer.notes), "said once"
+        if told:
+            assert not answer.in_range and told[0].data["fold"] is True
+            assert told[0].data["whirl"] / told[0].data["largest"] == pytest.approx(number.value, rel=1e-12)
+
+
+@pytest.mark.parametrize("model", ["kdv", "long_wave"])
+@kills("solvers.pypde.models:_bounds", 'name != "smooth_whirl"', 'name == "smooth_whirl"')
+def test_friction_rounds_a_fold_off(model: str) -> None:
+    number, answer = beside_the_fold(model, 1.5, Friction("linear", 1.0))
+    assert number is not None and number.most is None and number.in_range
+    assert LayerCode.NO_SMOOTH_WAVE not in {note.code for note in answer.notes}
+
+
+def test_no_end_is_told_where_other_waves_are() -> None:
+    assert beside_the_fold("linear", 1.5, gravity=9.81)[0] is None
+    assert beside_the_fold("linear", 1.5, speed=SPIN)[0] is None
+    still = beside_the_fold("linear", 0.0)[0]
+    assert still is not None and still.value == 0.0
+
+
 def test_json_of_a_history(capsys: pytest.CaptureFixture[str]) -> None:
     options = ["--radius", "0.15", "--volume", repr(layer(0.1).volume), "--height", "0.01", "--speed", "40"]
     options += ["--whirl-speed", "30", "--whirl-amplitude", "0.1 mm", "--model", "long_wave", "--cells", "64"]
@@ -76,7 +122,7 @@ def test_json_of_a_history(capsys: pytest.CaptureFixture[str]) -> None:
     answer = json.loads(capsys.readouterr().out)
     assert answer["in_range"] is True and answer["notes"] == []
     found = {number["name"]: number for number in answer["validity"]}
-    assert set(found) == set(MEANING) - {"other_family", "crest", "trough", "crest_number"}
+    assert set(found) == set(MEANING) - {"other_family", "crest", "trough", "crest_number", "smooth_whirl"}
     assert found["relative_depth"]["most"] == 0.3 and found["centrifuge"]["value"] is None
     assert 0.0 < found["wave_amplitude"]["value"] < 0.2 and found["force_gap"]["value"] < 0.1
     # In words the same numbers stand one to a line.
