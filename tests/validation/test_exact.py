@@ -248,7 +248,7 @@ def test_auto_beside_some_of_the_draws() -> None:
     drawn = kept().drawn
     square = np.array([detuning(*pair) for pair in zip(drawn.layer, drawn.ratio, strict=True)])
     beyond = np.flatnonzero(~drawn.smooth & (drawn.whirl > largest_whirl(drawn.layer, square)))
-    at = np.concatenate([np.flatnonzero(drawn.smooth)[::16], beyond[:3]])
+    at = np.concatenate([np.flatnonzero(drawn.smooth)[::32], beyond[:3]])
     arrays = {item.name: getattr(drawn, item.name)[at] for item in fields(Cases) if item.name != "models"}
     some = Cases(**arrays, models={name: values[at] for name, values in drawn.models.items()})
     found = choices(some, 1e-4)
