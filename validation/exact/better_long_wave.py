@@ -171,7 +171,8 @@ def marched(wave: Wave, detuning: float, dispersion: bool, cells: int, periods: 
             loads,
         )
         after = complex(*centre(held, angles))
-        found[i] = means(loads[0], period, mass, whirl, (before, after))[0].real
+        # A wave that stands leaves the period as fast as it came.
+        found[i] = means(loads[0], period, mass, whirl, (before, after), (0j, 0j))[0].real
         before = after
     return found / (math.pi * whirl**2 * wave.whirl)
 
