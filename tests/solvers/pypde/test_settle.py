@@ -132,7 +132,7 @@ def test_first_whirls_are_those_of_the_exact_wave() -> None:
         for cells in (128, 256)
     )
     # Means are sums of steps that a cell's width sets: first order in the cells, 1.6e-3 with 256. Beyond them
-    # 8e-5 and 2e-4 are left to cells and dispersion; without what is gained it would be 8e-3 and 9e-4.
+    # 8e-5 and 2e-4 are left to cells and dispersion; without what is gained it is 7e-3 and 6e-4.
     assert np.all(np.abs(2.0 * fine - coarse - exact) < [2e-4, 4e-4] * np.abs(exact))
 
 
