@@ -196,7 +196,8 @@ def test_the_liquid_moves_as_its_place_says() -> None:
     fill, cells = layer(), 64
     theta = circle(cells).axes_coords[0]
     eq = AnnularLongWavePDE(fill, DRIVEN, dispersion=True)
-    for depth in (fill.depth * (1.0 + 0.3 * np.sin(theta)), 2.0 * fill.depth * np.maximum(np.cos(theta), 0.0)):
+    for share in (1.0 + 0.3 * np.sin(theta), 2.0 * np.maximum(np.cos(theta), 0.0)):
+        depth = share * fill.depth
         state, begin, gaps = eq.start(circle(cells), depth, 0.1 * np.cos(theta), time=0.4), 0.4, []
         first = eq.place(state, begin)
         for length in (4e-4, 2e-4):
