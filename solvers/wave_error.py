@@ -27,7 +27,7 @@ _CHOKES = math.pi**2 / 12.0
 _GROWTH, _CHOKED, _SERRE, _FAMILY, _SLACK = 15.0, 8.0, 4.5, 5.0, 1.03
 # Of waves through time on so many cells: the share by which tanh(L) is off for them, and what they take away
 # of what the height adds; less where waves disperse, whose faces are of third order.
-_CELLS, _CELLS_DISPERSED, _AT_CELLS = (1.3e-3, 0.2), (7e-4, 0.11), 128.0
+_CELLS, _CELLS_DISPERSED, _AT_CELLS = (1.3e-3, 0.2), (1e-3, 0.11), 128.0
 # An estimate above this is none.
 _MOST = 100.0
 # At a resonance infinite forces are less one another: no number, and so no estimate.

@@ -47,7 +47,7 @@ def test_cells_slow_small_waves(layer: float, ratio: float) -> None:
     detuning, t, step = ratio**2 * linear_detuning(layer), float(layer_tanh(layer)), 1e-5
     ends = [float(small_force(layer, detuning, t * (1.0 + way * step))) for way in (-1, 1)]
     size = max(1.0, abs(float(small_force(layer, detuning))))
-    for dispersion, share in ((True, 7e-4), (False, 1.3e-3)):
+    for dispersion, share in ((True, 1e-3), (False, 1.3e-3)):
         found = [long_wave_error(layer, detuning, 1e-7, dispersion, n) for n in (64, 128, math.inf)]
         # Above are differences of what the model is off by itself: 1e-16 of that over the share.
         wanted = share * abs(ends[1] - ends[0]) / (2.0 * step * size)
