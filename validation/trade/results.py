@@ -53,7 +53,7 @@ def record_of(content: Mapping[str, Any]) -> TradeRecord:
     for question in content["questions"]:
         rows = [row for row in content["rows"] if row["question"] == question["question"]]
         kept = {key: question[key] for key in ("question", "about", "reference", "reference_error")}
-        numbers = {
+        numbers: dict[str, Any] = {
             key: math.nan if question[old] is None else question[old]
             for key, old in (("order", "order"), ("ripple", "ripple"), ("overhead", "default_overhead"))
         }
