@@ -248,6 +248,30 @@ def slope_aside(table, area, full, value, half, ghosts):
 
 
 @_jit
+def straighten(table, n, value, bent, ghosts):
+    """Make straight again the cells beside baffles, where they were parabolas.
+
+    Parameters
+    ----------
+    table : as by `table_of`
+    n : cells of the ring
+    value : of the cells, continued beyond both ends, shape (n + 2 ghosts,)
+    bent : means of what they have at their two faces, changed in place, of the same shape
+    ghosts : cells by which the ring is continued
+    """
+    for k in range(2 * table.shape[0]):
+        i, way = int(table[k // 2, FACE]), 2 * (k % 2) - 1
+        if i < 0:
+            continue
+        beside = (i + (way - 1) // 2) % n
+        bent[beside + ghosts] = value[beside + ghosts]
+        if beside == n - 1:
+            bent[ghosts - 1] = value[ghosts - 1]
+        if beside == 0:
+            bent[n + ghosts] = value[n + ghosts]
+
+
+@_jit
 def obstruct(table, area, spin, full, slot, pull_face, before, after, mass, flow):
     """Put a layer's baffles in the way: mass and momentum fluxes through their faces, in place.
 

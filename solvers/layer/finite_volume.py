@@ -19,7 +19,7 @@ import numpy as np
 from numba import njit
 
 from fluid import long_wave
-from solvers.layer.baffles import FACE, OPEN, obstruct, slope_aside, smear, take
+from solvers.layer.baffles import FACE, OPEN, obstruct, slope_aside, smear, straighten, take
 
 # Products and sums may be contracted, zeros lose their signs; the order of sums stays. Views of arrays need
 # no reference counts here, and what only compiled code calls no wrappers: less to compile.
@@ -33,6 +33,8 @@ COMPILED: dict[str, Any] = {
 # steps of half a cell: with longer ones, as of a Courant number of 0.8, a gap that fills and empties rings.
 PRESSED = 2.0
 _face_jit: Any = njit(**(COMPILED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
+# What becomes part of its callers.
+_inlined: Any = njit(inline="always")
 # Sums and largest values over a ring, in parts that the compiler chooses once and for all: the same numbers
 # give the same sum.
 SUMMED: dict[str, Any] = COMPILED | {"fastmath": {"contract", "arcp", "nsz", "reassoc", "nnan"}}
@@ -56,6 +58,9 @@ THIN = 1e-5
 NEAREST = 0.03
 # Keeps quotients of nothing by nothing at nothing.
 _NOTHING = 1e-300
+
+# Skew of the slopes by which a face lies on its cell's parabola.
+THIRD = 1.0 / 12.0
 
 _LOG_4 = 1.3862943611198906
 
@@ -121,23 +126,40 @@ def primitives(area, q, spin, pull, full, slot, velocity, head, surface):
 
 
 @_face_jit
-def _half_slope(back: float, ahead: float) -> float:
-    """Half of the monotonised central slope."""
-    central = 0.25 * (back + ahead)
-    least = min(abs(central), abs(back), abs(ahead))
-    slope: float = least if central > 0.0 else -least
-    return slope if back * ahead > 0.0 else 0.0
+def _limited(back: float, ahead: float, skew: float) -> tuple[float, float]:
+    """Half of a cell's slope, and what both its faces have beyond its mean; limited, 0 where it is a crest.
 
-
-@_face_jit
-def half_slopes(area, head, velocity, surface, spin, full, slot, half_head, half_velocity, log):
-    """Half of the slopes of a ring's cells but the first and the last, limited wave by wave; and their L.
-
-    Differences of head and velocity are split into those that the two waves of the cell carry, of which
-    du/dA = (lambda - u/r^2)/L = Omega +- c/L, c half the difference of the speeds [theory: long_wave, eq. 3].
-    Next to a dry cell there is no slope, nor where the gap begins to be full.
+    A face takes a quarter of each difference, behind and ahead, and `skew` more of that across it and less
+    of the other: 0 is the monotonised central slope, 1/12 the parabola within Koren's limits.
     """
-    n = half_head.size
+    near, far = 0.25 + skew, 0.25 - skew
+    least = min(abs(back), abs(ahead))
+    up = min(abs(far * back + near * ahead), least)
+    down = min(abs(near * back + far * ahead), least)
+    way = 0.5 if back + ahead > 0.0 else -0.5
+    half, bend = way * (up + down), way * (up - down)
+    same = back * ahead > 0.0
+    return (half if same else 0.0), (bend if same else 0.0)
+
+
+@_inlined
+def _slopes(
+    area,
+    head,
+    velocity,
+    surface,
+    spin,
+    full,
+    slot,
+    third,
+    half_head,
+    half_velocity,
+    log,
+    bent_head,
+    bent_velocity,
+):
+    """`half_slopes` or, to third order, `bent_slopes`; part of either."""
+    n, skew = half_head.size, THIRD if third else 0.0
     area_b, area_m, area_a = area[:n], area[1 : n + 1], area[2 : n + 2]
     head_b, head_m, head_a = head[:n], head[1 : n + 1], head[2 : n + 2]
     velocity_b, velocity_m, velocity_a = velocity[:n], velocity[1 : n + 1], velocity[2 : n + 2]
@@ -160,10 +182,42 @@ def half_slopes(area, head, velocity, surface, spin, full, slot, half_head, half
         head_1, head_2 = head_m[i] - head_b[i], head_a[i] - head_m[i]
         velocity_1 = weight * (velocity_m[i] - velocity_b[i])
         velocity_2 = weight * (velocity_a[i] - velocity_m[i])
-        first = _half_slope(velocity_1 - behind * head_1, velocity_2 - behind * head_2)
-        second = _half_slope(ahead * head_1 - velocity_1, ahead * head_2 - velocity_2)
+        first, first_bend = _limited(velocity_1 - behind * head_1, velocity_2 - behind * head_2, skew)
+        second, second_bend = _limited(ahead * head_1 - velocity_1, ahead * head_2 - velocity_2, skew)
         half_head[i] = (first + second) * share if wet else 0.0
         half_velocity[i] = 0.5 * (ahead * first + behind * second) * quotient if wet else 0.0
+        if third:
+            bend = 0.5 * (ahead * first_bend + behind * second_bend) * quotient
+            bent_head[i] = head_m[i] + ((first_bend + second_bend) * share if wet else 0.0)
+            bent_velocity[i] = velocity_m[i] + (bend if wet else 0.0)
+
+
+@_face_jit
+def half_slopes(area, head, velocity, surface, spin, full, slot, half_head, half_velocity, log):
+    """Half of the slopes of a ring's cells but the first and the last, limited wave by wave; and their L.
+
+    Differences of head and velocity are split into those that the two waves of the cell carry, of which
+    du/dA = (lambda - u/r^2)/L = Omega +- c/L, c half the difference of the speeds [theory: long_wave, eq. 3].
+    Next to a dry cell there is no slope, nor where the gap begins to be full.
+    """
+    _slopes(
+        area, head, velocity, surface, spin, full, slot, False,
+        half_head, half_velocity, log, half_head, half_velocity,
+    )  # fmt: skip
+
+
+@_face_jit
+def bent_slopes(
+    area, head, velocity, surface, spin, full, slot, half_head, half_velocity, log, bent_head, bent_velocity
+):
+    """`half_slopes` by parabolas: faces are right to third order [theory: long_wave, eq. 20].
+
+    `bent_head` and `bent_velocity` are the means of what a cell has at its two faces.
+    """
+    _slopes(
+        area, head, velocity, surface, spin, full, slot, True,
+        half_head, half_velocity, log, bent_head, bent_velocity,
+    )  # fmt: skip
 
 
 @_face_jit
@@ -198,7 +252,8 @@ def side(
 
     Parameters
     ----------
-    cell_area, head, half_head, velocity, half_velocity : of the cell on that side of each face
+    cell_area, head, half_head, velocity, half_velocity : of the cell on that side of each face; head and
+        velocity are the means of its two faces
     bed : radial force at the faces
     way : 1 for the cell before the face, -1 for the one after it
     spin : Omega
@@ -283,8 +338,6 @@ def largest(slow, fast):
 
 _jit: Any = njit(**COMPILED)
 
-_inlined: Any = njit(inline="always")
-
 _bernoulli = _face_jit(long_wave.bernoulli)
 _CONSTANT, _CURVED, _LESS = long_wave.PADE
 
@@ -294,11 +347,11 @@ FULL = 0.4995
 GHOSTS = 2
 # Rows of scratch: of cells with ghosts, of faces, and of either side of the faces (area, q, flux of mass and
 # of q, pressure, speeds). Only whole rows are contiguous to the compiler: they are taken one by one.
-WORK = 29
+WORK = 31
 _AREA, _PULL, VELOCITY, _HEAD, SURFACE, _HALF_HEAD, _HALF_VELOCITY, LOG = range(8)
 _BED, _SLOW, _FAST, _MASS, _FLOW = range(8, 13)
 _AFTER, _BEFORE, _ROWS = 13, 20, 7
-_ROLLER, _POWER = 27, 28
+_ROLLER, _POWER, _BENT_HEAD, _BENT_VELOCITY = range(27, 31)
 
 # Decay of the fluctuations behind a bore, over their own speed and the depth; from jumps and breaking waves.
 DECAY = 0.48
@@ -330,13 +383,16 @@ def ring_rates(
     are left out; `inside` are baffles and inner wall, a `solvers.layer.inside.Inside`.
     """
     plates, full, slot = inside.plates, inside.full, inside.slot * spin * spin
-    _cells(area, q, spin, pull_cell, full, slot, work)
+    _cells(area, q, spin, pull_cell, full, slot, dispersion, work)
     if plates.shape[0] > 0:
         slope_aside(plates, area, full, work[_HEAD], work[_HALF_HEAD], GHOSTS)
         slope_aside(plates, area, full, work[VELOCITY], work[_HALF_VELOCITY], GHOSTS)
+        if dispersion:
+            straighten(plates, area.size, work[_HEAD], work[_BENT_HEAD], GHOSTS)
+            straighten(plates, area.size, work[VELOCITY], work[_BENT_VELOCITY], GHOSTS)
     if energy.size > 0:
         fluctuations(area, energy, spin, work[_ROLLER])
-    fastest = _faces(pull_face, spin, full, slot, work, energy.size > 0)
+    fastest = _faces(pull_face, spin, full, slot, dispersion, work, energy.size > 0)
     mass = work[_MASS]
     if plates.shape[0] > 0:
         obstruct(plates, area, spin, full, slot, pull_face, work[_BEFORE:], work[_AFTER:], mass, work[_FLOW])
@@ -379,7 +435,7 @@ def rates(area, q, spin, euler, pull_cell, pull_face, inside, step, dt, dispersi
 
 
 @_inlined
-def _cells(area, q, spin, pull, full, slot, work):
+def _cells(area, q, spin, pull, full, slot, bent, work):
     """Primitive variables of the cells and their half slopes, all round and a little further."""
     n = area.size
     end = n + GHOSTS
@@ -395,17 +451,25 @@ def _cells(area, q, spin, pull, full, slot, work):
             work[row, i] = work[row, n + i]
             work[row, end + i] = work[row, GHOSTS + i]
     inner = slice(1, n + 3)
-    half_slopes(
-        *(work[_AREA], work[_HEAD], work[VELOCITY], work[SURFACE], spin, full, slot),
-        *(work[_HALF_HEAD, inner], work[_HALF_VELOCITY, inner], work[LOG, inner]),
-    )
+    # Only where waves disperse are the equations good enough for it to show.
+    if bent:
+        bent_slopes(
+            *(work[_AREA], work[_HEAD], work[VELOCITY], work[SURFACE], spin, full, slot),
+            *(work[_HALF_HEAD, inner], work[_HALF_VELOCITY, inner], work[LOG, inner]),
+            *(work[_BENT_HEAD, inner], work[_BENT_VELOCITY, inner]),
+        )
+    else:
+        half_slopes(
+            *(work[_AREA], work[_HEAD], work[VELOCITY], work[SURFACE], spin, full, slot),
+            *(work[_HALF_HEAD, inner], work[_HALF_VELOCITY, inner], work[LOG, inner]),
+        )
 
 
 @_inlined
-def _faces(pull_face, spin, full, slot, work, rolling):
+def _faces(pull_face, spin, full, slot, bent, work, rolling):
     """Fluxes through each cell's left face, and once more through the first; returns the largest speed.
 
-    `rolling`: the cells have fluctuations.
+    `bent`: the cells are parabolas; `rolling`: they have fluctuations.
     """
     n = pull_face.size
     m = n + 1
@@ -414,15 +478,16 @@ def _faces(pull_face, spin, full, slot, work, rolling):
         bed[i] = pull_face[i]
     bed[n] = pull_face[0]
     wide, pull = work[_AREA], work[_PULL]
+    head, velocity = (_BENT_HEAD, _BENT_VELOCITY) if bent else (_HEAD, VELOCITY)
     beds(wide[1:], wide[2:], pull[1:], pull[2:], bed)
     for k in range(2):
         # First the cell after each face, then the one before it.
         cells, row, way = slice(2 - k, m + 2 - k), _AFTER + k * _ROWS, 2.0 * k - 1.0
         side(
             wide[cells],
-            work[_HEAD, cells],
+            work[head, cells],
             work[_HALF_HEAD, cells],
-            work[VELOCITY, cells],
+            work[velocity, cells],
             work[_HALF_VELOCITY, cells],
             bed,
             way,

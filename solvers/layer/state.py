@@ -25,7 +25,12 @@ def ring(cells: int) -> Array:
 
 
 def means(
-    sums: Record, length: float, mass: float, whirl_speed: float, offsets: tuple[complex, complex]
+    sums: Record,
+    length: float,
+    mass: float,
+    whirl_speed: float,
+    offsets: tuple[complex, complex],
+    rates: tuple[complex, complex],
 ) -> Complex:
     """Means over a time [theory: long_wave, eq. 7].
 
@@ -35,7 +40,8 @@ def means(
     length : of the time
     mass : of the liquid, over rho h_c R^2
     whirl_speed : omega_w
-    offsets : at the beginning and at the end
+    offsets : of the centre of mass at the beginning and at the end
+    rates : of change of the offset there, in the frame of the deflection as well
 
     Returns
     -------
@@ -46,8 +52,9 @@ def means(
     moved = complex(sums.offset_x, sums.offset_y) / length
     push = complex(sums.push_x, sums.push_y) / length
     drift = (offsets[1] - offsets[0]) / length
-    # The liquid as a whole: what pushes it, the centripetal and the Coriolis part.
-    inertia = mass * (push + whirl_speed**2 * moved - 2j * whirl_speed * drift)
+    gain = (rates[1] - rates[0]) / length
+    # The liquid as a whole: what pushes it, the centripetal and the Coriolis part, what its velocity gains.
+    inertia = mass * (push + whirl_speed**2 * moved - 2j * whirl_speed * drift - gain)
     rest = sums.turning / length, sums.depth_min / length, sums.depth_max / length
     return np.array([inertia, moved, *rest, pressure], dtype=np.complex128)
 

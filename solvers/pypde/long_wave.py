@@ -6,7 +6,6 @@ py-pde solver, tracker and storage works on it. Importing this module registers 
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Mapping
 from typing import Any, ClassVar
@@ -116,18 +115,15 @@ class AnnularLongWavePDE(CirclePDE):  # type: ignore[no-untyped-call]
         """Force on the drum by the pressure on its wall, N, in the drum frame [theory: long_wave, eq. 7]."""
         return terms.pressure_force(self.terms, *_parts(state), t)
 
-    def place(self, state: Any, t: float) -> complex:
-        """The same in the frame of the deflection, real along it; nan where there is no layer."""
-        area = np.asarray(state.data[0])
-        return terms.offset_of(area, self.terms.fill.chamber.radius) * cmath.exp(
-            -1j * self.terms.whirl.slip * t
-        )
+    def place(self, state: Any, t: float) -> terms.Place:
+        """Offset in the frame of the deflection and its rate of change; nan where there is no layer."""
+        return terms.place_at(self.terms, np.asarray(state.data[0]), np.asarray(state.data[1]), t)
 
     def loads(self, state: Any, t: float) -> Array:
         """Loads at one moment; over time they add up to those in the `info` of "finite_volume"."""
         return terms.loads_at(self.terms, *_parts(state), t)
 
-    def means(self, loads: Array, length: float, places: tuple[complex, complex]) -> Complex:
+    def means(self, loads: Array, length: float, places: tuple[terms.Place, terms.Place]) -> Complex:
         """Means over a time of loads added up.
 
         Parameters

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from pde.trackers.base import FinishedSimulation, TrackerBase
@@ -14,24 +14,27 @@ from pde.trackers.trackers import CallbackTracker
 from meshes.arrays import Array, Complex
 from solvers.liquid_model import Whirl
 
+# How an equation says where the liquid is.
+P = TypeVar("P")
+
 _PERIODS = 400
 _TURNS = 20_000.0  # rad of spin
 _MOST = 64  # periods in a stretch
 _EARLY = 1e-6  # of a whirl period, by which a stop may be off
 
 
-class Measured(Protocol):
+class Measured(Protocol[P]):
     """An equation whose loads can be taken at a moment and as means over a time."""
 
     def loads(self, state: Any, t: float) -> Array:
         """Loads at one moment, shape (m,)."""
         ...
 
-    def place(self, state: Any, t: float) -> complex:
-        """Offset of the liquid's centre of mass at one moment, in the frame of the deflection, m."""
+    def place(self, state: Any, t: float) -> P:
+        """Where the liquid is at one moment, in the frame of the deflection."""
         ...
 
-    def means(self, loads: Array, length: float, places: tuple[complex, complex]) -> Complex:
+    def means(self, loads: Array, length: float, places: tuple[P, P]) -> Complex:
         """Means over a length of time from the integrals of the loads and the places at both ends."""
         ...
 
@@ -107,14 +110,14 @@ class StretchMeans(TrackerBase):  # type: ignore[no-untyped-call]
     name = "stretch_means"
 
     def __init__(
-        self, equation: Measured, stretches: Stretches, samples: int = 0, settled: float | None = None
+        self, equation: Measured[Any], stretches: Stretches, samples: int = 0, settled: float | None = None
     ) -> None:
         super().__init__(FixedInterrupts(stretches.stops(samples) if samples else stretches.ends))
         self.equation, self.stretches, self.samples, self.settled = equation, stretches, samples, settled
         self.rows: list[Complex] = []
         self.steady = False
         self.last: tuple[Any, float] | None = None  # state at the end of the last stretch, and when
-        self._place = 0j  # of the liquid there
+        self._place: Any = None  # of the liquid there
         self._ends, self._early = stretches.ends, _EARLY * stretches.period
         self._solver: dict[str, Any] = {}
         self._loads: Array = np.zeros(1)  # integrals up to now, of those taken at each stop

@@ -13,6 +13,7 @@ import math
 from dataclasses import dataclass
 from functools import lru_cache
 from types import SimpleNamespace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -242,9 +243,43 @@ def loads_at(terms: LongWaveTerms, area: Array, momentum: Array, time: float) ->
     return np.asarray(found.view(np.float64))
 
 
-def load_means(
-    terms: LongWaveTerms, loads: Array, length: float, offsets: tuple[complex, complex]
-) -> Complex:
+class Place(NamedTuple):
+    """Where the liquid is and how it moves, in the frame of the deflection, real along it.
+
+    Parameters
+    ----------
+    offset : of the centre of mass from the drum's axis, m
+    rate : of change of the offset, m/s
+    """
+
+    offset: complex
+    rate: complex
+
+
+def place_at(terms: LongWaveTerms, area: Array, momentum: Array, time: float) -> Place:
+    """Offset of the centre of mass and its rate of change, as the finite volumes move the liquid.
+
+    Parameters
+    ----------
+    terms : what acts
+    area, momentum : A and q, shape (n,)
+    time : s
+
+    Returns
+    -------
+    Place; nan where there is no layer
+    """
+    slip, radius = terms.whirl.slip, terms.fill.chamber.radius
+    turn = cmath.exp(-1j * slip * time)
+    offset = offset_of(area, radius) * turn
+    # Of (R^3 - r_s^3)/3, cell by cell: in a bore no other derivative is that of the sums.
+    held = np.maximum(area, 0.0)
+    lever = surface_radius(terms, held) * layer_rates(terms, area, momentum, time)[0]
+    moved = complex((lever * _rays(area.size)).sum()) / float(held.sum()) * turn
+    return Place(offset, moved - 1j * slip * offset)
+
+
+def load_means(terms: LongWaveTerms, loads: Array, length: float, ends: tuple[Place, Place]) -> Complex:
     """Means over a time of what a `Marcher` has added up [theory: long_wave, eq. 7].
 
     Parameters
@@ -252,7 +287,7 @@ def load_means(
     terms : the whirl
     loads : integrals of what `loads_at` has
     length : of the time, s
-    offsets : of the centre of mass at the beginning and the end, in the frame of the deflection, m
+    ends : the liquid at the beginning and at the end, as from `place_at`
 
     Returns
     -------
@@ -261,10 +296,11 @@ def load_means(
     """
     whirl, radius = terms.whirl, terms.fill.chamber.radius
     mass = terms.fill.volume / (terms.fill.chamber.height * radius**2)
-    ends = offsets[0] / radius, offsets[1] / radius
+    offsets = ends[0].offset / radius, ends[1].offset / radius
+    moving = ends[0].rate / radius, ends[1].rate / radius
     # As plain numbers, which are read faster than those of a record.
     sums = SimpleNamespace(**dict(zip(LOADS.names or (), loads.tolist(), strict=True)))
-    found = means(sums, length, mass, whirl.speed, ends)
+    found = means(sums, length, mass, whirl.speed, offsets, moving)
     full = math.pi * whirl.amplitude / radius * whirl.speed**2 or math.inf
     return found * (1.0 / full, radius, 1.0, radius, radius, 1.0 / full)
 

@@ -15,6 +15,7 @@ from solvers.wave_error import (
     family_error,
     force_change,
     largest_whirl,
+    layer_tanh,
     linear_error,
     long_wave_error,
     nonlinearity,
@@ -35,6 +36,23 @@ def test_a_small_whirl_has_the_linear_force(layer: float, speed: float) -> None:
     rounding = 1e-13 / (layer * min(away, 1.0))
     assert float(small_force(layer, detuning)) == pytest.approx(expected, rel=rounding, abs=rounding)
     assert float(detuning_ratio(layer, linear_detuning(layer))) == pytest.approx(1.0, rel=1e-12)
+
+
+@given(some.floats(0.02, 0.5), some.floats(0.2, 2.5).filter(lambda q: abs(q - 1.0) > 0.05))
+@kills("solvers.wave_error:_tanh_change", "square * t * x", "t * x")
+@kills("solvers.wave_error:_tanh_change", "np.square(t - (1.0 + t) * x)", "np.square(t - x)")
+@kills("solvers.wave_error:long_wave_error", "_CELLS_DISPERSED if dispersion else _CELLS", "_CELLS")
+def test_cells_slow_small_waves(layer: float, ratio: float) -> None:
+    """By as much as another tanh L would, with the square of the cells."""
+    detuning, t, step = ratio**2 * linear_detuning(layer), float(layer_tanh(layer)), 1e-5
+    ends = [float(small_force(layer, detuning, t * (1.0 + way * step))) for way in (-1, 1)]
+    size = max(1.0, abs(float(small_force(layer, detuning))))
+    for dispersion, share in ((True, 1e-3), (False, 1.3e-3)):
+        found = [long_wave_error(layer, detuning, 1e-7, dispersion, n) for n in (64, 128, math.inf)]
+        # Above are differences of what the model is off by itself: 1e-16 of that over the share.
+        wanted = share * abs(ends[1] - ends[0]) / (2.0 * step * size)
+        assert float(found[1] - found[2]) == pytest.approx(wanted, rel=1e-4, abs=1e-14)
+        assert float(found[0] - found[2]) == pytest.approx(4.0 * wanted, rel=1e-4, abs=1e-14)
 
 
 @pytest.mark.parametrize(

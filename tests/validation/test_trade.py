@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,26 +12,21 @@ import pytest
 
 from leblanc.scene.scene import load_scene
 from solvers.wave_error import family_error, long_wave_error
+from validation.trade import __main__ as trade_main
 from validation.trade import fingerprint, kept, names
 from validation.trade.__main__ import table
 from validation.trade.answers import FAMILY, WAVES, answer, lone_layer
 from validation.trade.cases import layer_questions, response_question, runup_question
 from validation.trade.cases import questions as all_questions
 from validation.trade.judge import Row, dominates
+from validation.trade.results import record_of, trade_json
 from validation.trade.trade import error_table
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def rows_of(result: dict[str, Any], question: str) -> list[Row]:
-    found = []
-    for values in result["rows"]:
-        if values["question"] == question:
-            one = {key: value for key, value in values.items() if key != "time_ratio"}
-            keys = "error", "peak_error", "estimate", "ripple_error"
-            lost = {key: math.nan for key in keys if one[key] is None}
-            found.append(Row(**(one | lost | {"used": tuple(one["used"])})))
-    return found
+    return [row for each in record_of(result).comparisons if each.question == question for row in each.rows]
 
 
 def questions() -> list[tuple[str, str]]:
@@ -74,6 +71,40 @@ def test_front_and_default_are_sound(name: str, question: str) -> None:
     # the axis may take more than the tolerance: no more than the default tells.
     promised = max(result["tolerance"], 0.0 if math.isnan(default.estimate) else default.estimate) + own
     assert default.error <= promised or question == "runup" or default.model != "auto"
+
+
+@pytest.mark.parametrize("name", names())
+def test_what_is_kept_is_read_whole(name: str) -> None:
+    """The record that a file is read as makes the same file."""
+    before = kept(name)
+    again = trade_json(record_of(before))
+    assert all(again[key] == before[key] for key in again if key not in ("versions", "remark"))
+
+
+def test_one_question_is_measured_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """`--question` leaves the others as they were, and asks for all of them where the scene is another."""
+    before = record_of(kept("centrifuge"))
+    response, runup = before.comparisons
+    found = replace(before, comparisons=(replace(runup, order=9.0),))
+    monkeypatch.setattr(trade_main, "_HERE", tmp_path)
+    arguments = ["--examples", str(EXAMPLES), "--only", "centrifuge", "--question", "runup"]
+    with monkeypatch.context() as patch:
+        # Versions of another day are none to be refused here.
+        patch.setattr("validation.trade.results.versions", lambda: dict(kept("centrifuge")["versions"]))
+        patch.setattr(
+            "validation.trade.__main__.platform.python_version",
+            lambda: kept("centrifuge")["versions"]["python"],
+        )
+        patch.setattr(
+            "validation.trade.__main__.metadata.version", lambda name: kept("centrifuge")["versions"][name]
+        )
+        patch.setattr("validation.trade.trade.trade_scene", lambda scene, only: found)
+        assert trade_main.main(arguments) == 0
+        written = record_of(json.loads((tmp_path / "centrifuge.json").read_text(encoding="utf-8")))
+        assert written.comparisons == (response, *found.comparisons)
+        found = replace(found, digest="another")
+        with pytest.raises(RuntimeError, match="has changed"):
+            trade_main.main(arguments)
 
 
 def test_made_again() -> None:

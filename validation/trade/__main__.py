@@ -8,6 +8,7 @@ import os
 import platform
 import sys
 import time
+from dataclasses import replace
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -34,6 +35,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m validation.trade", description=__doc__)
     parser.add_argument("--examples", type=Path, default=Path("examples"), help="folder of the scenes")
     parser.add_argument("--only", nargs="*", help="stems of scenes [default: all]")
+    parser.add_argument("--question", help="measure this one alone; the others stay as they are kept")
     parser.add_argument(
         "--table", action="store_true", help="print the table of what is kept, measure nothing"
     )
@@ -44,25 +46,37 @@ def main(arguments: list[str] | None = None) -> int:
             os.environ[variable] = "1"
         for path in sorted(chosen.examples.glob("*.toml")):
             if not chosen.only or path.stem in chosen.only:
-                keep(path, chosen.out)
+                keep(path, chosen.out, chosen.question)
     print("\n".join(table()))
     return 0
 
 
-def keep(path: Path, out: Path | None = None) -> None:
+def keep(path: Path, out: Path | None = None, question: str | None = None) -> None:
     """Measure one scene and write its result beside this module.
 
     Parameters
     ----------
     path : of the scene
     out : folder for its figure, if it is one of the two that are drawn
+    question : the one that is measured; None: all
+
+    Raises
+    ------
+    RuntimeError : the others are kept of another scene or with other versions
     """
     from leblanc.scene.scene import load_scene
-    from validation.trade.results import trade_json
+    from validation.trade.results import record_of, trade_json
     from validation.trade.trade import trade_scene
 
     begin = time.perf_counter()
-    record = trade_scene(load_scene(path))
+    record = trade_scene(load_scene(path), only=question)
+    if question is not None:
+        before = record_of(kept(path.stem))
+        now = {comparison.question: comparison for comparison in record.comparisons}
+        if before.digest != record.digest:
+            raise RuntimeError(f"{path.stem}: the scene has changed; measure all of its questions")
+        both = tuple(now.get(comparison.question, comparison) for comparison in before.comparisons)
+        record = replace(record, comparisons=both)
     found = trade_json(record)
     found["fingerprint"] = fingerprint(path)
     found["versions"] |= {"python": platform.python_version()}
@@ -70,6 +84,8 @@ def keep(path: Path, out: Path | None = None) -> None:
     found["machine"] = (
         f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores, shared with other work"
     )
+    if question is not None and found["versions"] != kept(path.stem)["versions"]:
+        raise RuntimeError(f"{path.stem}: the others are kept with other versions; measure all questions")
     (_HERE / f"{path.stem}.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
     print(f"{path.stem}: {time.perf_counter() - begin:.0f} s", file=sys.stderr, flush=True)
     if out is not None and path.stem in _PICTURED:

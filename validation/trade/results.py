@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
@@ -12,6 +13,8 @@ from validation.trade.trade import TradeRecord
 
 _KILO, _MEGA = 1e3, 1e6  # milliseconds in a second, bytes in a megabyte
 _PER_CENT = 100.0
+# What a row need not have.
+_UNKNOWN = "error", "peak_error", "estimate", "ripple_error"
 
 REMARK = (
     "errors and peak errors belong to the scene; times are CPU seconds of one machine: their ratios to the "
@@ -37,6 +40,33 @@ def trade_json(record: TradeRecord) -> dict[str, Any]:
         "questions": [_question(comparison, record.tolerance) for comparison in record.comparisons],
         "rows": rows,
     }
+
+
+def record_of(content: Mapping[str, Any]) -> TradeRecord:
+    """The record that was written as such an object; it has no path of its scene.
+
+    Parameters
+    ----------
+    content : as from `trade_json`
+    """
+    found = []
+    for question in content["questions"]:
+        rows = [row for row in content["rows"] if row["question"] == question["question"]]
+        kept = {key: question[key] for key in ("question", "about", "reference", "reference_error")}
+        numbers: dict[str, Any] = {
+            key: math.nan if question[old] is None else question[old]
+            for key, old in (("order", "order"), ("ripple", "ripple"), ("overhead", "default_overhead"))
+        }
+        beaten = tuple(question["default_dominated_by"])
+        found.append(Comparison(**kept, **numbers, dominated_by=beaten, rows=tuple(map(_row_of, rows))))
+    told = content["name"], "", tuple(content["assumed"]), content["digest"], content["tolerance"]
+    return TradeRecord(*told, tuple(found))
+
+
+def _row_of(values: Mapping[str, Any]) -> Row:
+    lost = {key: math.nan for key in _UNKNOWN if values[key] is None}
+    plain = {key: value for key, value in values.items() if key != "time_ratio"}
+    return Row(**(plain | lost | {"used": tuple(values["used"])}))
 
 
 def _question(comparison: Comparison, tolerance: float) -> dict[str, Any]:

@@ -55,6 +55,7 @@ def trade_scene(
     repeats: int = REPEATS,
     progress: Progress | None = None,
     layer: bool | None = None,
+    only: str | None = None,
 ) -> TradeRecord:
     """Measure every model and resolution on a scene.
 
@@ -66,12 +67,13 @@ def trade_scene(
     progress : is called with what runs and the share that is done
     layer : as well one layer alone, by every solver that py-pde has for it; None where the scene asks for
         waves that py-pde solves
+    only : the question that is measured; all if None
     """
     require_clear(scene, "a comparison of models, most of which know circular walls alone", baffles=True)
     tell = progress or (lambda _, __: None)
     tolerance = scene.model.tolerance
     found = []
-    cases = questions(scene, quick, layer)
+    cases = [question for question in questions(scene, quick, layer) if only in (None, question.name)]
     for k, question in enumerate(cases):
 
         def said(text: str, share: float, k: int = k) -> None:

@@ -316,6 +316,19 @@ def test_slopes_beside() -> None:
     assert np.all(half[np.array([0, 4, 5, 9, 10, 15]) + ghosts] == 0.0) and half[2 + ghosts] == 9.0
 
 
+@kills("solvers.layer.baffles:straighten", "2 * (k % 2) - 1", "1")
+@kills("solvers.layer.baffles:straighten", "bent[n + ghosts] = value[n + ghosts]", "pass")
+@kills("solvers.layer.baffles:straighten", "bent[ghosts - 1] = value[ghosts - 1]", "pass")
+def test_cells_beside_are_straight() -> None:
+    """Cells on both sides of a baffle lose what bends them, all round the ring; no others do."""
+    n, ghosts = 24, 2
+    value = np.arange(n + 2.0 * ghosts)
+    bent = value + 1.0
+    baffles.straighten(table([0, 8], 0.05), n, value, bent, ghosts)
+    straight = np.flatnonzero(bent == value) - ghosts
+    assert straight.tolist() == [-1, 0, 7, 8, 23, 24]
+
+
 @kills("solvers.layer.baffles:_aside", "1.5 - 0.5 * ratio", "1.5 - 0.4 * ratio")
 @kills("solvers.layer.baffles:_aside", "2.0 * ratio", "3.0 * ratio")
 @kills("solvers.layer.baffles:_aside", "min(1.0,", "min(2.0,")

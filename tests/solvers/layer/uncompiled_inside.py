@@ -58,7 +58,7 @@ def test_a_full_gap_rests() -> None:
 @kills("solvers.layer.finite_volume:side", "spin * spin * full + rim * bed[i]", "spin * spin * full")
 @kills("solvers.layer.finite_volume:side", "0.5 * stiff * (a - full) * (a + full)", "stiff * (a - full)")
 @kills("solvers.layer.finite_volume:side", "half * half + 4.0 * log * stiff", "half * half")
-@kills("solvers.layer.finite_volume:half_slopes", "(spin * spin + stiff) * length", "spin * spin * length")
+@kills("solvers.layer.finite_volume:_slopes", "(spin * spin + stiff) * length", "spin * spin * length")
 @kills("solvers.layer.finite_volume:_faces", "PRESSED if most(wide)", "1.0 if most(wide)")
 def test_waves_of_a_full_gap() -> None:
     """A smooth disturbance under pressure changes by the equations, and its waves are as fast as stated."""
