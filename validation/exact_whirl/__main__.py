@@ -1,0 +1,108 @@
+"""`python -m validation.exact_whirl`: onsets, circles and ends of a whirl with an exact layer; kept."""
+
+from __future__ import annotations
+
+import argparse
+import math
+
+from validation.exact_whirl import Kept, Onset, Way, keep
+from validation.exact_whirl.in_time import Grown, Setting, grown
+from validation.exact_whirl.lagging import circles
+
+# Losses of onsets and ways.
+DAMPING, FRICTION = 0.02, 0.03
+LAYERS = (0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
+MASS_RATIOS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0)
+# Whirls over h_0 of which the smaller is of second order to a part in a thousand at all of these.
+NEAR = (5e-5,)
+# Ways: depth and mass ratio, and their whirls.
+WAYS = ((0.1, 0.1), (0.3, 0.1), (0.5, 0.05), (0.7, 0.1))
+WHIRLS = (2e-4, *(5e-4 * n for n in range(1, 17)), *(2e-3 * n for n in range(5, 16)))
+# In time from a push: depth, mass ratio and speed, and how long.
+SETTLING = ((0.5, 0.05, 1.4769), (0.7, 0.1, 1.506))
+PUSH, LONG = 1e-3, 2500.0
+# Until the wave ends: depth, speed, friction, damping of the shortest waves; mass ratio and push; nodes.
+GROWING = (
+    (0.1, 1.2, 0.03, 0.0), (0.1, 1.3, 0.03, 0.0), (0.1, 1.45, 0.03, 0.0), (0.3, 1.3, 0.03, 0.0),
+    (0.1, 1.13, 0.03, 0.0), (0.1, 1.13, 0.03, 2.0), (0.1, 1.2, 0.3, 0.0), (0.1, 1.2, 0.3, 2.0),
+)  # fmt: skip
+HEAVY, SMALL, LONGEST, MOST = 0.1, 1e-4, 1500.0, 2048
+
+
+def onset_of(layer: float, mass_ratio: float) -> Onset:
+    """How a whirl begins.
+
+    Parameters
+    ----------
+    layer, mass_ratio : h_0/R, mu
+    """
+    found = circles(layer, mass_ratio, DAMPING, FRICTION, NEAR)
+    if not found:
+        return Onset(layer, mass_ratio, math.nan, math.nan)
+    shift = (found[1].speed - found[0].speed) / NEAR[0] ** 2 if len(found) > 1 else math.nan
+    return Onset(layer, mass_ratio, found[0].speed, shift)
+
+
+def way_of(layer: float, mass_ratio: float) -> Way:
+    """Its circles.
+
+    Parameters
+    ----------
+    layer, mass_ratio : h_0/R, mu
+    """
+    return Way(layer, mass_ratio, tuple(circles(layer, mass_ratio, DAMPING, FRICTION, WHIRLS)))
+
+
+def settled_at(layer: float, mass_ratio: float, speed: float) -> Grown:
+    """A small push at a speed of a way.
+
+    Parameters
+    ----------
+    layer, mass_ratio, speed : h_0/R, mu, Omega/omega_n
+    """
+    return grown(Setting(layer, mass_ratio, speed, DAMPING, FRICTION), PUSH, LONG, 256)
+
+
+def grown_at(layer: float, speed: float, friction: float, waves: float) -> Grown:
+    """A whirl until its wave ends.
+
+    Parameters
+    ----------
+    layer, speed, friction, waves : h_0/R, Omega/omega_n, k/omega_n, of the shortest waves over the spin
+    """
+    return grown(Setting(layer, HEAVY, speed, DAMPING, friction, waves), SMALL, LONGEST, MOST)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Compute, keep, print.
+
+    Parameters
+    ----------
+    arguments : of the command line; None: the process's own
+
+    Returns
+    -------
+    Exit code
+    """
+    parser = argparse.ArgumentParser(prog="python -m validation.exact_whirl", description=__doc__)
+    parser.parse_args(arguments)
+    onsets = tuple(onset_of(layer, ratio) for layer in LAYERS for ratio in MASS_RATIOS)
+    for found in onsets:
+        print(found, flush=True)
+    ways = tuple(way_of(*case) for case in WAYS)
+    for way in ways:
+        print(way.layer, way.mass_ratio, way.circles[-1], flush=True)
+    settled, ended = [], []
+    for settling in SETTLING:
+        settled.append(settled_at(*settling))
+        print(settling, settled[-1].ended, settled[-1].last, settled[-1].crest, flush=True)
+    for growing in GROWING:
+        ended.append(grown_at(*growing))
+        last = ended[-1]
+        print(growing, last.ended, last.nodes, last.last, last.crest, last.slope, last.crest_number, flush=True)
+    keep(Kept(DAMPING, FRICTION, onsets, ways, tuple(settled), tuple(ended)))
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
