@@ -14,6 +14,7 @@ from meshes.chamber import Chamber
 from solvers.potential.coupled import Ended, ExactMachine, advance, coupled, ramp, shapes
 from solvers.potential.unsteady import resampled, tail
 from solvers.rotor.jeffcott import Jeffcott
+from validation.exact_whirl.lagging import Circle, lagging_wave
 
 # The machine: radius and height of the drum, m; natural frequency, rad/s. Nothing below depends on them.
 RADIUS, HEIGHT, NATURAL = 0.1, 0.02, 100.0
@@ -89,6 +90,27 @@ def machine_of(setting: Setting, nodes: int) -> ExactMachine:
     friction = [setting.friction * NATURAL]
     spin = ramp(setting.speed * NATURAL)
     return coupled(rotor.system(), [fill], spin, friction=friction, nodes=nodes, damping=setting.waves)
+
+
+def standing(setting: Setting, circle: Circle, nodes: int) -> tuple[ExactMachine, Array]:
+    """The machine and its state on a circle, deflected along the first direction.
+
+    Parameters
+    ----------
+    setting : the machine, at the circle's speed
+    circle : of it
+    nodes : of the surface, even
+    """
+    machine, size = machine_of(setting, nodes), circle.whirl * setting.layer
+    slip = 1.0 - circle.speed / circle.whirl_speed
+    wave = lagging_wave(setting.layer, slip, size, setting.friction / circle.whirl_speed)
+    state = machine.rest()
+    parts = machine.parts(state)
+    parts.place[0], parts.rate[1] = size * RADIUS, circle.whirl_speed * NATURAL * size * RADIUS
+    rows = np.stack((wave.surface, (circle.whirl_speed / circle.speed - 1.0) * wave.potential))
+    even = np.fft.irfft(np.fft.rfft(rows), nodes) * (nodes / wave.surface.size)
+    parts.waves[0] = even.ravel()
+    return machine, state
 
 
 def grown(

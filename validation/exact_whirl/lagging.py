@@ -36,6 +36,7 @@ class LaggingWave:
     Parameters
     ----------
     surface : y = ln(R/r) at even u, shape (m,)
+    potential : phi over s there, shape (m,)
     whirl : w_0/R, along the angle 0
     force_ratio : G, complex
     tail : of the spectrum, the last tenth over the largest
@@ -43,6 +44,7 @@ class LaggingWave:
     """
 
     surface: Array
+    potential: Array
     whirl: float
     force_ratio: complex
     tail: float
@@ -84,8 +86,8 @@ def lagging_wave(
             break
     size = np.arange(m // 2 + 1) * np.abs(np.fft.rfft(state[:m]))
     tail = float(size[-(m // 20) :].max() / size.max()) if size.max() > 0.0 else 0.0
-    force = _force_ratio(state[:m], layer, whirl)
-    return LaggingWave(state[:m], whirl, force, tail, error < _ROUNDING and tail < ROUGH)
+    force, potential = _force_ratio(state[:m], layer, whirl), _potential(state[:m])
+    return LaggingWave(state[:m], potential, whirl, force, tail, error < _ROUNDING and tail < ROUGH)
 
 
 @cache
@@ -125,6 +127,11 @@ def _residual(state: Array, layer: float, slip: float, whirl: float, friction: f
     found[..., :-1] += friction * slip * potential
     found[..., -1] = ((1.0 - square) * opened).mean(axis=-1) - layer * (2.0 - layer)
     return found
+
+
+def _potential(y: Array) -> Array:
+    """phi over s along the surface [theory: potential, eq. 5]."""
+    return -0.5 * _strip(np.exp(-2.0 * y), y.mean(keepdims=True))[1]
 
 
 def _force_ratio(y: Array, layer: float, whirl: float) -> complex:
