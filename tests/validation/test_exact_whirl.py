@@ -45,7 +45,8 @@ def _exact_edge(layer: float, mass_ratio: float, whirl: float, detuning: float) 
 @kills("validation.exact_whirl.edges:edge_shift", "-0.5 *", "0.5 *")
 @kills("validation.exact_whirl.edges:edge_mass_ratio", "-2.0 * slip", "-1.9 * slip")
 @pytest.mark.parametrize(
-    ("layer", "mass_ratio", "whirl"), [(0.1, 0.1, 2e-3), (0.3, 0.1, 1e-3), (0.5, 0.05, 2e-4), (0.7, 0.1, 1e-4)]
+    ("layer", "mass_ratio", "whirl"),
+    [(0.1, 0.1, 2e-3), (0.3, 0.1, 1e-3), (0.5, 0.05, 2e-4), (0.7, 0.1, 1e-4)],
 )
 def test_edges_move_as_exact_waves_have_it(layer: float, mass_ratio: float, whirl: float) -> None:
     """The fourth order is 6e-3 of the second at these whirls; the cubic's own error is below 1e-8."""
@@ -108,7 +109,11 @@ def test_an_onset_is_that_of_linear_theory() -> None:
     assert onset(0.9, 0.01, 0.02, 0.03) is None
 
 
-@kills("validation.exact_whirl.in_time:standing", "lagging_wave(setting.layer, slip", "lagging_wave(setting.layer, 0.99 * slip")
+@kills(
+    "validation.exact_whirl.in_time:standing",
+    "lagging_wave(setting.layer, slip",
+    "lagging_wave(setting.layer, 0.99 * slip",
+)
 def test_a_circle_stands_in_time() -> None:
     """Rotor and lagging wave in the coupled machine: over a whirl deflection and place of the liquid stay.
 
@@ -126,7 +131,9 @@ def test_a_circle_stands_in_time() -> None:
 
 def test_what_is_kept() -> None:
     results = kept()
-    assert [(row.layer, row.mass_ratio) for row in results.onsets] == [(h, m) for h in LAYERS for m in MASS_RATIOS]
+    assert [(row.layer, row.mass_ratio) for row in results.onsets] == [
+        (h, m) for h in LAYERS for m in MASS_RATIOS
+    ]
     assert [(way.layer, way.mass_ratio) for way in results.ways] == list(WAYS)
     assert len(results.settled) == len(SETTLING) and len(results.grown) == len(GROWING)
     for row in results.onsets[30:32]:
@@ -139,7 +146,9 @@ def test_what_is_kept() -> None:
             assert row.shift > 0.0
     for found in results.settled:
         (way,) = [w for w in results.ways if w.layer == found.setting.layer]
-        wanted = np.interp(found.setting.speed, [c.speed for c in way.circles], [c.whirl for c in way.circles])
+        wanted = np.interp(
+            found.setting.speed, [c.speed for c in way.circles], [c.whirl for c in way.circles]
+        )
         # Straight lines between circles a half thousandth of the depth apart.
         assert found.ended == "done" and found.last == pytest.approx(wanted, rel=0.01)
 

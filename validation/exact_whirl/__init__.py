@@ -1,4 +1,4 @@
-"""Whirl of a rotor with an exact layer: where it begins softly, the circle it settles at, and where it breaks.
+"""Whirl of a rotor with an exact layer: where it begins softly, the circle it comes to, where it breaks.
 
 `python -m validation.exact_whirl` computes it again; `kept` reads what it left. Closed forms are in `edges`.
 """

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Iterator
+from dataclasses import replace
 
-from validation.exact_whirl import Kept, Onset, Way, keep
+from validation.exact_whirl import Kept, Onset, Way, keep, kept
 from validation.exact_whirl.in_time import Grown, Setting, grown
 from validation.exact_whirl.lagging import circles
 
+PARTS = ("onsets", "ways", "settled", "grown")
 # Losses of onsets and ways.
 DAMPING, FRICTION = 0.02, 0.03
 LAYERS = (0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
@@ -18,9 +21,9 @@ NEAR = (5e-5,)
 # Ways: depth and mass ratio, and their whirls.
 WAYS = ((0.1, 0.1), (0.3, 0.1), (0.5, 0.05), (0.7, 0.1))
 WHIRLS = (2e-4, *(5e-4 * n for n in range(1, 17)), *(2e-3 * n for n in range(5, 16)))
-# In time from a push: depth, mass ratio and speed, and how long.
-SETTLING = ((0.5, 0.05, 1.4769), (0.7, 0.1, 1.506))
-PUSH, LONG = 1e-3, 2500.0
+# In time: depth, mass ratio, speed, and the whirl of another speed's circle that it begins with; how long.
+SETTLING = ((0.5, 0.05, 1.4769, 0.003), (0.5, 0.05, 1.4769, 0.005), (0.7, 0.1, 1.513, 0.0025))
+LONG = 1500.0
 # Until the wave ends: depth, speed, friction, damping of the shortest waves; mass ratio and push; nodes.
 GROWING = (
     (0.1, 1.2, 0.03, 0.0), (0.1, 1.3, 0.03, 0.0), (0.1, 1.45, 0.03, 0.0), (0.3, 1.3, 0.03, 0.0),
@@ -53,14 +56,15 @@ def way_of(layer: float, mass_ratio: float) -> Way:
     return Way(layer, mass_ratio, tuple(circles(layer, mass_ratio, DAMPING, FRICTION, WHIRLS)))
 
 
-def settled_at(layer: float, mass_ratio: float, speed: float) -> Grown:
-    """A small push at a speed of a way.
+def settled_at(layer: float, mass_ratio: float, speed: float, whirl: float) -> Grown:
+    """A machine begun on a smaller or a larger circle than that of its speed.
 
     Parameters
     ----------
-    layer, mass_ratio, speed : h_0/R, mu, Omega/omega_n
+    layer, mass_ratio, speed, whirl : h_0/R, mu, Omega/omega_n, W/h_0 at first
     """
-    return grown(Setting(layer, mass_ratio, speed, DAMPING, FRICTION), PUSH, LONG, 256)
+    begin = circles(layer, mass_ratio, DAMPING, FRICTION, (0.3 * whirl, whirl))[-1]
+    return grown(Setting(layer, mass_ratio, speed, DAMPING, FRICTION), whirl, LONG, 256, begin=begin)
 
 
 def grown_at(layer: float, speed: float, friction: float, waves: float) -> Grown:
@@ -85,23 +89,34 @@ def main(arguments: list[str] | None = None) -> int:
     Exit code
     """
     parser = argparse.ArgumentParser(prog="python -m validation.exact_whirl", description=__doc__)
-    parser.parse_args(arguments)
-    onsets = tuple(onset_of(layer, ratio) for layer in LAYERS for ratio in MASS_RATIOS)
-    for found in onsets:
-        print(found, flush=True)
-    ways = tuple(way_of(*case) for case in WAYS)
-    for way in ways:
-        print(way.layer, way.mass_ratio, way.circles[-1], flush=True)
-    settled, ended = [], []
-    for settling in SETTLING:
-        settled.append(settled_at(*settling))
-        print(settling, settled[-1].ended, settled[-1].last, settled[-1].crest, flush=True)
-    for growing in GROWING:
-        ended.append(grown_at(*growing))
-        last = ended[-1]
-        print(growing, last.ended, last.nodes, last.last, last.crest, last.slope, last.crest_number, flush=True)
-    keep(Kept(DAMPING, FRICTION, onsets, ways, tuple(settled), tuple(ended)))
+    parser.add_argument("--only", choices=PARTS, help="part that is computed anew [default: all]")
+    only = parser.parse_args(arguments).only
+    results = Kept(DAMPING, FRICTION, (), (), (), ()) if only is None else kept()
+    for part in PARTS if only is None else (only,):
+        found = []
+        for row in computed(part):
+            found.append(row)
+            print(row, flush=True)
+        results = replace(results, **{part: tuple(found)})
+    keep(results)
     return 0
+
+
+def computed(part: str) -> Iterator[Onset | Way | Grown]:
+    """The rows of a part, one after another.
+
+    Parameters
+    ----------
+    part : one of `PARTS`
+    """
+    if part == "onsets":
+        yield from (onset_of(layer, ratio) for layer in LAYERS for ratio in MASS_RATIOS)
+    elif part == "ways":
+        yield from (way_of(*case) for case in WAYS)
+    elif part == "settled":
+        yield from (settled_at(*case) for case in SETTLING)
+    else:
+        yield from (grown_at(*case) for case in GROWING)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The band of self-excited whirl without losses in closed form, and where its edges go with the whirl's height.
+"""The band of self-excited whirl without losses in closed form, and where its edges go as the whirl grows.
 
 A rotor on round supports holds the circle 1/v^2 = 1 + mu G, v = omega_w/omega_n [theory: potential, eq. 34].
 Its edges are where two circles meet; G's second order in the whirl says which way they move.
@@ -116,6 +116,6 @@ def soft_mass_ratio(layer: ArrayLike) -> Array:
     Examples
     --------
     >>> soft_mass_ratio(np.array([0.1, 0.5])).round(4)
-    array([0.0, 0.0])
+    array([0.    , 0.0672])
     """
     return edge_mass_ratio(layer, crest_detuning(layer, 2))

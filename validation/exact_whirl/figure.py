@@ -34,9 +34,9 @@ def whirl_figure() -> Figure:
             axes.legend(fontsize=6.5)
         text = (
             "Left: below the line the lower edge of the band without losses moves into the band as the whirl "
-            f"grows. Marks: support damped by {results.damping:g}, friction {results.friction:g} of the natural "
-            "frequency; at the lightest and deepest they leave no whirl. Right: circles with these losses, and "
-            "points where a small push came to in time."
+            f"grows. Marks: support damped by {results.damping:g}, friction {results.friction:g} of the "
+            "natural frequency; light and deep liquids have no whirl then. Right: circles with these losses; "
+            "points: where a motion in time came to."
         )
         lay_out(figure, [[first, second]], [2.2], _FRAME, text)
         figure.alt = alternative(results)

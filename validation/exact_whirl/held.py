@@ -21,9 +21,9 @@ from solvers.whirl.growth import asynchronous_growth
 KEPT = Path(__file__).parent / "held.json"
 # Example, rpm, nodes of the exact wave, cells of the long ones.
 CASES = (
-    ("horizontal_rig", 600.0, 64, 128), ("horizontal_rig", 1000.0, 64, 128), ("horizontal_rig", 1600.0, 64, 128),
-    ("two_plane_rig", 1500.0, 32, 64), ("washing_machine", 800.0, 32, 64), ("tub", 600.0, 32, 64),
-    ("horizontal_rig", 1100.0, 64, 128),
+    ("tub", 600.0, 32, 64), ("two_plane_rig", 1500.0, 32, 64), ("washing_machine", 800.0, 32, 64),
+    ("horizontal_rig", 600.0, 32, 128), ("horizontal_rig", 1000.0, 32, 128),
+    ("horizontal_rig", 1600.0, 32, 128), ("horizontal_rig", 1100.0, 32, 128),
 )  # fmt: skip
 
 
@@ -87,9 +87,7 @@ def held_at(name: str, rpm: float, liquid: str, cells: int) -> Told:
     machine = prepare(scene)
     growth = asynchronous_growth(machine.rotor, scene.fills, machine.speed, machine.friction)[0]
     choice = costed(machine, choose_all([machine])[0], growth)
-    found = response(
-        machine.rotor, scene.fills, machine.speed, machine.axial_gravity, liquid_models(choice)
-    )
+    found = response(machine.rotor, scene.fills, machine.speed, machine.axial_gravity, liquid_models(choice))
     held = held_machine(machine)
     compile_kernels(held, start(held, spin, HoldNumerics(cells=cells)))
     begin = time.process_time()
@@ -113,9 +111,7 @@ def pair(name: str, rpm: float, nodes: int, cells: int) -> Pair:
 def kept() -> list[Pair]:
     """What was computed last."""
     found = json.loads(KEPT.read_text(encoding="utf-8"))
-    return [
-        Pair(each["example"], each["rpm"], Told(**each["exact"]), Told(**each["long"])) for each in found
-    ]
+    return [Pair(each["example"], each["rpm"], Told(**each["exact"]), Told(**each["long"])) for each in found]
 
 
 def main(arguments: list[str] | None = None) -> int:

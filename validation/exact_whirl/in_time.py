@@ -119,21 +119,26 @@ def grown(
     duration: float,
     most: int,
     nodes: int = 64,
+    begin: Circle | None = None,
 ) -> Grown:
     """Let the machine go.
 
     Parameters
     ----------
     setting : the machine
-    push : deflection at first over h_0
+    push : deflection at first over h_0, the liquid at rest
     duration : over 1/omega_n, unless a wave ends it
     most : nodes are doubled up to this many
     nodes : to begin with
+    begin : on this circle rather than with a push
     """
     machine = machine_of(setting, nodes)
     depth = setting.layer * RADIUS
     state = machine.rest()
     machine.parts(state).place[0] = push * depth
+    if begin is not None:
+        machine, state = standing(setting, begin, nodes)
+        push = begin.whirl
     now, times, whirls, ended = 0.0, [0.0], [push], Ended.DONE
     while now < duration and ended is Ended.DONE:
         after = min(now + _SPAN, duration)
