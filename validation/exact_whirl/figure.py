@@ -30,15 +30,13 @@ def whirl_figure() -> Figure:
         second: Any = figure.add_axes((0, 0, 1, 1), label="circles")
         _draw_onsets(first, results)
         _draw_circles(second, results)
-        for axes in (first, second):
-            axes.legend(fontsize=6.5)
         text = (
-            "Left: below the line the lower edge of the band without losses moves into the band as the whirl "
+            "Above: below the line the lower edge of the band without losses moves into the band as the whirl "
             f"grows. Marks: support damped by {results.damping:g}, friction {results.friction:g} of the "
-            "natural frequency; light and deep liquids have no whirl then. Right: circles with these losses; "
+            "natural frequency; light and deep liquids have no whirl then. Below: circles with these losses; "
             "points: where a motion in time came to."
         )
-        lay_out(figure, [[first, second]], [2.2], _FRAME, text)
+        lay_out(figure, [[first], [second]], [2.0, 2.0], _FRAME, text)
         figure.alt = alternative(results)
     return figure
 
