@@ -77,7 +77,7 @@ def edge_shift(layer: ArrayLike, detuning: ArrayLike, mass_ratio: ArrayLike) -> 
     size = np.square(depth / (1.0 - depth))
     below = 1.0 + np.asarray(mass_ratio) * small_force(layer, detuning)
     found = -0.5 * edge_speed(layer, detuning, mass_ratio) / below
-    return np.asarray(found * mass_ratio * force_change(layer, detuning) * size)
+    return np.asarray(found * np.asarray(mass_ratio) * force_change(layer, detuning) * size)
 
 
 def edge_detunings(layer: float, mass_ratio: float) -> tuple[float, float]:

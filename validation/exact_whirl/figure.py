@@ -31,7 +31,7 @@ def whirl_figure() -> Figure:
         _draw_onsets(first, results)
         _draw_circles(second, results)
         text = (
-            "Above: below the line the lower edge of the band without losses moves into the band as the whirl "
+            "Above: below the line the lower edge of the band without losses moves into it as the whirl "
             f"grows. Marks: support damped by {results.damping:g}, friction {results.friction:g} of the "
             "natural frequency; light and deep liquids have no whirl then. Below: circles with these losses; "
             "points: where a motion in time came to."

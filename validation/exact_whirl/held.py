@@ -35,7 +35,7 @@ class Told:
     ----------
     state : how it moves
     reason : why it has not settled, or empty
-    amplitude : mean over time, m
+    amplitude : mean over time, m; none of a motion that broke off
     turns : turns that it was held
     seconds : of one core
     estimate : of them, by `solvers.held.cost`
@@ -43,7 +43,7 @@ class Told:
 
     state: str
     reason: str
-    amplitude: float
+    amplitude: float | None
     turns: int
     seconds: float
     estimate: float
@@ -67,7 +67,9 @@ class Pair:
 
     @property
     def apart(self) -> float:
-        """Relative difference of the amplitudes."""
+        """Relative difference of the amplitudes; nan where there is none."""
+        if self.exact.amplitude is None or self.long.amplitude is None:
+            return math.nan
         return self.exact.amplitude / self.long.amplitude - 1.0
 
 
@@ -94,7 +96,8 @@ def held_at(name: str, rpm: float, liquid: str, cells: int) -> Told:
     (state,) = hold_speeds(machine, found, growth, HERE).up
     seconds = time.process_time() - begin
     estimate = math.nan if choice.holding is None else float(choice.holding[0])
-    return Told(str(state.kind), state.reason, state.amplitude, state.turns, round(seconds, 2), estimate)
+    amplitude = state.amplitude if math.isfinite(state.amplitude) else None
+    return Told(str(state.kind), state.reason, amplitude, state.turns, round(seconds, 2), estimate)
 
 
 def pair(name: str, rpm: float, nodes: int, cells: int) -> Pair:

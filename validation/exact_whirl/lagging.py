@@ -93,7 +93,7 @@ def lagging_wave(
 @cache
 def _waves(m: int) -> tuple[Array, Array]:
     """Wave numbers with their signs, and u."""
-    return np.fft.fftfreq(m, 1.0 / m), 2.0 * math.pi * np.arange(m) / m
+    return np.asarray(np.fft.fftfreq(m, 1.0 / m), dtype=float), 2.0 * math.pi * np.arange(m) / m
 
 
 def _strip(values: Array, depth: Array) -> tuple[Array, Array]:
