@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from validation.exact_whirl.in_time import Grown, Setting
 from validation.exact_whirl.lagging import Circle
@@ -89,10 +90,9 @@ def kept() -> Kept:
     )
 
 
-def _grown(found: dict[str, object]) -> Grown:
-    setting = Setting(**found.pop("setting"))  # type: ignore[arg-type]
-    lists = {key: tuple(found.pop(key)) for key in ("time", "whirl")}  # type: ignore[arg-type]
-    return Grown(setting=setting, **lists, **found)  # type: ignore[arg-type]
+def _grown(found: dict[str, Any]) -> Grown:
+    series = {key: tuple(found[key]) for key in ("time", "whirl")}
+    return Grown(**(found | series | {"setting": Setting(**found["setting"])}))
 
 
 def keep(results: Kept) -> None:

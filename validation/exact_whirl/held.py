@@ -23,7 +23,7 @@ KEPT = Path(__file__).parent / "held.json"
 CASES = (
     ("tub", 600.0, 32, 64), ("two_plane_rig", 1500.0, 32, 64), ("washing_machine", 800.0, 32, 64),
     ("horizontal_rig", 600.0, 32, 128), ("horizontal_rig", 1000.0, 32, 128),
-    ("horizontal_rig", 1600.0, 32, 128), ("horizontal_rig", 1100.0, 32, 128),
+    ("horizontal_rig", 1600.0, 32, 128),
 )  # fmt: skip
 
 
