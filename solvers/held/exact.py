@@ -13,11 +13,21 @@ from meshes.errors import InputError
 from solvers.held.state import COUPLED, HeldMachine, HoldNumerics, Moment
 from solvers.held.turns import Watch
 from solvers.layer.records import Outcome
-from solvers.potential.coupled import Course, Ended, ExactLayer, ExactMachine, Parts, advance, coupled, ramp
+from solvers.potential.coupled import (
+    Course,
+    Ended,
+    ExactLayer,
+    ExactMachine,
+    Parts,
+    advance,
+    breaking,
+    coupled,
+    ramp,
+)
 from solvers.potential.unsteady import answer, laid, levelled, node_angles, resampled, seen, tail
 from solvers.runup.state import layer_capture, planes_of
 
-MOST = 512  # nodes, beyond which a wave that wants more counts as broken
+MOST = 512  # nodes, beyond which a wave that wants more is none that can be told
 _DAMPING = 1.0  # of the shortest waves
 _TAIL = 1e-4  # of the waves' sizes in the last of the spectrum, above which nodes are doubled
 _STEP = 1e-6  # tolerance of a step; the shortest waves bound it closer than that
@@ -167,9 +177,11 @@ def march(
     parts.place[:], parts.rate[:], parts.waves[:] = moment.coordinates, moment.rate, moment.wave
     while watch.count < numerics.turns:
         course = advance(exact, state, (0.0, turn), _STEP)
-        if course.ended is Ended.BROKE or _rough(exact, course.state):
+        if course.ended in (Ended.BROKE, Ended.NODES) or _rough(exact, course.state):
             if exact.nodes >= MOST or not exact.layers:
-                return _moment(exact, state, moment.spin, moment.layers), Outcome.BROKE
+                broke = course.ended is Ended.BROKE or breaking(exact, turn, course.state)
+                outcome = Outcome.BROKE if broke else Outcome.WANTS_NODES
+                return _moment(exact, state, moment.spin, moment.layers), outcome
             exact, state = _finer(exact, state)
             watch.forget()
             continue

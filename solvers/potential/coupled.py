@@ -19,6 +19,7 @@ from fluid.fill import Fill
 from fluid.whirl import is_full
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative, require_positive
+from solvers.potential.in_time import BREAKING, LOST, Watch, watched
 from solvers.potential.unsteady import Answer, answer, invariants, still
 from solvers.rotor.system import RotorSystem
 
@@ -26,15 +27,16 @@ from solvers.rotor.system import RotorSystem
 Spinning = Callable[[float], tuple[float, float, float]]
 
 _ABSOLUTE = 1e-3  # of the tolerance
-_LOST = 1e-6  # share of the volume that nothing but a wave that breaks, or wants more nodes, loses
 
 
 class Ended(StrEnum):
     """Why a course ends."""
 
     DONE = "done"
-    # Or the nodes do not carry it any more.
+    # The liquid at a crest overtakes it, or the surface overhangs [theory: potential, eq. 23].
     BROKE = "broke"
+    # The nodes do not carry a wave any more whose crest does not break.
+    NODES = "nodes"
     DRIED = "dried"
 
 
@@ -361,8 +363,10 @@ def advance(
     while solver.status == "running" and ended is Ended.DONE:
         with np.errstate(all="ignore"):
             failed = solver.step()
-            ended = Ended.BROKE if failed else _judged(machine, machine.parts(solver.y), volumes)
-        if ended is Ended.BROKE:
+            ended = Ended.NODES if failed else _judged(machine, machine.parts(solver.y), volumes)
+            if ended is Ended.NODES and breaking(machine, solver.t, solver.y):
+                ended = Ended.BROKE
+        if ended in (Ended.BROKE, Ended.NODES):
             break
         parts, power = machine.parts(solver.y), machine.powers(solver.t, solver.y)
         answers = [answer(wave) for wave in parts.waves]
@@ -381,15 +385,43 @@ def advance(
     )
 
 
+def shapes(machine: ExactMachine, time: float, state: Array) -> list[Watch]:
+    """What the wave of each layer has come to.
+
+    Parameters
+    ----------
+    machine, time, state : as for `ExactMachine.rates`
+    """
+    parts, change = machine.parts(state), machine.parts(machine.rates(time, state))
+    volumes = [math.pi * layer.layer * (2.0 - layer.layer) for layer in machine.layers]
+    return [
+        watched(wave, rate / machine.unit, volume)
+        for wave, rate, volume in zip(parts.waves, change.waves, volumes, strict=True)
+    ]
+
+
+def breaking(machine: ExactMachine, time: float, state: Array) -> bool:
+    """Whether the crest of a wave breaks, which is more than that it wants more nodes.
+
+    Parameters
+    ----------
+    machine, time, state : as for `ExactMachine.rates`
+    """
+    if not np.isfinite(state).all():
+        return False
+    found = shapes(machine, time, state)
+    return any(now.crest_number > BREAKING or now.slope > 0.5 * math.pi for now in found)
+
+
 def _volumes(machine: ExactMachine, state: Array) -> Array:
     return np.array([invariants(wave).volume for wave in machine.parts(state).waves])
 
 
 def _judged(machine: ExactMachine, parts: Parts, volumes: Array) -> Ended:
-    """Whether the waves of a state are waves still."""
+    """Whether the nodes carry the waves of a state."""
     if not (np.isfinite(parts.waves).all() and np.isfinite(parts.place).all()):
-        return Ended.BROKE
+        return Ended.NODES
     if parts.waves[:, : machine.nodes].min(initial=1.0) <= 0.0:
         return Ended.DRIED
     found = np.array([invariants(wave).volume for wave in parts.waves])
-    return Ended.BROKE if np.abs(found / volumes - 1.0).max(initial=0.0) > _LOST else Ended.DONE
+    return Ended.NODES if np.abs(found / volumes - 1.0).max(initial=0.0) > LOST else Ended.DONE

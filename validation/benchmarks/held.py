@@ -57,7 +57,7 @@ class Cost:
         )
 
 
-def cost(name: str, stride: int = 1, cells: int | None = None) -> Cost:
+def cost(name: str, stride: int = 1, cells: int | None = None, liquid: str | None = None) -> Cost:
     """Hold what `auto` would hold on a scene.
 
     Parameters
@@ -65,9 +65,11 @@ def cost(name: str, stride: int = 1, cells: int | None = None) -> Cost:
     name : of the scene
     stride : only every so many of the speeds
     cells : round each wall; the scene's if None
+    liquid : "potential" for exact waves; the scene's if None
     """
     scene = example(name)
-    changes = {"held": "auto"} | ({} if cells is None else {"cells": cells})
+    given = {"cells": cells, "liquid": liquid}
+    changes = {"held": "auto"} | {key: value for key, value in given.items() if value is not None}
     machine = prepare(scene.altered(model=scene.model.altered(**changes)))
     growth = asynchronous_growth(machine.rotor, scene.fills, machine.speed, machine.friction)[0]
     choice = costed(machine, choose_all([machine])[0], growth)
@@ -89,13 +91,14 @@ def main() -> None:
     parser.add_argument("scenes", nargs="*", help="names of shipped scenes [default: six]")
     parser.add_argument("--stride", type=int, default=1, help="only every so many of the speeds")
     parser.add_argument("--cells", type=int, help="round each wall [default: the scene's]")
+    parser.add_argument("--liquid", choices=("long_wave", "potential"), help="what is held [the scene's]")
     chosen = parser.parse_args()
     print(
         "foretold and taken, s; each speed's ratio of the two: 5 and 50 and 95 in 100; within half and twice"
     )
     print(f"{'scene':18}{'speeds':>6}{'foretold':>10}{'taken':>9}{'carried':>9}{'ratio':>7}")
     for name in chosen.scenes or SCENES:
-        print(cost(name, chosen.stride, chosen.cells).line, flush=True)
+        print(cost(name, chosen.stride, chosen.cells, chosen.liquid).line, flush=True)
 
 
 if __name__ == "__main__":

@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from leblanc.scene.examples import example
+from leblanc.studies.held.held import held_machine
+from leblanc.studies.models.choose import prepare
 from leblanc.studies.run import run_scene
 from leblanc.studies.runup import runup_scene
 from meshes.errors import InputError
+from solvers.held.exact import march
+from solvers.held.hold import start
+from solvers.held.state import HoldNumerics
+from solvers.held.turns import Watch
+from solvers.layer.records import Outcome
+from solvers.synchronous.response import response
+from validation.exact_whirl.held import CASES, pair
 
 
 def test_upright_it_is_answered_at_once() -> None:
@@ -33,6 +43,34 @@ def test_across_gravity_it_is_held() -> None:
     # Cells of the long waves, of second order, and the square of layers of 0.03 R.
     assert found.amplitude == pytest.approx(long.amplitude, rel=3e-3)
     assert any("exact waves held in time" in str(note) for note in found.notes)
+
+
+@pytest.mark.parametrize("name", ["tub", "two_plane_rig"])
+def test_tubs_and_two_planes_go_a_turn(name: str) -> None:
+    """Of a synchronous motion: nothing is lost, and the axis is where it was, to what gravity ripples."""
+    scene = example(name).replace({"model.liquid": "potential"})
+    machine, spin = prepare(scene), 240.0
+    held, numerics = held_machine(machine), HoldNumerics(cells=32, turns=16)
+    steady = response(machine.rotor, scene.fills, np.array([spin]), machine.axial_gravity).coordinates[0]
+    before = start(held, spin, numerics, steady)
+    watch = Watch(held, before, numerics, 0.0)
+    watch.count = 15
+    after, outcome = march(held, before, numerics, watch)
+    assert outcome is Outcome.DONE
+    np.testing.assert_allclose(after.area.mean(axis=1), before.area.mean(axis=1), rtol=1e-7)
+    np.testing.assert_allclose(
+        after.coordinates, before.coordinates, atol=0.05 * np.abs(before.coordinates).max()
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["tub", "washing_machine"])
+def test_other_machines_are_held_beside_long_waves(name: str) -> None:
+    """Cells of the long waves, of second order, and the square of layers of 0.02 R."""
+    (case,) = [case for case in CASES if case[0] == name]
+    found = pair(*case)
+    assert found.exact.state == found.long.state == "periodic"
+    assert abs(found.apart) < 2e-3
 
 
 @pytest.mark.parametrize(

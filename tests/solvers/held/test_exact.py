@@ -105,7 +105,7 @@ def test_a_wave_that_breaks_is_not_settled(monkeypatch: pytest.MonkeyPatch) -> N
     moment = begin(machine, 150.0, 32, np.zeros(2, dtype=complex), 3.0)
     found = hold(machine, moment, NODES)
     assert found.kind is HeldKind.NOT_SETTLED
-    assert "a wave broke" in found.reason or "dry" in found.reason
+    assert any(word in found.reason for word in ("a wave broke", "wants more than", "dry"))
 
 
 def test_what_does_not_ride_is_a_mass() -> None:

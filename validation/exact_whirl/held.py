@@ -1,0 +1,142 @@
+"""`python -m validation.exact_whirl.held`: exact waves held beside long ones, on the examples; kept."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from leblanc.scene.examples import example
+from leblanc.studies.held.held import held_machine, hold_speeds
+from leblanc.studies.held.holding import HERE
+from leblanc.studies.models.choose import choose_all, costed, liquid_models, prepare
+from solvers.held.hold import compile_kernels, start
+from solvers.held.state import HoldNumerics
+from solvers.synchronous.response import response
+from solvers.whirl.growth import asynchronous_growth
+
+KEPT = Path(__file__).parent / "held.json"
+# Example, rpm, nodes of the exact wave, cells of the long ones.
+CASES = (
+    ("tub", 600.0, 32, 64), ("two_plane_rig", 1500.0, 32, 64), ("washing_machine", 800.0, 32, 64),
+    ("horizontal_rig", 600.0, 32, 128), ("horizontal_rig", 1000.0, 32, 128),
+    ("horizontal_rig", 1600.0, 32, 128),
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Told:
+    """What one model tells of a speed.
+
+    Parameters
+    ----------
+    state : how it moves
+    reason : why it has not settled, or empty
+    amplitude : mean over time, m; none of a motion that broke off
+    turns : turns that it was held
+    seconds : of one core
+    estimate : of them, by `solvers.held.cost`
+    """
+
+    state: str
+    reason: str
+    amplitude: float | None
+    turns: int
+    seconds: float
+    estimate: float
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Both models at a speed.
+
+    Parameters
+    ----------
+    example : scene
+    rpm : speed
+    exact, long : what they tell
+    """
+
+    example: str
+    rpm: float
+    exact: Told
+    long: Told
+
+    @property
+    def apart(self) -> float:
+        """Relative difference of the amplitudes; nan where there is none."""
+        if self.exact.amplitude is None or self.long.amplitude is None:
+            return math.nan
+        return self.exact.amplitude / self.long.amplitude - 1.0
+
+
+def held_at(name: str, rpm: float, liquid: str, cells: int) -> Told:
+    """Hold an example at one speed from its synchronous motion.
+
+    Parameters
+    ----------
+    name : of the example
+    rpm : speed
+    liquid : "potential" or "long_wave"
+    cells : round each wall
+    """
+    spin = rpm * math.pi / 30.0
+    change = {"speeds.start": spin, "speeds.stop": spin, "speeds.count": 1}
+    scene = example(name).replace(change | {"model.liquid": liquid, "model.cells": cells})
+    machine = prepare(scene)
+    growth = asynchronous_growth(machine.rotor, scene.fills, machine.speed, machine.friction)[0]
+    choice = costed(machine, choose_all([machine])[0], growth)
+    found = response(machine.rotor, scene.fills, machine.speed, machine.axial_gravity, liquid_models(choice))
+    held = held_machine(machine)
+    compile_kernels(held, start(held, spin, HoldNumerics(cells=cells)))
+    begin = time.process_time()
+    (state,) = hold_speeds(machine, found, growth, HERE).up
+    seconds = time.process_time() - begin
+    estimate = math.nan if choice.holding is None else float(choice.holding[0])
+    amplitude = state.amplitude if math.isfinite(state.amplitude) else None
+    return Told(str(state.kind), state.reason, amplitude, state.turns, round(seconds, 2), estimate)
+
+
+def pair(name: str, rpm: float, nodes: int, cells: int) -> Pair:
+    """Both models.
+
+    Parameters
+    ----------
+    name, rpm : as for `held_at`
+    nodes, cells : of the exact wave and of long waves
+    """
+    return Pair(name, rpm, held_at(name, rpm, "potential", nodes), held_at(name, rpm, "long_wave", cells))
+
+
+def kept() -> list[Pair]:
+    """What was computed last."""
+    found = json.loads(KEPT.read_text(encoding="utf-8"))
+    return [Pair(each["example"], each["rpm"], Told(**each["exact"]), Told(**each["long"])) for each in found]
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Compute, keep, print.
+
+    Parameters
+    ----------
+    arguments : of the command line; None: the process's own
+
+    Returns
+    -------
+    Exit code
+    """
+    parser = argparse.ArgumentParser(prog="python -m validation.exact_whirl.held", description=__doc__)
+    parser.parse_args(arguments)
+    pairs = []
+    for case in CASES:
+        pairs.append(pair(*case))
+        print(pairs[-1], f"{pairs[-1].apart:.2e}", flush=True)
+        KEPT.write_text(json.dumps([asdict(each) for each in pairs], indent=1) + "\n", encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

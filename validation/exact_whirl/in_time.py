@@ -1,0 +1,177 @@
+"""A rotor with an exact layer let go from a small push: how its whirl grows, and what ends it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fluid.fill import Fill
+from fluid.liquid import known_liquid
+from meshes.arrays import Array
+from meshes.chamber import Chamber
+from solvers.potential.coupled import Ended, ExactMachine, advance, coupled, ramp, shapes
+from solvers.potential.unsteady import resampled, tail
+from solvers.rotor.jeffcott import Jeffcott
+from validation.exact_whirl.lagging import Circle, lagging_wave
+
+# The machine: radius and height of the drum, m; natural frequency, rad/s. Nothing below depends on them.
+RADIUS, HEIGHT, NATURAL = 0.1, 0.02, 100.0
+# Tail of a spectrum at which nodes are doubled, and spans of the natural frequency between two looks at it.
+_TAIL, _SPAN = 1e-8, 4.0
+# Tolerance of a step.
+_STEP = 1e-8
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A machine with one layer on round supports.
+
+    Parameters
+    ----------
+    layer : h_0/R
+    mass_ratio : mu, liquid of a full drum over the rotor's mass
+    speed : Omega/omega_n
+    damping : zeta of the support
+    friction : k/omega_n of the body force on the liquid
+    waves : damping of the shortest waves, over the spin
+    """
+
+    layer: float
+    mass_ratio: float
+    speed: float
+    damping: float = 0.0
+    friction: float = 0.0
+    waves: float = 0.0
+
+
+@dataclass(frozen=True)
+class Grown:
+    """What became of a push.
+
+    Parameters
+    ----------
+    setting : the machine
+    nodes : at the end
+    ended : "done", "broke", "nodes" or "dried"
+    time : of the looks, over 1/omega_n
+    whirl : deflection at them over h_0
+    last : deflection at the end over h_0
+    crest : depth there over h_0
+    slope : steepest there, deg
+    crest_number : B there
+    """
+
+    setting: Setting
+    nodes: int
+    ended: str
+    time: tuple[float, ...]
+    whirl: tuple[float, ...]
+    last: float
+    crest: float
+    slope: float
+    crest_number: float
+
+
+def machine_of(setting: Setting, nodes: int) -> ExactMachine:
+    """The rotor with its exact layer.
+
+    Parameters
+    ----------
+    setting : the machine
+    nodes : of the surface
+    """
+    volume = math.pi * RADIUS**2 * HEIGHT * setting.layer * (2.0 - setting.layer)
+    fill = Fill(Chamber(RADIUS, HEIGHT), known_liquid("water"), volume)
+    full = fill.liquid.density * math.pi * RADIUS**2 * HEIGHT
+    mass = full / setting.mass_ratio
+    rotor = Jeffcott(mass, mass * NATURAL**2, 2.0 * setting.damping * mass * NATURAL, 0.0)
+    friction = [setting.friction * NATURAL]
+    spin = ramp(setting.speed * NATURAL)
+    return coupled(rotor.system(), [fill], spin, friction=friction, nodes=nodes, damping=setting.waves)
+
+
+def standing(setting: Setting, circle: Circle, nodes: int) -> tuple[ExactMachine, Array]:
+    """The machine and its state on a circle, deflected along the first direction.
+
+    Parameters
+    ----------
+    setting : the machine, at the circle's speed
+    circle : of it
+    nodes : of the surface, even
+    """
+    machine, size = machine_of(setting, nodes), circle.whirl * setting.layer
+    slip = 1.0 - circle.speed / circle.whirl_speed
+    wave = lagging_wave(setting.layer, slip, size, setting.friction / circle.whirl_speed)
+    state = machine.rest()
+    parts = machine.parts(state)
+    parts.place[0], parts.rate[1] = size * RADIUS, circle.whirl_speed * NATURAL * size * RADIUS
+    rows = np.stack((wave.surface, (circle.whirl_speed / circle.speed - 1.0) * wave.potential))
+    even = np.fft.irfft(np.fft.rfft(rows), nodes) * (nodes / wave.surface.size)
+    parts.waves[0] = even.ravel()
+    return machine, state
+
+
+def grown(
+    setting: Setting,
+    push: float,
+    duration: float,
+    most: int,
+    nodes: int = 64,
+    begin: Circle | None = None,
+) -> Grown:
+    """Let the machine go.
+
+    Parameters
+    ----------
+    setting : the machine
+    push : deflection at first over h_0, the liquid at rest
+    duration : over 1/omega_n, unless a wave ends it
+    most : nodes are doubled up to this many
+    nodes : to begin with
+    begin : on this circle rather than with a push
+    """
+    machine = machine_of(setting, nodes)
+    depth = setting.layer * RADIUS
+    state = machine.rest()
+    machine.parts(state).place[0] = push * depth
+    if begin is not None:
+        machine, state = standing(setting, begin, nodes)
+        push = begin.whirl
+    now, times, whirls, ended = 0.0, [0.0], [push], Ended.DONE
+    while now < duration and ended is Ended.DONE:
+        after = min(now + _SPAN, duration)
+        course = advance(machine, state, (now / NATURAL, after / NATURAL), _STEP)
+        rough = _rough(machine, course.state, setting.layer)
+        if (rough or course.ended is not Ended.DONE) and 2 * machine.nodes <= most:
+            # The span again, on more nodes.
+            machine, state = _finer(machine, state)
+            continue
+        state, ended, now = course.state.copy(), course.ended, after
+        if course.time.size:
+            times.append(float(course.time[-1]) * NATURAL)
+            whirls.append(float(np.hypot(*course.place[-1])) / depth)
+    shape = shapes(machine, times[-1] / NATURAL, state)[0]
+    return Grown(
+        setting=setting,
+        nodes=machine.nodes,
+        ended=str(ended),
+        time=tuple(times),
+        whirl=tuple(whirls),
+        last=whirls[-1],
+        crest=shape.crest / setting.layer,
+        slope=math.degrees(shape.slope),
+        crest_number=shape.crest_number,
+    )
+
+
+def _rough(machine: ExactMachine, state: Array, layer: float) -> bool:
+    wave = machine.parts(state).waves[0]
+    return not np.isfinite(wave).all() or tail(wave, layer) > _TAIL
+
+
+def _finer(machine: ExactMachine, state: Array) -> tuple[ExactMachine, Array]:
+    finer = replace(machine, nodes=2 * machine.nodes)
+    parts = machine.parts(state)
+    return finer, finer.joined(replace(parts, waves=resampled(parts.waves[0], finer.nodes)[None]))
