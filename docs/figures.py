@@ -169,6 +169,7 @@ RECIPES = (
     Recipe(("validation.models.figure",), ("models",)),
     Recipe(("validation.breaking.figure",), ("breaking", "breaking_crest")),
     Recipe(("validation.exact.figure",), ("wave_errors", "wave_ends")),
+    Recipe(("validation.exact_whirl.figure",), ("exact_whirl",)),
     Recipe(("validation.figures.baffles",), ("whirl_baffles",)),
     Recipe(("validation.cases.baffles.figure",), ("baffles_decay",)),
     Recipe(("validation.figures.fill_sweep",), ("fill_sweep",)),

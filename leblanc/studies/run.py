@@ -94,6 +94,8 @@ def self_excited(machine: Prepared) -> SelfExcited:
     if speed[-1] > speed[0]:
         filled, known = [scene.fills], growth[None]
         bands = unstable_bands(machine.rotor, filled, speed, machine.friction, known)[0]
+    elif growth[0] > 0.0:
+        bands = ((float(speed[0]), float(speed[0])),)
     friction = small_whirl_friction(scene.model.friction)
     return SelfExcited(growth, whirl_speed, bands, friction, bands_not_known(speed, growth))
 

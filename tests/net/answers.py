@@ -86,13 +86,18 @@ def _field(line: str) -> str:
 
 
 def _files(folder: Path) -> list[str]:
-    """Names below a folder, sorted; a zarr store counts as one file, the folder's own record as none."""
+    """Names below a folder, sorted; a zarr store counts as one file, the folder's own record as none.
+
+    States held in time have names that go with the sources and the versions of libraries: they count as one.
+    """
     names = set()
     for path in folder.rglob("*"):
         parts = path.relative_to(folder).parts
         store = next((k for k, part in enumerate(parts) if part.endswith(".zarr")), None)
         if store is not None:
             names.add("/".join(parts[: store + 1]) + "/")
+        elif parts[-2:-1] == ("held",):
+            names.add("/".join((*parts[:-1], "*")))
         elif not path.is_dir() and path.name != "contents.json":
             names.add("/".join(parts))
     return sorted(names)

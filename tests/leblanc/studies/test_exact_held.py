@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from leblanc.scene.examples import example
+from leblanc.scene.scene import load_scene
 from leblanc.studies.held.held import held_machine
 from leblanc.studies.models.choose import prepare
 from leblanc.studies.run import run_scene
@@ -18,6 +21,7 @@ from solvers.held.turns import Watch
 from solvers.layer.records import Outcome
 from solvers.synchronous.response import response
 from validation.exact_whirl.held import CASES, pair
+from validation.exact_whirl.lagging import circles
 
 
 def test_upright_it_is_answered_at_once() -> None:
@@ -43,6 +47,24 @@ def test_across_gravity_it_is_held() -> None:
     # Cells of the long waves, of second order, and the square of layers of 0.03 R.
     assert found.amplitude == pytest.approx(long.amplitude, rel=3e-3)
     assert any("exact waves held in time" in str(note) for note in found.notes)
+
+
+@pytest.mark.slow
+def test_a_thick_layer_holds_a_limit_cycle() -> None:
+    """With a smooth wave: the circle that Newton's method has for this speed, and its whirl speed."""
+    scene = load_scene(Path("docs/examples/thick_layer.toml"))
+    found = run_scene(scene)
+    assert found.held is not None and found.state.tolist() == ["limit_cycle"]
+    assert found.whirl is not None and found.whirl.bands
+    natural, depth = 30.0, scene.fills[0].depth
+    rows = circles(0.5, 0.05, 0.02, 0.03, [0.001, 0.002, 0.003, 0.0035, 0.004, 0.0045])
+    speeds = [row.speed * natural for row in rows]
+    spin = float(scene.speed_array()[0])
+    # The whirl comes to rest to 1 % of its size in the turns that there are.
+    whirl = float(np.interp(spin, speeds, [row.whirl for row in rows])) * depth
+    assert found.amplitude[0] == pytest.approx(whirl, rel=0.03)
+    turning = float(np.interp(spin, speeds, [row.whirl_speed for row in rows])) * natural
+    assert found.held.whirl_speed[0] == pytest.approx(turning, rel=1e-4)
 
 
 @pytest.mark.parametrize("name", ["tub", "two_plane_rig"])
