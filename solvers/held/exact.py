@@ -22,9 +22,11 @@ from solvers.potential.coupled import (
     advance,
     breaking,
     coupled,
+    finer,
     ramp,
+    rough,
 )
-from solvers.potential.unsteady import answer, laid, levelled, node_angles, resampled, seen, tail
+from solvers.potential.unsteady import answer, laid, levelled, node_angles, resampled, seen
 from solvers.runup.state import layer_capture, planes_of
 
 MOST = 512  # nodes, beyond which a wave that wants more is none that can be told
@@ -177,12 +179,12 @@ def march(
     parts.place[:], parts.rate[:], parts.waves[:] = moment.coordinates, moment.rate, moment.wave
     while watch.count < numerics.turns:
         course = advance(exact, state, (0.0, turn), _STEP)
-        if course.ended in (Ended.BROKE, Ended.NODES) or _rough(exact, course.state):
+        if course.ended in (Ended.BROKE, Ended.NODES) or rough(exact, course.state, _TAIL):
             if exact.nodes >= MOST or not exact.layers:
                 broke = course.ended is Ended.BROKE or breaking(exact, turn, course.state)
                 outcome = Outcome.BROKE if broke else Outcome.WANTS_NODES
                 return _moment(exact, state, moment.spin, moment.layers), outcome
-            exact, state = _finer(exact, state)
+            exact, state = finer(exact, state)
             watch.forget()
             continue
         if course.ended is Ended.DRIED:
@@ -237,19 +239,6 @@ def _steps(exact: ExactMachine, begin: Parts, course: Course, turn: float) -> Ar
     spline = CubicHermiteSpline(time, np.hstack((values, liquid)), np.hstack((slopes, moves)))
     at = np.linspace(0.0, turn, _BETWEEN * course.time.size + 1)[1:]
     return np.column_stack((at, exact.unit * at, spline(at)))
-
-
-def _rough(exact: ExactMachine, state: Array) -> bool:
-    """Whether the waves want more nodes."""
-    waves = exact.parts(state).waves
-    return any(tail(wave, layer.layer) > _TAIL for wave, layer in zip(waves, exact.layers, strict=True))
-
-
-def _finer(exact: ExactMachine, state: Array) -> tuple[ExactMachine, Array]:
-    """The same with twice as many nodes."""
-    parts, finer = exact.parts(state), replace(exact, nodes=2 * exact.nodes)
-    waves = np.array([resampled(wave, finer.nodes) for wave in parts.waves])
-    return finer, finer.joined(replace(parts, waves=waves))
 
 
 def again(machine: HeldMachine, moment: Moment, nodes: int) -> Moment:

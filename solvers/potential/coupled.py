@@ -20,7 +20,7 @@ from fluid.whirl import is_full
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.potential.in_time import BREAKING, LOST, Watch, watched
-from solvers.potential.unsteady import Answer, answer, invariants, still
+from solvers.potential.unsteady import Answer, answer, invariants, resampled, still, tail
 from solvers.rotor.system import RotorSystem
 
 # Angle of the drum, its speed and the rate of that, at a time: rad, rad/s, rad/s^2.
@@ -411,6 +411,32 @@ def breaking(machine: ExactMachine, time: float, state: Array) -> bool:
         return False
     found = shapes(machine, time, state)
     return any(now.crest_number > BREAKING or now.slope > 0.5 * math.pi for now in found)
+
+
+def rough(machine: ExactMachine, state: Array, most: float) -> bool:
+    """Whether the waves want more nodes.
+
+    Parameters
+    ----------
+    machine, state : as for `breaking`
+    most : of the waves' sizes in the last of the spectrum, over the largest
+    """
+    waves = machine.parts(state).waves
+    if not np.isfinite(waves).all():
+        return True
+    return any(tail(wave, layer.layer) > most for wave, layer in zip(waves, machine.layers, strict=True))
+
+
+def finer(machine: ExactMachine, state: Array) -> tuple[ExactMachine, Array]:
+    """The same on twice as many nodes.
+
+    Parameters
+    ----------
+    machine, state : as for `breaking`
+    """
+    parts, onto = machine.parts(state), replace(machine, nodes=2 * machine.nodes)
+    waves = np.array([resampled(wave, onto.nodes) for wave in parts.waves])
+    return onto, onto.joined(replace(parts, waves=waves))
 
 
 def _volumes(machine: ExactMachine, state: Array) -> Array:

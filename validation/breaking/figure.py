@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.drawing.page import Figure, Frame, fill, lay_out, number, save, style
+from leblanc.figures.drawing.page import Figure, Frame, fill, lay_out, number, save_png, style
 from validation.breaking import Beside, Kept, crests, kept
 from validation.breaking.crests import Crest
 
@@ -215,13 +215,10 @@ def draw(out: Path) -> list[Path]:
     ----------
     out : folder, made if it is missing
     """
-    files = (
-        save(breaking_figure(), out, "breaking", "When the exact wave breaks"),
-        save(crest_figure(), out, "breaking_crest", "A crest that breaks"),
-    )
-    for file in files:
-        file.svg.unlink()
-    return [file.png for file in files]
+    return [
+        save_png(breaking_figure(), out, "breaking", "When the exact wave breaks"),
+        save_png(crest_figure(), out, "breaking_crest", "A crest that breaks"),
+    ]
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

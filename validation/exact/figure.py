@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 from meshes.arrays import Array
 from validation.exact import Cases, Ends, kept
 
@@ -200,13 +200,10 @@ def draw(out: Path) -> list[Path]:
     out : folder, made if it is missing
     """
     measured = kept()
-    files = (
-        save(maps_figure(measured.maps), out, "wave_errors", "Error of the models beside the exact wave"),
-        save(ends_figure(measured.ends), out, "wave_ends", "Where smooth waves end"),
-    )
-    for file in files:
-        file.svg.unlink()
-    return [file.png for file in files]
+    return [
+        save_png(maps_figure(measured.maps), out, "wave_errors", "Error of the models beside the exact wave"),
+        save_png(ends_figure(measured.ends), out, "wave_ends", "Where smooth waves end"),
+    ]
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, save, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, save_png, style
 from validation.exact_whirl import Kept, Way, kept
 from validation.exact_whirl.edges import soft_mass_ratio
 
@@ -119,9 +119,7 @@ def draw(out: Path) -> Path:
     ----------
     out : folder, made if it is missing
     """
-    files = save(whirl_figure(), out, "exact_whirl", "How a whirl with an exact layer begins")
-    files.svg.unlink()
-    return files.png
+    return save_png(whirl_figure(), out, "exact_whirl", "How a whirl with an exact layer begins")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,8 +11,7 @@ from fluid.fill import Fill
 from fluid.liquid import known_liquid
 from meshes.arrays import Array
 from meshes.chamber import Chamber
-from solvers.potential.coupled import Ended, ExactMachine, advance, coupled, ramp, shapes
-from solvers.potential.unsteady import resampled, tail
+from solvers.potential.coupled import Ended, ExactMachine, advance, coupled, finer, ramp, rough, shapes
 from solvers.rotor.jeffcott import Jeffcott
 from validation.exact_whirl.lagging import Circle, lagging_wave
 
@@ -143,10 +142,10 @@ def grown(
     while now < duration and ended is Ended.DONE:
         after = min(now + _SPAN, duration)
         course = advance(machine, state, (now / NATURAL, after / NATURAL), _STEP)
-        rough = _rough(machine, course.state, setting.layer)
-        if (rough or course.ended is not Ended.DONE) and 2 * machine.nodes <= most:
+        wanting = rough(machine, course.state, _TAIL) or course.ended is not Ended.DONE
+        if wanting and 2 * machine.nodes <= most:
             # The span again, on more nodes.
-            machine, state = _finer(machine, state)
+            machine, state = finer(machine, state)
             continue
         state, ended, now = course.state.copy(), course.ended, after
         if course.time.size:
@@ -164,14 +163,3 @@ def grown(
         slope=math.degrees(shape.slope),
         crest_number=shape.crest_number,
     )
-
-
-def _rough(machine: ExactMachine, state: Array, layer: float) -> bool:
-    wave = machine.parts(state).waves[0]
-    return not np.isfinite(wave).all() or tail(wave, layer) > _TAIL
-
-
-def _finer(machine: ExactMachine, state: Array) -> tuple[ExactMachine, Array]:
-    finer = replace(machine, nodes=2 * machine.nodes)
-    parts = machine.parts(state)
-    return finer, finer.joined(replace(parts, waves=resampled(parts.waves[0], finer.nodes)[None]))

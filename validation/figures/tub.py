@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 from solvers.rotor.tub import Tub
 from validation.cases.tub import FARTHEST, amplitude, suspended_tub
 
@@ -133,9 +133,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--out", type=Path, default=Path("out/tub"), help="folder for the figures")
     folder = parser.parse_args(arguments).out
     for plot in plots():
-        files = save(draw(plot), folder, plot.name, plot.title)
-        files.svg.unlink()
-        print(files.png)
+        print(save_png(draw(plot), folder, plot.name, plot.title))
 
 
 if __name__ == "__main__":

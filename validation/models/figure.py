@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 from validation.models import ModelRow, ModelTable, kept
 
 _FRAME = Frame(left=0.72, top=0.15, between=0.12, below=0.42)
@@ -108,9 +108,7 @@ def draw(out: Path) -> Path:
     ----------
     out : folder, made if it is missing
     """
-    files = save(models_figure(), out, "models", "Error of each liquid model over its time")
-    files.svg.unlink()
-    return files.png
+    return save_png(models_figure(), out, "models", "Error of each liquid model over its time")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -89,9 +89,10 @@ def keep(path: Path, out: Path | None = None, question: str | None = None) -> No
     (_HERE / f"{path.stem}.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
     print(f"{path.stem}: {time.perf_counter() - begin:.0f} s", file=sys.stderr, flush=True)
     if out is not None and path.stem in _PICTURED:
-        from validation.trade.figure import save, trade_figure
+        from leblanc.figures.drawing.page import save_png
+        from validation.trade.figure import trade_figure
 
-        save(trade_figure(record), out, f"trade_{path.stem}", "Accuracy against cost").svg.unlink()
+        save_png(trade_figure(record), out, f"trade_{path.stem}", "Accuracy against cost")
 
 
 def table() -> list[str]:

@@ -136,15 +136,25 @@ def save(figure: Figure, directory: Path, name: str, title: str) -> FigureFiles:
         alt=figure.alt,
         drawn=figure.drawn,
     )
-    FigureCanvasAgg(figure)
-    with style():
-        with writing(files.png) as path:
-            metadata = {"Software": None, "Title": title}
-            # The usual level 6 takes a tenth of all drawing for a few per cent of the size.
-            figure.savefig(path, format="png", metadata=metadata, pil_kwargs={"compress_level": 3})
-        with writing(files.svg) as path:
-            figure.savefig(path, format="svg", metadata={"Date": None, "Creator": "leblanc", "Title": title})
+    save_png(figure, directory, name, title)
+    with style(), writing(files.svg) as path:
+        figure.savefig(path, format="svg", metadata={"Date": None, "Creator": "leblanc", "Title": title})
     return files
+
+
+def save_png(figure: Figure, directory: Path, name: str, title: str) -> Path:
+    """Write one figure as PNG alone; parameters as for `save`.
+
+    Returns
+    -------
+    The file
+    """
+    FigureCanvasAgg(figure)
+    with style(), writing(directory / f"{name}.png") as path:
+        metadata = {"Software": None, "Title": title}
+        # The usual level 6 takes a tenth of all drawing for a few per cent of the size.
+        figure.savefig(path, format="png", metadata=metadata, pil_kwargs={"compress_level": 3})
+    return directory / f"{name}.png"
 
 
 def number(value: float, _position: float | None = None) -> str:
