@@ -289,11 +289,14 @@ def draw_layers(axes: Axes, curves: Curves, result: RunResult) -> None:
     drawn = np.sort(np.argsort(-most, kind="stable")[: len(LAYERS)]).tolist()
     for k, (color, dashes) in zip(drawn, LAYERS, strict=False):
         mean, swing = held.layer[:, k], held.swing[:, k]
-        axes.plot(held.rpm, mean, color=color, linestyle=dashes, label=f"layer of chamber {k + 1}")
+        style = {"color": color, "linestyle": dashes, **_marked(mean, "o")}
+        axes.plot(held.rpm, mean, **style, label=f"layer of chamber {k + 1}")
         ends = np.maximum(mean - swing, 0.0), mean + swing
         axes.fill_between(held.rpm, *ends, color=color, alpha=0.15, linewidth=0, zorder=1.2)
         for end in ends:
             axes.plot(held.rpm, end, color=color, linewidth=0.5, zorder=1.9, label="_")
+        alone = lonely(mean)
+        axes.vlines(held.rpm[alone], *(end[alone] for end in ends), color=color, linewidth=0.9, label="_")
     # Where the models do not hold the swing may be as wide as the chamber.
     kept = ~_within(held.rpm, curves.out_of_range)
     kept = kept if kept.any() else ~kept
@@ -343,25 +346,24 @@ def reported(axes: Axes, curves: Curves, y: Array, label: str) -> None:
     breaks = jumps | _turns(y)
     unstable = ~curves.stable & ~curves.cycling & ~np.isnan(y)
     x_solid, solid = gapped(curves.rpm, np.where(curves.stable, y, np.nan), breaks)
-    dots = np.flatnonzero(lonely(solid)).tolist()
-    axes.plot(x_solid, solid, color=WET, label=label, marker="o" if dots else None, markevery=dots or None)
+    axes.plot(x_solid, solid, color=WET, label=label, **_marked(solid, "o"))
     if unstable.any():
         x, dashed = gapped(curves.rpm, np.where(widened(unstable), y, np.nan), breaks)
-        dots = np.flatnonzero(lonely(dashed)).tolist()
-        axes.plot(
-            *(x, dashed),
-            color=WET,
-            linestyle=UNSTABLE,
-            marker="s" if dots else None,
-            markevery=dots or None,
-            label=f"{label}, unstable",
-        )
+        style = {"color": WET, "linestyle": UNSTABLE, **_marked(dashed, "s")}
+        axes.plot(x, dashed, **style, label=f"{label}, unstable")
     if curves.cycling.any():
         x, dashed = gapped(curves.rpm, np.where(widened(curves.cycling), y, np.nan), breaks)
-        axes.plot(x, dashed, color=WET, linestyle=CYCLE, label=f"{label}, limit cycle")
+        style = {"color": WET, "linestyle": CYCLE, **_marked(dashed, "D")}
+        axes.plot(x, dashed, **style, label=f"{label}, limit cycle")
     steps = [(curves.rpm[i : i + 2], y[i : i + 2]) for i in np.flatnonzero(jumps & ~_turns(y)).tolist()]
     if steps:
         axes.plot(*joined(steps), color=WET, linewidth=0.9, linestyle=":", label="jump between branches")
+
+
+def _marked(y: Array, marker: str) -> dict[str, Any]:
+    """Marks of a line at the points that it does not reach."""
+    dots = np.flatnonzero(lonely(y)).tolist()
+    return {"marker": marker, "markevery": dots} if dots else {}
 
 
 def without(axes: Axes, curves: Curves, y: Array) -> None:

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.collections import FillBetweenPolyCollection
+from matplotlib.collections import FillBetweenPolyCollection, LineCollection
 from matplotlib.figure import Figure
 
 from leblanc import figures
@@ -174,3 +174,21 @@ def test_figures_without_held_motions_are_as_they_were() -> None:
         figure = draw(record_of(rig().response))
         assert len(figure.axes) == panels
         assert "Held" not in str(figure.caption) and "held" not in figure.alt
+
+
+def test_a_speed_alone_is_marked() -> None:
+    """Where there is no neighbour to draw a line to: the limit cycle, and the swing of its layer."""
+    plain = held_rig(1)
+    assert plain.held is not None
+    cycle = np.array([True])
+    held = replace(plain.held, state=np.array(["limit_cycle"]), whirl_speed=0.8 * plain.speed)
+    result = replace(plain, held=held, response=replace(plain.response, stable=~cycle, converged=cycle))
+    figure = figures.liquid_figure(result)
+    for axes in (0, 1):
+        drawn = line(figure, "liquid's centre of mass, limit cycle", axes)
+        assert drawn.get_marker() == "D" and np.isfinite(drawn.get_ydata()[drawn.get_markevery()]).all()
+    mean = line(figure, "layer of chamber 1", 2)
+    assert mean.get_marker() == "o" and len(mean.get_markevery()) == 1
+    (swing,) = [part for part in figure.axes[2].collections if isinstance(part, LineCollection)]
+    (segment,) = swing.get_segments()
+    assert segment[1, 1] - mean.get_ydata()[0] == pytest.approx(1e3 * held.ripple[0, 0])

@@ -104,3 +104,15 @@ def test_the_figure_shows_what_the_amplitude_beats_between() -> None:
     )
     assert axes.get_ylim()[1] >= points[:, 1].max()
     assert "beating with self-excited whirl" in figure.alt
+
+
+def test_one_speed_is_a_band_of_its_own() -> None:
+    """A run at a single speed within the band says that a whirl grows there."""
+    scene = load_scene(ROOT / "docs/examples/self_excited.toml")
+    speed = scene.speed_array()
+    middle = float(0.5 * (answer().whirl_bands[0][0] + answer().whirl_bands[0][1]))
+    assert speed[0] < middle < speed[-1]
+    at = {"speeds.start": middle, "speeds.stop": middle, "speeds.count": 1}
+    found = run_scene(scene.replace(at))
+    assert [tuple(band) for band in found.whirl_bands] == [(middle, middle)]
+    assert not any("No whirl grows" in note.text for note in found.notes)
