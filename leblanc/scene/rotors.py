@@ -190,7 +190,7 @@ class TwoPlaneRotor(Part):
 
     @classmethod
     def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
-        """A body's inertia about an axis is below that about the two across it; a ball joint carries upright."""
+        """No body has more inertia about an axis than about the two across; a ball joint carries upright."""
         if values.get("pivot") is not None and values.get("axis") == "horizontal":
             yield Conflict(("pivot",), "left out unless the axis is vertical")
         if {"transverse_inertia", "polar_inertia"} <= values.keys():

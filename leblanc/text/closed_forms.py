@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from leblanc.results.base import EXACT
 from leblanc.results.motion.closed_forms import Cage, ClosedForms, Upright, VectorModel
 from leblanc.text.numbers import NOT_FOUND, number
 from leblanc.units import RPM, in_rpm
@@ -38,7 +39,9 @@ def _vector(found: VectorModel) -> str:
     """How well the balance of angles is met, and what is left of the unbalance."""
     if math.isnan(found.difference):
         return "no angle balances: no liquid is off the axis"
-    met = f"angles within {found.difference:.1g} rad of the solved ones"
+    met = "angles are the solved ones to rounding"
+    if found.difference > EXACT:
+        met = f"angles within {found.difference:.1g} rad of the solved ones"
     left = float(found.unbalance_left[-1])
     last = f"; at the last speed lambda_0 = {left:.4g} of the unbalance is left" if np.isfinite(left) else ""
     return met + last

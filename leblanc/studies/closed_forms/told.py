@@ -100,7 +100,7 @@ def _balancing(scene: Scene, speed: Array) -> tuple[Balancing | None, str | None
     """Conditions of balancing in two planes of a rotor that tilts, or why they are not told."""
     if not isinstance(scene.rotor, TwoPlaneRotor):
         return None, None
-    refused = "Conditions of balancing in two planes are not told"
+    refused = "Conditions of balancing in two planes"
     if len({fill.chamber.plane for fill in scene.fills if fill.volume > 0.0}) < 2:
         return None, f"{refused}: liquid is in fewer than two planes."
     liquid = sum(fill.mass for fill in scene.fills)
@@ -117,8 +117,7 @@ def _no_balls(scene: Scene) -> str | None:
     if not isinstance(rotor, TubRotor) or not rotor.bearings or any(b.ball_diameter for b in rotor.bearings):
         return None
     return (
-        "The speed of the bearings' cages is not told: ball_diameter and pitch_diameter are not given in "
-        "[[rotor.bearings]]."
+        "Speed of the bearings' cages: ball_diameter and pitch_diameter are not given in [[rotor.bearings]]."
     )
 
 

@@ -23,7 +23,7 @@ def lacking(scene: Scene) -> str | None:
     """
     if scene.rotor.axis != "vertical":
         return None
-    stability = "Stability of the upright rotation is not told"
+    stability = "Stability of the upright rotation"
     if not isinstance(scene.rotor, TwoPlaneRotor):
         if scene.rotor.kind == "jeffcott":
             return f"{stability}: a planar rotor does not tilt; it takes a two_plane rotor with rotor.pivot."
