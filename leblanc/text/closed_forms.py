@@ -14,7 +14,11 @@ from meshes.arrays import Array
 
 Rows = list[tuple[str, str]]
 
-HEAD = "speed (rpm)", "solved (deg)", "alpha_0 (deg)", "as printed (deg)", "lag delta (deg)", "k", "lambda_0"
+# Angles from the liquid to the unbalance, then what they follow from and what they leave.
+HEAD = (
+    *("speed (rpm)", "angle, solved (deg)", "alpha_0 (deg)", "as printed (deg)"),
+    *("lag delta (deg)", "k", "lambda_0"),
+)
 _SHOWN = 9  # speeds in the table of angles
 
 
@@ -56,11 +60,12 @@ def vector_rows(speed: Array, found: VectorModel) -> list[tuple[str, ...]]:
     found : its angles
     """
     picked = sorted({round(k * (speed.size - 1) / (_SHOWN - 1)) for k in range(_SHOWN)})
-    angles = (found.angle, found.balance_angle, found.printed_angle, found.lag)
     return [
         (
             number(float(speed[k]) * RPM),
-            *(_known(math.degrees(float(values[k]))) for values in angles),
+            *(_known(math.degrees(float(values[k]))) for values in (found.angle, found.balance_angle)),
+            _known(math.degrees(float(found.printed_angle[k])), "not real"),
+            _known(math.degrees(float(found.lag[k]))),
             _known(float(found.ratio[k])),
             _known(float(found.unbalance_left[k])),
         )
@@ -68,8 +73,8 @@ def vector_rows(speed: Array, found: VectorModel) -> list[tuple[str, ...]]:
     ]
 
 
-def _known(value: float) -> str:
-    return number(value) if math.isfinite(value) else NOT_FOUND
+def _known(value: float, otherwise: str = NOT_FOUND) -> str:
+    return number(value) if math.isfinite(value) else otherwise
 
 
 def _upright(found: Upright) -> str:
