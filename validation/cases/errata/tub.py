@@ -319,11 +319,11 @@ def _groups(matrices: TubMatrices) -> Case:
     """Which coefficients of the stiffness matrix are static moments, linear in a place."""
     import sympy as sp
 
-    x, y, z, scale = *sp.symbols("x y z"), sp.symbols("s")
+    place, scale = sp.symbols("x y z"), sp.Symbol("s")
     static = []
     for row, column in _PLACES:
         entry = matrices.stiffness[row - 1, column - 1]
-        scaled = entry.subs({x: scale * x, y: scale * y, z: scale * z}, simultaneous=True)
+        scaled = entry.subs({length: scale * length for length in place}, simultaneous=True)
         if entry != 0 and sp.expand(scaled - scale * entry) == 0:
             static.append((row, column))
     inside = sum(row <= 3 and column <= 3 for row, column in static)
