@@ -93,7 +93,7 @@ def _long() -> Iterator[Case]:
     )
     for group in (
         *("two_plane", "whirl", "layer", "runup", "fill_sweep", "exciter", "errata", "optimal_volume"),
-        *("vector_model", "horizontal_rig", "vertical_rig", "tub", "baffles", "exact_wave"),
+        *("vector_model", "horizontal_rig", "vertical_rig", "tub", "baffles", "exact_wave", "claims"),
     ):
         yield _case(f"validate-{group}", f"validate {group} --json")
 
