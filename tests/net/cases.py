@@ -93,7 +93,7 @@ def _long() -> Iterator[Case]:
     )
     for group in (
         *("two_plane", "whirl", "layer", "runup", "fill_sweep", "exciter", "errata", "optimal_volume"),
-        *("vector_model", "horizontal_rig", "vertical_rig", "tub", "baffles", "exact_wave"),
+        *("vector_model", "horizontal_rig", "vertical_rig", "tub", "baffles", "exact_wave", "claims"),
     ):
         yield _case(f"validate-{group}", f"validate {group} --json")
 
@@ -105,6 +105,9 @@ def _runs() -> Iterator[Case]:
     yield _case("explain-top_loader", f"explain {_scene('top_loader')} --json")
     yield _case("run-exact", "run small/horizontal_rig_exact.toml --workers 1 --json --out out")
     yield _case("run-top_loader", f"run {_scene('top_loader')} --json --out out")
+    for command in ("explain", "run"):
+        out = " --out out" if command == "run" else ""
+        yield _case(f"{command}-spinning_top", f"{command} docs/examples/spinning_top.toml --json{out}")
 
 
 def _comparisons() -> Iterator[Case]:
