@@ -136,6 +136,7 @@ def _optimums() -> Iterator[Case]:
             f"optimise-{objective}",
             f"optimise small/horizontal_rig.toml --objective {objective} --steady --no-front --json",
         )
+    yield _case("optimise-layout", "optimise examples/tub.toml --objective layout --json --out out")
     typed = "optimise examples/tub.toml --objective floor_force --no-front --json --out out"
     yield _case("optimise-floor_force", typed)
     yield _case("optimise-front", "optimise small/centrifuge.toml --json --out out")

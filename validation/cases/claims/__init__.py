@@ -1,6 +1,7 @@
-"""Claims of the sources that print no equation: several chambers, and what swings the vertical rig by 35 mm.
+"""Claims of the sources that print no equation: several chambers, a swing of 35 mm, rules for a layout.
 
-`chambers` shares equal liquid between one to four rings, `swing` asks what 35 g do, `figure` draws the rings.
+`chambers` shares equal liquid between one to four rings, `swing` asks what 35 g do, `layout` keeps and breaks
+the rules for a washing machine, `figure` draws the rings.
 """
 
 from __future__ import annotations
@@ -10,6 +11,6 @@ from validation.cases.case import Case
 
 def cases() -> list[Case]:
     """Every claim with its verdict."""
-    from validation.cases.claims import chambers, swing
+    from validation.cases.claims import chambers, layout, swing
 
-    return [*chambers.cases(), *swing.cases()]
+    return [*chambers.cases(), *swing.cases(), *layout.cases()]
