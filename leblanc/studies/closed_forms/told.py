@@ -19,15 +19,15 @@ from solvers.rotor.vector_model import balance_angles, deflection_lag, unbalance
 from solvers.synchronous.response import Response
 
 
-def closed_forms(scene: Scene, answer: Response | None = None) -> ClosedForms:
+def closed_forms(scene: Scene, speed: Array, answer: Response | None = None) -> ClosedForms:
     """Closed forms that a scene has the data for.
 
     Parameters
     ----------
     scene : the machine; not an exciter
-    answer : its response, at the scene's speeds; None where it was not solved
+    speed : the scene's speeds, rad/s, shape (n,)
+    answer : its response at them; None where it was not solved
     """
-    speed = scene.speed_array()
     balancing, why_not = _balancing(scene, speed)
     missing = [lacking(scene), why_not, _no_balls(scene)]
     machine, liquid = scene.rotor.machine(), sum(fill.mass for fill in scene.fills)
@@ -35,7 +35,7 @@ def closed_forms(scene: Scene, answer: Response | None = None) -> ClosedForms:
     if answer is not None and isinstance(machine, Jeffcott):
         vector = vector_model(machine, answer, liquid)
     return ClosedForms(
-        upright=upright(scene),
+        upright=upright(scene, speed),
         vector=vector,
         balancing=balancing,
         cages=_cages(scene, speed),

@@ -36,12 +36,13 @@ def lacking(scene: Scene) -> str | None:
     return None
 
 
-def upright(scene: Scene) -> Upright | None:
+def upright(scene: Scene, speed: Array) -> Upright | None:
     """Margin over the scene's speeds, and where it is used up [theory: statics, eq. 20-21].
 
     Parameters
     ----------
     scene : the machine
+    speed : the scene's speeds, rad/s, shape (n,)
 
     Returns
     -------
@@ -60,7 +61,6 @@ def upright(scene: Scene) -> Upright | None:
     def left_of_fill(share: Array) -> Array:
         return upright_margin(top, fills, share, scene.speeds.stop, scene.gravity).left
 
-    speed = scene.speed_array()
     margin = upright_margin(top, fills, 1.0, speed, scene.gravity)
     span = np.linspace(scene.speeds.start, scene.speeds.stop, _SPEEDS)
     # The least film has a free surface and a full chamber none: both ends are jumps, and left out.
