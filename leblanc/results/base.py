@@ -148,6 +148,24 @@ def presented_by(address: str) -> Callable[[Any], Any]:
     return found
 
 
+@dataclass(frozen=True)
+class ConstraintValue:
+    """A constraint at what was found best.
+
+    Parameters
+    ----------
+    limit, value : in the unit; the value must not be above the limit
+    satisfied : it is not
+    unit, meaning : of both, and what they are
+    """
+
+    limit: float
+    value: float
+    satisfied: bool
+    unit: str
+    meaning: str
+
+
 def carried(path: str) -> Any:
     """A name of a result's JSON for what stands deeper in the result.
 

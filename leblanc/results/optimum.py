@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from fluid.friction.laws import Friction
-from leblanc.results.base import Note, NoteCode, Result, attributes, texts
+from leblanc.results.base import ConstraintValue, Note, NoteCode, Result, attributes, texts
 from leblanc.results.choice import ModelSpan
 from leblanc.results.netcdf import NamedArrays, Variable, flags
 from leblanc.results.netcdf import variable as var
@@ -187,24 +187,6 @@ class WettingVolumes:
     def to_json(self) -> dict[str, float | None]:
         """As `optimise` prints it; null for a volume that the chamber does not hold."""
         return asdict(self) | {"full_volume": self.full_volume if math.isfinite(self.full_volume) else None}
-
-
-@dataclass(frozen=True)
-class ConstraintValue:
-    """A constraint at the best volumes.
-
-    Parameters
-    ----------
-    limit, value : in the unit; the value must not be above the limit
-    satisfied : it is not
-    unit, meaning : of both, and what they are
-    """
-
-    limit: float
-    value: float
-    satisfied: bool
-    unit: str
-    meaning: str
 
 
 @dataclass(frozen=True)

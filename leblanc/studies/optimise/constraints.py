@@ -9,7 +9,7 @@ import numpy as np
 
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
-from leblanc.results.optimum import ConstraintValue
+from leblanc.results.base import ConstraintValue
 from leblanc.scene.scene import Scene, dry_rotor
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.balance import QualityAtSpeed

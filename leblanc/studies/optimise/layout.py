@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from leblanc.results.base import ConstraintValue
 from leblanc.results.machine.layout import LayoutResult, MountPlace
-from leblanc.results.optimum import ConstraintValue
 from leblanc.scene.scene import Scene, TubRotor
 from leblanc.scene.tasks import Layout, Optimisation
 from meshes.arrays import Array, Flags, Index

@@ -15,12 +15,11 @@ from numpy.typing import NDArray
 
 from fluid.whirl import is_full
 from leblanc.results import optimum
-from leblanc.results.base import Note
+from leblanc.results.base import ConstraintValue, Note
 from leblanc.results.choice import ModelSpan
 from leblanc.results.optimum import (
     CandidateChamber,
     Candidates,
-    ConstraintValue,
     Feasibility,
     OptimumResult,
     ParetoFront,

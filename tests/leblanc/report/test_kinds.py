@@ -21,9 +21,10 @@ from leblanc.report import run as report_exciter
 from leblanc.report import run as report_map
 from leblanc.report import runup as report_runup
 from leblanc.report.page import about
+from leblanc.results.base import ConstraintValue
 from leblanc.results.exciter import ExciterResult
 from leblanc.results.notes.runup import IN_TABLES
-from leblanc.results.optimum import ConstraintValue, Feasibility, OptimumResult
+from leblanc.results.optimum import Feasibility, OptimumResult
 from leblanc.results.runup import RunupResult
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import scene_from_table
