@@ -1,0 +1,3 @@
+"""A rigid rotor in magnetic bearings: `machine` its forces, `control` what drives the coils, `linear` poles and
+margins of the closed loop, `motion` the nonlinear motion in time.
+"""
