@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from leblanc.results.fit import FitResult
     from leblanc.results.layer import FreeWaveResult, LayerPeriodsResult, LayerResult
     from leblanc.results.liquid import ModesResult, VolumeResult
+    from leblanc.results.magnetic import MagneticResult
     from leblanc.results.models.comparison import Comparison
     from leblanc.results.optimum import OptimumResult
     from leblanc.results.response import RunResult
@@ -40,7 +41,7 @@ _OPTION = re.compile(r"--([a-z][a-z-]*)")
 
 def run(
     scene: SceneOrPath, *, workers: int = 1, solver: str | None = None, cycles: bool = False
-) -> RunResult | ExciterResult:
+) -> RunResult | ExciterResult | MagneticResult:
     """Response and the liquid's centre of mass at each speed of a scene.
 
     Parameters
@@ -55,7 +56,8 @@ def run(
 
     Returns
     -------
-    The response at each speed; of an exciter its stuck speeds and vibration
+    The response at each speed; of an exciter its stuck speeds and vibration, of a rotor in magnetic bearings
+    its poles, margins and motion
 
     Raises
     ------
@@ -76,6 +78,10 @@ def run(
         from leblanc.studies.exciter import run_exciter
 
         return run_exciter(machine)
+    if machine.rotor.kind == "magnetic":
+        from leblanc.studies.magnetic import run_magnetic
+
+        return run_magnetic(machine)
     from leblanc.studies.held.holding import Holding
     from leblanc.studies.run import run_scene
     from solvers.held.state import COUPLED

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -144,8 +145,8 @@ class Synergetic:
     def answer(self, speed: float, place: Array, rate: Array, memory: Array) -> tuple[Array, Array]:
         """As `Controller.answer`: the estimate of the disturbance is its state."""
         wanted = self.forces(speed, place, rate, memory)
-        current = self.model.magnets.current(self.model.bearing_motion @ place, wanted)
-        return current, np.asarray(self.rates * place)
+        current = self.model.magnets.current(self._motion @ place, wanted)
+        return current, np.asarray(self._rates * place)
 
     def gains(self, speed: float) -> Gains:
         """As `Controller.gains`."""
@@ -162,15 +163,30 @@ class Synergetic:
 
     def _matrices(self, speed: float) -> tuple[Array, Array, Array]:
         """Wanted forces for unit coordinates, rates and estimates, each of shape (4, 4)."""
+        on_place, per_speed, on_rate, gyroscopic, on_memory = self._parts
+        return on_place + speed * per_speed, on_rate + speed * gyroscopic, on_memory
+
+    @cached_property
+    def _parts(self) -> tuple[Array, Array, Array, Array, Array]:
+        """Parts of `_matrices` with and without the speed, the latter for 1 rad/s."""
         model = self.model
-        spread = np.linalg.inv(model.bearing_motion.T)
+        spread, inertia = np.linalg.inv(model.bearing_motion.T), model.inertia
         on_place, on_rate, on_memory = self.feedback
-        inertia = model.inertia
         return (
-            spread @ (speed * model.circulation - model.motor_pull - np.diag(inertia * on_place)),
-            spread @ (model.damping + speed * model.gyroscopic - np.diag(inertia * on_rate)),
+            spread @ (-model.motor_pull - np.diag(inertia * on_place)),
+            spread @ model.circulation,
+            spread @ (model.damping - np.diag(inertia * on_rate)),
+            spread @ model.gyroscopic,
             spread @ np.diag(-inertia * on_memory),
         )
+
+    @cached_property
+    def _motion(self) -> Array:
+        return self.model.bearing_motion
+
+    @cached_property
+    def _rates(self) -> Array:
+        return self.rates
 
 
 @dataclass(frozen=True)
@@ -214,7 +230,7 @@ class Pid:
 
     def answer(self, speed: float, place: Array, rate: Array, memory: Array) -> tuple[Array, Array]:
         """As `Controller.answer`: integrals and filtered deflections of the four axes are its state."""
-        at = self.model.bearing_motion @ place
+        at = self._motion @ place
         slope = self.cutoff * (at - memory[4:])
         wanted = -(self.proportional * at + self.integral * memory[:4] + self.derivative * slope)
         return np.asarray(wanted / self.model.magnets.current_stiffness), np.concatenate((at, slope))
@@ -232,6 +248,10 @@ class Pid:
             from_place=np.vstack((motion, self.cutoff * motion)),
             from_memory=np.block([[nothing, nothing], [nothing, -self.cutoff * unit]]),
         )
+
+    @cached_property
+    def _motion(self) -> Array:
+        return self.model.bearing_motion
 
 
 @dataclass(frozen=True)

@@ -189,20 +189,22 @@ def integrate(
     return _motion(equations, *_pieces(equations, state, duration, samples))
 
 
-def settling_time(motion: Motion, band: float) -> float:
-    """Time from which the rotor stays within a distance of the centre, s; inf if it never does.
+def settling_time(motion: Motion, band: float, before: float = math.inf) -> float:
+    """Time from which the rotor stays within a distance of the centre, s; inf if it does not.
 
     Parameters
     ----------
     motion : through time
     band : m
+    before : time at which something new happens, s; what comes later is not looked at
     """
     require_positive("band", band)
-    outside = np.flatnonzero(motion.distance > band)
+    looked = motion.time < before
+    time, outside = motion.time[looked], np.flatnonzero(motion.distance[looked] > band)
     if not outside.size:
-        return float(motion.time[0])
+        return float(time[0])
     last = int(outside[-1])
-    return float(motion.time[last + 1]) if last + 1 < motion.time.size else math.inf
+    return float(time[last + 1]) if last + 1 < time.size else math.inf
 
 
 class _Equations:

@@ -37,8 +37,8 @@ def pairs_with(found: Complex, expected: Complex, rel: float) -> None:
 
 @kills(CONTROL + "Synergetic.feedback", "1.0 + self.weight", "self.weight")
 @kills(CONTROL + "Synergetic.feedback", "pull / self.goal_time + inner", "pull / self.goal_time - inner")
-@kills(CONTROL + "Synergetic._matrices", "speed * model.gyroscopic", "-speed * model.gyroscopic")
-@kills(CONTROL + "Synergetic._matrices", "speed * model.circulation", "-speed * model.circulation")
+@kills(CONTROL + "Synergetic._matrices", "speed * gyroscopic", "-speed * gyroscopic")
+@kills(CONTROL + "Synergetic._matrices", "speed * per_speed", "-speed * per_speed")
 @kills(CONTROL + "Synergetic.gains", "pulled - on_place", "-pulled - on_place")
 @kills(CONTROL + "source_times", "weight * unit**2", "weight * unit")
 @kills(LINEAR + "closed_loop", "machine.motor_pull + magnets", "-machine.motor_pull + magnets")
@@ -199,7 +199,7 @@ def test_margins_of_what_is_not_stable() -> None:
 @kills(MOTION + "_Equations.__call__", "self.damping + speed", "self.damping - speed")
 @kills(MOTION + "_Equations.currents", "np.clip(wanted, -limit, limit)", "-np.clip(wanted, -limit, limit)")
 @kills(MOTION + "_Equations.__call__", "bandwidth * (wanted - current)", "bandwidth * (wanted + current)")
-@kills(CONTROL + "Synergetic.answer", "self.rates * place", "-self.rates * place")
+@kills(CONTROL + "Synergetic.answer", "self._rates * place", "-self._rates * place")
 @kills(CONTROL + "Pid.answer", "self.cutoff * (at - memory[4:])", "self.cutoff * (at + memory[4:])")
 def test_small_motions_in_time_are_the_linear_loop() -> None:
     """Central differences of the rates of change with all the magnets' nonlinearity, against the loop's matrix.
